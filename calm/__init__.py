@@ -1,0 +1,54 @@
+"""CALM designs oceanographic moorings: shape, tensions and anchor load in static equilibrium.
+
+>>> import calm
+>>> result = calm.load("lines/s1000.yaml").solve()
+>>> round(result.top.knockdown, 1)
+32.2
+
+The names below are loaded when first used, so that `import calm` costs next to nothing.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from calm.case import Mooring, Result, load
+    from calm.errors import CalmError, InputError, NoEquilibrium, UsageError
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "CalmError",
+    "InputError",
+    "Mooring",
+    "NoEquilibrium",
+    "Result",
+    "UsageError",
+    "__version__",
+    "load",
+]
+
+_HOMES = {
+    "load": "calm.case",
+    "Mooring": "calm.case",
+    "Result": "calm.case",
+    "CalmError": "calm.errors",
+    "InputError": "calm.errors",
+    "NoEquilibrium": "calm.errors",
+    "UsageError": "calm.errors",
+}
+
+
+def __getattr__(name: str) -> object:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'calm' has no attribute {name!r}")
+    from importlib import import_module
+
+    value = getattr(import_module(_HOMES[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,117 @@
+"""The pieces of a mooring file as arrays: net forces, drags, stiffness."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from calm.files import Anchor, Body, Cable, Chain, Component, Cylinder, Piece, Sphere
+from calm.files.components import CylinderShape, SphereShape
+from calm.physics import drag
+from calm.physics.line import Line
+
+
+def assemble_line(pieces: Sequence[Piece]) -> Line:
+    """The line above the anchor; a piece to be cut to fit has length 0 until it is cut.
+
+    Parameters
+    ----------
+    pieces : top to bottom, the anchor last
+    """
+    above, anchor = pieces[:-1], pieces[-1]
+    flexible = [isinstance(piece.component, Cable | Chain) for piece in above]
+    drags = [drag_of(piece.component, piece.length or 0.0) for piece in above]
+    clamps = [(i, clamp) for i, piece in enumerate(above) for clamp in piece.clamps]
+    return Line(
+        length=np.array([piece.length or 0.0 for piece in above]),
+        flexible=np.array(flexible),
+        buoyancy=np.array([piece.component.net_buoyancy for piece in above]),
+        volume=np.array([piece.component.displaced_volume or 0.0 for piece in above]),
+        normal_drag=np.array([kn for kn, _, _ in drags]),
+        tangential_drag=np.array([kt for _, kt, _ in drags]),
+        directional=np.array([directional for _, _, directional in drags]),
+        compliance=np.array([_compliance(piece.component) for piece in above]),
+        thinning=np.array([0.5 if isinstance(p.component, Cable) else 0.0 for p in above]),
+        clamp_piece=np.array([i for i, _ in clamps]),
+        clamp_at=np.array([clamp.at for _, clamp in clamps]),
+        clamp_buoyancy=np.array([clamp.component.net_buoyancy for _, clamp in clamps]),
+        clamp_volume=np.array([clamp.component.displaced_volume or 0.0 for _, clamp in clamps]),
+        clamp_drag=np.array([_clamped_drag(clamp.component) for _, clamp in clamps]),
+        anchor_height=anchor.length or 0.0,
+    )
+
+
+def drag_of(component: Component, length: float) -> tuple[float, float, bool]:
+    """Kn, Kt [N/(m/s)², per metre of cable or chain] and whether drag depends on the axis.
+
+    Parameters
+    ----------
+    component : of any kind; an anchor has no drag
+    length : of the piece along the line [m]
+    """
+    if isinstance(component, Sphere):
+        k = drag.sphere_drag(component.diameter, component.cx)
+        return k, k, False
+    if isinstance(component, Cylinder):
+        kn, kt = drag.cylinder_drag(component.diameter, length, component.cn, component.ct)
+        return kn, kt, component.inclination != "insensitive"
+    if isinstance(component, Body):
+        return _body_drag(component)
+    if isinstance(component, Cable):
+        ct = drag.CABLE_CT[component.finish or "smooth"]
+        return *_line_drag(component, drag.CABLE_CN, ct), True
+    if isinstance(component, Chain):
+        return *_line_drag(component, drag.CHAIN_CN, drag.CHAIN_CT), True
+    return 0.0, 0.0, False
+
+
+def _line_drag(component: Cable | Chain, cn: float, ct: float) -> tuple[float, float]:
+    return drag.line_drag(
+        component.diameter,
+        cn if component.cn is None else component.cn,
+        ct if component.ct is None else component.ct,
+    )
+
+
+def _body_drag(body: Body) -> tuple[float, float, bool]:
+    if body.made_of is not None:
+        kn = kt = 0.0
+        follows = False
+        for shape in body.made_of:
+            part_kn, part_kt, part_follows = _shape_drag(shape)
+            kn, kt, follows = kn + part_kn, kt + part_kt, follows or part_follows
+        return kn, kt, follows and body.inclination != "insensitive"
+    if body.drag_measurements is not None:
+        kn = drag.measured_drag(
+            [measured.speed for measured in body.drag_measurements],
+            [measured.force for measured in body.drag_measurements],
+        )
+    elif body.kn is not None:
+        kn = body.kn
+    else:
+        assert body.drag_area is not None and body.cd is not None
+        kn = 0.5 * drag.REFERENCE_DENSITY * body.cd * body.drag_area
+    if body.kt is None or body.inclination == "insensitive":
+        return kn, kn, False
+    return kn, body.kt, True
+
+
+def _shape_drag(shape: SphereShape | CylinderShape) -> tuple[float, float, bool]:
+    if isinstance(shape, SphereShape):
+        k = drag.sphere_drag(shape.diameter, shape.cx)
+        return k, k, False
+    kn, kt = drag.cylinder_drag(shape.diameter, shape.length, shape.cn, shape.ct)
+    if shape.inclination == "insensitive":
+        return kn, kn, False
+    return kn, kt, True
+
+
+def _clamped_drag(component: Component) -> float:
+    """K of a clamped-on instrument: its normal drag, whatever the inclination of the line."""
+    return drag_of(component, getattr(component, "length", 0.0))[0]
+
+
+def _compliance(component: Component) -> float:
+    stiffness = getattr(component, "stiffness", None)
+    return 1.0 / stiffness if stiffness else 0.0

@@ -1,0 +1,136 @@
+"""A mooring file, ready to be solved."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+
+from calm.assemble import assemble_line, assemble_water
+from calm.case.measure import result_of
+from calm.case.result import Result
+from calm.errors import InputError, NoEquilibrium, Problem
+from calm.files import MooringFile, read_mooring
+from calm.physics.line import Line, Water
+from calm.solve import Settings, Solution, Status, fit_length, solve_mooring
+from calm.solve.closing import COARSE_STEP
+
+
+def load(
+    path: str | Path,
+    environment: str | Path | None = None,
+    catalogs: Sequence[str | Path] = (),
+) -> Mooring:
+    """Read a mooring file.
+
+    Parameters
+    ----------
+    path : the YAML file
+    environment : name of one of its `environments`, or an environment file
+    catalogs : catalogue files of your own; the nearer definition wins
+
+    Raises
+    ------
+    InputError
+        With every mistake of the file, each with its line and column.
+    """
+    return Mooring(
+        read_mooring(path, environment=environment, catalogs=[Path(c) for c in catalogs])
+    )
+
+
+@dataclass(frozen=True)
+class Mooring:
+    """A mooring as read from its file; `line` and `water` are what the solver takes."""
+
+    file: MooringFile
+
+    @cached_property
+    def water(self) -> Water:
+        """Depth, current and density by level."""
+        return assemble_water(self.file.environment)
+
+    @property
+    def settings(self) -> Settings:
+        """Angle step and tolerance."""
+        return Settings(self.file.solver.angle_step, self.file.solver.tolerance)
+
+    @cached_property
+    def line(self) -> Line:
+        """The pieces above the anchor, a piece that is cut to fit at its cut length.
+
+        Raises
+        ------
+        NoEquilibrium
+            Where no length fits.
+        """
+        line = assemble_line(self.file.pieces)
+        for piece in self.file.pieces:
+            if piece.fit_top_depth is not None:
+                with self._naming_the_piece():
+                    length = fit_length(
+                        line, self.water, piece.index, piece.fit_top_depth, self.settings
+                    )
+                return line.with_length(piece.index, length)
+        return line
+
+    def solve(self) -> Result:
+        """Find the static equilibrium.
+
+        Raises
+        ------
+        NoEquilibrium
+            With status, message and advice, where there is none that passes every check.
+        InputError
+            Where the line reaches the surface and the file leaves `buoy_drag` at `immersed`.
+        """
+        with self._naming_the_piece():
+            solution = solve_mooring(self.line, self.water, self.settings)
+        if solution.surface and self.file.solver.buoy_drag != "full":
+            raise InputError(
+                [
+                    Problem(
+                        str(self.file.path or self.file.name),
+                        0,
+                        0,
+                        "the float of this line is at the surface, and `buoy_drag: immersed` is "
+                        "not available in this version; write `solver: {buoy_drag: full}`",
+                    )
+                ]
+            )
+        self._refuse_a_lifted_anchor(solution)
+        return result_of(self, solution, self._still(solution))
+
+    def _refuse_a_lifted_anchor(self, solution: Solution) -> None:
+        pull, weight = float(solution.force[-1, 2]), -self.file.anchor.net_buoyancy
+        if pull > weight:
+            raise Status.ANCHOR_LIFTS.because(
+                f"The line pulls up with {pull:.0f} N; the anchor weighs {weight:.0f} N in water."
+            )
+
+    @contextmanager
+    def _naming_the_piece(self) -> Iterator[None]:
+        """Adds the label of the piece to what the solver, which knows only numbers, says of it."""
+        try:
+            yield
+        except NoEquilibrium as error:
+            if error.piece is None:
+                raise
+            label = self.file.pieces[error.piece].label
+            message = f"{error.message} Piece {error.piece + 1} is {label}."
+            raise NoEquilibrium(error.status, message, error.advice) from error
+
+    def _still(self, solution: Solution) -> Solution | None:
+        """The same line without current; None where it has no unique shape."""
+        if not self.water.moving:
+            return solution
+        # a plumb line is exact with long segments
+        settings = replace(
+            self.settings, angle_step=max(self.settings.angle_step, COARSE_STEP)
+        )
+        try:
+            return solve_mooring(self.line, self.water.still(), settings)
+        except NoEquilibrium:
+            return None

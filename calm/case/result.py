@@ -1,0 +1,117 @@
+"""What a solved mooring tells, in the names and units of the result format."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from calm.case.columns import Clamps, Components, Shape
+
+if TYPE_CHECKING:
+    from calm.case.mooring import Mooring
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """The solver's own estimate of the worst error of any depth or offset [m] and tension [N]."""
+
+    depth: float
+    tension: float
+
+
+@dataclass(frozen=True)
+class Top:
+    """The free end: depth, offsets east and north, knockdown [m]; None where there is none.
+
+    `used_buoyancy` is the share in use of the buoyancy that is at the surface, `reserve` the
+    rest of it [N]; 1 and 0 below the surface.
+    """
+
+    depth: float
+    x: float
+    y: float
+    knockdown: float | None
+    used_buoyancy: float
+    reserve: float
+
+
+@dataclass(frozen=True)
+class AnchorLoad:
+    """What the line does to its anchor [N]; `angle` is from the vertical [degrees].
+
+    `required_weight` is the weight in water that holds it; `weight` what it has, None if unknown.
+    """
+
+    tension: float
+    vertical: float
+    horizontal: float
+    angle: float
+    required_weight: float
+    weight: float | None
+    grounded_length: float = 0.0
+
+
+@dataclass(frozen=True)
+class Result:
+    """A converged mooring. Lengths and depths [m], forces [N], angles [degrees].
+
+    `iterations` counts marches, `segments` the elements of the final one, `miss` is the height
+    of the line's end above the anchor's top, `closure` the relative force residual recomputed
+    from the final coordinates. `still_shape` is the same line without current, None where that
+    has no unique shape.
+    """
+
+    mooring: Mooring = field(repr=False)
+    name: str
+    type: str
+    status: str
+    iterations: int
+    segments: int
+    miss: float
+    closure: float
+    accuracy: Accuracy
+    top: Top
+    anchor: AnchorLoad
+    components: Components = field(repr=False)
+    clamps: Clamps = field(repr=False)
+    shape: Shape = field(repr=False)
+    still_shape: Shape | None = field(repr=False)
+    warnings: tuple[str, ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON object of the result format; None stands where a figure is unknown."""
+        from calm import __version__
+
+        components = self.components.to_dicts()
+        for component in components:
+            for name in ("kind", "role", "tension"):
+                del component[name]
+        return {
+            "calm": __version__,
+            "name": self.name,
+            "type": self.type,
+            "status": self.status,
+            "iterations": self.iterations,
+            "segments": self.segments,
+            "miss": self.miss,
+            "closure": self.closure,
+            "accuracy": asdict(self.accuracy),
+            "top": asdict(self.top),
+            "anchor": asdict(self.anchor),
+            "components": components,
+            "clamps": self.clamps.to_dicts(),
+            "shape": {name: column.tolist() for name, column in vars(self.shape).items()},
+            "warnings": list(self.warnings),
+        }
+
+    def to_dataframe(self) -> Any:
+        """The components as a pandas data frame (pandas is not installed with CALM)."""
+        return self.components.to_dataframe()
+
+    def _repr_html_(self) -> str:
+        """The table of the line, for notebooks."""
+        from importlib import import_module
+
+        # the report room stands above this one, so it is asked for by name at run time
+        html: str = import_module("calm.report.notebook").to_html(self)
+        return html

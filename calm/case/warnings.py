@@ -1,0 +1,131 @@
+"""What a person should know of a result before trusting it: one small function per worry."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from calm.files import Cable
+from calm.solve import Solution
+
+if TYPE_CHECKING:
+    from calm.case.result import Result
+
+LARGEST_REYNOLDS = 2e5
+"""Above it a constant drag coefficient of a smooth sphere or cylinder no longer holds."""
+LARGEST_STRAIN = 0.25
+"""New nylon fails near it; no linear stiffness holds so far."""
+SYNTHETICS = (
+    "nylon", "polyamide", "polyester", "dacron", "polypropylene", "polyethylene", "polyolefin",
+    "hmpe", "dyneema", "spectra", "aramid", "kevlar", "vectran", "perlon",
+)  # fmt: skip
+
+
+def warnings_of(result: Result, solution: Solution) -> tuple[str, ...]:
+    """Every warning of a result, the file's own notices first."""
+    told = [warning for worry in _WORRIES for warning in worry(result, solution)]
+    return (*result.mooring.file.notices, *told)
+
+
+def _overloaded(result: Result, _: Solution) -> Iterator[str]:
+    for row in result.components:
+        if row.safety_factor < 1.0:
+            yield f"{row.label} breaks: {row.tension:.0f} N is above its breaking load."
+        elif row.utilisation > 1.0:
+            yield f"{row.label} is overloaded: {row.tension:.0f} N is above its working load."
+
+
+def _anchor_too_light(result: Result, _: Solution) -> Iterator[str]:
+    anchor = result.anchor
+    if anchor.weight is not None and anchor.weight < anchor.required_weight:
+        yield (
+            f"The anchor weighs {anchor.weight:.0f} N in water; {anchor.required_weight:.0f} N "
+            "are required to hold the line."
+        )
+
+
+def _tilted(result: Result, _: Solution) -> Iterator[str]:
+    leaning = [
+        (row.label, row.tilt, result.mooring.file.pieces[row.index].component)
+        for row in result.components
+    ]
+    clamps = [clamp for piece in result.mooring.file.pieces for clamp in piece.clamps]
+    known = {clamp.label: clamp.component for clamp in clamps}
+    leaning += [(row.label, row.tilt, known[row.label]) for row in result.clamps]
+    for label, tilt, component in leaning:
+        if component.max_tilt is not None and tilt > component.max_tilt:
+            yield f"{label} leans {tilt:.1f} degrees; beyond {component.max_tilt:g} it is not to be trusted."
+        elif component.warn_tilt is not None and tilt > component.warn_tilt:
+            yield f"{label} leans {tilt:.1f} degrees, more than the {component.warn_tilt:g} it should."
+
+
+def _stiffness_unknown(result: Result, _: Solution) -> Iterator[str]:
+    for piece in result.mooring.file.pieces:
+        component = piece.component
+        material = (getattr(component, "material", None) or "").lower()
+        if (
+            isinstance(component, Cable)
+            and component.stiffness is None
+            and any(synthetic in material for synthetic in SYNTHETICS)
+        ):
+            yield f"{piece.label} is {material} of unknown stiffness: it is taken as inextensible."
+
+
+def _overstretched(result: Result, solution: Solution) -> Iterator[str]:
+    greatest = np.zeros(len(solution.line.length))
+    np.maximum.at(greatest, solution.element_piece, solution.strain)
+    for index in np.flatnonzero(greatest > LARGEST_STRAIN):
+        label = result.components.label[index]
+        yield f"{label} stretches by {100 * greatest[index]:.0f} %: beyond any linear stiffness."
+
+
+def _fast_flow(result: Result, _: Solution) -> Iterator[str]:
+    fast = [
+        row for row in result.components
+        if row.kind in ("sphere", "cylinder") and row.reynolds > LARGEST_REYNOLDS
+    ]  # fmt: skip
+    if fast:
+        row = max(fast, key=lambda row: row.reynolds)
+        others = f" and {len(fast) - 1} more" if len(fast) > 1 else ""
+        yield (
+            f"Reynolds number above 2e5 ({row.label}: {row.reynolds:.1e}{others}): "
+            "the drag coefficient needs a look."
+        )
+
+
+def _bight(result: Result, solution: Solution) -> Iterator[str]:
+    pieces, force = solution.element_piece, solution.force[1:, 2]
+    hanging = pieces[(force < 0.0) & (solution.element_clamp < 0)]
+    if len(hanging):
+        yield (
+            f"The line hangs in a bight: at {result.components.label[hanging[0]]} it rises "
+            "towards the anchor."
+        )
+
+
+def _other_equilibrium(_: Result, solution: Solution) -> Iterator[str]:
+    if solution.other_depth is not None:
+        yield (
+            "Another equilibrium exists with the free end near "
+            f"{solution.other_depth:.0f} m: the current grows with depth."
+        )
+
+
+def _wind_ignored(result: Result, _: Solution) -> Iterator[str]:
+    if result.mooring.file.environment.wind is not None:
+        yield "The wind is not taken into account in this version."
+
+
+_WORRIES: tuple[Callable[[Result, Solution], Iterator[str]], ...] = (
+    _overloaded,
+    _anchor_too_light,
+    _tilted,
+    _stiffness_unknown,
+    _overstretched,
+    _fast_flow,
+    _bight,
+    _other_equilibrium,
+    _wind_ignored,
+)

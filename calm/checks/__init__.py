@@ -1,0 +1,1 @@
+"""Judgements on a catalogue and on a solved line: small functions, each with its source."""

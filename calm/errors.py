@@ -1,0 +1,68 @@
+"""Every exception CALM raises on purpose.
+
+::
+
+    CalmError
+    ├── InputError      a file is wrong: all its problems, each with its place     (exit code 2)
+    ├── UsageError      a command or a call is wrong                               (exit code 2)
+    └── NoEquilibrium   the line has no shape that may be shown: why, and what to do (exit code 3)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+
+class CalmError(Exception):
+    """Base of all errors that are meant for people."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One mistake in one place of a file.
+
+    `line` and `column` count from 1; 0 means the file as a whole.
+    """
+
+    path: str
+    line: int
+    column: int
+    message: str
+
+    def __str__(self) -> str:
+        place = f":{self.line}:{self.column}" if self.line else ""
+        return f"{self.path}{place}: {self.message}"
+
+
+class InputError(CalmError):
+    """A file that cannot be used as it stands; `problems` holds every mistake found in it."""
+
+    def __init__(self, problems: Sequence[Problem]) -> None:
+        self.problems = tuple(problems)
+        super().__init__("\n".join(str(problem) for problem in self.problems))
+
+
+class UsageError(CalmError):
+    """A command line or a call that asks for something that does not exist."""
+
+
+class NoEquilibrium(CalmError):
+    """The mooring has no equilibrium that may be shown.
+
+    Parameters
+    ----------
+    status : str
+        One of the statuses of the result format, e.g. ``"no-equilibrium"``, ``"slack"``.
+    message, advice : str
+        What is wrong, with its figures, and what to change.
+    piece : int, optional
+        Index of the piece it happens at, when the message names one.
+    """
+
+    def __init__(self, status: str, message: str, advice: str, piece: int | None = None) -> None:
+        self.status = status
+        self.message = message
+        self.advice = advice
+        self.piece = piece
+        super().__init__(f"{status}: {message} {advice}")

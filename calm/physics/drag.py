@@ -1,0 +1,101 @@
+"""Drag coefficients by shape, constant with Reynolds number.
+
+Every function gives the drag of a shape at 1 m/s in sea water of 1025 kg/m³: Kn across its axis,
+Kt along it [N/(m/s)²]. Constant coefficients hold for Reynolds numbers from 1e3 to 2e5 (cylinders
+1e4 to 2e5).
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Sequence
+from math import log, pi
+
+from calm.physics.line import REFERENCE_DENSITY
+
+SPHERE_CX = 0.5
+LONG_CYLINDER_CN = 1.2
+CHAIN_CN = 2.75
+CHAIN_CT = 0.46
+CABLE_CN = 1.3
+CABLE_CT = {"smooth": 0.005, "rough": 0.009, "very-rough": 0.013}
+"""On the wetted surface. Smooth: parallel fibre in a sheath, plastic-coated wire; rough: braided;
+very rough: laid strands."""
+
+_HALF_DENSITY = 0.5 * REFERENCE_DENSITY
+
+# Finite length: Wieselsberger's cylinder of L/D = 1, then DNV-RP-C205 table 6-2, Re < 2e5.
+_SLENDERNESS = (1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 50.0, 100.0)
+_KAPPA = (0.52, 0.58, 0.62, 0.68, 0.74, 0.82, 0.87, 0.98)
+# Flow along the axis, on the end face (Kritzinger).
+_END_SLENDERNESS = (0.1, 0.6, 0.88, 1.3, 1.8)
+_END_CT = (1.17, 1.07, 0.97, 0.86, 0.82)
+
+
+def _interpolated(x: float, xs: Sequence[float], ys: Sequence[float]) -> float:
+    if x <= xs[0]:
+        return ys[0]
+    if x >= xs[-1]:
+        return ys[-1]
+    i = bisect_right(xs, x) - 1
+    return ys[i] + (ys[i + 1] - ys[i]) * (x - xs[i]) / (xs[i + 1] - xs[i])
+
+
+def finite_length_factor(slenderness: float) -> float:
+    """κ, by which a finite cylinder's drag falls short of the long one's.
+
+    Parameters
+    ----------
+    slenderness : length over diameter [-]; linear in its logarithm between the table's points,
+        constant below 1 and above 100
+
+    Source: DNV-RP-C205 table 6-2 (Re < 2e5); Wieselsberger (NACA report 121) below 2.
+    """
+    if slenderness <= _SLENDERNESS[0]:
+        return _KAPPA[0]
+    return _interpolated(log(slenderness), [log(x) for x in _SLENDERNESS], _KAPPA)
+
+
+def end_face_coefficient(slenderness: float) -> float:
+    """Ct of a cylinder in flow along its axis, on the area of its end face.
+
+    Parameters
+    ----------
+    slenderness : length over diameter [-]; linear between 0.1 and 1.8, constant outside
+
+    Source: Kritzinger's measurements of cylinders end-on.
+    """
+    return _interpolated(slenderness, _END_SLENDERNESS, _END_CT)
+
+
+def sphere_drag(diameter: float, cx: float | None = None) -> float:
+    """K of a sphere of a diameter [m]: ½ρ Cx πD²/4, whatever the direction; Cx = 0.5."""
+    return _HALF_DENSITY * (SPHERE_CX if cx is None else cx) * pi * diameter**2 / 4
+
+
+def cylinder_drag(
+    diameter: float, length: float, cn: float | None = None, ct: float | None = None
+) -> tuple[float, float]:
+    """Kn = ½ρ Cn D L and Kt = ½ρ Ct πD²/4 of a cylinder of diameter and length [m].
+
+    Cn defaults to 1.2 κ(L/D), Ct to that of the end face.
+    """
+    slenderness = length / diameter
+    if cn is None:
+        cn = LONG_CYLINDER_CN * finite_length_factor(slenderness)
+    if ct is None:
+        ct = end_face_coefficient(slenderness)
+    return (
+        _HALF_DENSITY * cn * diameter * length,
+        _HALF_DENSITY * ct * pi * diameter**2 / 4,
+    )
+
+
+def line_drag(diameter: float, cn: float, ct: float) -> tuple[float, float]:
+    """Kn = ½ρ Cn D and Kt = ½ρ Ct πD of a metre of cable or chain of a diameter [m]."""
+    return _HALF_DENSITY * cn * diameter, _HALF_DENSITY * ct * pi * diameter
+
+
+def measured_drag(speeds: Sequence[float], forces: Sequence[float]) -> float:
+    """K that fits measured drags: Σ(F/V) / ΣV, for speeds [m/s] and forces [N]."""
+    return sum(f / v for v, f in zip(speeds, forces, strict=True)) / sum(speeds)

@@ -1,0 +1,118 @@
+"""What every solution must satisfy, recomputed from its coordinates without the march.
+
+Closure: buoyancy and drag of every element from the final positions and axes sum to the force on
+the anchor. Moments: every axis lies along the mean of the forces at its two ends. Neither uses
+a number that the march left behind, but for the positions and the strains.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from calm.physics.line import REFERENCE_DENSITY, Floats
+from calm.physics.march import head_count
+from calm.solve.solution import Solution
+
+LARGEST_CLOSURE = 1e-6
+LARGEST_MOMENT = 1e-8
+
+
+def loads(solution: Solution) -> Floats:
+    """(k, 3) buoyancy and drag of every element [N]; a rigid piece's at its own middle."""
+    line, water = solution.carried, solution.water
+    piece, clamp = solution.element_piece, solution.element_clamp
+    top, bottom = solution.position[:-1].copy(), solution.position[1:].copy()
+    rigid = ~line.flexible[piece] & (clamp < 0)
+    ends = solution.piece_nodes[piece[rigid]]
+    top[rigid], bottom[rigid] = solution.position[ends[:, 0]], solution.position[ends[:, 1]]
+
+    current, density = water.at(-0.5 * (top + bottom)[:, 2])
+    chord = bottom - top
+    size = np.linalg.norm(chord, axis=1, keepdims=True)
+    axis = np.divide(chord, size, out=np.zeros_like(chord), where=size > 0)
+    along = np.sum(current * axis, axis=1, keepdims=True) * axis
+    normal = current - along
+
+    def squared(v: Floats) -> Floats:
+        result: Floats = np.linalg.norm(v, axis=1, keepdims=True) * v
+        return result
+
+    # a rigid piece's load is spread over its elements by length; without length the last has it
+    last = solution.piece_nodes[piece, 1] - 1 == np.arange(len(piece))
+    whole = np.where(last, 1.0, 0.0)
+    np.divide(solution.cut, line.length[piece], out=whole, where=line.length[piece] > 0)
+    amount = np.where(line.flexible[piece], solution.cut, whole)
+    grown = amount * (1.0 + solution.strain) ** line.thinning[piece]
+    directional = line.directional[piece][:, None]
+    drag = np.where(
+        directional,
+        line.normal_drag[piece][:, None] * squared(normal)
+        + line.tangential_drag[piece][:, None] * squared(along),
+        line.normal_drag[piece][:, None] * squared(current),
+    )
+    drag *= (grown * density / REFERENCE_DENSITY)[:, None]
+    excess = (density - REFERENCE_DENSITY) * water.gravity
+    lift = amount * (line.buoyancy[piece] + excess * line.volume[piece])
+
+    here = clamp >= 0
+    which = clamp[here]
+    drag[here] = squared(current[here]) * (
+        line.clamp_drag[which] * density[here] / REFERENCE_DENSITY
+    )[:, None]
+    lift[here] = line.clamp_buoyancy[which] + excess[here] * line.clamp_volume[which]
+    drag[:, 2] += lift
+    return drag
+
+
+def closure(solution: Solution) -> float:
+    """Relative departure of the recomputed loads' sum from the force on the anchor."""
+    load = loads(solution)
+    total = load.sum(axis=0)
+    scale = max(float(solution.tension[-1]), 1e-3 * float(np.abs(load).sum()), 1e-300)
+    return float(np.linalg.norm(total - solution.force[-1])) / scale
+
+
+def moment_residual(solution: Solution) -> float:
+    """Largest angle between an element's axis and the mean of the forces at its ends [rad]."""
+    load = loads(solution)
+    above = np.vstack([np.zeros(3), np.cumsum(load, axis=0)])
+    chord = np.diff(solution.position, axis=0)
+    worst = 0.0
+    head = head_count(solution.line)
+    rods = [
+        [p for p in range(head)],
+        *([p] for p in range(head, len(solution.line.length)) if not solution.line.flexible[p]),
+    ]
+    for rod in rods:
+        if not rod or not solution.line.length[rod].sum() > 0.0:
+            continue
+        worst = max(worst, _rod_residual(solution, load, above, rod))
+    cable = solution.line.flexible[solution.element_piece] & (solution.element_clamp < 0)
+    cable &= solution.cut > 0
+    mean = above[:-1] + 0.5 * load
+    return max(worst, float(np.max(_angles(chord[cable], mean[cable]), initial=0.0)))
+
+
+def _rod_residual(solution: Solution, load: Floats, above: Floats, rod: list[int]) -> float:
+    first, last = solution.piece_nodes[rod[0], 0], solution.piece_nodes[rod[-1], 1]
+    origin = solution.position[first]
+    chord = solution.position[last] - origin
+    length = float(np.linalg.norm(chord))
+    mean = above[first].copy()
+    for element in range(first, last):
+        piece = solution.element_piece[element]
+        place = solution.position[element]
+        if solution.element_clamp[element] < 0:
+            ends = solution.piece_nodes[piece]
+            place = 0.5 * (solution.position[ends[0]] + solution.position[ends[1]])
+        at = float(np.linalg.norm(place - origin))
+        mean += (1.0 - at / length) * load[element]
+    return float(_angles(chord[None, :], mean[None, :])[0])
+
+
+def _angles(axes: Floats, forces: Floats) -> Floats:
+    """Angles between the axes and the reversed forces; 0 where either vanishes."""
+    sizes = np.linalg.norm(axes, axis=1) * np.linalg.norm(forces, axis=1)
+    cross = np.linalg.norm(np.cross(axes, forces), axis=1)
+    along = -np.sum(axes * forces, axis=1)
+    return np.where(sizes > 0.0, np.arctan2(cross, along), 0.0)

@@ -1,0 +1,110 @@
+"""The settings of a solve and what it returns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import radians
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.physics.line import Line, Water
+from calm.physics.march import Trace
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+LOOSEST_TOLERANCE = 2e-4
+"""The worst miss, as a share of the water depth, that CALM ever called an answer."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How finely to march and how well to close.
+
+    Attributes
+    ----------
+    angle_step : turn of one segment [rad]
+    tolerance : allowed miss of the anchor, as a share of the water depth
+    """
+
+    angle_step: float = radians(1.0)
+    tolerance: float = 1e-7
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.angle_step <= radians(10.0):
+            raise ValueError("angle_step must be above 0 and at most 10 degrees")
+        if not 0.0 < self.tolerance <= LOOSEST_TOLERANCE:
+            raise ValueError(f"tolerance must be above 0 and at most {LOOSEST_TOLERANCE}")
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A converged shape: k elements between k + 1 nodes, free end first.
+
+    Attributes
+    ----------
+    line, water, settings : what was solved
+    position : (k+1, 3) east and north of the anchor, up from the surface [m]
+    force : (k+1, 3) sum of all external forces on the free-end side of a node [N]
+    element_piece : (k,) piece of the line each element belongs to
+    element_clamp : (k,) clamp it is (an element without length), or -1
+    cut : (k,) unstretched length [m]
+    strain : (k,) of cables and chains
+    surface : whether the line reaches the sea surface
+    buoyancy_used : share of the buoyancy of the floats at the surface that the line needs
+    reserve : the rest of it [N]
+    carried : the line with the buoyancies in use (floats at the surface reduced)
+    marches, segments : the work done for this solution
+    miss : height of the line's end above the anchor's top [m]
+    closure : |sum of the loads, recomputed - anchor force| / anchor force
+    moment_residual : worst departure of an element's axis from its moment balance [rad]
+    depth_error, tension_error : own estimate of the worst error of any depth or offset [m] and
+        of any tension [N]
+    other_depth : depth of the free end in another equilibrium that the scan came upon [m]
+    """
+
+    line: Line
+    water: Water
+    settings: Settings
+    position: Floats
+    force: Floats
+    element_piece: Integers
+    element_clamp: Integers
+    cut: Floats
+    strain: Floats
+    surface: bool
+    buoyancy_used: float
+    reserve: float
+    carried: Line
+    marches: int
+    segments: int
+    miss: float
+    depth_error: float
+    tension_error: float
+    other_depth: float | None = None
+    closure: float = field(default=float("nan"))
+    moment_residual: float = field(default=float("nan"))
+
+    @cached_property
+    def tension(self) -> Floats:
+        """(k+1,) |force| at the nodes [N]."""
+        size: Floats = np.linalg.norm(self.force, axis=1)
+        return size
+
+    @cached_property
+    def piece_nodes(self) -> Integers:
+        """(n, 2) first and last node of every piece."""
+        pieces = self.element_piece
+        n = len(self.line.length)
+        first = np.searchsorted(pieces, np.arange(n), side="left")
+        last = np.searchsorted(pieces, np.arange(n), side="right")
+        return np.column_stack([first, last]).astype(np.int64)
+
+
+def nodes_of(trace: Trace) -> tuple[Floats, Floats]:
+    """Positions relative to the line's end, heights absolute, and forces, (k+1, 3) each."""
+    position = np.column_stack([trace.x, trace.y, trace.z])
+    position[:, :2] -= position[-1, :2]
+    return position, np.array(trace.force)
