@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from calm.files import Anchor, Body, Cable, Chain, Component, Cylinder, Piece, Sphere
+from calm.files import Body, Cable, Chain, Component, Cylinder, Piece, Sphere
 from calm.files.components import CylinderShape, SphereShape
 from calm.physics import drag
 from calm.physics.line import Line

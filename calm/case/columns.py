@@ -29,18 +29,14 @@ class Columns:
 
     def __getitem__(self, row: int) -> SimpleNamespace:
         """One row as a record with the columns' names."""
-        return SimpleNamespace(
-            **{name: _plain(getattr(self, name)[row]) for name in self._names()}
-        )
+        return SimpleNamespace(**{name: _plain(getattr(self, name)[row]) for name in self._names()})
 
     def __iter__(self) -> Iterator[SimpleNamespace]:
         return (self[row] for row in range(len(self)))
 
     def to_dicts(self) -> list[dict[str, Any]]:
         """The rows as dictionaries of plain numbers and text; None where unknown."""
-        return [
-            {name: _known(value) for name, value in vars(record).items()} for record in self
-        ]
+        return [{name: _known(value) for name, value in vars(record).items()} for record in self]
 
     def to_dataframe(self) -> pandas.DataFrame:
         """The table as a pandas data frame; needs pandas, which CALM does not."""

@@ -86,9 +86,7 @@ def _components(mooring: Mooring, solution: Solution, still: Solution | None) ->
     tension = solution.tension
     greatest = np.maximum.reduceat(tension[:-1], nodes[:, 0])
     greatest = np.append(np.maximum(greatest, tension[nodes[:, 1]]), tension[-1])
-    strain = np.bincount(
-        solution.element_piece, solution.cut * (1.0 + solution.strain), len(nodes)
-    )
+    strain = np.bincount(solution.element_piece, solution.cut * (1.0 + solution.strain), len(nodes))
     own = [pieces[-1].length or 0.0]
     chord = (top - bottom)[:-1]
     force = solution.force[nodes].mean(axis=1)

@@ -127,9 +127,7 @@ class Mooring:
         if not self.water.moving:
             return solution
         # a plumb line is exact with long segments
-        settings = replace(
-            self.settings, angle_step=max(self.settings.angle_step, COARSE_STEP)
-        )
+        settings = replace(self.settings, angle_step=max(self.settings.angle_step, COARSE_STEP))
         try:
             return solve_mooring(self.line, self.water.still(), settings)
         except NoEquilibrium:

@@ -17,9 +17,7 @@ from math import sqrt
 Vector = tuple[float, float, float]
 
 
-def drag_share(
-    ax: float, ay: float, az: float, k: float, vx: float, vy: float, vz: float
-) -> float:
+def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, vz: float) -> float:
     """Solve c |A + c V| = k |V × A| for its smallest root c ≥ 0.
 
     Parameters

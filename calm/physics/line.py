@@ -84,9 +84,7 @@ class Line(_Arrays):
             "length", "flexible", "buoyancy", "volume", "normal_drag", "tangential_drag",
             "directional", "compliance", "thinning",
         )  # fmt: skip
-        self._same_length(
-            "clamp_piece", "clamp_at", "clamp_buoyancy", "clamp_volume", "clamp_drag"
-        )
+        self._same_length("clamp_piece", "clamp_at", "clamp_buoyancy", "clamp_volume", "clamp_drag")
         for name in ("length", "normal_drag", "tangential_drag", "compliance", "clamp_drag"):
             if (getattr(self, name) < 0).any():
                 raise ValueError(f"Line.{name} must not be negative")
@@ -103,10 +101,6 @@ class Line(_Arrays):
         lengths = self.length.copy()
         lengths[piece] = length
         return replace(self, length=lengths)
-
-    def with_buoyancy(self, buoyancy: Floats) -> Line:
-        """The same line with other piece buoyancies [N or N/m]."""
-        return replace(self, buoyancy=buoyancy)
 
 
 @dataclass(frozen=True)

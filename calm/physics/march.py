@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from math import degrees, inf, sqrt
+from math import inf, sqrt
 
 from calm.physics.element import axis_along, drag_force, drag_share
 from calm.physics.line import REFERENCE_DENSITY, Line, Water
@@ -85,9 +85,9 @@ class Track:
     stages: tuple[Stage, ...]
 
     @staticmethod
-    def of(line: Line, head: int | None = None) -> Track:
-        """Lay out a line; its first `head` pieces (see `head_count`) become one rod."""
-        head = head_count(line) if head is None else head
+    def of(line: Line) -> Track:
+        """Lay out a line; its head (see `head_count`) becomes one rod."""
+        head = head_count(line)
         stages: list[Stage] = [_rod(line, range(head))] if head else []
         for piece in range(head, len(line.length)):
             if line.flexible[piece]:
@@ -342,9 +342,7 @@ def _march_cable(
                 break
             cut = min(
                 left,
-                _segment_length(
-                    cable, profile, -z, rise, fx, fy, fz, level, angle_step, reach
-                ),
+                _segment_length(cable, profile, -z, rise, fx, fy, fz, level, angle_step, reach),
             )
             if left - cut < 0.01 * cut:
                 cut = left
@@ -421,12 +419,16 @@ def _segment_length(
         tx, ty, tz = 0.0, 0.0, -1.0
     scale = rho / REFERENCE_DENSITY
     qx, qy, qz = drag_force(scale * cable.normal_drag, 0.0, u, v, w, tx, ty, tz)
-    qx, qy, qz = qx - lift * tz * tx, qy - lift * tz * ty, qz + lift - lift * tz * tz
+    along = lift * tz
+    qx, qy, qz = qx - along * tx, qy - along * ty, qz + lift - along * tz
     turning = sqrt(qx * qx + qy * qy + qz * qz)
+    # where a slack line hangs on little more than its own weight it may turn within one segment,
+    # so the tension may not fall by more than half in it
+    rate = max(turning / angle_step, 2.0 * along) if tension > 0.0 else turning / angle_step
     length = reach
-    if turning > 0.0:
+    if rate > 0.0:
         # near a free end the tension vanishes: the floor keeps the count finite
-        length = min(length, max(angle_step * tension / turning, 1e-5 * degrees(angle_step) * reach))
+        length = min(length, max(tension / rate, 1e-5 * reach))
     if rise < 0.0:
         gap = (profile.depth[level + 1] - depth) / -rise
     elif rise > 0.0:
@@ -581,11 +583,13 @@ def _trace_rod(
     start = 0.0
     for piece, length in zip(rod.pieces, rod.lengths, strict=True):
         own = next(
-            q for q, load in zip(forces, rod.loads, strict=True)
+            q
+            for q, load in zip(forces, rod.loads, strict=True)
             if load.piece == piece and load.clamp < 0
         )
         marks = [
-            (load, q) for q, load in zip(forces, rod.loads, strict=True)
+            (load, q)
+            for q, load in zip(forces, rod.loads, strict=True)
             if load.piece == piece and load.clamp >= 0
         ]
         reached = start

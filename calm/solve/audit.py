@@ -56,9 +56,10 @@ def loads(solution: Solution) -> Floats:
 
     here = clamp >= 0
     which = clamp[here]
-    drag[here] = squared(current[here]) * (
-        line.clamp_drag[which] * density[here] / REFERENCE_DENSITY
-    )[:, None]
+    drag[here] = (
+        squared(current[here])
+        * (line.clamp_drag[which] * density[here] / REFERENCE_DENSITY)[:, None]
+    )
     lift[here] = line.clamp_buoyancy[which] + excess[here] * line.clamp_volume[which]
     drag[:, 2] += lift
     return drag

@@ -1,4 +1,4 @@
-"""Closing a line: what is unknown, the miss that follows from it, and its root on fixed segments."""
+"""Closing a line: what is unknown, the miss that follows, and its root on fixed segments."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from math import degrees, inf, radians
 
 from calm.physics.line import Line, Water
-from calm.physics.march import Cuts, End, Profile, Rod, Trace, Track, march
-from calm.solve.root import bracketed_root, secant_root
+from calm.physics.march import Cable, Cuts, End, Load, Profile, Rod, Trace, Track, march
+from calm.solve.root import bracketed_root, root_near
 from calm.solve.solution import Settings
 from calm.solve.status import Status
 
@@ -16,7 +16,19 @@ COARSE_STEP = radians(4.0)
 """Angle step of the marches that only look for the neighbourhood of a root."""
 REACH = 0.01
 """Longest segment at an angle step of 1°, as a share of the water depth."""
+SHARE_TOLERANCE = 1e-9
+"""How well the share of a surface float's buoyancy in use is found."""
 NARROWEST_SHARE = 1e-15
+"""Width of the last bracket, as a share of the whole range."""
+
+
+@dataclass(frozen=True)
+class Afloat:
+    """A float at the surface: its piece, the share of its buoyancy in use, the slope there."""
+
+    piece: int
+    share: float
+    slope: float
 
 
 @dataclass(frozen=True)
@@ -25,43 +37,50 @@ class Unknown:
 
     Attributes
     ----------
-    track : the line laid out for the march
+    track : the line laid out for the march, or its part down to a float at the surface
+    goal : height at which the track must end [m], + up from the surface
     afloat : the piece at the surface whose share of buoyancy is sought; None below the surface
-    line : the line with the buoyancies that `track` has
+    above : the floats at the surface above that piece
     """
 
     track: Track
-    line: Line
+    goal: float
     afloat: int | None = None
+    above: tuple[Afloat, ...] = ()
+
+    def shares(self, x: float) -> dict[int, float]:
+        """Share of its buoyancy in use of every float at the surface, for the unknown's value x."""
+        above = {afloat.piece: afloat.share for afloat in self.above}
+        return above if self.afloat is None else {**above, self.afloat: x}
 
     def placed(self, x: float) -> tuple[Track, float]:
         """Track and depth of the free end [m] for the value x of the unknown."""
         if self.afloat is None:
             return self.track, x
-        return _with_share(self.track, self.afloat, x), 0.0
+        return _with_shares(self.track, self.shares(x)), 0.0
 
-    def carried(self, x: float) -> Line:
-        """The line with the buoyancies in use for the value x of the unknown."""
-        if self.afloat is None:
-            return self.line
-        share = [x if p == self.afloat else 1.0 for p in range(len(self.line.length))]
-        return replace(
-            self.line, buoyancy=self.line.buoyancy * share, volume=self.line.volume * share
+    def down_to(self, piece: int) -> Unknown:
+        """The question for the part of the line above a float: to bring its top to the surface."""
+        stages = self.track.stages
+        end = next(i for i, s in enumerate(stages) if isinstance(s, Rod) and piece in s.pieces)
+        return replace(self, track=Track(stages[:end]), goal=0.0)
+
+
+def _with_shares(track: Track, shares: dict[int, float]) -> Track:
+    def loaded(load: Load) -> Load:
+        if load.clamp >= 0 or load.piece not in shares:
+            return load
+        share = shares[load.piece]
+        return replace(load, buoyancy=share * load.buoyancy, volume=share * load.volume)
+
+    return Track(
+        tuple(
+            replace(stage, loads=tuple(map(loaded, stage.loads)))
+            if isinstance(stage, Rod) and not shares.keys().isdisjoint(stage.pieces)
+            else stage
+            for stage in track.stages
         )
-
-
-def _with_share(track: Track, piece: int, share: float) -> Track:
-    stages = list(track.stages)
-    for i, stage in enumerate(stages):
-        if isinstance(stage, Rod) and piece in stage.pieces:
-            loads = tuple(
-                replace(load, buoyancy=share * load.buoyancy, volume=share * load.volume)
-                if load.piece == piece and load.clamp < 0
-                else load
-                for load in stage.loads
-            )
-            stages[i] = replace(stage, loads=loads)
-    return Track(tuple(stages))
+    )
 
 
 @dataclass(frozen=True)
@@ -77,7 +96,7 @@ class Closed:
 
 
 class Closing:
-    """The marches of one solve, counted.
+    """The marches of one solve; those of the whole line are counted.
 
     The *miss* is the height of the line's lower end above the anchor's top [m]. It falls as the
     free end goes deeper and as more buoyancy is used.
@@ -86,9 +105,12 @@ class Closing:
     def __init__(self, line: Line, water: Water, settings: Settings) -> None:
         self.line, self.water, self.settings = line, water, settings
         self.profile = Profile(water)
-        self.goal = -water.depth + line.anchor_height
         self.allowed = settings.tolerance * water.depth
         self.marches = 0
+
+    def whole(self) -> Unknown:
+        """The whole line with its free end below the surface."""
+        return Unknown(Track.of(self.line), self.line.anchor_height - self.water.depth)
 
     @property
     def coarse_step(self) -> float:
@@ -106,7 +128,8 @@ class Closing:
     ) -> End:
         """One march at an angle step, or over given cuts."""
         track, depth = unknown.placed(x)
-        self.marches += 1
+        if unknown.goal < 0.0:
+            self.marches += 1
         return march(
             track,
             profile or self.profile,
@@ -119,7 +142,7 @@ class Closing:
 
     def coarse_miss(self, unknown: Unknown) -> Callable[[float], float]:
         """The miss as the march sees it at the coarse step."""
-        return lambda x: self.run(unknown, x, self.coarse_step).z - self.goal
+        return lambda x: self.run(unknown, x, self.coarse_step).z - unknown.goal
 
     def coarse_root(
         self, unknown: Unknown, a: float, miss_a: float, b: float, miss_b: float
@@ -134,12 +157,28 @@ class Closing:
     def polish(self, unknown: Unknown, x: float, slope: float, cuts: Cuts) -> Closed:
         """Close the line on fixed segments, from a root found on others.
 
+        Floats at the surface above the one in question are first brought back to the surface.
+
         Raises
         ------
         NoEquilibrium
             ``slack`` where the shape hangs on the last digits of the buoyancy in use,
             ``not-converged`` where no root is found.
         """
+        unknown = self._resurfaced(unknown, cuts)
+        return self._closed(unknown, x, slope, cuts)
+
+    def _resurfaced(self, unknown: Unknown, cuts: Cuts) -> Unknown:
+        above: tuple[Afloat, ...] = ()
+        at_surface = list(unknown.shares(0.0))
+        for afloat, lower in zip(unknown.above, at_surface[1:], strict=False):
+            part = replace(unknown, afloat=afloat.piece, above=above).down_to(lower)
+            cables = sum(isinstance(stage, Cable) for stage in part.track.stages)
+            closed = self._closed(part, afloat.share, afloat.slope, cuts[:cables])
+            above = (*above, Afloat(afloat.piece, closed.x, closed.slope))
+        return replace(unknown, above=above)
+
+    def _closed(self, unknown: Unknown, x: float, slope: float, cuts: Cuts) -> Closed:
         last: tuple[float, End, Trace] = (inf, End(0, 0, 0, (0, 0, 0), cuts, 0), Trace())
 
         def miss(x: float) -> float:
@@ -147,12 +186,17 @@ class Closing:
             trace = Trace()
             end = self.run(unknown, x, self.settings.angle_step, cuts=cuts, trace=trace)
             last = (x, end, trace)
-            return end.z - self.goal
+            return end.z - unknown.goal
 
+        afloat = unknown.afloat is not None
+        limit = 1.0 if afloat else self.water.depth
         small = 0.1 * self.allowed
-        narrow = inf if unknown.afloat is None else 1e-9
-        found = secant_root(miss, x, slope, small=small, narrow=narrow)
-        x, value, slope = found or self._widening(miss, unknown, x, small)
+        if afloat:
+            small = min(small, SHARE_TOLERANCE * abs(slope))
+        found = root_near(miss, x, slope, (0.0, limit), small=small, narrow=NARROWEST_SHARE * limit)
+        if found is None:
+            raise Status.NOT_CONVERGED.because("No closed shape was found near the first one.")
+        x, value, slope = found
         if last[0] != x:
             value = miss(x)
         if abs(value) > self.allowed:
@@ -164,20 +208,3 @@ class Closing:
                 f"The line's end misses the anchor by {abs(value):.3g} m."
             )
         return Closed(unknown, x, slope, value, last[1], last[2])
-
-    def _widening(
-        self, miss: Callable[[float], float], unknown: Unknown, x: float, small: float
-    ) -> tuple[float, float, float]:
-        """Root within an ever wider bracket around x."""
-        afloat = unknown.afloat is not None
-        limit = 1.0 if afloat else self.water.depth
-        x = min(max(x, 0.0), limit)
-        value, width = miss(x), 1e-5 * limit
-        while width < 16.0 * limit:
-            other = min(max(x + (width if value > 0.0 else -width), 0.0), limit)
-            opposite = miss(other)
-            if (opposite > 0.0) != (value > 0.0):
-                narrow = NARROWEST_SHARE * limit
-                return bracketed_root(miss, x, value, other, opposite, small=small, narrow=narrow)
-            width *= 16.0
-        raise Status.NOT_CONVERGED.because("No closed shape was found near the first estimate.")

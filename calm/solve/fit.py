@@ -5,14 +5,12 @@ from __future__ import annotations
 from calm.physics.line import Line, Water
 from calm.physics.march import MarchError, Profile, Track, march
 from calm.solve.closing import COARSE_STEP, REACH
-from calm.solve.root import secant_root
+from calm.solve.root import root_near
 from calm.solve.solution import Settings
 from calm.solve.status import Status
 
 
-def fit_length(
-    line: Line, water: Water, piece: int, top_depth: float, settings: Settings
-) -> float:
+def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings: Settings) -> float:
     """Unstretched length of a piece that puts the free end at a depth in still water [m].
 
     Parameters
@@ -29,19 +27,20 @@ def fit_length(
     room = water.depth - line.anchor_height - top_depth
 
     def miss(length: float) -> float:
-        track = Track.of(line.with_length(piece, max(length, 0.0)))
+        track = Track.of(line.with_length(piece, length))
         # a plumb line's strain is linear along it, so long segments are exact
         end = march(track, still, top_depth, angle_step=COARSE_STEP, reach=4 * REACH * water.depth)
-        return end.z - goal - min(length, 0.0)
+        return end.z - goal
 
+    small = 0.01 * settings.tolerance * water.depth
     others = float(line.length.sum()) - float(line.length[piece])
     try:
-        found = secant_root(
-            miss, room - others, -1.0, small=0.01 * settings.tolerance * water.depth, narrow=1e-9
+        found = root_near(
+            miss, room - others, -1.0, (0.0, water.depth), small=small, narrow=1e-9 * water.depth
         )
     except MarchError as error:
         raise Status.NOT_CONVERGED.because(f"The march stopped: {error}.", piece) from error
-    if found is None or found[0] < 0.0:
+    if found is None:
         raise Status.NO_EQUILIBRIUM.because(
             f"No length of piece {piece + 1} puts the top of the line at {top_depth:g} m: the "
             f"other pieces, {others:.2f} m uncut, have {room:.2f} m of water to stand in.",

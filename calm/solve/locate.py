@@ -6,9 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from calm.physics.line import Line
-from calm.physics.march import Profile, Track, head_count
-from calm.solve.closing import Closing, Unknown
+from calm.physics.march import Profile
+from calm.solve.closing import Afloat, Closing, Unknown
 from calm.solve.status import Status
 
 SCAN = 16
@@ -30,7 +29,7 @@ def locate(closing: Closing) -> tuple[Unknown, float, float, float | None]:
         ``slack``, ``above-surface`` or ``grounded``.
     """
     line = closing.line
-    unknown = Unknown(Track.of(line), line)
+    unknown = closing.whole()
     miss = closing.coarse_miss(unknown)
     upright = max(closing.water.depth - line.anchor_height - float(line.length.sum()), 0.0)
     high = miss(upright)
@@ -41,7 +40,7 @@ def locate(closing: Closing) -> tuple[Unknown, float, float, float | None]:
             return unknown, *closing.coarse_root(unknown, 0.0, at_surface, upright, high), None
         high = at_surface
     if high < 0.0:
-        return *_afloat(closing, high), None
+        return *_at_surface(closing, unknown, high), None
     low_end, other = _below_surface(closing, unknown, upright, high)
     return unknown, *closing.coarse_root(unknown, *low_end), other
 
@@ -90,7 +89,7 @@ def _largest_fall(closing: Closing, unknown: Unknown, depth: float) -> float:
     u, v, w = (np.full(len(water.level), component) for component in greatest)
     even = Profile(replace(water, u=u, v=v, w=w))
     end = closing.run(unknown, depth, closing.coarse_step, profile=even)
-    return max(end.z - closing.goal, closing.allowed)
+    return max(end.z - unknown.goal, closing.allowed)
 
 
 def _scan(
@@ -113,59 +112,65 @@ def _scan(
     raise Status.GROUNDED.because("The current drags the whole line down to the seabed.")
 
 
-def _afloat(closing: Closing, deep: float) -> tuple[Unknown, float, float]:
-    """Share of a float's buoyancy in use, from the top float down.
+def _at_surface(closing: Closing, unknown: Unknown, deep: float) -> tuple[Unknown, float, float]:
+    """Share of buoyancy in use of the lowest float at the surface, and of those above it.
 
-    Where even an unloaded top float leaves the line too deep, it lies on the surface with what
-    is above the next buoyant piece, and the buoyancy of that piece is shared out.
+    The top float is tried first. Where it closes the line only with the next float out of the
+    water, or not at all, that one lies at the surface too: the share of the upper float then
+    follows from the part of the line between them, and the next float closes the line.
+    `deep` < 0 is the miss with the free end at the surface and all buoyancy in use.
     """
     line = closing.line
-    floats = [p for p in np.flatnonzero(~line.flexible & (line.buoyancy > 0)).tolist()]
-    for piece in floats:
-        lying = _lying_above(line, piece) if piece != floats[0] else line
-        if lying is None:
-            break
-        unknown = Unknown(Track.of(lying, head_count(line)), lying, piece)
-        miss = closing.coarse_miss(unknown)
-        if piece != floats[0]:
-            deep = miss(1.0)
-            if deep >= 0.0:
-                break
+    floats = np.flatnonzero(~line.flexible & (line.buoyancy > 0.0)).tolist()
+    for piece, lower in zip(floats, [*floats[1:], None], strict=True):
+        unknown = replace(unknown, afloat=piece)
         if not closing.water.moving and _slack_at_rest(closing, unknown):
-            continue
-        unloaded = miss(0.0)
+            raise Status.SLACK.because(
+                f"The line stands {-deep:.1f} m longer than the water is deep and there is no "
+                "current: it has no unique shape."
+            )
+        unloaded = closing.coarse_miss(unknown)(0.0)
         if unloaded > 0.0:
-            return unknown, *closing.coarse_root(unknown, 1.0, deep, 0.0, unloaded)
-    if not closing.water.moving:
-        raise Status.SLACK.because(
-            f"The line stands {-deep:.1f} m longer than the water is deep and there is no "
-            "current: it has no unique shape."
-        )
+            x, slope = closing.coarse_root(unknown, 1.0, deep, 0.0, unloaded)
+            if lower is None or _height_at(closing, unknown, x, lower) <= closing.allowed:
+                return unknown, x, slope
+        if lower is None:
+            break
+        surfaced = _surfaced(closing, unknown, piece, lower)
+        if surfaced is None:
+            break
+        unknown = replace(unknown, above=(*unknown.above, surfaced), afloat=lower)
+        deep = closing.coarse_miss(unknown)(1.0)
+        if deep >= 0.0:
+            break
     raise Status.ABOVE_SURFACE.because(
-        f"Even with nothing left of its surface buoyancy the line is {-deep:.1f} m too long for "
-        "the water: its buoyant part would rise above the surface."
+        "A buoyant part of the line would rise above the surface: "
+        "more of it than the floats listed one below the other."
     )
 
 
-def _lying_above(line: Line, piece: int) -> Line | None:
-    """The line with all above `piece` afloat and weightless; None where it could not float."""
-    if float(line.total_buoyancy[:piece].sum()) < 0.0:
+def _height_at(closing: Closing, unknown: Unknown, x: float, piece: int) -> float:
+    """Height of the top of a piece above the surface [m]."""
+    return closing.run(unknown.down_to(piece), x, closing.coarse_step).z
+
+
+def _surfaced(closing: Closing, unknown: Unknown, piece: int, lower: int) -> Afloat | None:
+    """The float `piece` with the share that leaves the next one's top at the surface."""
+    part = unknown.down_to(lower)
+    miss = closing.coarse_miss(part)
+    loaded, unloaded = miss(1.0), miss(0.0)
+    if abs(unloaded) <= closing.allowed:
+        return Afloat(piece, 0.0, loaded - unloaded)
+    if loaded >= 0.0 or unloaded < 0.0:
         return None
-    keep = np.arange(len(line.length)) >= piece
-    kept = line.clamp_piece >= piece
-    return replace(
-        line,
-        buoyancy=line.buoyancy * keep,
-        volume=line.volume * keep,
-        clamp_buoyancy=line.clamp_buoyancy * kept,
-        clamp_volume=line.clamp_volume * kept,
-    )
+    share, slope = closing.coarse_root(part, 1.0, loaded, 0.0, unloaded)
+    return Afloat(piece, share, slope)
 
 
 def _slack_at_rest(closing: Closing, unknown: Unknown) -> bool:
     """In still water: whether the line stands too deep however little buoyancy is used."""
     piece = unknown.afloat
     assert piece is not None
-    spare = float(np.cumsum(unknown.line.total_buoyancy)[piece:].min())
-    least = 1.0 - spare / float(unknown.line.buoyancy[piece])
+    spare = float(np.cumsum(closing.line.total_buoyancy)[piece:].min())
+    least = 1.0 - spare / float(closing.line.buoyancy[piece])
     return closing.coarse_miss(unknown)(min(max(least, 0.0) * (1.0 + 1e-9) + 1e-9, 1.0)) < 0.0

@@ -90,7 +90,8 @@ def _refined(closing: Closing) -> Solution:
     fine = closing.polish(unknown, x, slope, cuts)
     for _ in range(MOST_HALVINGS):
         coarse = fine
-        fine = closing.polish(unknown, coarse.x, coarse.slope, _halved(coarse.end.cuts))
+        cuts = _halved(coarse.end.cuts)
+        fine = closing.polish(coarse.unknown, coarse.x, coarse.slope, cuts)
         depth_error, tension_error, relative = _errors(closing.line, coarse, fine)
         scale = degrees(step) ** 2
         good = (
@@ -138,10 +139,10 @@ def _solution(
         element_clamp=np.array(fine.trace.clamp, dtype=np.int64),
         cut=np.array(fine.trace.cut),
         strain=np.array(fine.trace.strain),
-        surface=fine.unknown.afloat is not None,
+        afloat=tuple(fine.unknown.shares(fine.x)),
         buoyancy_used=used,
         reserve=reserve,
-        carried=fine.unknown.carried(fine.x),
+        carried=_carried(closing.line, fine.unknown.shares(fine.x)),
         marches=closing.marches,
         segments=fine.end.segments,
         miss=fine.miss,
@@ -152,17 +153,24 @@ def _solution(
 
 
 def _buoyancy_in_use(closing: Closing, fine: Closed) -> tuple[float, float]:
-    """Share of the buoyancy of the pieces at the surface in use, and the rest of it [N]."""
-    piece = fine.unknown.afloat
-    if piece is None:
+    """Share in use of the buoyancy of the floats at the surface, and the rest of it [N]."""
+    shares = fine.unknown.shares(fine.x)
+    if not shares:
         return 1.0, 0.0
-    lying = (closing.line.total_buoyancy - fine.unknown.line.total_buoyancy)[:piece]
     _, density = closing.water.at(np.zeros(1))
     excess = (float(density[0]) - REFERENCE_DENSITY) * closing.water.gravity
-    own = float(closing.line.buoyancy[piece] + excess * closing.line.volume[piece])
-    lift = own + float(lying[lying > 0.0].sum())
-    reserve = lift - fine.x * own + float(lying[lying < 0.0].sum())
-    return 1.0 - reserve / lift, reserve
+    lift = {p: float(closing.line.buoyancy[p] + excess * closing.line.volume[p]) for p in shares}
+    total = sum(lift.values())
+    used = sum(shares[p] * lift[p] for p in shares)
+    return used / total, total - used
+
+
+def _carried(line: Line, shares: dict[int, float]) -> Line:
+    """The line with the buoyancies in use: floats at the surface count by their share."""
+    share = np.ones(len(line.length))
+    for piece, used in shares.items():
+        share[piece] = used
+    return replace(line, buoyancy=line.buoyancy * share, volume=line.volume * share)
 
 
 def _audited(solution: Solution) -> Solution:
@@ -188,6 +196,8 @@ def _within_the_water(solution: Solution) -> None:
     height: Floats = solution.position[:, 2]
     depth = solution.water.depth
     margin = max(solution.depth_error, 1e-6 * depth)
+    # a float at the surface may stand out of it, however it is turned
+    standing = float(solution.line.length[list(solution.afloat)].sum())
     lowest, highest = int(np.argmin(height)), int(np.argmax(height))
     if height[lowest] < -depth - margin:
         piece = _piece_at(solution, lowest)
@@ -196,7 +206,7 @@ def _within_the_water(solution: Solution) -> None:
             f"{-depth - height[lowest]:.2f} m below it.",
             piece,
         )
-    if height[highest] > margin:
+    if height[highest] > margin + standing:
         piece = _piece_at(solution, highest)
         raise Status.ABOVE_SURFACE.because(
             f"The line would rise out of the water: piece {piece + 1} comes "

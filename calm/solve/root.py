@@ -1,4 +1,4 @@
-"""Roots of the closing condition: bracketed and superlinear, and a secant polish near a root."""
+"""Roots of the closing condition: within a bracket, and near an estimate."""
 
 from __future__ import annotations
 
@@ -33,6 +33,9 @@ def bracketed_root(
         return a, fa, 0.0
     slope = (fb - fa) / (b - a)
     weighted_a, idle = fa, 0
+    if abs(fa) < abs(fb):
+        a, fa, b, fb = b, fb, a, fa
+        weighted_a = fa
     while abs(fb) > small and abs(b - a) > narrow:
         width = abs(b - a)
         x = b - fb * (b - a) / (fb - weighted_a) if idle < 2 else 0.5 * (a + b)
@@ -55,25 +58,38 @@ def bracketed_root(
     return b, fb, slope
 
 
-def secant_root(
-    function: Callable[[float], float], x: float, slope: float, *, small: float, narrow: float
+def root_near(
+    function: Callable[[float], float],
+    x: float,
+    slope: float,
+    limits: tuple[float, float],
+    *,
+    small: float,
+    narrow: float,
 ) -> tuple[float, float, float] | None:
-    """Root near x of a smooth function of known slope; None where eight secants do not find it.
+    """Root near x of a falling function, within limits; None where there is no sign change.
 
-    Stops when |function| ≤ small and the next step would be at most `narrow`.
+    Secants from x and its slope while they halve the value, then ever longer steps until the sign
+    changes, then `bracketed_root`. `small` and `narrow` are as there.
+
+    Returns
+    -------
+    root, value there, and the slope of the last secant.
     """
+    low, high = limits
+    x = min(max(x, low), high)
     fx = function(x)
-    for _ in range(8):
-        if slope == 0.0:
+    step = -fx / slope if slope < 0.0 else 0.0
+    while abs(fx) > small:
+        reach = max(abs(step), 1e-6 * (high - low))
+        following = min(max(x + (reach if fx > 0.0 else -reach), low), high)
+        if following == x:
             return None
-        step = -fx / slope
-        if abs(fx) <= small and abs(step) <= narrow:
-            return x, fx, slope
-        following = x + step
         value = function(following)
-        if abs(value) > max(0.5 * abs(fx), small):
-            return None
-        if following != x and value != fx:
-            slope = (value - fx) / (following - x)
+        slope = (value - fx) / (following - x)
+        if (value > 0.0) != (fx > 0.0):
+            return bracketed_root(function, x, fx, following, value, small=small, narrow=narrow)
+        halved = abs(value) < 0.5 * abs(fx)
+        step = -value / slope if halved else 8.0 * reach
         x, fx = following, value
-    return None
+    return x, fx, slope

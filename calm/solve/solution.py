@@ -52,7 +52,7 @@ class Solution:
     element_clamp : (k,) clamp it is (an element without length), or -1
     cut : (k,) unstretched length [m]
     strain : (k,) of cables and chains
-    surface : whether the line reaches the sea surface
+    afloat : the pieces that float at the surface, none for a sub-surface line
     buoyancy_used : share of the buoyancy of the floats at the surface that the line needs
     reserve : the rest of it [N]
     carried : the line with the buoyancies in use (floats at the surface reduced)
@@ -74,7 +74,7 @@ class Solution:
     element_clamp: Integers
     cut: Floats
     strain: Floats
-    surface: bool
+    afloat: tuple[int, ...]
     buoyancy_used: float
     reserve: float
     carried: Line
@@ -86,6 +86,11 @@ class Solution:
     other_depth: float | None = None
     closure: float = field(default=float("nan"))
     moment_residual: float = field(default=float("nan"))
+
+    @property
+    def surface(self) -> bool:
+        """Whether the line reaches the sea surface."""
+        return bool(self.afloat)
 
     @cached_property
     def tension(self) -> Floats:
