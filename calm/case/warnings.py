@@ -55,10 +55,11 @@ def _tilted(result: Result, _: Solution) -> Iterator[str]:
     known = {clamp.label: clamp.component for clamp in clamps}
     leaning += [(row.label, row.tilt, known[row.label]) for row in result.clamps]
     for label, tilt, component in leaning:
-        if component.max_tilt is not None and tilt > component.max_tilt:
-            yield f"{label} leans {tilt:.1f} degrees; beyond {component.max_tilt:g} it is not to be trusted."
-        elif component.warn_tilt is not None and tilt > component.warn_tilt:
-            yield f"{label} leans {tilt:.1f} degrees, more than the {component.warn_tilt:g} it should."
+        limit, warned = component.max_tilt, component.warn_tilt
+        if limit is not None and tilt > limit:
+            yield f"{label} leans {tilt:.1f} degrees: not to be trusted beyond {limit:g}."
+        elif warned is not None and tilt > warned:
+            yield f"{label} leans {tilt:.1f} degrees, more than the {warned:g} it should."
 
 
 def _stiffness_unknown(result: Result, _: Solution) -> Iterator[str]:

@@ -1,1 +1,1 @@
-"""What the sea does to a line: drag, current, one element's balance, the march. Numbers and arrays only."""
+"""What the sea does to a line: drag, current, one element, the march. Numbers and arrays only."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from calm.physics.line import REFERENCE_DENSITY, Floats
-from calm.physics.march import head_count
+from calm.physics.track import head_count
 from calm.solve.solution import Solution
 
 LARGEST_CLOSURE = 1e-6

@@ -7,7 +7,10 @@ from dataclasses import dataclass, replace
 from math import degrees, inf, radians
 
 from calm.physics.line import Line, Water
-from calm.physics.march import Cable, Cuts, End, Load, Profile, Rod, Trace, Track, march
+from calm.physics.march import Cuts, End, march
+from calm.physics.profile import Profile
+from calm.physics.state import Trace
+from calm.physics.track import Cable, Load, Rod, Track
 from calm.solve.root import bracketed_root, root_near
 from calm.solve.solution import Settings
 from calm.solve.status import Status
@@ -179,7 +182,7 @@ class Closing:
         return replace(unknown, above=above)
 
     def _closed(self, unknown: Unknown, x: float, slope: float, cuts: Cuts) -> Closed:
-        last: tuple[float, End, Trace] = (inf, End(0, 0, 0, (0, 0, 0), cuts, 0), Trace())
+        last: tuple[float, End, Trace] = (inf, End(0.0, (0.0, 0.0, 0.0), cuts), Trace())
 
         def miss(x: float) -> float:
             nonlocal last

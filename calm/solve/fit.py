@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from calm.physics.line import Line, Water
-from calm.physics.march import MarchError, Profile, Track, march
+from calm.physics.march import march
+from calm.physics.profile import Profile
+from calm.physics.state import MarchError
+from calm.physics.track import Track
 from calm.solve.closing import COARSE_STEP, REACH
 from calm.solve.root import root_near
 from calm.solve.solution import Settings

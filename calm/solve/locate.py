@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from calm.physics.march import Profile
+from calm.physics.profile import Profile
 from calm.solve.closing import Afloat, Closing, Unknown
 from calm.solve.status import Status
 

@@ -14,7 +14,8 @@ from math import degrees
 import numpy as np
 
 from calm.physics.line import REFERENCE_DENSITY, Floats, Line, Water
-from calm.physics.march import Cuts, MarchError
+from calm.physics.march import Cuts
+from calm.physics.state import MarchError
 from calm.solve import audit
 from calm.solve.closing import Closed, Closing
 from calm.solve.locate import locate

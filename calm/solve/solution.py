@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.physics.line import Line, Water
-from calm.physics.march import Trace
+from calm.physics.state import Trace
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

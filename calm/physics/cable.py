@@ -1,0 +1,142 @@
+"""A stretch of cable or chain: straight segments, hinged, each in moment equilibrium."""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+
+from calm.physics.element import axis_along, drag_force, drag_share
+from calm.physics.line import REFERENCE_DENSITY
+from calm.physics.profile import Profile
+from calm.physics.state import MarchError, State, Trace
+from calm.physics.track import Cable
+
+MOST_SEGMENTS = 50_000
+_PASSES = 200
+
+
+def march_cable(
+    cable: Cable,
+    profile: Profile,
+    state: State,
+    angle_step: float,
+    reach: float,
+    given: list[float] | None,
+    trace: Trace | None,
+) -> list[float]:
+    """Take the state from the top of a stretch of cable to its bottom.
+
+    Parameters
+    ----------
+    angle_step, reach : how much a segment may turn [rad] and how long it may be [m]
+    given : the unstretched lengths of the segments to use [m]; None chooses them
+
+    Returns
+    -------
+    The unstretched lengths of the segments used [m].
+
+    Raises
+    ------
+    MarchError
+        Where a segment finds no balance or more than 50 000 would be needed.
+    """
+    used: list[float] = []
+    left = cable.length
+    if given is not None:
+        for cut in given:
+            _pass_segment(cable, profile, state, cut, trace)
+        return given
+    while left > 0.0 or not used:
+        cut = min(left, segment_length(cable, profile, state, angle_step, reach))
+        if left - cut < 0.01 * cut:
+            cut = left
+        _pass_segment(cable, profile, state, cut, trace)
+        used.append(cut)
+        left -= cut
+        if len(used) > MOST_SEGMENTS:
+            raise MarchError(f"the line would need more than {MOST_SEGMENTS} segments")
+    return used
+
+
+def _pass_segment(
+    cable: Cable, profile: Profile, state: State, cut: float, trace: Trace | None
+) -> None:
+    """Take the state over one segment of an unstretched length [m].
+
+    The segment's axis, its drag at mid-height and its stretch depend on each other: passes repeat
+    until its rise per unstretched metre settles. They contract by about change/earlier each.
+    """
+    kn, kt = cable.normal_drag, cable.tangential_drag
+    compliance, thinning = cable.compliance, cable.thinning
+    levels, rows, gravity = profile.levels, profile.rows, profile.gravity
+    fx, fy, fz, z, level = state.fx, state.fy, state.fz, state.z, state.level
+    half = 0.5 * cut
+    strain = compliance * sqrt(fx * fx + fy * fy + fz * fz)
+    rise = state.tz * (1.0 + strain)
+    earlier = inf
+    for _ in range(_PASSES):
+        depth = -z - half * rise
+        if not levels[level] <= depth < levels[level + 1]:
+            level = profile.interval(depth, level)
+        origin, u, du, v, dv, w, dw, density, ddensity = rows[level]
+        below = depth - origin
+        u, v, w = u + du * below, v + dv * below, w + dw * below
+        density += ddensity * below
+        area = cut * density / REFERENCE_DENSITY
+        if strain:
+            area *= (1.0 + strain) ** thinning
+        lift = cut * (cable.buoyancy + (density - REFERENCE_DENSITY) * gravity * cable.volume)
+        az = fz + 0.5 * lift
+        c = drag_share(fx, fy, az, 0.5 * kn * area, u, v, w)
+        tx, ty, tz = axis_along(fx, fy, az, c, u, v, w)
+        qx, qy, qz = drag_force(kn * area, kt * area, u, v, w, tx, ty, tz)
+        hx, hy, hz = fx + 0.5 * qx, fy + 0.5 * qy, az + 0.5 * qz
+        if hx * tx + hy * ty + hz * tz > 0.0:
+            tx, ty, tz = -tx, -ty, -tz
+        strain = compliance * sqrt(hx * hx + hy * hy + hz * hz)
+        change = abs(tz * (1.0 + strain) - rise)
+        rise = tz * (1.0 + strain)
+        if change < 1e-12 or change * change < 1e-12 * earlier < inf:
+            break
+        earlier = change
+    else:
+        raise MarchError("a segment finds no balance")
+    stretched = cut * (1.0 + strain)
+    state.x += stretched * tx
+    state.y += stretched * ty
+    state.z += stretched * tz
+    state.fx, state.fy, state.fz = fx + qx, fy + qy, fz + qz + lift
+    state.tz, state.level = tz, level
+    if trace is not None:
+        trace.element(cable.piece, -1, cut, strain)
+        trace.node(state.x, state.y, state.z, (state.fx, state.fy, state.fz))
+
+
+def segment_length(
+    cable: Cable, profile: Profile, state: State, angle_step: float, reach: float
+) -> float:
+    """How long the next segment may be [m]: by its turn, by depth, and to the next level.
+
+    Where a slack line hangs on little more than its own weight it may turn within one segment, so
+    the tension may not fall by more than half in it either. Near a free end the tension
+    vanishes: a floor keeps the count finite.
+    """
+    fx, fy, fz = state.fx, state.fy, state.fz
+    tension = sqrt(fx * fx + fy * fy + fz * fz)
+    depth = -state.z
+    u, v, w, density = profile.at(depth, state.level)
+    lift = cable.buoyancy + (density - REFERENCE_DENSITY) * profile.gravity * cable.volume
+    if tension > 0.0:
+        tx, ty, tz = -fx / tension, -fy / tension, -fz / tension
+    else:
+        tx, ty, tz = 0.0, 0.0, -1.0
+    kn = cable.normal_drag * density / REFERENCE_DENSITY
+    qx, qy, qz = drag_force(kn, 0.0, u, v, w, tx, ty, tz)
+    along = lift * tz
+    qx, qy, qz = qx - along * tx, qy - along * ty, qz + lift - along * tz
+    rate = sqrt(qx * qx + qy * qy + qz * qz) / angle_step
+    if tension > 0.0:
+        rate = max(rate, 2.0 * along)
+    length = min(reach, max(tension / rate, 1e-5 * reach)) if rate > 0.0 else reach
+    gap = profile.distance_to_level(depth, -tz, state.level)
+    # a level closer than a hundredth of the segment is as good as reached
+    return gap if 0.01 * length < gap < length else length

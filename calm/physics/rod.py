@@ -1,0 +1,149 @@
+"""A rigid body in moment equilibrium: one piece with its clamps, or the head of the line."""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+
+from calm.physics.element import Vector, axis_along, drag_force, drag_share
+from calm.physics.line import REFERENCE_DENSITY
+from calm.physics.profile import Profile
+from calm.physics.state import MarchError, State, Trace
+from calm.physics.track import Load, Rod
+
+_PASSES = 200
+
+
+def load_force(load: Load, profile: Profile, depth: float, axis: Vector, level: int) -> Vector:
+    """Buoyancy and drag of a rigid piece or clamp at a depth [N]; `level` is where to search."""
+    u, v, w, density = profile.at(depth, level)
+    scale = density / REFERENCE_DENSITY
+    lift = load.buoyancy + (density - REFERENCE_DENSITY) * profile.gravity * load.volume
+    if load.directional:
+        qx, qy, qz = drag_force(
+            scale * load.normal_drag, scale * load.tangential_drag, u, v, w, *axis
+        )
+    else:
+        drag = scale * load.normal_drag * sqrt(u * u + v * v + w * w)
+        qx, qy, qz = drag * u, drag * v, drag * w
+    return qx, qy, qz + lift
+
+
+def pass_rod(rod: Rod, profile: Profile, state: State, trace: Trace | None) -> None:
+    """Take the state from the top of a rod to its bottom."""
+    axis = rod_axis(rod, profile, state)
+    forces = [
+        load_force(load, profile, -state.z - load.at * axis[2], axis, state.level)
+        for load in rod.loads
+    ]
+    if trace is not None:
+        _record(rod, forces, trace, state, axis)
+    state.x += rod.length * axis[0]
+    state.y += rod.length * axis[1]
+    state.z += rod.length * axis[2]
+    state.tz = axis[2]
+    for force in forces:
+        state.add(force)
+
+
+def rod_axis(rod: Rod, profile: Profile, state: State) -> Vector:
+    """Axis for which the moments about the rod's middle vanish.
+
+    With several loads q_i at distances a_i from the top the rule of one load becomes
+    t ∥ F + Σ (1 - a_i/L) q_i. The normal drags are gathered into one current and one coefficient
+    that reproduce their sum at the present axis, so each pass solves a single element exactly and
+    only shear along the rod is left to the passes.
+
+    Raises
+    ------
+    MarchError
+        Where the passes do not settle.
+    """
+    axis: Vector = (0.0, 0.0, state.tz)
+    pace, earlier = 1.0, inf
+    for _ in range(_PASSES):
+        following = _next_axis(rod, profile, state, axis)
+        change = sum(abs(new - old) for new, old in zip(following, axis, strict=True))
+        if change < 1e-12:
+            return following
+        if change > 0.7 * earlier:
+            pace *= 0.5
+        earlier = change
+        if pace < 1.0:
+            x, y, z = (old + pace * (new - old) for new, old in zip(following, axis, strict=True))
+            size = sqrt(x * x + y * y + z * z)
+            if size == 0.0:
+                break
+            following = x / size, y / size, z / size
+        axis = following
+    raise MarchError("a rigid piece finds no balance")
+
+
+def _next_axis(rod: Rod, profile: Profile, state: State, axis: Vector) -> Vector:
+    ax, ay, az = state.fx, state.fy, state.fz
+    normals = []
+    for load in rod.loads:
+        u, v, w, density = profile.at(-state.z - load.at * axis[2], state.level)
+        scale = load.lever * density / REFERENCE_DENSITY
+        excess = (density - REFERENCE_DENSITY) * profile.gravity
+        az += load.lever * (load.buoyancy + excess * load.volume)
+        if load.directional:
+            normals.append((scale * load.normal_drag, u, v, w))
+        else:
+            drag = scale * load.normal_drag * sqrt(u * u + v * v + w * w)
+            ax, ay, az = ax + drag * u, ay + drag * v, az + drag * w
+    k, gx, gy, gz = _gather(normals, axis)
+    c = drag_share(ax, ay, az, k, gx, gy, gz)
+    tx, ty, tz = following = axis_along(ax, ay, az, c, gx, gy, gz)
+    mx, my, mz = state.fx, state.fy, state.fz
+    for load in rod.loads:
+        depth = -state.z - load.at * tz
+        qx, qy, qz = load_force(load, profile, depth, following, state.level)
+        mx, my, mz = mx + load.lever * qx, my + load.lever * qy, mz + load.lever * qz
+    return (-tx, -ty, -tz) if mx * tx + my * ty + mz * tz > 0.0 else following
+
+
+def _gather(
+    normals: list[tuple[float, float, float, float]], axis: Vector
+) -> tuple[float, float, float, float]:
+    """One coefficient K and current V with K|V × t|V = Σ K_i|V_i × t|V_i at the axis t."""
+    if len(normals) == 1:
+        return normals[0]
+    tx, ty, tz = axis
+    total = gx = gy = gz = 0.0
+    for k, u, v, w in normals:
+        cx, cy, cz = v * tz - w * ty, w * tx - u * tz, u * ty - v * tx
+        share = k * sqrt(cx * cx + cy * cy + cz * cz)
+        total += share
+        gx, gy, gz = gx + share * u, gy + share * v, gz + share * w
+    if total == 0.0:
+        return 0.0, 0.0, 0.0, 0.0
+    gx, gy, gz = gx / total, gy / total, gz / total
+    cx, cy, cz = gy * tz - gz * ty, gz * tx - gx * tz, gx * ty - gy * tx
+    across = sqrt(cx * cx + cy * cy + cz * cz)
+    return (total / across if across > 0.0 else 0.0), gx, gy, gz
+
+
+def _record(rod: Rod, forces: list[Vector], trace: Trace, state: State, axis: Vector) -> None:
+    """Record a rod piece by piece; a piece's own load counts as spread along it, a clamp's not."""
+    x, y, z = state.x, state.y, state.z
+    fx, fy, fz = state.fx, state.fy, state.fz
+    loads = list(zip(rod.loads, forces, strict=True))
+    start = 0.0
+    for piece, length in zip(rod.pieces, rod.lengths, strict=True):
+        here = [(load, force) for load, force in loads if load.piece == piece]
+        own = next(force for load, force in here if load.clamp < 0)
+        clamps = [(load.clamp, load.at, force) for load, force in here if load.clamp >= 0]
+        reached, end = start, start + length
+        for clamp, at, force in [*clamps, (-1, end, (0.0, 0.0, 0.0))]:
+            step = at - reached
+            share = step / length if length > 0.0 else float(clamp < 0)
+            x, y, z = x + step * axis[0], y + step * axis[1], z + step * axis[2]
+            fx, fy, fz = fx + share * own[0], fy + share * own[1], fz + share * own[2]
+            trace.element(piece, -1, step, 0.0)
+            trace.node(x, y, z, (fx, fy, fz))
+            if clamp >= 0:
+                fx, fy, fz = fx + force[0], fy + force[1], fz + force[2]
+                trace.element(piece, clamp, 0.0, 0.0)
+                trace.node(x, y, z, (fx, fy, fz))
+            reached = at
+        start = end

@@ -1,0 +1,162 @@
+"""A line laid out for the march: rigid rods, stretches of cable, and the loads between them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from calm.physics.line import Line
+
+
+@dataclass(frozen=True)
+class Load:
+    """A rigid piece or a clamped instrument at `at` metres below the top of its rod.
+
+    `lever` is 1 - at/length, the share of the load that turns the rod; ½ for a rod of no length.
+    """
+
+    piece: int
+    clamp: int
+    at: float
+    lever: float
+    buoyancy: float
+    volume: float
+    normal_drag: float
+    tangential_drag: float
+    directional: bool
+
+
+@dataclass(frozen=True)
+class Rod:
+    """One rigid body: a piece, or the pieces above the first float together with it."""
+
+    pieces: tuple[int, ...]
+    lengths: tuple[float, ...]
+    loads: tuple[Load, ...]
+
+    @property
+    def length(self) -> float:
+        return sum(self.lengths)
+
+
+@dataclass(frozen=True)
+class Cable:
+    """A stretch of cable or chain without clamps: a whole piece, or the part between two clamps."""
+
+    piece: int
+    length: float
+    buoyancy: float
+    volume: float
+    normal_drag: float
+    tangential_drag: float
+    compliance: float
+    thinning: float
+
+
+Stage = Rod | Cable | Load
+
+
+@dataclass(frozen=True)
+class Track:
+    """A `Line` laid out for the march: its stages from the free end to the anchor."""
+
+    stages: tuple[Stage, ...]
+
+    @staticmethod
+    def of(line: Line) -> Track:
+        """Lay out a line; its head (see `head_count`) becomes one rod."""
+        head = head_count(line)
+        stages: list[Stage] = [_rod(line, range(head))] if head else []
+        for piece in range(head, len(line.length)):
+            if line.flexible[piece]:
+                stages.extend(_cable_stages(line, piece))
+            else:
+                stages.append(_rod(line, range(piece, piece + 1)))
+        return Track(tuple(stages))
+
+
+def head_count(line: Line) -> int:
+    """How many pieces at the free end make one rigid body: down to the first buoyant piece.
+
+    Pieces without buoyancy listed above the first buoyant one (a beacon, ballast) are rigid with
+    it; where a cable lies between, or nothing is buoyant, the first piece stands alone.
+    """
+    for piece in range(len(line.length)):
+        if line.flexible[piece]:
+            break
+        if line.buoyancy[piece] > 0:
+            return piece + 1
+    return 0
+
+
+def _clamps_of(line: Line, piece: int) -> list[int]:
+    clamps = [m for m in range(len(line.clamp_piece)) if line.clamp_piece[m] == piece]
+    return sorted(clamps, key=lambda m: float(line.clamp_at[m]))
+
+
+def _clamp_load(line: Line, m: int, at: float = 0.0, lever: float = 0.5) -> Load:
+    return Load(
+        piece=int(line.clamp_piece[m]),
+        clamp=m,
+        at=at,
+        lever=lever,
+        buoyancy=float(line.clamp_buoyancy[m]),
+        volume=float(line.clamp_volume[m]),
+        normal_drag=float(line.clamp_drag[m]),
+        tangential_drag=0.0,
+        directional=False,
+    )
+
+
+def _rod(line: Line, pieces: range) -> Rod:
+    lengths = tuple(float(line.length[p]) for p in pieces)
+    total = sum(lengths)
+    loads, top = [], 0.0
+
+    def lever(at: float) -> float:
+        return 1.0 - at / total if total > 0.0 else 0.5
+
+    for piece, length in zip(pieces, lengths, strict=True):
+        middle = top + 0.5 * length
+        loads.append(
+            Load(
+                piece=piece,
+                clamp=-1,
+                at=middle,
+                lever=lever(middle),
+                buoyancy=float(line.buoyancy[piece]),
+                volume=float(line.volume[piece]),
+                normal_drag=float(line.normal_drag[piece]),
+                tangential_drag=float(line.tangential_drag[piece]),
+                directional=bool(line.directional[piece]),
+            )
+        )
+        for m in _clamps_of(line, piece):
+            at = top + float(line.clamp_at[m])
+            loads.append(_clamp_load(line, m, at, lever(at)))
+        top += length
+    return Rod(tuple(pieces), lengths, tuple(loads))
+
+
+def _cable_stages(line: Line, piece: int) -> Iterable[Stage]:
+    def stretch(length: float) -> Cable:
+        return Cable(
+            piece=piece,
+            length=length,
+            buoyancy=float(line.buoyancy[piece]),
+            volume=float(line.volume[piece]),
+            normal_drag=float(line.normal_drag[piece]),
+            tangential_drag=float(line.tangential_drag[piece]),
+            compliance=float(line.compliance[piece]),
+            thinning=float(line.thinning[piece]),
+        )
+
+    start, end = 0.0, float(line.length[piece])
+    for m in _clamps_of(line, piece):
+        at = float(line.clamp_at[m])
+        if at > start:
+            yield stretch(at - start)
+            start = at
+        yield _clamp_load(line, m)
+    if end > start or end == 0.0:
+        yield stretch(end - start)

@@ -1,0 +1,46 @@
+"""Current and density by depth: the march's look-up against numpy's interpolation."""
+
+import numpy as np
+import pytest
+
+from calm.physics.line import Water
+from calm.physics.profile import Profile
+
+WATER = Water(
+    depth=1000,
+    level=[10.0, 200.0, 900.0],
+    u=[1.0, 0.4, -0.2],
+    v=[0.0, 0.3, 0.1],
+    w=[0.01, 0.0, 0.0],
+    density=[1024.0, 1026.0, 1031.0],
+)
+
+
+@pytest.mark.parametrize("start", [0, 1, 2, 3])
+def test_agrees_with_linear_interpolation_wherever_the_search_starts(start):
+    profile = Profile(WATER)
+    for depth in (-5.0, 0.0, 10.0, 57.3, 200.0, 640.0, 900.0, 1000.0):
+        current, density = WATER.at(np.array(depth))
+        assert profile.at(depth, start) == pytest.approx((*current, density), rel=1e-14)
+
+
+def test_a_single_level_is_uniform():
+    profile = Profile(Water(depth=50, level=[0.0], u=[0.5], v=[0], w=[0], density=[1025]))
+    assert profile.at(-1, 0) == profile.at(0, 0) == profile.at(49, 1) == (0.5, 0, 0, 1025)
+
+
+def test_distance_to_the_next_level_either_way():
+    profile = Profile(WATER)
+    assert profile.distance_to_level(100, 0.5, 0) == pytest.approx(200)
+    assert profile.distance_to_level(100, -0.9, 0) == pytest.approx(100)
+    assert profile.distance_to_level(100, 0.0, 0) == np.inf
+    assert profile.distance_to_level(950, 1.0, 0) == np.inf
+
+
+def test_arrays_are_refused_when_they_cannot_be():
+    with pytest.raises(ValueError, match="increasing"):
+        Water(depth=50, level=[0, 0], u=[0, 0], v=[0, 0], w=[0, 0], density=[1025, 1025])
+    with pytest.raises(ValueError, match="finite"):
+        Water(depth=50, level=[0], u=[np.nan], v=[0], w=[0], density=[1025])
+    with pytest.raises(ValueError, match="differ in length"):
+        Water(depth=50, level=[0, 1], u=[0], v=[0, 0], w=[0, 0], density=[1025, 1025])

@@ -1,0 +1,41 @@
+"""Cutting a piece to fit: the top then stands where it was wanted, stretch included."""
+
+import pytest
+
+from calm.errors import NoEquilibrium
+from calm.solve import Settings, fit_length, solve_mooring
+from tests.unit.solve.simple import line, rigid, rope, water
+
+PIECES = (
+    rigid(1.0, 4000.0, drag=250.0),
+    rope(100, weight=2.0, stiffness=1e5),
+    rigid(0.8, -400.0),
+    rope(0.0, weight=0.1, stiffness=5e4),
+)
+
+
+def test_the_top_stands_at_the_wanted_depth_in_still_water():
+    uncut = line(*PIECES, anchor_height=0.5)
+    length = fit_length(uncut, water(500), 3, 120.0, Settings())
+    solution = solve_mooring(uncut.with_length(3, length), water(500))
+    assert -solution.position[0, 2] == pytest.approx(120.0, abs=1e-7 * 500)
+    # by hand: stretched 100 m at a mean 3900 N, and L of rope at 3400 N less half its weight
+    upper = 100 * (1 + 3900 / 1e5)
+    room = 500 - 0.5 - 120 - 1 - 0.8 - upper
+    assert length * (1 + (3400 - 0.05 * length) / 5e4) == pytest.approx(room, abs=1e-4)
+
+
+def test_the_current_does_not_change_the_cut():
+    uncut = line(*PIECES)
+    moving = water(500, (0, 1.0, 0, 0), (500, 0.1, 0, 0))
+    assert fit_length(uncut, moving, 3, 120.0, Settings()) == pytest.approx(
+        fit_length(uncut, water(500), 3, 120.0, Settings()), abs=1e-6
+    )
+
+
+def test_no_room_for_the_other_pieces():
+    with pytest.raises(NoEquilibrium) as caught:
+        fit_length(line(*PIECES), water(150), 3, 120.0, Settings())
+    assert caught.value.status == "no-equilibrium"
+    assert caught.value.piece == 3
+    assert "101.80 m" in caught.value.message
