@@ -91,7 +91,7 @@ def _body_drag(body: Body) -> tuple[float, float, bool]:
         kn = body.kn
     else:
         assert body.drag_area is not None and body.cd is not None
-        kn = 0.5 * drag.REFERENCE_DENSITY * body.cd * body.drag_area
+        kn = drag.area_drag(body.drag_area, body.cd)
     if body.kt is None or body.inclination == "insensitive":
         return kn, kn, False
     return kn, body.kt, True

@@ -96,6 +96,11 @@ def line_drag(diameter: float, cn: float, ct: float) -> tuple[float, float]:
     return _HALF_DENSITY * cn * diameter, _HALF_DENSITY * ct * pi * diameter
 
 
+def area_drag(area: float, cd: float) -> float:
+    """K of a body of an area [m²] and its drag coefficient: ½ρ Cd A."""
+    return _HALF_DENSITY * cd * area
+
+
 def measured_drag(speeds: Sequence[float], forces: Sequence[float]) -> float:
     """K that fits measured drags: Σ(F/V) / ΣV, for speeds [m/s] and forces [N]."""
     return sum(f / v for v, f in zip(speeds, forces, strict=True)) / sum(speeds)

@@ -70,10 +70,9 @@ def _too_heavy(line: Line) -> str:
 
 
 def _stands_at_rest(line: Line) -> None:
-    """Still water: what hangs below every point must be lifted by what is above it."""
+    """Still water: once the line is held up it must stay so, down to the anchor."""
     above = np.cumsum(line.total_buoyancy)
-    floats = np.flatnonzero(line.buoyancy > 0)
-    first = int(floats[0]) if len(floats) else 0
+    first = int(np.argmax(above > 0.0))
     short = np.flatnonzero(above[first:] <= 0.0)
     if len(short):
         piece = first + int(short[0])

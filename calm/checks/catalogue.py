@@ -1,0 +1,216 @@
+"""Figures of a component that cannot be true: one small rule each, and all of them together.
+
+A rule is given a component and returns what is wrong with it, or None. It judges only figures that
+the definition gives; a missing figure is no fault, except a missing source.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass
+from math import pi
+
+from calm.files import Cable, Chain, Component, Cylinder, Sphere
+from calm.files.catalogue import Assembly
+from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY, STEEL_DENSITY
+
+ROUNDING = 1.05
+"""Excess that rounded figures of a data sheet may show: 5 %, or 1.7 % of a sphere's diameter."""
+
+ROPE_ROUNDING = 1.12
+"""The same for ropes, whose nominal diameter may be the next size below the true one."""
+
+LEAD_DENSITY = 11340.0
+"""Density of lead [kg/m³]; nothing on a mooring is denser."""
+
+STEEL_MODULUS = 210e9
+"""Young's modulus of steel [Pa]; no cable is stiffer than a solid bar of it."""
+
+GREATEST_STRENGTH = 4e9
+"""Tensile strength that no fibre or wire of a cable surpasses [Pa]."""
+
+DENSITIES = {
+    "steel": STEEL_DENSITY,
+    "polyester": 1380.0,
+    "nylon": 1140.0,
+    "polypropylene": 910.0,
+    "aramid": 1440.0,
+    "HMPE": 975.0,
+}
+"""Densities [kg/m³] of what ropes are made of, by the `material` of a definition."""
+
+_NO_SOURCE = "does not say where its figures come from (`source`)"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something impossible about a definition, by its id."""
+
+    id: str
+    message: str
+
+
+def check_catalogue(
+    definitions: Mapping[str, Component | Assembly], known: Collection[str]
+) -> list[Finding]:
+    """All findings about the definitions of a catalogue.
+
+    Parameters
+    ----------
+    definitions : mapping
+        What to check, by id.
+    known : collection of str
+        Every id that the parts of an assembly may use.
+    """
+    findings = []
+    for identifier, definition in definitions.items():
+        if isinstance(definition, Assembly):
+            messages = _unknown_parts(definition, known)
+        else:
+            messages = (message for rule in RULES if (message := rule(definition)) is not None)
+        findings += [Finding(identifier, message) for message in messages]
+    return findings
+
+
+def no_source(component: Component) -> str | None:
+    """Figures whose origin nobody can look up."""
+    return None if component.source else _NO_SOURCE
+
+
+def breaks_below_working_load(component: Component) -> str | None:
+    """A breaking load below the working load."""
+    breaking, working = component.breaking_load, component.working_load
+    if breaking is None or working is None or breaking >= working:
+        return None
+    return f"breaks at {breaking:.4g} N, below its working load of {working:.4g} N"
+
+
+def warns_after_limit(component: Component) -> str | None:
+    """A tilt warned of only after the greatest tilt."""
+    if component.max_tilt is None or component.warn_tilt is None:
+        return None
+    if component.warn_tilt <= component.max_tilt:
+        return None
+    return f"warns at {component.warn_tilt:g}°, after its greatest tilt of {component.max_tilt:g}°"
+
+
+def displaces_more_than_its_size(component: Component) -> str | None:
+    """A sphere or cylinder that displaces, or lifts, more water than it has room for."""
+    envelope = _envelope(component)
+    if envelope is None:
+        return None
+    lift = CATALOGUE_DENSITY * STANDARD_GRAVITY * envelope
+    if component.net_buoyancy > lift:
+        return f"lifts {component.net_buoyancy:.4g} N; water of its size weighs {lift:.4g} N"
+    volume = component.displaced_volume
+    if volume is not None and volume > ROUNDING * envelope:
+        return f"displaces {volume:.3g} m³; its size is {envelope:.3g} m³"
+    return None
+
+
+def is_denser_than_lead(component: Component) -> str | None:
+    """A mass in air that leaves, with the weight in water, hardly any volume."""
+    mass, volume = component.mass, component.displaced_volume
+    if mass is None or volume is None or mass <= ROUNDING * LEAD_DENSITY * volume:
+        return None
+    return f"has a mass of {mass:.4g} kg in {volume:.3g} m³, denser than lead"
+
+
+def is_heavier_than_a_bar(component: Component) -> str | None:
+    """A rope heavier, in air or in water, than a solid bar of its diameter and material.
+
+    The `density` of the definition counts, else that of its `material` where `DENSITIES` has it,
+    else that of steel.
+    """
+    if not isinstance(component, Cable):
+        return None
+    density = component.density or DENSITIES.get(component.material or "", STEEL_DENSITY)
+    section = pi / 4 * component.diameter**2
+    bar = ROPE_ROUNDING * density * section
+    if component.mass is not None and component.mass > bar:
+        return f"has {component.mass:.4g} kg/m; a solid bar of its diameter has {bar:.4g} kg/m"
+    weight = max(bar - CATALOGUE_DENSITY * section, 0.0) * STANDARD_GRAVITY
+    if -component.net_buoyancy > weight:
+        return (
+            f"weighs {-component.net_buoyancy:.4g} N/m in water; a solid bar of its diameter "
+            f"weighs {weight:.4g} N/m"
+        )
+    return None
+
+
+def lifts_more_than_its_section(component: Component) -> str | None:
+    """A rope more buoyant than the water it takes the place of."""
+    if not isinstance(component, Cable):
+        return None
+    lift = ROPE_ROUNDING * CATALOGUE_DENSITY * STANDARD_GRAVITY * pi / 4 * component.diameter**2
+    if component.net_buoyancy <= lift:
+        return None
+    return f"lifts {component.net_buoyancy:.4g} N/m; water of its diameter weighs {lift:.4g} N/m"
+
+
+def is_no_chain(component: Component) -> str | None:
+    """A chain outside two to five solid steel bars of its diameter side by side.
+
+    Open links weigh three to four bars, long links two and a half.
+    """
+    if not isinstance(component, Chain) or component.density is not None:
+        return None
+    bar = (STEEL_DENSITY - CATALOGUE_DENSITY) * STANDARD_GRAVITY * pi / 4 * component.diameter**2
+    bars = -component.net_buoyancy / bar
+    if 2.0 <= bars <= 5.0:
+        return None
+    return f"weighs as much as {bars:.2g} steel bars of its diameter; a steel chain 2 to 5"
+
+
+def is_stiffer_than_steel(component: Component) -> str | None:
+    """A cable stiffer than a solid steel bar of its diameter."""
+    if not isinstance(component, Cable) or component.stiffness is None:
+        return None
+    bar = ROUNDING * STEEL_MODULUS * pi / 4 * component.diameter**2
+    if component.stiffness <= bar:
+        return None
+    return (
+        f"has a stiffness of {component.stiffness:.4g} N; a steel bar of its diameter {bar:.4g} N"
+    )
+
+
+def is_too_strong(component: Component) -> str | None:
+    """A cable stronger than any fibre or wire of its diameter."""
+    if not isinstance(component, Cable) or component.breaking_load is None:
+        return None
+    strongest = GREATEST_STRENGTH * pi / 4 * component.diameter**2
+    if component.breaking_load <= strongest:
+        return None
+    return f"breaks at {component.breaking_load:.4g} N; no cable of its diameter at {strongest:.4g}"
+
+
+RULES: tuple[Callable[[Component], str | None], ...] = (
+    no_source,
+    breaks_below_working_load,
+    warns_after_limit,
+    displaces_more_than_its_size,
+    is_denser_than_lead,
+    is_heavier_than_a_bar,
+    lifts_more_than_its_section,
+    is_no_chain,
+    is_stiffer_than_steel,
+    is_too_strong,
+)
+"""Every rule, in the order their findings are told."""
+
+
+def _unknown_parts(assembly: Assembly, known: Collection[str]) -> Iterator[str]:
+    if not assembly.source:
+        yield _NO_SOURCE
+    for part in assembly.parts:
+        if part.get("use") not in known:
+            yield f"is made of `{part.get('use')}`, which no catalogue has"
+
+
+def _envelope(component: Component) -> float | None:
+    """Volume of the solid a sphere or cylinder describes [m³]; None for other kinds."""
+    if isinstance(component, Sphere):
+        return pi / 6 * component.diameter**3
+    if isinstance(component, Cylinder):
+        return pi / 4 * component.diameter**2 * component.length
+    return None

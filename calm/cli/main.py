@@ -1,0 +1,83 @@
+"""The command ``calm``: its verbs, and how every error becomes one line and an exit code."""
+
+from __future__ import annotations
+
+import os
+import sys
+import traceback
+from collections.abc import Sequence
+
+from cyclopts import App, CycloptsError, Parameter
+
+from calm.cli.catalog import catalog
+from calm.cli.exit_codes import ExitCode
+from calm.cli.run import RUN_EXAMPLES, run
+from calm.cli.starter import NEW_EXAMPLES, SCHEMA_EXAMPLES, new, schema
+from calm.cli.streams import narrate, prepare
+from calm.errors import CalmError, InputError
+
+_EPILOGUE = """Examples:
+
+  calm new -o mooring.yaml
+  calm run mooring.yaml
+  calm run --help
+
+Exit codes: 0 done, 1 a check found something, 2 bad input or usage,
+3 no equilibrium, 70 internal error, 130 interrupted."""
+
+
+def _version() -> str:
+    from calm import __version__
+
+    return __version__
+
+
+app = App(
+    name="calm",
+    help="Statics of oceanographic moorings: shape, tensions and anchor load in a current.",
+    help_epilogue=_EPILOGUE,
+    help_format="plaintext",
+    version=_version,
+    default_parameter=Parameter(negative=(), show_default=False),
+    suppress_keyboard_interrupt=False,
+    result_action="return_value",
+)
+app.command(run, usage="Usage: calm run [OPTIONS] FILE...", help_epilogue=RUN_EXAMPLES)
+app.command(catalog)
+app.command(new, help_epilogue=NEW_EXAMPLES)
+app.command(schema, help_epilogue=SCHEMA_EXAMPLES)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a command line.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        The words behind ``calm``; those of the process when absent.
+
+    Returns
+    -------
+    int
+        An `ExitCode`. Whatever happens, no traceback is printed, unless the environment variable
+        CALM_DEBUG is 1.
+    """
+    prepare()
+    words = sys.argv[1:] if arguments is None else list(arguments)
+    try:
+        code = app(words, exit_on_error=False, print_error=False)
+    except InputError as error:
+        narrate(str(error))
+        return ExitCode.BAD_INPUT
+    except (CycloptsError, CalmError) as error:
+        narrate(f"calm: {error}")
+        return ExitCode.BAD_INPUT
+    except KeyboardInterrupt:
+        narrate("calm: interrupted")
+        return ExitCode.INTERRUPTED
+    except Exception as error:
+        if os.environ.get("CALM_DEBUG") == "1":
+            traceback.print_exc()
+        narrate(f"calm: internal error ({type(error).__name__}: {error}); please report it")
+        return ExitCode.INTERNAL_ERROR
+    return code if isinstance(code, ExitCode) else ExitCode.DONE

@@ -1,0 +1,65 @@
+"""Standard output is for data, standard error for narration."""
+
+from __future__ import annotations
+
+import io
+import os
+import re
+import sys
+from typing import TYPE_CHECKING
+
+from calm.errors import UsageError
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+
+def prepare() -> None:
+    """Let no sign that the terminal cannot show stop a command: it becomes a question mark."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
+
+
+def show(text: str) -> None:
+    """Write data to the standard output, at once.
+
+    A reader that has seen enough (``calm run m.yaml | head``) is no error.
+
+    Raises
+    ------
+    UsageError
+        The output cannot be written, e.g. because the disk is full.
+    """
+    try:
+        print(text, end="", flush=True)
+    except BrokenPipeError:
+        _abandon_output()
+    except OSError as error:
+        _abandon_output()
+        raise UsageError(f"cannot write to the standard output: {error.strerror}") from None
+
+
+def show_rich(*renderables: RenderableType) -> None:
+    """Write to the standard output as the terminal allows, a blank line between two things."""
+    from rich.console import Console
+
+    text = io.StringIO()
+    terminal = sys.stdout is not None and sys.stdout.isatty()
+    console = Console(file=text, force_terminal=terminal or None, highlight=False)
+    for number, renderable in enumerate(renderables):
+        if number:
+            console.print()
+        console.print(renderable)
+    # Tables are padded to full width, which only clutters a text that is kept.
+    show(re.sub(" +$", "", text.getvalue(), flags=re.MULTILINE))
+
+
+def narrate(text: str) -> None:
+    """Write a line to the standard error."""
+    print(text, file=sys.stderr)
+
+
+def _abandon_output() -> None:
+    """Throw away what is still buffered, which would fail again when the interpreter ends."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -1,0 +1,231 @@
+"""The quantities CALM reports: one table of names, symbols, units and meanings.
+
+Table headings, CSV headers, plot labels and the manual all read it, so that a quantity is called
+the same and carries the same unit wherever it is shown.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One reported quantity.
+
+    Parameters
+    ----------
+    name : str
+        The name in results and files, e.g. ``"depth_top"``.
+    heading : str
+        Short title of a column or an axis, without the unit.
+    unit : str
+        Unit of the number in results (SI, and degrees); empty for a pure number.
+    meaning : str
+        One sentence for the manual.
+    decimals : int
+        Digits after the point, in the unit displayed, that mean something to a reader.
+    symbol : str
+        The letter of formulas, where there is one.
+    display, scale : str, float
+        The unit people read, where it is another, and how many of it make one `unit`.
+    """
+
+    name: str
+    heading: str
+    unit: str
+    meaning: str
+    decimals: int = 1
+    symbol: str = ""
+    display: str = ""
+    scale: float = 1.0
+
+    @property
+    def display_unit(self) -> str:
+        """The unit people read."""
+        return self.display or self.unit
+
+    @property
+    def header(self) -> str:
+        """Name and unit as the head of a column that programs read, e.g. ``depth_top[m]``."""
+        return f"{self.name}[{self.unit}]" if self.unit else self.name
+
+    @property
+    def label(self) -> str:
+        """Title and unit as the label of an axis, e.g. ``depth [m]``."""
+        return f"{self.heading} [{self.display_unit}]" if self.display_unit else self.heading
+
+    def format(self, value: float | None) -> str:
+        """Digits of a value [`unit`] in the unit displayed; a dash when unknown.
+
+        A value that rounds to nothing never shows a minus sign.
+        """
+        if value is None or value != value:
+            return "-"
+        return f"{value * self.scale:z.{self.decimals}f}"
+
+    def say(self, value: float | None) -> str:
+        """A value [`unit`] with the unit displayed, for a sentence, e.g. ``113.2 m``."""
+        if value is None or value != value:
+            return "unknown"
+        return self._with_unit(self.format(value))
+
+    def figure(self, value: float) -> str:
+        """A value [`unit`] to four significant digits with the unit displayed, for data sheets."""
+        return self._with_unit(f"{float(f'{value * self.scale:.4g}'):.10g}")
+
+    def _with_unit(self, text: str) -> str:
+        space = "" if self.display_unit in ("", "°") else " "
+        return f"{text}{space}{self.display_unit}"
+
+
+_TABLE = (
+    Quantity("depth", "depth", "m", "Depth below the still-water surface."),
+    Quantity("height", "height", "m", "Height above the seabed."),
+    Quantity("offset", "offset", "m", "Horizontal distance from the anchor."),
+    Quantity("x", "east", "m", "Distance east of the anchor.", symbol="x"),
+    Quantity("y", "north", "m", "Distance north of the anchor.", symbol="y"),
+    Quantity(
+        "length",
+        "length",
+        "m",
+        "Length along the line; in results, as stretched by its load.",
+        decimals=2,
+        symbol="L",
+    ),
+    Quantity("cut_length", "cut length", "m", "Length before any load.", decimals=2),
+    Quantity("depth_top", "depth, upper end", "m", "Depth of the upper end."),
+    Quantity("depth_bottom", "depth, lower end", "m", "Depth of the lower end."),
+    Quantity("x_top", "east, upper end", "m", "Distance east of the anchor, upper end."),
+    Quantity("y_top", "north, upper end", "m", "Distance north of the anchor, upper end."),
+    Quantity("x_bottom", "east, lower end", "m", "Distance east of the anchor, lower end."),
+    Quantity("y_bottom", "north, lower end", "m", "Distance north of the anchor, lower end."),
+    Quantity("tension", "tension", "N", "Pull in the line.", decimals=0, symbol="T"),
+    Quantity("tension_top", "tension, upper end", "N", "Pull at the upper end.", decimals=0),
+    Quantity("tension_bottom", "tension, lower end", "N", "Pull at the lower end.", decimals=0),
+    Quantity("tilt", "tilt", "deg", "Angle of the axis from the vertical, 0 upright.", display="°"),
+    Quantity("knockdown", "knockdown", "m", "How much deeper than in still water."),
+    Quantity("safety_factor", "safety factor", "", "Breaking load over the greatest tension."),
+    Quantity(
+        "utilisation", "utilisation", "", "Greatest tension over the working load.", decimals=2
+    ),
+    Quantity(
+        "used_buoyancy",
+        "used buoyancy",
+        "",
+        "Share of the buoyancy of a float at the surface that is in use.",
+        decimals=3,
+    ),
+    Quantity(
+        "reserve", "reserve", "N", "Buoyancy of the surface float that is not in use.", decimals=0
+    ),
+    Quantity(
+        "vertical", "vertical pull", "N", "Upward pull on the anchor.", decimals=0, symbol="V"
+    ),
+    Quantity(
+        "horizontal", "horizontal pull", "N", "Sideways pull on the anchor.", decimals=0, symbol="H"
+    ),
+    Quantity(
+        "angle", "angle", "deg", "Angle of the pull on the anchor from the vertical.", display="°"
+    ),
+    Quantity(
+        "required_weight", "required weight", "N", "Weight in water the anchor needs.", decimals=0
+    ),
+    Quantity("grounded_length", "grounded length", "m", "Cut length that lies on the seabed."),
+    Quantity("speed", "speed", "m/s", "Speed of the water.", decimals=2),
+    Quantity(
+        "diameter",
+        "diameter",
+        "m",
+        "Outside diameter; of a chain, its bar.",
+        display="mm",
+        scale=1000.0,
+    ),
+    Quantity("mass", "mass", "kg", "Mass in air.", decimals=2),
+    Quantity(
+        "buoyancy",
+        "buoyancy",
+        "N",
+        "Net force in sea water of 1025 kg/m³, upward.",
+        decimals=2,
+        symbol="B",
+    ),
+    Quantity(
+        "weight",
+        "weight in water",
+        "N",
+        "Net force in sea water of 1025 kg/m³, downward.",
+        decimals=2,
+    ),
+    Quantity(
+        "net_buoyancy",
+        "net force in water",
+        "N",
+        "Net force in sea water of 1025 kg/m³, upward, by weight or by mass and volume.",
+    ),
+    Quantity("force", "force", "N", "Force measured.", decimals=0),
+    Quantity("at", "at", "m", "Where a clamp sits, from the top of its piece.", decimals=2),
+    Quantity("volume", "volume", "m³", "Volume of water displaced.", display="l", scale=1000.0),
+    Quantity("density", "density", "kg/m³", "Density of the material.", decimals=0),
+    Quantity(
+        "stiffness",
+        "stiffness",
+        "N",
+        "Pull over strain, EA.",
+        display="kN",
+        scale=0.001,
+        decimals=0,
+        symbol="EA",
+    ),
+    Quantity(
+        "breaking_load", "breaking load", "N", "Load at which it breaks.", display="kN", scale=0.001
+    ),
+    Quantity(
+        "working_load", "working load", "N", "Load it is made for.", display="kN", scale=0.001
+    ),
+    Quantity("depth_rating", "depth rating", "m", "Greatest depth it stands.", decimals=0),
+    Quantity(
+        "max_tilt",
+        "greatest tilt",
+        "deg",
+        "Tilt beyond which it is not to be trusted.",
+        display="°",
+        decimals=0,
+    ),
+    Quantity(
+        "warn_tilt",
+        "tilt of warning",
+        "deg",
+        "Tilt from which its data need a look.",
+        display="°",
+        decimals=0,
+    ),
+    Quantity(
+        "kn", "normal drag", "N/(m/s)²", "Drag across its axis at 1 m/s.", symbol="Kn", decimals=2
+    ),
+    Quantity(
+        "kt", "axial drag", "N/(m/s)²", "Drag along its axis at 1 m/s.", symbol="Kt", decimals=2
+    ),
+    Quantity("k_surface", "drag afloat", "N/(m/s)²", "Drag at 1 m/s when it floats.", decimals=2),
+    Quantity("lift", "lift", "N/(m/s)²", "Lift at 1 m/s.", decimals=2),
+    Quantity(
+        "drag_area", "drag area", "m²", "Area to which its drag coefficient belongs.", decimals=4
+    ),
+    Quantity("wind_area", "wind area", "m²", "Area on which the wind blows.", decimals=2),
+    Quantity("cx", "Cx", "", "Drag coefficient of a sphere.", decimals=3),
+    Quantity("cn", "Cn", "", "Drag coefficient across the axis.", decimals=3),
+    Quantity("ct", "Ct", "", "Drag coefficient along the axis.", decimals=4),
+    Quantity("cd", "Cd", "", "Drag coefficient.", decimals=3),
+    Quantity(
+        "wind_cd", "Cd in the wind", "", "Drag coefficient of the part in the air.", decimals=2
+    ),
+    Quantity("friction", "friction", "", "Coefficient of friction on the seabed.", decimals=2),
+)
+
+QUANTITIES = {quantity.name: quantity for quantity in _TABLE}
+"""Every quantity by its name."""
+
+
+def say(name: str, value: float | None) -> str:
+    """A value of a quantity with its unit, for a sentence, e.g. ``113.2 m``."""
+    return QUANTITIES[name].say(value)

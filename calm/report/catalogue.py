@@ -1,0 +1,105 @@
+"""Components of the catalogue as a list, as cards and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from pydantic import BaseModel
+from rich.console import Group, RenderableType
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
+
+from calm.quantities import QUANTITIES
+
+if TYPE_CHECKING:
+    from calm.files import Catalogue, Component
+    from calm.files.catalogue import Assembly
+
+    Definition = Component | Assembly
+
+_PER_METRE = ("mass", "weight", "buoyancy", "net_buoyancy")
+_FIRST = ("name", "kind", "role")
+_LAST = ("note", "source", "date")
+_HEADING_OF_OTHERS = "other"
+
+
+def to_list(catalogue: Catalogue, definitions: Mapping[str, Definition]) -> RenderableType:
+    """One line for each definition, under the name of its family."""
+    table = Table(box=None, padding=(0, 0, 0, 1), pad_edge=False)
+    table.add_column("id", overflow="fold")
+    table.add_column("name", overflow="fold")
+    table.add_column("net force\nin water", justify="right", no_wrap=True)
+    table.add_column("breaking\nload", justify="right", no_wrap=True)
+    last = None
+    for identifier, definition in definitions.items():
+        family = _family(catalogue, identifier) or _HEADING_OF_OTHERS
+        if family != last:
+            table.add_row(*[Text()] * (last is not None))
+            table.add_row(Text(family.upper(), style="bold"))
+            last = family
+        net = _say(definition, "net_buoyancy") if definition.kind != "assembly" else ""
+        breaking = "" if definition.breaking_load is None else _say(definition, "breaking_load")
+        table.add_row(Text(identifier), Text(definition.name or ""), net, breaking)
+    return table
+
+
+def to_card(identifier: str, definition: Definition) -> RenderableType:
+    """Every figure that a definition gives, in the units people read, and where it comes from."""
+    rows = Table(box=None, show_header=False, padding=(0, 2, 0, 0), pad_edge=False)
+    for heading, text in _figures(definition):
+        rows.add_row(Text(heading), Text(text))
+    return Group(Text(identifier, style="bold"), Padding(rows, (0, 0, 0, 2)))
+
+
+def to_documents(
+    catalogue: Catalogue, definitions: Mapping[str, Definition]
+) -> list[dict[str, Any]]:
+    """An object each: `id`, `family` and every field, SI or degrees, None if absent."""
+    return [
+        {"id": identifier, "family": _family(catalogue, identifier)}
+        | definition.model_dump(mode="json")
+        for identifier, definition in definitions.items()
+    ]
+
+
+def _family(catalogue: Catalogue, identifier: str) -> str | None:
+    entry = catalogue.entry(identifier)
+    return entry.family if entry else None
+
+
+def _figures(definition: Definition) -> Iterator[tuple[str, str]]:
+    fields = [name for name in type(definition).model_fields if name not in (*_FIRST, *_LAST)]
+    if definition.kind != "assembly" and not any(
+        getattr(definition, given, None) is not None for given in ("buoyancy", "weight")
+    ):
+        fields.insert(0, "net_buoyancy")
+    for name in (*_FIRST, *fields, *_LAST):
+        if getattr(definition, name) is not None:
+            yield _heading(name), _say(definition, name)
+
+
+def _heading(name: str) -> str:
+    return QUANTITIES[name].heading if name in QUANTITIES else name.replace("_", " ")
+
+
+def _say(definition: Definition, name: str) -> str:
+    value = getattr(definition, name)
+    if isinstance(value, tuple):
+        return "\n".join(_text(name, member) for member in value)
+    per_metre = "/m" if definition.kind in ("cable", "chain") and name in _PER_METRE else ""
+    return _text(name, value) + per_metre
+
+
+def _text(name: str, value: Any) -> str:
+    """A field in one line for people, quantities with their unit, what is nested in brackets."""
+    if isinstance(value, float) and name in QUANTITIES:
+        return QUANTITIES[name].figure(value)
+    if isinstance(value, BaseModel):
+        value = value.model_dump(exclude_none=True)
+    if isinstance(value, Mapping):
+        return ", ".join(f"{_heading(key)} {_text(key, member)}" for key, member in value.items())
+    if isinstance(value, tuple | list):
+        return f"({'; '.join(_text(name, member) for member in value)})"
+    return str(value)

@@ -1,0 +1,70 @@
+"""Results as CSV: a row for each component and each clamped instrument, top to bottom."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from calm.quantities import QUANTITIES
+
+if TYPE_CHECKING:
+    from calm.case import Result
+
+_WORDS = ("mooring", "part", "index", "use", "label")
+_NUMBERS = (
+    "length",
+    "cut_length",
+    "depth_top",
+    "depth_bottom",
+    "x_top",
+    "y_top",
+    "x_bottom",
+    "y_bottom",
+    "tension_top",
+    "tension_bottom",
+    "tilt",
+    "knockdown",
+    "safety_factor",
+    "utilisation",
+)
+HEADER = (*_WORDS, *(QUANTITIES[name].header for name in _NUMBERS))
+"""The first row: names, with the unit in brackets where there is one."""
+
+
+def to_csv(results: Sequence[Result]) -> str:
+    """The components of one mooring or several as CSV text (UTF-8, comma, point, LF).
+
+    `part` is ``component`` or ``clamp``; the rows of clamped instruments follow the piece they sit
+    on, with equal figures for both ends and no length. A number that is unknown is left empty.
+    """
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(HEADER)
+    for result in results:
+        writer.writerows(_rows(result))
+    return text.getvalue()
+
+
+def _rows(result: Result) -> Iterator[list[object]]:
+    for component in result.components:
+        numbers = (getattr(component, name) for name in _NUMBERS)
+        yield [*_words(result, "component", component), *map(_number, numbers)]
+        for clamp in result.clamps:
+            if clamp.index == component.index:
+                numbers = (getattr(clamp, _at_a_point(name), None) for name in _NUMBERS)
+                yield [*_words(result, "clamp", clamp), *map(_number, numbers)]
+
+
+def _words(result: Result, part: str, row: object) -> list[object]:
+    return [result.name, part, *(getattr(row, name) for name in ("index", "use", "label"))]
+
+
+def _at_a_point(name: str) -> str:
+    """Name of the one figure that a clamp has where a component has one for each end."""
+    return name.removesuffix("_top").removesuffix("_bottom")
+
+
+def _number(value: float | None) -> str:
+    return "" if value is None or value != value else repr(float(value))

@@ -1,0 +1,51 @@
+"""Which figures of a table are marked because they pass a limit of the component or the design."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from types import SimpleNamespace
+from typing import TYPE_CHECKING
+
+from calm.case.warnings import SYNTHETICS
+
+if TYPE_CHECKING:
+    from calm.case import Result
+    from calm.files import Component
+
+
+class Mark(StrEnum):
+    """The sign behind a figure: legible without colour."""
+
+    NONE = ""
+    NEAR = "~"
+    BEYOND = "!"
+
+
+def tilt_mark(component: Component, tilt: float) -> Mark:
+    """Mark of a tilt [deg]: beyond `max_tilt` the component is not to be trusted."""
+    if component.max_tilt is not None and tilt > component.max_tilt:
+        return Mark.BEYOND
+    if component.warn_tilt is not None and tilt > component.warn_tilt:
+        return Mark.NEAR
+    return Mark.NONE
+
+
+def safety_mark(result: Result, component: Component, record: SimpleNamespace) -> Mark:
+    """Mark of a safety factor: the working load decides, the breaking load where that is unknown.
+
+    The factor asked on the breaking load is the file's `checks.safety_factor`, for a surface
+    mooring, for a synthetic cable, or for steel.
+    """
+    if record.utilisation == record.utilisation:  # NaN where no working load is known
+        return Mark.BEYOND if record.utilisation > 1.0 else Mark.NONE
+    limits = result.mooring.file.checks.safety_factor
+    if result.type == "surface":
+        limit = limits.surface
+    else:
+        limit = limits.synthetic if _is_synthetic(component) else limits.steel
+    return Mark.BEYOND if record.safety_factor < limit else Mark.NONE
+
+
+def _is_synthetic(component: Component) -> bool:
+    material = (component.material or "").lower()
+    return component.kind == "cable" and any(synthetic in material for synthetic in SYNTHETICS)

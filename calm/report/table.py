@@ -1,0 +1,84 @@
+"""The table of a mooring as a technician reads it in a terminal, top of the line first."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from calm.quantities import QUANTITIES
+from calm.report.limits import Mark
+from calm.report.rows import COLUMNS, NOTE, Phrase, convergence, rows, summary, title
+
+if TYPE_CHECKING:
+    from calm.case import Result
+
+# Headings cut so that the whole table fits 80 columns.
+_HEADINGS = {
+    "height": ("above", "seabed"),
+    "knockdown": ("knock-", "down"),
+    "safety_factor": ("safety", "factor"),
+}
+_MARKED = ("tilt", "safety_factor")
+_STYLES = {Mark.NONE: "", Mark.NEAR: "yellow", Mark.BEYOND: "bold red"}
+
+
+def result_table(result: Result) -> RenderableType:
+    """Everything a result says, for a rich console.
+
+    A figure beyond its limit carries ``!`` and one near it ``~``, so that nothing hangs on colour.
+
+    Parameters
+    ----------
+    result : Result
+        A solved mooring.
+
+    Returns
+    -------
+    RenderableType
+        Title, a row for each component with its clamped instruments below it, the top of the line,
+        the loads on the anchor, the warnings, and how the solution was reached. It fits 80
+        columns; long labels wrap.
+    """
+    return Group(
+        Text(title(result), style="bold"),
+        Text(),
+        _components(result),
+        Text(),
+        *map(_sentence, summary(result)),
+        *(Text(f"! {warning}", style="bold red") for warning in result.warnings),
+        Text(),
+        Text(f"{NOTE}\n{convergence(result)}", style="dim"),
+    )
+
+
+def _components(result: Result) -> Table:
+    table = Table(box=None, padding=(0, 0, 0, 1), pad_edge=False)
+    table.add_column(overflow="fold")
+    for name in COLUMNS:
+        quantity = QUANTITIES[name]
+        lines = (*_HEADINGS.get(name, (quantity.heading,)), quantity.display_unit)
+        heading = "\n".join(line + _margin(name) for line in lines)
+        table.add_column(heading, justify="right", no_wrap=True)
+    for row in rows(result):
+        label = Text(
+            f"  {row.label}" if row.clamped else row.label,
+            style="bold" if row.instrument else "",
+        )
+        cells = (
+            Text(f"{cell.text}{cell.mark or _margin(name)}", style=_STYLES[cell.mark])
+            for name, cell in zip(COLUMNS, row.cells, strict=True)
+        )
+        table.add_row(label, *cells)
+    return table
+
+
+def _margin(name: str) -> str:
+    """Room behind the digits of a column that may carry marks, so that the digits stay aligned."""
+    return " " if name in _MARKED else ""
+
+
+def _sentence(phrase: Phrase) -> Text:
+    return Text(f"{phrase.text} {phrase.mark}".rstrip(), style=_STYLES[phrase.mark])

@@ -1,0 +1,108 @@
+import json
+
+import pytest
+
+MINE = """\
+good: {{kind: sphere, diameter: 1 m, buoyancy: 2000 N, source: me}}
+{more}
+"""
+
+
+@pytest.fixture
+def mine(folder):
+    def write(more=""):
+        (folder / "mine.yaml").write_text(MINE.format(more=more), encoding="utf-8")
+        return "mine.yaml"
+
+    return write
+
+
+def test_list_goes_family_by_family(calm):
+    done = calm("catalog", "list")
+    assert done.code == 0
+    families = [line for line in done.out.splitlines() if line.isalpha() and line.isupper()]
+    assert sorted(families) == [
+        "ANCHORS", "CHAINS", "CONNECTORS", "FLOATS", "INSTRUMENTS", "RELEASES", "ROPES"
+    ]  # fmt: skip
+
+
+def test_list_of_one_kind(calm):
+    components = json.loads(calm("catalog", "list", "--kind", "chain", "--json").out)
+    assert {component["kind"] for component in components} == {"chain"}
+    assert "chain-buoy-13" in {component["id"] for component in components}
+
+
+def test_json_has_every_field_in_si(calm):
+    (sphere,) = json.loads(calm("catalog", "show", "sphere-steel-1250", "--json").out)
+    assert sphere["id"] == "sphere-steel-1250"
+    assert sphere["family"] == "floats"
+    assert (sphere["diameter"], sphere["buoyancy"], sphere["breaking_load"]) == (1.25, 7000, 120e3)
+    assert sphere["max_tilt"] is None
+    assert sphere["source"]
+
+
+def test_card_shows_figures_and_source(calm):
+    done = calm("catalog", "show", "sphere-steel-1250", "rcm4")
+    assert done.code == 0
+    assert "1250 mm" in done.out
+    assert "120 kN" in done.out
+    assert "speed 0.51 m/s, force 10.1 N" in done.out
+    assert "greatest tilt" in done.out
+    assert done.out.count("source ") == 2
+
+
+def test_assembly_is_shown(calm):
+    assert "glass-17in" in calm("catalog", "show", "glass-cluster-4").out
+
+
+def test_unknown_ids_are_told_at_once_with_the_nearest(calm):
+    done = calm("catalog", "show", "wire-jackted-8", "rcm4", "shakle-13")
+    assert done.code == 2
+    assert done.out == ""
+    assert "wire-jacketed-8" in done.err
+    assert "shackle-13" in done.err
+    assert len(done.err.splitlines()) == 1
+
+
+def test_search_wants_every_word(calm):
+    found = json.loads(calm("catalog", "search", "STEEL", "sphere", "--json").out)
+    assert "sphere-steel-1250" in {component["id"] for component in found}
+    assert calm("catalog", "search", "steel", "sphere").code == 0
+
+
+def test_search_without_a_find(calm):
+    done = calm("catalog", "search", "unobtainium")
+    assert (done.code, done.out) == (0, "")
+    assert "unobtainium" in done.err
+    assert json.loads(calm("catalog", "search", "unobtainium", "--json").out) == []
+
+
+def test_shipped_catalogue_has_no_finding(calm):
+    done = calm("catalog", "check")
+    assert (done.code, done.out) == (0, "")
+
+
+def test_finding_gives_exit_code_1(calm, mine):
+    file = mine("bad: {kind: sphere, diameter: 1 m, buoyancy: 9 kN, source: me}")
+    done = calm("catalog", "check", file)
+    assert done.code == 1
+    assert done.out.startswith("bad: lifts 9000 N")
+    findings = json.loads(calm("catalog", "check", file, "--json").out)
+    assert [finding["id"] for finding in findings] == ["bad"]
+    assert calm("catalog", "check", mine()).code == 0
+
+
+def test_file_with_mistakes_is_bad_input(calm, mine):
+    done = calm("catalog", "check", mine("bad: {kind: sphere, diameter: 1, mass: -2 kg}"))
+    assert done.code == 2
+    assert done.out == ""
+    assert all(line.startswith("mine.yaml:2:") for line in done.err.splitlines())
+    assert calm("catalog", "check", "missing.yaml").code == 2
+
+
+def test_catalogue_of_ones_own_is_listed_last(calm, tmp_path):
+    own = tmp_path / "configuration" / "calm" / "catalog"
+    own.mkdir(parents=True)
+    (own / "mine.yaml").write_text(MINE.format(more=""))
+    assert calm("catalog", "list").out.splitlines()[-2].strip() == "OTHER"
+    assert calm("catalog", "show", "good").code == 0

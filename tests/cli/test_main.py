@@ -1,0 +1,151 @@
+import os
+import subprocess
+import sys
+
+import pytest
+
+import calm as package
+from calm.cli.exit_codes import ExitCode, gravest
+from calm.errors import UsageError
+
+
+def test_version(calm):
+    done = calm("--version")
+    assert (done.code, done.out) == (0, f"{package.__version__}\n")
+
+
+def test_no_words_show_the_help(calm):
+    assert calm().out == calm("--help").out
+    assert calm().code == 0
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "run",
+        "new",
+        "schema",
+        "catalog",
+        "catalog list",
+        "catalog show",
+        "catalog search",
+        "catalog check",
+    ],
+)
+def test_help_of_every_command_shows_an_example(calm, command):
+    done = calm(*command.split(), "--help")
+    assert done.code == 0
+    assert done.err == ""
+    assert done.out.startswith(f"Usage: calm {command}")
+    assert "Examples:" in done.out
+    assert f"  calm {command}" in done.out
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["rn", "m.yaml"], '"run"'),
+        (["run"], "FILE"),
+        (["run", "m.yaml", "--enviroment", "x"], "--environment"),
+        (["catalog", "shwo", "x"], '"show"'),
+        (["catalog", "list", "--kind", "rope"], "chain"),
+    ],
+)
+def test_wrong_usage_is_one_line_with_the_nearest(calm, words, told):
+    done = calm(*words)
+    assert done.code == 2
+    assert done.out == ""
+    assert len(done.err.splitlines()) == 1
+    assert told in done.err
+
+
+def test_interrupt(calm, write_mooring, monkeypatch):
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(package, "load", interrupted, raising=False)
+    done = calm("run", write_mooring())
+    assert done.code == 130
+    assert done.err == "calm: interrupted\n"
+
+
+def test_a_bug_is_one_line_unless_debugging(calm, write_mooring, monkeypatch):
+    def bug(*_, **__):
+        raise ZeroDivisionError("of all things")
+
+    monkeypatch.setattr(package, "load", bug, raising=False)
+    done = calm("run", write_mooring())
+    assert done.code == 70
+    assert done.err == (
+        "calm: internal error (ZeroDivisionError: of all things); please report it\n"
+    )
+    monkeypatch.setenv("CALM_DEBUG", "1")
+    assert "Traceback" in calm("run", "m.yaml").err
+
+
+def test_gravest_code_is_the_first_of_2_3_1_0():
+    assert gravest([]) is ExitCode.DONE
+    assert gravest([ExitCode.DONE, ExitCode.FINDING]) is ExitCode.FINDING
+    assert gravest([ExitCode.FINDING, ExitCode.NO_EQUILIBRIUM]) is ExitCode.NO_EQUILIBRIUM
+    assert gravest([ExitCode.NO_EQUILIBRIUM, ExitCode.BAD_INPUT]) is ExitCode.BAD_INPUT
+
+
+def test_process_hands_on_the_exit_code(calm_process, broken):
+    done = calm_process("run", broken)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert "Traceback" not in done.stderr
+
+
+def test_reader_that_stops_early_is_no_error(write_mooring):
+    done = subprocess.run(
+        f"set -o pipefail; {sys.executable} -m calm run {write_mooring()} | true",
+        shell=True,
+        executable="/bin/bash",
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs a device that is always full")
+@pytest.mark.parametrize("option", [["--json", "-"], []])
+def test_full_disk_behind_the_standard_output(calm_process, write_mooring, option):
+    with open("/dev/full", "w") as full:
+        done = calm_process(
+            "run", write_mooring(), *option, capture_output=False, stdout=full,
+            stderr=subprocess.PIPE,
+        )  # fmt: skip
+    assert done.returncode == 2
+    assert done.stderr == "calm: cannot write to the standard output: No space left on device\n"
+
+
+def test_full_disk_behind_a_file(calm, write_mooring, monkeypatch):
+    def full(*_):
+        raise UsageError("cannot write x.json: No space left on device")
+
+    monkeypatch.setattr("calm.report.write.write_file", full)
+    done = calm("run", write_mooring(), "--json", "x.json")
+    assert done.code == 2
+    assert done.err == "calm: cannot write x.json: No space left on device\n"
+
+
+def test_signs_a_terminal_cannot_show_stop_nothing(calm_process, write_mooring):
+    environment = os.environ | {"PYTHONIOENCODING": "ascii"}
+    done = calm_process("run", write_mooring(name="Bouée"), env=environment)
+    assert done.returncode == 0
+    assert done.stdout.startswith("Bou?e: ")
+
+
+@pytest.mark.parametrize(
+    ("variables", "coloured"),
+    [({}, False), ({"FORCE_COLOR": "1"}, True), ({"FORCE_COLOR": "1", "NO_COLOR": "1"}, False)],
+)
+def test_colour_only_where_it_is_wanted(calm_process, write_mooring, variables, coloured):
+    file = write_mooring(speed="2 m/s", buoyancy="4000 N")  # has a warning, which is red
+    environment = os.environ | {"TERM": "xterm-16color"} | variables
+    done = calm_process("run", file, env=environment)
+    assert done.returncode == 0
+    assert ("\x1b[1;31m" in done.stdout) is coloured

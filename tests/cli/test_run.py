@@ -1,0 +1,185 @@
+import csv
+import io
+import json
+import os
+
+import pytest
+
+
+def test_table_goes_to_the_standard_output(calm, write_mooring):
+    done = calm("run", write_mooring())
+    assert done.code == 0
+    assert done.err == ""
+    assert done.out.startswith("Test: sub-surface mooring, 100.0 m of water\n")
+    for label in ("top float", "rope", "  logger", "weight"):
+        assert f"\n{label} " in done.out
+    assert "Anchor pulled by" in done.out
+
+
+def test_json_dash_prints_json_only(calm, write_mooring):
+    done = calm("run", write_mooring(), "--json", "-")
+    assert done.code == 0
+    document = json.loads(done.out)
+    assert document["name"] == "Test"
+    assert document["status"] == "converged"
+    assert [component["label"] for component in document["components"]] == [
+        "top float",
+        "rope",
+        "weight",
+    ]
+    assert calm("run", "m.yaml", "--json=-").out == done.out
+
+
+def test_failure_is_json_too(calm, heavy):
+    done = calm("run", heavy, "--json", "-")
+    assert done.code == 3
+    document = json.loads(done.out)
+    assert set(document) == {"name", "status", "message", "advice"}
+    assert document["name"] == "Heavy"
+    assert document["advice"]
+
+
+def test_failure_without_json_is_one_line_on_the_standard_error(calm, heavy):
+    done = calm("run", heavy)
+    assert done.code == 3
+    assert done.out == ""
+    assert len(done.err.splitlines()) == 1
+    assert done.err.startswith("heavy.yaml: ")
+
+
+def test_several_files_give_an_array_in_their_order(calm, write_mooring, heavy):
+    done = calm("run", write_mooring(), heavy, "--json", "-")
+    assert done.code == 3
+    test, heavy = json.loads(done.out)
+    assert (test["name"], test["status"]) == ("Test", "converged")
+    assert (heavy["name"], "components" in heavy) == ("Heavy", False)
+
+
+def test_several_tables_are_apart(calm, write_mooring):
+    done = calm("run", write_mooring("a.yaml", name="A"), write_mooring("b.yaml", name="B"))
+    assert "\n\nB: sub-surface mooring" in done.out
+
+
+def test_bad_input_solves_and_writes_nothing(calm, write_mooring, broken, folder):
+    before = sorted(os.listdir(folder))
+    done = calm("run", write_mooring(), broken, "--json", "x.json", "--plot", "x.png")
+    assert done.code == 2
+    assert done.out == ""
+    lines = done.err.splitlines()
+    assert len(lines) == 2
+    assert all(line.startswith("broken.yaml:") for line in lines)
+    assert all(line.split(":")[1].isdigit() and line.split(":")[2].isdigit() for line in lines)
+    assert sorted(os.listdir(folder)) == sorted([*before, "m.yaml"])
+
+
+def test_bad_input_outweighs_no_equilibrium(calm, heavy, broken):
+    assert calm("run", heavy, broken, "--json", "-").code == 2
+
+
+def test_mistakes_of_all_files_are_told_and_shared_ones_once(calm, write_mooring, folder):
+    (folder / "mine.yaml").write_text("ball: 1\n")
+    done = calm("run", write_mooring("a.yaml"), write_mooring("b.yaml"), "--catalog", "mine.yaml")
+    assert done.code == 2
+    assert len(done.err.splitlines()) == 1
+    done = calm("run", "missing.yaml", "gone.yaml")
+    assert [line.split(":")[0] for line in done.err.splitlines()] == ["missing.yaml", "gone.yaml"]
+
+
+def test_files_are_written_beside_the_table(calm, write_mooring, folder):
+    done = calm("run", write_mooring(), "--json", "r.json", "--csv", "r.csv", "--plot", "r.svg")
+    assert done.code == 0
+    assert "Anchor pulled by" in done.out
+    assert json.loads((folder / "r.json").read_text())["name"] == "Test"
+    rows = list(csv.DictReader(io.StringIO((folder / "r.csv").read_text(encoding="utf-8"))))
+    assert [row["label"] for row in rows] == ["top float", "rope", "logger", "weight"]
+    assert "top float" in (folder / "r.svg").read_text(encoding="utf-8")
+    assert sorted(os.listdir(folder)) == ["m.yaml", "r.csv", "r.json", "r.svg"]
+
+
+def test_csv_and_json_agree_to_the_last_digit(calm, write_mooring):
+    document = json.loads(calm("run", write_mooring(), "--json", "-").out)
+    rows = csv.DictReader(io.StringIO(calm("run", "m.yaml", "--csv", "-").out))
+    depths = [float(row["depth_top[m]"]) for row in rows if row["part"] == "component"]
+    assert depths == [component["depth_top"] for component in document["components"]]
+
+
+def test_csv_dash_keeps_warnings_on_the_standard_error(calm, write_mooring):
+    # 2 m/s on a sphere of 1 m: Reynolds number 1.5e6
+    done = calm("run", write_mooring(speed="2 m/s", buoyancy="4000 N"), "--csv", "-")
+    assert done.code == 0
+    assert done.out.startswith("mooring,part,index,")
+    assert "m.yaml: Reynolds number" in done.err
+
+
+def test_warnings_are_in_the_table_and_in_json(calm, write_mooring):
+    file = write_mooring(speed="2 m/s", buoyancy="4000 N")
+    assert "! Reynolds number" in calm("run", file).out
+    done = calm("run", file, "--json", "-")
+    assert any(text.startswith("Reynolds number") for text in json.loads(done.out)["warnings"])
+    assert done.err == ""
+
+
+def test_each_of_several_moorings_has_its_picture(calm, write_mooring, heavy, folder):
+    done = calm("run", write_mooring("a.yaml"), heavy, write_mooring("b.yaml"), "--plot", "p.png")
+    assert done.code == 3
+    assert sorted(name for name in os.listdir(folder) if name.endswith(".png")) == [
+        "p-a.png",
+        "p-b.png",
+    ]
+
+
+def test_environment_by_name_and_by_file(calm, write_mooring, folder):
+    file = write_mooring()
+    with (folder / file).open("a") as stream:
+        stream.write("environments: {calm sea: {current: {speed: 0 m/s, toward: 0 deg}}}\n")
+    still = json.loads(calm("run", file, "--environment", "calm sea", "--json", "-").out)
+    assert still["top"]["knockdown"] == pytest.approx(0.0, abs=1e-9)  # nothing moves it
+    (folder / "fast.yaml").write_text(
+        "name: fast\nenvironment:\n  depth: 100 m\n  current: {speed: 1 m/s, toward: 90 deg}\n"
+    )
+    fast = json.loads(calm("run", file, "--environment", "fast.yaml", "--json", "-").out)
+    assert fast["top"]["knockdown"] > 1.0
+
+
+def test_catalogue_of_ones_own(calm, write_mooring, folder):
+    (folder / "mine.yaml").write_text(
+        "float-of-mine: {kind: sphere, diameter: 1 m, buoyancy: 2500 N, source: me}\n"
+    )
+    file = write_mooring()
+    text = (folder / file).read_text().replace("use: ball", "use: float-of-mine")
+    (folder / file).write_text(text)
+    assert calm("run", file).code == 2
+    assert calm("run", file, "--catalog", "mine.yaml").code == 0
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (["--json", "missing/x.json"], "there is no folder"),
+        (["--csv", "."], "it is a folder"),
+        (["--plot", "x.pdf"], "ends in .png or .svg"),
+        (["--json", "same", "--csv", "./same"], "two outputs would go to same"),
+        (["--json", "-", "--csv", "-"], "two outputs would go to -"),
+        (["--json", "m.yaml"], "m.yaml is a mooring file"),
+        (["--json", "--csv"], "--csv stands where a path is needed"),
+    ],
+)
+def test_hopeless_outputs_are_refused_before_solving(
+    calm, write_mooring, folder, monkeypatch, options, told
+):
+    import calm as package
+
+    monkeypatch.setattr(package, "load", lambda *_, **__: pytest.fail("read"), raising=False)
+    done = calm("run", write_mooring(), *options)
+    assert done.code == 2
+    assert done.out == ""
+    assert told in done.err
+    assert len(done.err.splitlines()) == 1
+    assert os.listdir(folder) == ["m.yaml"]
+
+
+def test_pictures_of_one_name_are_refused(calm, write_mooring, folder):
+    (folder / "other").mkdir()
+    done = calm("run", write_mooring("a.yaml"), write_mooring("other/a.yaml"), "--plot", "p.png")
+    assert done.code == 2
+    assert "two outputs would go to p-a.png" in done.err

@@ -1,0 +1,50 @@
+import json
+import os
+
+import pytest
+from jsonschema import Draft202012Validator
+from ruamel.yaml import YAML
+
+
+def test_new_prints_a_commented_file(calm):
+    done = calm("new")
+    assert done.code == 0
+    assert done.err == ""
+    assert done.out.count("#") > 5
+
+
+def test_new_runs_as_it_stands(calm, folder):
+    done = calm("new", "-o", "m.yaml")
+    assert (done.code, done.out) == (0, "")
+    assert "calm run m.yaml" in done.err
+    assert os.listdir(folder) == ["m.yaml"]
+    document = json.loads(calm("run", "m.yaml", "--json", "-").out)
+    assert document["status"] == "converged"
+    leaning = json.loads(calm("run", "m.yaml", "--environment", "storm", "--json", "-").out)
+    assert leaning["top"]["knockdown"] > document["top"]["knockdown"]
+
+
+@pytest.mark.parametrize("environment", [[], ["--environment", "storm"]])
+def test_new_is_a_good_design(calm, environment):
+    calm("new", "-o", "m.yaml")
+    document = json.loads(calm("run", "m.yaml", *environment, "--json", "-").out)
+    assert document["anchor"]["weight"] > document["anchor"]["required_weight"]
+    factors = [row["safety_factor"] for row in document["components"] if row["safety_factor"]]
+    assert min(factors) > 5.0
+
+
+def test_new_overwrites_only_when_told(calm, folder):
+    (folder / "m.yaml").write_text("mine")
+    done = calm("new", "-o", "m.yaml")
+    assert done.code == 2
+    assert "--force" in done.err
+    assert (folder / "m.yaml").read_text() == "mine"
+    assert calm("new", "-o", "m.yaml", "--force").code == 0
+    assert calm("new", "--output", "missing/m.yaml").code == 2
+
+
+def test_schema_accepts_the_starter(calm):
+    schema = json.loads(calm("schema").out)
+    Draft202012Validator.check_schema(schema)
+    starter = YAML(typ="safe").load(calm("new").out)
+    assert list(Draft202012Validator(schema).iter_errors(starter)) == []

@@ -1,0 +1,92 @@
+"""Each rule finds what it is for, and lets the next possible figure pass."""
+
+import pytest
+
+from calm.checks.catalogue import RULES, check_catalogue
+from calm.files import Anchor, Assembly, Cable, Chain, Cylinder, Sphere
+
+KINDS = {
+    "sphere": Sphere,
+    "cylinder": Cylinder,
+    "cable": Cable,
+    "chain": Chain,
+    "anchor": Anchor,
+    "assembly": Assembly,
+}
+
+GOOD_SPHERE = {"kind": "sphere", "diameter": "1 m", "buoyancy": "2000 N", "source": "a list"}
+GOOD_ROPE = {"kind": "cable", "diameter": "10 mm", "weight": "0.2 N/m", "source": "a list"}
+GOOD_CHAIN = {"kind": "chain", "diameter": "10 mm", "source": "a list"}
+
+
+def findings(definition, known=()):
+    model = KINDS[definition["kind"]].model_validate(definition)
+    return [finding.message for finding in check_catalogue({"x": model}, known)]
+
+
+@pytest.mark.parametrize("good", [GOOD_SPHERE, GOOD_ROPE, GOOD_CHAIN])
+def test_good_components_pass(good):
+    assert findings(good) == []
+
+
+# Water displaced by a sphere of 1 m: 1025 pi/6 = 536.7 kg, 5263 N. A bar of 10 mm: steel
+# 0.6165 kg/m, nylon 0.0895 kg/m.
+@pytest.mark.parametrize(
+    ("good", "change", "told"),
+    [
+        (GOOD_SPHERE, {"source": None}, "source"),
+        (GOOD_SPHERE, {"breaking_load": "9 kN", "working_load": "10 kN"}, "below its working"),
+        (GOOD_SPHERE, {"max_tilt": "20 deg", "warn_tilt": "25 deg"}, "after its greatest tilt"),
+        (GOOD_SPHERE, {"buoyancy": "5300 N"}, "lifts 5300 N"),
+        (GOOD_SPHERE, {"buoyancy": "3000 N", "mass": "300 kg"}, "displaces"),
+        (GOOD_SPHERE, {"buoyancy": "-1000 N", "mass": "110 kg"}, "denser than lead"),
+        (GOOD_ROPE, {"weight": None, "mass": "0.7 kg/m", "density": "7850 kg/m^3"}, "solid bar"),
+        (GOOD_ROPE, {"weight": "6.5 N/m"}, "solid bar"),
+        (GOOD_ROPE, {"weight": "0.3 N/m", "material": "nylon"}, "solid bar"),
+        (GOOD_ROPE, {"weight": None, "buoyancy": "1 N/m"}, "lifts 1 N/m"),
+        (GOOD_ROPE, {"stiffness": "18 MN"}, "stiffness"),
+        (GOOD_ROPE, {"breaking_load": "320 kN"}, "no cable of its diameter"),
+        (GOOD_CHAIN, {"mass": "0.8 kg/m"}, "steel bars"),
+        (GOOD_CHAIN, {"mass": "3.2 kg/m"}, "steel bars"),
+    ],
+)
+def test_impossible_figures_are_found(good, change, told):
+    changed = {key: value for key, value in (good | change).items() if value is not None}
+    (message,) = findings(changed)
+    assert told in message
+
+
+@pytest.mark.parametrize(
+    ("good", "change"),
+    [
+        (GOOD_SPHERE, {"breaking_load": "10 kN", "working_load": "10 kN"}),
+        (GOOD_SPHERE, {"buoyancy": "5200 N"}),
+        (GOOD_SPHERE, {"buoyancy": "3000 N", "mass": "240 kg"}),
+        (GOOD_SPHERE, {"buoyancy": "-1000 N", "mass": "112.5 kg"}),
+        (GOOD_ROPE, {"weight": "5 N/m"}),
+        (GOOD_ROPE, {"weight": None, "buoyancy": "0.85 N/m"}),
+        (GOOD_ROPE, {"stiffness": "16 MN"}),
+        (GOOD_CHAIN, {"mass": "1.6 kg/m"}),
+        (GOOD_CHAIN, {"mass": "2.6 kg/m"}),
+    ],
+)
+def test_possible_figures_pass(good, change):
+    changed = {key: value for key, value in (good | change).items() if value is not None}
+    assert findings(changed) == []
+
+
+def test_cylinder_is_judged_by_its_envelope():
+    cylinder = {"kind": "cylinder", "diameter": "100 mm", "length": "1 m", "source": "a list"}
+    assert findings(cylinder | {"buoyancy": "78 N"}) == []
+    assert "lifts" in findings(cylinder | {"buoyancy": "80 N"})[0]
+
+
+def test_parts_of_an_assembly_must_exist():
+    assembly = {"kind": "assembly", "parts": [{"use": "a"}, {"use": "b"}], "source": "a list"}
+    assert findings(assembly, known=["a", "b"]) == []
+    (message,) = findings(assembly, known=["a"])
+    assert "`b`" in message
+
+
+def test_every_rule_says_what_it_is_for():
+    assert all(rule.__doc__ for rule in RULES)

@@ -1,0 +1,103 @@
+"""A small solved mooring with figures that are easy to check, and every kind of row."""
+
+from types import SimpleNamespace as Record
+
+import numpy as np
+import pytest
+
+NAN = float("nan")
+
+
+class Columns(list):
+    """Records that can also be read by column."""
+
+    def __getattr__(self, name):
+        return [getattr(record, name) for record in self]
+
+
+def component(index, use, label, role, length, depth, x, tension, tilt, **figures):
+    fields = dict(safety_factor=NAN, utilisation=NAN, knockdown=8.25) | figures
+    return Record(
+        index=index, use=use, label=label, role=role, kind="body", length=length,
+        cut_length=length, depth_top=depth[0], depth_bottom=depth[1], x_top=x[0], x_bottom=x[1],
+        y_top=0.0, y_bottom=0.0, tension_top=tension[0], tension_bottom=tension[1],
+        tension=max(tension), tilt=tilt, **fields,
+    )  # fmt: skip
+
+
+def build_result(**changes):
+    components = Columns(
+        [
+            component(0, "sphere", "top float", "float", 1.25, (113.2, 114.4), (61.0, 60.9),
+                      (0.0, 7003.4), 3.12, safety_factor=17.14, utilisation=0.18),
+            component(1, "shackle", "shackle 1", "connector", 0.08, (114.4, 114.5), (60.9, 60.9),
+                      (7003.4, 7002.0), 3.5, safety_factor=2.9),
+            component(2, "wire-8", "wire-8", "line", 480.0, (114.5, 594.0), (60.9, 40.0),
+                      (7002.0, 6000.0), 5.0, safety_factor=6.1),
+            component(3, "rcm8", "current meter", "instrument", 0.6, (594.0, 594.6), (40.0, 39.8),
+                      (6000.0, 5900.0), 28.4, safety_factor=9.0, utilisation=1.2),
+            component(4, "glass", "glass 1", "float", 0.43, (594.6, 595.0), (39.8, 39.7),
+                      (5900.0, 6100.0), 6.0),
+            component(5, "glass", "glass 2", "float", 0.43, (595.0, 595.4), (39.7, 39.6),
+                      (6100.0, 6300.0), 6.0),
+            component(6, "rope-14", "rope-14", "line", 500.0, (595.4, 1099.0), (39.6, 0.0),
+                      (6300.0, 5210.0), 7.0, safety_factor=4.0),
+            component(7, "wheels", "wheels", "anchor", 1.0, (1099.0, 1100.0), (0.0, 0.0),
+                      (5210.0, 5210.0), 0.0, knockdown=0.0),
+        ]
+    )  # fmt: skip
+    clamps = Columns(
+        [
+            Record(index=2, use="sbe37", label="sbe37 1", depth=134.5, x=60.0, y=3.0,
+                   tension=6950.0, tilt=4.0, knockdown=8.1),
+            Record(index=2, use="adcp", label="adcp", depth=234.5, x=55.0, y=0.0,
+                   tension=6750.0, tilt=16.0, knockdown=NAN),
+        ]
+    )  # fmt: skip
+    plain = Record(kind="body", role="instrument", material=None, max_tilt=None, warn_tilt=None)
+    meter = Record(kind="body", material=None, max_tilt=27.0, warn_tilt=None)
+    adcp = Record(kind="body", role="instrument", material=None, max_tilt=20.0, warn_tilt=15.0)
+    rope = Record(kind="cable", material="polyester", max_tilt=None, warn_tilt=None)
+    wire = Record(kind="cable", material="steel", max_tilt=None, warn_tilt=None)
+    kinds = {2: wire, 3: meter, 6: rope}
+    pieces = tuple(
+        Record(component=kinds.get(index, plain), clamps=()) for index in range(len(components))
+    )
+    pieces[2].clamps = (
+        Record(label="sbe37 1", component=plain),
+        Record(label="adcp", component=adcp),
+    )
+    limits = Record(steel=3.0, synthetic=5.0, surface=5.0)
+    file = Record(pieces=pieces, checks=Record(safety_factor=limits))
+    water = Record(
+        depth=1100.0,
+        level=np.array([0.0, 200.0, 1100.0]),
+        u=np.array([0.8, 0.35, 0.05]),
+        v=np.array([0.0, 0.1, 0.0]),
+    )
+    depth = np.linspace(113.2, 1099.0, 12)
+    shape = Record(depth=depth, x=61.0 * np.linspace(1, 0, 12) ** 2, y=np.zeros(12))
+    still = Record(depth=np.linspace(105.0, 1099.0, 12), x=np.zeros(12), y=np.zeros(12))
+    fields = dict(
+        name="Iroise 2026", type="subsurface", status="converged", iterations=5, segments=214,
+        miss=1.2e-7, closure=3e-12, accuracy=Record(depth=0.003, tension=0.8),
+        top=Record(depth=113.2, x=61.0, y=4.0, knockdown=8.25, used_buoyancy=1.0, reserve=0.0),
+        anchor=Record(tension=5210.0, vertical=5100.0, horizontal=1060.0, angle=11.74,
+                      required_weight=10300.0, weight=9800.0, grounded_length=0.0),
+        components=components, clamps=clamps, shape=shape, still_shape=still,
+        warnings=("adcp leans 16.0°, its warning is at 15°",),
+        mooring=Record(file=file, water=water),
+    )  # fmt: skip
+    result = Record(**(fields | changes))
+    result.to_dict = lambda: {"name": result.name, "status": result.status, "miss": result.miss}
+    return result
+
+
+@pytest.fixture
+def result():
+    return build_result()
+
+
+@pytest.fixture
+def make_result():
+    return build_result

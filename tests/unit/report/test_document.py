@@ -1,0 +1,31 @@
+import json
+
+from calm.errors import NoEquilibrium
+from calm.report.document import failure_document, to_json
+
+
+def test_one_document_is_an_object_and_several_an_array():
+    assert json.loads(to_json([{"a": 1}])) == {"a": 1}
+    assert json.loads(to_json([{"a": 1}, {"b": 2}])) == [{"a": 1}, {"b": 2}]
+
+
+def test_numbers_that_are_not_finite_become_null_at_any_depth():
+    text = to_json([{"a": float("nan"), "b": [float("inf"), {"c": (-float("inf"), 1.5)}]}])
+    assert json.loads(text) == {"a": None, "b": [None, {"c": [None, 1.5]}]}
+
+
+def test_text_is_as_it_was():
+    assert to_json([{"name": "Iroise – été", "miss": 1e-07, "shape": {"x": []}}]) == (
+        '{\n  "name": "Iroise \\u2013 \\u00e9t\\u00e9",\n  "miss": 1e-07,\n'
+        '  "shape": {\n    "x": []\n  }\n}\n'
+    )
+
+
+def test_failure_tells_status_message_and_advice():
+    failure = NoEquilibrium("slack", "The line is slack.", "Shorten it.")
+    assert failure_document("m", failure) == {
+        "name": "m",
+        "status": "slack",
+        "message": "The line is slack.",
+        "advice": "Shorten it.",
+    }

@@ -1,0 +1,87 @@
+from itertools import combinations
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.text import Text
+
+from calm.errors import UsageError
+from calm.report.plot import check_format, draw, picture
+
+
+def drawn_names(result):
+    figure = draw(result)
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    elevation = figure.axes[0]
+    renderer = canvas.get_renderer()
+    # the extent of the words alone, without the thin line to the part
+    return [Text.get_window_extent(text, renderer) for text in elevation.texts]
+
+
+def test_names_do_not_overlap(result):
+    boxes = drawn_names(result)
+    assert len(boxes) == 6
+    assert not any(a.overlaps(b) for a, b in combinations(boxes, 2))
+
+
+def test_many_names_at_one_depth_do_not_overlap(make_result):
+    result = make_result()
+    wire = result.mooring.file.pieces[2]
+    for number in range(60):
+        clamp = type(wire)(**vars(result.clamps[0]))
+        clamp.label, clamp.depth = f"{number} °C", 120.0 + 0.01 * number
+        result.clamps.append(clamp)
+        wire.clamps += (type(wire)(label=clamp.label, component=wire.clamps[0].component),)
+    boxes = drawn_names(result)
+    assert len(boxes) == 66
+    assert not any(a.overlaps(b) for a, b in combinations(boxes, 2))
+
+
+def test_three_views_with_their_axes_named(result):
+    elevation, current, plan = draw(result).axes
+    assert elevation.get_xlabel() == "offset [m], towards 86°"
+    assert elevation.get_ylabel() == "depth [m]"
+    assert current.get_xlabel() == "current speed [m/s]"
+    assert (plan.get_xlabel(), plan.get_ylabel()) == ("east [m]", "north [m]")
+    upper, lower = sorted(elevation.get_ylim())
+    assert upper <= 0.0
+    assert lower >= 1100.0
+    assert elevation.yaxis_inverted()
+
+
+def test_still_line_is_dashed_and_may_be_missing(make_result):
+    def styles(result):
+        return [line.get_linestyle() for line in draw(result).axes[0].lines]
+
+    assert "--" in styles(make_result())
+    assert "--" not in styles(make_result(still_shape=None))
+
+
+def test_line_without_excursion_is_drawn(make_result):
+    result = make_result()
+    result.top.x = result.top.y = 0.0
+    result.shape.x = 0.0 * result.shape.x
+    assert "towards 90°" in draw(result).axes[0].get_xlabel()
+
+
+def test_png_and_svg(result):
+    assert picture(result, ".png").startswith(b"\x89PNG")
+    svg = picture(result, ".svg")
+    texts = "".join(ElementTree.fromstring(svg).itertext())
+    assert "current meter" in texts
+    assert picture(result, ".SVG") == svg
+
+
+def test_labels_are_no_formulas_and_need_no_glyph(make_result):
+    result = make_result()
+    result.components[0].label = "float $x^$ \U0001f6df"
+    assert b"float $x^$" in picture(result, ".svg")
+    assert picture(result, ".png").startswith(b"\x89PNG")
+
+
+def test_unknown_format_names_the_allowed():
+    check_format(Path("a.PNG"))
+    with pytest.raises(UsageError, match=r"\.png or \.svg"):
+        check_format(Path("a.pdf"))

@@ -1,0 +1,89 @@
+import io
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from calm.report.limits import Mark, safety_mark, tilt_mark
+from calm.report.table import result_table
+
+GOLDEN = Path(__file__).parent / "golden"
+
+
+def text(result, width, **console):
+    stream = io.StringIO()
+    Console(file=stream, width=width, **console).print(result_table(result))
+    return "\n".join(line.rstrip() for line in stream.getvalue().splitlines()) + "\n"
+
+
+@pytest.mark.parametrize("width", [80, 100])
+def test_table_is_as_it_was(result, width):
+    assert text(result, width) == (GOLDEN / f"table-{width}.txt").read_text(encoding="utf-8")
+
+
+def test_no_line_is_wider_than_the_terminal(make_result):
+    result = make_result()
+    result.components[0].label = "a label that is much too long for any terminal of the world"
+    assert max(map(len, text(result, 80).splitlines())) <= 80
+
+
+def test_label_is_shown_as_it_is_written(make_result):
+    result = make_result()
+    result.components[0].label = "[red]top[/red] :anchor:"
+    assert "[red]top[/red] :anchor:" in text(result, 100)
+
+
+def test_marks_do_not_hang_on_colour(result):
+    plain = text(result, 80)
+    assert "28.4!" in plain
+    assert "16.0~" in plain
+    assert "10300 N needed !" in plain
+
+
+def test_colour_only_on_a_terminal_that_wants_it(result):
+    assert "\x1b[" not in text(result, 80)
+    coloured = text(result, 80, force_terminal=True, color_system="standard", no_color=False)
+    assert "\x1b[1;31m28.4!" in coloured
+    colourless = text(result, 80, force_terminal=True, no_color=True)
+    assert "\x1b[1;31m" not in colourless
+
+
+def test_surface_mooring_tells_its_reserve(make_result):
+    result = make_result(type="surface")
+    result.top.used_buoyancy, result.top.reserve, result.top.knockdown = 0.6544, 2410.0, None
+    shown = text(result, 100)
+    assert "surface mooring" in shown
+    assert "65.4% of its buoyancy used, 2410 N in reserve" in shown
+
+
+def test_unknown_knockdown_is_told(make_result):
+    result = make_result()
+    result.top.knockdown = None
+    assert "knockdown unknown" in text(result, 100)
+
+
+def test_tilt_marks(result):
+    meter = result.mooring.file.pieces[3].component
+    assert tilt_mark(meter, 27.0) is Mark.NONE
+    assert tilt_mark(meter, 27.1) is Mark.BEYOND
+
+
+@pytest.mark.parametrize(
+    ("index", "mooring_type", "factor", "utilisation", "mark"),
+    [
+        (1, "subsurface", 2.9, None, Mark.BEYOND),  # steel: 3
+        (1, "subsurface", 3.1, None, Mark.NONE),
+        (6, "subsurface", 4.9, None, Mark.BEYOND),  # polyester: 5
+        (6, "subsurface", 5.1, None, Mark.NONE),
+        (1, "surface", 4.9, None, Mark.BEYOND),  # surface: 5
+        (1, "subsurface", 2.9, 0.9, Mark.NONE),  # the working load decides
+        (1, "subsurface", 9.0, 1.1, Mark.BEYOND),
+        (1, "subsurface", None, None, Mark.NONE),
+    ],
+)
+def test_safety_marks(make_result, index, mooring_type, factor, utilisation, mark):
+    result = make_result(type=mooring_type)
+    record = result.components[index]
+    record.safety_factor = float("nan") if factor is None else factor
+    record.utilisation = float("nan") if utilisation is None else utilisation
+    assert safety_mark(result, result.mooring.file.pieces[index].component, record) is mark

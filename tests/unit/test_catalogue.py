@@ -1,0 +1,180 @@
+"""The shipped catalogue: complete, sourced, and nothing in it that cannot be."""
+
+from __future__ import annotations
+
+import re
+from math import isfinite, pi
+
+import pytest
+
+from calm.assemble import drag_of
+from calm.checks.catalogue import check_catalogue
+from calm.files import Anchor, Assembly, Cable, Catalogue, Chain, Component, Cylinder, Sphere
+
+MANUAL_IDS = (
+    "sphere-steel-1250",
+    "shackle-13",
+    "wire-jacketed-8",
+    "sbe37",
+    "rcm11",
+    "glass-17in",
+    "release-ar861",
+    "polyester-14",
+    "anchor-wheels-2",
+)
+"""The ids that the manual of the file format uses."""
+
+FIBRE_DENSITY = {
+    "polyester": 1380.0,
+    "nylon": 1140.0,
+    "polypropylene": 910.0,
+    "aramid": 1440.0,
+    "HMPE": 975.0,
+}
+
+
+@pytest.fixture(scope="module")
+def catalogue() -> Catalogue:
+    return Catalogue.shipped()
+
+
+@pytest.fixture(scope="module")
+def components(catalogue: Catalogue) -> dict[str, Component]:
+    """Every single component; assemblies left out."""
+    return {id: found for id, found in catalogue.all().items() if not isinstance(found, Assembly)}
+
+
+def test_it_holds_at_least_450_components(components: dict[str, Component]) -> None:
+    assert len(components) >= 450
+
+
+def test_ids_are_kebab_case(catalogue: Catalogue) -> None:
+    # Two definitions of one id are an InputError of `Catalogue.shipped` itself.
+    kebab = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
+    assert [id for id in catalogue.ids() if not kebab.fullmatch(id)] == []
+
+
+@pytest.mark.parametrize("id", MANUAL_IDS)
+def test_ids_of_the_manual_exist(catalogue: Catalogue, id: str) -> None:
+    assert catalogue.entry(id) is not None
+
+
+def test_everything_has_a_name_a_source_and_the_day_it_was_read(catalogue: Catalogue) -> None:
+    nameless = [
+        id
+        for id, found in catalogue.all().items()
+        if not (found.name and found.source and re.fullmatch(r"\d{4}-\d\d-\d\d", found.date or ""))
+    ]
+    assert nameless == []
+
+
+def test_sources_name_no_web_address(catalogue: Catalogue) -> None:
+    address = re.compile(r"https?:|www\.|\.(com|org|net|ca|ie)\b")
+    assert [id for id, found in catalogue.all().items() if address.search(found.source or "")] == []
+
+
+def test_every_kind_is_there(components: dict[str, Component]) -> None:
+    kinds = {found.kind for found in components.values()}
+    assert kinds == {"sphere", "cylinder", "body", "cable", "chain", "anchor"}
+    finishes = {found.finish for found in components.values() if isinstance(found, Cable)}
+    assert finishes == {"smooth", "rough", "very-rough"}
+
+
+def test_everything_can_be_computed(components: dict[str, Component]) -> None:
+    for id, found in components.items():
+        assert isfinite(found.net_buoyancy), id
+        if not isinstance(found, Anchor):
+            normal, tangential, _ = drag_of(found, getattr(found, "length", 0.0))
+            assert isfinite(tangential) and isfinite(normal) and normal > 0.0, id
+
+
+def test_parts_of_assemblies_exist(catalogue: Catalogue) -> None:
+    assemblies = [found for found in catalogue.all().values() if isinstance(found, Assembly)]
+    assert len(assemblies) >= 2
+    used = {
+        item["use"]
+        for assembly in assemblies
+        for part in assembly.parts
+        for item in (part, *part.get("clamps", ()))
+    }
+    assert used <= set(catalogue.ids())
+
+
+def test_the_generic_steel_sphere(catalogue: Catalogue) -> None:
+    sphere = catalogue.get("sphere-steel-1250")
+    assert isinstance(sphere, Sphere)
+    assert (sphere.diameter, sphere.length, sphere.cx) == (1.25, 1.25, 0.5)
+    assert (sphere.mass, sphere.buoyancy, sphere.depth_rating) == (300.0, 7000.0, 800.0)
+    assert (sphere.working_load, sphere.breaking_load) == (40_000.0, 120_000.0)
+    assert sphere.role == "float"
+
+
+@pytest.mark.parametrize("id", ["rcm4", "rcm5"])
+def test_aanderaa_drag_is_measured_in_kgf(components: dict[str, Component], id: str) -> None:
+    normal, tangential, directional = drag_of(components[id], 0.55)
+    # The drags are printed to 0.01 kgf, some 0.01 of the 2.694 kgf (26.42 N) they come to.
+    assert normal == pytest.approx(26.4, abs=0.05)
+    assert tangential == normal and not directional
+
+
+@pytest.mark.parametrize(
+    ("words", "warn", "limit"),
+    [
+        (["aanderaa rcm-4"], None, 27.0),
+        (["aanderaa rcm-7"], None, 27.0),
+        (["aanderaa rcm-8"], None, 27.0),
+        (["aquadopp"], None, 30.0),
+        (["instruments", "adcp"], 15.0, 20.0),
+        (["sediment trap"], None, 10.0),
+        (["releases", "cylinder"], None, 45.0),
+    ],
+)
+def test_tilt_limits_of_the_families(
+    catalogue: Catalogue, words: list[str], warn: float | None, limit: float
+) -> None:
+    ids = catalogue.search(words)
+    assert ids
+    assert {(catalogue.get(id).warn_tilt, catalogue.get(id).max_tilt) for id in ids} == {
+        (warn, limit)
+    }
+
+
+def test_the_rules_of_catalog_check_find_nothing(catalogue: Catalogue) -> None:
+    assert check_catalogue(catalogue.all(), catalogue.ids()) == []
+
+
+def test_no_float_lifts_more_than_its_volume(components: dict[str, Component]) -> None:
+    for id, found in components.items():
+        if isinstance(found, Sphere):
+            room = pi / 6 * found.diameter**3
+        elif isinstance(found, Cylinder):
+            room = pi / 4 * found.diameter**2 * found.length
+        else:
+            continue
+        # 1 %: diameters are printed to two or three figures
+        assert found.net_buoyancy / (1025.0 * 9.80665) <= room, id
+        assert (found.displaced_volume or 0.0) <= 1.01 * room, id
+
+
+def test_no_fibre_rope_is_heavier_than_a_solid_bar(components: dict[str, Component]) -> None:
+    for id, rope in components.items():
+        density = FIBRE_DENSITY.get(rope.material or "")
+        if isinstance(rope, Cable) and density is not None:
+            in_water = -rope.net_buoyancy / 9.80665
+            mass = rope.mass or in_water / (1.0 - 1025.0 / density)
+            assert mass <= density * pi / 4 * rope.diameter**2, id
+
+
+def test_chains_weigh_what_chains_weigh(components: dict[str, Component]) -> None:
+    for id, chain in components.items():
+        if isinstance(chain, Chain):
+            mass = -chain.net_buoyancy / 9.80665 / (1.0 - 1025.0 / 7850.0)
+            # 16e3 d^2 for long links to 25e3 d^2 for studs; 26e3 for the heaviest high-test row
+            assert 15.5e3 <= mass / chain.diameter**2 <= 26.2e3, id
+
+
+def test_breaking_loads_exceed_working_loads(components: dict[str, Component]) -> None:
+    for id, found in components.items():
+        if found.working_load is not None and found.breaking_load is not None:
+            # 3 for the steel sphere, 4 for grade 80 chain, 6 for shackles, 12 for fibre rope
+            assert 3.0 <= found.breaking_load / found.working_load <= 15.0, id
