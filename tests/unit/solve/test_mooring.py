@@ -33,9 +33,7 @@ def test_in_still_water_the_line_stands_plumb_and_tension_is_what_hangs_below():
     assert depths(solution) == pytest.approx([98.5, 99.5, 179.5, 180.0])
     assert np.abs(solution.position[:, :2]).max() == 0
     tension = solution.tension[solution.piece_nodes]
-    assert tension == pytest.approx(
-        np.array([[0, 5000], [5000, 4840], [4840, 4540], [4540, 4520]])
-    )
+    assert tension == pytest.approx(np.array([[0, 5000], [5000, 4840], [4840, 4540], [4540, 4520]]))
 
 
 def test_the_anchor_height_lifts_the_whole_line():

@@ -28,9 +28,7 @@ FUNCTIONS = [
 @pytest.mark.parametrize(("function", "a", "b", "root", "calls"), FUNCTIONS)
 def test_a_bracketed_root_is_found_in_few_calls(function, a, b, root, calls):
     counted = Counted(function)
-    x, value, _ = bracketed_root(
-        counted, a, function(a), b, function(b), small=1e-13, narrow=1e-14
-    )
+    x, value, _ = bracketed_root(counted, a, function(a), b, function(b), small=1e-13, narrow=1e-14)
     assert x == pytest.approx(root, abs=1e-10)
     assert value == function(x)
     assert counted.calls <= calls

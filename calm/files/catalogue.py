@@ -1,0 +1,242 @@
+"""The component catalogue: shipped, the user's own, files given with a command, and in-file ones.
+
+Definitions are kept as written and validated when they are asked for, so that a run pays only for
+the components it uses.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Literal
+
+from calm.errors import InputError, Problem, UsageError
+from calm.files.components import KINDS, Component
+from calm.files.definition import Definition
+from calm.files.document import Document, read_document
+from calm.files.explain import nearest, shown, unknown, validate
+from calm.files.section import Section
+
+FAMILY_ROLES = {
+    "floats": "float",
+    "instruments": "instrument",
+    "releases": "release",
+    "ropes": "line",
+    "chains": "line",
+    "connectors": "connector",
+    "anchors": "anchor",
+}
+"""The families of the catalogue, one file each, and what their components are for."""
+
+
+class Assembly(Definition):
+    """Pieces that are always used together; `parts` are items as in the `line` of a mooring."""
+
+    kind: Literal["assembly"]
+    parts: tuple[dict[str, Any], ...]
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A definition as written, with the name of the family (the file) it belongs to."""
+
+    id: str
+    family: str | None
+    section: Section
+
+    @property
+    def place(self) -> str:
+        """Where the definition is, for people."""
+        place = self.section.problem((), "")
+        return f"{place.path}:{place.line}" if place.line else place.path
+
+
+Level = Mapping[str, Entry]
+
+
+@dataclass(frozen=True)
+class Catalogue:
+    """Component definitions in levels, the nearest first: it hides those of the same id below."""
+
+    levels: tuple[Level, ...]
+
+    @classmethod
+    def load(cls, files: Sequence[str | Path] = ()) -> Catalogue:
+        """The shipped catalogue, under the user's own, under the files given (the last on top).
+
+        Raises
+        ------
+        InputError
+            A catalogue of the user cannot be read.
+        """
+        problems: list[Problem] = []
+        levels = [_read_level([Path(path)], problems) for path in reversed(files)]
+        folder = user_folder()
+        if folder.is_dir():
+            levels.append(_read_level(sorted(folder.glob("*.yaml")), problems))
+        if problems:
+            raise InputError(problems)
+        return cls((*levels, *cls.shipped().levels))
+
+    @classmethod
+    def shipped(cls) -> Catalogue:
+        """The catalogue that comes with CALM."""
+        from calm.files.compile_catalogue import shipped_documents
+
+        problems: list[Problem] = []
+        level = _level(shipped_documents(), problems)
+        if problems:
+            raise InputError(problems)
+        return cls((level,))
+
+    def under(self, definitions: Section | None, problems: list[Problem]) -> Catalogue:
+        """This catalogue under the `components:` of a mooring file."""
+        if definitions is None:
+            return self
+        entries = _entries(definitions, None, problems)
+        return Catalogue(({entry.id: entry for entry in entries}, *self.levels))
+
+    @cached_property
+    def _entries(self) -> dict[str, Entry]:
+        return {id: entry for level in reversed(self.levels) for id, entry in level.items()}
+
+    def ids(self) -> list[str]:
+        """Every id, in the order of the files."""
+        return list(self._entries)
+
+    def entry(self, id: str) -> Entry | None:
+        """The definition of an id as written; None when there is none."""
+        return self._entries.get(id)
+
+    def hidden(self, id: str) -> Entry | None:
+        """The definition that a nearer one of the same id hides."""
+        found = [level[id] for level in self.levels if id in level]
+        return found[1] if len(found) > 1 else None
+
+    def nearest(self, id: str) -> str | None:
+        """The id most like a text."""
+        return nearest(id, self._entries)
+
+    def get(self, id: str) -> Component | Assembly:
+        """A component or assembly, validated.
+
+        Raises
+        ------
+        UsageError
+            There is no such id.
+        InputError
+            Its definition is wrong.
+        """
+        entry = self.entry(id)
+        if entry is None:
+            raise UsageError(unknown(f"no component is called `{id}`", id, self._entries))
+        problems: list[Problem] = []
+        definition = define(entry, entry.section, problems)
+        if definition is None:
+            raise InputError(problems)
+        return definition
+
+    def all(self) -> dict[str, Component | Assembly]:
+        """Every component and assembly, validated.
+
+        Raises
+        ------
+        InputError
+            With the mistakes of all definitions.
+        """
+        problems: list[Problem] = []
+        found = {
+            id: definition
+            for id, entry in self._entries.items()
+            if (definition := define(entry, entry.section, problems)) is not None
+        }
+        if problems:
+            raise InputError(problems)
+        return found
+
+    def search(self, words: Iterable[str]) -> list[str]:
+        """The ids whose definition (or family) holds every one of the words."""
+        wanted = [word.casefold() for word in words]
+        return [
+            id
+            for id, entry in self._entries.items()
+            if all(word in _searchable(entry) for word in wanted)
+        ]
+
+
+def user_folder() -> Path:
+    """The folder of the user's own catalogue: `CALM_CATALOG_DIR`, or one in the home folder."""
+    if folder := os.environ.get("CALM_CATALOG_DIR"):
+        return Path(folder)
+    configuration = os.environ.get("XDG_CONFIG_HOME") or os.path.expanduser("~/.config")
+    return Path(configuration) / "calm" / "catalog"
+
+
+def define(
+    entry: Entry, section: Section, problems: list[Problem], *, also_allowed: Iterable[str] = ()
+) -> Component | Assembly | None:
+    """The model of an entry, or of a section laid over it; None when it has mistakes."""
+    kind = section.data.get("kind")
+    if kind is None:
+        problems.append(section.problem((), f"`{entry.id}`: `kind` is missing ({_kinds()})"))
+        return None
+    if not isinstance(kind, str) or kind not in (*KINDS, "assembly"):
+        text = shown(kind)
+        near = nearest(text, KINDS)
+        offer = f"; did you mean `kind: {near}`?" if near else ""
+        message = f"`kind: {text}` must be one of {_kinds()}{offer}"
+        problems.append(section.problem(("kind",), message))
+        return None
+    role = FAMILY_ROLES.get(entry.family or "")
+    if role and "role" not in section.data:
+        family_default = Section.of(section.document, section.location, {"role": role})
+        section = section.over(family_default)
+    if kind == "assembly":
+        return validate(Assembly, section, problems)
+    return validate(KINDS[kind], section, problems, also_allowed=also_allowed)
+
+
+def _kinds() -> str:
+    return ", ".join([*KINDS, "assembly"])
+
+
+def _read_level(paths: Iterable[Path], problems: list[Problem]) -> Level:
+    documents: list[Document] = []
+    for path in paths:
+        try:
+            documents.append(read_document(path))
+        except InputError as error:
+            problems.extend(error.problems)
+    return _level(documents, problems)
+
+
+def _level(documents: Iterable[Document], problems: list[Problem]) -> Level:
+    level: dict[str, Entry] = {}
+    for document in documents:
+        stem = Path(document.path).stem
+        family = stem if stem in FAMILY_ROLES else None
+        for entry in _entries(Section.of(document, (), document.data), family, problems):
+            if entry.id in level:
+                message = f"`{entry.id}` is defined already, in {level[entry.id].place}"
+                problems.append(document.problem((entry.id,), message, key=True))
+            else:
+                level[entry.id] = entry
+    return level
+
+
+def _entries(definitions: Section, family: str | None, problems: list[Problem]) -> list[Entry]:
+    entries = []
+    for id, fields in definitions.data.items():
+        if isinstance(fields, dict):
+            entries.append(Entry(id, family, definitions.child(id)))
+        else:
+            problems.append(definitions.problem((id,), f"`{id}` must hold `key: value` entries"))
+    return entries
+
+
+def _searchable(entry: Entry) -> str:
+    texts = [value for value in entry.section.data.values() if isinstance(value, str)]
+    return " ".join([entry.id, entry.family or "", *texts]).casefold()

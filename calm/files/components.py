@@ -1,0 +1,81 @@
+"""The kinds of components that a catalogue, or `components:` of a mooring file, can define."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import model_validator
+
+from calm.files.definition import (
+    CATALOGUE_DENSITY,
+    DENSITY,
+    MASS,
+    STANDARD_GRAVITY,
+    STEEL_DENSITY,
+    Definition,
+    refuse_weight_above_mass,
+)
+from calm.files.fields import COEFFICIENT, DRAG, LENGTH, Quantity, Role
+from calm.files.flexible import Cable, Chain
+from calm.files.rigid import Body, Cylinder, CylinderShape, Sphere, SphereShape
+
+__all__ = [
+    "KINDS",
+    "Anchor",
+    "Body",
+    "Cable",
+    "Chain",
+    "Component",
+    "Cylinder",
+    "CylinderShape",
+    "Sphere",
+    "SphereShape",
+]
+
+
+class Anchor(Definition):
+    """The lower end: stands on the seabed, carries no drag."""
+
+    role: Role = "anchor"
+    kind: Literal["anchor"]
+    mass: Annotated[float | None, MASS] = None
+    weight: Annotated[float | None, Quantity("force", at_least=0)] = None
+    density: Annotated[float | None, DENSITY] = None
+    length: Annotated[float, LENGTH] = 0.0
+    friction: Annotated[float | None, COEFFICIENT] = None
+    kt: Annotated[float | None, DRAG] = None
+
+    @property
+    def net_buoyancy(self) -> float:
+        """Net force in water, positive up: the weight negated [N]."""
+        if self.weight is not None:
+            return -self.weight
+        assert self.mass is not None
+        submerged = 1 - CATALOGUE_DENSITY / (self.density or STEEL_DENSITY)
+        return -submerged * self.mass * STANDARD_GRAVITY
+
+    @property
+    def displaced_volume(self) -> float | None:
+        """Volume of water displaced [m³], None when only the weight is known."""
+        if self.mass is None:
+            return None
+        return (self.mass + self.net_buoyancy / STANDARD_GRAVITY) / CATALOGUE_DENSITY
+
+    @model_validator(mode="after")
+    def _weight_is_known(self) -> Anchor:
+        if self.mass is None and self.weight is None:
+            raise ValueError("needs `mass`, or `weight` in water")
+        refuse_weight_above_mass(self.mass, self.net_buoyancy)
+        return self
+
+
+Component = Sphere | Cylinder | Body | Cable | Chain | Anchor
+
+KINDS: dict[str, type[Component]] = {
+    "sphere": Sphere,
+    "cylinder": Cylinder,
+    "body": Body,
+    "cable": Cable,
+    "chain": Chain,
+    "anchor": Anchor,
+}

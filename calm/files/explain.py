@@ -1,0 +1,191 @@
+"""What pydantic found wrong, as one line for people with its place in the file."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Iterable, Mapping
+from typing import Any, TypeVar, get_args
+
+from pydantic import BaseModel, ValidationError
+
+from calm.errors import Problem
+from calm.files.document import Location
+from calm.files.section import Section
+from calm.units import QuantityError
+
+LONGEST_TEXT = 60
+
+NOT_AVAILABLE: Mapping[str, str] = {
+    "elongation": "give the line's `stiffness`",
+    "tow": "a line must end in an anchor",
+    "body_depth": "it belongs to tows",
+}
+"""Keys of the format that this version does not compute, and what to do without."""
+
+M = TypeVar("M", bound=BaseModel)
+
+
+def validate(
+    model: type[M],
+    section: Section,
+    problems: list[Problem],
+    *,
+    also_allowed: Iterable[str] = (),
+) -> M | None:
+    """The model of a mapping; its mistakes are added to `problems`, and None returned.
+
+    `also_allowed` are keys that stand in the same mapping and belong to something else.
+    """
+    try:
+        return model.model_validate(section.data)
+    except ValidationError as error:
+        problems.extend(_explain(error, model, section, also_allowed))
+        return None
+
+
+def unknown(what: str, text: str, known: Iterable[str]) -> str:
+    """`what` does not exist, and the nearest thing that does (or all, when they are few)."""
+    names = list(known)
+    near = nearest(text, names)
+    if near:
+        return f"{what}; did you mean `{near}`?"
+    if len(names) <= 12:
+        return f"{what}; allowed: {', '.join(sorted(names)) or 'none'}"
+    return what
+
+
+def nearest(text: str, known: Iterable[str]) -> str | None:
+    """The name most like a text, None when none is like it."""
+    found = difflib.get_close_matches(text[:LONGEST_TEXT], list(known), 1)
+    return found[0] if found else None
+
+
+def shown(value: object) -> str:
+    """An offending value as messages show it."""
+    text = value if isinstance(value, str) else "…" if isinstance(value, (dict, list)) else ""
+    text = " ".join(text.split())
+    return text if len(text) <= LONGEST_TEXT else text[: LONGEST_TEXT - 1] + "…"
+
+
+def about_quantity(name: str, value: object, error: QuantityError) -> str:
+    """The message of a quantity gone wrong, with the line corrected where that is known."""
+    text = f"`{name}: {shown(value)}`" if shown(value) else f"`{name}`"
+    message = f"{text} {error.complaint}"
+    if error.suggestion:
+        message += f"; did you mean `{name}: {shown(error.suggestion)}`?"
+    return message
+
+
+def _explain(
+    error: ValidationError, model: type[BaseModel], section: Section, also_allowed: Iterable[str]
+) -> list[Problem]:
+    found: list[Problem] = []
+    missing: list[tuple[Location, str]] = []
+    misspelt: set[tuple[Location, str]] = set()
+    for details in error.errors(include_url=False):
+        if details["type"] == "default_factory_not_called":
+            continue  # the consequence of another mistake
+        location, value = _existing(section.data, details["loc"])
+        name = str(details["loc"][-1]) if details["loc"] else ""
+        if details["type"] == "missing" and isinstance(details["loc"][-1], str):
+            missing.append((location, name))
+        elif details["type"] == "extra_forbidden":
+            keys = [*_keys(model, details["loc"][:-1]), *also_allowed]
+            if also_allowed:
+                keys.remove("kind")
+            near = nearest(name, keys)
+            if near and name not in NOT_AVAILABLE:
+                misspelt.add((location[:-1], near))
+            kind = _tag(model) if len(details["loc"]) == 1 else None
+            message = _about_key(name, value, keys, kind)
+            found.append(section.problem(location, message, key=True))
+        else:
+            field = next((part for part in reversed(location) if isinstance(part, str)), "")
+            found.append(section.problem(location, _about_value(details, field, value)))
+    # A required key that is there, misspelt, is one mistake and not two.
+    found += [
+        section.problem(location, f"`{name}` is missing")
+        for location, name in missing
+        if (location, name) not in misspelt
+    ]
+    return found
+
+
+def _existing(data: Any, loc: tuple[int | str, ...]) -> tuple[Location, Any]:
+    """The part of a pydantic location that exists in the data (tags of unions do not)."""
+    location: list[str | int] = []
+    for part in loc:
+        if isinstance(data, dict):
+            inside = part in data
+        else:
+            inside = isinstance(data, list) and isinstance(part, int) and part < len(data)
+        if inside:
+            location.append(part)
+            data = data[part]
+    return tuple(location), data
+
+
+def _about_key(name: str, value: object, keys: list[str], kind: str | None) -> str:
+    if name in NOT_AVAILABLE:
+        return f"`{name}` is not available in this version; {NOT_AVAILABLE[name]}"
+    if value is None and name[:1].isdigit():
+        return f"`{shown(name)}` is no key; a decimal comma? (write 0.8, not 0,8)"
+    owner = f" for kind {kind}" if kind else ""
+    return unknown(f"unknown key `{shown(name)}`{owner}", name, keys)
+
+
+def _about_value(details: Any, field: str, value: object) -> str:
+    context = details.get("ctx", {})
+    cause = context.get("error")
+    if isinstance(cause, QuantityError):
+        return about_quantity(field, value, cause)
+    if isinstance(cause, ValueError):
+        return str(cause)
+    kind = details["type"]
+    if value is None:
+        return f"`{field}` is empty" if kind == "tuple_type" else f"`{field}` has no value"
+    if kind in ("literal_error", "union_tag_invalid"):
+        allowed = re.findall(r"'([^']*)'", context.get("expected", context.get("expected_tags")))
+        text = str(value.get("kind", "")) if isinstance(value, dict) else shown(value)
+        name = "kind" if isinstance(value, dict) else field
+        near = nearest(text, allowed)
+        choice = f"; did you mean `{name}: {near}`?" if near else ""
+        return f"`{name}: {text}` must be one of {', '.join(allowed)}{choice}"
+    return f"`{field}` {_SHAPES.get(kind, details['msg'])}"
+
+
+_SHAPES: Mapping[str, str] = {
+    "union_tag_not_found": "needs a `kind`",
+    "model_type": "must hold `key: value` entries",
+    "model_attributes_type": "must hold `key: value` entries",
+    "dict_type": "must hold `key: value` entries",
+    "tuple_type": "must be a list",
+    "too_short": "is empty",
+    "string_type": "must be plain text",
+    "missing": "has a row with too few values",
+    "too_long": "has a row with too many values",
+}
+
+
+def _keys(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
+    """The keys allowed at a pydantic location."""
+    models = [model]
+    for part in loc:
+        fields = [m.model_fields[part] for m in models if part in m.model_fields]
+        if fields:
+            models = [inner for field in fields for inner in _models_in(field.annotation)]
+        else:
+            models = [m for m in models if _tag(m) == part] or models
+    return [name for m in models for name in m.model_fields]
+
+
+def _models_in(annotation: Any) -> list[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [model for argument in get_args(annotation) for model in _models_in(argument)]
+
+
+def _tag(model: type[BaseModel]) -> str | None:
+    kind = model.model_fields.get("kind")
+    return get_args(kind.annotation)[0] if kind else None

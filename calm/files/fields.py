@@ -1,0 +1,81 @@
+"""The types of the fields of CALM's files: text with a unit in, SI float out (angles: degrees)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, GetJsonSchemaHandler, WithJsonSchema
+from pydantic_core import CoreSchema, core_schema
+
+from calm.units import DIMENSIONS, QuantityError, parse_quantity
+
+
+class Model(BaseModel):
+    """Base of everything read from a file: frozen, and no key but the known ones."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Annotation of a field that holds a quantity: its dimension and limits (SI, degrees)."""
+
+    dimension: str
+    usual_unit: str | None = None
+    above: float = -math.inf
+    at_least: float = -math.inf
+    at_most: float = math.inf
+
+    def read(self, text: object) -> float:
+        """The SI value of a text with a unit; QuantityError when it is none or out of limits."""
+        if text is None:
+            raise QuantityError("has no value")
+        value = parse_quantity(text, self.dimension, usual_unit=self.usual_unit)
+        unit = DIMENSIONS[self.dimension].unit
+        if value <= self.above:
+            raise QuantityError(f"must be more than {self.above:g} {unit}".rstrip())
+        if value < self.at_least:
+            raise QuantityError(f"must be at least {self.at_least:g} {unit}".rstrip())
+        if value > self.at_most:
+            raise QuantityError(f"must be at most {self.at_most:g} {unit}".rstrip())
+        return value
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        return self.json_schema()
+
+    def json_schema(self) -> dict[str, Any]:
+        """The JSON Schema of the text, without the limits."""
+        kind = DIMENSIONS[self.dimension]
+        number = r"^\s*[-+]?[0-9.]+([eE][-+]?[0-9]+)?(\s*[0-9]*/[0-9]+)?"
+        if not kind.unit:
+            return {"type": ["number", "string"], "pattern": number + r"\s*%?$"}
+        units = ", ".join(kind.units)
+        return {
+            "description": f"{kind.noun} with its unit ({units})",
+            "anyOf": [{"type": "string", "pattern": number + r"\s*[A-Za-z°µ].*$"}, {"const": 0}],
+        }
+
+
+def _as_text(value: object) -> object:
+    return str(value) if isinstance(value, (int, float)) else value
+
+
+Text = Annotated[str, BeforeValidator(_as_text), WithJsonSchema({"type": ["string", "number"]})]
+"""Text; a bare number is taken as the person wrote it."""
+
+POSITIVE_LENGTH = Quantity("length", above=0)
+DIAMETER = Quantity("length", usual_unit="mm", above=0)
+LENGTH = Quantity("length", at_least=0)
+POSITIVE_FORCE = Quantity("force", usual_unit="kN", above=0)
+COEFFICIENT = Quantity("number", at_least=0)
+DRAG = Quantity("drag", at_least=0)
+TILT = Quantity("angle", above=0, at_most=180)
+
+Role = Literal["float", "instrument", "release", "connector", "line", "anchor"]

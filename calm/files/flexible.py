@@ -1,0 +1,93 @@
+"""Cables and chains; their lengths, masses and forces are per metre."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import model_validator
+
+from calm.files.definition import (
+    CATALOGUE_DENSITY,
+    DENSITY,
+    STANDARD_GRAVITY,
+    STEEL_DENSITY,
+    Definition,
+    refuse_weight_above_mass,
+)
+from calm.files.fields import COEFFICIENT, DIAMETER, POSITIVE_FORCE, Quantity, Role
+
+
+class Flexible(Definition):
+    """A cable or chain: all its figures are per metre."""
+
+    role: Role = "line"
+    diameter: Annotated[float, DIAMETER]
+    weight: Annotated[float | None, Quantity("force per length")] = None
+    mass: Annotated[float | None, Quantity("mass per length", at_least=0)] = None
+    density: Annotated[float | None, DENSITY] = None
+    cn: Annotated[float | None, COEFFICIENT] = None
+    ct: Annotated[float | None, COEFFICIENT] = None
+    stiffness: Annotated[float | None, POSITIVE_FORCE] = None
+
+
+class Cable(Flexible):
+    """A rope, wire or electrical cable."""
+
+    kind: Literal["cable"]
+    buoyancy: Annotated[float | None, Quantity("force per length")] = None
+    finish: Literal["smooth", "rough", "very-rough"] | None = None
+
+    @property
+    def net_buoyancy(self) -> float:
+        """Net force in water of a metre, positive up [N/m]."""
+        if self.buoyancy is not None:
+            return self.buoyancy
+        if self.weight is not None:
+            return -self.weight
+        assert self.mass is not None and self.density is not None
+        return (CATALOGUE_DENSITY / self.density - 1) * self.mass * STANDARD_GRAVITY
+
+    @property
+    def displaced_volume(self) -> float | None:
+        """Volume of water displaced by a metre [m³/m], None when the mass is unknown."""
+        if self.mass is None:
+            return None
+        return (self.mass + self.net_buoyancy / STANDARD_GRAVITY) / CATALOGUE_DENSITY
+
+    @model_validator(mode="after")
+    def _weight_is_given_once(self) -> Cable:
+        if self.weight is not None and self.buoyancy is not None:
+            raise ValueError("gives both `weight` and `buoyancy`; one is the other negated")
+        in_air_only = self.weight is None and self.buoyancy is None
+        if in_air_only and (self.mass is None or self.density is None):
+            raise ValueError("needs `weight` or `buoyancy` in water, or `mass` with `density`")
+        refuse_weight_above_mass(self.mass, self.net_buoyancy)
+        return self
+
+
+class Chain(Flexible):
+    """A chain; `diameter` is that of its bar."""
+
+    kind: Literal["chain"]
+
+    @property
+    def net_buoyancy(self) -> float:
+        """Net force in water of a metre, positive up [N/m]."""
+        if self.weight is not None:
+            return -self.weight
+        mass = 19.9e3 * self.diameter**2 if self.mass is None else self.mass
+        return (CATALOGUE_DENSITY / (self.density or STEEL_DENSITY) - 1) * mass * STANDARD_GRAVITY
+
+    @property
+    def displaced_volume(self) -> float | None:
+        """Volume of water displaced by a metre [m³/m], None when only its weight is known."""
+        if self.mass is not None:
+            return (self.mass + self.net_buoyancy / STANDARD_GRAVITY) / CATALOGUE_DENSITY
+        if self.weight is not None:
+            return None
+        return 19.9e3 * self.diameter**2 / (self.density or STEEL_DENSITY)
+
+    @model_validator(mode="after")
+    def _weight_is_possible(self) -> Chain:
+        refuse_weight_above_mass(self.mass, self.net_buoyancy)
+        return self

@@ -1,0 +1,162 @@
+"""A mooring file as read: the expanded line, its environment and settings, in SI and degrees."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, BeforeValidator, Field
+
+from calm.files.components import Anchor, Component
+from calm.files.environment import Environment
+from calm.files.fields import LENGTH, POSITIVE_LENGTH, Model, Quantity
+from calm.units import QuantityError
+
+_FACTOR = Quantity("number", above=0)
+_SHARE = Quantity("number", at_least=0, at_most=1)
+_SPEED = Quantity("speed", at_least=0)
+_LEAST_TENSION = Quantity("force", at_least=0)
+
+
+def _until_available(*later: str) -> BeforeValidator:
+    """Refuses the choices of the format that this version does not compute."""
+
+    def check(value: object) -> object:
+        if isinstance(value, dict) or value in later:
+            raise QuantityError("is not available in this version")
+        return value
+
+    return BeforeValidator(check)
+
+
+def _no_friction(value: float) -> float:
+    if value > 0:
+        raise QuantityError("is not available in this version; leave it out")
+    return value
+
+
+class Position(Model):
+    """Where the mooring stands [degrees]."""
+
+    latitude: Annotated[float, Quantity("angle", at_least=-90, at_most=90)]
+    longitude: Annotated[float, Quantity("angle", at_least=-360, at_most=360)]
+
+
+class Solver(Model):
+    """How the line is solved; `angle_step` in radians, `tolerance` as a share of the depth."""
+
+    angle_step: Annotated[
+        float, Quantity("angle", above=0, at_most=10), AfterValidator(math.radians)
+    ] = math.radians(1)
+    tolerance: Annotated[float, Quantity("number", above=0, at_most=2e-4)] = 1e-7
+    drag: Annotated[Literal["constant"], _until_available("reynolds")] = "constant"
+    friction: Annotated[Literal["berteaux"], _until_available("hoerner", "constant")] = "berteaux"
+    strumming: Annotated[
+        Literal["none"],
+        _until_available("bourget-marichal", "vandiver", "blevins", "skop-griffin"),
+    ] = "none"
+    buoy_drag: Literal["immersed", "full"] = "immersed"
+    seabed_friction: Annotated[
+        float, Quantity("number", at_least=0), AfterValidator(_no_friction)
+    ] = 0.0
+
+
+class SafetyFactors(Model):
+    """Least breaking load over tension, where no working load is known."""
+
+    steel: Annotated[float, _FACTOR] = 3.0
+    synthetic: Annotated[float, _FACTOR] = 5.0
+    surface: Annotated[float, _FACTOR] = 5.0
+
+
+class MinimumTensions(Model):
+    """Least tension above the release [N]."""
+
+    wire: Annotated[float, _LEAST_TENSION] = 500.0
+    rope: Annotated[float, _LEAST_TENSION] = 300.0
+
+
+class Checks(Model):
+    """Limits of the design check; a limit without a default is judged only when given."""
+
+    safety_factor: SafetyFactors = Field(default_factory=SafetyFactors)
+    anchor_factor: Annotated[float, _FACTOR] = 1.5
+    anchor_friction: Annotated[float, _FACTOR] = 0.6
+    minimum_tension: MinimumTensions = Field(default_factory=MinimumTensions)
+    backup_margin: Annotated[float, _SHARE] = 0.1
+    minimum_rise_speed: Annotated[float, _SPEED] = 0.3
+    launch_safety_factor: Annotated[float, _FACTOR] = 2.0
+    minimum_reserve: Annotated[float, _SHARE] = 0.3
+    rating_margin: Annotated[float, LENGTH] = 100.0
+    maximum_knockdown: Annotated[float | None, POSITIVE_LENGTH] = None
+    maximum_excursion: Annotated[float | None, POSITIVE_LENGTH] = None
+    maximum_tilt: Annotated[float | None, Quantity("angle", above=0, at_most=180)] = None
+
+
+@dataclass(frozen=True)
+class Clamp:
+    """An instrument fixed to a piece, `at` metres (unstretched) from the piece's top."""
+
+    use: str
+    label: str
+    component: Component
+    at: float
+
+
+@dataclass(frozen=True)
+class Piece:
+    """One piece of the expanded line.
+
+    Attributes
+    ----------
+    index : int
+        Position in the line, 0 at the top.
+    use, label : str
+        Id of the component; the label is unique in the line.
+    component : Component
+        Its definition with the overrides of the line applied.
+    length : float or None
+        Unstretched length [m]; None where it is to be cut to fit.
+    fit_top_depth : float or None
+        Depth wanted for the top of the line in still water [m], on the piece cut to fit.
+    clamps : tuple of Clamp
+    line, column : int
+        The item in the mooring file, counted from 1.
+    """
+
+    index: int
+    use: str
+    label: str
+    component: Component
+    length: float | None
+    fit_top_depth: float | None
+    clamps: tuple[Clamp, ...]
+    line: int
+    column: int
+
+
+@dataclass(frozen=True)
+class MooringFile:
+    """A mooring file with everything in it resolved: the line from its top to its anchor.
+
+    `notices` tell what a person may want to know: a catalogue entry hidden by a nearer one,
+    levels dropped from a measured current.
+    """
+
+    path: str
+    name: str
+    description: str
+    position: Position | None
+    environment: Environment
+    pieces: tuple[Piece, ...]
+    solver: Solver
+    checks: Checks
+    notices: tuple[str, ...]
+
+    @property
+    def anchor(self) -> Anchor:
+        """The last piece of the line."""
+        anchor = self.pieces[-1].component
+        assert isinstance(anchor, Anchor)
+        return anchor

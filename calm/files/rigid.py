@@ -1,0 +1,184 @@
+"""Rigid components: spheres, cylinders and bodies of any shape."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Discriminator, Field, Tag, model_validator
+
+from calm.files.definition import (
+    CATALOGUE_DENSITY,
+    DISAGREEMENT,
+    MASS,
+    STANDARD_GRAVITY,
+    Definition,
+    refuse_weight_above_mass,
+)
+from calm.files.fields import COEFFICIENT, DIAMETER, DRAG, LENGTH, Model, Quantity
+
+_AREA = Quantity("area", at_least=0)
+
+Inclination = Literal["follows", "insensitive"]
+Surface = Literal["painted", "smooth"]
+
+
+class Displacement(Model):
+    """A floating hull: rows of draft [m], displaced volume [m³], immersed area [m²]."""
+
+    displacement: tuple[
+        tuple[
+            Annotated[float, LENGTH],
+            Annotated[float, Quantity("volume", at_least=0)],
+            Annotated[float, _AREA],
+        ],
+        ...,
+    ]
+
+
+def _hull_form(value: object) -> str:
+    return "table" if isinstance(value, (dict, Displacement)) else "shape"
+
+
+Hull = Annotated[
+    Annotated[Literal["sphere", "cylinder"], Tag("shape")] | Annotated[Displacement, Tag("table")],
+    Discriminator(_hull_form),
+]
+
+
+class Rigid(Definition):
+    """A piece of fixed length, or one clamped on a line."""
+
+    mass: Annotated[float | None, MASS] = None
+    buoyancy: Annotated[float | None, Quantity("force")] = None
+    volume: Annotated[float | None, Quantity("volume", at_least=0)] = None
+    hull: Hull | None = None
+    k_surface: Annotated[float | None, DRAG] = None
+    wind_area: Annotated[float | None, _AREA] = None
+    wind_cd: Annotated[float | None, COEFFICIENT] = None
+
+    @property
+    def net_buoyancy(self) -> float:
+        """Net force in water, positive up [N]."""
+        if self.buoyancy is not None:
+            return self.buoyancy
+        assert self.mass is not None and self.volume is not None
+        return (CATALOGUE_DENSITY * self.volume - self.mass) * STANDARD_GRAVITY
+
+    @property
+    def displaced_volume(self) -> float | None:
+        """Volume of water displaced [m³], None when neither it nor the mass is known."""
+        if self.volume is not None or self.mass is None:
+            return self.volume
+        return (self.mass + self.net_buoyancy / STANDARD_GRAVITY) / CATALOGUE_DENSITY
+
+    @model_validator(mode="after")
+    def _weights_agree(self) -> Rigid:
+        if self.mass is None or self.volume is None:
+            if self.buoyancy is None:
+                raise ValueError("needs `buoyancy`, or `mass` with `volume`")
+        elif self.buoyancy is not None:
+            computed = (CATALOGUE_DENSITY * self.volume - self.mass) * STANDARD_GRAVITY
+            largest = max(abs(self.buoyancy), abs(computed))
+            if abs(self.buoyancy - computed) > DISAGREEMENT * largest:
+                raise ValueError(
+                    f"`buoyancy` is {self.buoyancy:g} N but `mass` and `volume` give "
+                    f"{computed:.5g} N, more than 1 % apart; leave one of the three out"
+                )
+        refuse_weight_above_mass(self.mass, self.net_buoyancy)
+        return self
+
+
+class Sphere(Rigid):
+    """A sphere; its length along the line is its diameter unless it says otherwise."""
+
+    kind: Literal["sphere"]
+    diameter: Annotated[float, DIAMETER]
+    length: Annotated[float, LENGTH] = Field(default_factory=lambda data: data.get("diameter", 0.0))
+    cx: Annotated[float | None, COEFFICIENT] = None
+    surface: Surface | None = None
+
+
+class Cylinder(Rigid):
+    """A cylinder along the line."""
+
+    kind: Literal["cylinder"]
+    diameter: Annotated[float, DIAMETER]
+    length: Annotated[float, LENGTH]
+    cn: Annotated[float | None, COEFFICIENT] = None
+    ct: Annotated[float | None, COEFFICIENT] = None
+    inclination: Inclination | None = None
+    surface: Surface | None = None
+
+
+class DragMeasurement(Model):
+    """A drag measured at a speed [m/s, N]."""
+
+    speed: Annotated[float, Quantity("speed", above=0)]
+    force: Annotated[float, Quantity("force", at_least=0)]
+
+
+class SphereShape(Model):
+    """A sphere as part of a body, for its drag alone."""
+
+    kind: Literal["sphere"]
+    diameter: Annotated[float, DIAMETER]
+    cx: Annotated[float | None, COEFFICIENT] = None
+
+
+class CylinderShape(Model):
+    """A cylinder as part of a body, for its drag alone."""
+
+    kind: Literal["cylinder"]
+    diameter: Annotated[float, DIAMETER]
+    length: Annotated[float, LENGTH]
+    cn: Annotated[float | None, COEFFICIENT] = None
+    ct: Annotated[float | None, COEFFICIENT] = None
+    inclination: Inclination | None = None
+
+
+Shape = Annotated[SphereShape | CylinderShape, Field(discriminator="kind")]
+
+DRAG_FORMS: tuple[tuple[str, ...], ...] = (
+    ("kn",),
+    ("drag_area", "cd"),
+    ("drag_measurements",),
+    ("made_of",),
+)
+"""The ways a body may give its drag; exactly one of them."""
+
+
+class Body(Rigid):
+    """A piece of any shape that gives its drag in one of the `DRAG_FORMS`."""
+
+    kind: Literal["body"]
+    length: Annotated[float, LENGTH]
+    kn: Annotated[float | None, DRAG] = None
+    kt: Annotated[float | None, DRAG] = None
+    drag_area: Annotated[float | None, _AREA] = None
+    cd: Annotated[float | None, COEFFICIENT] = None
+    drag_measurements: tuple[DragMeasurement, ...] | None = None
+    made_of: tuple[Shape, ...] | None = None
+    inclination: Inclination | None = None
+    lift: Annotated[float | None, Quantity("drag")] = None
+
+    @model_validator(mode="after")
+    def _drag_is_given_once(self) -> Body:
+        given = [form for form in DRAG_FORMS if any(getattr(self, key) is not None for key in form)]
+        if len(given) != 1:
+            what = " and ".join(f"`{key}`" for form in given for key in form) or "no drag"
+            raise ValueError(
+                f"gives {what}; one way is needed: `kn` with `kt`, `drag_area` with `cd`, "
+                "`drag_measurements`, or `made_of`"
+            )
+        if self.made_of == () or self.drag_measurements == ():
+            raise ValueError(f"`{given[0][0]}` is empty")
+        if (self.drag_area is None) != (self.cd is None):
+            raise ValueError("`drag_area` and `cd` go together")
+        if self.kn is not None and self.kt is None and self.inclination != "insensitive":
+            raise ValueError("`kn` needs `kt`, or `inclination: insensitive`")
+        if self.inclination == "follows" and self.kt is None and not self.made_of:
+            raise ValueError("`inclination: follows` needs `kt`")
+        if self.kt is not None and (self.made_of or self.inclination == "insensitive"):
+            other = "`made_of`" if self.made_of else "`inclination: insensitive`"
+            raise ValueError(f"`kt` has no meaning with {other}")
+        return self

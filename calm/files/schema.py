@@ -1,0 +1,159 @@
+"""The JSON Schema of the mooring file, for editors that complete and check while one types.
+
+It is made from the models that read the file. It knows the keys, the kinds and that a quantity has
+a unit; what needs the catalogue or several fields at once is left to the reader.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import BaseModel
+from pydantic.json_schema import models_json_schema
+
+from calm.files.catalogue import Assembly
+from calm.files.components import KINDS
+from calm.files.environment import EnvironmentKeys
+from calm.files.fields import LENGTH
+from calm.files.line import MOST_PIECES
+from calm.files.reader import MooringKeys
+
+Schema = dict[str, Any]
+
+_DESCRIPTIONS = {
+    "at": "distance from the top of the piece, unstretched",
+    "angle_step": "how much a cable may turn from one segment to the next, e.g. 1 deg",
+    "breaking_load": "load at which it breaks, e.g. 40 kN",
+    "buoyancy": "net force in sea water of 1025 kg/m^3, positive up (per metre of a cable)",
+    "buoy_drag": "of a float at the surface: at its draft, or fully immersed",
+    "cd": "drag coefficient of `drag_area`",
+    "clamps": "instruments fixed to this piece",
+    "cn": "drag coefficient across the axis",
+    "columns": "each a name and its unit: depth m, speed m/s, toward deg; or u m/s, v m/s, w m/s",
+    "components": "definitions of your own, used only here",
+    "count": "how many of it follow one another in the line",
+    "ct": "drag coefficient along the axis",
+    "current": "a table, one speed for all depths, or a file",
+    "cx": "drag coefficient of a sphere",
+    "density": "of the water, or of the material of a component",
+    "depth": "water depth, e.g. 1100 m",
+    "depth_rating": "deepest it may be used",
+    "diameter": "e.g. 12 mm; of a chain, that of its bar",
+    "drag_area": "area seen by the current, e.g. 0.12 m^2",
+    "drag_measurements": "forces measured at several speeds",
+    "environments": "named variants, each overriding keys of `environment`",
+    "finish": "of the surface of a cable",
+    "friction": "of an anchor, the coefficient on the seabed",
+    "inclination": "whether drag follows the inclination of the piece",
+    "kn": "drag across the axis at 1 m/s, e.g. 26 N/(m/s)^2",
+    "kt": "drag along the axis at 1 m/s",
+    "label": "name of the piece in results; the id when there is none",
+    "length": "along the line, unstretched; `fit` cuts a cable so that the top is at `top_depth`",
+    "line": "the pieces from the top to the anchor",
+    "made_of": "simple shapes whose drags add up",
+    "mass": "in air (per metre of a cable or chain)",
+    "max_tilt": "tilt beyond which it is not to be trusted",
+    "note": "anything worth knowing",
+    "role": "what the piece is for",
+    "rows": "values, top to bottom",
+    "source": "where the figures come from",
+    "stiffness": "EA, the force that would double the length, e.g. 4 MN",
+    "time": "of the profile wanted, e.g. 2026-03-01T06:00",
+    "tolerance": "of the depth of the anchor, as a share of the water depth",
+    "top_depth": "depth wanted in still water for the top of the line",
+    "toward": "direction it flows to, clockwise from north, e.g. 90 deg",
+    "use": "id of a component of the catalogue or of `components`",
+    "volume": "of water displaced, e.g. 0.9 m^3",
+    "warn_tilt": "tilt to be warned of",
+    "weight": "in sea water of 1025 kg/m^3 (per metre of a cable or chain)",
+    "working_load": "load it may carry in use, e.g. 20 kN",
+}
+
+
+def mooring_schema() -> Schema:
+    """The JSON Schema (draft 2020-12) of a mooring file."""
+    models: list[type[BaseModel]] = [MooringKeys, EnvironmentKeys, Assembly, *KINDS.values()]
+    names, definitions = models_json_schema(
+        [(model, "validation") for model in models], ref_template="#/$defs/{model}"
+    )
+    refs = {model: names[(model, "validation")] for model in models}
+    schemas: dict[str, Schema] = definitions["$defs"]
+    variant = dict(schemas["EnvironmentKeys"])
+    variant.pop("required")
+    component = {"oneOf": [refs[model] for model in (*KINDS.values(), Assembly)]}
+    fields = _fields([schemas[kind.__name__] for kind in KINDS.values()])
+    schemas |= {"EnvironmentVariant": variant, "Clamp": _clamp(fields), "Item": _item(fields)}
+    items = {"type": "array", "minItems": 1, "items": {"$ref": "#/$defs/Item"}}
+    schemas["Assembly"]["properties"]["parts"] = items
+    top = schemas.pop("MooringKeys")
+    top["properties"] |= {
+        "environment": refs[EnvironmentKeys],
+        "line": items,
+        "components": {"type": ["object", "null"], "additionalProperties": component},
+        "environments": {
+            "type": ["object", "null"],
+            "additionalProperties": {"$ref": "#/$defs/EnvironmentVariant"},
+        },
+    }
+    top["required"] = ["environment", "line"]
+    schema = {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        **top,
+        "title": "CALM mooring file",
+        "$defs": schemas,
+    }
+    _tidy(schema)
+    return schema
+
+
+def _item(fields: Schema) -> Schema:
+    fit = {"anyOf": [{"const": "fit"}, LENGTH.json_schema()]}
+    count = {"type": "integer", "minimum": 1, "maximum": MOST_PIECES}
+    clamps = {"type": "array", "items": {"$ref": "#/$defs/Clamp"}}
+    own = {"count": count, "length": fit, "top_depth": LENGTH.json_schema(), "clamps": clamps}
+    return _mapping("A piece of the line; other fields override the component's.", fields | own)
+
+
+def _clamp(fields: Schema) -> Schema:
+    schema = _mapping("An instrument fixed to a piece.", fields | {"at": LENGTH.json_schema()})
+    schema["required"].append("at")
+    return schema
+
+
+def _mapping(description: str, properties: Schema) -> Schema:
+    text = {"type": "string"}
+    return {
+        "type": "object",
+        "description": description,
+        "properties": {"use": text, "label": {"type": ["string", "number"]}, **properties},
+        "required": ["use"],
+        "additionalProperties": False,
+    }
+
+
+def _fields(schemas: list[Schema]) -> Schema:
+    """Every field that can be overridden; where kinds differ, either form."""
+    forms: dict[str, list[Schema]] = {}
+    for schema in schemas:
+        for name, form in schema["properties"].items():
+            if name != "kind" and form not in forms.setdefault(name, []):
+                forms[name].append(form)
+    return {
+        name: found[0] if len(found) == 1 else {"anyOf": found} for name, found in forms.items()
+    }
+
+
+def _tidy(schema: Any) -> None:
+    """Say what fields are, and leave out defaults (in SI) and titles (the names again)."""
+    if isinstance(schema, list):
+        for part in schema:
+            _tidy(part)
+    if not isinstance(schema, dict):
+        return
+    for name, field in schema.get("properties", {}).items():
+        field.pop("title", None)
+        field.pop("default", None)
+        if name in _DESCRIPTIONS and "$ref" not in field:
+            field["description"] = _DESCRIPTIONS[name]
+    for part in schema.values():
+        _tidy(part)

@@ -1,0 +1,25 @@
+"""Where the component catalogue and the example lines that come with CALM are.
+
+Once installed they stand inside the package; in a checkout, beside it.
+"""
+
+from __future__ import annotations
+
+import importlib.resources
+from pathlib import Path
+from typing import Literal
+
+
+def shipped_folder(name: Literal["catalog", "lines"]) -> Path:
+    """The folder of the shipped catalogue or lines.
+
+    Raises
+    ------
+    FileNotFoundError
+        The installation is incomplete.
+    """
+    package = Path(str(importlib.resources.files("calm")))
+    for folder in (package / "_shipped" / name, package.parent / name):
+        if folder.is_dir():
+            return folder
+    raise FileNotFoundError(f"CALM's folder `{name}` is missing; install CALM again")

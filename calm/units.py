@@ -1,0 +1,280 @@
+"""Quantities as text, `12 mm`, turned into SI numbers.
+
+Everyday units are looked up in the table below; the others are asked of pint, which is imported
+only then. Masses are never forces: `35 kg` where a force is wanted is an error that offers
+`35 kgf`. One kilogram-force is 9.80665 N wherever the mooring is.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import pint
+
+KILOGRAM_FORCE = 9.80665
+_POUND = 0.45359237
+_POUND_FORCE = _POUND * KILOGRAM_FORCE
+_FOOT = 0.3048
+_INCH = 0.0254
+_KNOT = 1852 / 3600
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """One kind of quantity: what it is called, its SI unit and its everyday units."""
+
+    noun: str
+    unit: str
+    units: Mapping[str, float]
+
+
+DIMENSIONS: Mapping[str, Dimension] = {
+    "number": Dimension("a plain number", "", {"": 1.0, "%": 0.01}),
+    "length": Dimension(
+        "a length",
+        "m",
+        {
+            "m": 1.0,
+            "mm": 1e-3,
+            "cm": 1e-2,
+            "km": 1e3,
+            "in": _INCH,
+            "ft": _FOOT,
+            "yd": 3 * _FOOT,
+            "nmi": 1852.0,
+        },
+    ),
+    "speed": Dimension(
+        "a speed",
+        "m/s",
+        {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "knot": _KNOT, "km/h": 1 / 3.6, "ft/s": _FOOT},
+    ),
+    "acceleration": Dimension("an acceleration", "m/s^2", {"m/s^2": 1.0, "ft/s^2": _FOOT}),
+    "mass": Dimension("a mass", "kg", {"kg": 1.0, "g": 1e-3, "t": 1e3, "lb": _POUND}),
+    "force": Dimension(
+        "a force",
+        "N",
+        {
+            "N": 1.0,
+            "kN": 1e3,
+            "kgf": KILOGRAM_FORCE,
+            "lbf": _POUND_FORCE,
+            "daN": 10.0,
+            "MN": 1e6,
+            "gf": KILOGRAM_FORCE / 1e3,
+            "tf": KILOGRAM_FORCE * 1e3,
+        },
+    ),
+    "mass per length": Dimension(
+        "a mass per length",
+        "kg/m",
+        {"kg/m": 1.0, "g/m": 1e-3, "kg/km": 1e-3, "lb/ft": _POUND / _FOOT},
+    ),
+    "force per length": Dimension(
+        "a force per length",
+        "N/m",
+        {
+            "N/m": 1.0,
+            "kN/m": 1e3,
+            "N/km": 1e-3,
+            "kgf/m": KILOGRAM_FORCE,
+            "gf/m": KILOGRAM_FORCE / 1e3,
+            "kgf/km": KILOGRAM_FORCE / 1e3,
+            "lbf/ft": _POUND_FORCE / _FOOT,
+        },
+    ),
+    "density": Dimension(
+        "a density",
+        "kg/m^3",
+        {"kg/m^3": 1.0, "g/cm^3": 1e3, "kg/L": 1e3, "t/m^3": 1e3, "lb/ft^3": _POUND / _FOOT**3},
+    ),
+    "area": Dimension("an area", "m^2", {"m^2": 1.0, "cm^2": 1e-4, "mm^2": 1e-6, "ft^2": _FOOT**2}),
+    "volume": Dimension(
+        "a volume", "m^3", {"m^3": 1.0, "L": 1e-3, "dm^3": 1e-3, "cm^3": 1e-6, "ft^3": _FOOT**3}
+    ),
+    "drag": Dimension(
+        "a drag at unit speed",
+        "N/(m/s)^2",
+        {"N/(m/s)^2": 1.0, "kgf/(m/s)^2": KILOGRAM_FORCE, "lbf/(ft/s)^2": _POUND_FORCE / _FOOT**2},
+    ),
+    "angle": Dimension("an angle", "deg", {"deg": 1.0, "rad": 180 / math.pi}),
+}
+"""Every kind of quantity, by name. Angles are kept in degrees, as files and reports have them."""
+
+_SPELLINGS = {
+    **dict.fromkeys(("metre", "metres", "meter", "meters"), "m"),
+    **dict.fromkeys(("inch", "inches"), "in"),
+    **dict.fromkeys(("foot", "feet"), "ft"),
+    **dict.fromkeys(("knots", "kt", "kts", "kn"), "knot"),
+    **dict.fromkeys(("degree", "degrees", "°"), "deg"),
+    "l": "L",
+    "m*s^-1": "m/s",
+    "cm*s^-1": "cm/s",
+}
+
+_MASS_AND_FORCE = {"kg": "kgf", "g": "gf", "t": "tf", "lb": "lbf", "kg/m": "kgf/m", "g/m": "gf/m"}
+_MASS_AND_FORCE |= {"kg/km": "kgf/km", "lb/ft": "lbf/ft"}
+_TWINS = _MASS_AND_FORCE | {force: mass for mass, force in _MASS_AND_FORCE.items()}
+
+_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4}(?![\d.]))?")
+_FRACTION = re.compile(r"([+-]?)(?:(\d+)\s+)?(\d+)\s*/\s*(\d+)(?![\d.])")
+_COMMA = re.compile(r"([+-]?\d+),(\d+)(?=$|[^\d,])")
+_UNIT = re.compile(r"(?:[A-Za-zµ°%][A-Za-z_µ°%]*|[*/()]|\^-?[1-4](?!\d)|1(?=/))+")
+_SUPERSCRIPTS = str.maketrans("⁻¹²³⁴", "-1234")
+_LONGEST = 60
+
+
+class QuantityError(ValueError):
+    """A text that is not the quantity wanted.
+
+    Attributes
+    ----------
+    complaint : str
+        What is wrong, to be read after the offending text: "needs a unit".
+    suggestion : str or None
+        The text corrected, where a correction is known.
+    """
+
+    def __init__(self, complaint: str, suggestion: str | None = None) -> None:
+        self.complaint = complaint
+        self.suggestion = suggestion
+        super().__init__(f"{complaint}: `{suggestion}`?" if suggestion else complaint)
+
+
+def parse_quantity(text: object, dimension: str, *, usual_unit: str | None = None) -> float:
+    """Turn a number with its unit into SI (angles: degrees).
+
+    Parameters
+    ----------
+    text : str or float
+        Such as ``"12 mm"``, ``"1/2 in"``, ``"1.5e3 N"``; zero, and any `number`, needs no unit.
+    dimension : str
+        A key of `DIMENSIONS`.
+    usual_unit : str, optional
+        The unit to offer when there is none; the SI unit by default.
+
+    Raises
+    ------
+    QuantityError
+        The text is not a finite number with a unit of this dimension.
+    """
+    wanted = DIMENSIONS[dimension]
+    if isinstance(text, bool) or not isinstance(text, (str, int, float)):
+        raise QuantityError(f"is not {_described(wanted)}")
+    text = str(text).strip()
+    number, unit = _split(text, wanted)
+    if unit:
+        try:
+            value = number * unit_factor(unit, dimension)
+        except QuantityError as error:
+            if error.suggestion is None:
+                raise
+            corrected = text.removesuffix(unit) + error.suggestion
+            raise QuantityError(error.complaint, corrected) from None
+    elif number == 0 or not wanted.unit:
+        value = number
+    else:
+        raise QuantityError("needs a unit", f"{text} {usual_unit or wanted.unit}")
+    if not math.isfinite(value):
+        raise QuantityError("is too large a number")
+    return value
+
+
+def unit_factor(text: str, dimension: str) -> float:
+    """What a number in this unit is multiplied by to be in SI (angles: degrees).
+
+    Raises
+    ------
+    QuantityError
+        The unit is unknown, or of another dimension; its suggestion is a unit.
+    """
+    wanted = DIMENSIONS[dimension]
+    unit = _tidy(text)
+    if unit in wanted.units:
+        return wanted.units[unit]
+    for other in DIMENSIONS.values():
+        if unit in other.units:
+            twin = _TWINS.get(unit)
+            raise QuantityError(
+                f"is {other.noun}; {_described(wanted)} is needed",
+                twin if twin in wanted.units else None,
+            )
+    if unit == "nm":
+        raise QuantityError("is in nanometres; a nautical mile is `nmi`", "nmi")
+    if len(unit) > _LONGEST or not _UNIT.fullmatch(unit):
+        raise QuantityError(f"cannot be read; {_described(wanted)} is needed")
+    return _factor_by_pint(unit, wanted)
+
+
+def _split(text: str, wanted: Dimension) -> tuple[float, str]:
+    """The number a text begins with, and the rest: its unit."""
+    fraction = _FRACTION.match(text)
+    if fraction:
+        sign, whole, numerator, denominator = fraction.groups()
+        if float(denominator) == 0:
+            raise QuantityError("is divided by zero")
+        size = float(whole or 0) + float(numerator) / float(denominator)
+        return (-size if sign == "-" else size), text[fraction.end() :].strip()
+    comma = _COMMA.match(text)
+    if comma:
+        unit = text[comma.end() :]
+        if len(comma[2]) == 3 and float(comma[1]) != 0:
+            choice = f"`{comma[1]}.{comma[2]}{unit}` or `{comma[1]}{comma[2]}{unit}`"
+            raise QuantityError(f"has a comma; write {choice}")
+        raise QuantityError("has a decimal comma", f"{comma[1]}.{comma[2]}{unit}")
+    number = _NUMBER.match(text)
+    if not number:
+        if re.match(r"[+-]?\.?(nan|inf)", text, re.IGNORECASE):
+            raise QuantityError("is not a finite number")
+        raise QuantityError(f"is not {_described(wanted)}")
+    return float(number[0]), text[number.end() :].strip()
+
+
+def _tidy(unit: str) -> str:
+    """One spelling for the many ways of writing a unit: `m s-1`, `m.s^-1`, `m·s⁻¹`."""
+    unit = unit.strip().replace("**", "^").replace("·", "*")
+    unit = re.sub("[⁻¹²³⁴]+", lambda power: "^" + power[0].translate(_SUPERSCRIPTS), unit)
+    unit = re.sub(r"\s*([*/^()])\s*", r"\1", unit)
+    unit = re.sub(r"(?<=[A-Za-z)])(?=-?[1-4](?:\W|$))", "^", unit)
+    unit = re.sub(r"(?<=[A-Za-z0-9])(?:\s+|\.)(?=[A-Za-z])", "*", unit)
+    return _SPELLINGS.get(unit, unit)
+
+
+def _described(dimension: Dimension) -> str:
+    """What to write instead, e.g. "a length (m, mm, cm, km, in …)"."""
+    units = [unit for unit in dimension.units if unit]
+    listed = ", ".join(units[:6]) + (" …" if len(units) > 6 else "")
+    return dimension.noun if dimension.unit == "" else f"{dimension.noun} ({listed})"
+
+
+@functools.cache
+def _registry() -> pint.UnitRegistry[float]:
+    import pint
+
+    return pint.UnitRegistry()
+
+
+def _factor_by_pint(unit: str, wanted: Dimension) -> float:
+    """The factor of a unit the table does not hold."""
+    import difflib
+
+    import pint
+
+    registry = _registry()
+    # Units of other kinds and texts that are no unit at all leave pint by many exceptions.
+    try:
+        quantity = registry.Quantity(1.0, registry.parse_units(unit))
+        return float(quantity.to(wanted.unit).magnitude)
+    except pint.DimensionalityError:
+        raise QuantityError(f"is not {_described(wanted)}") from None
+    except Exception:
+        near = [known for known in wanted.units if known.lower() == unit.lower()]
+        near.extend(difflib.get_close_matches(unit, [*wanted.units, *_SPELLINGS], 1))
+        complaint = f"has an unknown unit, `{unit}`; {_described(wanted)} is needed"
+        raise QuantityError(complaint, near[0] if near else None) from None

@@ -1,0 +1,173 @@
+"""From a file to its result: every figure of the result format, on a line done by hand."""
+
+import json
+from math import hypot, inf
+
+import numpy as np
+import pytest
+
+import calm
+
+FILE = """
+name: By hand
+environment:
+  depth: 200 m
+  current: {speed: SPEED, toward: 90 deg}
+line:
+  - {use: ball, label: top}
+  - {use: thin, length: 80 m, clamps: [{use: logger, at: 30 m}]}
+  - {use: meter}
+  - {use: thin, length: 40 m, breaking_load: 20 kN}
+  - {use: block}
+components:
+  ball: {kind: sphere, diameter: 1 m, buoyancy: 3000 N, cx: 0.6, source: test}
+  thin: {kind: cable, diameter: 8 mm, weight: 1 N/m, working_load: 10 kN, source: test}
+  meter: {kind: cylinder, diameter: 0.1 m, length: 1 m, buoyancy: -100 N, max_tilt: 3 deg, source: test}
+  logger: {kind: cylinder, diameter: 50 mm, length: 0.3 m, buoyancy: -20 N, source: test}
+  block: {kind: anchor, weight: 6 kN, length: 0.5 m, source: test}
+"""
+
+
+@pytest.fixture
+def solve(tmp_path):
+    def solved(text=FILE, speed="0.6 m/s", **kwargs):
+        path = tmp_path / "m.yaml"
+        path.write_text(text.replace("SPEED", speed))
+        return calm.load(path, **kwargs).solve()
+
+    return solved
+
+
+def test_still_water_by_hand(solve):
+    result = solve(speed="0 m/s")
+    c = result.components
+    assert c.depth_top == pytest.approx([77.5, 78.5, 158.5, 159.5, 199.5])
+    assert c.depth_bottom == pytest.approx([78.5, 158.5, 159.5, 199.5, 200])
+    assert c.tension_top == pytest.approx([0, 3000, 2900, 2800, 2760])
+    assert c.tension_bottom == pytest.approx([3000, 2900, 2800, 2760, 2760])
+    assert c.knockdown == pytest.approx([0] * 5)
+    assert c.tilt == pytest.approx([0] * 5)
+    assert result.clamps[0].depth == pytest.approx(108.5)
+    assert result.clamps[0].tension == pytest.approx(2970)
+    assert result.anchor.vertical == pytest.approx(2760)
+    assert result.anchor.horizontal == pytest.approx(0)
+
+
+def test_figures_hang_together_in_a_current(solve):
+    result = solve()
+    c, top, anchor = result.components, result.top, result.anchor
+    assert (top.depth, top.x, top.y) == (c.depth_top[0], c.x_top[0], c.y_top[0])
+    assert top.x > 5
+    assert abs(top.y) < 1e-9
+    assert c.knockdown[0] == pytest.approx(c.depth_top[0] - 77.5, abs=1e-4)
+    assert (c.depth_bottom[:-1] == c.depth_top[1:]).all()
+    assert (c.x_bottom[:-1] == c.x_top[1:]).all()
+    assert c.tension == pytest.approx(np.maximum(c.tension_top, c.tension_bottom))
+    assert np.isnan(c.safety_factor[[0, 1, 2, 4]]).all()
+    assert c.safety_factor[3] == pytest.approx(20000 / c.tension[3])
+    assert c.utilisation[1] == pytest.approx(c.tension[1] / 10000)
+    chord = np.hypot(c.x_top - c.x_bottom, c.y_top - c.y_bottom)
+    lean = np.degrees(np.arctan2(chord, c.depth_bottom - c.depth_top))
+    assert c.tilt == pytest.approx(lean)
+    assert anchor.tension == pytest.approx(hypot(anchor.vertical, anchor.horizontal))
+    assert anchor.required_weight == pytest.approx(
+        1.5 * (anchor.vertical + anchor.horizontal / 0.6)
+    )
+    assert result.shape.depth[0] == top.depth
+    assert result.shape.depth[-1] == pytest.approx(199.5, abs=2e-5)
+    assert (np.diff(np.flatnonzero(np.diff(result.shape.depth) == 0)) >= 0).all()
+    assert result.still_shape is not None
+    assert result.still_shape.depth[0] == pytest.approx(77.5, abs=1e-4)
+
+
+def test_the_result_is_plain_json(solve):
+    data = solve().to_dict()
+    again = json.loads(json.dumps(data, allow_nan=False))
+    assert again == data
+    assert data["status"] == "converged"
+    assert data["type"] == "subsurface"
+    assert data["components"][0]["safety_factor"] is None
+    assert set(data["components"][0]) >= {
+        "index", "use", "label", "length", "depth_top", "depth_bottom", "x_top", "y_top",
+        "x_bottom", "y_bottom", "tension_top", "tension_bottom", "tilt", "knockdown",
+        "cut_length", "safety_factor", "utilisation",
+    }  # fmt: skip
+    assert set(data["clamps"][0]) == {
+        "index", "use", "label", "depth", "x", "y", "tension", "tilt", "knockdown",
+    }  # fmt: skip
+    assert set(data["top"]) == {"depth", "x", "y", "knockdown", "used_buoyancy", "reserve"}
+    assert set(data["anchor"]) >= {
+        "tension", "vertical", "horizontal", "angle", "required_weight", "grounded_length",
+    }  # fmt: skip
+    assert set(data["shape"]) == {"depth", "x", "y", "tension", "tilt"}
+    assert len({len(column) for column in data["shape"].values()}) == 1
+
+
+def test_tables_as_records_and_data_frame(solve):
+    result = solve()
+    assert [row.label for row in result.components][:2] == ["top", "thin 1"]
+    frame = result.to_dataframe()
+    assert list(frame.label) == result.components.label
+    assert frame.depth_top.to_numpy() == pytest.approx(result.components.depth_top)
+    assert len(result.clamps.to_dataframe()) == 1
+    assert "<table" in result._repr_html_()
+
+
+def test_warnings_tell_what_to_look_at(solve):
+    told = " ".join(solve(speed="1.2 m/s").warnings)
+    assert "meter leans" in told
+    assert "Reynolds number above 2e5" in told
+    assert "are required to hold the line" in told
+
+
+def test_an_anchor_that_is_too_light_is_lifted(solve):
+    with pytest.raises(calm.NoEquilibrium) as caught:
+        solve(FILE.replace("6 kN", "2 kN"))
+    assert caught.value.status == "anchor-lifts"
+    assert "2000 N" in caught.value.message
+
+
+def test_a_float_at_the_surface_needs_full_drag_in_this_version(solve):
+    shallow = FILE.replace("depth: 200 m", "depth: 121.5 m")
+    with pytest.raises(calm.InputError, match="buoy_drag: full"):
+        solve(shallow)
+    result = solve(shallow + "solver: {buoy_drag: full}\n")
+    assert result.type == "surface"
+    assert result.top.depth == 0
+    assert result.top.knockdown is None
+
+
+def test_a_refusal_names_the_piece(solve):
+    long = FILE.replace("length: 40 m", "length: 400 m").replace("SPEED", "0.4 m/s")
+    with pytest.raises(calm.NoEquilibrium) as caught:
+        solve(long + "solver: {buoy_drag: full}\n")
+    assert caught.value.status in ("grounded", "slack")
+    assert "Piece 4 is thin 2" in caught.value.message
+
+
+def test_fit_cuts_the_piece_once_for_every_current(solve):
+    fit = FILE.replace("length: 40 m", "length: fit, top_depth: 50 m")
+    weak, strong = solve(fit, speed="0.1 m/s"), solve(fit, speed="0.5 m/s")
+    assert weak.components.cut_length[3] == pytest.approx(200 - 0.5 - 50 - 82, abs=1e-5)
+    assert strong.components.cut_length[3] == weak.components.cut_length[3]
+    assert strong.still_shape.depth[0] == pytest.approx(50, abs=2e-5)
+
+
+def test_a_named_environment_takes_the_place_of_the_keys_it_gives(solve):
+    named = FILE + "environments: {storm: {current: {speed: 1 m/s, toward: 0 deg}}}\n"
+    calm_day, storm = solve(named), solve(named, environment="storm")
+    assert storm.top.y > calm_day.top.x > 0
+    assert storm.components.depth_bottom[-1] == 200
+
+
+def test_density_and_current_levels_are_merged(solve):
+    layered = FILE.replace(
+        "  current:",
+        "  density: {columns: [depth m, density kg/m^3], rows: [[0, 1020], [100, 1030]]}\n  current:",
+    )
+    result = solve(layered)
+    water = result.mooring.water
+    assert water.level.tolist() == [0, 100]
+    assert water.density.tolist() == [1020, 1030]
+    assert np.hypot(water.u, water.v) == pytest.approx([0.6, 0.6])
+    assert result.closure < 1e-6 < inf
