@@ -103,16 +103,25 @@ DIMENSIONS: Mapping[str, Dimension] = {
         "N/(m/s)^2",
         {"N/(m/s)^2": 1.0, "kgf/(m/s)^2": KILOGRAM_FORCE, "lbf/(ft/s)^2": _POUND_FORCE / _FOOT**2},
     ),
+    "temperature": Dimension("a temperature", "degC", {"degC": 1.0}),
     "angle": Dimension("an angle", "deg", {"deg": 1.0, "rad": 180 / math.pi}),
 }
-"""Every kind of quantity, by name. Angles are kept in degrees, as files and reports have them."""
+"""Every kind of quantity, by name.
+
+Angles are kept in degrees and temperatures in degrees Celsius, as files and reports have them.
+"""
 
 _SPELLINGS = {
     **dict.fromkeys(("metre", "metres", "meter", "meters"), "m"),
     **dict.fromkeys(("inch", "inches"), "in"),
     **dict.fromkeys(("foot", "feet"), "ft"),
     **dict.fromkeys(("knots", "kt", "kts", "kn"), "knot"),
+    **dict.fromkeys(("kilogram", "kilograms"), "kg"),
+    **dict.fromkeys(("tonne", "tonnes"), "t"),
+    **dict.fromkeys(("pound", "pounds", "lbs"), "lb"),
+    **dict.fromkeys(("newton", "newtons"), "N"),
     **dict.fromkeys(("degree", "degrees", "°"), "deg"),
+    **dict.fromkeys(("°C", "celsius"), "degC"),
     "l": "L",
     "m*s^-1": "m/s",
     "cm*s^-1": "cm/s",
@@ -148,7 +157,7 @@ class QuantityError(ValueError):
 
 
 def parse_quantity(text: object, dimension: str, *, usual_unit: str | None = None) -> float:
-    """Turn a number with its unit into SI (angles: degrees).
+    """Turn a number with its unit into SI (degrees, degC).
 
     Parameters
     ----------
@@ -187,7 +196,7 @@ def parse_quantity(text: object, dimension: str, *, usual_unit: str | None = Non
 
 
 def unit_factor(text: str, dimension: str) -> float:
-    """What a number in this unit is multiplied by to be in SI (angles: degrees).
+    """What a number in this unit is multiplied by to be in SI (degrees, degC).
 
     Raises
     ------
@@ -205,8 +214,12 @@ def unit_factor(text: str, dimension: str) -> float:
                 f"is {other.noun}; {_described(wanted)} is needed",
                 twin if twin in wanted.units else None,
             )
-    if unit == "nm":
-        raise QuantityError("is in nanometres; a nautical mile is `nmi`", "nmi")
+    if re.search(r"\bnm\b", unit):
+        offer = re.sub(r"\bnm\b", "nmi", unit)
+        raise QuantityError("is in nanometres; a nautical mile is `nmi`", offer)
+    if wanted.unit == "degC":
+        # Other scales have other zeros, which no factor can express.
+        raise QuantityError("is not a temperature in degC", "degC" if unit == "C" else None)
     if len(unit) > _LONGEST or not _UNIT.fullmatch(unit):
         raise QuantityError(f"cannot be read; {_described(wanted)} is needed")
     return _factor_by_pint(unit, wanted)
@@ -267,14 +280,15 @@ def _factor_by_pint(unit: str, wanted: Dimension) -> float:
     import pint
 
     registry = _registry()
+    near = [known for known in wanted.units if known.lower() == unit.lower()]
     # Units of other kinds and texts that are no unit at all leave pint by many exceptions.
     try:
         quantity = registry.Quantity(1.0, registry.parse_units(unit))
         return float(quantity.to(wanted.unit).magnitude)
     except pint.DimensionalityError:
-        raise QuantityError(f"is not {_described(wanted)}") from None
+        complaint = f"is not {_described(wanted)}"
+        raise QuantityError(complaint, near[0] if near else None) from None
     except Exception:
-        near = [known for known in wanted.units if known.lower() == unit.lower()]
         near.extend(difflib.get_close_matches(unit, [*wanted.units, *_SPELLINGS], 1))
         complaint = f"has an unknown unit, `{unit}`; {_described(wanted)} is needed"
         raise QuantityError(complaint, near[0] if near else None) from None

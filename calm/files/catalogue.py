@@ -92,10 +92,8 @@ class Catalogue:
             raise InputError(problems)
         return cls((level,))
 
-    def under(self, definitions: Section | None, problems: list[Problem]) -> Catalogue:
+    def under(self, definitions: Section, problems: list[Problem]) -> Catalogue:
         """This catalogue under the `components:` of a mooring file."""
-        if definitions is None:
-            return self
         entries = _entries(definitions, None, problems)
         return Catalogue(({entry.id: entry for entry in entries}, *self.levels))
 

@@ -49,9 +49,10 @@ class LineReader:
     def read(self, section: Section, key: str) -> tuple[Piece, ...]:
         """The pieces of the list of items under a key; those with mistakes are left out."""
         pieces: list[Piece] = []
-        for item in self._items(section, key):
+        items = self._items(section, key)
+        for number, item in enumerate(items, 1):
             pieces += self._item(item)
-            if len(pieces) > MOST_PIECES:
+            if max(number, len(pieces)) > MOST_PIECES:
                 self._refuse(item, (), f"the line has more than {MOST_PIECES} pieces")
                 return ()
         return tuple(pieces)
@@ -63,7 +64,7 @@ class LineReader:
             self._refuse(section, (key,), f"`{key}` must be a list of items")
             return []
         items = []
-        for i, item in enumerate(found):
+        for i, item in enumerate(found[: MOST_PIECES + 1]):
             if isinstance(item, dict):
                 items.append(Section.of(section.document, (*section.location, key, i), item))
             else:

@@ -163,9 +163,10 @@ class Body(Rigid):
 
     @model_validator(mode="after")
     def _drag_is_given_once(self) -> Body:
-        given = [form for form in DRAG_FORMS if any(getattr(self, key) is not None for key in form)]
+        ways = [[key for key in form if getattr(self, key) is not None] for form in DRAG_FORMS]
+        given = [keys for keys in ways if keys]
         if len(given) != 1:
-            what = " and ".join(f"`{key}`" for form in given for key in form) or "no drag"
+            what = " and ".join(f"`{key}`" for keys in given for key in keys) or "no drag"
             raise ValueError(
                 f"gives {what}; one way is needed: `kn` with `kt`, `drag_area` with `cd`, "
                 "`drag_measurements`, or `made_of`"

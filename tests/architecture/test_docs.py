@@ -1,0 +1,109 @@
+"""The manual and the README say what the program does."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+README = ROOT / "README.md"
+PAGES = [README, *sorted((ROOT / "docs").glob("*.md"))]
+
+
+def blocks(page: Path, language: str) -> list[str]:
+    """Contents of the fenced blocks of one language."""
+    text = page.read_text(encoding="utf-8")
+    return re.findall(rf"^```{language}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+
+
+def readme_command(name: str) -> str:
+    """The command that stands under the comment `<!-- name -->`."""
+    text = README.read_text(encoding="utf-8")
+    found = re.search(rf"^<!-- {name} -->\n```sh\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+    assert found is not None, name
+    return found[1].strip()
+
+
+def calm_prints(*arguments: str) -> str:
+    finished = subprocess.run(
+        [sys.executable, "-m", "calm", *arguments],
+        cwd=ROOT,
+        env={**os.environ, "COLUMNS": "100", "NO_COLOR": "1"},
+        capture_output=True,
+        encoding="utf-8",
+        check=True,
+    )
+    return finished.stdout
+
+
+def test_the_command_line_page_is_what_help_prints() -> None:
+    finished = subprocess.run(
+        [sys.executable, ROOT / "docs" / "generate_command_line.py", "--check"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert finished.returncode == 0, finished.stderr
+
+
+def test_every_command_is_explained_in_the_readme_or_the_manual() -> None:
+    reference = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
+    commands = [name for name in re.findall(r"^## (calm .+)$", reference, re.MULTILINE)]
+    assert "calm run" in commands
+    explained = "\n".join(
+        page.read_text(encoding="utf-8") for page in PAGES if page.name != "command-line.md"
+    )
+    assert not [command for command in commands if command not in explained]
+
+
+def test_the_checks_run_the_commands_of_the_readme() -> None:
+    script = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
+    loop = re.search(r"^for name in (.+); do$", script, re.MULTILINE)
+    assert loop is not None
+    for name in loop[1].split():
+        assert len(readme_command(name).splitlines()) == 1
+    assert "calm run lines/" in readme_command("install-and-run")
+    assert "pytest" in readme_command("install-and-test")
+
+
+def test_the_readme_shows_what_the_command_prints() -> None:
+    shown = re.search(r"^<!-- printed by: calm (.+) -->\n```text\n(.*?)^```$",
+                      README.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)  # fmt: skip
+    assert shown is not None
+    printed = "\n".join(line.rstrip() for line in calm_prints(*shown[1].split()).splitlines())
+    # The last sentence tells residuals at the level of rounding, which differ between machines.
+    assert shown[2].partition("Converged")[0] == printed.partition("Converged")[0]
+
+
+@pytest.mark.parametrize("page", [README, ROOT / "docs" / "python.md"], ids=lambda page: page.name)
+def test_python_examples_run(page: Path, tmp_path: Path) -> None:
+    examples = blocks(page, "python")
+    assert examples
+    (tmp_path / "lines").symlink_to(ROOT / "lines")
+    finished = subprocess.run(
+        [sys.executable, "-W", "error", "-c", "\n".join(examples)],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert finished.returncode == 0, finished.stderr
+
+
+@pytest.mark.parametrize(
+    "page", [README, ROOT / "docs" / "mooring-file.md"], ids=lambda page: page.name
+)
+def test_moorings_shown_are_solved(page: Path, tmp_path: Path) -> None:
+    file = tmp_path / "mooring.yaml"
+    file.write_text(blocks(page, "yaml")[0], encoding="utf-8")
+    assert "Anchor pulled by" in calm_prints("run", str(file))
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_lead_somewhere(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    links = [link for link in re.findall(r"\]\(([^)#]+)", text) if "://" not in link]
+    assert not [link for link in links if not (page.parent / link).exists()]

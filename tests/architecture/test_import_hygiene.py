@@ -1,0 +1,72 @@
+"""What each entrance loads, seen in a fresh process: a static graph cannot show that a deferred
+import stays deferred."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+HEAVY = {"scipy", "pint", "xarray", "matplotlib", "pandas", "numba", "textual"}
+
+COMMAND = """
+import contextlib, io, json, sys
+sys.argv = ["calm", *{arguments}]
+from calm.cli import main
+code = 0
+with contextlib.redirect_stdout(io.StringIO()):
+    try:
+        code = main()
+    except SystemExit as leaving:
+        code = leaving.code
+assert not code, code
+print(json.dumps(sorted(sys.modules)))
+"""
+
+
+def loaded(program: str) -> set[str]:
+    """Names of the modules in memory after `program`, which prints them as JSON."""
+    finished = subprocess.run(
+        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert finished.returncode == 0, finished.stderr
+    return set(json.loads(finished.stdout.splitlines()[-1]))
+
+
+def loaded_by_import(module: str) -> set[str]:
+    return loaded(f"import json, sys, {module}; print(json.dumps(sorted(sys.modules)))")
+
+
+def test_the_package_itself_loads_nothing_it_may_not_need() -> None:
+    unwanted = HEAVY | {"pydantic", "ruamel", "rich", "cyclopts"}
+    assert not unwanted & loaded_by_import("calm")
+
+
+@pytest.mark.parametrize("module", ["calm.physics", "calm.solve"])
+def test_the_numbers_know_only_arrays(module: str) -> None:
+    unwanted = HEAVY | {"pydantic", "ruamel", "rich", "cyclopts"}
+    modules = loaded_by_import(module)
+    assert not unwanted & modules
+    above = {"calm.files", "calm.units", "calm.shipped", "calm.case", "calm.report", "calm.cli"}
+    assert not above & modules
+
+
+def test_reading_files_loads_no_heavy_library() -> None:
+    assert not HEAVY & loaded_by_import("calm.files")
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["--help"],
+        ["run", "--help"],
+        ["run", "lines/deep-current-meters.yaml"],
+        ["run", "lines/deep-current-meters.yaml", "--json", "-"],
+        ["catalog", "list"],
+    ],
+    ids=" ".join,
+)
+def test_everyday_commands_load_no_heavy_library(arguments: list[str]) -> None:
+    assert not HEAVY & loaded(COMMAND.format(arguments=arguments))

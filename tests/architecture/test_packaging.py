@@ -1,0 +1,129 @@
+"""What is built is what stands in the checkout, and it works away from it."""
+
+import importlib.metadata
+import os
+import re
+import subprocess
+import sys
+import tarfile
+import tomllib
+import zipfile
+from pathlib import Path
+
+import pytest
+from hatchling.builders.sdist import SdistBuilder
+from hatchling.builders.wheel import WheelBuilder
+
+import calm
+from calm.cli import main
+
+ROOT = Path(__file__).resolve().parents[2]
+INSTALLED_AS = {"calm": "calm", "catalog": "calm/_shipped/catalog", "lines": "calm/_shipped/lines"}
+
+
+def build_wheel(project: Path, folder: Path) -> Path:
+    return Path(
+        next(WheelBuilder(str(project)).build(directory=str(folder), versions=["standard"]))
+    )
+
+
+def checkout_files() -> dict[str, bytes]:
+    """Contents of the files to install, by their path in the wheel."""
+    return {
+        f"{target}/{path.relative_to(ROOT / source).as_posix()}": path.read_bytes()
+        for source, target in INSTALLED_AS.items()
+        for path in (ROOT / source).rglob("*")
+        if path.is_file() and "__pycache__" not in path.parts
+    }
+
+
+def wheel_files(wheel: Path) -> dict[str, bytes]:
+    with zipfile.ZipFile(wheel) as archive:
+        return {
+            name: archive.read(name) for name in archive.namelist() if ".dist-info/" not in name
+        }
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return build_wheel(ROOT, tmp_path_factory.mktemp("wheel"))
+
+
+def test_the_wheel_holds_the_checkout_and_nothing_else(wheel: Path) -> None:
+    built, wanted = wheel_files(wheel), checkout_files()
+    assert sorted(built) == sorted(wanted)
+    assert built == wanted
+
+
+def test_the_source_distribution_builds_the_same_wheel(wheel: Path, tmp_path: Path) -> None:
+    source = next(SdistBuilder(str(ROOT)).build(directory=str(tmp_path), versions=["standard"]))
+    with tarfile.open(source) as archive:
+        archive.extractall(tmp_path, filter="data")
+    unpacked = Path(str(source).removesuffix(".tar.gz"))
+    assert wheel_files(build_wheel(unpacked, tmp_path)) == wheel_files(wheel)
+    assert (unpacked / "tests" / "conftest.py").exists()
+
+
+def test_the_wheel_finds_its_own_catalogue_and_lines(wheel: Path, tmp_path: Path) -> None:
+    site = tmp_path / "site"
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(site)
+    line = site / "calm" / "_shipped" / "lines" / "deep-current-meters.yaml"
+    program = (
+        "import sys, calm, calm.cli; print(calm.__file__, file=sys.stderr); "
+        f"sys.argv = ['calm', 'run', {str(line)!r}]; sys.exit(calm.cli.main())"
+    )
+    finished = subprocess.run(
+        [sys.executable, "-c", program],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(site)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert finished.returncode == 0, finished.stderr
+    assert str(site) in finished.stderr
+
+
+def test_there_is_one_version(capsys: pytest.CaptureFixture[str]) -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    changelog = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    newest = re.search(r"^## \[?(\d+\.\d+\.\d+)", changelog, re.MULTILINE)
+    assert newest is not None
+    sys_argv, sys.argv = sys.argv, ["calm", "--version"]
+    try:
+        main()
+    except SystemExit:
+        pass
+    finally:
+        sys.argv = sys_argv
+    versions = {
+        project["version"],
+        calm.__version__,
+        importlib.metadata.version("calm-mooring"),
+        newest[1],
+        capsys.readouterr().out.split()[-1],
+    }
+    assert versions == {calm.__version__}
+
+
+def test_extra_and_dependency_group_are_one_list() -> None:
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    extra = settings["project"]["optional-dependencies"]["dev"]
+    assert extra == settings["dependency-groups"]["dev"]
+
+
+def test_constraints_name_every_direct_dependency() -> None:
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    wanted = [
+        *settings["build-system"]["requires"],
+        *settings["project"]["dependencies"],
+        *settings["dependency-groups"]["dev"],
+    ]
+    pinned = {
+        line.partition("==")[0].lower()
+        for line in (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
+        if not line.startswith("#")
+    }
+    missing = [name for name in wanted if re.split(r"[^\w.-]", name.lower())[0] not in pinned]
+    assert not missing

@@ -1,0 +1,16 @@
+"""Every run of the tests tries the same examples and sees no catalogue but the shipped one."""
+
+import os
+
+import pytest
+from hypothesis import settings
+
+settings.register_profile("ci", derandomize=True, deadline=None, database=None)
+settings.register_profile("explore", deadline=None, max_examples=2000)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci"))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def without_the_users_catalogue(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Whoever runs the tests may have a catalogue of their own."""
+    os.environ["CALM_CATALOG_DIR"] = str(tmp_path_factory.mktemp("catalogue") / "none")

@@ -1,0 +1,176 @@
+"""Currents from CSV files."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from calm.errors import InputError
+from calm.files import CurrentTable, MooringFile
+from calm.files.current_csv import MOST_PROBLEMS
+from calm.files.current_file import read_current_file
+from calm.files.times import TimeChoiceError
+
+from .conftest import GOOD, Place
+
+RECORD = """\
+# a record of two profiles
+time,depth[m],u[m/s],v[m/s]
+2026-03-01T06:00,0,0.5,0.1
+2026-03-01T06:00,50,0.3,0.0
+2026-03-01T12:00:00Z,0,-0.5,0.1
+2026-03-01T12:00:00Z,50,-0.3,0.0
+"""
+
+
+@pytest.fixture
+def csv(tmp_path: Path) -> Path:
+    return tmp_path / "current.csv"
+
+
+def profile(path: Path, text: str, time: str | None = None) -> tuple[CurrentTable, list[str]]:
+    path.write_text(text)
+    return read_current_file(path, time, 1000.0)
+
+
+def problems(path: Path, text: str) -> list[Place]:
+    with pytest.raises(InputError) as caught:
+        profile(path, text)
+    return [(one.line, one.column, one.message) for one in caught.value.problems]
+
+
+def test_components(csv: Path) -> None:
+    table, notices = profile(csv, "depth[m],u[cm/s],v[m/s],w[m/s]\n0, 50 ,0.1,0\n\n100,20,0,-.01\n")
+    assert table == CurrentTable((0.0, 100.0), (0.5, 0.2), (0.1, 0.0), (0.0, -0.01))
+    assert notices == []
+
+
+def test_speed_and_direction(csv: Path) -> None:
+    table, _ = profile(csv, "depth[m],speed[m/s],toward[deg]\n0,0.5,180\n")
+    assert table.v == (-0.5,)
+
+
+def test_profile_of_a_time(csv: Path) -> None:
+    table, notices = profile(csv, RECORD, "2026-03-01T06:00")
+    assert (table.u, notices) == ((0.5, 0.3), [])
+    table, notices = profile(csv, RECORD, "2026-03-01T10:00+00:00")
+    assert table.u == (-0.5, -0.3)
+    assert notices == ["the current is that of 2026-03-01T12:00, nearest to 2026-03-01T10:00"]
+
+
+def test_record_of_one_time_needs_no_choice(csv: Path) -> None:
+    table, _ = profile(csv, "".join(RECORD.splitlines(keepends=True)[:4]))
+    assert table.u == (0.5, 0.3)
+
+
+@pytest.mark.parametrize(
+    ("time", "message"),
+    [
+        (None, "the file has 2 times, 2026-03-01T06:00 to 2026-03-01T12:00; give `time:`"),
+        (
+            "2026-03-02",
+            "2026-03-02T00:00 is outside the record, 2026-03-01T06:00 to 2026-03-01T12:00",
+        ),
+        ("noon", "`noon` is no time; write 2026-03-01T06:00"),
+    ],
+)
+def test_times_that_cannot_be_chosen(csv: Path, time: str | None, message: str) -> None:
+    with pytest.raises(TimeChoiceError) as caught:
+        profile(csv, RECORD, time)
+    assert str(caught.value) == message
+
+
+def test_time_where_there_is_none(csv: Path) -> None:
+    with pytest.raises(TimeChoiceError, match="the file has no column `time`"):
+        profile(csv, "depth[m],u[m/s],v[m/s]\n0,1,1\n", "2026-03-01")
+
+
+def test_mistakes_have_their_place(csv: Path) -> None:
+    text = "depth[m],u[m/s],v[m/s]\n0,  1 knt,2\n10,1,nan\n10,1\n5,1,\n"
+    assert problems(csv, text) == [
+        (
+            2,
+            5,
+            "`u: 1 knt` has an unknown unit, `knt`; a speed (m/s, cm/s, mm/s, knot, km/h, ft/s) is "
+            "needed; did you mean `u: 1 knot`?",
+        ),
+        (3, 6, "`v: nan` is not a finite number"),
+        (4, 1, "the row has 2 values, 3 are needed"),
+        (5, 5, "`v` has no value"),
+    ]
+
+
+def test_column_of_a_record_with_a_mistake(csv: Path) -> None:
+    assert problems(csv, "time,depth[m],u[m/s],v[m/s]\n2026-03-01,0,1,x\n") == [
+        (2, 16, "`v: x` is not a speed (m/s, cm/s, mm/s, knot, km/h, ft/s)")
+    ]
+    [place] = problems(csv, "time,depth[m],u[m/s],v[m]\n2026-03-01,0,1,1\n")
+    assert place[:2] == (1, 22)
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("", (0, 0, "is empty")),
+        ("depth[m],u[m/s],v[m/s]\n", (1, 1, "the table has no rows")),
+        (
+            "depth[m];u[m/s];v[m/s]\n0;1;1\n",
+            (1, 1, "`depth[m];u[m/s];v[m/s]` is no header such as `depth[m],u[m/s],v[m/s]`"),
+        ),
+        (
+            "time,depth[m],u[m/s],v[m/s]\nnoon,0,1,1\n",
+            (2, 1, "`noon` is no time; write 2026-03-01T06:00"),
+        ),
+        (
+            "depth[m],speed[m/s]\n0,1\n",
+            (
+                1,
+                1,
+                "a current needs `u` and `v`, or `speed` and `toward`; "
+                "the columns are depth, speed",
+            ),
+        ),
+    ],
+)
+def test_files_that_are_no_current(csv: Path, text: str, place: Place) -> None:
+    assert problems(csv, text) == [place]
+
+
+def test_thousands_of_the_same_mistake_are_cut_short(csv: Path) -> None:
+    found = problems(csv, "depth[m],u[m/s],v[m/s]\n" + "a,1,1\n" * 3000)
+    assert len(found) == MOST_PROBLEMS + 1
+    assert found[-1] == (0, 0, "and 2980 more mistakes")
+
+
+def test_file_named_by_a_mooring(read: Callable[..., MooringFile], csv: Path) -> None:
+    csv.write_text(RECORD)
+    start, end = GOOD.index("  current:"), GOOD.index("line:")
+    current = '  current: {file: current.csv, time: "2026-03-01T05:00"}\n'
+    with pytest.raises(InputError) as caught:
+        read(GOOD[:start] + current + GOOD[end:])
+    [problem] = caught.value.problems
+    assert (problem.line, problem.column) == (4, 38)
+    assert "is outside the record" in problem.message
+    mooring = read(GOOD[:start] + current.replace("05:00", "07:30") + GOOD[end:])
+    assert mooring.environment.current.u == (0.5, 0.3)
+    assert mooring.notices == (
+        "the current is that of 2026-03-01T06:00, nearest to 2026-03-01T07:30",
+    )
+
+
+def test_file_that_is_not_there(
+    read: Callable[..., MooringFile], mistakes: Callable[..., list[Place]]
+) -> None:
+    start, end = GOOD.index("  current:"), GOOD.index("line:")
+    text = GOOD[:start] + "  current: {file: nowhere.csv}\n" + GOOD[end:]
+    assert mistakes(text) == [(4, 19, "`file: nowhere.csv`: no such file")]
+
+
+def test_variant_with_a_file_is_read_when_chosen(
+    read: Callable[..., MooringFile], csv: Path
+) -> None:
+    csv.write_text("depth[m],u[m/s],v[m/s]\n0,oops,1\n")
+    text = GOOD + "environments:\n  measured: {current: {file: current.csv}}\n"
+    assert read(text)
+    with pytest.raises(InputError, match=r"current.csv:2:3: `u: oops` is not a speed"):
+        read(text, "measured")

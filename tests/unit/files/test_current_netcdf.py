@@ -1,0 +1,219 @@
+"""Currents from CF NetCDF files, by standard names and by the names models and archives use."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from calm.errors import InputError
+from calm.files import CurrentTable
+from calm.files.current_file import read_current_file
+from calm.files.times import TimeChoiceError
+
+DEPTH = ("depth", [5.0, 50.0, 200.0], {"units": "m", "positive": "down", "axis": "Z"})
+TIME = ("time", np.array(["2026-03-01T00", "2026-03-01T06"], dtype="datetime64[ns]"))
+EAST = {"standard_name": "eastward_sea_water_velocity", "units": "m s-1"}
+NORTH = {"standard_name": "northward_sea_water_velocity", "units": "m s-1"}
+UP = {"standard_name": "upward_sea_water_velocity", "units": "m s-1"}
+
+U = [0.5, 0.25, 0.125]
+V = [-0.5, -0.25, 0.0]
+
+
+def profile(**variables: Any) -> xr.Dataset:
+    return xr.Dataset(
+        {"uo": ("depth", U, EAST), "vo": ("depth", V, NORTH), **variables}, {"depth": DEPTH}
+    )
+
+
+def read(
+    dataset: xr.Dataset, folder: Path, time: str | None = None, engine: str = "h5netcdf"
+) -> tuple[CurrentTable, list[str]]:
+    path = folder / "current.nc"
+    dataset.to_netcdf(path, engine=engine)
+    return read_current_file(path, time, 1000.0)
+
+
+def problem(dataset: xr.Dataset, folder: Path) -> str:
+    with pytest.raises(InputError) as caught:
+        read(dataset, folder)
+    [found] = caught.value.problems
+    assert (found.path, found.line) == (str(folder / "current.nc"), 0)
+    return found.message
+
+
+@pytest.mark.parametrize("engine", ["h5netcdf", "scipy"])
+def test_standard_names(tmp_path: Path, engine: str) -> None:
+    dataset = profile(wo=("depth", [0.0, 0.01, 0.0], UP)).rename(uo="a", vo="b", wo="c")
+    table, notices = read(dataset, tmp_path, engine=engine)
+    assert table == CurrentTable((5.0, 50.0, 200.0), tuple(U), tuple(V), (0.0, 0.01, 0.0))
+    assert notices == []
+
+
+@pytest.mark.parametrize(
+    "names", [("uo", "vo"), ("u", "v"), ("UCUR", "VCUR"), ("water_u", "water_v")]
+)
+def test_usual_names(tmp_path: Path, names: tuple[str, str]) -> None:
+    dataset = profile().rename(uo=names[0], vo=names[1])
+    for name in names:
+        dataset[name].attrs = {"units": "cm/s"}
+    table, _ = read(dataset, tmp_path)
+    assert table.u == pytest.approx([u / 100 for u in U], rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("standard_name", "sign"),
+    [
+        ("sea_water_velocity_to_direction", 1),
+        ("direction_of_sea_water_velocity", 1),
+        ("sea_water_velocity_from_direction", -1),
+    ],
+)
+def test_speed_and_direction(tmp_path: Path, standard_name: str, sign: int) -> None:
+    attributes = {"standard_name": standard_name, "units": "degree_true"}
+    dataset = xr.Dataset(
+        {
+            "cspd": (
+                "depth",
+                [1.0, 1.0, 2.0],
+                {"standard_name": "sea_water_speed", "units": "m/s"},
+            ),
+            "cdir": ("depth", [0.0, 90.0, 210.0], attributes),
+        },
+        {"depth": DEPTH},
+    )
+    table, _ = read(dataset, tmp_path)
+    # Sines and cosines, to rounding.
+    assert table.u == pytest.approx([0.0, sign * 1.0, sign * -1.0], abs=1e-15)
+    assert table.v == pytest.approx([sign * 1.0, 0.0, sign * -(3**0.5)], abs=1e-15)
+
+
+def record() -> xr.Dataset:
+    """Two profiles at one position, as an archive holds them."""
+    shape = ("time", "depth", "lat", "lon")
+    u = np.stack([U, [2 * u for u in U]])[:, :, None, None]
+    v = np.stack([V, [2 * v for v in V]])[:, :, None, None]
+    return xr.Dataset(
+        {"uo": (shape, u.astype("f4"), EAST), "vo": (shape, v.astype("f4"), NORTH)},
+        {"time": TIME, "depth": DEPTH, "lat": [48.3], "lon": [-5.2]},
+    )
+
+
+def test_profile_of_a_time(tmp_path: Path) -> None:
+    table, notices = read(record(), tmp_path, "2026-03-01T06:00")
+    assert (table.u, notices) == ((1.0, 0.5, 0.25), [])
+    table, notices = read(record(), tmp_path, "2026-03-01T02:00")
+    assert table.u == tuple(U)
+    assert notices == ["the current is that of 2026-03-01T00:00, nearest to 2026-03-01T02:00"]
+    table, _ = read(record().isel(time=[1]), tmp_path)
+    assert table.u == (1.0, 0.5, 0.25)
+
+
+@pytest.mark.parametrize(
+    ("time", "message"),
+    [
+        (None, "the file has 2 times, 2026-03-01T00:00 to 2026-03-01T06:00; give `time:`"),
+        ("2026-03-01T06:01", "is outside the record"),
+        ("six", "`six` is no time"),
+    ],
+)
+def test_times_that_cannot_be_chosen(tmp_path: Path, time: str | None, message: str) -> None:
+    with pytest.raises(TimeChoiceError, match=message):
+        read(record(), tmp_path, time)
+    with pytest.raises(TimeChoiceError, match="the file has no times"):
+        read(profile(), tmp_path, "2026-03-01")
+
+
+def test_levels_without_a_value_are_left_out(tmp_path: Path) -> None:
+    dataset = profile()
+    dataset["uo"][1] = np.nan
+    table, notices = read(dataset, tmp_path)
+    assert table.depth == (5.0, 200.0)
+    assert notices == ["1 level without a value left out of the current"]
+
+
+def test_levels_above_the_surface_are_left_out(tmp_path: Path) -> None:
+    dataset = profile().assign_coords(depth=("depth", [-3.0, 4.0, 11.0], DEPTH[2]))
+    table, notices = read(dataset, tmp_path)
+    assert table.depth == (4.0, 11.0)
+    assert notices == ["1 level above the surface left out of the current"]
+
+
+@pytest.mark.parametrize(
+    ("levels", "attributes", "depths", "deepest_first"),
+    [
+        ([-5.0, -50.0, -200.0], {"positive": "up"}, (5.0, 50.0, 200.0), False),
+        ([-200.0, -50.0, -5.0], {"positive": "up"}, (5.0, 50.0, 200.0), True),
+        ([0.005, 0.05, 0.2], {"units": "km", "positive": "down"}, (5.0, 50.0, 200.0), False),
+        (
+            [10.0, 20.0, 30.0],
+            {"positive": "up", "standard_name": "height_above_sea_floor"},
+            (970.0, 980.0, 990.0),
+            True,
+        ),
+    ],
+)
+def test_levels_in_other_words(
+    tmp_path: Path,
+    levels: list[float],
+    attributes: dict[str, str],
+    depths: tuple[float, ...],
+    deepest_first: bool,
+) -> None:
+    coordinate = ("level", levels, {"units": "m", **attributes})
+    dataset = profile().rename(depth="level").assign_coords(level=coordinate)
+    table, _ = read(dataset, tmp_path)
+    assert table.depth == pytest.approx(depths, rel=1e-15)
+    assert table.u == tuple(reversed(U) if deepest_first else U)
+
+
+def test_one_current_meter_is_a_profile_of_one_level(tmp_path: Path) -> None:
+    dataset = profile().isel(depth=1)
+    table, _ = read(dataset, tmp_path)
+    assert table == CurrentTable((50.0,), (0.25,), (-0.25,), (0.0,))
+
+
+def test_quality_flags_are_not_looked_at_and_that_is_said(tmp_path: Path) -> None:
+    _, notices = read(profile(uo_QC=("depth", [1, 1, 4])), tmp_path)
+    assert notices == ["the current's quality flags are not looked at"]
+
+
+def test_no_current_in_the_file(tmp_path: Path) -> None:
+    dataset = xr.Dataset({"temperature": ("depth", U)}, {"depth": DEPTH})
+    assert problem(dataset, tmp_path) == (
+        "holds no current: eastward and northward velocity, or speed and direction to or from, are "
+        "looked for by CF standard name; it holds temperature, depth"
+    )
+
+
+def test_files_that_cannot_be_understood(tmp_path: Path) -> None:
+    attributes = {"units": "m", "positive": "down"}
+    wide = profile().expand_dims(lat=[48.0, 49.0])
+    assert problem(wide, tmp_path) == (
+        "`uo` is no single profile, but spreads over lat (2), depth (3)"
+    )
+    unit = profile()
+    unit["uo"].attrs["units"] = "kg"
+    assert problem(unit, tmp_path).startswith("`uo`: its unit, `kg`, is a mass; a speed")
+    assert problem(profile().drop_vars("depth"), tmp_path) == "its levels have no depth"
+    unclear = profile().rename(depth="z")
+    unclear["z"].attrs = {"units": "m"}
+    assert problem(unclear, tmp_path) == "`z` does not say whether it is `positive` up or down"
+    empty = profile() * np.nan
+    for name, source in (("uo", EAST), ("vo", NORTH)):
+        empty[name].attrs = source
+    assert problem(empty, tmp_path) == "no level below the surface has a value"
+    twice = profile().assign_coords(depth=("depth", [5.0, 5.0, 9.0], attributes))
+    assert problem(twice, tmp_path) == "two levels have the same depth"
+    both = profile(u2=("depth", U, EAST))
+    assert problem(both, tmp_path) == ("several variables are eastward_sea_water_velocity: u2, uo")
+
+
+@pytest.mark.parametrize("signature", [b"\x89HDF\r\n\x1a\n", b"CDF\x01"])
+def test_damaged_files(tmp_path: Path, signature: bytes) -> None:
+    path = tmp_path / "current.nc"
+    path.write_bytes(signature + b"nothing that makes sense" * 9)
+    with pytest.raises(InputError, match=r"current.nc: cannot be read as NetCDF: "):
+        read_current_file(path, None, 1000.0)

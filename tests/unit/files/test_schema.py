@@ -1,0 +1,107 @@
+"""The JSON Schema accepts what the reader accepts, and knows the common mistakes."""
+
+from collections.abc import Callable
+from typing import Any
+
+import jsonschema
+import pytest
+from ruamel.yaml import YAML
+
+from calm.files import MooringFile, mooring_schema
+
+from .conftest import GOOD
+from .test_bad_input import ONE_MISTAKE
+
+VALIDATOR = jsonschema.Draft202012Validator(mooring_schema())
+
+EVERYTHING = """\
+name: 2026
+description: free text
+position: {latitude: 48.3 deg, longitude: -5.2 deg}
+environment:
+  depth: 1100 m
+  density: {columns: [depth m, density kg/m^3], rows: [[0, 1024], [500, 1028 kg/m^3]]}
+  gravity: 9.81 m/s^2
+  current: {speed: 0.5 m/s, toward: 0}
+  wind: {speed: 12 m/s, toward: 90 deg}
+line:
+  - {use: ball, label: 5, hull: sphere, k_surface: 40 N/(m/s)^2, wind_cd: 1.1}
+  - {use: ball, hull: {displacement: [[0, 0, 0], [1 m, 1 m^3, 1 m^2]]}}
+  - use: rope-12
+    length: fit
+    top_depth: 105 m
+    clamps: [{use: meter, at: 0, label: clamped, cn: 1.1}]
+  - {use: frame, count: 2}
+  - {use: measured, slack: allowed, cd: 1}
+  - {use: deadweight, friction: 1/2, mass: 1.5 t}
+components:
+  frame: {kind: assembly, parts: [{use: own, length: 1/2 ft}, {use: chain}]}
+  chain: {kind: chain, diameter: 13 mm, cn: 2.75}
+  own: {kind: cable, diameter: 8 mm, mass: 0.2 kg/m, density: 0.91 g/cm^3, finish: very-rough}
+  measured: {kind: body, length: 0 m, mass: 20 kg, volume: 9 L, drag_area: 0.1 m^2, cd: 1.2}
+  shapes:
+    kind: body
+    length: 1 m
+    buoyancy: 12 kgf
+    made_of: [{kind: sphere, diameter: 30 cm}, {kind: cylinder, diameter: 8 cm, length: 1 m}]
+environments:
+  storm: {current: {columns: [depth m, u m/s, v m/s, w m/s], rows: [[0, 1, 0, 0.01]]}}
+  record: {current: {file: current.csv, time: "2026-03-01T06:00"}}
+solver: {angle_step: 1 deg, tolerance: 1e-7, drag: constant, buoy_drag: full}
+checks: {safety_factor: {steel: 3}, minimum_tension: {wire: 50 kgf}, maximum_tilt: 30 deg}
+"""
+
+
+def plain(text: str) -> Any:
+    return YAML(typ="safe", pure=True).load(text)
+
+
+def test_schema_is_one() -> None:
+    jsonschema.Draft202012Validator.check_schema(mooring_schema())
+
+
+@pytest.mark.parametrize("text", [GOOD, EVERYTHING])
+def test_good_files(text: str) -> None:
+    VALIDATOR.validate(plain(text))
+
+
+def test_the_reader_takes_everything_too(read: Callable[..., MooringFile], tmp_path: Any) -> None:
+    (tmp_path / "current.csv").write_text("depth[m],u[m/s],v[m/s]\n0,1,1\n")
+    text = EVERYTHING.replace("{use: chain}", "{use: chain, length: 2 m}")
+    assert len(read(text).pieces) == 9
+
+
+KNOWN_TO_THE_SCHEMA = [
+    "missing unit",
+    "unknown key",
+    "unknown field on the line",
+    "line of no items",
+    "no line",
+    "no environment",
+    "uniform direction without speed",
+    "decimal comma",
+    "clamp without a place",
+    "text for a mapping",
+    "item that is text",
+    "count of none",
+    "not yet: tow",
+    "not yet: drag",
+    "choice misspelt",
+    "limit misspelt",
+]
+
+
+@pytest.mark.parametrize("mistake", KNOWN_TO_THE_SCHEMA)
+def test_mistakes_the_schema_knows(mistake: str) -> None:
+    assert not VALIDATOR.is_valid(plain(ONE_MISTAKE[mistake][0]))
+
+
+def test_fields_are_described() -> None:
+    schema = mooring_schema()
+    described = schema["$defs"]["Item"]["properties"]
+    bare = {name for name, field in described.items() if "description" not in field}
+    # What speaks for itself.
+    assert bare <= {
+        "date", "hull", "k_surface", "lift", "manufacturer", "material", "name", "part_number",
+        "slack", "surface", "wind_area", "wind_cd",
+    }  # fmt: skip

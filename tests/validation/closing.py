@@ -1,0 +1,146 @@
+"""Where the free end of the referee's line is: the highest equilibrium of a mooring.
+
+A line whose free end, left at the surface with its full buoyancy, hangs too deep for its anchor
+floats: its free end is at the surface and the unknown is the part in use of the buoyancy of the
+first float. If that leaves the next float in the air or the line too high, the next one is at the
+surface too, the part of the first being what leaves it there, and its own part is the unknown.
+Otherwise the unknown is the depth of the free end. Each is searched from the upright side in
+`SCAN` steps, then closed by Brent's method to rounding.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq
+
+from calm.physics.line import Line, Water
+from tests.validation.continuous import Folded, March, NoContinuousSolution, Shape
+from tests.validation.loads import Vector
+
+COARSE, FINE = 1e-5, 1e-11
+SCAN = 60
+SLACK = 1e-6
+"""Least tension in a cable, as a part of the greatest: below it the line hangs in a sharp fold."""
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """The referee's answer.
+
+    In `shape` x and y count from the line's lower end. `share` (n,) is the part in use of each
+    piece's buoyancy, 1 but for floats at the surface; `depth` [m] is that of the free end.
+    """
+
+    shape: Shape
+    share: Vector
+    depth: float
+    surface: bool
+
+
+def solve_continuous(line: Line, water: Water) -> Equilibrium:
+    """The highest equilibrium of a mooring.
+
+    Raises
+    ------
+    NoContinuousSolution
+        Where there is none, or none without parts in the air, on the seabed or slack.
+    """
+    bottom = water.depth - line.anchor_height
+    rough, fine = March(line, water, COARSE), March(line, water, FINE)
+
+    def excess(march: March, depth: float, share: Vector) -> float:
+        """How much deeper than the anchor's top the line ends [m]."""
+        return float(-march.down(depth, share).bottom[-1, 2] - bottom)
+
+    share, depth = np.ones(len(line.length)), 0.0
+    surface = excess(fine, 0.0, share) > 0.0
+    if surface:
+        share = _afloat(line, lambda march, parts: excess(march, 0.0, parts), rough, fine)
+    else:
+        depth = _first_root(
+            lambda d: excess(rough, d, share), lambda d: excess(fine, d, share),
+            _depths(line, water, share, bottom),
+        )  # fmt: skip
+    shape = fine.down(depth, share)
+    _refuse_impossible(shape, line, water, share)
+    return Equilibrium(shape.shifted(-shape.bottom[-1, :2]), share, depth, surface)
+
+
+def _depths(line: Line, water: Water, share: Vector, bottom: float) -> Vector:
+    """Depths to try: the surface, then downwards from above the upright line, closest there."""
+    hanging = -float(March(line, water.still(), COARSE).down(0.0, share).bottom[-1, 2])
+    stretch = hanging - float(line.length.sum())
+    start = max(0.0, bottom - hanging - 2.0 * stretch - 1e-3 * water.depth)
+    steps = np.linspace(0.0, 1.0, SCAN + 1) ** 2
+    return np.unique(np.concatenate([[0.0], start + (bottom - start) * steps]))
+
+
+def _afloat(
+    line: Line, excess: Callable[[March, Vector], float], rough: March, fine: March
+) -> Vector:
+    """The parts in use of the buoyancies when floats lie at the surface."""
+    share = np.ones(len(line.length))
+    floats = np.flatnonzero((line.buoyancy > 0.0) & ~line.flexible)
+    for this, following in zip(floats, [*floats[1:], -1], strict=True):
+
+        def used(part: float, this: int = this, above: Vector = share) -> Vector:
+            return np.where(np.arange(len(above)) == this, part, above)
+
+        def height(march: March, parts: Vector, piece: int = following) -> float:
+            """That of the next float's top above the surface."""
+            return float(march.down(0.0, parts, until=piece).bottom[piece - 1, 2])
+
+        if excess(fine, used(0.0)) <= 0.0:
+            parts = used(_share(excess, used, rough, fine))
+            if following < 0 or height(fine, parts) <= 1e-9 * fine.depth:
+                return parts
+        # The next float comes to the surface too, and this one bears the line between them.
+        if following < 0 or height(fine, used(0.0)) < -1e-9 * fine.depth:
+            break
+        share = used(_share(lambda m, parts: -height(m, parts), used, rough, fine))
+    raise NoContinuousSolution("more than the floats rises to the surface")
+
+
+def _share(
+    excess: Callable[[March, Vector], float],
+    used: Callable[[float], Vector],
+    rough: March,
+    fine: March,
+) -> float:
+    """The part of one float's buoyancy that leaves no excess of depth; all of it leaves some."""
+    if abs(excess(fine, used(0.0))) <= 1e-9 * fine.depth:
+        return 0.0
+    return _first_root(
+        lambda part: -excess(rough, used(part)),
+        lambda part: -excess(fine, used(part)),
+        np.linspace(1.0, 0.0, SCAN + 1) ** 2,
+    )
+
+
+def _first_root(
+    rough: Callable[[float], float], fine: Callable[[float], float], grid: Iterable[float]
+) -> float:
+    """The first root on the way through `grid`, from the negative side."""
+    passed: list[float] = []
+    for point in grid:
+        if passed and rough(point) > 0.0 and fine(point) >= 0.0:
+            # The rough march may see the root on the wrong side of a grid point.
+            near = passed[-1] if fine(passed[-1]) <= 0.0 else passed[-2]
+            return float(brentq(fine, near, point, xtol=1e-13, rtol=1e-14))
+        passed.append(float(point))
+    raise NoContinuousSolution("no depth or part of the buoyancy brings the line to its anchor")
+
+
+def _refuse_impossible(shape: Shape, line: Line, water: Water, share: Vector) -> None:
+    afloat = float(line.length[share < 1.0].sum())  # a float may stand out of the water
+    if min(shape.depths) < -afloat - 1e-9 * water.depth:
+        raise NoContinuousSolution("a part of the line is in the air")
+    if max(shape.depths) > water.depth * (1.0 + 1e-9):
+        raise NoContinuousSolution("a part of the line is on the seabed")
+    if line.flexible.any():
+        greatest = float(np.linalg.norm(shape.force_bottom, axis=1).max())
+        if shape.slackest < SLACK * greatest:
+            raise Folded("the line folds where it is slack")
