@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf, sqrt
 
 from calm.physics.element import axis_along, drag_force, drag_share
@@ -22,17 +23,20 @@ def march_cable(
     reach: float,
     given: list[float] | None,
     trace: Trace | None,
-) -> list[float]:
+    lands: bool = False,
+) -> tuple[list[float], float | None]:
     """Take the state from the top of a stretch of cable to its bottom.
 
     Parameters
     ----------
     angle_step, reach : how much a segment may turn [rad] and how long it may be [m]
     given : the unstretched lengths of the segments to use [m]; None chooses them
+    lands : whether to stop where the line has no more weight to give: its touchdown
 
     Returns
     -------
-    The unstretched lengths of the segments used [m].
+    cuts : the unstretched lengths of the segments for the whole stretch [m]
+    hanging : the unstretched length above its touchdown [m]; None where it has none
 
     Raises
     ------
@@ -40,21 +44,54 @@ def march_cable(
         Where a segment finds no balance or more than 50 000 would be needed.
     """
     used: list[float] = []
-    left = cable.length
-    if given is not None:
-        for cut in given:
-            _pass_segment(cable, profile, state, cut, trace)
-        return given
-    while left > 0.0 or not used:
-        cut = min(left, segment_length(cable, profile, state, angle_step, reach))
-        if left - cut < 0.01 * cut:
-            cut = left
-        _pass_segment(cable, profile, state, cut, trace)
+    done = 0.0
+    while done < cable.length or not used:
+        left = cable.length - done
+        if given is not None:
+            if len(used) == len(given):
+                break
+            cut = given[len(used)]
+        else:
+            cut = min(left, segment_length(cable, profile, state, angle_step, reach))
+            if left - cut < 0.01 * cut:
+                cut = left
         used.append(cut)
-        left -= cut
+        if lands and state.fz > 0.0:
+            hanging = _touchdown(cable, profile, state, cut)
+            if hanging < cut:
+                _pass_segment(cable, profile, state, hanging, trace)
+                state.fz = 0.0
+                return given or [*used, *evenly(left - cut, reach)], done + hanging
+        _pass_segment(cable, profile, state, cut, trace)
+        done += cut
         if len(used) > MOST_SEGMENTS:
             raise MarchError(f"the line would need more than {MOST_SEGMENTS} segments")
-    return used
+    return used, None
+
+
+def evenly(length: float, reach: float) -> list[float]:
+    """Segments of one length for a cable that is not marched [m]."""
+    count = max(round(length / reach), 1)
+    return [length / count] * count if length > 0.0 else []
+
+
+def _touchdown(cable: Cable, profile: Profile, state: State, cut: float) -> float:
+    """How much of a segment hangs before its end has nothing left to carry [m]; at most `cut`."""
+    low, high, hanging = 0.0, cut, cut
+    for _ in range(_PASSES):
+        probe = replace(state)
+        _pass_segment(cable, profile, probe, hanging, None)
+        if hanging == cut and probe.fz > 0.0:
+            return cut
+        if abs(probe.fz) <= 1e-12 * state.fz:
+            break
+        if probe.fz > 0.0:
+            low = hanging
+        else:
+            high = hanging
+        following = hanging * state.fz / (state.fz - probe.fz)
+        hanging = following if low < following < high else 0.5 * (low + high)
+    return hanging
 
 
 def _pass_segment(
@@ -116,27 +153,43 @@ def segment_length(
 ) -> float:
     """How long the next segment may be [m]: by its turn, by depth, and to the next level.
 
-    Where a slack line hangs on little more than its own weight it may turn within one segment, so
-    the tension may not fall by more than half in it either. Near a free end the tension
-    vanishes: a floor keeps the count finite.
+    The turn is that of the load at either end of the segment, the tension that at its top. Near a
+    free end the tension vanishes: a floor keeps the count finite.
     """
-    fx, fy, fz = state.fx, state.fy, state.fz
-    tension = sqrt(fx * fx + fy * fy + fz * fz)
+    tension = sqrt(state.fx * state.fx + state.fy * state.fy + state.fz * state.fz)
     depth = -state.z
+    sinking = state.fz / tension if tension > 0.0 else 1.0
+    length, floor = reach, 1e-5 * reach
+    for _ in (0, 1):
+        rate = _rate_of_turn(cable, profile, state, tension, depth, angle_step)
+        if rate > 0.0:
+            length = min(length, max(tension / rate, floor))
+        depth = -state.z + length * sinking
+    gap = profile.distance_to_level(-state.z, sinking, state.level, 0.01 * length)
+    return min(gap, length)
+
+
+def _rate_of_turn(
+    cable: Cable,
+    profile: Profile,
+    state: State,
+    tension: float,
+    depth: float,
+    angle_step: float,
+) -> float:
+    """Tension over the allowed length [N/m] for the load at a depth.
+
+    Where a slack line hangs on little more than its own weight it may turn within one segment, so
+    the tension may not fall by more than half in it either.
+    """
     u, v, w, density = profile.at(depth, state.level)
     lift = cable.buoyancy + (density - REFERENCE_DENSITY) * profile.gravity * cable.volume
+    tx, ty, tz = 0.0, 0.0, -1.0
     if tension > 0.0:
-        tx, ty, tz = -fx / tension, -fy / tension, -fz / tension
-    else:
-        tx, ty, tz = 0.0, 0.0, -1.0
+        tx, ty, tz = -state.fx / tension, -state.fy / tension, -state.fz / tension
     kn = cable.normal_drag * density / REFERENCE_DENSITY
     qx, qy, qz = drag_force(kn, 0.0, u, v, w, tx, ty, tz)
     along = lift * tz
     qx, qy, qz = qx - along * tx, qy - along * ty, qz + lift - along * tz
     rate = sqrt(qx * qx + qy * qy + qz * qz) / angle_step
-    if tension > 0.0:
-        rate = max(rate, 2.0 * along)
-    length = min(reach, max(tension / rate, 1e-5 * reach)) if rate > 0.0 else reach
-    gap = profile.distance_to_level(depth, -tz, state.level)
-    # a level closer than a hundredth of the segment is as good as reached
-    return gap if 0.01 * length < gap < length else length
+    return max(rate, 2.0 * along) if tension > 0.0 else rate

@@ -87,7 +87,14 @@ def axis_along(
 
 
 def drag_force(
-    kn: float, kt: float, vx: float, vy: float, vz: float, tx: float, ty: float, tz: float
+    kn: float,
+    kt: float,
+    vx: float,
+    vy: float,
+    vz: float,
+    tx: float,
+    ty: float,
+    tz: float,
 ) -> Vector:
     """Kn |Vn| Vn + Kt |Vt| Vt [N] for the axis t and the relative current V [m/s]."""
     along = vx * tx + vy * ty + vz * tz

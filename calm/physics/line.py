@@ -35,7 +35,11 @@ class _Arrays:
             raise ValueError(f"{type(self).__name__}: arrays differ in length: {lengths}")
 
 
-_DTYPES: dict[str, Any] = {"Floats": np.float64, "Integers": np.int64, "Booleans": np.bool_}
+_DTYPES: dict[str, Any] = {
+    "Floats": np.float64,
+    "Integers": np.int64,
+    "Booleans": np.bool_,
+}
 
 
 @dataclass(frozen=True)
@@ -85,7 +89,13 @@ class Line(_Arrays):
             "directional", "compliance", "thinning",
         )  # fmt: skip
         self._same_length("clamp_piece", "clamp_at", "clamp_buoyancy", "clamp_volume", "clamp_drag")
-        for name in ("length", "normal_drag", "tangential_drag", "compliance", "clamp_drag"):
+        for name in (
+            "length",
+            "normal_drag",
+            "tangential_drag",
+            "compliance",
+            "clamp_drag",
+        ):
             if (getattr(self, name) < 0).any():
                 raise ValueError(f"Line.{name} must not be negative")
 

@@ -44,16 +44,25 @@ class Profile:
         """Current u, v, w [m/s] and density [kg/m³] at a depth, searched from interval `i`."""
         origin, u, du, v, dv, w, dw, density, ddensity = self.rows[self.interval(depth, i)]
         below = depth - origin
-        return u + du * below, v + dv * below, w + dw * below, density + ddensity * below
+        return (
+            u + du * below,
+            v + dv * below,
+            w + dw * below,
+            density + ddensity * below,
+        )
 
-    def distance_to_level(self, depth: float, sinking: float, i: int) -> float:
-        """Way to the next level from a depth [m], along a path that sinks so much per metre."""
-        i = self.interval(depth, i)
-        if sinking > 0.0:
-            return (self.levels[i + 1] - depth) / sinking
-        if sinking < 0.0:
-            return (self.levels[i] - depth) / sinking
-        return inf
+    def distance_to_level(self, depth: float, sinking: float, i: int, least: float = 0.0) -> float:
+        """Way to the next level from a depth [m], along a path that sinks so much per metre.
+
+        A level no farther than `least` is as good as reached: the one behind it counts.
+        """
+        if sinking == 0.0:
+            return inf
+        i = self.interval(depth, i) + (sinking > 0.0)
+        ahead = 1 if sinking > 0.0 else -1
+        while (gap := (self.levels[i] - depth) / sinking) <= least:
+            i += ahead
+        return gap
 
 
 def _values_and_slopes(depths: list[float], values: list[float]) -> list[tuple[float, float]]:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from math import degrees, inf, radians
+from math import degrees, radians
+
+import numpy as np
 
 from calm.physics.line import Line, Water
 from calm.physics.march import Cuts, End, march
 from calm.physics.profile import Profile
+from calm.physics.seabed import lie_down
 from calm.physics.state import Trace
 from calm.physics.track import Cable, Load, Rod, Track
 from calm.solve.root import bracketed_root, root_near
@@ -21,8 +24,10 @@ REACH = 0.01
 """Longest segment at an angle step of 1°, as a share of the water depth."""
 SHARE_TOLERANCE = 1e-9
 """How well the share of a surface float's buoyancy in use is found."""
-NARROWEST_SHARE = 1e-15
-"""Width of the last bracket, as a share of the whole range."""
+COARSEST_BRACKET = 1e-7
+NARROWEST_BRACKET = 1e-15
+"""Width of the last bracket, as a share of the whole range: of a march that chooses its cuts, and
+on fixed ones."""
 
 
 @dataclass(frozen=True)
@@ -44,12 +49,14 @@ class Unknown:
     goal : height at which the track must end [m], + up from the surface
     afloat : the piece at the surface whose share of buoyancy is sought; None below the surface
     above : the floats at the surface above that piece
+    lands : whether the line may come down on the seabed before its end
     """
 
     track: Track
     goal: float
     afloat: int | None = None
     above: tuple[Afloat, ...] = ()
+    lands: bool = False
 
     def shares(self, x: float) -> dict[int, float]:
         """Share of its buoyancy in use of every float at the surface, for the unknown's value x."""
@@ -66,7 +73,7 @@ class Unknown:
         """The question for the part of the line above a float: to bring its top to the surface."""
         stages = self.track.stages
         end = next(i for i, s in enumerate(stages) if isinstance(s, Rod) and piece in s.pieces)
-        return replace(self, track=Track(stages[:end]), goal=0.0)
+        return replace(self, track=Track(stages[:end]), goal=0.0, lands=False)
 
 
 def _with_shares(track: Track, shares: dict[int, float]) -> Track:
@@ -87,15 +94,28 @@ def _with_shares(track: Track, shares: dict[int, float]) -> Track:
 
 
 @dataclass(frozen=True)
-class Closed:
-    """A closed line: the value of its unknown, the slope of the miss there, and its shape."""
+class Root:
+    """Where a line closes: its unknown, the value of it, and the slope of the miss there."""
 
     unknown: Unknown
     x: float
     slope: float
+
+
+@dataclass(frozen=True)
+class Closed:
+    """A closed line: its root, what is left of the miss [m], and its shape.
+
+    `hanging` counts the elements above the touchdown, all of them where there is none;
+    `grounded_length` is what lies below it, unstretched [m].
+    """
+
+    root: Root
     miss: float
     end: End
     trace: Trace
+    hanging: int
+    grounded_length: float
 
 
 class Closing:
@@ -111,9 +131,18 @@ class Closing:
         self.allowed = settings.tolerance * water.depth
         self.marches = 0
 
-    def whole(self) -> Unknown:
-        """The whole line with its free end below the surface."""
-        return Unknown(Track.of(self.line), self.line.anchor_height - self.water.depth)
+    def whole(self, lands: bool) -> Unknown:
+        """The whole line with its free end below the surface; `lands`: as in `Unknown`.
+
+        A line on the seabed ends there, not at the top of its anchor.
+        """
+        height = 0.0 if lands else self.line.anchor_height
+        return Unknown(Track.of(self.line), height - self.water.depth, lands=lands)
+
+    def hanging(self, root: Root) -> Root:
+        """The same root for the line hanging clear of the seabed, to be sought again from there."""
+        goal = self.line.anchor_height - self.water.depth
+        return replace(root, unknown=replace(root.unknown, goal=goal, lands=False))
 
     @property
     def coarse_step(self) -> float:
@@ -141,6 +170,7 @@ class Closing:
             reach=REACH * degrees(step) * self.water.depth,
             cuts=cuts,
             trace=trace,
+            lands=unknown.lands,
         )
 
     def coarse_miss(self, unknown: Unknown) -> Callable[[float], float]:
@@ -149,15 +179,24 @@ class Closing:
 
     def coarse_root(
         self, unknown: Unknown, a: float, miss_a: float, b: float, miss_b: float
-    ) -> tuple[float, float]:
-        """Root of the coarse miss between a and b, and the slope there."""
+    ) -> Root:
+        """Root of the coarse miss between a and b."""
         x, _, slope = bracketed_root(
             self.coarse_miss(unknown), a, miss_a, b, miss_b,
-            small=1e-4 * self.water.depth, narrow=NARROWEST_SHARE,
+            small=1e-4 * self.water.depth, narrow=COARSEST_BRACKET * abs(b - a),
         )  # fmt: skip
-        return x, slope
+        return Root(unknown, x, slope)
 
-    def polish(self, unknown: Unknown, x: float, slope: float, cuts: Cuts) -> Closed:
+    def planned(self, root: Root, step: float) -> tuple[Root, Cuts]:
+        """The root as the march sees it at a step, near a coarser one, and the cuts it takes there.
+
+        With its free choice of cuts the march is not quite continuous, so this is no solution yet.
+        """
+        small = 1e-6 * self.water.depth
+        found, _, end, _ = self._near(root, step, None, small, COARSEST_BRACKET)
+        return found or root, end.cuts
+
+    def polish(self, root: Root, cuts: Cuts) -> Closed:
         """Close the line on fixed segments, from a root found on others.
 
         Floats at the surface above the one in question are first brought back to the surface.
@@ -168,8 +207,8 @@ class Closing:
             ``slack`` where the shape hangs on the last digits of the buoyancy in use,
             ``not-converged`` where no root is found.
         """
-        unknown = self._resurfaced(unknown, cuts)
-        return self._closed(unknown, x, slope, cuts)
+        unknown = self._resurfaced(root.unknown, cuts)
+        return self._closed(replace(root, unknown=unknown), cuts)
 
     def _resurfaced(self, unknown: Unknown, cuts: Cuts) -> Unknown:
         above: tuple[Afloat, ...] = ()
@@ -177,37 +216,72 @@ class Closing:
         for afloat, lower in zip(unknown.above, at_surface[1:], strict=False):
             part = replace(unknown, afloat=afloat.piece, above=above).down_to(lower)
             cables = sum(isinstance(stage, Cable) for stage in part.track.stages)
-            closed = self._closed(part, afloat.share, afloat.slope, cuts[:cables])
-            above = (*above, Afloat(afloat.piece, closed.x, closed.slope))
+            root = self._closed(Root(part, afloat.share, afloat.slope), cuts[:cables]).root
+            above = (*above, Afloat(afloat.piece, root.x, root.slope))
         return replace(unknown, above=above)
 
-    def _closed(self, unknown: Unknown, x: float, slope: float, cuts: Cuts) -> Closed:
-        last: tuple[float, End, Trace] = (inf, End(0.0, (0.0, 0.0, 0.0), cuts), Trace())
-
-        def miss(x: float) -> float:
-            nonlocal last
-            trace = Trace()
-            end = self.run(unknown, x, self.settings.angle_step, cuts=cuts, trace=trace)
-            last = (x, end, trace)
-            return end.z - unknown.goal
-
-        afloat = unknown.afloat is not None
-        limit = 1.0 if afloat else self.water.depth
+    def _closed(self, root: Root, cuts: Cuts) -> Closed:
         small = 0.1 * self.allowed
-        if afloat:
-            small = min(small, SHARE_TOLERANCE * abs(slope))
-        found = root_near(miss, x, slope, (0.0, limit), small=small, narrow=NARROWEST_SHARE * limit)
+        if root.unknown.afloat is not None:
+            small = min(small, SHARE_TOLERANCE * abs(root.slope))
+        step = self.settings.angle_step
+        found, miss, end, trace = self._near(root, step, cuts, small, NARROWEST_BRACKET)
         if found is None:
             raise Status.NOT_CONVERGED.because("No closed shape was found near the first one.")
-        x, value, slope = found
-        if last[0] != x:
-            value = miss(x)
-        if abs(value) > self.allowed:
-            if unknown.afloat is not None:
+        if abs(miss) > self.allowed:
+            if found.unknown.afloat is not None:
                 raise Status.SLACK.because(
                     "The line is slack: its shape hangs on the last digits of the buoyancy in use."
                 )
             raise Status.NOT_CONVERGED.because(
-                f"The line's end misses the anchor by {abs(value):.3g} m."
+                f"The line's end misses the anchor by {abs(miss):.3g} m."
             )
-        return Closed(unknown, x, slope, value, last[1], last[2])
+        hanging, grounded = len(trace.piece), 0.0
+        if end.landing is not None:
+            track, _ = found.unknown.placed(found.x)
+            friction = self.settings.seabed_friction
+            grounded = lie_down(track, end, trace, found.unknown.goal, friction)
+        return Closed(found, miss, end, trace, hanging, grounded)
+
+    def _near(
+        self, root: Root, step: float, cuts: Cuts | None, small: float, narrow: float
+    ) -> tuple[Root | None, float, End, Trace]:
+        """Root near another one, across the surface if need be, its miss and its recorded march.
+
+        Where there is none, the miss and march are those of the last try. `narrow` is the width
+        of the last bracket as a share of the whole range.
+        """
+        tried: dict[float, tuple[float, End, Trace]] = {}
+        start: Root | None = root
+
+        def miss(x: float) -> float:
+            assert start is not None
+            trace = Trace()
+            end = self.run(start.unknown, x, step, cuts=cuts, trace=trace)
+            tried.clear()
+            tried[x] = end.z - start.unknown.goal, end, trace
+            return tried[x][0]
+
+        while start is not None:
+            limit = 1.0 if start.unknown.afloat is not None else self.water.depth
+            found = root_near(
+                miss, start.x, start.slope, (0.0, limit), small=small, narrow=narrow * limit
+            )
+            if found is not None:
+                x, _, slope = found
+                if x not in tried:
+                    miss(x)
+                return Root(start.unknown, x, slope), *tried[x]
+            start = self._across_the_surface(root.unknown) if start is root else None
+        return None, *next(iter(tried.values()))
+
+    def _across_the_surface(self, unknown: Unknown) -> Root | None:
+        """Where to seek on when a free end just below the surface should float, or the reverse."""
+        if unknown.above or unknown.goal == 0.0:
+            return None
+        if unknown.afloat is not None:
+            return Root(replace(unknown, afloat=None), 0.0, -1.0)
+        floats = np.flatnonzero(~self.line.flexible & (self.line.buoyancy > 0.0))
+        if not len(floats):
+            return None
+        return Root(replace(unknown, afloat=int(floats[0])), 1.0, -0.01 * self.water.depth)

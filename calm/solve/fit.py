@@ -32,14 +32,25 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
     def miss(length: float) -> float:
         track = Track.of(line.with_length(piece, length))
         # a plumb line's strain is linear along it, so long segments are exact
-        end = march(track, still, top_depth, angle_step=COARSE_STEP, reach=4 * REACH * water.depth)
+        end = march(
+            track,
+            still,
+            top_depth,
+            angle_step=COARSE_STEP,
+            reach=4 * REACH * water.depth,
+        )
         return end.z - goal
 
     small = 0.01 * settings.tolerance * water.depth
     others = float(line.length.sum()) - float(line.length[piece])
     try:
         found = root_near(
-            miss, room - others, -1.0, (0.0, water.depth), small=small, narrow=1e-9 * water.depth
+            miss,
+            room - others,
+            -1.0,
+            (0.0, water.depth),
+            small=small,
+            narrow=1e-9 * water.depth,
         )
     except MarchError as error:
         raise Status.NOT_CONVERGED.because(f"The march stopped: {error}.", piece) from error

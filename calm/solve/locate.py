@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import sqrt
 
 import numpy as np
 
 from calm.physics.profile import Profile
-from calm.solve.closing import Afloat, Closing, Unknown
+from calm.solve.closing import Afloat, Closing, Root, Unknown
 from calm.solve.status import Status
 
 SCAN = 16
@@ -15,13 +16,13 @@ SCAN = 16
 grows with depth: the resolution at which separate equilibria are told apart."""
 
 
-def locate(closing: Closing) -> tuple[Unknown, float, float, float | None]:
-    """Find the highest coarse root.
+def locate(closing: Closing, lands: bool) -> tuple[Root, float | None]:
+    """Find the highest coarse root, of a line that hangs clear of the seabed or one that lands.
 
     Returns
     -------
-    unknown, its value, the slope of the miss there, and the depth of the free end near another
-    equilibrium that the scan came upon [m], None without one.
+    The root, and the depth of the free end near another equilibrium that the scan came upon [m],
+    None without one.
 
     Raises
     ------
@@ -29,7 +30,7 @@ def locate(closing: Closing) -> tuple[Unknown, float, float, float | None]:
         ``slack``, ``above-surface`` or ``grounded``.
     """
     line = closing.line
-    unknown = closing.whole()
+    unknown = closing.whole(lands)
     miss = closing.coarse_miss(unknown)
     upright = max(closing.water.depth - line.anchor_height - float(line.length.sum()), 0.0)
     high = miss(upright)
@@ -37,12 +38,12 @@ def locate(closing: Closing) -> tuple[Unknown, float, float, float | None]:
         # stretch makes the standing line longer than it was cut
         at_surface = miss(0.0)
         if at_surface >= 0.0:
-            return unknown, *closing.coarse_root(unknown, 0.0, at_surface, upright, high), None
+            return closing.coarse_root(unknown, 0.0, at_surface, upright, high), None
         high = at_surface
     if high < 0.0:
-        return *_at_surface(closing, unknown, high), None
+        return _at_surface(closing, unknown, high), None
     low_end, other = _below_surface(closing, unknown, upright, high)
-    return unknown, *closing.coarse_root(unknown, *low_end), other
+    return closing.coarse_root(unknown, *low_end), other
 
 
 Bracket = tuple[float, float, float, float]
@@ -112,7 +113,7 @@ def _scan(
     raise Status.GROUNDED.because("The current drags the whole line down to the seabed.")
 
 
-def _at_surface(closing: Closing, unknown: Unknown, deep: float) -> tuple[Unknown, float, float]:
+def _at_surface(closing: Closing, unknown: Unknown, deep: float) -> Root:
     """Share of buoyancy in use of the lowest float at the surface, and of those above it.
 
     The top float is tried first. Where it closes the line only with the next float out of the
@@ -124,16 +125,19 @@ def _at_surface(closing: Closing, unknown: Unknown, deep: float) -> tuple[Unknow
     floats = np.flatnonzero(~line.flexible & (line.buoyancy > 0.0)).tolist()
     for piece, lower in zip(floats, [*floats[1:], None], strict=True):
         unknown = replace(unknown, afloat=piece)
-        if not closing.water.moving and _slack_at_rest(closing, unknown):
+        if not closing.water.moving and (unknown.lands or _slack_at_rest(closing, unknown)):
+            length = float(line.length.sum())
+            radius = sqrt(max(length**2 - closing.water.depth**2, 0.0))
             raise Status.SLACK.because(
-                f"The line stands {-deep:.1f} m longer than the water is deep and there is no "
-                "current: it has no unique shape."
+                f"There is no current and the line, {length:.1f} m uncut, is longer than the "
+                "water is deep: it has no unique shape. Its watch circle has a radius of "
+                f"{radius:.0f} m."
             )
         unloaded = closing.coarse_miss(unknown)(0.0)
         if unloaded > 0.0:
-            x, slope = closing.coarse_root(unknown, 1.0, deep, 0.0, unloaded)
-            if lower is None or _height_at(closing, unknown, x, lower) <= closing.allowed:
-                return unknown, x, slope
+            root = closing.coarse_root(unknown, 1.0, deep, 0.0, unloaded)
+            if lower is None or _height_at(closing, root, lower) <= closing.allowed:
+                return root
         if lower is None:
             break
         surfaced = _surfaced(closing, unknown, piece, lower)
@@ -149,9 +153,9 @@ def _at_surface(closing: Closing, unknown: Unknown, deep: float) -> tuple[Unknow
     )
 
 
-def _height_at(closing: Closing, unknown: Unknown, x: float, piece: int) -> float:
+def _height_at(closing: Closing, root: Root, piece: int) -> float:
     """Height of the top of a piece above the surface [m]."""
-    return closing.run(unknown.down_to(piece), x, closing.coarse_step).z
+    return closing.run(root.unknown.down_to(piece), root.x, closing.coarse_step).z
 
 
 def _surfaced(closing: Closing, unknown: Unknown, piece: int, lower: int) -> Afloat | None:
@@ -163,8 +167,8 @@ def _surfaced(closing: Closing, unknown: Unknown, piece: int, lower: int) -> Afl
         return Afloat(piece, 0.0, loaded - unloaded)
     if loaded >= 0.0 or unloaded < 0.0:
         return None
-    share, slope = closing.coarse_root(part, 1.0, loaded, 0.0, unloaded)
-    return Afloat(piece, share, slope)
+    root = closing.coarse_root(part, 1.0, loaded, 0.0, unloaded)
+    return Afloat(piece, root.x, root.slope)
 
 
 def _slack_at_rest(closing: Closing, unknown: Unknown) -> bool:

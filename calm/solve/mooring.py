@@ -1,33 +1,21 @@
-"""A moored line: find where its free end is, so that its other end meets the anchor.
-
-The root is bracketed from the upright side with coarse marches, polished on fixed segments twice
-as long as asked for, and polished again with every segment halved. The march is of second order,
-so a third of the change is the error of the finer shape; where that is too much, the segments
-are halved again.
-"""
+"""A moored line: its shape without contact with the seabed, or with its lower part lying there."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from math import degrees
 
 import numpy as np
 
+from calm.errors import NoEquilibrium
 from calm.physics.line import REFERENCE_DENSITY, Floats, Line, Water
-from calm.physics.march import Cuts
-from calm.physics.state import MarchError
+from calm.physics.state import MarchError, Trace
+from calm.physics.track import Track
 from calm.solve import audit
-from calm.solve.closing import Closed, Closing
+from calm.solve.closing import Closed, Closing, Root
 from calm.solve.locate import locate
+from calm.solve.refine import refine
 from calm.solve.solution import Settings, Solution, nodes_of
 from calm.solve.status import Status
-
-DEPTH_TARGET = 4e-5
-TENSION_TARGET = 1.6e-4
-"""Error estimates, relative to the water depth and to the tension, above which segments are
-halved again, at an angle step of 1°; they follow its square."""
-MOST_HALVINGS = 6
-MOST_SEGMENTS = 20_000
 
 
 def solve_mooring(line: Line, water: Water, settings: Settings | None = None) -> Solution:
@@ -49,15 +37,71 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
         With one of the statuses of `Status`: nothing is returned that does not pass every check.
     """
     closing = Closing(line, water, settings or Settings())
+    above = np.cumsum(line.total_buoyancy)
+    if not (above > 0.0).any():
+        raise Status.NO_EQUILIBRIUM.because(_too_heavy(line))
     try:
-        if float(line.total_buoyancy.sum()) <= 0.0:
-            raise Status.NO_EQUILIBRIUM.because(_too_heavy(line))
-        if not water.moving:
-            _stands_at_rest(line)
-        solution = _refined(closing)
+        return _solve(closing)
     except MarchError as error:
         raise Status.NOT_CONVERGED.because(f"The march stopped: {error}.") from error
-    return _audited(solution)
+
+
+def _solve(closing: Closing) -> Solution:
+    """Try it clear of the seabed or lying on it, the likelier first."""
+    track, line = Track.of(closing.line), closing.line
+    ways = [_clear_of_it]
+    if track.landing < len(track.stages):
+        longer = float(line.length.sum()) > closing.water.depth
+        ways.insert(0 if longer else 1, _on_the_seabed)
+    refusals = {}
+    for way in ways:
+        try:
+            return way(closing)
+        except NoEquilibrium as refusal:
+            refusals[way] = refusal
+    slack = [r for r in refusals.values() if r.status == Status.SLACK.label]
+    raise (slack or [refusals[_clear_of_it]])[0]
+
+
+def _clear_of_it(closing: Closing) -> Solution:
+    if float(closing.line.total_buoyancy.sum()) <= 0.0:
+        raise Status.NO_EQUILIBRIUM.because(_too_heavy(closing.line))
+    if not closing.water.moving:
+        _stands_at_rest(closing.line)
+    root, other_depth = locate(closing, lands=False)
+    _refuse_deep_below(closing, root)
+    return _solution(closing, root, other_depth)
+
+
+def _on_the_seabed(closing: Closing) -> Solution:
+    root, other_depth = locate(closing, lands=True)
+    if closing.run(root.unknown, root.x, closing.coarse_step).landing is None:
+        return _solution(closing, closing.hanging(root), other_depth)
+    landed = _solution(closing, root, other_depth)
+    if not landed.landed:
+        raise Status.GROUNDED.because("The line does not lie on the seabed.")
+    if landed.grounded_length > 4.0 * closing.line.anchor_height:
+        return landed
+    try:
+        # what lies may as well hang between the seabed and the top of the anchor
+        return _solution(closing, closing.hanging(root), other_depth)
+    except NoEquilibrium:
+        return landed
+
+
+def _refuse_deep_below(closing: Closing, root: Root) -> None:
+    """Spare the polish of a line that hangs far below the seabed."""
+    trace = Trace()
+    closing.run(root.unknown, root.x, closing.coarse_step, trace=trace)
+    if min(trace.z) < -1.01 * closing.water.depth:
+        piece = trace.piece[max(int(np.argmin(trace.z)) - 1, 0)]
+        raise _grounded(piece, -closing.water.depth - min(trace.z))
+
+
+def _grounded(piece: int, below: float) -> NoEquilibrium:
+    return Status.GROUNDED.because(
+        f"The line would touch the seabed: piece {piece + 1} comes {below:.2f} m below it.", piece
+    )
 
 
 def _too_heavy(line: Line) -> str:
@@ -83,53 +127,13 @@ def _stands_at_rest(line: Line) -> None:
         )
 
 
-def _refined(closing: Closing) -> Solution:
-    unknown, x, slope, other_depth = locate(closing)
-    step = closing.settings.angle_step
-    cuts = closing.run(unknown, x, 2.0 * step).cuts
-    fine = closing.polish(unknown, x, slope, cuts)
-    for _ in range(MOST_HALVINGS):
-        coarse = fine
-        cuts = _halved(coarse.end.cuts)
-        fine = closing.polish(coarse.unknown, coarse.x, coarse.slope, cuts)
-        depth_error, tension_error, relative = _errors(closing.line, coarse, fine)
-        scale = degrees(step) ** 2
-        good = (
-            depth_error <= DEPTH_TARGET * scale * closing.water.depth
-            and relative <= TENSION_TARGET * scale
-        )
-        if good or fine.end.segments > MOST_SEGMENTS:
-            break
-    return _solution(closing, fine, depth_error, tension_error, other_depth)
-
-
-def _halved(cuts: Cuts) -> Cuts:
-    return [[0.5 * cut for cut in cable for _ in (0, 1)] for cable in cuts]
-
-
-def _errors(line: Line, coarse: Closed, fine: Closed) -> tuple[float, float, float]:
-    """Error of the finer shape: of depths and offsets [m], of tensions [N] and relative."""
-    pieces, clamps = np.array(coarse.trace.piece), np.array(coarse.trace.clamp)
-    halves = np.where(line.flexible[pieces] & (clamps < 0), 2, 1)
-    same = np.concatenate([[0], np.cumsum(halves)])
-    position, force = nodes_of(fine.trace)
-    before, pulled = nodes_of(coarse.trace)
-    tension = np.linalg.norm(force[same], axis=1)
-    change = np.abs(np.linalg.norm(pulled, axis=1) - tension) / 3.0
-    floor = 1e-3 * float(tension.max())
-    return (
-        float(np.abs(before - position[same]).max()) / 3.0,
-        float(change.max()),
-        float((change / np.maximum(tension, max(floor, 1e-300))).max()),
-    )
-
-
-def _solution(
-    closing: Closing, fine: Closed, depth_error: float, tension_error: float, other: float | None
-) -> Solution:
+def _solution(closing: Closing, root: Root, other_depth: float | None) -> Solution:
+    """The audited solution near a coarse root."""
+    refined = refine(closing, root)
+    fine = refined.closed
     position, force = nodes_of(fine.trace)
     used, reserve = _buoyancy_in_use(closing, fine)
-    return Solution(
+    solution = Solution(
         line=closing.line,
         water=closing.water,
         settings=closing.settings,
@@ -137,24 +141,28 @@ def _solution(
         force=force,
         element_piece=np.array(fine.trace.piece, dtype=np.int64),
         element_clamp=np.array(fine.trace.clamp, dtype=np.int64),
+        landed=fine.end.landing is not None,
+        hanging=fine.hanging,
+        grounded_length=fine.grounded_length,
         cut=np.array(fine.trace.cut),
         strain=np.array(fine.trace.strain),
-        afloat=tuple(fine.unknown.shares(fine.x)),
+        afloat=tuple(fine.root.unknown.shares(fine.root.x)),
         buoyancy_used=used,
         reserve=reserve,
-        carried=_carried(closing.line, fine.unknown.shares(fine.x)),
+        carried=_carried(closing.line, fine.root.unknown.shares(fine.root.x)),
         marches=closing.marches,
         segments=fine.end.segments,
         miss=fine.miss,
-        depth_error=depth_error + abs(fine.miss),
-        tension_error=tension_error,
-        other_depth=other,
+        depth_error=refined.depth_error + abs(fine.miss),
+        tension_error=refined.tension_error,
+        other_depth=other_depth,
     )
+    return _audited(solution)
 
 
 def _buoyancy_in_use(closing: Closing, fine: Closed) -> tuple[float, float]:
     """Share in use of the buoyancy of the floats at the surface, and the rest of it [N]."""
-    shares = fine.unknown.shares(fine.x)
+    shares = fine.root.unknown.shares(fine.root.x)
     if not shares:
         return 1.0, 0.0
     _, density = closing.water.at(np.zeros(1))
@@ -200,12 +208,7 @@ def _within_the_water(solution: Solution) -> None:
     standing = float(solution.line.length[list(solution.afloat)].sum())
     lowest, highest = int(np.argmin(height)), int(np.argmax(height))
     if height[lowest] < -depth - margin:
-        piece = _piece_at(solution, lowest)
-        raise Status.GROUNDED.because(
-            f"The line would touch the seabed: piece {piece + 1} comes "
-            f"{-depth - height[lowest]:.2f} m below it.",
-            piece,
-        )
+        raise _grounded(_piece_at(solution, lowest), -depth - height[lowest])
     if height[highest] > margin + standing:
         piece = _piece_at(solution, highest)
         raise Status.ABOVE_SURFACE.because(

@@ -17,8 +17,8 @@ def bracketed_root(
 ) -> tuple[float, float, float]:
     """Root of a continuous function between a and b, where its signs differ.
 
-    False position with Anderson and Björck's weights (order 1.7); a step that does not halve the
-    bracket twice running is followed by a bisection, so the bracket always closes.
+    Brent's method: inverse quadratic or secant steps where they keep to the bracket and at least
+    halve the step before last, bisection elsewhere.
 
     Parameters
     ----------
@@ -27,35 +27,54 @@ def bracketed_root(
 
     Returns
     -------
-    root, value there, and the slope of the last secant (0 where none is known).
+    root, value there, and the slope of the secant across the last bracket.
     """
-    if fa == 0.0:
-        return a, fa, 0.0
-    slope = (fb - fa) / (b - a)
-    weighted_a, idle = fa, 0
-    if abs(fa) < abs(fb):
-        a, fa, b, fb = b, fb, a, fa
-        weighted_a = fa
-    while abs(fb) > small and abs(b - a) > narrow:
-        width = abs(b - a)
-        x = b - fb * (b - a) / (fb - weighted_a) if idle < 2 else 0.5 * (a + b)
-        if not min(a, b) < x < max(a, b):
-            x = 0.5 * (a + b)
-            if x in (a, b):
-                break
-        fx = function(x)
-        slope = (fx - fb) / (x - b)
-        if (fx > 0.0) != (fb > 0.0):
-            a, fa = b, fb
-            weighted_a = fa
+    c, fc = a, fa
+    step = earlier = b - a
+    while True:
+        if (fb > 0.0) == (fc > 0.0):
+            c, fc = a, fa
+            step = earlier = b - a
+        if abs(fc) < abs(fb):
+            a, b, c = b, c, b
+            fa, fb, fc = fb, fc, fb
+        half = 0.5 * (c - b)
+        if abs(fb) <= small or abs(half) <= 0.5 * narrow or b + half in (b, c):
+            return b, fb, (fc - fb) / (c - b) if c != b else 0.0
+        if abs(fa) <= abs(fb):
+            step = earlier = half
         else:
-            shrink = 1.0 - fx / fb
-            weighted_a *= shrink if shrink > 0.0 else 0.5
-        b, fb = x, fx
-        if idle >= 2:
-            idle, weighted_a = 0, fa
-        idle = idle + 1 if abs(b - a) > 0.5 * width else 0
-    return b, fb, slope
+            earlier, step = step, _interpolated_step(a, fa, b, fb, c, fc, half, earlier)
+            if step == half:
+                earlier = half
+        a, fa = b, fb
+        least = 0.25 * narrow
+        b += step if abs(step) > least else (least if half > 0.0 else -least)
+        fb = function(b)
+
+
+def _interpolated_step(
+    a: float,
+    fa: float,
+    b: float,
+    fb: float,
+    c: float,
+    fc: float,
+    half: float,
+    earlier: float,
+) -> float:
+    """Step from b by inverse interpolation, or half way to c where that is not to be trusted."""
+    s = fb / fa
+    if a == c:
+        p, q = 2.0 * half * s, 1.0 - s
+    else:
+        q, r = fa / fc, fb / fc
+        p = s * (2.0 * half * q * (q - r) - (b - a) * (r - 1.0))
+        q = (q - 1.0) * (r - 1.0) * (s - 1.0)
+    if p > 0.0:
+        q = -q
+    p = abs(p)
+    return p / q if 2.0 * p < min(3.0 * half * q, abs(earlier * q)) else half
 
 
 def root_near(
@@ -81,7 +100,7 @@ def root_near(
     fx = function(x)
     step = -fx / slope if slope < 0.0 else 0.0
     while abs(fx) > small:
-        reach = max(abs(step), 1e-6 * (high - low))
+        reach = max(abs(step), 1e-12 * (high - low))
         following = min(max(x + (reach if fx > 0.0 else -reach), low), high)
         if following == x:
             return None

@@ -17,8 +17,7 @@ class Status(Enum):
     )
     NOT_CONVERGED = (
         "not-converged",
-        "Try a smaller solver angle_step; if it persists, simplify the line to find the piece "
-        "that prevents it.",
+        "Try a smaller angle_step; if it persists, simplify the line to find what prevents it.",
     )
     SLACK = (
         "slack",
@@ -26,8 +25,7 @@ class Status(Enum):
     )
     GROUNDED = (
         "grounded",
-        "Seabed contact is not computed in this version: shorten the lower part, lighten it or "
-        "give it buoyancy so that it hangs clear of the seabed.",
+        "Shorten, lighten or buoy up the lower part: nothing buoyant may lie on the seabed.",
     )
     ANCHOR_LIFTS = (
         "anchor-lifts",
