@@ -54,8 +54,9 @@ class Mooring:
 
     @property
     def settings(self) -> Settings:
-        """Angle step and tolerance."""
-        return Settings(self.file.solver.angle_step, self.file.solver.tolerance)
+        """How the line is solved."""
+        solver = self.file.solver
+        return Settings(solver.angle_step, solver.tolerance, solver.seabed_friction)
 
     @cached_property
     def line(self) -> Line:

@@ -39,7 +39,8 @@ class Top:
 class AnchorLoad:
     """What the line does to its anchor [N]; `angle` is from the vertical [degrees].
 
-    `required_weight` is the weight in water that holds it; `weight` what it has, None if unknown.
+    `required_weight` is the weight in water that holds it, `weight` what it has;
+    `grounded_length` is the unstretched length of line on the seabed [m].
     """
 
     tension: float
@@ -47,8 +48,8 @@ class AnchorLoad:
     horizontal: float
     angle: float
     required_weight: float
-    weight: float | None
-    grounded_length: float = 0.0
+    weight: float
+    grounded_length: float
 
 
 @dataclass(frozen=True)

@@ -40,6 +40,8 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
     above = np.cumsum(line.total_buoyancy)
     if not (above > 0.0).any():
         raise Status.NO_EQUILIBRIUM.because(_too_heavy(line))
+    if not water.moving:
+        _refuse_folded(line)
     try:
         return _solve(closing)
     except MarchError as error:
@@ -66,8 +68,6 @@ def _solve(closing: Closing) -> Solution:
 def _clear_of_it(closing: Closing) -> Solution:
     if float(closing.line.total_buoyancy.sum()) <= 0.0:
         raise Status.NO_EQUILIBRIUM.because(_too_heavy(closing.line))
-    if not closing.water.moving:
-        _stands_at_rest(closing.line)
     root, other_depth = locate(closing, lands=False)
     _refuse_deep_below(closing, root)
     return _solution(closing, root, other_depth)
@@ -75,6 +75,9 @@ def _clear_of_it(closing: Closing) -> Solution:
 
 def _on_the_seabed(closing: Closing) -> Solution:
     root, other_depth = locate(closing, lands=True)
+    if root.unknown.afloat is None and float(closing.line.total_buoyancy.sum()) <= 0.0:
+        # a line without a surface float is meant to stand: a heap on the seabed is no design
+        raise Status.NO_EQUILIBRIUM.because(_too_heavy(closing.line))
     if closing.run(root.unknown, root.x, closing.coarse_step).landing is None:
         return _solution(closing, closing.hanging(root), other_depth)
     landed = _solution(closing, root, other_depth)
@@ -113,11 +116,14 @@ def _too_heavy(line: Line) -> str:
     )
 
 
-def _stands_at_rest(line: Line) -> None:
-    """Still water: once the line is held up it must stay so, down to the anchor."""
-    above = np.cumsum(line.total_buoyancy)
-    first = int(np.argmax(above > 0.0))
-    short = np.flatnonzero(above[first:] <= 0.0)
+def _refuse_folded(line: Line) -> None:
+    """Still water: once the line is held up it must stay so, down to its lowest float."""
+    total = line.total_buoyancy
+    above = np.cumsum(total)
+    first, last = int(np.argmax(above > 0.0)), int(np.flatnonzero(total > 0.0)[-1])
+    short = np.flatnonzero(above[first:last] <= 0.0)
+    if len(short) and float(total.sum()) <= 0.0:
+        raise Status.NO_EQUILIBRIUM.because(_too_heavy(line))
     if len(short):
         piece = first + int(short[0])
         raise Status.SLACK.because(

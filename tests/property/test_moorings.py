@@ -4,6 +4,7 @@ Two solutions that should be equal are compared by `apart`: the worst of all dep
 a share of the water depth, the worst of all tensions as a share of the greatest. Where they march
 the same segments they differ by rounding and by where the search for the root stops: `SAME`. Where
 they do not, by the error of the march, which an angle step of 0.1° holds to 2e-6 each: `ACCURATE`.
+Rounding may tip the choice of segments, too: then each may err by what it says of itself.
 """
 
 from __future__ import annotations
@@ -48,6 +49,15 @@ def apart(a: Solution, b: Solution) -> float:
     return float(max(place, tension))
 
 
+def alike(a: Solution, b: Solution) -> bool:
+    """Whether two solutions that march the same segments are equal."""
+    if a.segments == b.segments:
+        return apart(a, b) <= SAME
+    place = (a.depth_error + b.depth_error) / a.water.depth
+    tension = (a.tension_error + b.tension_error) / a.tension.max()
+    return apart(a, b) <= 2.0 * max(place, tension)
+
+
 def without_clamps(line: Line) -> Line:
     none = np.array([])
     return replace(
@@ -87,7 +97,7 @@ def test_turning_the_current_turns_the_mooring(number, angle) -> None:
     turned = solved(line, replace(water, u=u, v=v))
     back = turned.position.copy()
     back[:, :2] = back[:, :2] @ turn
-    assert apart(straight, replace(turned, position=back)) <= SAME
+    assert alike(straight, replace(turned, position=back))
 
 
 @some
@@ -98,7 +108,7 @@ def test_mirroring_or_reversing_the_current_does_it_to_the_mooring(number, signs
     there = solved(line, water)
     here = solved(line, replace(water, u=east * water.u, v=north * water.v))
     back = replace(here, position=here.position * [east, north, 1.0])
-    assert apart(there, back) <= SAME
+    assert alike(there, back)
 
 
 @some
@@ -120,8 +130,11 @@ def test_similar_moorings_have_similar_shapes(number, length, force, speed) -> N
         v=water.v * speed, w=water.w * speed,
     )  # fmt: skip
     one, other = solved(line, water), solved(other_line, other_water)
-    back = replace(other, position=other.position / length, force=other.force / force)
-    assert apart(one, back) <= SAME
+    back = replace(
+        other, position=other.position / length, force=other.force / force,
+        depth_error=other.depth_error / length, tension_error=other.tension_error / force,
+    )  # fmt: skip
+    assert alike(one, back)
 
 
 @some
@@ -215,15 +228,17 @@ def test_the_anchor_holds_the_sum_of_all_loads(number) -> None:
 @some
 @given(draws)
 def test_quartering_the_angle_step_brings_the_error_down_sixteenfold(number) -> None:
-    """Judged by the change to a solution at 0.05°; cuts at levels and clamps stir the ratio."""
+    """Judged by the change to a solution at 0.05°; cuts at levels and clamps stir the ratio.
+
+    Moorings whose segments had to be halved beyond the angle step are passed over.
+    """
     line, water = mooring(Random(number))
-    exact = solved(line, water, Settings(radians(0.05), 1e-9))
-    coarse, fine = (
-        apart(solved(line, water, Settings(radians(degrees), 1e-9)), exact)
-        for degrees in (1.0, 0.25)
+    exact, fine, coarse = (
+        solved(line, water, Settings(radians(degrees), 1e-9)) for degrees in (0.05, 0.25, 1.0)
     )
-    assume(coarse > 1e-6)  # else the tolerance of the root is what is seen
-    assert 8.0 <= coarse / fine <= 32.0
+    assume(2.5 <= fine.segments / coarse.segments <= 5.0)
+    assume(apart(coarse, exact) > 1e-6)  # else the tolerance of the root is what is seen
+    assert 8.0 <= apart(coarse, exact) / apart(fine, exact) <= 32.0
 
 
 @some

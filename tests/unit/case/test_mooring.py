@@ -138,11 +138,12 @@ def test_a_float_at_the_surface_needs_full_drag_in_this_version(solve):
 
 
 def test_a_refusal_names_the_piece(solve):
-    long = FILE.replace("length: 40 m", "length: 400 m").replace("SPEED", "0.4 m/s")
+    folded = FILE.replace("buoyancy: -100 N", "buoyancy: -3100 N")
+    folded = folded.replace("  - {use: block}", "  - {use: ball}\n  - {use: block}")
     with pytest.raises(calm.NoEquilibrium) as caught:
-        solve(long + "solver: {buoy_drag: full}\n")
-    assert caught.value.status in ("grounded", "slack")
-    assert "Piece 4 is thin 2" in caught.value.message
+        solve(folded, speed="0 m/s")
+    assert caught.value.status == "slack"
+    assert "Piece 3 is meter" in caught.value.message
 
 
 def test_fit_cuts_the_piece_once_for_every_current(solve):
