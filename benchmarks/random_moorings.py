@@ -23,8 +23,8 @@ from calm.errors import NoEquilibrium
 from calm.solve import Settings, solve_mooring
 from tests.property.strategies import mooring
 from tests.validation.agreement import closure, difference
+from tests.validation.cables import Folded, NoContinuousSolution
 from tests.validation.closing import solve_continuous
-from tests.validation.continuous import Folded, NoContinuousSolution
 
 PLACE, TENSION, MARCHES, CLOSURE = 5e-5, 2e-4, 60, 1e-6
 FIGURES = "place", "tension", "marches", "closure", "error/estimate"

@@ -55,8 +55,7 @@ class Mooring:
     @property
     def settings(self) -> Settings:
         """How the line is solved."""
-        solver = self.file.solver
-        return Settings(solver.angle_step, solver.tolerance, solver.seabed_friction)
+        return Settings(self.file.solver.angle_step, self.file.solver.tolerance)
 
     @cached_property
     def line(self) -> Line:

@@ -40,7 +40,8 @@ def difference(solution: Solution, referee: Equilibrium) -> Difference:
 def closure(solution: Solution) -> float:
     """|sum of all loads − force at the anchor| / |force at the anchor|.
 
-    The loads are recomputed here from the final coordinates, by the referee's formulas.
+    The loads are recomputed here from the final coordinates, by the referee's formulas. Of a line
+    on the seabed they are those above the touchdown, less what the seabed bears at that point.
     """
     line, water, position = solution.carried, solution.water, solution.position
     profile, total = Profile(water), np.zeros(3)
@@ -51,11 +52,15 @@ def closure(solution: Solution) -> float:
         return load.force(flow, (end - start) / chord if chord else DOWN, swelling)
 
     for clamp, node in enumerate(clamp_nodes(solution)):
+        if node >= solution.hanging:
+            continue
         drag = line.clamp_drag[clamp]
         lift = line.clamp_buoyancy[clamp], line.clamp_volume[clamp]
         load = Load(*lift, drag, drag, False, water.gravity)
         total += pull(load, position[node], position[node])
-    for piece, (first, last) in enumerate(solution.piece_nodes):
+    for piece, (first, last) in enumerate(np.minimum(solution.piece_nodes, solution.hanging)):
+        if first == last:
+            continue
         load = Load(
             line.buoyancy[piece], line.volume[piece], line.normal_drag[piece],
             line.tangential_drag[piece], line.directional[piece], water.gravity,
@@ -69,6 +74,8 @@ def closure(solution: Solution) -> float:
                 stretched = np.linalg.norm(ends[1] - ends[0]) / cut
                 total += cut * pull(load, *ends, stretched ** line.thinning[piece])
     anchor = solution.force[-1]
+    if solution.landed:
+        total[2] = max(total[2], 0.0)
     return float(np.linalg.norm(total - anchor) / np.linalg.norm(anchor))
 
 

@@ -17,7 +17,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from calm.physics.line import Line, Water
-from tests.validation.continuous import Folded, March, NoContinuousSolution, Shape
+from tests.validation.cables import Folded, NoContinuousSolution
+from tests.validation.continuous import March, Shape
 from tests.validation.loads import Vector
 
 COARSE, FINE = 1e-5, 1e-11
@@ -41,19 +42,36 @@ class Equilibrium:
 
 
 def solve_continuous(line: Line, water: Water) -> Equilibrium:
-    """The highest equilibrium of a mooring.
+    """The highest equilibrium of a mooring: clear of the seabed or else lying on it at the end.
 
     Raises
     ------
     NoContinuousSolution
-        Where there is none, or none without parts in the air, on the seabed or slack.
+        Where there is none, or none without parts in the air, below the seabed or slack.
     """
-    bottom = water.depth - line.anchor_height
+    try:
+        return _closed(line, water, lands=False)
+    except Folded:
+        raise
+    except NoContinuousSolution as refusal:
+        try:
+            landed = _closed(line, water, lands=True)
+        except NoContinuousSolution:
+            raise refusal from None
+        stands = landed.surface or line.total_buoyancy.sum() > 0.0
+        if landed.shape.grounded is None or not stands:
+            raise
+        return landed
+
+
+def _closed(line: Line, water: Water, lands: bool) -> Equilibrium:
+    # A line on the seabed ends there, not at the top of its anchor.
+    bottom = water.depth - (0.0 if lands else line.anchor_height)
     rough, fine = March(line, water, COARSE), March(line, water, FINE)
 
     def excess(march: March, depth: float, share: Vector) -> float:
-        """How much deeper than the anchor's top the line ends [m]."""
-        return float(-march.down(depth, share).bottom[-1, 2] - bottom)
+        """How much deeper than it should the line ends [m]."""
+        return float(-march.down(depth, share, lands=lands).bottom[-1, 2] - bottom)
 
     share, depth = np.ones(len(line.length)), 0.0
     surface = excess(fine, 0.0, share) > 0.0
@@ -64,7 +82,7 @@ def solve_continuous(line: Line, water: Water) -> Equilibrium:
             lambda d: excess(rough, d, share), lambda d: excess(fine, d, share),
             _depths(line, water, share, bottom),
         )  # fmt: skip
-    shape = fine.down(depth, share)
+    shape = fine.down(depth, share, lands=lands)
     _refuse_impossible(shape, line, water, share)
     return Equilibrium(shape.shifted(-shape.bottom[-1, :2]), share, depth, surface)
 

@@ -13,8 +13,9 @@ import numpy as np
 import pytest
 
 from calm.physics.line import Water
+from tests.validation.cables import NoContinuousSolution
 from tests.validation.closing import FINE, solve_continuous
-from tests.validation.continuous import March, NoContinuousSolution
+from tests.validation.continuous import March
 from tests.validation.pieces import Piece, cable, line_of, point, profile, stream
 
 EXACT = 1e-9  # a hundred times the error of a step, relative to depths and forces of 1e2 to 1e4
@@ -83,6 +84,21 @@ def test_elastic_catenary(length, horizontal, vertical, tension) -> None:
     assert np.linalg.norm(shape.force_top[1]) == pytest.approx(tension, abs=1e-3)
 
 
+def test_a_line_on_the_seabed_is_a_catenary_that_starts_level() -> None:
+    """x = (H/w) asinh(w s/H) + H s/EA, z = (H/w)(cosh − 1) + (w s)²/(2 w EA); the rest is straight."""
+    pull, weight, stiffness = 500.0, 20.0, 1e5
+    chain = Piece(100.0, True, -weight, compliance=1.0 / stiffness)
+    found = solve_continuous(line_of(point(5000.0, pull), chain), stream(30.0, 1.0))
+    lifted = found.share[0] * 5000.0
+    s, rise = lifted / weight, hypot(pull, lifted) - pull
+    assert rise / weight + lifted**2 / (2.0 * weight * stiffness) == pytest.approx(30.0, abs=1e-8)
+    assert found.shape.grounded == pytest.approx(100.0 - s, abs=1e-8)
+    x = pull / weight * asinh(lifted / pull) + pull * s / stiffness
+    lying = (100.0 - s) * (1.0 + pull / stiffness)
+    assert found.shape.top[0, 0] == pytest.approx(x + lying, abs=1e-8)
+    assert found.shape.force_bottom[-1] == pytest.approx([pull, 0.0, 0.0], abs=1e-8)
+
+
 def test_a_float_at_the_surface_uses_what_the_line_needs() -> None:
     """61 m of water, 60 m of stretchy line: what stretches it by a metre, and its weight."""
     line = line_of(point(5000.0, 100.0), cable(60.0, 0.01, 3.0, 1.3, 0.0, 1e-5))
@@ -118,6 +134,7 @@ def test_lines_that_cannot_stand_are_refused() -> None:
     heavy = line_of(point(100.0, 0.0), cable(50.0, 0.01, 3.0, 1.3, 0.0))
     with pytest.raises(NoContinuousSolution):
         solve_continuous(heavy, stream(60.0, 0.0))
-    dragged = line_of(point(60.0, 50.0), cable(50.0, 0.01, 1.0, 1.3, 0.0))
+    sagging = cable(50.0, 0.01, 1.0, 1.3, 0.0)
+    dragged = line_of(point(60.0, 50.0), sagging, point(1.0, 0.0))
     with pytest.raises(NoContinuousSolution, match="seabed"):
         solve_continuous(dragged, stream(60.0, 2.0))

@@ -18,8 +18,8 @@ from calm.errors import NoEquilibrium
 from calm.solve import Settings, solve_mooring
 from tests.property.strategies import mooring
 from tests.validation.agreement import closure, difference
+from tests.validation.cables import Folded, NoContinuousSolution
 from tests.validation.closing import solve_continuous
-from tests.validation.continuous import Folded, NoContinuousSolution
 
 STANDING = 20
 
