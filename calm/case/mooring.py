@@ -55,7 +55,8 @@ class Mooring:
     @property
     def settings(self) -> Settings:
         """How the line is solved."""
-        return Settings(self.file.solver.angle_step, self.file.solver.tolerance)
+        solver = self.file.solver
+        return Settings(solver.angle_step, solver.tolerance, solver.seabed_friction)
 
     @cached_property
     def line(self) -> Line:

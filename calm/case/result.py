@@ -39,7 +39,8 @@ class Top:
 class AnchorLoad:
     """What the line does to its anchor [N]; `angle` is from the vertical [degrees].
 
-    `required_weight` is the weight in water that holds it, `weight` what it has.
+    `required_weight` is the weight in water that holds it, `weight` what it has;
+    `grounded_length` is the unstretched length of line on the seabed [m].
     """
 
     tension: float
@@ -48,7 +49,7 @@ class AnchorLoad:
     angle: float
     required_weight: float
     weight: float
-    grounded_length: float = 0.0
+    grounded_length: float
 
 
 @dataclass(frozen=True)

@@ -106,6 +106,18 @@ def _bight(result: Result, solution: Solution) -> Iterator[str]:
         )
 
 
+def _on_the_seabed(result: Result, solution: Solution) -> Iterator[str]:
+    lying = solution.element_piece[solution.hanging :]
+    rigid = [p for p in dict.fromkeys(lying.tolist()) if not solution.line.flexible[p]]
+    clamps = [m for m in solution.element_clamp[solution.hanging :].tolist() if m >= 0]
+    known = [clamp.label for piece in result.mooring.file.pieces for clamp in piece.clamps]
+    names = [result.components.label[p] for p in rigid] + [known[m] for m in clamps]
+    if names:
+        yield f"On the seabed: {', '.join(names)}."
+    if solution.landed and not result.mooring.water.moving:
+        yield "In still water the part on the seabed has no direction: the offset is its greatest."
+
+
 def _other_equilibrium(_: Result, solution: Solution) -> Iterator[str]:
     if solution.other_depth is not None:
         yield (
@@ -127,6 +139,7 @@ _WORRIES: tuple[Callable[[Result, Solution], Iterator[str]], ...] = (
     _overstretched,
     _fast_flow,
     _bight,
+    _on_the_seabed,
     _other_equilibrium,
     _wind_ignored,
 )

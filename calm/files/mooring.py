@@ -30,12 +30,6 @@ def _until_available(*later: str) -> BeforeValidator:
     return BeforeValidator(check)
 
 
-def _no_friction(value: float) -> float:
-    if value > 0:
-        raise QuantityError("is not available in this version; leave it out")
-    return value
-
-
 class Position(Model):
     """Where the mooring stands [degrees]."""
 
@@ -57,9 +51,7 @@ class Solver(Model):
         _until_available("bourget-marichal", "vandiver", "blevins", "skop-griffin"),
     ] = "none"
     buoy_drag: Literal["immersed", "full"] = "immersed"
-    seabed_friction: Annotated[
-        float, Quantity("number", at_least=0), AfterValidator(_no_friction)
-    ] = 0.0
+    seabed_friction: Annotated[float, Quantity("number", at_least=0)] = 0.0
 
 
 class SafetyFactors(Model):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf, sqrt
 
 from calm.physics.element import axis_along, drag_force, drag_share
@@ -22,39 +23,75 @@ def march_cable(
     reach: float,
     given: list[float] | None,
     trace: Trace | None,
-) -> list[float]:
+    lands: bool = False,
+) -> tuple[list[float], float | None]:
     """Take the state from the top of a stretch of cable to its bottom.
 
     Parameters
     ----------
     angle_step, reach : how much a segment may turn [rad] and how long it may be [m]
     given : the unstretched lengths of the segments to use [m]; None chooses them
+    lands : whether to stop where the line has no more weight to give: its touchdown
 
     Returns
     -------
-    The unstretched lengths of the segments used [m].
+    cuts : the unstretched lengths of the segments for the whole stretch [m]
+    hanging : the unstretched length above its touchdown [m]; None where it has none
 
     Raises
     ------
     MarchError
         Where a segment finds no balance or more than 50 000 would be needed.
     """
-    if given is not None:
-        for cut in given:
-            _pass_segment(cable, profile, state, cut, trace)
-        return given
     used: list[float] = []
-    left = cable.length
-    while left > 0.0 or not used:
-        cut = min(left, segment_length(cable, profile, state, angle_step, reach))
-        if left - cut < 0.01 * cut:
-            cut = left
-        _pass_segment(cable, profile, state, cut, trace)
+    done = 0.0
+    while done < cable.length or not used:
+        left = cable.length - done
+        if given is not None:
+            if len(used) == len(given):
+                break
+            cut = given[len(used)]
+        else:
+            cut = min(left, segment_length(cable, profile, state, angle_step, reach))
+            if left - cut < 0.01 * cut:
+                cut = left
         used.append(cut)
-        left -= cut
+        if lands and state.fz > 0.0:
+            hanging = _touchdown(cable, profile, state, cut)
+            if hanging < cut:
+                _pass_segment(cable, profile, state, hanging, trace)
+                state.fz = 0.0
+                return given or [*used, *evenly(left - cut, reach)], done + hanging
+        _pass_segment(cable, profile, state, cut, trace)
+        done += cut
         if len(used) > MOST_SEGMENTS:
             raise MarchError(f"the line would need more than {MOST_SEGMENTS} segments")
-    return used
+    return used, None
+
+
+def evenly(length: float, reach: float) -> list[float]:
+    """Segments of one length for a cable that is not marched [m]."""
+    count = max(round(length / reach), 1)
+    return [length / count] * count if length > 0.0 else []
+
+
+def _touchdown(cable: Cable, profile: Profile, state: State, cut: float) -> float:
+    """How much of a segment hangs before its end has nothing left to carry [m]; at most `cut`."""
+    low, high, hanging = 0.0, cut, cut
+    for _ in range(_PASSES):
+        probe = replace(state)
+        _pass_segment(cable, profile, probe, hanging, None)
+        if hanging == cut and probe.fz > 0.0:
+            return cut
+        if abs(probe.fz) <= 1e-12 * state.fz:
+            break
+        if probe.fz > 0.0:
+            low = hanging
+        else:
+            high = hanging
+        following = hanging * state.fz / (state.fz - probe.fz)
+        hanging = following if low < following < high else 0.5 * (low + high)
+    return hanging
 
 
 def _pass_segment(

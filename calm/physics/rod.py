@@ -28,13 +28,29 @@ def load_force(load: Load, profile: Profile, depth: float, axis: Vector, level: 
     return qx, qy, qz + lift
 
 
-def pass_rod(rod: Rod, profile: Profile, state: State, trace: Trace | None) -> None:
-    """Take the state from the top of a rod to its bottom."""
+def pass_rod(
+    rod: Rod, profile: Profile, state: State, trace: Trace | None, lands: bool = False
+) -> float | None:
+    """Take the state from the top of a rod to its bottom.
+
+    Parameters
+    ----------
+    lands : whether the seabed carries what the line cannot: at the rod's lower end, or all along
+        it where it would tip over
+
+    Returns
+    -------
+    0 where the rod lies on the seabed, inf where it stands on it, None where it does neither.
+    """
     axis = rod_axis(rod, profile, state)
     forces = [
         load_force(load, profile, -state.z - load.at * axis[2], axis, state.level)
         for load in rod.loads
     ]
+    landed = lands and state.fz > 0.0 >= state.fz + sum(force[2] for force in forces)
+    if landed and axis[2] >= 0.0:
+        state.fz = 0.0
+        return 0.0
     if trace is not None:
         _record(rod, forces, trace, state, axis)
     state.x += rod.length * axis[0]
@@ -43,6 +59,12 @@ def pass_rod(rod: Rod, profile: Profile, state: State, trace: Trace | None) -> N
     state.tz = axis[2]
     for force in forces:
         state.add(force)
+    if not landed:
+        return None
+    state.fz = 0.0
+    if trace is not None:
+        trace.force[-1] = (state.fx, state.fy, 0.0)
+    return inf
 
 
 def rod_axis(rod: Rod, profile: Profile, state: State) -> Vector:

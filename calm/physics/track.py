@@ -62,6 +62,16 @@ class Track:
 
     stages: tuple[Stage, ...]
 
+    @property
+    def landing(self) -> int:
+        """The first stage that may come down on the seabed: none below it is buoyant."""
+        lifting = [
+            i
+            for i, stage in enumerate(self.stages)
+            if any(load.buoyancy > 0.0 for load in loads_of(stage))
+        ]
+        return lifting[-1] + 1 if lifting else 0
+
     @staticmethod
     def of(line: Line) -> Track:
         """Lay out a line; its head (see `head_count`) becomes one rod."""
@@ -73,6 +83,11 @@ class Track:
             else:
                 stages.append(_rod(line, range(piece, piece + 1)))
         return Track(tuple(stages))
+
+
+def loads_of(stage: Stage) -> tuple[Load | Cable, ...]:
+    """What hangs on the line in a stage."""
+    return stage.loads if isinstance(stage, Rod) else (stage,)
 
 
 def head_count(line: Line) -> int:

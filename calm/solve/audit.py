@@ -69,11 +69,49 @@ def loads(solution: Solution) -> Floats:
 
 
 def closure(solution: Solution) -> float:
-    """Relative departure of the recomputed loads' sum from the force on the anchor."""
-    load = loads(solution)
+    """Relative departure of the recomputed loads' sum from the force on the anchor.
+
+    Where the line lies on the seabed, the loads above its touchdown must leave no vertical force
+    there: but a downward one where a rigid piece or clamp stands, and an upward one that the
+    weight of a rigid piece lying there holds down. Friction on what lies takes its share of the
+    horizontal force.
+    """
+    hanging = solution.hanging
+    load = loads(solution)[:hanging]
     total = load.sum(axis=0)
     scale = max(float(solution.tension[-1]), 1e-3 * float(np.abs(load).sum()), 1e-300)
+    if solution.landed:
+        if _points(solution, hanging - 1):
+            total[2] = max(total[2], 0.0)
+        if _points(solution, hanging):
+            total[2] = min(total[2], 0.0)
+        tension = float(np.hypot(total[0], total[1]))
+        held = min(solution.settings.seabed_friction * _weight_on_seabed(solution), tension)
+        total[:2] *= 1.0 - held / tension if tension > 0.0 else 0.0
     return float(np.linalg.norm(total - solution.force[-1])) / scale
+
+
+def _points(solution: Solution, element: int) -> bool:
+    """Whether the seabed can bear on an element at a point: a rigid piece or a clamp."""
+    if element == len(solution.element_piece):
+        return False
+    rigid = not solution.line.flexible[solution.element_piece[element]]
+    return bool(rigid or solution.element_clamp[element] >= 0)
+
+
+def _weight_on_seabed(solution: Solution) -> float:
+    """Weight in water of what lies on the seabed [N]."""
+    line, lying = solution.line, slice(solution.hanging, None)
+    piece, clamp, cut = (
+        array[lying] for array in (solution.element_piece, solution.element_clamp, solution.cut)
+    )
+    length = line.length[piece]
+    amount = np.where(line.flexible[piece], cut, 1.0)
+    np.divide(cut, length, out=amount, where=~line.flexible[piece] & (length > 0.0))
+    weight = np.where(clamp < 0, -line.buoyancy[piece] * amount, 0.0)
+    here = clamp >= 0
+    weight[here] = -line.clamp_buoyancy[clamp[here]]
+    return float(weight.sum())
 
 
 def moment_residual(solution: Solution) -> float:
@@ -90,9 +128,11 @@ def moment_residual(solution: Solution) -> float:
     for rod in rods:
         if not rod or not solution.line.length[rod].sum() > 0.0:
             continue
+        if solution.piece_nodes[rod[-1], 1] > solution.hanging:
+            continue
         worst = max(worst, _rod_residual(solution, load, above, rod))
     cable = solution.line.flexible[solution.element_piece] & (solution.element_clamp < 0)
-    cable &= solution.cut > 0
+    cable &= (solution.cut > 0) & (np.arange(len(cable)) < solution.hanging)
     mean = above[:-1] + 0.5 * load
     return max(worst, float(np.max(_angles(chord[cable], mean[cable]), initial=0.0)))
 

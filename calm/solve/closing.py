@@ -11,6 +11,7 @@ import numpy as np
 from calm.physics.line import Line, Water
 from calm.physics.march import Cuts, End, march
 from calm.physics.profile import Profile
+from calm.physics.seabed import lie_down
 from calm.physics.state import Trace
 from calm.physics.track import Cable, Load, Rod, Track
 from calm.solve.root import bracketed_root, root_near
@@ -48,12 +49,14 @@ class Unknown:
     goal : height at which the track must end [m], + up from the surface
     afloat : the piece at the surface whose share of buoyancy is sought; None below the surface
     above : the floats at the surface above that piece
+    lands : whether the line may come down on the seabed before its end
     """
 
     track: Track
     goal: float
     afloat: int | None = None
     above: tuple[Afloat, ...] = ()
+    lands: bool = False
 
     def shares(self, x: float) -> dict[int, float]:
         """Share of its buoyancy in use of every float at the surface, for the unknown's value x."""
@@ -70,7 +73,7 @@ class Unknown:
         """The question for the part of the line above a float: to bring its top to the surface."""
         stages = self.track.stages
         end = next(i for i, s in enumerate(stages) if isinstance(s, Rod) and piece in s.pieces)
-        return replace(self, track=Track(stages[:end]), goal=0.0)
+        return replace(self, track=Track(stages[:end]), goal=0.0, lands=False)
 
 
 def _with_shares(track: Track, shares: dict[int, float]) -> Track:
@@ -101,12 +104,18 @@ class Root:
 
 @dataclass(frozen=True)
 class Closed:
-    """A closed line: its root, what is left of the miss [m], and its shape."""
+    """A closed line: its root, what is left of the miss [m], and its shape.
+
+    `hanging` counts the elements above the touchdown, all of them where there is none;
+    `grounded_length` is what lies below it, unstretched [m].
+    """
 
     root: Root
     miss: float
     end: End
     trace: Trace
+    hanging: int
+    grounded_length: float
 
 
 class Closing:
@@ -122,9 +131,18 @@ class Closing:
         self.allowed = settings.tolerance * water.depth
         self.marches = 0
 
-    def whole(self) -> Unknown:
-        """The whole line with its free end below the surface."""
-        return Unknown(Track.of(self.line), self.line.anchor_height - self.water.depth)
+    def whole(self, lands: bool) -> Unknown:
+        """The whole line with its free end below the surface; `lands`: as in `Unknown`.
+
+        A line on the seabed ends there, not at the top of its anchor.
+        """
+        height = 0.0 if lands else self.line.anchor_height
+        return Unknown(Track.of(self.line), height - self.water.depth, lands=lands)
+
+    def hanging(self, root: Root) -> Root:
+        """The same root for the line hanging clear of the seabed, to be sought again from there."""
+        goal = self.line.anchor_height - self.water.depth
+        return replace(root, unknown=replace(root.unknown, goal=goal, lands=False))
 
     @property
     def coarse_step(self) -> float:
@@ -152,6 +170,7 @@ class Closing:
             reach=REACH * degrees(step) * self.water.depth,
             cuts=cuts,
             trace=trace,
+            lands=unknown.lands,
         )
 
     def coarse_miss(self, unknown: Unknown) -> Callable[[float], float]:
@@ -217,7 +236,12 @@ class Closing:
             raise Status.NOT_CONVERGED.because(
                 f"The line's end misses the anchor by {abs(miss):.3g} m."
             )
-        return Closed(found, miss, end, trace)
+        hanging, grounded = len(trace.piece), 0.0
+        if end.landing is not None:
+            track, _ = found.unknown.placed(found.x)
+            friction = self.settings.seabed_friction
+            grounded = lie_down(track, end, trace, found.unknown.goal, friction)
+        return Closed(found, miss, end, trace, hanging, grounded)
 
     def _near(
         self, root: Root, step: float, cuts: Cuts | None, small: float, narrow: float

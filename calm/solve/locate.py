@@ -16,8 +16,8 @@ SCAN = 16
 grows with depth: the resolution at which separate equilibria are told apart."""
 
 
-def locate(closing: Closing) -> tuple[Root, float | None]:
-    """Find the highest coarse root.
+def locate(closing: Closing, lands: bool) -> tuple[Root, float | None]:
+    """Find the highest coarse root, of a line that hangs clear of the seabed or one that lands.
 
     Returns
     -------
@@ -30,7 +30,7 @@ def locate(closing: Closing) -> tuple[Root, float | None]:
         ``slack``, ``above-surface`` or ``grounded``.
     """
     line = closing.line
-    unknown = closing.whole()
+    unknown = closing.whole(lands)
     miss = closing.coarse_miss(unknown)
     upright = max(closing.water.depth - line.anchor_height - float(line.length.sum()), 0.0)
     high = miss(upright)
@@ -125,7 +125,7 @@ def _at_surface(closing: Closing, unknown: Unknown, deep: float) -> Root:
     floats = np.flatnonzero(~line.flexible & (line.buoyancy > 0.0)).tolist()
     for piece, lower in zip(floats, [*floats[1:], None], strict=True):
         unknown = replace(unknown, afloat=piece)
-        if not closing.water.moving and _slack_at_rest(closing, unknown):
+        if not closing.water.moving and (unknown.lands or _slack_at_rest(closing, unknown)):
             length = float(line.length.sum())
             radius = sqrt(max(length**2 - closing.water.depth**2, 0.0))
             raise Status.SLACK.because(

@@ -1,4 +1,4 @@
-"""A moored line: the equilibrium of its root, measured and audited."""
+"""A moored line: its shape without contact with the seabed, or with its lower part lying there."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from calm.errors import NoEquilibrium
 from calm.physics.line import REFERENCE_DENSITY, Floats, Line, Water
 from calm.physics.state import MarchError, Trace
+from calm.physics.track import Track
 from calm.solve import audit
 from calm.solve.closing import Closed, Closing, Root
 from calm.solve.locate import locate
@@ -35,17 +36,60 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
     NoEquilibrium
         With one of the statuses of `Status`: nothing is returned that does not pass every check.
     """
-    if float(line.total_buoyancy.sum()) <= 0.0:
+    closing = Closing(line, water, settings or Settings())
+    above = np.cumsum(line.total_buoyancy)
+    if not (above > 0.0).any():
         raise Status.NO_EQUILIBRIUM.because(_too_heavy(line))
     if not water.moving:
         _refuse_folded(line)
-    closing = Closing(line, water, settings or Settings())
     try:
-        root, other_depth = locate(closing)
-        _refuse_deep_below(closing, root)
-        return _solution(closing, root, other_depth)
+        return _solve(closing)
     except MarchError as error:
         raise Status.NOT_CONVERGED.because(f"The march stopped: {error}.") from error
+
+
+def _solve(closing: Closing) -> Solution:
+    """Try it clear of the seabed or lying on it, the likelier first."""
+    track, line = Track.of(closing.line), closing.line
+    ways = [_clear_of_it]
+    if track.landing < len(track.stages):
+        longer = float(line.length.sum()) > closing.water.depth
+        ways.insert(0 if longer else 1, _on_the_seabed)
+    refusals = {}
+    for way in ways:
+        try:
+            return way(closing)
+        except NoEquilibrium as refusal:
+            refusals[way] = refusal
+    slack = [r for r in refusals.values() if r.status == Status.SLACK.label]
+    raise (slack or [refusals[_clear_of_it]])[0]
+
+
+def _clear_of_it(closing: Closing) -> Solution:
+    if float(closing.line.total_buoyancy.sum()) <= 0.0:
+        raise Status.NO_EQUILIBRIUM.because(_too_heavy(closing.line))
+    root, other_depth = locate(closing, lands=False)
+    _refuse_deep_below(closing, root)
+    return _solution(closing, root, other_depth)
+
+
+def _on_the_seabed(closing: Closing) -> Solution:
+    root, other_depth = locate(closing, lands=True)
+    if root.unknown.afloat is None and float(closing.line.total_buoyancy.sum()) <= 0.0:
+        # a line without a surface float is meant to stand: a heap on the seabed is no design
+        raise Status.NO_EQUILIBRIUM.because(_too_heavy(closing.line))
+    if closing.run(root.unknown, root.x, closing.coarse_step).landing is None:
+        return _solution(closing, closing.hanging(root), other_depth)
+    landed = _solution(closing, root, other_depth)
+    if not landed.landed:
+        raise Status.GROUNDED.because("The line does not lie on the seabed.")
+    if landed.grounded_length > 4.0 * closing.line.anchor_height:
+        return landed
+    try:
+        # what lies may as well hang between the seabed and the top of the anchor
+        return _solution(closing, closing.hanging(root), other_depth)
+    except NoEquilibrium:
+        return landed
 
 
 def _refuse_deep_below(closing: Closing, root: Root) -> None:
@@ -73,10 +117,13 @@ def _too_heavy(line: Line) -> str:
 
 
 def _refuse_folded(line: Line) -> None:
-    """Still water: once the line is held up it must stay so, down to the anchor."""
-    above = np.cumsum(line.total_buoyancy)
-    first = int(np.argmax(above > 0.0))
-    short = np.flatnonzero(above[first:] <= 0.0)
+    """Still water: once the line is held up it must stay so, down to its lowest float."""
+    total = line.total_buoyancy
+    above = np.cumsum(total)
+    first, last = int(np.argmax(above > 0.0)), int(np.flatnonzero(total > 0.0)[-1])
+    short = np.flatnonzero(above[first:last] <= 0.0)
+    if len(short) and float(total.sum()) <= 0.0:
+        raise Status.NO_EQUILIBRIUM.because(_too_heavy(line))
     if len(short):
         piece = first + int(short[0])
         raise Status.SLACK.because(
@@ -100,6 +147,9 @@ def _solution(closing: Closing, root: Root, other_depth: float | None) -> Soluti
         force=force,
         element_piece=np.array(fine.trace.piece, dtype=np.int64),
         element_clamp=np.array(fine.trace.clamp, dtype=np.int64),
+        landed=fine.end.landing is not None,
+        hanging=fine.hanging,
+        grounded_length=fine.grounded_length,
         cut=np.array(fine.trace.cut),
         strain=np.array(fine.trace.strain),
         afloat=tuple(fine.root.unknown.shares(fine.root.x)),

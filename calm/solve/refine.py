@@ -65,12 +65,19 @@ def _halved(cuts: Cuts) -> Cuts:
 
 
 def _errors(line: Line, coarse: Closed, fine: Closed) -> tuple[float, float, float]:
-    """Error of the finer shape: of depths and offsets [m], of tensions [N] and relative."""
-    pieces, clamps = np.array(coarse.trace.piece), np.array(coarse.trace.clamp)
+    """Error of the finer shape: of depths and offsets [m], of tensions [N] and relative.
+
+    From the nodes both have: those above the touchdown, where there is one.
+    """
+    pieces = np.array(coarse.trace.piece[: coarse.hanging])
+    clamps = np.array(coarse.trace.clamp[: coarse.hanging])
     halves = np.where(line.flexible[pieces] & (clamps < 0), 2, 1)
     same = np.concatenate([[0], np.cumsum(halves)])
+    if coarse.end.landing is not None:
+        same = same[:-1]
+    same = same[same <= fine.hanging]
     position, force = nodes_of(fine.trace)
-    before, pulled = nodes_of(coarse.trace)
+    before, pulled = (array[: len(same)] for array in nodes_of(coarse.trace))
     tension = np.linalg.norm(force[same], axis=1)
     change = np.abs(np.linalg.norm(pulled, axis=1) - tension) / 3.0
     floor = 1e-3 * float(tension.max())

@@ -27,16 +27,20 @@ class Settings:
     ----------
     angle_step : turn of one segment [rad]
     tolerance : allowed miss of the anchor, as a share of the water depth
+    seabed_friction : of a line that lies on the seabed [-]
     """
 
     angle_step: float = radians(1.0)
     tolerance: float = 1e-7
+    seabed_friction: float = 0.0
 
     def __post_init__(self) -> None:
         if not 0.0 < self.angle_step <= radians(10.0):
             raise ValueError("angle_step must be above 0 and at most 10 degrees")
         if not 0.0 < self.tolerance <= LOOSEST_TOLERANCE:
             raise ValueError(f"tolerance must be above 0 and at most {LOOSEST_TOLERANCE}")
+        if not self.seabed_friction >= 0.0:
+            raise ValueError("seabed_friction must not be negative")
 
 
 @dataclass(frozen=True)
@@ -50,6 +54,9 @@ class Solution:
     force : (k+1, 3) sum of all external forces on the free-end side of a node [N]
     element_piece : (k,) piece of the line each element belongs to
     element_clamp : (k,) clamp it is (an element without length), or -1
+    landed : whether the line comes down on the seabed before its end
+    hanging : how many of the elements hang; the others lie on the seabed
+    grounded_length : unstretched length on the seabed [m]
     cut : (k,) unstretched length [m]
     strain : (k,) of cables and chains
     afloat : the pieces that float at the surface, none for a sub-surface line
@@ -72,6 +79,9 @@ class Solution:
     force: Floats
     element_piece: Integers
     element_clamp: Integers
+    landed: bool
+    hanging: int
+    grounded_length: float
     cut: Floats
     strain: Floats
     afloat: tuple[int, ...]

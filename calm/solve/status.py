@@ -25,7 +25,7 @@ class Status(Enum):
     )
     GROUNDED = (
         "grounded",
-        "Contact with the seabed is not computed in this version: shorten or lighten the line.",
+        "Shorten, lighten or buoy up the lower part: nothing buoyant may lie on the seabed.",
     )
     ANCHOR_LIFTS = (
         "anchor-lifts",

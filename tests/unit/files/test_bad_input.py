@@ -296,10 +296,6 @@ ONE_MISTAKE = {
         GOOD + "solver: {strumming: {factor: 1.5}}\n",
         (14, 21, "`strumming: …` is not available in this version"),
     ),
-    "not yet: seabed": (
-        GOOD + "solver: {seabed_friction: 0.3}\n",
-        (14, 27, "`seabed_friction: 0.3` is not available in this version; leave it out"),
-    ),
     "not yet: sea water": (
         changed("1100 m\n", "1100 m\n  density: {temperature: 8 degC, salinity: 35}\n"),
         (

@@ -117,11 +117,20 @@ def test_the_highest_of_several_equilibria_is_found_and_another_is_told():
     assert solution.other_depth is None or solution.other_depth > depths(solution)[0]
 
 
-def test_too_little_buoyancy():
-    error = refused(line(rigid(1.0, 100.0), rope(50, weight=10)), water(100))
+def test_nothing_lifts_the_line():
+    error = refused(line(rigid(1.0, -10.0), rope(50, weight=10)), water(100))
     assert error.status == "no-equilibrium"
-    assert "100 N" in error.message
-    assert "500 N" in error.message
+    assert "lift 0 N" in error.message
+    assert "510 N" in error.message
+
+
+def test_too_little_buoyancy_for_what_hangs_above_a_lower_float():
+    """The weight would land and the float below it lift the rope off again."""
+    sunk = line(rigid(1.0, 100.0), rigid(1.0, -900.0), rope(20), rigid(1.0, 300.0), rope(30))
+    error = refused(sunk, water(100))
+    assert error.status == "no-equilibrium"
+    assert "lift 400 N" in error.message
+    assert "900 N" in error.message
 
 
 def test_a_slack_surface_line_without_current():
@@ -143,10 +152,11 @@ def test_a_buoyant_rope_longer_than_the_water_is_deep():
     assert error.status == "above-surface"
 
 
-def test_a_line_that_would_touch_the_seabed():
-    chain = line(FLOAT, rope(95, weight=0.5), rope(60, weight=60))
-    error = refused(chain, water(100, (0, 0.5, 0, 0)))
-    assert (error.status, error.piece) == ("grounded", 2)
+def test_a_buoyant_piece_may_not_lie_on_the_seabed():
+    low = line(FLOAT, rope(80, weight=0.5), rope(60, weight=60), rigid(0.5, 20.0), rope(9, 10))
+    error = refused(low, water(100, (0, 0.5, 0, 0)))
+    assert error.status == "grounded"
+    assert error.piece is not None
 
 
 def test_dragged_down_to_the_seabed():

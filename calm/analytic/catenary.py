@@ -1,0 +1,249 @@
+"""The catenary: a line that hangs in still water, inextensible or elastic, clear of the seabed or not.
+
+With the horizontal pull H, the vertical pull V at the upper end and V₀ = V − w s at a distance s
+below it (unstretched), an inextensible line of weight w per metre spans
+
+    x = (H/w) [asinh(V/H) − asinh(V₀/H)],      z = [√(H² + V²) − √(H² + V₀²)] / w.
+
+Linear stretch adds H s/EA and (V² − V₀²)/(2 w EA), the weight being that of the unstretched metre.
+On a level seabed without friction V₀ does not fall below 0: the rest, L − V/w, lies on it under H.
+
+Source: H. M. Irvine, *Cable Structures*, MIT Press, 1981, chapter 2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import hypot, inf, isfinite, sqrt, tanh
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from calm.analytic.station import Floats
+
+_STEPS = 200
+
+
+def position(
+    arc: ArrayLike, horizontal: ArrayLike, vertical: ArrayLike, weight: ArrayLike
+) -> tuple[Floats, Floats]:
+    """Where an inextensible line is at a distance above a point whose pull is known.
+
+    Parameters
+    ----------
+    arc : distance along the line, up from the point, ≥ 0 [m]
+    horizontal, vertical : components of the tension at the point [N]; vertical is positive where
+        the line rises from the point; x takes the sign of `horizontal`
+    weight : > 0 [N/m]
+
+    Returns
+    -------
+    x, z : distance and height of the arc's end from the point [m]; arrays broadcast
+    """
+    arc, h, v, w = (np.asarray(value, float) for value in (arc, horizontal, vertical, weight))
+    top = v + w * arc
+    sum_of_tensions = np.hypot(h, top) + np.hypot(h, v)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # The half-angle form keeps its digits in a taut line, the difference in a slack one.
+        taut = w * arc / sum_of_tensions
+        turn = np.where(
+            taut < 0.5,
+            2.0 * np.arctanh(np.minimum(taut, 0.5)),
+            np.arcsinh(top / np.abs(h)) - np.arcsinh(v / np.abs(h)),
+        )
+        x = np.where(h == 0.0, 0.0, h / w * turn)
+        z = np.where(sum_of_tensions == 0.0, 0.0, (top + v) * arc / sum_of_tensions)
+    return x, z
+
+
+@dataclass(frozen=True)
+class Catenary:
+    """A line that hangs between two points, by the pull at its upper end.
+
+    Parameters
+    ----------
+    horizontal : H > 0 [N]
+    vertical : V at the upper end [N]; with a seabed V > 0
+    length : unstretched length L > 0 [m]
+    weight : in water, per unstretched metre, > 0 [N/m]
+    stiffness : EA [N]; infinite (the default) for an inextensible line
+    seabed : whether the line may lie on a level seabed, without friction, at its lower end
+
+    Fields may be arrays that broadcast.
+
+    Raises
+    ------
+    ValueError
+        Where a field is outside its range.
+    """
+
+    horizontal: ArrayLike
+    vertical: ArrayLike
+    length: ArrayLike
+    weight: ArrayLike
+    stiffness: ArrayLike = inf
+    seabed: bool = False
+
+    def __post_init__(self) -> None:
+        for name in ("horizontal", "length", "weight", "stiffness"):
+            if not np.all(np.asarray(getattr(self, name)) > 0.0):
+                raise ValueError(f"the {name} of a catenary must be above 0")
+        if self.seabed and not np.all(np.asarray(self.vertical) > 0.0):
+            raise ValueError("a line that rises from the seabed needs a vertical pull above 0")
+
+    @property
+    def grounded(self) -> Floats:
+        """Unstretched length on the seabed [m]."""
+        length = np.asarray(self.length, float)
+        if not self.seabed:
+            return np.zeros_like(length)
+        lifted = np.asarray(self.vertical, float) / np.asarray(self.weight, float)
+        return np.maximum(length - lifted, 0.0)
+
+    @property
+    def vertical_bottom(self) -> Floats:
+        """Vertical pull at the lower end, positive upwards; 0 on the seabed [N]."""
+        lifted = np.asarray(self.length, float) - self.grounded
+        hanging: Floats = np.asarray(self.vertical, float) - np.asarray(self.weight, float) * lifted
+        return np.where(self.grounded > 0.0, 0.0, hanging)
+
+    @property
+    def tension_top(self) -> Floats:
+        """[N]"""
+        return np.hypot(self.horizontal, self.vertical)
+
+    @property
+    def tension_bottom(self) -> Floats:
+        """[N]"""
+        return np.hypot(self.horizontal, self.vertical_bottom)
+
+    def position(self, arc: ArrayLike) -> tuple[Floats, Floats]:
+        """Horizontal distance and height from the lower end [m] at an unstretched arc [m].
+
+        Parameters
+        ----------
+        arc : unstretched distance from the lower end, 0 to `length` [m]; broadcasts with the
+            fields
+
+        Raises
+        ------
+        ValueError
+            Where an arc is not on the line.
+        """
+        s, bottom = np.asarray(arc, float), self.vertical_bottom
+        h, w = np.asarray(self.horizontal, float), np.asarray(self.weight, float)
+        if not np.all((s >= 0.0) & (s <= np.asarray(self.length, float) * (1.0 + 1e-12))):
+            raise ValueError("an arc must lie between 0 and the length of the catenary")
+        lifted = np.maximum(s - self.grounded, 0.0)
+        x, z = position(lifted, h, bottom, w)
+        compliance = 1.0 / np.asarray(self.stiffness, float)
+        x = x + (s - lifted) + h * s * compliance
+        return x, z + (bottom + 0.5 * w * lifted) * lifted * compliance
+
+    @property
+    def end(self) -> tuple[Floats, Floats]:
+        """Horizontal distance and height of the upper end from the lower end [m]."""
+        return self.position(self.length)
+
+
+def between(
+    x: float, z: float, length: float, weight: float, stiffness: float = inf, *, seabed: bool = False
+) -> Catenary:
+    """The catenary between two points.
+
+    Parameters
+    ----------
+    x, z : horizontal distance > 0 and height of the upper end from the lower end [m]
+    length, weight, stiffness, seabed : as of `Catenary`; with a seabed z > 0
+
+    Returns
+    -------
+    Catenary
+        Its end lies at (x, z) to a relative 1e-13 of the length or so.
+
+    Raises
+    ------
+    ValueError
+        Where a value is outside its range, the line is too short to reach the point, or so long
+        that it would lie slack on the seabed.
+
+    Notes
+    -----
+    The compliance matrix ∂(x, z)/∂(H, V) is symmetric and positive definite, so the pull is unique
+    and Newton's method with a step that is halved until the miss falls leads to it.
+    """
+    for name, value in (("distance", x), ("length", length), ("weight", weight)):
+        if not (isfinite(value) and value > 0.0):
+            raise ValueError(f"the {name} of a catenary must be above 0, not {value:g}")
+    if not stiffness > 0.0:
+        raise ValueError(f"the stiffness of a catenary must be above 0, not {stiffness:g}")
+    chord = hypot(x, z)
+    if stiffness == inf and chord >= length:
+        raise ValueError(f"a line of {length:g} m does not reach a point {chord:g} m away")
+    if seabed:
+        _refuse_slack(x, z, length, weight, stiffness)
+    # In units of the line's length and weight, so that one tolerance serves all.
+    h, v = _solve(x / length, z / length, weight * length / stiffness, seabed)
+    return Catenary(h * weight * length, v * weight * length, length, weight, stiffness, seabed)
+
+
+def _refuse_slack(x: float, z: float, length: float, weight: float, stiffness: float) -> None:
+    """A line that hangs straight down and still leaves x on the seabed has no pull to speak of."""
+    if not z > 0.0:
+        raise ValueError(f"the upper end must be above the seabed: its height is {z:g} m")
+    # hanging plumb: z = l + w l²/(2 EA), l the unstretched length
+    plumb = 2.0 * z / (1.0 + sqrt(1.0 + 2.0 * weight * z / stiffness))
+    if plumb < length and length - plumb >= x:
+        raise ValueError(
+            f"a line of {length:g} m lies slack: {plumb:g} m hang and the rest reaches {x:g} m"
+        )
+
+
+def _solve(x: float, z: float, compliance: float, seabed: bool) -> tuple[float, float]:
+    """Pull (H, V) in units of the line's weight for a line of length 1; compliance w L/EA."""
+    chord = hypot(x, z)
+    if chord < 1.0:
+        sag = sqrt(max(3.0 * ((1.0 - z * z) / (x * x) - 1.0), 1e-300))
+        h, v = x / (2.0 * sag), 0.5 * (z / tanh(sag) + 1.0)
+    else:
+        pull = (chord - 1.0) / compliance + 0.5
+        h, v = pull * x / chord, pull * z / chord + 0.5
+    if seabed:
+        v = max(v, z)
+    miss_x, miss_z, jacobian = _miss(h, v, x, z, compliance, seabed)
+    for _ in range(_STEPS):
+        xx, xz, zz = jacobian
+        determinant = xx * zz - xz * xz
+        step_h = (zz * miss_x - xz * miss_z) / determinant
+        step_v = (xx * miss_z - xz * miss_x) / determinant
+        size, share = hypot(miss_x, miss_z), 1.0
+        while True:
+            new_h, new_v = h - share * step_h, v - share * step_v
+            if new_h > 0.0 and (new_v > 0.0 or not seabed):
+                miss_x, miss_z, jacobian = _miss(new_h, new_v, x, z, compliance, seabed)
+                if hypot(miss_x, miss_z) < size:
+                    break
+            share *= 0.5
+            if share < 1e-12:  # the miss is down to rounding
+                return h, v
+        h, v = new_h, new_v
+    raise ValueError("no catenary was found between these points")
+
+
+def _miss(
+    h: float, v: float, x: float, z: float, compliance: float, seabed: bool
+) -> tuple[float, float, tuple[float, float, float]]:
+    """Miss of the upper end and ∂x/∂H, ∂x/∂V = ∂z/∂H, ∂z/∂V; length and weight are 1."""
+    lifted = min(1.0, v) if seabed else 1.0
+    bottom = v - lifted
+    over, under = hypot(h, v), hypot(h, bottom)
+    across, up = (float(value) for value in position(lifted, h, bottom, 1.0))
+    miss_x = across + (1.0 - lifted) + h * compliance - x
+    miss_z = up + (bottom + 0.5 * lifted) * lifted * compliance - z
+    sines = v / over - bottom / under
+    jacobian = (
+        across / h - sines + compliance,
+        h / over - h / under,
+        sines + lifted * compliance,
+    )
+    return miss_x, miss_z, jacobian

@@ -1,0 +1,112 @@
+"""A line whose lower part lies on the seabed."""
+
+from math import asinh, radians, sqrt
+
+import numpy as np
+import pytest
+
+from calm.errors import NoEquilibrium
+from calm.solve import Settings, solve_mooring
+from tests.unit.solve.simple import line, rigid, rope, water
+
+FLOAT = rigid(1.0, 5000.0, drag=250.0)
+CHAIN = rope(60, weight=60, stiffness=1e7)
+CURRENT = (0, 0.5, 0.2, 0)
+
+
+def landed(*args, **settings):
+    solution = solve_mooring(*args, Settings(**settings))
+    assert solution.landed
+    assert solution.closure <= 1e-9
+    assert solution.moment_residual <= 1e-8
+    return solution
+
+
+def test_touchdown_of_an_elastic_catenary():
+    """Fairlead at (5.3, 2.65) m, L 6.98 m, w 1.036 N/m, EA 560 kN: H 0.763277, V 3.424639 N,
+    3.674364 m on the bed. A surface float whose drag is H must find V and the same place.
+
+    Tolerance: the printed digits, and the error of segments of 0.05°.
+    """
+    pull = rigid(0.0, 10.0, drag=0.763277)
+    rest = rope(6.98, weight=1.036, cn=0, stiffness=560e3)
+    solution = landed(line(pull, rest), water(2.65, (0, 1, 0, 0)), angle_step=radians(0.05))
+    assert solution.surface
+    assert 10.0 * solution.buoyancy_used == pytest.approx(3.424639, abs=2e-6)
+    assert solution.position[0, 0] == pytest.approx(5.3, abs=2e-6)
+    assert solution.grounded_length == pytest.approx(3.674364, abs=2e-6)
+
+
+def test_a_chain_hangs_from_a_float_pulled_by_the_current():
+    """No drag but the float's: H and V are known, and the chain is a catenary to its touchdown."""
+    bare = rope(100, weight=60, cn=0)
+    solution = landed(line(FLOAT, bare), water(70, CURRENT), angle_step=radians(0.2))
+    speed = sqrt(0.29)
+    pull, up = 250 * speed * speed, solution.force[1, 2]
+    height, out = 69.0, np.hypot(*solution.position[1, :2])
+    assert solution.surface
+    assert up == pytest.approx(60 * sqrt(height**2 + 2 * height * pull / 60), rel=1e-5)
+    lying = 100 - up / 60
+    assert solution.grounded_length == pytest.approx(lying, abs=1e-3)
+    assert out == pytest.approx(lying + pull / 60 * asinh(up / pull), rel=1e-5)
+
+
+def test_the_part_on_the_seabed_lies_along_the_pull_and_friction_eats_it():
+    free = landed(line(FLOAT, rope(40, weight=0.5), CHAIN), water(70, CURRENT))
+    held = landed(
+        line(FLOAT, rope(40, weight=0.5), CHAIN), water(70, CURRENT), seabed_friction=0.05
+    )
+    lying = free.position[free.hanging :]
+    assert lying[:, 2] == pytest.approx(-70, abs=1e-5)
+    along = lying[0] - lying[-1]
+    assert np.cross(along, free.force[-1])[2] == pytest.approx(0, abs=1e-6)
+    assert free.force[-1, 2] == held.force[-1, 2] == 0
+    weight = 60 * held.grounded_length
+    assert held.tension[-1] == pytest.approx(free.tension[-1] - 0.05 * weight, abs=1e-3)
+    much = landed(line(FLOAT, rope(40, weight=0.5), CHAIN), water(70, CURRENT), seabed_friction=0.6)
+    assert much.tension[-1] == 0
+
+
+def test_a_heavy_piece_stands_on_the_seabed():
+    """What the line cannot carry of it the seabed does; beyond it the line only pulls sideways."""
+    shallow = water(40, CURRENT)
+    solution = landed(line(FLOAT, rope(38.2, weight=0.5), rigid(1, -6000), CHAIN), shallow)
+    foot = solution.piece_nodes[2, 1]
+    assert solution.position[foot, 2] == pytest.approx(-40, abs=1e-5)
+    assert solution.force[foot, 2] == 0
+    assert solution.grounded_length == 60
+
+
+def test_a_piece_too_heavy_to_be_tipped_up_lies_flat():
+    """The line has less than half its weight to give at its top end: it lies all along."""
+    pieces = rope(40, weight=30, cn=0.1), rigid(3.0, -9000.0), rope(30, weight=20)
+    solution = landed(line(FLOAT, *pieces), water(39, CURRENT))
+    first, last = solution.piece_nodes[2]
+    assert 0 <= solution.force[first, 2] < 4500
+    assert solution.position[[first, last], 2] == pytest.approx([-39, -39], abs=1e-5)
+    assert solution.grounded_length >= 33
+
+
+def test_a_clamp_on_the_seabed():
+    clamps = [(2, 50.0, -30.0, 3.0), (1, 20.0, -30.0, 3.0)]
+    solution = landed(line(FLOAT, rope(40, 0.5), CHAIN, clamps=clamps), water(70, CURRENT))
+    on_chain = int(np.flatnonzero(solution.element_clamp == 0)[0])
+    assert on_chain > solution.hanging
+    assert solution.position[on_chain, 2] == pytest.approx(-70, abs=1e-5)
+    distance = np.linalg.norm(solution.position[on_chain] - solution.position[-1])
+    assert distance == pytest.approx(10, rel=1e-4)
+
+
+def test_a_sub_surface_line_is_meant_to_stand():
+    """5000 N lift 83 m of a chain of 60 N/m: the rest would lie in a heap."""
+    with pytest.raises(NoEquilibrium) as caught:
+        solve_mooring(line(FLOAT, rope(40, 0.5), rope(200, weight=60)), water(300, CURRENT))
+    assert caught.value.status == "no-equilibrium"
+    assert "12020 N" in caught.value.message
+
+
+def test_a_barely_slack_line_hangs_between_the_seabed_and_the_top_of_its_anchor():
+    slack = line(FLOAT, rope(69.2, weight=20, cn=0.2), anchor_height=2.0)
+    solution = solve_mooring(slack, water(70, CURRENT))
+    assert not solution.landed
+    assert solution.position[-1, 2] == pytest.approx(-68, abs=1e-5)
