@@ -1,4 +1,4 @@
-"""The catenary: a line that hangs in still water, inextensible or elastic, clear of the seabed or not.
+"""The catenary: a line in still water, inextensible or elastic, clear of the seabed or not.
 
 With the horizontal pull H, the vertical pull V at the upper end and V₀ = V − w s at a distance s
 below it (unstretched), an inextensible line of weight w per metre spans
@@ -21,17 +21,15 @@ from numpy.typing import ArrayLike
 
 from calm.analytic.station import Floats
 
-_STEPS = 200
-
 
 def position(
     arc: ArrayLike, horizontal: ArrayLike, vertical: ArrayLike, weight: ArrayLike
 ) -> tuple[Floats, Floats]:
-    """Where an inextensible line is at a distance above a point whose pull is known.
+    """Where an inextensible line is at a distance from a point whose pull is known.
 
     Parameters
     ----------
-    arc : distance along the line, up from the point, ≥ 0 [m]
+    arc : distance along the line, up from the point; negative down [m]
     horizontal, vertical : components of the tension at the point [N]; vertical is positive where
         the line rises from the point; x takes the sign of `horizontal`
     weight : > 0 [N/m]
@@ -40,19 +38,19 @@ def position(
     -------
     x, z : distance and height of the arc's end from the point [m]; arrays broadcast
     """
-    arc, h, v, w = (np.asarray(value, float) for value in (arc, horizontal, vertical, weight))
-    top = v + w * arc
+    s, h, v, w = (np.asarray(value, float) for value in (arc, horizontal, vertical, weight))
+    top = v + w * s
     sum_of_tensions = np.hypot(h, top) + np.hypot(h, v)
     with np.errstate(divide="ignore", invalid="ignore"):
         # The half-angle form keeps its digits in a taut line, the difference in a slack one.
-        taut = w * arc / sum_of_tensions
+        taut = w * s / sum_of_tensions
         turn = np.where(
-            taut < 0.5,
-            2.0 * np.arctanh(np.minimum(taut, 0.5)),
+            np.abs(taut) < 0.5,
+            2.0 * np.arctanh(np.clip(taut, -0.5, 0.5)),
             np.arcsinh(top / np.abs(h)) - np.arcsinh(v / np.abs(h)),
         )
         x = np.where(h == 0.0, 0.0, h / w * turn)
-        z = np.where(sum_of_tensions == 0.0, 0.0, (top + v) * arc / sum_of_tensions)
+        z = np.where(sum_of_tensions == 0.0, 0.0, (top + v) * s / sum_of_tensions)
     return x, z
 
 
@@ -98,13 +96,14 @@ class Catenary:
         if not self.seabed:
             return np.zeros_like(length)
         lifted = np.asarray(self.vertical, float) / np.asarray(self.weight, float)
-        return np.maximum(length - lifted, 0.0)
+        rest: Floats = np.maximum(length - lifted, 0.0)
+        return rest
 
     @property
     def vertical_bottom(self) -> Floats:
         """Vertical pull at the lower end, positive upwards; 0 on the seabed [N]."""
         lifted = np.asarray(self.length, float) - self.grounded
-        hanging: Floats = np.asarray(self.vertical, float) - np.asarray(self.weight, float) * lifted
+        hanging = np.asarray(self.vertical, float) - np.asarray(self.weight, float) * lifted
         return np.where(self.grounded > 0.0, 0.0, hanging)
 
     @property
@@ -130,9 +129,10 @@ class Catenary:
         ValueError
             Where an arc is not on the line.
         """
-        s, bottom = np.asarray(arc, float), self.vertical_bottom
+        length, bottom = np.asarray(self.length, float), self.vertical_bottom
         h, w = np.asarray(self.horizontal, float), np.asarray(self.weight, float)
-        if not np.all((s >= 0.0) & (s <= np.asarray(self.length, float) * (1.0 + 1e-12))):
+        s = np.clip(arc, 0.0, length)
+        if not np.all(np.abs(s - arc) <= 1e-12 * length):
             raise ValueError("an arc must lie between 0 and the length of the catenary")
         lifted = np.maximum(s - self.grounded, 0.0)
         x, z = position(lifted, h, bottom, w)
@@ -147,7 +147,13 @@ class Catenary:
 
 
 def between(
-    x: float, z: float, length: float, weight: float, stiffness: float = inf, *, seabed: bool = False
+    x: float,
+    z: float,
+    length: float,
+    weight: float,
+    stiffness: float = inf,
+    *,
+    seabed: bool = False,
 ) -> Catenary:
     """The catenary between two points.
 
@@ -158,25 +164,24 @@ def between(
 
     Returns
     -------
-    Catenary
-        Its end lies at (x, z) to a relative 1e-13 of the length or so.
+    Catenary : its end lies at (x, z) to some 1e-13 of the length
 
     Raises
     ------
     ValueError
-        Where a value is outside its range, the line is too short to reach the point, or so long
-        that it would lie slack on the seabed.
+        Where a value is outside its range, the line too short, or so long that it lies slack.
 
     Notes
     -----
     The compliance matrix ∂(x, z)/∂(H, V) is symmetric and positive definite, so the pull is unique
     and Newton's method with a step that is halved until the miss falls leads to it.
     """
-    for name, value in (("distance", x), ("length", length), ("weight", weight)):
-        if not (isfinite(value) and value > 0.0):
+    if not isfinite(x + z + length + weight):
+        raise ValueError("the measures of a catenary must be finite")
+    given = {"distance": x, "length": length, "weight": weight, "stiffness": stiffness}
+    for name, value in given.items():
+        if not value > 0.0:
             raise ValueError(f"the {name} of a catenary must be above 0, not {value:g}")
-    if not stiffness > 0.0:
-        raise ValueError(f"the stiffness of a catenary must be above 0, not {stiffness:g}")
     chord = hypot(x, z)
     if stiffness == inf and chord >= length:
         raise ValueError(f"a line of {length:g} m does not reach a point {chord:g} m away")
@@ -211,7 +216,7 @@ def _solve(x: float, z: float, compliance: float, seabed: bool) -> tuple[float, 
     if seabed:
         v = max(v, z)
     miss_x, miss_z, jacobian = _miss(h, v, x, z, compliance, seabed)
-    for _ in range(_STEPS):
+    for _ in range(200):
         xx, xz, zz = jacobian
         determinant = xx * zz - xz * xz
         step_h = (zz * miss_x - xz * miss_z) / determinant
@@ -240,10 +245,6 @@ def _miss(
     across, up = (float(value) for value in position(lifted, h, bottom, 1.0))
     miss_x = across + (1.0 - lifted) + h * compliance - x
     miss_z = up + (bottom + 0.5 * lifted) * lifted * compliance - z
-    sines = v / over - bottom / under
-    jacobian = (
-        across / h - sines + compliance,
-        h / over - h / under,
-        sines + lifted * compliance,
-    )
+    sines, cosines = v / over - bottom / under, h / over - h / under
+    jacobian = across / h - sines + compliance, cosines, sines + lifted * compliance
     return miss_x, miss_z, jacobian

@@ -23,7 +23,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf, isfinite, nan, pi, sqrt
+from itertools import pairwise
+from math import inf, isfinite, nan, sqrt
 from typing import Literal
 
 import numpy as np
@@ -35,7 +36,7 @@ Law = Literal["constant", "square"]
 
 
 def cosine_of_critical_angle(weight_ratio: ArrayLike) -> Floats:
-    """u = √(1 + p²/4) − p/2 without cancellation; p ≥ 0 [-]."""
+    """The cosine √(1 + p²/4) − p/2, without cancellation; p ≥ 0 [-]."""
     half = 0.5 * np.asarray(weight_ratio, float)
     return 1.0 / (half + np.sqrt(1.0 + half * half))
 
@@ -89,7 +90,7 @@ class Hodograph:
         return float(np.arctan2(self._sine, self._u))
 
     def parameter(self, angle: ArrayLike) -> Floats:
-        """M of an angle [rad] of this branch; inf at φc, nan on the other branch."""
+        """The m of an angle [rad] of this branch; inf at φc, nan on the other branch."""
         half = 0.5 * np.asarray(angle, float)
         a, sine, cosine = self._a, np.sin(half), np.cos(half)
         # e^(2m) = (1 + tanh m)/(1 − tanh m), where 1 − tanh m is a sine of φ − φc
@@ -102,7 +103,8 @@ class Hodograph:
     def _half_angle(self, m: Floats) -> tuple[Floats, Floats]:
         """Numbers in the ratio sin(φ/2) : cos(φ/2)."""
         tanh = np.tanh(m)
-        return (self._a, tanh) if self.steep else (self._a * tanh, np.ones_like(tanh))
+        one = np.ones_like(tanh)
+        return (self._a * one, tanh) if self.steep else (self._a * tanh, one)
 
     def direction(self, m: ArrayLike) -> tuple[Floats, Floats]:
         """Cosine and sine of φ."""
@@ -117,7 +119,7 @@ class Hodograph:
 
     @cached_property
     def _upright(self) -> float:
-        """M of φ = 90°, the kink of the friction; 0 on the branch that does not come there."""
+        """The m of φ = 90°, the kink of the friction; 0 on the branch that does not come there."""
         return float(np.arctanh(self._a)) if self.steep else 0.0
 
     def log_tension(self, m: ArrayLike) -> Floats:
@@ -150,25 +152,80 @@ class Hodograph:
         angle = 2.0 * np.arctan2(sine, cosine)
         return (u**3 * straight - bend / u) / (1.0 + u * u) + angle
 
-    def integrals(self, start: float, end: float) -> tuple[float, float, float]:
-        """∫ {1, cos φ, sin φ} (T/T at `start`) R ds/T from one m to another: σ, ξ, η.
+    def slope(self, m: ArrayLike) -> Floats:
+        """R/T ds/dm: never 0, so that the arc grows with m."""
+        sine, cosine = self._half_angle(np.asarray(m, float))
+        u, s2, c2 = self._u, sine * sine, cosine * cosine
+        # 1 + u cos φ, without cancellation where both are near 1
+        return 2.0 * u * (s2 + c2) / (self._sine * (1.0 + u) * (c2 + self._a**2 * s2))
 
-        They are arc, distance upstream and height in units of T/R at `start`.
-        """
+    def arc(self, start: float, step: float) -> float:
+        """σ = ∫ R ds/T₀ over a step of m, T₀ the tension at `start`."""
+        return self._integral(start, step, None, 0.0)
+
+    def reach(self, start: float, step: float) -> tuple[float, float]:
+        """ξ and η: distance upstream and height over a step of m, in units of T₀/R."""
+        # either may vanish where the arc does not
+        floor = 1e-13 * abs(self.arc(start, step))
+        xi, eta = (self._integral(start, step, share, floor) for share in (0, 1))
+        return xi, eta
+
+    def _integral(self, start: float, step: float, share: int | None, floor: float) -> float:
         from scipy.integrate import quad
 
         reference = float(self.log_tension(start))
-        u = self._u
 
-        def slope(m: float, part: int) -> float:
-            cosine, sine = (float(value) for value in self.direction(m))
-            tension = float(np.exp(self.log_tension(m) - reference))
-            share = (1.0, cosine, sine)[part]
-            return tension * share * 2.0 * u / (self._sine * (1.0 + u * cosine))
+        def part(after: float) -> float:
+            m = start + after
+            projection = 1.0 if share is None else self.direction(m)[share]
+            return float(np.exp(self.log_tension(m) - reference) * projection * self.slope(m))
 
-        kinks = [self._upright] if self.friction and start < self._upright < end else None
-        sigma, xi, eta = (
-            float(quad(slope, start, end, (part,), epsabs=0.0, epsrel=1e-12, limit=400, points=kinks)[0])
-            for part in range(3)
+        return sum(
+            float(quad(part, low, high, epsabs=floor, epsrel=1e-12, limit=400)[0])
+            for low, high in pairwise(self._panels(start, step))
         )
-        return sigma, xi, eta
+
+    def _panels(self, start: float, step: float) -> list[float]:
+        """A step cut at the kink of the friction and, each way from it, by factors of 4 in m.
+
+        The line turns over the first few of them; a long step as a whole would hide that.
+        """
+        low, high = sorted((start, start + step))
+        edge, cuts = self._upright or self._a, []
+        while edge < high:
+            if edge > low:
+                cuts.append(edge - start)
+            edge *= 4.0
+        return [0.0, *(cuts if step > 0.0 else reversed(cuts)), step]
+
+    def advance(self, start: float, arc: float) -> float:
+        """The step of m that an arc takes, in units of T₀/R; −`start` where the line comes level.
+
+        Parameters
+        ----------
+        start : finite m
+        arc : up the line; negative down
+        """
+        from scipy.optimize import brentq
+
+        side, length = (-1.0, -arc) if arc < 0.0 else (1.0, arc)
+        limit = start if arc < 0.0 else inf
+
+        def miss(step: float) -> float:
+            return side * self.arc(start, side * step) - length
+
+        def farther(near: float, width: float) -> float:
+            # the tension may grow without bound: no more than e^10 at a time
+            far, reference = min(near + width, limit), self.log_tension(start + side * near)
+            while self.log_tension(start + side * far) - reference > 10.0:
+                far = 0.5 * (near + far)
+            return far
+
+        near, width = 0.0, length / float(self.slope(start))
+        far = farther(near, width)
+        while miss(far) < 0.0:
+            if far == limit:
+                return -start
+            near, width = far, 2.0 * width
+            far = farther(near, width)
+        return side * float(brentq(miss, near, far, xtol=1e-300, rtol=1e-15)) if far else 0.0

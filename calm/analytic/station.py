@@ -1,4 +1,4 @@
-"""What the closed forms of a line in a stream return: one point of the line, or an array of them."""
+"""What the closed forms of a line in a stream return: a point of it, or an array of points."""
 
 from __future__ import annotations
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from calm.files import DensityTable, Environment
+from calm.files.definition import STANDARD_GRAVITY
 from calm.physics.line import Water
-
-STANDARD_GRAVITY = 9.80665
 
 
 def assemble_water(environment: Environment) -> Water:

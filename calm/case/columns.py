@@ -9,13 +9,11 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from calm.physics.line import Floats, Integers
 
 if TYPE_CHECKING:
     import pandas
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 
 class Columns:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +12,7 @@ from calm.case.result import Accuracy, AnchorLoad, Result, Top
 from calm.case.warnings import warnings_of
 from calm.checks.anchor import required_weight
 from calm.physics.line import Floats
-from calm.solve import Solution
+from calm.solve import Solution, Status
 
 if TYPE_CHECKING:
     from calm.case.mooring import Mooring
@@ -30,7 +31,7 @@ def result_of(mooring: Mooring, solution: Solution, still: Solution | None) -> R
         mooring=mooring,
         name=mooring.file.name,
         type="surface" if solution.surface else "subsurface",
-        status="converged",
+        status=Status.CONVERGED.label,
         iterations=solution.marches,
         segments=solution.segments,
         miss=solution.miss,
@@ -50,7 +51,7 @@ def result_of(mooring: Mooring, solution: Solution, still: Solution | None) -> R
         shape=_shape(solution),
         still_shape=None if still is None else _shape(still),
     )
-    return Result(**{**vars(result), "warnings": warnings_of(result, solution)})
+    return replace(result, warnings=warnings_of(result, solution))
 
 
 def _tilt(vector: Floats) -> Floats:
@@ -86,8 +87,8 @@ def _components(mooring: Mooring, solution: Solution, still: Solution | None) ->
     tension = solution.tension
     greatest = np.maximum.reduceat(tension[:-1], nodes[:, 0])
     greatest = np.append(np.maximum(greatest, tension[nodes[:, 1]]), tension[-1])
-    strain = np.bincount(solution.element_piece, solution.cut * (1.0 + solution.strain), len(nodes))
-    own = [pieces[-1].length or 0.0]
+    stretched = solution.cut * (1.0 + solution.strain)
+    own = pieces[-1].length or 0.0
     chord = (top - bottom)[:-1]
     force = solution.force[nodes].mean(axis=1)
     lean = np.where(np.linalg.norm(chord, axis=1) > 0, _tilt(chord), _tilt(force))
@@ -103,8 +104,8 @@ def _components(mooring: Mooring, solution: Solution, still: Solution | None) ->
         label=[piece.label for piece in pieces],
         kind=[piece.component.kind for piece in pieces],
         role=[piece.component.role for piece in pieces],
-        length=np.concatenate([strain, own]),
-        cut_length=np.concatenate([solution.line.length, own]),
+        length=np.append(np.bincount(solution.element_piece, stretched), own),
+        cut_length=np.append(solution.line.length, own),
         depth_top=-top[:, 2],
         depth_bottom=-bottom[:, 2],
         x_top=top[:, 0],

@@ -56,7 +56,7 @@ class AnchorLoad:
 class Result:
     """A converged mooring. Lengths and depths [m], forces [N], angles [degrees].
 
-    `iterations` counts marches, `segments` the elements of the final one, `miss` is the height
+    `iterations` counts marches, `segments` the cuts of the final one, `miss` is the height
     of the line's end above the anchor's top, `closure` the relative force residual recomputed
     from the final coordinates. `still_shape` is the same line without current, None where that
     has no unique shape.

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calm.files import Cable
+from calm.files import Cable, Component
 from calm.solve import Solution
 
 if TYPE_CHECKING:
@@ -21,6 +21,12 @@ SYNTHETICS = (
     "nylon", "polyamide", "polyester", "dacron", "polypropylene", "polyethylene", "polyolefin",
     "hmpe", "dyneema", "spectra", "aramid", "kevlar", "vectran", "perlon",
 )  # fmt: skip
+
+
+def is_synthetic(component: Component) -> bool:
+    """Whether a component is a rope of a synthetic fibre, by its `material`."""
+    material = (component.material or "").lower()
+    return component.kind == "cable" and any(fibre in material for fibre in SYNTHETICS)
 
 
 def warnings_of(result: Result, solution: Solution) -> tuple[str, ...]:
@@ -46,14 +52,17 @@ def _anchor_too_light(result: Result, _: Solution) -> Iterator[str]:
         )
 
 
-def _tilted(result: Result, _: Solution) -> Iterator[str]:
+def _tilted(result: Result, solution: Solution) -> Iterator[str]:
     leaning = [
         (row.label, row.tilt, result.mooring.file.pieces[row.index].component)
         for row in result.components
     ]
     clamps = [clamp for piece in result.mooring.file.pieces for clamp in piece.clamps]
-    known = {clamp.label: clamp.component for clamp in clamps}
-    leaning += [(row.label, row.tilt, known[row.label]) for row in result.clamps]
+    which = solution.element_clamp[solution.element_clamp >= 0]
+    leaning += [
+        (row.label, row.tilt, clamps[m].component)
+        for row, m in zip(result.clamps, which, strict=True)
+    ]
     for label, tilt, component in leaning:
         limit, warned = component.max_tilt, component.warn_tilt
         if limit is not None and tilt > limit:
@@ -65,13 +74,11 @@ def _tilted(result: Result, _: Solution) -> Iterator[str]:
 def _stiffness_unknown(result: Result, _: Solution) -> Iterator[str]:
     for piece in result.mooring.file.pieces:
         component = piece.component
-        material = (getattr(component, "material", None) or "").lower()
-        if (
-            isinstance(component, Cable)
-            and component.stiffness is None
-            and any(synthetic in material for synthetic in SYNTHETICS)
-        ):
-            yield f"{piece.label} is {material} of unknown stiffness: it is taken as inextensible."
+        if isinstance(component, Cable) and is_synthetic(component) and component.stiffness is None:
+            yield (
+                f"{piece.label} is {component.material} of unknown stiffness: "
+                "it is taken as inextensible."
+            )
 
 
 def _overstretched(result: Result, solution: Solution) -> Iterator[str]:

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from cyclopts import App, CycloptsError, Parameter
 
 from calm.cli.catalog import catalog
+from calm.cli.chart import chart
 from calm.cli.exit_codes import ExitCode
 from calm.cli.run import RUN_EXAMPLES, run
 from calm.cli.starter import NEW_EXAMPLES, SCHEMA_EXAMPLES, new, schema
@@ -44,6 +45,7 @@ app = App(
 )
 app.command(run, usage="Usage: calm run [OPTIONS] FILE...", help_epilogue=RUN_EXAMPLES)
 app.command(catalog)
+app.command(chart)
 app.command(new, help_epilogue=NEW_EXAMPLES)
 app.command(schema, help_epilogue=SCHEMA_EXAMPLES)
 

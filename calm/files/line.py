@@ -161,9 +161,10 @@ class LineReader:
             self._refuse(item, ("use",), f"`use: {shown(use)}`: no such component{offer}")
             return None
         hidden = self._catalogue.hidden(use)
-        notice = f"{use}: defined in {entry.place}, which hides that of {hidden and hidden.place}"
-        if hidden and notice not in self._notices:
-            self._notices.append(notice)
+        if hidden:
+            notice = f"{use}: defined in {entry.place}, which hides that of {hidden.place}"
+            if notice not in self._notices:
+                self._notices.append(notice)
         return entry
 
     def _definition(
@@ -245,6 +246,8 @@ def numbered(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
         if total[text] == 1:
             return text
         seen[text] += 1
+        while f"{text} {seen[text]}" in total:
+            seen[text] += 1
         return f"{text} {seen[text]}"
 
     return tuple(

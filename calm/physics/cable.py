@@ -61,6 +61,8 @@ def march_cable(
             if hanging < cut:
                 _pass_segment(cable, profile, state, hanging, trace)
                 state.fz = 0.0
+                if trace is not None:
+                    trace.force[-1] = (state.fx, state.fy, 0.0)
                 return given or [*used, *evenly(left - cut, reach)], done + hanging
         _pass_segment(cable, profile, state, cut, trace)
         done += cut

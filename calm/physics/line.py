@@ -21,7 +21,7 @@ class _Arrays:
 
     def __post_init__(self) -> None:
         for field in fields(self):  # type: ignore[arg-type]
-            if "NDArray" not in str(field.type) and field.type not in _DTYPES:
+            if field.type not in _DTYPES:
                 continue
             value = np.array(getattr(self, field.name), dtype=_DTYPES[str(field.type)], ndmin=1)
             if not np.isfinite(value).all():

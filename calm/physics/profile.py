@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from math import inf
+from math import inf, isfinite
 
 from calm.physics.line import Water
+from calm.physics.state import MarchError
 
 
 class Profile:
@@ -33,6 +34,8 @@ class Profile:
 
     def interval(self, depth: float, i: int) -> int:
         """Index of the interval that holds `depth`, searched from interval `i`."""
+        if not isfinite(depth):
+            raise MarchError("the line runs off to infinity")
         levels = self.levels
         while depth >= levels[i + 1]:
             i += 1

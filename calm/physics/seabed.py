@@ -1,15 +1,19 @@
-"""The part of a line that lies on the seabed: straight, held back by friction, out of the current."""
+"""The part of a line that lies on the seabed: straight, held by friction, out of the current."""
 
 from __future__ import annotations
 
 from math import hypot
 
+from calm.physics.line import REFERENCE_DENSITY
 from calm.physics.march import End
+from calm.physics.profile import Profile
 from calm.physics.state import Trace
-from calm.physics.track import Cable, Load, Rod, Track
+from calm.physics.track import Cable, Load, Rod, Stage, Track
 
 
-def lie_down(track: Track, end: End, trace: Trace, seabed: float, friction: float) -> float:
+def lie_down(
+    track: Track, profile: Profile, end: End, trace: Trace, seabed: float, friction: float
+) -> float:
     """Continue a trace from its touchdown to the anchor.
 
     The line lies along the horizontal force at touchdown. Its tension falls by friction times the
@@ -33,10 +37,12 @@ def lie_down(track: Track, end: End, trace: Trace, seabed: float, friction: floa
     east, north = (
         (-end.force[0] / tension, -end.force[1] / tension) if tension > 0.0 else (1.0, 0.0)
     )
+    *_, density = profile.at(-seabed, 0)
+    excess = (density - REFERENCE_DENSITY) * profile.gravity
     grounded = 0.0
     hanging = end.landing.hanging
     for stage in track.stages[end.landing.stage :]:
-        for piece, clamp, length, weight in _lying(stage, hanging):
+        for piece, clamp, length, weight in _lying(stage, hanging, excess):
             compliance = stage.compliance if isinstance(stage, Cable) else 0.0
             mean, tension = _held_back(tension, friction * weight)
             strain = compliance * mean
@@ -53,29 +59,37 @@ Part = tuple[int, int, float, float]
 """Piece, clamp or -1, unstretched length [m] and weight in water [N] of something on the seabed."""
 
 
-def _lying(stage: Cable | Rod | Load, hanging: float) -> list[Part]:
-    """What of a stage lies on the seabed, below the length that hangs [m]."""
+def _lying(stage: Stage, hanging: float, excess: float) -> list[Part]:
+    """What of a stage lies on the seabed, below the length that hangs [m].
+
+    `excess` is what a displaced cubic metre lifts more there than in reference water [N/m³].
+    """
     if isinstance(stage, Cable):
         length = stage.length - hanging
-        return [(stage.piece, -1, length, -stage.buoyancy * length)] if length > 0.0 else []
+        weight = _weight(stage, excess) * length
+        return [(stage.piece, -1, length, weight)] if length > 0.0 else []
     if hanging > 0.0:
         return []
     if isinstance(stage, Load):
-        return [(stage.piece, stage.clamp, 0.0, -stage.buoyancy)]
-    return _lying_rod(stage)
+        return [(stage.piece, stage.clamp, 0.0, _weight(stage, excess))]
+    return _lying_rod(stage, excess)
 
 
-def _lying_rod(rod: Rod) -> list[Part]:
+def _weight(load: Cable | Load, excess: float) -> float:
+    return -(load.buoyancy + excess * load.volume)
+
+
+def _lying_rod(rod: Rod, excess: float) -> list[Part]:
     parts: list[Part] = []
     start = 0.0
     for piece, length in zip(rod.pieces, rod.lengths, strict=True):
         here = [load for load in rod.loads if load.piece == piece]
-        weight = -next(load.buoyancy for load in here if load.clamp < 0)
+        weight = next(_weight(load, excess) for load in here if load.clamp < 0)
         reached, end = start, start + length
         for load in [load for load in here if load.clamp >= 0]:
             share = (load.at - reached) / length if length > 0.0 else 0.0
             parts.append((piece, -1, load.at - reached, share * weight))
-            parts.append((piece, load.clamp, 0.0, -load.buoyancy))
+            parts.append((piece, load.clamp, 0.0, _weight(load, excess)))
             reached = load.at
         share = (end - reached) / length if length > 0.0 else 1.0
         parts.append((piece, -1, end - reached, share * weight))

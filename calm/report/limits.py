@@ -6,7 +6,7 @@ from enum import StrEnum
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
-from calm.case.warnings import SYNTHETICS
+from calm.case.warnings import is_synthetic
 
 if TYPE_CHECKING:
     from calm.case import Result
@@ -42,10 +42,5 @@ def safety_mark(result: Result, component: Component, record: SimpleNamespace) -
     if result.type == "surface":
         limit = limits.surface
     else:
-        limit = limits.synthetic if _is_synthetic(component) else limits.steel
+        limit = limits.synthetic if is_synthetic(component) else limits.steel
     return Mark.BEYOND if record.safety_factor < limit else Mark.NONE
-
-
-def _is_synthetic(component: Component) -> bool:
-    material = (component.material or "").lower()
-    return component.kind == "cable" and any(synthetic in material for synthetic in SYNTHETICS)

@@ -105,10 +105,11 @@ def summary(result: Result) -> list[Phrase]:
         f"{say('tension', anchor.tension)}, {say('angle', anchor.angle)} from the vertical: "
         f"{say('vertical', anchor.vertical)} up, {say('horizontal', anchor.horizontal)} sideways"
     )
+    if anchor.grounded_length > 0.0:
+        pull += f"; {say('grounded_length', anchor.grounded_length)} of line on the seabed"
     needed = say("required_weight", anchor.required_weight)
     weighs = f"{say('required_weight', anchor.weight)} in water, {needed} needed"
-    light = anchor.weight is not None and anchor.weight < anchor.required_weight
-    mark = Mark.BEYOND if light else Mark.NONE
+    mark = Mark.BEYOND if anchor.weight < anchor.required_weight else Mark.NONE
     return [
         Phrase(f"Top {at}"),
         Phrase(f"Anchor pulled by {pull}"),

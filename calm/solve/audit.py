@@ -108,10 +108,12 @@ def _weight_on_seabed(solution: Solution) -> float:
     length = line.length[piece]
     amount = np.where(line.flexible[piece], cut, 1.0)
     np.divide(cut, length, out=amount, where=~line.flexible[piece] & (length > 0.0))
-    weight = np.where(clamp < 0, -line.buoyancy[piece] * amount, 0.0)
-    here = clamp >= 0
-    weight[here] = -line.clamp_buoyancy[clamp[here]]
-    return float(weight.sum())
+    _, density = solution.water.at(np.array(solution.water.depth))
+    excess = (float(density) - REFERENCE_DENSITY) * solution.water.gravity
+    lift = np.where(clamp < 0, (line.buoyancy + excess * line.volume)[piece] * amount, 0.0)
+    here = clamp[clamp >= 0]
+    lift[clamp >= 0] = line.clamp_buoyancy[here] + excess * line.clamp_volume[here]
+    return float(-lift.sum())
 
 
 def moment_residual(solution: Solution) -> float:
@@ -122,7 +124,7 @@ def moment_residual(solution: Solution) -> float:
     worst = 0.0
     head = head_count(solution.line)
     rods = [
-        [p for p in range(head)],
+        list(range(head)),
         *([p] for p in range(head, len(solution.line.length)) if not solution.line.flexible[p]),
     ]
     for rod in rods:

@@ -139,7 +139,7 @@ class Closing:
         height = 0.0 if lands else self.line.anchor_height
         return Unknown(Track.of(self.line), height - self.water.depth, lands=lands)
 
-    def hanging(self, root: Root) -> Root:
+    def clear_of_seabed(self, root: Root) -> Root:
         """The same root for the line hanging clear of the seabed, to be sought again from there."""
         goal = self.line.anchor_height - self.water.depth
         return replace(root, unknown=replace(root.unknown, goal=goal, lands=False))
@@ -240,7 +240,7 @@ class Closing:
         if end.landing is not None:
             track, _ = found.unknown.placed(found.x)
             friction = self.settings.seabed_friction
-            grounded = lie_down(track, end, trace, found.unknown.goal, friction)
+            grounded = lie_down(track, self.profile, end, trace, found.unknown.goal, friction)
         return Closed(found, miss, end, trace, hanging, grounded)
 
     def _near(

@@ -10,6 +10,7 @@ from calm.physics.track import Track
 from calm.solve.closing import COARSE_STEP, REACH
 from calm.solve.root import root_near
 from calm.solve.solution import Settings
+from calm.solve.standing import refuse_folded, too_heavy
 from calm.solve.status import Status
 
 
@@ -24,8 +25,11 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
     Raises
     ------
     NoEquilibrium
-        ``no-equilibrium`` where the other pieces alone are too long.
+        ``no-equilibrium`` where no length does it: the other pieces alone are too long, what is
+        clamped on the piece sits too low, or too little holds the line up; ``slack`` where the
+        line would fold.
     """
+    refuse_folded(line)
     still, goal = Profile(water.still()), line.anchor_height - water.depth
     room = water.depth - line.anchor_height - top_depth
 
@@ -43,21 +47,25 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
 
     small = 0.01 * settings.tolerance * water.depth
     others = float(line.length.sum()) - float(line.length[piece])
+    shortest = float(line.clamp_at[line.clamp_piece == piece].max(initial=0.0))
     try:
         found = root_near(
             miss,
             room - others,
             -1.0,
-            (0.0, water.depth),
+            (shortest, water.depth),
             small=small,
             narrow=1e-9 * water.depth,
         )
     except MarchError as error:
         raise Status.NOT_CONVERGED.because(f"The march stopped: {error}.", piece) from error
-    if found is None:
+    if found is None or abs(found[1]) > settings.tolerance * water.depth:
+        if float(line.total_buoyancy.sum()) <= 0.0:
+            raise too_heavy(line)
+        clamped = f" and its own {shortest:.2f} m down to the lowest clamp" if shortest else ""
         raise Status.NO_EQUILIBRIUM.because(
             f"No length of piece {piece + 1} puts the top of the line at {top_depth:g} m: the "
-            f"other pieces, {others:.2f} m uncut, have {room:.2f} m of water to stand in.",
+            f"other pieces, {others:.2f} m uncut{clamped}, have {room:.2f} m of water to stand in.",
             piece,
         )
     return found[0]

@@ -15,6 +15,7 @@ from calm.solve.closing import Closed, Closing, Root
 from calm.solve.locate import locate
 from calm.solve.refine import refine
 from calm.solve.solution import Settings, Solution, nodes_of
+from calm.solve.standing import refuse_folded, too_heavy
 from calm.solve.status import Status
 
 
@@ -37,11 +38,10 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
         With one of the statuses of `Status`: nothing is returned that does not pass every check.
     """
     closing = Closing(line, water, settings or Settings())
-    above = np.cumsum(line.total_buoyancy)
-    if not (above > 0.0).any():
-        raise Status.NO_EQUILIBRIUM.because(_too_heavy(line))
+    if not (np.cumsum(line.total_buoyancy) > 0.0).any():
+        raise too_heavy(line)
     if not water.moving:
-        _refuse_folded(line)
+        refuse_folded(line)
     try:
         return _solve(closing)
     except MarchError as error:
@@ -67,7 +67,7 @@ def _solve(closing: Closing) -> Solution:
 
 def _clear_of_it(closing: Closing) -> Solution:
     if float(closing.line.total_buoyancy.sum()) <= 0.0:
-        raise Status.NO_EQUILIBRIUM.because(_too_heavy(closing.line))
+        raise too_heavy(closing.line)
     root, other_depth = locate(closing, lands=False)
     _refuse_deep_below(closing, root)
     return _solution(closing, root, other_depth)
@@ -77,9 +77,9 @@ def _on_the_seabed(closing: Closing) -> Solution:
     root, other_depth = locate(closing, lands=True)
     if root.unknown.afloat is None and float(closing.line.total_buoyancy.sum()) <= 0.0:
         # a line without a surface float is meant to stand: a heap on the seabed is no design
-        raise Status.NO_EQUILIBRIUM.because(_too_heavy(closing.line))
+        raise too_heavy(closing.line)
     if closing.run(root.unknown, root.x, closing.coarse_step).landing is None:
-        return _solution(closing, closing.hanging(root), other_depth)
+        return _solution(closing, closing.clear_of_seabed(root), other_depth)
     landed = _solution(closing, root, other_depth)
     if not landed.landed:
         raise Status.GROUNDED.because("The line does not lie on the seabed.")
@@ -87,7 +87,7 @@ def _on_the_seabed(closing: Closing) -> Solution:
         return landed
     try:
         # what lies may as well hang between the seabed and the top of the anchor
-        return _solution(closing, closing.hanging(root), other_depth)
+        return _solution(closing, closing.clear_of_seabed(root), other_depth)
     except NoEquilibrium:
         return landed
 
@@ -105,32 +105,6 @@ def _grounded(piece: int, below: float) -> NoEquilibrium:
     return Status.GROUNDED.because(
         f"The line would touch the seabed: piece {piece + 1} comes {below:.2f} m below it.", piece
     )
-
-
-def _too_heavy(line: Line) -> str:
-    total = line.total_buoyancy
-    lift, weight = float(total[total > 0].sum()), float(-total[total < 0].sum())
-    return (
-        f"Too little buoyancy to hold the line up: its buoyant pieces lift {lift:.0f} N, the "
-        f"others weigh {weight:.0f} N in water."
-    )
-
-
-def _refuse_folded(line: Line) -> None:
-    """Still water: once the line is held up it must stay so, down to its lowest float."""
-    total = line.total_buoyancy
-    above = np.cumsum(total)
-    first, last = int(np.argmax(above > 0.0)), int(np.flatnonzero(total > 0.0)[-1])
-    short = np.flatnonzero(above[first:last] <= 0.0)
-    if len(short) and float(total.sum()) <= 0.0:
-        raise Status.NO_EQUILIBRIUM.because(_too_heavy(line))
-    if len(short):
-        piece = first + int(short[0])
-        raise Status.SLACK.because(
-            f"In still water the line is slack below piece {piece + 1}: {-above[piece]:.0f} N are "
-            "lacking to hold up what is above.",
-            piece,
-        )
 
 
 def _solution(closing: Closing, root: Root, other_depth: float | None) -> Solution:

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
-from math import radians
+from math import nan, radians
 
 import numpy as np
-from numpy.typing import NDArray
 
-from calm.physics.line import Line, Water
+from calm.physics.line import Floats, Integers, Line, Water
 from calm.physics.state import Trace
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 LOOSEST_TOLERANCE = 2e-4
 """The worst miss, as a share of the water depth, that CALM ever called an answer."""
@@ -94,8 +90,8 @@ class Solution:
     depth_error: float
     tension_error: float
     other_depth: float | None = None
-    closure: float = field(default=float("nan"))
-    moment_residual: float = field(default=float("nan"))
+    closure: float = nan
+    moment_residual: float = nan
 
     @property
     def surface(self) -> bool:

@@ -17,7 +17,7 @@ class Status(Enum):
     )
     NOT_CONVERGED = (
         "not-converged",
-        "Try a smaller angle_step; if it persists, simplify the line to find what prevents it.",
+        "Try another angle_step; if it persists, simplify the line to find what prevents it.",
     )
     SLACK = (
         "slack",

@@ -228,9 +228,11 @@ def test_the_anchor_holds_the_sum_of_all_loads(number) -> None:
 @some
 @given(draws)
 def test_quartering_the_angle_step_brings_the_error_down_sixteenfold(number) -> None:
-    """Judged by the change to a solution at 0.05°; cuts at levels and clamps stir the ratio.
+    """Judged by the change to a solution at 0.05°, which itself errs by a 25th of the finer one.
 
-    Moorings whose segments had to be halved beyond the angle step are passed over.
+    Cuts at levels and clamps stir the ratio, by up to two; at 1° some are still on the way to
+    second order and gain more. Moorings whose segments had to be finer than the angle step asks
+    are passed over.
     """
     line, water = mooring(Random(number))
     exact, fine, coarse = (
@@ -238,7 +240,7 @@ def test_quartering_the_angle_step_brings_the_error_down_sixteenfold(number) -> 
     )
     assume(2.5 <= fine.segments / coarse.segments <= 5.0)
     assume(apart(coarse, exact) > 1e-6)  # else the tolerance of the root is what is seen
-    assert 8.0 <= apart(coarse, exact) / apart(fine, exact) <= 32.0
+    assert apart(coarse, exact) / apart(fine, exact) >= 8.0
 
 
 @some

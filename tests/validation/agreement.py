@@ -41,7 +41,8 @@ def closure(solution: Solution) -> float:
     """|sum of all loads − force at the anchor| / |force at the anchor|.
 
     The loads are recomputed here from the final coordinates, by the referee's formulas. Of a line
-    on the seabed they are those above the touchdown, less what the seabed bears at that point.
+    on the seabed they are those above the touchdown; where a rigid piece or a clamp comes down
+    there, it and the seabed settle the vertical ones between them.
     """
     line, water, position = solution.carried, solution.water, solution.position
     profile, total = Profile(water), np.zeros(3)
@@ -75,7 +76,10 @@ def closure(solution: Solution) -> float:
                 total += cut * pull(load, *ends, stretched ** line.thinning[piece])
     anchor = solution.force[-1]
     if solution.landed:
-        total[2] = max(total[2], 0.0)
+        around = slice(solution.hanging - 1, solution.hanging + 1)
+        piece, segment = solution.element_piece[around], solution.element_clamp[around] < 0
+        in_cable = segment.all() and len(set(piece)) == 1 and line.flexible[piece[0]]
+        total[2] *= float(in_cable)
     return float(np.linalg.norm(total - anchor) / np.linalg.norm(anchor))
 
 

@@ -49,19 +49,18 @@ def solve_continuous(line: Line, water: Water) -> Equilibrium:
     NoContinuousSolution
         Where there is none, or none without parts in the air, below the seabed or slack.
     """
-    try:
-        return _closed(line, water, lands=False)
-    except Folded:
-        raise
-    except NoContinuousSolution as refusal:
+    refusals: list[NoContinuousSolution] = []
+    for lands in (False, True):
         try:
-            landed = _closed(line, water, lands=True)
-        except NoContinuousSolution:
-            raise refusal from None
-        stands = landed.surface or line.total_buoyancy.sum() > 0.0
-        if landed.shape.grounded is None or not stands:
-            raise
-        return landed
+            found = _closed(line, water, lands)
+        except NoContinuousSolution as refusal:
+            refusals.append(refusal)
+            continue
+        # A line without a surface float is meant to stand: a heap on the seabed is no shape.
+        stands = found.surface or line.total_buoyancy.sum() > 0.0
+        if not lands or (found.shape.grounded is not None and stands):
+            return found
+    raise refusals[0]
 
 
 def _closed(line: Line, water: Water, lands: bool) -> Equilibrium:
@@ -101,6 +100,7 @@ def _afloat(
 ) -> Vector:
     """The parts in use of the buoyancies when floats lie at the surface."""
     share = np.ones(len(line.length))
+    refusal = NoContinuousSolution("more than the floats rises to the surface")
     floats = np.flatnonzero((line.buoyancy > 0.0) & ~line.flexible)
     for this, following in zip(floats, [*floats[1:], -1], strict=True):
 
@@ -111,15 +111,20 @@ def _afloat(
             """That of the next float's top above the surface."""
             return float(march.down(0.0, parts, until=piece).bottom[piece - 1, 2])
 
-        if excess(fine, used(0.0)) <= 0.0:
+        try:
             parts = used(_share(excess, used, rough, fine))
             if following < 0 or height(fine, parts) <= 1e-9 * fine.depth:
                 return parts
+        except NoContinuousSolution as none:
+            refusal = none
         # The next float comes to the surface too, and this one bears the line between them.
         if following < 0 or height(fine, used(0.0)) < -1e-9 * fine.depth:
             break
-        share = used(_share(lambda m, parts: -height(m, parts), used, rough, fine))
-    raise NoContinuousSolution("more than the floats rises to the surface")
+        if height(fine, used(0.0)) <= 1e-9 * fine.depth:
+            share = used(0.0)
+        else:
+            share = used(_share(lambda m, parts: -height(m, parts), used, rough, fine))
+    raise refusal
 
 
 def _share(
@@ -129,8 +134,6 @@ def _share(
     fine: March,
 ) -> float:
     """The part of one float's buoyancy that leaves no excess of depth; all of it leaves some."""
-    if abs(excess(fine, used(0.0))) <= 1e-9 * fine.depth:
-        return 0.0
     return _first_root(
         lambda part: -excess(rough, used(part)),
         lambda part: -excess(fine, used(part)),
@@ -143,13 +146,21 @@ def _first_root(
 ) -> float:
     """The first root on the way through `grid`, from the negative side."""
     passed: list[float] = []
+    refusal = NoContinuousSolution("no depth or part of the buoyancy brings the line to its anchor")
     for point in grid:
-        if passed and rough(point) > 0.0 and fine(point) >= 0.0:
+        try:
+            beyond = passed and rough(point) > 0.0 and fine(point) >= 0.0
+        except Folded as folded:
+            refusal = folded  # no shape to follow here; the root may lie further on
+            continue
+        if beyond:
             # The rough march may see the root on the wrong side of a grid point.
-            near = passed[-1] if fine(passed[-1]) <= 0.0 else passed[-2]
-            return float(brentq(fine, near, point, xtol=1e-13, rtol=1e-14))
+            for near in passed[:-3:-1]:
+                if fine(near) <= 0.0:
+                    return float(brentq(fine, near, point, xtol=1e-13, rtol=1e-14))
+            break
         passed.append(float(point))
-    raise NoContinuousSolution("no depth or part of the buoyancy brings the line to its anchor")
+    raise refusal
 
 
 def _refuse_impossible(shape: Shape, line: Line, water: Water, share: Vector) -> None:

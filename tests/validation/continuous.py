@@ -10,13 +10,16 @@ friction.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
 import numpy as np
 
 from calm.physics.line import Line, Water
-from tests.validation.cables import Cable, NoContinuousSolution, follow
+from tests.validation.cables import Cable, Folded, NoContinuousSolution, follow
 from tests.validation.loads import DOWN, Load, Profile, Vector
 from tests.validation.rods import rod_axis
+
+Key = tuple[int, float, int]
 
 
 @dataclass
@@ -54,23 +57,17 @@ class Place:
     force: Vector
     lying: bool = False
 
-    def pass_load(self, pull: Vector, lands: bool) -> None:
-        """Take up a load; one that a landing line no longer carries rests on the seabed."""
-        carried, self.force = self.force[2], self.force + pull
-        if lands and carried > 0.0 >= self.force[2]:
-            self.lie_down()
-
     def lie_down(self) -> None:
         """Leave the water: what the vertical force does not carry, the seabed does."""
         self.force = self.force * [1.0, 1.0, 0.0]
         self.lying = True
 
-    def along_seabed(self, length: float) -> None:
-        """Go along the seabed against the pull [m]."""
+    def way_on(self) -> Vector:
+        """The unit vector along the seabed, against the pull."""
         pull = float(np.linalg.norm(self.force))
         if pull == 0.0:
-            raise NoContinuousSolution("nothing pulls the line straight on the seabed")
-        self.position = self.position - length * self.force / pull
+            raise Folded("nothing pulls the line straight on the seabed")
+        return -self.force / pull
 
 
 class March:
@@ -84,7 +81,7 @@ class March:
             sorted(np.flatnonzero(line.clamp_piece == piece), key=lambda c: line.clamp_at[c])
             for piece in range(len(line.length))
         ]
-        self.lowest_lift = lowest_lift(line)
+        self.lowest_lift = lowest_lift(line, self.clamps)
 
     def down(
         self, depth: float, share: Vector, until: int | None = None, lands: bool = False
@@ -105,7 +102,8 @@ class March:
                 piece += 1
             else:
                 rod = range(piece, self.head if piece == 0 else piece + 1)
-                self._rod(rod, place, share, shape, lands and (piece, 0.0) > self.lowest_lift)
+                shape.force_top[piece] = place.force
+                self._rod(rod, place, share, shape, lands and (piece, 0.0, 0) > self.lowest_lift)
                 piece = rod.stop
             shape.depths.append(-float(place.position[2]))
         if place.lying and shape.grounded is None:
@@ -125,64 +123,84 @@ class March:
         buoyancy, volume = float(line.clamp_buoyancy[clamp]), float(line.clamp_volume[clamp])
         return Load(buoyancy, volume, drag, drag, False, self.gravity)
 
-    def _rod(self, rod: range, place: Place, share: Vector, shape: Shape, lands: bool) -> None:
-        line, origin = self.line, place.position
-        length = float(line.length[rod].sum())
-        tops = np.cumsum(line.length[rod]) - line.length[rod]
-        loads: list[tuple[int, int, float, Load]] = []  # piece, clamp or -1, distance, load
-        for piece, top in zip(rod, tops, strict=True):
-            middle = float(top + line.length[piece] / 2.0)
-            loads.append((piece, -1, middle, self._load(piece, share)))
+    def _on_rod(self, rod: range, share: Vector) -> list[tuple[int, int, float, Load]]:
+        """What loads a rod, downwards: piece, clamp or -1, distance from its upper end, load."""
+        loads, top = [], 0.0
+        for piece in rod:
+            length = float(self.line.length[piece])
+            here = [(piece, -1, top + length / 2.0, self._load(piece, share))]
             for c in self.clamps[piece]:
-                loads.append((piece, c, float(top + line.clamp_at[c]), self._clamp(c)))
-        loads.sort(key=lambda entry: entry[:1] + entry[2:3])
-        if place.lying:
-            axis: Vector | None = -place.force / np.linalg.norm(place.force)
-            shape.grounded = (shape.grounded or 0.0) + length
-        else:
+                here.append((piece, c, top + float(self.line.clamp_at[c]), self._clamp(c)))
+            loads += sorted(here, key=lambda entry: entry[2])
+            top += length
+        return loads
+
+    def _rod(self, rod: range, place: Place, share: Vector, shape: Shape, lands: bool) -> None:
+        loads, origin, profile = self._on_rod(rod, share), place.position, self.profile
+        length, stands = float(self.line.length[rod].sum()), False
+        if not place.lying:
             on_it = [(at, load) for _, _, at, load in loads]
-            axis = rod_axis(on_it, length, origin, place.force, self.profile)
-        if axis is None:
-            raise NoContinuousSolution("a rigid piece finds no balance of moments")
-        for piece, top in zip(rod, tops, strict=True):
-            shape.top[piece], shape.force_top[piece] = origin + top * axis, place.force
-            for _, c, at, load in (entry for entry in loads if entry[0] == piece):
-                point, above = origin + at * axis, place.force
-                if not place.lying:
-                    pull = load.force(self.profile.at(-float(point[2])), axis)
-                    place.pass_load(pull, lands)
-                if c >= 0:
-                    shape.clamp[c] = point
-                    shape.clamp_above[c], shape.clamp_below[c] = above, place.force
-            place.position = origin + (top + line.length[piece]) * axis
-            shape.bottom[piece], shape.force_bottom[piece] = place.position, place.force
+            axis = rod_axis(on_it, length, origin, place.force, profile)
+            if axis is None:
+                raise NoContinuousSolution("a rigid piece finds no balance of moments")
+            depths = [-float(origin[2] + at * axis[2]) for at, _ in on_it]
+            pulls = [
+                load.force(profile.at(depth), axis)
+                for depth, (_, load) in zip(depths, on_it, strict=True)
+            ]
+            rests = lands and place.force[2] > 0.0 >= (place.force + np.sum(pulls, axis=0))[2]
+            stands = bool(rests and axis[2] < 0.0)
+            if rests and not stands:
+                place.lie_down()  # it would tip over
+        if place.lying:
+            axis, pulls = place.way_on(), [np.zeros(3)] * len(loads)
+            shape.grounded = (shape.grounded or 0.0) + length
+        for (piece, c, at, _), pull in zip(loads, pulls, strict=True):
+            above, place.force = place.force, place.force + pull
+            if c >= 0:
+                shape.clamp[c] = origin + at * axis
+                shape.clamp_above[c], shape.clamp_below[c] = above, place.force
+            shape.force_bottom[piece] = place.force
+        for piece in rod:
+            shape.top[piece] = place.position
+            place.position = place.position + float(self.line.length[piece]) * axis
+            shape.bottom[piece] = place.position
+        if stands:
+            place.lie_down()
+            shape.force_bottom[rod[-1]] = place.force
+        for piece in rod[1:]:
+            shape.force_top[piece] = shape.force_bottom[piece - 1]
 
     def _cable(self, piece: int, place: Place, share: Vector, shape: Shape, lands: bool) -> None:
         line, load = self.line, self._load(piece, share)
         shape.top[piece], shape.force_top[piece] = place.position, place.force
         s = 0.0
-        for c in [*self.clamps[piece], None]:
-            at = float(line.length[piece] if c is None else line.clamp_at[c])
-            may_land = lands and (piece, s) >= self.lowest_lift
-            self._stretch(piece, load, at - s, place, shape, may_land)
+        for i, c in enumerate(self.clamps[piece], start=1):
+            at = float(line.clamp_at[c])
+            self._stretch(piece, load, s, at, place, shape, lands)
             s = at
-            if c is None:
-                continue
             shape.clamp[c], shape.clamp_above[c] = place.position, place.force
             if not place.lying:
                 pull = self._clamp(c).force(self.profile.at(-float(place.position[2])), DOWN)
-                place.pass_load(pull, lands and (piece, at) > self.lowest_lift)
+                carried, place.force = place.force[2], place.force + pull
+                may_land = lands and (piece, at, i) > self.lowest_lift
+                if may_land and carried > 0.0 >= place.force[2]:
+                    place.lie_down()
             shape.clamp_below[c] = place.force
+        self._stretch(piece, load, s, float(line.length[piece]), place, shape, lands)
         shape.bottom[piece], shape.force_bottom[piece] = place.position, place.force
 
     def _stretch(
-        self, piece: int, load: Load, length: float, place: Place, shape: Shape, lands: bool
-    ) -> None:
+        self, piece: int, load: Load, start: float, end: float, place: Place, shape: Shape,
+        lands: bool,
+    ) -> None:  # fmt: skip
         """Along a stretch of cable without clamps, in the water and then on the seabed."""
         compliance, thinning = float(self.line.compliance[piece]), float(self.line.thinning[piece])
+        length = end - start
         if not place.lying and length > 0.0:
             cable = Cable(load, length, compliance, thinning)
-            way = follow(cable, place.position, place.force, self.profile, self.tolerance, lands)
+            may_land = lands and (piece, end, 0) > self.lowest_lift
+            way = follow(cable, place.position, place.force, self.profile, self.tolerance, may_land)
             place.position, place.force = way.position, way.force
             shape.depths += way.depths
             shape.slackest = min(shape.slackest, way.slackest)
@@ -192,7 +210,7 @@ class March:
         if place.lying:
             strain = compliance * float(np.linalg.norm(place.force))
             shape.grounded = (shape.grounded or 0.0) + length
-            place.along_seabed(length * (1.0 + strain))
+            place.position = place.position + length * (1.0 + strain) * place.way_on()
 
 
 def head(line: Line) -> int:
@@ -205,9 +223,21 @@ def head(line: Line) -> int:
     return 1
 
 
-def lowest_lift(line: Line) -> tuple[int, float]:
-    """The lowest thing that lifts: its piece, and how far down that piece it ends [m]."""
-    lifting = [(int(piece), np.inf) for piece in np.flatnonzero(line.buoyancy > 0.0)]
-    for clamp in np.flatnonzero(line.clamp_buoyancy > 0.0):
-        lifting.append((int(line.clamp_piece[clamp]), float(line.clamp_at[clamp])))
-    return max(lifting, default=(-1, 0.0))
+def lowest_lift(line: Line, clamps: list[list[int]]) -> Key:
+    """The key of the lowest thing that lifts; below it the line may lie on the seabed.
+
+    Keys go down the line: (piece, 0, 0) of a rigid piece; (piece, metres to its lower end, 0) of a
+    stretch of cable between clamps; (piece, metres, count) of each clamp on it.
+    """
+    keys: list[Key] = [(-1, 0.0, 0)]
+    for piece, flexible in enumerate(line.flexible):
+        held = [(float(line.clamp_at[c]), float(line.clamp_buoyancy[c])) for c in clamps[piece]]
+        if not flexible:
+            if max([line.buoyancy[piece], *(lift for _, lift in held)]) > 0.0:
+                keys.append((piece, 0.0, 0))
+            continue
+        keys += [(piece, at, i) for i, (at, lift) in enumerate(held, start=1) if lift > 0.0]
+        ends = [at for at, _ in held] + [float(line.length[piece])]
+        if line.buoyancy[piece] > 0.0:
+            keys += [(piece, b, 0) for a, b in pairwise([0.0, *ends]) if b > a]
+    return max(keys)

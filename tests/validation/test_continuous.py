@@ -85,7 +85,7 @@ def test_elastic_catenary(length, horizontal, vertical, tension) -> None:
 
 
 def test_a_line_on_the_seabed_is_a_catenary_that_starts_level() -> None:
-    """x = (H/w) asinh(w s/H) + H s/EA, z = (H/w)(cosh − 1) + (w s)²/(2 w EA); the rest is straight."""
+    """The elastic catenary with V′ = 0 at the touchdown; what is left lies straight."""
     pull, weight, stiffness = 500.0, 20.0, 1e5
     chain = Piece(100.0, True, -weight, compliance=1.0 / stiffness)
     found = solve_continuous(line_of(point(5000.0, pull), chain), stream(30.0, 1.0))

@@ -1,0 +1,223 @@
+"""Uniform current: three of the seven quantities of a cable give the other four.
+
+The cable hangs in the plane of a uniform current with drag normal to it only; A is its lower end,
+B its upper. What H. Braconnot's charts answer graphically is solved here on the same curve
+(`calm.analytic.chart_branch`), for every combination that has an answer.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from calm.analytic.chart_branch import Branch, check_k
+from calm.analytic.chart_given import ANGLES, SIZES, check, mirrored
+from calm.analytic.chart_length import LengthSearch
+from calm.analytic.chart_reasons import Refusal, contradiction, family, reason
+from calm.analytic.chart_search import Piece, Search, size_of
+from calm.analytic.chart_straight import straight
+
+
+@dataclass(frozen=True)
+class ChartSolution:
+    """One cable in a uniform current.
+
+    Parameters
+    ----------
+    phi_a, phi_b : float
+        Angle of the cable, followed from A to B, to the current at its lower and upper end [rad],
+        from −π to π; negative where it goes down.
+    tension_a, tension_b : float
+        Tension at the lower and upper end [N].
+    height, distance, length : float
+        B above A, B downstream of A, and along the cable [m].
+    h0 : float
+        Tension at the apex of the curve over the weight, the unit of the chart [m]; 0 for a
+        straight cable, which has no apex.
+    """
+
+    phi_a: float
+    phi_b: float
+    tension_a: float
+    tension_b: float
+    height: float
+    distance: float
+    length: float
+    h0: float
+
+
+@dataclass(frozen=True)
+class ChartAnswer:
+    """What three quantities say about a cable.
+
+    Parameters
+    ----------
+    status : str
+        ``converged``; else ``no-equilibrium``, ``inconsistent`` (the givens contradict each other)
+        or ``one-parameter-family`` (they do not fix the cable).
+    k : float
+        K.
+    solutions : tuple of ChartSolution
+        Every cable that fits: those that do not dip below A first, the first branch first.
+    message, advice : str
+        Without a solution: why, and what to change.
+    """
+
+    status: str
+    k: float
+    solutions: tuple[ChartSolution, ...] = ()
+    message: str = ""
+    advice: str = ""
+
+
+def chart_solve(
+    k: float,
+    weight: float,
+    *,
+    phi_a: float | None = None,
+    phi_b: float | None = None,
+    tension_a: float | None = None,
+    tension_b: float | None = None,
+    height: float | None = None,
+    distance: float | None = None,
+    length: float | None = None,
+) -> ChartAnswer:
+    """Every cable that has three given quantities, to 1e-9.
+
+    Parameters
+    ----------
+    k : float
+        K = ρ Cx D V²/(2|w|), from 0 to 100.
+    weight : float
+        Weight in water of a metre, w [N/m]; negative for a cable that floats.
+    phi_a, phi_b : float, optional
+        Angles to the current [rad], −π to π. At most the end the cable hangs from below (A; B
+        where w < 0) can have a negative one.
+    tension_a, tension_b : float, optional
+        Tensions [N], not negative; the tension of the lighter end (A; B where w < 0) may be 0.
+    height, length : float, optional
+        Positive [m].
+    distance : float, optional
+        Positive when B lies downstream of A [m].
+
+    Returns
+    -------
+    ChartAnswer
+        All solutions, or why there is none.
+
+    Raises
+    ------
+    UsageError
+        Not three quantities, or one that is out of its range.
+    """
+    given = {
+        "phi_a": phi_a, "phi_b": phi_b, "tension_a": tension_a, "tension_b": tension_b,
+        "height": height, "distance": distance, "length": length,
+    }  # fmt: skip
+    known = {name: float(value) for name, value in given.items() if value is not None}
+    check_k(k)
+    check(known, weight)
+    floats = weight < 0.0
+    sunk = mirrored(known) if floats else known
+    over_weight = {
+        name: value / abs(weight) if name.startswith("tension") else value
+        for name, value in sunk.items()
+    }
+    answer = _solve(float(k), over_weight)
+    if isinstance(answer, Refusal):
+        return ChartAnswer(answer.status, float(k), (), answer.message, answer.advice)
+    solutions = [_weighted(solution, abs(weight)) for solution in answer]
+    if floats:
+        solutions = [ChartSolution(**mirrored(vars(solution))) for solution in solutions]
+    return ChartAnswer("converged", float(k), tuple(solutions))
+
+
+def _weighted(solution: ChartSolution, weight: float) -> ChartSolution:
+    return replace(
+        solution,
+        tension_a=solution.tension_a * weight,
+        tension_b=solution.tension_b * weight,
+    )
+
+
+def _solve(k: float, known: dict[str, float]) -> list[ChartSolution] | Refusal:
+    """The cables of a sinking cable; tensions in metres of its weight."""
+    refusal = contradiction(known)
+    if refusal:
+        return refusal
+    ends = {name: Branch.holding(k, known[name]) for name in ANGLES if name in known}
+    sizes = {name: known[name] for name in SIZES if name in known}
+    solutions: list[ChartSolution] = []
+    if None not in ends.values() and known.get("tension_a") != 0.0:
+        for sign in (1, -1):
+            solutions += _on_branch(Branch(k, sign), ends, sizes)
+    line = straight(k, known)
+    if line is not None:
+        figures = line.figures
+        if figures is not None:
+            solutions.append(ChartSolution(**figures))
+        elif not solutions:
+            return family("A straight cable at the critical angle has these at any other size.")
+    if not solutions:
+        return reason(k, known)
+    return sorted(solutions, key=lambda solution: solution.phi_a < 0.0)
+
+
+def _on_branch(
+    branch: Branch, ends: Mapping[str, tuple[Branch, float] | None], sizes: Mapping[str, float]
+) -> list[ChartSolution]:
+    """Every cable that is a piece of one branch."""
+    places = [end for end in ends.values() if end is not None]
+    if any(place[0].sign != branch.sign for place in places):
+        return []
+    start, end = (place[1] if (place := ends.get(name)) else None for name in ANGLES)
+    turned = dict(sizes)
+    if "distance" in sizes:
+        turned["distance"] *= branch.sign
+    search = Search(branch, turned)
+    if start is None and end is None and search.log_ratio() is None:
+        (third,) = sizes.keys() - {"distance", "length"}
+        length = sizes["length"]
+        cosine = turned["distance"] / length
+        pieces = LengthSearch(branch, cosine, third, sizes[third] / length).pieces()
+    else:
+        pieces = search.pieces(start, end)
+    cables = [_cable(branch, piece, turned) for piece in _distinct(pieces)]
+    return [cable for cable in cables if cable is not None]
+
+
+def _distinct(pieces: list[Piece]) -> list[Piece]:
+    """Without those that were reached twice."""
+    kept: list[Piece] = []
+    for piece in sorted(pieces):
+        close = 1e-6 * (piece[1] - piece[0]) + 1e-10 * (1.0 + abs(piece[0]))
+        if not any(np.allclose(piece, other, rtol=0.0, atol=close) for other in kept):
+            kept.append(piece)
+    return kept
+
+
+# The size that gives the scale: the first of these; a distance may vanish.
+_SCALES = ("length", "tension_b", "height", "tension_a", "distance")
+
+
+def _cable(branch: Branch, piece: Piece, sizes: Mapping[str, float]) -> ChartSolution | None:
+    """The piece enlarged to its given size; None where it would have to be turned round."""
+    unit = {name: float(size_of(branch, name, *piece)) for name in SIZES}
+    name = next(name for name in _SCALES if name in sizes)
+    scale = sizes[name] / unit[name] if unit[name] else 0.0
+    if not (scale > 0.0 and math.isfinite(scale)):
+        return None
+    phi_a, phi_b = (float(branch.turned(branch.angle(place))) for place in piece)
+    return ChartSolution(
+        phi_a,
+        phi_b,
+        scale * unit["tension_a"],
+        scale * unit["tension_b"],
+        scale * unit["height"],
+        scale * unit["distance"] * branch.sign,
+        scale * unit["length"],
+        scale,
+    )

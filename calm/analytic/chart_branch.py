@@ -1,0 +1,243 @@
+"""The one curve on which every cable of a given K lies, in a uniform current.
+
+Plane, uniform current, drag normal to the cable only, w > 0 [N/m] the weight in water, φ the angle
+of the cable to the current, s the arc counted upwards along the curve::
+
+    dT/ds = w sin φ,    T dφ/ds = w g(φ),    g(φ) = cos φ + K |sin φ| sin φ,    K = ρ Cx D V²/(2w)
+
+In units of H₀ = T(apex)/w and w H₀ the cables of one K are pieces of one curve with its origin at
+the apex φ = 0. Beyond the critical angle φ_c, where g vanishes, lies a second branch with its apex
+at φ = 180°; it is the first branch of −K seen in a mirror, so `Branch` is both.
+
+With u = cos φ and u_c = cos φ_c, dT/T = −du/g integrates to
+
+    T/(wH₀) = [(1 − u_c)(1 + u u_c)/((1 + u_c)(u − u_c))]^m,    m = (1 − u_c²)/(1 + u_c²)
+
+The bracket is written cosh λ. For K = 0 that λ is the parameter of the catenary; for every K it
+reaches as far as the curve does, where φ would crowd against φ_c. The arc and the abscissa are
+Gauss–Legendre quadratures in λ of smooth functions, good to rounding.
+
+Source: H. Braconnot, charts for cables in a uniform current; closed form derived here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from calm.errors import UsageError
+
+Floats: TypeAlias = NDArray[np.float64]
+
+GREATEST_K = 100.0
+
+# The nearest singularity of the integrands lies about 1.4 off the real axis: 8 nodes on a panel
+# of 1/2 leave an error of (1.4/0.25 · 2)^-16, 1e-17.
+_PANEL = 0.5
+_PANELS = 128
+_NODES, _WEIGHTS = (half / 2 for half in np.polynomial.legendre.leggauss(8))
+_NODES = _NODES + 0.5
+
+
+def critical_angle(k: ArrayLike) -> Floats:
+    """Angle to the current of a cable that stays straight [rad], 90° at K = 0.
+
+    Parameters
+    ----------
+    k : array_like
+        K ≥ 0: drag of a metre across the current over its weight.
+    """
+    return np.asarray(np.arccos(-_leaning(k)), dtype=np.float64)
+
+
+def check_k(k: float) -> float:
+    """K, or a `UsageError` when it is not between 0 and 100."""
+    if not 0.0 <= k <= GREATEST_K:
+        raise UsageError(f"K is {k:.6g}; the charts hold for K from 0 to {GREATEST_K:g}")
+    return float(k)
+
+
+@dataclass(frozen=True)
+class Branch:
+    """One branch of the curve, turned so that its apex is at angle ψ = 0 and it runs downstream.
+
+    Points are given by λ, negative before the apex. ψ is φ on the first branch and 180° − φ on the
+    second, whose distances are counted upstream.
+
+    Parameters
+    ----------
+    k : float
+        0 ≤ K ≤ 100.
+    sign : int
+        1 for the first branch, −1 for the second.
+    """
+
+    k: float
+    sign: int
+
+    @classmethod
+    def holding(cls, k: float, phi: float) -> tuple[Branch, float] | None:
+        """The branch and the λ of an angle φ [rad]; None for the critical angle.
+
+        Raises
+        ------
+        UsageError
+            An angle beyond ±180°.
+        """
+        if not -np.pi <= phi <= np.pi:
+            raise UsageError(f"an angle is {np.degrees(phi):.6g}°; it must be from −180° to 180°")
+        critical = float(critical_angle(k))
+        first = critical - np.pi < phi < critical
+        branch = cls(k, 1 if first else -1)
+        if min(abs(phi - critical), abs(phi - critical + np.pi)) < _STRAIGHT:
+            return None
+        return branch, float(branch.parameter(branch.turned(phi)))
+
+    def turned(self, angle: ArrayLike) -> Floats:
+        """ψ of angles φ of this branch, and φ of angles ψ [rad]."""
+        given = np.asarray(angle, dtype=np.float64)
+        return given if self.sign > 0 else np.copysign(np.pi, given) - given
+
+    @cached_property
+    def exponent(self) -> float:
+        """m: T/(wH₀) = cosh^m λ."""
+        return float(1.0 / np.hypot(1.0, 2.0 * self.k))
+
+    @cached_property
+    def limit(self) -> float:
+        """Cosine of ψ where the branch straightens beyond the apex; its negative before it."""
+        return float(-self.sign * _leaning(self.k))
+
+    def log_tension(self, parameter: ArrayLike) -> Floats:
+        """ln(T/wH₀)."""
+        return self.exponent * log_cosh(parameter)
+
+    def angle(self, parameter: ArrayLike) -> Floats:
+        """ψ [rad]."""
+        size = np.abs(np.asarray(parameter, dtype=np.float64))
+        limit = np.where(np.asarray(parameter) < 0.0, -self.limit, self.limit)
+        sech = _sech(size)
+        squared_tangent = (1.0 - limit**2) * np.tanh(size) * np.tanh(size / 2.0)
+        squared_tangent /= (1.0 + limit) ** 2 + (1.0 - limit) ** 2 * sech
+        return np.asarray(np.sign(parameter) * 2.0 * np.arctan(np.sqrt(squared_tangent)))
+
+    def parameter(self, angle: ArrayLike) -> Floats:
+        """λ of angles ψ [rad] between the two critical ones."""
+        signed = np.asarray(angle, dtype=np.float64)
+        limit = np.where(signed < 0.0, -self.limit, self.limit)
+        size, critical = np.abs(signed), np.arccos(limit)
+        beyond = 2.0 * np.sin((critical + size) / 2.0) * np.sin((critical - size) / 2.0)
+        excess = (1.0 + limit**2) * 2.0 * np.sin(size / 2.0) ** 2 / ((1.0 + limit) * beyond)
+        size = np.log1p(excess + np.sqrt(excess * (excess + 2.0)))
+        return np.asarray(np.copysign(size, signed))
+
+    def from_apex(self, parameter: ArrayLike) -> tuple[Floats, Floats]:
+        """s′ and y′ (downstream, whatever the branch) of points."""
+        signed = np.asarray(parameter, dtype=np.float64)
+        arc, distance = self.span(np.minimum(signed, 0.0), np.maximum(signed, 0.0))
+        side = np.sign(signed)
+        return side * arc, side * self.sign * distance
+
+    def span(self, start: ArrayLike, end: ArrayLike) -> tuple[Floats, Floats]:
+        """Arc and distance, in H₀, from one point up to another, start ≤ end; vectorised."""
+        first, last = (
+            np.asarray(side, dtype=np.float64) for side in np.broadcast_arrays(start, end)
+        )
+        total = self._span(self.limit, np.maximum(first, 0.0), np.maximum(last, 0.0))
+        if np.any(first < 0.0):
+            before = np.maximum(-last, 0.0), np.maximum(-first, 0.0)
+            total = total + self._span(-self.limit, *before)
+        return total[0], total[1]
+
+    def _span(self, limit: float, start: Floats, end: Floats) -> Floats:
+        """(2, …) arc and distance between two points of one side, 0 ≤ start ≤ end."""
+        # A short piece is integrated as it is, since the difference of two long ones loses digits.
+        short = end - start <= _PANEL
+        whole = self._cumulative[limit]
+        edge_start, edge_end = (
+            np.minimum(np.floor(place / _PANEL), _PANELS) * _PANEL for place in (start, end)
+        )
+        total = self._panel(limit, np.where(short, start, edge_end), end)
+        if not np.all(short):
+            between = np.moveaxis(
+                whole[(edge_end / _PANEL).astype(int)] - whole[(edge_start / _PANEL).astype(int)],
+                -1,
+                0,
+            )
+            rest = self._panel(limit, edge_start, start)
+            total = total + np.where(short, 0.0, between - rest)
+        return total
+
+    def _panel(self, limit: float, start: Floats, end: Floats) -> Floats:
+        """(2, …) arc and distance from `start` to `end`, at most a panel apart or both far out."""
+        width = end - start
+        places = start + width * _NODES.reshape(-1, *([1] * start.ndim))
+        arc, cosine = self._rates(limit, places)
+        weights = _WEIGHTS.reshape(-1, *([1] * start.ndim)) * width
+        total = np.array([np.sum(weights * arc, axis=0), np.sum(weights * arc * cosine, axis=0)])
+        far = width > _PANEL
+        if np.any(far):
+            # So far out the cable is straight to rounding.
+            rise = np.exp(self.log_tension(end)) - np.exp(self.log_tension(start))
+            straight = np.where(far, rise, 0.0) / np.sqrt(1.0 - limit**2)
+            total = np.where(far, [straight, limit * straight], total)
+        return total
+
+    def rates(self, parameter: ArrayLike) -> tuple[Floats, Floats]:
+        """ds′/dλ and cos ψ."""
+        signed = np.asarray(parameter, dtype=np.float64)
+        limit = np.where(signed < 0.0, -self.limit, self.limit)
+        return self._rates(limit, np.abs(signed))
+
+    def _rates(self, limit: Floats | float, parameter: Floats) -> tuple[Floats, Floats]:
+        """ds′/dλ and cos ψ on the side λ ≥ 0 whose cosine tends to `limit`."""
+        sech = _sech(parameter)
+        divisor = 1.0 + limit - limit * (1.0 - limit) * sech
+        cosine = ((1.0 - limit) * sech + limit * (1.0 + limit)) / divisor
+        root = (1.0 - limit**2) * ((1.0 + limit) ** 2 + (1.0 - limit) ** 2 * sech)
+        tension = np.exp(self.log_tension(parameter))
+        return self.exponent * tension * np.sqrt((1.0 + sech) / root) * divisor, cosine
+
+    @cached_property
+    def _cumulative(self) -> dict[float, Floats]:
+        """Arc and distance up to the end of each panel, for each side."""
+        edges: Floats = np.arange(_PANELS + 1) * np.float64(_PANEL)
+        tables = {}
+        for limit in (self.limit, -self.limit):
+            panels = self._panel(limit, edges[:-1], edges[1:])
+            tables[limit] = np.vstack([np.zeros(2), np.cumsum(panels.T, axis=0)])
+        return tables
+
+
+def log_cosh(parameter: ArrayLike) -> Floats:
+    """Logarithm of cosh λ without overflow or loss of digits."""
+    size = np.abs(np.asarray(parameter, dtype=np.float64))
+    near = np.log1p(2.0 * np.sinh(np.minimum(size, 1.0) / 2.0) ** 2)
+    return np.where(size < 1.0, near, size + np.log1p(np.exp(-2.0 * size)) - np.log(2.0))
+
+
+def inverse_log_cosh(value: ArrayLike) -> Floats:
+    """λ ≥ 0 of a given ln cosh λ ≥ 0."""
+    given = np.asarray(value, dtype=np.float64)
+    excess = np.expm1(np.minimum(given, 1.0))
+    near = np.log1p(excess + np.sqrt(excess * (excess + 2.0)))
+    return np.where(given < 1.0, near, given + np.log1p(np.sqrt(-np.expm1(-2.0 * given))))
+
+
+# Angles nearer to the critical one than this [rad] are the critical one.
+_STRAIGHT = 1e-12
+
+
+def _leaning(k: ArrayLike) -> Floats:
+    """−cos φ_c: the root of x² K + x = K, free of cancellation."""
+    twice = 2.0 * np.asarray(k, dtype=np.float64)
+    return np.asarray(twice / (1.0 + np.hypot(1.0, twice)))
+
+
+def _sech(size: Floats) -> Floats:
+    decay = np.exp(-size)
+    return np.asarray(2.0 * decay / (1.0 + decay**2))

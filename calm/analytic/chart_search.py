@@ -1,0 +1,226 @@
+"""Where on a branch of the curve a cable lies: every place that fits what is given.
+
+A cable is a piece of a branch, λ_A to λ_B, enlarged H₀ times. With λ_B > |λ_A| its upper end is B;
+λ_A < 0 when it dips below its lower end. Two given sizes (tensions over w, height, distance,
+length) have a ratio that does not depend on H₀. That leaves
+
+- nothing to search where both angles, or one angle and the ratio of the tensions, are given;
+- one unknown on a line where one angle, or the ratio of the tensions, is given;
+- two unknowns for length, distance and one more: the ratio of these two then ties λ_B to λ_A.
+
+A residual is scanned on a grid that is fine where pieces are short and reaches to where the curve
+is straight to rounding; changes of sign are refined, dips towards zero examined for a pair.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from calm.analytic.chart_branch import Branch, Floats, inverse_log_cosh, log_cosh
+
+Piece = tuple[float, float]
+Path = Callable[[Floats], tuple[Floats, Floats]]
+
+_FINEST = 1e-10
+"""Least share of the reach of a grid; pieces so short are straight to rounding."""
+
+_POINTS = 240
+_ROUNDS = 90
+_NOISE = 1e-13
+_AROUND = 3
+_WINDOW = 2 * _AROUND + 1
+
+
+@dataclass(frozen=True)
+class Search:
+    """A branch and the sizes given.
+
+    Parameters
+    ----------
+    branch : Branch
+        Where to look.
+    sizes : mapping
+        The given among tension_a, tension_b (over w), height, distance (turned as the branch is),
+        length, all in metres.
+    """
+
+    branch: Branch
+    sizes: Mapping[str, float]
+
+    def pieces(self, start: float | None, end: float | None) -> list[Piece]:
+        """Every piece with these ends, where given, and these sizes.
+
+        Without an end, two of the sizes must give the ratio of the tensions.
+        """
+        if start is not None and end is not None:
+            return [(start, end)] if end > abs(start) else []
+        ratio = self.log_ratio()
+        if start is not None:
+            if ratio is not None:
+                return [(start, float(self._raised(start, ratio)))]
+            offset = abs(start) + graded(reach(self.branch))
+            return self._along(offset, lambda place: (np.full_like(place, start), place))
+        if end is not None:
+            if ratio is not None:
+                level = float(log_cosh(end)) - ratio / self.branch.exponent
+                size = float(inverse_log_cosh(max(level, 0.0)))
+                return [] if level < 0.0 or end < 0.0 else sorted({(-size, end), (size, end)})
+            inside = merged(graded(2.0 * end) - end, end - graded(2.0 * end))
+            inside = inside[np.abs(inside) < end]
+            return self._along(inside, lambda place: (place, np.full_like(place, end)))
+        assert ratio is not None
+        outward = graded(reach(self.branch))
+        places = np.concatenate([-outward[::-1], [0.0], outward])
+        return self._along(places, lambda place: (place, self._raised(place, ratio)))
+
+    def log_ratio(self) -> float | None:
+        """ln(T_B/T_A) where two of T_A, T_B, H are given."""
+        below, above, height = (self.sizes.get(name) for name in _TENSION_NAMES)
+        if height is not None and below is not None:
+            return float(np.log1p(height / below))
+        if height is not None and above is not None:
+            return -float(np.log1p(-height / above))
+        if below is not None and above is not None:
+            return float(np.log1p((above - below) / below))
+        return None
+
+    def _raised(self, start: ArrayLike, ratio: float) -> Floats:
+        """The λ_B at which the tension is exp(ratio) times that at `start`."""
+        return inverse_log_cosh(log_cosh(start) + ratio / self.branch.exponent)
+
+    def _residual(self, path: Path, places: Floats) -> Floats:
+        """Zero where the ratio of two given sizes is right, between −1 and 1."""
+        start, end = path(places)
+        # Of more than two, the path has used the tensions; one of them and the other size remain.
+        names = sorted(self.sizes, key=_ORDER.index)
+        first, second = names[0], names[-1]
+        left = size_of(self.branch, first, start, end) * self.sizes[second]
+        right = size_of(self.branch, second, start, end) * self.sizes[first]
+        return np.asarray((left - right) / (np.abs(left) + np.abs(right)))
+
+    def _along(self, grid: Floats, path: Path) -> list[Piece]:
+        places = roots(lambda at: self._residual(path, at), grid)
+        return [(float(start), float(end)) for start, end in zip(*path(places), strict=True)]
+
+
+_TENSION_NAMES = ("tension_a", "tension_b", "height")
+_ORDER = (*_TENSION_NAMES, "distance", "length")
+
+
+def roots(function: Callable[[Floats], Floats], grid: Floats) -> Floats:
+    """Every zero of a vectorised function that a grid can show.
+
+    Changes of sign are refined to rounding. A dip towards zero that does not change the sign is
+    looked at ever closer, for two zeros that lie between two points of the grid.
+    """
+    value = function(grid)
+    steps = steps_with_zero(value)
+    left, right = grid[steps], grid[steps + 1]
+    for dip in dips(value):
+        low, high = grid[dip - 1], grid[dip + 1]
+        for _ in range(12):
+            close = np.linspace(low, high, 17)
+            inside = function(close)
+            steps = steps_with_zero(inside)
+            if steps.size:
+                left, right = np.append(left, close[steps]), np.append(right, close[steps + 1])
+                break
+            least = int(np.argmin(np.abs(inside[1:-1]))) + 1
+            low, high = close[least - 1], close[least + 1]
+    return refine(function, left, right)
+
+
+def graded(length: float, points: int = _POINTS) -> Floats:
+    """Distances from an edge up to `length`: by constant ratio at first, then evenly as well."""
+    near = np.geomspace(_FINEST * length, length, points)
+    return merged(near, np.linspace(0.0, min(length, 40.0), 2 * points)[1:])
+
+
+def merged(*grids: Floats) -> Floats:
+    """One grid of several, in which no two points all but coincide: a scan needs true neighbours."""
+    points = np.unique(np.concatenate(grids))
+    gaps = np.diff(points)
+    kept = np.ones(points.size, dtype=bool)
+    kept[1:-1] = gaps[:-1] > 0.02 * gaps[1:]
+    return points[kept]
+
+
+def reach(branch: Branch) -> float:
+    """λ beyond which nothing changes any more, to rounding, but tension and arc in step."""
+    return 40.0 / branch.exponent + 20.0
+
+
+def size_of(branch: Branch, name: str, start: ArrayLike, end: ArrayLike) -> Floats:
+    """One size of pieces, in H₀: a tension (over wH₀), height, distance or length."""
+    if name == "tension_a":
+        return np.exp(branch.log_tension(start))
+    if name == "tension_b":
+        return np.exp(branch.log_tension(end))
+    if name == "height":
+        rise = branch.log_tension(end) - branch.log_tension(start)
+        return np.asarray(np.exp(branch.log_tension(start)) * np.expm1(rise))
+    arc, distance = branch.span(start, end)
+    return arc if name == "length" else distance
+
+
+def refine(function: Callable[[Floats], Floats], left: Floats, right: Floats) -> Floats:
+    """The zeros of a vectorised function between places where its signs differ, to rounding.
+
+    Chandrupatla's method: inverse quadratic interpolation where it is safe, halving elsewhere.
+    """
+    if not left.size:
+        return left
+    newest, opposite = right, left
+    at_newest, at_opposite = function(newest), function(opposite)
+    share = np.full_like(left, 0.5)
+    for _ in range(_ROUNDS):
+        trial = newest + share * (opposite - newest)
+        at_trial = function(trial)
+        same = np.sign(at_trial) == np.sign(at_newest)
+        last, at_last = np.where(same, newest, opposite), np.where(same, at_newest, at_opposite)
+        opposite = np.where(same, opposite, newest)
+        at_opposite = np.where(same, at_opposite, at_newest)
+        newest, at_newest = trial, at_trial
+        width = np.abs(opposite - newest)
+        tolerance = np.spacing(np.abs(newest)) + np.spacing(np.abs(opposite))
+        if np.all((at_newest == 0.0) | (width <= 2.0 * tolerance)):
+            break
+        share = _next_share(newest, opposite, last, at_newest, at_opposite, at_last)
+        least = np.minimum(tolerance / np.maximum(width, tolerance), 0.5)
+        share = np.where(at_newest == 0.0, 0.0, np.clip(share, least, 1.0 - least))
+    return np.where(np.abs(at_newest) <= np.abs(at_opposite), newest, opposite)
+
+
+def _next_share(
+    a: Floats, b: Floats, c: Floats, at_a: Floats, at_b: Floats, at_c: Floats
+) -> Floats:
+    """Where to try between a and b, as a share of the way, from these and the place before."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        place, value = (a - b) / (c - b), (at_a - at_b) / (at_c - at_b)
+        safe = (value**2 < place) & ((1.0 - value) ** 2 < 1.0 - place)
+        first = at_a / (at_b - at_a) * at_c / (at_b - at_c)
+        second = (c - a) / (b - a) * at_a / (at_c - at_a) * at_b / (at_c - at_b)
+        return np.where(safe & np.isfinite(first + second), first + second, 0.5)
+
+
+def steps_with_zero(value: Floats) -> NDArray[np.intp]:
+    """The steps of a scan, by the index of their first point, in which the sign changes."""
+    change = (np.sign(value[:-1]) != np.sign(value[1:])) & (value[:-1] != 0.0)
+    change &= np.maximum(np.abs(value[:-1]), np.abs(value[1:])) > _NOISE
+    return np.flatnonzero(change)
+
+
+def dips(value: Floats) -> NDArray[np.intp]:
+    """The points of a scan about which the value comes so near zero that it may touch it."""
+    size = np.abs(value)
+    before, here, after = size[:-2], size[1:-1], size[2:]
+    dip = (here <= before) & (here < after) & (here > _NOISE)
+    dip &= (value[:-2] * value[1:-1] > 0.0) & (value[1:-1] * value[2:] > 0.0)
+    # Noise dips too, but not from a height above it. Points may lie in pairs, so look further.
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(size, _AROUND, mode="edge"), _WINDOW)
+    dip &= here < 0.5 * around.max(axis=1)[1:-1]
+    return np.flatnonzero(dip) + 1

@@ -1,0 +1,217 @@
+"""A line in a uniform horizontal stream, its drag that of the normal component: R sin²φ per metre.
+
+R is the drag per metre square to the stream, ½ρ Cn D V². One frame serves towed cables and
+moorings: see `Station`. The equations are, s up the line,
+
+    dT/ds = w sin φ + F,      T dφ/ds = −(R sin²φ − w cos φ),      dx/ds = cos φ,      dz/ds = sin φ
+
+with a tangential drag F. Without weight T is constant and the shape is a catenary on its side; with
+weight the tension is elementary and the rest takes one quadrature. Where F = 0 the tension differs
+between two points by w times their difference in height, exactly.
+
+Sources: L. Pode, *Tables for computing the equilibrium configuration of a flexible cable in a
+uniform stream*, David Taylor Model Basin report 687, 1951; E. E. Zajac, Bell System Technical
+Journal 36, 1957, for the critical angle.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from calm.analytic import catenary
+from calm.analytic.hodograph import Hodograph, Law, cosine_of_critical_angle
+from calm.analytic.station import Floats, Station
+
+
+def neutral_line(
+    arc: ArrayLike, tension: ArrayLike, angle: ArrayLike, normal_drag: ArrayLike
+) -> Station:
+    """Shape of a line without weight: cot φ = cot φ₀ + R s/T, T constant.
+
+    x = (T/R) (√(1 + c²) − √(1 + c₀²)), z = (T/R) (asinh c − asinh c₀), c = cot φ.
+
+    Parameters
+    ----------
+    arc : distance s from the given end, up the line; negative down [m]
+    tension : T > 0 [N]
+    angle : φ₀ at the given end, between 0 and π [rad]
+    normal_drag : R > 0, per metre square to the stream [N/m]
+
+    Arrays broadcast.
+
+    Raises
+    ------
+    ValueError
+        Where a parameter is outside its range.
+    """
+    s, t, start, r = (np.asarray(value, float) for value in (arc, tension, angle, normal_drag))
+    if not (np.all(t > 0.0) and np.all(r > 0.0)):
+        raise ValueError("the tension and the normal drag of a neutral line must be above 0")
+    if not np.all((start > 0.0) & (start < np.pi)):
+        raise ValueError("a neutral line's angle must lie between 0 and π")
+    cotangent = np.cos(start) / np.sin(start)
+    z, x = catenary.position(s, t, t * cotangent, r)
+    phi: Floats = np.arctan2(1.0, cotangent + r * s / t)
+    return Station(phi, np.broadcast_to(t, phi.shape), x, z)
+
+
+def critical_angle(weight_ratio: ArrayLike) -> Floats:
+    """Angle φc at which a line is straight: cos φc = √(1 + p²/4) − p/2 [rad].
+
+    Parameters
+    ----------
+    weight_ratio : p = w/R ≥ 0, weight over normal drag square to the stream, per metre [-]
+
+    Raises
+    ------
+    ValueError
+        Where p is negative: a line lighter than water is the mirror image, upside down.
+    """
+    p = np.asarray(weight_ratio, float)
+    if not np.all(p >= 0.0):
+        raise ValueError("weight over normal drag must not be negative: turn the line upside down")
+    u = cosine_of_critical_angle(p)
+    return np.arctan2(np.sqrt(p * u), u)
+
+
+def critical_weight_ratio(angle: ArrayLike) -> Floats:
+    """Inverse of `critical_angle`: p = w/R = sin φc tan φc [-].
+
+    Parameters
+    ----------
+    angle : φc, from 0 to below π/2 [rad]
+
+    Raises
+    ------
+    ValueError
+        Where an angle is outside its range.
+    """
+    phi = np.asarray(angle, float)
+    if not np.all((phi >= 0.0) & (phi < 0.5 * np.pi)):
+        raise ValueError("a critical angle lies from 0 to below 90°")
+    ratio: Floats = np.sin(phi) * np.tan(phi)
+    return ratio
+
+
+def tension_ratio(
+    angle: ArrayLike,
+    start: float,
+    weight_ratio: float,
+    friction: float = 0.0,
+    law: Law = "square",
+) -> Floats:
+    """Tension at an angle over that at another of the same heavy line, in closed form.
+
+    Without friction it is, from 90°, [u (1 + u cos φ)/(u − cos φ)]^((1 − u²)/(1 + u²)), u = cos φc.
+
+    Parameters
+    ----------
+    angle : φ, 0 to π, of any shape [rad]
+    start : φ₀, 0 to π, on the same side of the critical angle [rad]
+    weight_ratio : p = w/R > 0 [-]
+    friction : f ≥ 0: tangential over normal drag per metre, each where it is greatest [-]
+    law : "square": tangential drag f R cos²φ; "constant": f R whatever the angle (Pode)
+
+    Raises
+    ------
+    ValueError
+        Where an angle is beyond the critical angle, which no line crosses, or a value is outside
+        its range.
+    """
+    branch = branch_of(start, weight_ratio, friction, law)
+    m = branch.parameter(_checked(angle))
+    if not np.all(np.isfinite(m)):
+        raise ValueError(
+            f"an angle is not on the same side of the critical angle, "
+            f"{np.degrees(branch.critical_angle):.6g}°, as the start"
+        )
+    return np.exp(branch.log_tension(m) - branch.log_tension(branch.parameter(start)))
+
+
+def heavy_line(
+    arc: ArrayLike,
+    tension: float,
+    angle: float,
+    weight: float,
+    normal_drag: float,
+    tangential_drag: float = 0.0,
+    law: Law = "square",
+) -> Station:
+    """Shape of a heavy line: the tension in closed form, arc, distance and height by quadrature.
+
+    Parameters
+    ----------
+    arc : distance s from the given end, up the line; negative down; any shape [m]
+    tension : T₀ > 0 at the given end [N]
+    angle : φ₀ at the given end, −π to π [rad]
+    weight : w > 0, in the fluid [N/m]
+    normal_drag : R > 0, per metre square to the stream [N/m]
+    tangential_drag : per metre along the stream, ≥ 0 [N/m]
+    law : how it falls with the angle: "square", as cos²φ, or "constant"
+
+    Raises
+    ------
+    ValueError
+        Where a value is outside its range, or a line straight at the critical angle has no tension
+        left before the arc is reached.
+
+    Notes
+    -----
+    Below the point where it is level the line rises again: there its angle is below 0 or above π.
+    Seen from its other end that part is an ordinary line whose angle differs by π.
+    A line lighter than water is one of weight −w upside down.
+    """
+    if not (0.0 < tension < np.inf and 0.0 < normal_drag < np.inf):
+        raise ValueError("the tension and the normal drag of a heavy line must be above 0")
+    arcs = np.asarray(arc, float)
+    if not np.all(np.isfinite(arcs)):
+        raise ValueError("the arcs of a heavy line must be finite")
+    if not -np.pi <= angle <= np.pi:
+        raise ValueError(f"the angle of a heavy line must lie from -π to π, not {angle:g}")
+
+    def follow(s: float, pull: float, phi: float) -> tuple[float, float, float, float]:
+        if phi < 0.0:
+            turned, pull, x, z = follow(-s, pull, phi + np.pi)
+            return turned - np.pi, pull, x, z
+        branch = branch_of(phi, weight / normal_drag, tangential_drag / normal_drag, law)
+        start, unit = float(branch.parameter(phi)), pull / normal_drag
+        if np.isinf(start):
+            return straight(s, pull, phi)
+        step = branch.advance(start, s / unit)
+        m = start + step
+        ratio = float(np.exp(branch.log_tension(m) - branch.log_tension(start)))
+        x, z = (unit * size for size in branch.reach(start, step))
+        if m > 0.0 or s >= 0.0:
+            return float(branch.angle(m)), pull * ratio, x, z
+        beyond = unit * branch.arc(start, step) - s
+        half_turn = np.pi if branch.steep else -np.pi
+        rest = follow(beyond, pull * ratio, 0.0 if branch.steep else np.pi)
+        return rest[0] + half_turn, rest[1], x + rest[2], z + rest[3]
+
+    def straight(s: float, pull: float, phi: float) -> tuple[float, float, float, float]:
+        cosine, sine = float(np.cos(phi)), float(np.sin(phi))
+        rubbed = tangential_drag * (cosine**2 if law == "square" else 1.0)
+        pull += (weight * sine + rubbed) * s
+        if not pull >= 0.0:
+            raise ValueError("the straight line has no tension left before the arc is reached")
+        return phi, pull, s * cosine, s * sine
+
+    stations = np.array([follow(float(s), tension, angle) for s in arcs.ravel()])
+    return Station(*np.moveaxis(stations.reshape(*arcs.shape, 4), -1, 0))
+
+
+def branch_of(start: float, weight_ratio: float, friction: float, law: Law) -> Hodograph:
+    """The branch of shapes that an angle belongs to [rad]; the critical angle to the steep one."""
+    _checked(start)
+    if law not in ("constant", "square"):
+        raise ValueError(f'the law of the tangential drag is "constant" or "square", not "{law}"')
+    steep = Hodograph(weight_ratio, friction, law, steep=True)
+    return steep if start >= steep.critical_angle else Hodograph(weight_ratio, friction, law, False)
+
+
+def _checked(angle: ArrayLike) -> Floats:
+    phi = np.asarray(angle, float)
+    if not np.all((phi >= 0.0) & (phi <= np.pi)):
+        raise ValueError("the angle of a heavy line must lie from 0 to π")
+    return phi

@@ -1,0 +1,240 @@
+"""``calm chart``: cables in a uniform current, solved and drawn."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from cyclopts import App, Group, Parameter
+
+from calm.cli.exit_codes import ExitCode
+from calm.cli.streams import narrate, show, show_rich
+from calm.errors import UsageError
+
+if TYPE_CHECKING:
+    from calm.analytic.chart import ChartAnswer
+
+_BUOY = """  calm chart solve --k 2.4 --weight "5 N/m" \\
+      --phi-b "75 deg" --tension-b "350 N" --height "20 m\""""
+
+chart = App(
+    name="chart",
+    help="Charts of cables in a uniform current.",
+    help_epilogue=f"""Examples:
+
+{_BUOY}
+  calm chart draw --k 0.6 -o chart.svg""",
+)
+
+_SOLVE_EXAMPLES = f"""Examples:
+
+{_BUOY}
+  calm chart solve --weight "0.5 N/m" --diameter "12 mm" --cd 1.2 \\
+      --speed "1 knot" --phi-b "140 deg" --tension-b "100 N" \\
+      --length "100 m" --json -"""
+
+_DRAW_EXAMPLES = """Examples:
+
+  calm chart draw --k 0.6 -o chart.svg
+  calm chart draw --k 2.4 --lower-end above-90 -o chart.pdf"""
+
+_STDOUT = Path("-")
+_SEA_WATER = 1025.0
+
+_MEDIUM = Group("The cable and the current", sort_key=1)
+_SEVEN = Group("Three of these seven", sort_key=2)
+_OUTPUT = Group("Output", sort_key=3)
+
+# A quantity may be negative, which must not be taken for an option.
+_Medium = Annotated[str | None, Parameter(allow_leading_hyphen=True, group=_MEDIUM)]
+_Seven = Annotated[str | None, Parameter(allow_leading_hyphen=True, group=_SEVEN)]
+
+
+@chart.command(help_epilogue=_SOLVE_EXAMPLES)
+def solve(
+    *,
+    weight: Annotated[str, Parameter(allow_leading_hyphen=True, group=_MEDIUM)],
+    k: _Medium = None,
+    diameter: _Medium = None,
+    cd: _Medium = None,
+    speed: _Medium = None,
+    density: _Medium = None,
+    phi_a: _Seven = None,
+    phi_b: _Seven = None,
+    tension_a: _Seven = None,
+    tension_b: _Seven = None,
+    height: _Seven = None,
+    distance: _Seven = None,
+    length: _Seven = None,
+    json: Annotated[Path | None, Parameter(allow_leading_hyphen=True, group=_OUTPUT)] = None,
+) -> ExitCode:
+    """Find every cable that has three given quantities.
+
+    The cable hangs in a uniform current from A, its lower end, to B, its upper;
+    drag is normal to it. Quantities carry their units. The exit code is 3 when
+    no cable fits.
+
+    Parameters
+    ----------
+    weight
+        Weight in water of a metre; negative for a cable that floats.
+    k
+        K = density × cd × diameter × speed² / (2 × weight), from 0 to 100.
+    diameter
+        Diameter of the cable, in place of K as are the next three.
+    cd
+        Drag coefficient of the cable.
+    speed
+        Speed of the current.
+    density
+        Density of the water; 1025 kg/m^3 when not given.
+    phi_a
+        Angle to the current at A; negative when the cable first goes down.
+    phi_b
+        Angle to the current at B.
+    tension_a
+        Tension at A.
+    tension_b
+        Tension at B.
+    height
+        Height of B above A.
+    distance
+        Distance of B downstream of A; negative upstream.
+    length
+        Length of the cable.
+    json
+        Write the answer as JSON, - to print it.
+    """
+    from calm.analytic.chart import chart_solve
+
+    _check_output(json)
+    known = _quantities(
+        {
+            "weight": (weight, "force per length"),
+            "k": (k, "number"),
+            "diameter": (diameter, "length"),
+            "cd": (cd, "number"),
+            "speed": (speed, "speed"),
+            "density": (density, "density"),
+            "phi_a": (phi_a, "angle"),
+            "phi_b": (phi_b, "angle"),
+            "tension_a": (tension_a, "force"),
+            "tension_b": (tension_b, "force"),
+            "height": (height, "length"),
+            "distance": (distance, "length"),
+            "length": (length, "length"),
+        }
+    )
+    cable = {name: known.pop(name) for name in _CABLE if name in known}
+    for name in known.keys() & {"phi_a", "phi_b"}:
+        known[name] = math.radians(known[name])
+    answer = chart_solve(_drag_over_weight(cable), cable["weight"], **known)
+    if json is not None:
+        _write_json(json, answer)
+    if not answer.solutions:
+        narrate(f"calm: {answer.status}: {answer.message} {answer.advice}")
+        return ExitCode.NO_EQUILIBRIUM
+    if json != _STDOUT:
+        from calm.report.chart_answer import answer_table
+
+        show_rich(answer_table(answer))
+    return ExitCode.DONE
+
+
+@chart.command(help_epilogue=_DRAW_EXAMPLES)
+def draw(
+    *,
+    k: Annotated[str, Parameter(allow_leading_hyphen=True)],
+    output: Annotated[Path, Parameter(alias="-o")],
+    lower_end: Literal["below-90", "above-90"] = "below-90",
+) -> ExitCode:
+    """Draw the chart of one K, on a page of A4.
+
+    Parameters
+    ----------
+    k
+        K = density × cd × diameter × speed² / (2 × weight), from 0 to 100.
+    output
+        The file to write, as .svg, .png or .pdf.
+    lower_end
+        The cables drawn: those whose angle at A is below 90° (when not given), or above.
+    """
+    from calm.report.chart import chart_picture, check_chart_format
+
+    check_chart_format(output)
+    _check_output(output)
+    (drag_over_weight,) = _quantities({"k": (k, "number")}).values()
+    from calm.report.write import write_file
+
+    write_file(output, chart_picture(drag_over_weight, lower_end, output.suffix))
+    narrate(f"{output} written")
+    return ExitCode.DONE
+
+
+_CABLE = ("weight", "k", "diameter", "cd", "speed", "density")
+
+
+def _quantities(given: dict[str, tuple[str | None, str]]) -> dict[str, float]:
+    """The quantities that were given, in SI and degrees; or all that is wrong with them."""
+    from calm.units import QuantityError, parse_quantity
+
+    values: dict[str, float] = {}
+    complaints: list[str] = []
+    for name, (text, dimension) in given.items():
+        if text is None:
+            continue
+        try:
+            values[name] = parse_quantity(text, dimension)
+        except QuantityError as error:
+            complaints.append(f"{_option(name)}: `{text}` {error}")
+    if complaints:
+        raise UsageError("; ".join(complaints))
+    return values
+
+
+def _drag_over_weight(cable: dict[str, float]) -> float:
+    """K as given, or of the cable and the current."""
+    parts = ("diameter", "cd", "speed")
+    if "k" in cable:
+        also = [_option(name) for name in (*parts, "density") if name in cable]
+        if also:
+            raise UsageError(f"give either --k or {', '.join(also)}")
+        return cable["k"]
+    missing = [_option(name) for name in parts if name not in cable]
+    if missing:
+        raise UsageError(f"give --k, or also {', '.join(missing)}")
+    for name in (*parts, "density"):
+        if cable.get(name, 0.0) < 0.0:
+            raise UsageError(f"{_option(name)} must not be negative")
+    if cable["weight"] == 0.0:
+        raise UsageError("--weight must not be 0")
+    drag = cable.get("density", _SEA_WATER) * cable["cd"] * cable["diameter"] * cable["speed"] ** 2
+    return drag / (2.0 * abs(cable["weight"]))
+
+
+def _option(name: str) -> str:
+    return f"--{name.replace('_', '-')}"
+
+
+def _check_output(path: Path | None) -> None:
+    """Refuse an output that could not be written, before anything is solved."""
+    from calm.report.write import check_destination
+
+    if path is None or path == _STDOUT:
+        return
+    if str(path).startswith("-"):
+        raise UsageError(f"{path} stands where a path is needed; write ./{path} for a file")
+    check_destination(path)
+
+
+def _write_json(path: Path, answer: ChartAnswer) -> None:
+    from calm.report.chart_answer import answer_document
+    from calm.report.document import to_json
+    from calm.report.write import write_file
+
+    text = to_json([answer_document(answer)])
+    if path == _STDOUT:
+        show(text)
+    else:
+        write_file(path, text.encode())

@@ -1,0 +1,249 @@
+"""The chart of a uniform current for one K, on a page of A4.
+
+The curve carries its graduations in the angle φ and the arc s′. Three families of loci of the point
+P = (y′ of A, z′ of B) give length, distance and tension of the cable between two of its points A
+and B, A the lower: L/H, D/H and T_A/(wH) are constant along them.
+"""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from calm.analytic.chart_branch import critical_angle
+from calm.analytic.chart_curve import CurvePoints, curve
+from calm.errors import UsageError
+from calm.report.chart_labels import Labels
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+CHART_FORMATS = (".svg", ".png", ".pdf")
+"""The endings a chart's file name may have."""
+
+_PAGE = (8.27, 11.69)  # inches, A4
+_RIGHT = np.pi / 2
+_POINTS = 500  # along the curve and up the page, for the loci
+_FINE = 2000  # along the curve, to draw and graduate it
+_HIGHEST = 3.0
+
+
+@dataclass(frozen=True)
+class Family:
+    """Loci of one ratio: what it is called, its colour, and the values worth a line."""
+
+    name: str
+    colour: str
+    values: tuple[float, ...]
+
+
+_FAMILIES = (
+    Family("L/H", "#0b5fa5", (1.005, 1.01, 1.02, 1.05, 1.1, 1.15, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8,
+                              2, 2.5, 3, 4, 6)),
+    Family("D/H", "#1a7f37", (-8, -6, -4, -3, -2.5, -2, -1.8, -1.6, -1.4, -1.2, -1, -0.8, -0.6,
+                              -0.4, -0.2, 0, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1, 1.25, 1.5, 2, 3, 4)),
+    Family("T_A/(wH)", "#b3261e", (0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1, 1.25, 1.5, 2, 2.5, 3, 4, 6, 10,
+                                   20, 30, 50, 100)),
+)  # fmt: skip
+
+
+def check_chart_format(path: Path) -> None:
+    """Refuse a chart whose file name does not end in one of `CHART_FORMATS`.
+
+    Raises
+    ------
+    UsageError
+        Naming the endings that are allowed.
+    """
+    if path.suffix.lower() not in CHART_FORMATS:
+        allowed = f"{', '.join(CHART_FORMATS[:-1])} or {CHART_FORMATS[-1]}"
+        raise UsageError(f"cannot draw {path}: a chart's name ends in {allowed}")
+
+
+def chart_picture(k: float, lower_end: str, suffix: str) -> bytes:
+    """The chart as a file: vectors with its texts as text, or PNG at 150 dots per inch.
+
+    Parameters
+    ----------
+    k, lower_end
+        As in `draw_chart`.
+    suffix : str
+        One of `CHART_FORMATS`.
+    """
+    import matplotlib
+
+    content = io.BytesIO()
+    kind = suffix.lower().removeprefix(".")
+    metadata: dict[str, Any] = {
+        "svg": {"Date": None},
+        "pdf": {"CreationDate": None},
+        "png": {},
+    }[kind]
+    with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": "calm"}):
+        figure = draw_chart(k, lower_end)
+        figure.savefig(content, format=kind, dpi=150, metadata=metadata)
+    return content.getvalue()
+
+
+def draw_chart(k: float, lower_end: str = "below-90") -> Figure:
+    """The chart of one K.
+
+    Parameters
+    ----------
+    k : float
+        0 ≤ K ≤ 100.
+    lower_end : str
+        ``below-90`` or ``above-90``: the angle at the lower ends of the cables to be read [deg].
+
+    Returns
+    -------
+    Figure
+        A page of A4 that belongs to no window. No text on it covers another.
+
+    Raises
+    ------
+    UsageError
+        K out of range; ``above-90`` at K = 0, whose curve ends at 90°.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    points = _points(k)
+    above = lower_end == "above-90"
+    if above and k == 0.0:
+        raise UsageError("at K = 0 no angle reaches 90°; there is no chart above it")
+    figure = Figure(figsize=_PAGE)
+    FigureCanvasAgg(figure)
+    axes = figure.add_axes((0.1, 0.1, 0.85, 0.8))
+    _frame(axes, points, above)
+    axes.plot(points.distance, points.height, color="black", linewidth=1.6, zorder=3)
+    labels = Labels(axes)
+    labels.avoid(points.distance, points.height)
+    _graduate(axes, labels, points)
+    starts = points.phi >= _RIGHT if above else points.phi <= _RIGHT
+    for family in _FAMILIES:
+        _draw_family(axes, labels, family, points, starts)
+    _write_frame(figure, axes, k, above)
+    return figure
+
+
+def _points(k: float) -> CurvePoints:
+    """The curve from its apex as high as the page goes, ever finer towards φ_c."""
+    critical = float(critical_angle(k))
+    upright = float(curve(k, _RIGHT).height) if k > 0.0 else np.inf
+    highest = min(_HIGHEST, 4.0 * upright)
+    left = np.concatenate([np.linspace(1.0, 0.02, _FINE), np.geomspace(0.02, 1e-11, _FINE)[1:]])
+    dense = curve(k, critical * (1.0 - left))
+    shown = dense.height <= highest
+    return CurvePoints(*(getattr(dense, name)[shown] for name in _COORDINATES))
+
+
+_COORDINATES = ("phi", "arc", "distance", "height", "tension")
+
+
+def _frame(axes: Axes, points: CurvePoints, above: bool) -> None:
+    """Limits that leave room for the graduations beside the curve."""
+    left = float(points.distance[points.phi >= _RIGHT].min()) if above else 0.0
+    right = float(points.distance.max())
+    low = float(points.height[points.phi >= _RIGHT].min()) if above else 0.0
+    high = float(points.height.max())
+    width, height = right - left, high - low
+    axes.set_xlim(left - 0.02 * width, right + 0.12 * width)
+    axes.set_ylim(low - 0.05 * height, high)
+
+
+def _graduate(axes: Axes, labels: Labels, points: CurvePoints) -> None:
+    """Ticks of φ on the outer side of the curve, of s′ on the inner side."""
+    degrees = np.degrees(points.phi)
+    for value in range(0, 180, 1):
+        if value <= degrees[-1]:
+            long = value % 5 == 0
+            size = 7.0 if value % 10 == 0 else 5.0 if long else 3.0
+            place = _place(points, degrees, value)
+            labels.tick(*place, size, "black")
+            if long:
+                labels.beside(f"{value}°", *place, size + 2.0, "black", 8.5)
+    step = _round_step(float(points.arc[-1]) / 20.0)
+    for number in range(1, int(points.arc[-1] / (step / 5.0)) + 1):
+        place = _place(points, points.arc, number * step / 5.0)
+        size = -6.0 if number % 5 == 0 else -3.0
+        labels.tick(*place, size, "#7a4b00")
+        if number % 5 == 0:
+            labels.beside(f"{number * step / 5.0:.4g}", *place, size - 2.0, "#7a4b00", 7.0)
+
+
+def _place(points: CurvePoints, scale: Floats, value: float) -> tuple[float, float, float]:
+    """y′, z′ and φ where a graduation of the curve has a value."""
+    at = (float(np.interp(value, scale, getattr(points, name))) for name in _COORDINATES)
+    phi, _, distance, height, _ = at
+    return distance, height, phi
+
+
+def _round_step(size: float) -> float:
+    """The 1, 2 or 5 times a power of ten next above."""
+    decade = 10.0 ** np.floor(np.log10(size))
+    return float(next(step * decade for step in (1.0, 2.0, 5.0, 10.0) if step * decade >= size))
+
+
+def _draw_family(
+    axes: Axes, labels: Labels, family: Family, points: CurvePoints, starts: NDArray[np.bool_]
+) -> None:
+    """Loci of P, as contours over the abscissa of A and the level of B."""
+    # Evenly in φ, which is close in y′ where the curve turns back; y′ must grow for contours.
+    angles = np.linspace(points.phi[starts][0], points.phi[starts][-1], _POINTS)
+    lower = [np.interp(angles, points.phi, getattr(points, name)) for name in _COORDINATES]
+    if lower[2][0] > lower[2][-1]:
+        lower = [values[::-1] for values in lower]
+    levels = np.linspace(*axes.get_ylim(), _POINTS)
+    upper = [np.interp(levels, points.height, getattr(points, name)) for name in _COORDINATES]
+    _, arc_a, distance_a, height_a, tension_a = lower
+    _, arc_b, distance_b, height_b, _ = (values[:, None] for values in upper)
+    height = height_b - height_a
+    height = np.where(height > 1e-9, height, np.nan)
+    ratio = {
+        "L/H": (arc_b - arc_a) / height,
+        "D/H": (distance_b - distance_a) / height,
+        "T_A/(wH)": tension_a / height,
+    }[family.name]
+    reached = np.nanmin(ratio), np.nanmax(ratio)
+    values = [value for value in family.values if reached[0] < value < reached[1]]
+    if not values:
+        return
+    loci = axes.contour(distance_a, levels, ratio, levels=values)
+    loci.remove()
+    for value, segments in zip(values, loci.allsegs, strict=True):
+        for segment in segments:
+            # A line that cannot be named would only confuse.
+            if labels.along(f"{value:g}".replace("-", "−"), segment, family.colour, 7.0):
+                axes.plot(*segment.T, color=family.colour, linewidth=0.6)
+
+
+def _write_frame(figure: Figure, axes: Axes, k: float, above: bool) -> None:
+    side = "above" if above else "below"
+    axes.set_xlabel("y′ = y/H₀, downstream")
+    axes.set_ylabel("z′ = z/H₀, up;  T = wH₀ (1 + z′)")
+    axes.grid(color="#dddddd", linewidth=0.4)
+    axes.set_axisbelow(True)
+    figure.text(0.1, 0.965, f"Cable in a uniform current, K = {k:g}", fontsize=14, weight="bold")
+    figure.text(0.1, 0.945, f"Lower end A at an angle {side} 90° to the current", fontsize=10)
+    for number, family in enumerate(_FAMILIES):
+        x = 0.1 + 0.17 * number
+        figure.text(x, 0.918, family.name.replace("T_A", "$T_A$"), color=family.colour, fontsize=11)
+    figure.text(0.61, 0.918, "on the curve: φ in degrees, ", fontsize=9)
+    figure.text(0.83, 0.918, "arc s′", fontsize=9, color="#7a4b00")
+    figure.text(
+        0.1,
+        0.03,
+        "Loci are of the point P: the abscissa y′ of the lower end A, the level z′ of the upper "
+        "end B.\nA and B lie on the curve; H, D, L are their difference in height, their distance "
+        "and the cable between them.",
+        fontsize=8,
+    )

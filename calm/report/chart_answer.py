@@ -1,0 +1,69 @@
+"""The cables that fit three quantities in a uniform current, as a table and as a document."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+if TYPE_CHECKING:
+    from calm.analytic.chart import ChartAnswer, ChartSolution
+
+_ROWS = (
+    ("phi_a", "angle at A", "°", 3),
+    ("phi_b", "angle at B", "°", 3),
+    ("tension_a", "tension at A", "N", 2),
+    ("tension_b", "tension at B", "N", 2),
+    ("height", "height H", "m", 3),
+    ("distance", "distance D", "m", 3),
+    ("length", "length L", "m", 3),
+    ("h0", "H₀ of the chart", "m", 3),
+)
+_NOTE = "A lower end, B upper end; D positive when B is downstream of A; angles to the current."
+
+
+def answer_document(answer: ChartAnswer) -> dict[str, Any]:
+    """The JSON object: `status`, `k`, `solutions` (SI, degrees); without any, the reason too."""
+    document: dict[str, Any] = {
+        "status": answer.status,
+        "k": answer.k,
+        "solutions": [_figures(solution) for solution in answer.solutions],
+    }
+    if not answer.solutions:
+        document |= {"message": answer.message, "advice": answer.advice}
+    return document
+
+
+def answer_table(answer: ChartAnswer) -> RenderableType:
+    """A column for each cable, for a rich console."""
+    table = Table(box=None, padding=(0, 0, 0, 2), pad_edge=False)
+    table.add_column()
+    table.add_column()
+    for number, _ in enumerate(answer.solutions, start=1):
+        table.add_column(str(number) if len(answer.solutions) > 1 else "", justify="right")
+    figures = [_figures(solution) for solution in answer.solutions]
+    for name, heading, unit, decimals in _ROWS:
+        table.add_row(heading, unit, *(f"{cable[name]:z.{decimals}f}" for cable in figures))
+    notes = [_NOTE]
+    if len(figures) > 1:
+        notes.append("Each of these cables fits what is given.")
+    if any(min(cable["phi_a"], cable["phi_b"]) < 0.0 for cable in figures):
+        notes.append("A negative angle: the cable goes down there, beyond the level of that end.")
+    return Group(
+        Text(f"Uniform current, K = {answer.k:.6g}", style="bold"),
+        Text(),
+        table,
+        Text(),
+        Text("\n".join(notes), style="dim"),
+    )
+
+
+def _figures(solution: ChartSolution) -> dict[str, float]:
+    """The figures in SI and degrees."""
+    return {
+        name: math.degrees(value) if name.startswith("phi") else value
+        for name, value in vars(solution).items()
+    }
