@@ -16,7 +16,7 @@ import numpy as np
 from calm.analytic.chart_branch import Branch, check_k
 from calm.analytic.chart_given import ANGLES, SIZES, check, mirrored
 from calm.analytic.chart_length import LengthSearch
-from calm.analytic.chart_reasons import Refusal, contradiction, family, reason
+from calm.analytic.chart_reasons import Refusal, contradiction, family, is_taut, reason
 from calm.analytic.chart_search import Piece, Search, size_of
 from calm.analytic.chart_straight import straight
 
@@ -87,6 +87,9 @@ def chart_solve(
 ) -> ChartAnswer:
     """Every cable that has three given quantities, to 1e-9.
 
+    A cable that turns by less than a hundredth of a radian is so nearly straight that its shape
+    (angles, height, distance, length) tells its tension with fewer digits than it has itself.
+
     Parameters
     ----------
     k : float
@@ -126,7 +129,7 @@ def chart_solve(
         name: value / abs(weight) if name.startswith("tension") else value
         for name, value in sunk.items()
     }
-    answer = _solve(float(k), over_weight)
+    answer = _solve(float(k), over_weight, floats)
     if isinstance(answer, Refusal):
         return ChartAnswer(answer.status, float(k), (), answer.message, answer.advice)
     solutions = [_weighted(solution, abs(weight)) for solution in answer]
@@ -143,15 +146,15 @@ def _weighted(solution: ChartSolution, weight: float) -> ChartSolution:
     )
 
 
-def _solve(k: float, known: dict[str, float]) -> list[ChartSolution] | Refusal:
-    """The cables of a sinking cable; tensions in metres of its weight."""
+def _solve(k: float, known: dict[str, float], floats: bool) -> list[ChartSolution] | Refusal:
+    """The cables that sink, tensions over w; those that float have been turned upside down."""
     refusal = contradiction(known)
     if refusal:
         return refusal
     ends = {name: Branch.holding(k, known[name]) for name in ANGLES if name in known}
     sizes = {name: known[name] for name in SIZES if name in known}
     solutions: list[ChartSolution] = []
-    if None not in ends.values() and known.get("tension_a") != 0.0:
+    if None not in ends.values() and known.get("tension_a") != 0.0 and not is_taut(known):
         for sign in (1, -1):
             solutions += _on_branch(Branch(k, sign), ends, sizes)
     line = straight(k, known)
@@ -162,7 +165,7 @@ def _solve(k: float, known: dict[str, float]) -> list[ChartSolution] | Refusal:
         elif not solutions:
             return family("A straight cable at the critical angle has these at any other size.")
     if not solutions:
-        return reason(k, known)
+        return reason(k, known, floats)
     return sorted(solutions, key=lambda solution: solution.phi_a < 0.0)
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from calm.analytic.chart_branch import critical_angle
 
 _ROUNDING = 1e-9
+_LEAST_SLACK = 1e-12
 
 
 @dataclass(frozen=True)
@@ -26,9 +27,9 @@ def family(what: str) -> Refusal:
 
 
 def contradiction(known: Mapping[str, float]) -> Refusal | None:
-    """What is wrong with the quantities whatever K is; tensions over w [m]; None if nothing is.
+    """What is wrong with the quantities of a sinking cable whatever K is; None if nothing is.
 
-    The light end is the one from which the tension grows, A where the cable sinks.
+    Tensions are over w [m]. A cable that floats comes here upside down; messages hold for both.
     """
     below, above = known.get("tension_a"), known.get("tension_b")
     height, distance = known.get("height", 0.0), known.get("distance", 0.0)
@@ -39,9 +40,9 @@ def contradiction(known: Mapping[str, float]) -> Refusal | None:
             "T_B = T_A + w H does not hold.", "Give two of these, and another quantity."
         )
     if above is not None and above <= (below or 0.0) + height:
-        least = "T_A" if below is not None else "w H" if height else "0"
+        least = "that at the other end" if below is not None else "w H" if height else "0"
         return _inconsistent(
-            f"The tension at the heavy end must exceed {least}: it grows by w for each metre up.",
+            f"The tension at the upper end (the lower of a cable that floats) must exceed {least}.",
             "Check which end is which, and the weight.",
         )
     chord = math.hypot(height, distance)
@@ -53,23 +54,44 @@ def contradiction(known: Mapping[str, float]) -> Refusal | None:
     return None
 
 
-def reason(k: float, known: Mapping[str, float]) -> Refusal:
-    """Why no cable has quantities that do not contradict each other."""
+def is_taut(known: Mapping[str, float]) -> bool:
+    """Whether the cable is no longer than the straight way between its ends, to rounding."""
+    chord = math.hypot(known.get("height", 0.0), known.get("distance", 0.0))
+    return "length" in known and chord >= known["length"] * (1.0 - _LEAST_SLACK)
+
+
+def reason(k: float, known: Mapping[str, float], floats: bool) -> Refusal:
+    """Why no cable has quantities that do not contradict each other.
+
+    Parameters
+    ----------
+    k : float
+        K.
+    known : mapping
+        The quantities, of a cable that floats turned upside down.
+    floats : bool
+        Whether they were turned.
+    """
     critical = float(critical_angle(k))
-    angle = f"the critical angle, {math.degrees(critical):.6g}° at K = {k:g}"
+    shown = math.degrees(math.pi - critical if floats else critical)
+    angle = f"the critical angle, {shown:.6g}° at K = {k:g}"
     start, end = known.get("phi_a"), known.get("phi_b")
     if known.get("tension_a") == 0.0:
         message = f"A cable without tension at one end is straight, at {angle}."
         return _none(message, "Give a tension, or quantities of that straight cable.")
+    if is_taut(known):
+        message = "A cable no longer than the way between its ends would need endless tension."
+        return _none(message, "Lengthen the cable or bring its ends closer.")
     if end is not None and not 0.0 < end < math.pi:
-        return _none("At its heavy end a cable must rise.", "Give an angle between 0 and 180°.")
+        message = "The cable must rise at the end where its tension is greater."
+        return _none(message, "Give an angle between 0 and 180° there.")
     if start is not None and end is not None:
         lean = start + 2 * math.pi if start < critical - math.pi else start
         if (lean - critical) * (end - critical) <= 0.0:
             return _none(f"No cable reaches across {angle}.", "Give two angles on one side of it.")
         return _none(
-            "Between these angles the cable does not rise in the direction it curves.",
-            f"Below {angle}, φ grows upwards; above it, φ shrinks upwards.",
+            "Between these two angles no cable rises from A to B in that sense.",
+            "Check which end is which, and the sign of the distance if it is given.",
         )
     return _none(
         f"No cable in a uniform current at K = {k:g} has these three quantities together.",

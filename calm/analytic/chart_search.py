@@ -25,7 +25,7 @@ from calm.analytic.chart_branch import Branch, Floats, inverse_log_cosh, log_cos
 Piece = tuple[float, float]
 Path = Callable[[Floats], tuple[Floats, Floats]]
 
-_FINEST = 1e-10
+_FINEST = 1e-12
 """Least share of the reach of a grid; pieces so short are straight to rounding."""
 
 _POINTS = 240
@@ -56,6 +56,8 @@ class Search:
 
         Without an end, two of the sizes must give the ratio of the tensions.
         """
+        if end is not None and end <= 0.0:
+            return []
         if start is not None and end is not None:
             return [(start, end)] if end > abs(start) else []
         ratio = self.log_ratio()
@@ -68,7 +70,7 @@ class Search:
             if ratio is not None:
                 level = float(log_cosh(end)) - ratio / self.branch.exponent
                 size = float(inverse_log_cosh(max(level, 0.0)))
-                return [] if level < 0.0 or end < 0.0 else sorted({(-size, end), (size, end)})
+                return [] if level < 0.0 else sorted({(-size, end), (size, end)})
             inside = merged(graded(2.0 * end) - end, end - graded(2.0 * end))
             inside = inside[np.abs(inside) < end]
             return self._along(inside, lambda place: (place, np.full_like(place, end)))
@@ -141,7 +143,7 @@ def graded(length: float, points: int = _POINTS) -> Floats:
 
 
 def merged(*grids: Floats) -> Floats:
-    """One grid of several, in which no two points all but coincide: a scan needs true neighbours."""
+    """One grid of several without points that all but coincide: a scan needs true neighbours."""
     points = np.unique(np.concatenate(grids))
     gaps = np.diff(points)
     kept = np.ones(points.size, dtype=bool)

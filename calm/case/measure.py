@@ -12,6 +12,7 @@ from calm.case.result import Accuracy, AnchorLoad, Result, Top
 from calm.case.warnings import warnings_of
 from calm.checks.anchor import required_weight
 from calm.physics.line import Floats
+from calm.physics.track import head_count
 from calm.solve import Solution, Status
 
 if TYPE_CHECKING:
@@ -92,6 +93,9 @@ def _components(mooring: Mooring, solution: Solution, still: Solution | None) ->
     chord = (top - bottom)[:-1]
     force = solution.force[nodes].mean(axis=1)
     lean = np.where(np.linalg.norm(chord, axis=1) > 0, _tilt(chord), _tilt(force))
+    head = head_count(solution.line)
+    if head and (top[0] != bottom[head - 1]).any():
+        lean[:head] = _tilt(top[0] - bottom[head - 1])
     knockdown = np.full(len(pieces), np.nan)
     if still is not None:
         before = still.position[still.piece_nodes[:, 0]]
@@ -171,6 +175,6 @@ def _anchor_load(mooring: Mooring, solution: Solution) -> AnchorLoad:
         horizontal=horizontal,
         angle=float(np.degrees(np.arctan2(horizontal, vertical))),
         required_weight=required_weight(vertical, horizontal, checks.anchor_factor, friction),
-        weight=-anchor.net_buoyancy,
+        weight=mooring.anchor_weight,
         grounded_length=solution.grounded_length,
     )

@@ -8,14 +8,17 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
+import numpy as np
+
 from calm.assemble import assemble_line, assemble_water
 from calm.case.measure import result_of
 from calm.case.result import Result
 from calm.errors import InputError, NoEquilibrium, Problem
 from calm.files import MooringFile, read_mooring
-from calm.physics.line import Line, Water
+from calm.physics.line import REFERENCE_DENSITY, Line, Water
 from calm.solve import Settings, Solution, Status, fit_length, solve_mooring
 from calm.solve.closing import COARSE_STEP
+from calm.solve.standing import standing_lift, too_heavy
 
 
 def load(
@@ -77,6 +80,14 @@ class Mooring:
                 return line.with_length(piece.index, length)
         return line
 
+    @cached_property
+    def anchor_weight(self) -> float:
+        """Weight of the anchor in the water at the seabed [N]."""
+        anchor, water = self.file.anchor, self.water
+        _, density = water.at(np.array(water.depth))
+        excess = (float(density) - REFERENCE_DENSITY) * water.gravity
+        return -(anchor.net_buoyancy + excess * (anchor.displaced_volume or 0.0))
+
     def solve(self) -> Result:
         """Find the static equilibrium.
 
@@ -102,14 +113,22 @@ class Mooring:
                 ]
             )
         self._refuse_a_lifted_anchor(solution)
+        self._refuse_a_heap(solution)
         return result_of(self, solution, self._still(solution))
 
     def _refuse_a_lifted_anchor(self, solution: Solution) -> None:
-        pull, weight = float(solution.force[-1, 2]), -self.file.anchor.net_buoyancy
+        pull, weight = float(solution.force[-1, 2]), self.anchor_weight
         if pull > weight:
             raise Status.ANCHOR_LIFTS.because(
                 f"The line pulls up with {pull:.0f} N; the anchor weighs {weight:.0f} N in water."
             )
+
+    def _refuse_a_heap(self, solution: Solution) -> None:
+        """A sub-surface line is meant to stand: only chain may lie on the seabed below it."""
+        lying = set(solution.element_piece[solution.hanging :].tolist())
+        kinds = {self.file.pieces[piece].component.kind for piece in lying}
+        if not solution.surface and kinds - {"chain"}:
+            raise too_heavy(standing_lift(self.line, self.water))
 
     @contextmanager
     def _naming_the_piece(self) -> Iterator[None]:

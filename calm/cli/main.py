@@ -15,7 +15,7 @@ from calm.cli.exit_codes import ExitCode
 from calm.cli.run import RUN_EXAMPLES, run
 from calm.cli.starter import NEW_EXAMPLES, SCHEMA_EXAMPLES, new, schema
 from calm.cli.streams import narrate, prepare
-from calm.errors import CalmError, InputError
+from calm.errors import CalmError, InputError, NoEquilibrium
 
 _EPILOGUE = """Examples:
 
@@ -71,6 +71,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except InputError as error:
         narrate(str(error))
         return ExitCode.BAD_INPUT
+    except NoEquilibrium as error:
+        narrate(f"calm: {error}")
+        return ExitCode.NO_EQUILIBRIUM
     except (CycloptsError, CalmError) as error:
         narrate(f"calm: {error}")
         return ExitCode.BAD_INPUT

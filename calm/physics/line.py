@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -89,15 +90,14 @@ class Line(_Arrays):
             "directional", "compliance", "thinning",
         )  # fmt: skip
         self._same_length("clamp_piece", "clamp_at", "clamp_buoyancy", "clamp_volume", "clamp_drag")
-        for name in (
-            "length",
-            "normal_drag",
-            "tangential_drag",
-            "compliance",
-            "clamp_drag",
-        ):
+        for name in ("length", "normal_drag", "tangential_drag", "compliance", "clamp_drag"):
             if (getattr(self, name) < 0).any():
                 raise ValueError(f"Line.{name} must not be negative")
+        on = self.clamp_piece
+        if ((on < 0) | (on >= len(self.length))).any() or (self.clamp_at < 0).any():
+            raise ValueError("Line: a clamp sits on no piece")
+        if not 0.0 <= self.anchor_height < inf:
+            raise ValueError("Line.anchor_height must be finite and not negative")
 
     @property
     def total_buoyancy(self) -> Floats:
@@ -139,8 +139,9 @@ class Water(_Arrays):
     def __post_init__(self) -> None:
         super().__post_init__()
         self._same_length("level", "u", "v", "w", "density")
-        if not self.depth > 0 or (np.diff(self.level) <= 0).any() or (self.density <= 0).any():
-            raise ValueError("Water: depth and densities must be positive, levels increasing")
+        positive = 0.0 < self.depth < inf and 0.0 < self.gravity < inf
+        if not positive or (np.diff(self.level) <= 0).any() or (self.density <= 0).any():
+            raise ValueError("Water: depth, gravity and densities must be positive, levels rise")
 
     @property
     def moving(self) -> bool:

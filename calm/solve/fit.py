@@ -10,7 +10,7 @@ from calm.physics.track import Track
 from calm.solve.closing import COARSE_STEP, REACH
 from calm.solve.root import root_near
 from calm.solve.solution import Settings
-from calm.solve.standing import refuse_folded, too_heavy
+from calm.solve.standing import refuse_unsupported, standing_lift, too_heavy
 from calm.solve.status import Status
 
 
@@ -29,7 +29,7 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
         clamped on the piece sits too low, or too little holds the line up; ``slack`` where the
         line would fold.
     """
-    refuse_folded(line)
+    refuse_unsupported(line, water.still())
     still, goal = Profile(water.still()), line.anchor_height - water.depth
     room = water.depth - line.anchor_height - top_depth
 
@@ -60,8 +60,9 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
     except MarchError as error:
         raise Status.NOT_CONVERGED.because(f"The march stopped: {error}.", piece) from error
     if found is None or abs(found[1]) > settings.tolerance * water.depth:
-        if float(line.total_buoyancy.sum()) <= 0.0:
-            raise too_heavy(line)
+        lift = standing_lift(line, water)
+        if float(lift.sum()) <= 0.0:
+            raise too_heavy(lift)
         clamped = f" and its own {shortest:.2f} m down to the lowest clamp" if shortest else ""
         raise Status.NO_EQUILIBRIUM.because(
             f"No length of piece {piece + 1} puts the top of the line at {top_depth:g} m: the "

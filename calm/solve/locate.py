@@ -9,6 +9,7 @@ import numpy as np
 
 from calm.physics.profile import Profile
 from calm.solve.closing import Afloat, Closing, Root, Unknown
+from calm.solve.standing import standing_lift
 from calm.solve.status import Status
 
 SCAN = 16
@@ -175,6 +176,6 @@ def _slack_at_rest(closing: Closing, unknown: Unknown) -> bool:
     """In still water: whether the line stands too deep however little buoyancy is used."""
     piece = unknown.afloat
     assert piece is not None
-    spare = float(np.cumsum(closing.line.total_buoyancy)[piece:].min())
+    spare = float(np.cumsum(standing_lift(closing.line, closing.water))[piece:].min())
     least = 1.0 - spare / float(closing.line.buoyancy[piece])
     return closing.coarse_miss(unknown)(min(max(least, 0.0) * (1.0 + 1e-9) + 1e-9, 1.0)) < 0.0

@@ -15,8 +15,12 @@ from calm.solve.closing import Closed, Closing, Root
 from calm.solve.locate import locate
 from calm.solve.refine import refine
 from calm.solve.solution import Settings, Solution, nodes_of
-from calm.solve.standing import refuse_folded, too_heavy
+from calm.solve.standing import refuse_unsupported, standing_lift, too_heavy
 from calm.solve.status import Status
+
+BARELY_LANDED = 4.0
+"""Length on the seabed, in heights of the anchor, up to which the line may as well hang between
+the seabed and the top of its anchor: that is then tried first."""
 
 
 def solve_mooring(line: Line, water: Water, settings: Settings | None = None) -> Solution:
@@ -38,10 +42,7 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
         With one of the statuses of `Status`: nothing is returned that does not pass every check.
     """
     closing = Closing(line, water, settings or Settings())
-    if not (np.cumsum(line.total_buoyancy) > 0.0).any():
-        raise too_heavy(line)
-    if not water.moving:
-        refuse_folded(line)
+    refuse_unsupported(line, water)
     try:
         return _solve(closing)
     except MarchError as error:
@@ -66,8 +67,9 @@ def _solve(closing: Closing) -> Solution:
 
 
 def _clear_of_it(closing: Closing) -> Solution:
-    if float(closing.line.total_buoyancy.sum()) <= 0.0:
-        raise too_heavy(closing.line)
+    lift = standing_lift(closing.line, closing.water)
+    if float(lift.sum()) <= 0.0:
+        raise too_heavy(lift)
     root, other_depth = locate(closing, lands=False)
     _refuse_deep_below(closing, root)
     return _solution(closing, root, other_depth)
@@ -75,18 +77,14 @@ def _clear_of_it(closing: Closing) -> Solution:
 
 def _on_the_seabed(closing: Closing) -> Solution:
     root, other_depth = locate(closing, lands=True)
-    if root.unknown.afloat is None and float(closing.line.total_buoyancy.sum()) <= 0.0:
-        # a line without a surface float is meant to stand: a heap on the seabed is no design
-        raise too_heavy(closing.line)
     if closing.run(root.unknown, root.x, closing.coarse_step).landing is None:
         return _solution(closing, closing.clear_of_seabed(root), other_depth)
     landed = _solution(closing, root, other_depth)
     if not landed.landed:
         raise Status.GROUNDED.because("The line does not lie on the seabed.")
-    if landed.grounded_length > 4.0 * closing.line.anchor_height:
+    if landed.grounded_length > BARELY_LANDED * closing.line.anchor_height:
         return landed
     try:
-        # what lies may as well hang between the seabed and the top of the anchor
         return _solution(closing, closing.clear_of_seabed(root), other_depth)
     except NoEquilibrium:
         return landed

@@ -1,40 +1,51 @@
-"""Whether the buoyancy of a line holds it up."""
+"""Whether the buoyancy of a line holds it up, in the water it stands in."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from calm.errors import NoEquilibrium
-from calm.physics.line import Line
+from calm.physics.line import REFERENCE_DENSITY, Floats, Line, Water
 from calm.solve.status import Status
 
 
-def too_heavy(line: Line) -> NoEquilibrium:
-    """The exception for a line whose buoyancy does not hold it up."""
-    total = line.total_buoyancy
-    lift, weight = float(total[total > 0].sum()), float(-total[total < 0].sum())
-    return Status.NO_EQUILIBRIUM.because(
-        f"Too little buoyancy to hold the line up: its buoyant pieces lift {lift:.0f} N, the "
-        f"others weigh {weight:.0f} N in water."
-    )
+def standing_lift(line: Line, water: Water) -> Floats:
+    """(n,) net force of every piece with its clamps where it would stand upright, + up [N].
+
+    Upright is unstretched, from the anchor up; what would stand out of the water counts as just
+    below the surface.
+    """
+    below = np.cumsum(line.length[::-1])[::-1] - 0.5 * line.length
+    depth = np.maximum(water.depth - line.anchor_height - below, 0.0)
+    _, density = water.at(depth)
+    excess = (density - REFERENCE_DENSITY) * water.gravity
+    whole = np.where(line.flexible, line.length, 1.0)
+    lift = (line.buoyancy + excess * line.volume) * whole
+    on = line.clamp_piece
+    np.add.at(lift, on, line.clamp_buoyancy + excess[on] * line.clamp_volume)
+    return lift
 
 
-def refuse_folded(line: Line) -> None:
-    """Refuse a line that folds in still water: once held up it must stay so to its lowest float.
+def refuse_unsupported(line: Line, water: Water) -> None:
+    """Refuse a line that nothing holds up or, in still water, one that folds.
+
+    Once held up it must stay so, down to its lowest float.
 
     Raises
     ------
     NoEquilibrium
         ``slack``, or ``no-equilibrium`` where too little holds the line up.
     """
-    total = line.total_buoyancy
-    above = np.cumsum(total)
+    lift = standing_lift(line, water)
+    above = np.cumsum(lift)
     if not (above > 0.0).any():
-        raise too_heavy(line)
-    first, last = int(np.argmax(above > 0.0)), int(np.flatnonzero(total > 0.0)[-1])
+        raise too_heavy(lift)
+    if water.moving:
+        return
+    first, last = int(np.argmax(above > 0.0)), int(np.flatnonzero(lift > 0.0)[-1])
     short = np.flatnonzero(above[first:last] <= 0.0)
-    if len(short) and float(total.sum()) <= 0.0:
-        raise too_heavy(line)
+    if len(short) and above[-1] <= 0.0:
+        raise too_heavy(lift)
     if len(short):
         piece = first + int(short[0])
         raise Status.SLACK.because(
@@ -42,3 +53,12 @@ def refuse_folded(line: Line) -> None:
             "lacking to hold up what is above.",
             piece,
         )
+
+
+def too_heavy(lift: Floats) -> NoEquilibrium:
+    """The exception for a line that its buoyancy does not hold up, piece by piece [N]."""
+    up, down = float(lift[lift > 0.0].sum()), float(-lift[lift < 0.0].sum())
+    return Status.NO_EQUILIBRIUM.because(
+        f"Too little buoyancy to hold the line up: its buoyant pieces lift {up:.0f} N, the "
+        f"others weigh {down:.0f} N in water."
+    )

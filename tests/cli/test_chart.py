@@ -42,15 +42,17 @@ def test_json_in_a_file_beside_the_table(calm, folder):
 
 def test_k_from_the_cable_and_the_current(calm):
     done = calm("chart", "solve", "--diameter", "10 mm", "--cd", "1.2", "--speed", "0.5 m/s",
-                "--density", "1000 kg/m3", "--weight", "-0.5 N/m", "--phi-a", "-20 deg",
-                "--distance", "-3 m", "--length", "100 m", "--json", "-")  # fmt: skip
-    # K = 1000 × 1.2 × 0.01 × 0.5² / (2 × 0.5)
-    assert done.code in (2, 3)  # a floating cable cannot dip at A
-    assert "from 0° to 180°" in done.err
-    done = calm("chart", "solve", "--diameter", "10 mm", "--cd", "1.2", "--speed", "0.5 m/s",
                 "--density", "1000 kg/m3", "--weight", "0.5 N/m", "--phi-a", "-20 deg",
                 "--tension-a", "60 N", "--length", "200 m", "--json", "-")  # fmt: skip
+    # K = 1000 × 1.2 × 0.01 × 0.5² / (2 × 0.5)
     assert json.loads(done.out)["k"] == pytest.approx(3.0, rel=1e-12)
+
+
+def test_a_floating_cable_cannot_set_out_downwards(calm):
+    done = calm("chart", "solve", "--k", "3", "--weight", "-0.5 N/m", "--phi-a", "-20 deg",
+                "--distance", "-3 m", "--length", "100 m")  # fmt: skip
+    assert (done.code, done.out) == (2, "")
+    assert "from 0° to 180°" in done.err
 
 
 @pytest.mark.parametrize(
@@ -70,6 +72,9 @@ def test_no_cable_fits(calm):
                 "--phi-b", "150 deg", "--length", "10 m")  # fmt: skip
     assert (done.code, done.out) == (3, "")
     assert "critical angle, 144.404°" in done.err
+    done = calm("chart", "solve", "--k", "2.4", "--weight", "-5 N/m", "--phi-a", "30 deg",
+                "--phi-b", "40 deg", "--length", "10 m")  # fmt: skip
+    assert "critical angle, 35.5964°" in done.err
 
 
 @pytest.mark.parametrize(

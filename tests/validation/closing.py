@@ -56,9 +56,7 @@ def solve_continuous(line: Line, water: Water) -> Equilibrium:
         except NoContinuousSolution as refusal:
             refusals.append(refusal)
             continue
-        # A line without a surface float is meant to stand: a heap on the seabed is no shape.
-        stands = found.surface or line.total_buoyancy.sum() > 0.0
-        if not lands or (found.shape.grounded is not None and stands):
+        if not lands or found.shape.grounded is not None:
             return found
     raise refusals[0]
 

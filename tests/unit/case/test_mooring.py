@@ -22,7 +22,7 @@ line:
 components:
   ball: {kind: sphere, diameter: 1 m, buoyancy: 3000 N, cx: 0.6, source: test}
   thin: {kind: cable, diameter: 8 mm, weight: 1 N/m, working_load: 10 kN, source: test}
-  meter: {kind: cylinder, diameter: 0.1 m, length: 1 m, buoyancy: -100 N, max_tilt: 3 deg, source: test}
+  meter: {kind: cylinder, diameter: 0.1 m, length: 1 m, buoyancy: -100 N, max_tilt: 3 deg}
   logger: {kind: cylinder, diameter: 50 mm, length: 0.3 m, buoyancy: -20 N, source: test}
   block: {kind: anchor, weight: 6 kN, length: 0.5 m, source: test}
 """
@@ -164,7 +164,8 @@ def test_a_named_environment_takes_the_place_of_the_keys_it_gives(solve):
 def test_density_and_current_levels_are_merged(solve):
     layered = FILE.replace(
         "  current:",
-        "  density: {columns: [depth m, density kg/m^3], rows: [[0, 1020], [100, 1030]]}\n  current:",
+        "  density: {columns: [depth m, density kg/m^3], rows: [[0, 1020], [100, 1030]]}\n"
+        "  current:",
     )
     result = solve(layered)
     water = result.mooring.water
@@ -172,3 +173,20 @@ def test_density_and_current_levels_are_merged(solve):
     assert water.density.tolist() == [1020, 1030]
     assert np.hypot(water.u, water.v) == pytest.approx([0.6, 0.6])
     assert result.closure < 1e-6 < inf
+
+
+def test_only_chain_may_lie_on_the_seabed_below_a_sub_surface_float(solve):
+    weak = FILE.replace("buoyancy: 3000 N", "buoyancy: 200 N")
+    with pytest.raises(calm.NoEquilibrium) as caught:
+        solve(weak, speed="0.1 m/s")
+    assert caught.value.status == "no-equilibrium"
+    assert "Too little buoyancy" in caught.value.message
+    chained = FILE.replace("length: 40 m", "length: 40 m}\n  - {use: chain, length: 60 m")
+    chained = chained.replace(
+        "components:", "components:\n  chain: {kind: chain, diameter: 20 mm, source: test}"
+    )
+    result = solve(chained, speed="0.3 m/s")
+    assert result.type == "subsurface"
+    assert 0 < result.anchor.grounded_length < 60
+    assert result.anchor.vertical == 0
+    assert result.components.tilt[4] > 10

@@ -38,7 +38,7 @@ def test_distance_to_the_next_level_either_way():
 
 
 def test_arrays_are_refused_when_they_cannot_be():
-    with pytest.raises(ValueError, match="increasing"):
+    with pytest.raises(ValueError, match="levels rise"):
         Water(depth=50, level=[0, 0], u=[0, 0], v=[0, 0], w=[0, 0], density=[1025, 1025])
     with pytest.raises(ValueError, match="finite"):
         Water(depth=50, level=[0], u=[np.nan], v=[0], w=[0], density=[1025])

@@ -39,3 +39,17 @@ def test_no_room_for_the_other_pieces():
     assert caught.value.status == "no-equilibrium"
     assert caught.value.piece == 3
     assert "101.80 m" in caught.value.message
+
+
+def test_a_clamp_below_the_cut_is_refused():
+    clamped = line(*PIECES, clamps=[(3, 390.0, -10.0, 1.0)])
+    with pytest.raises(NoEquilibrium) as caught:
+        fit_length(clamped, water(500), 3, 120.0, Settings())
+    assert caught.value.status == "no-equilibrium"
+    assert "390.00 m down to the lowest clamp" in caught.value.message
+
+
+def test_a_line_too_heavy_to_stand_says_so():
+    heavy = line(rigid(1.0, 300.0), rigid(0.8, -400.0), rope(0.0, weight=0.1))
+    with pytest.raises(NoEquilibrium, match="Too little buoyancy"):
+        fit_length(heavy, water(500), 2, 120.0, Settings())

@@ -66,7 +66,7 @@ def test_a_beacon_above_the_float_is_rigid_with_it():
     across = 0.8 - axis[0] * 0.8 * axis[0]
     normal = np.array([0.8, 0, 0]) - axis[0] * 0.8 * axis
     drag = 60.0 * np.linalg.norm(normal) * normal + 5.0 * 0.64 * axis[0] * abs(axis[0]) * axis
-    load = drag + [0, 0, -40.0]
+    load = drag + np.array([0, 0, -40.0])
     float_load = np.array([250.0 * 0.64, 0, 5000.0])
     # moments about the lower end: the beacon's middle is 2 m up, the float's 0.5 m
     moment = np.cross(-2.0 * axis, load) + np.cross(-0.5 * axis, float_load)
@@ -98,7 +98,7 @@ def test_two_floats_at_the_surface_share_what_the_line_needs():
     assert depths(solution)[[0, 2]] == pytest.approx([0, 0], abs=1e-5)
     assert solution.position[:, 2].max() < 1.0
     used = np.array([solution.carried.buoyancy[0], solution.carried.buoyancy[2]])
-    assert ((0 < used) & (used < [5000, 6000])).all()
+    assert ((used > 0) & (used < [5000, 6000])).all()
     assert solution.buoyancy_used == pytest.approx(used.sum() / 11000)
     assert solution.closure < 1e-9
 
@@ -131,6 +131,15 @@ def test_too_little_buoyancy_for_what_hangs_above_a_lower_float():
     assert error.status == "no-equilibrium"
     assert "lift 400 N" in error.message
     assert "900 N" in error.message
+
+
+def test_whether_a_line_is_held_up_depends_on_the_water():
+    """0.3 m³ lift 74 N less in fresh water: a line with 10 N to spare at 1025 does not stand."""
+    ball = rigid(1.0, 70.0, drag=100.0, volume=0.3)
+    barely = line(ball, rigid(1.0, -50.0), rope(50, weight=0.2), rigid(1.0, -1.0))
+    assert solve_mooring(barely, water(100)).force[-1, 2] > 0
+    fresh = refused(barely, water(100, density=1000.0))
+    assert fresh.status == "no-equilibrium"
 
 
 def test_a_slack_surface_line_without_current():

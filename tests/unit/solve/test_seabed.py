@@ -5,7 +5,6 @@ from math import asinh, radians, sqrt
 import numpy as np
 import pytest
 
-from calm.errors import NoEquilibrium
 from calm.solve import Settings, solve_mooring
 from tests.unit.solve.simple import line, rigid, rope, water
 
@@ -97,12 +96,12 @@ def test_a_clamp_on_the_seabed():
     assert distance == pytest.approx(10, rel=1e-4)
 
 
-def test_a_sub_surface_line_is_meant_to_stand():
-    """5000 N lift 83 m of a chain of 60 N/m: the rest would lie in a heap."""
-    with pytest.raises(NoEquilibrium) as caught:
-        solve_mooring(line(FLOAT, rope(40, 0.5), rope(200, weight=60)), water(300, CURRENT))
-    assert caught.value.status == "no-equilibrium"
-    assert "12020 N" in caught.value.message
+def test_a_sub_surface_float_lifts_the_chain_it_can():
+    """5000 N less 20 N of rope are 83 m of chain at 60 N/m; the rest lies in still water."""
+    solution = landed(line(FLOAT, rope(40, 0.5), rope(200, weight=60)), water(300))
+    assert solution.grounded_length == pytest.approx(200 - 83)
+    assert -solution.position[0, 2] == pytest.approx(300 - 1 - 40 - 83, abs=1e-5)
+    assert np.hypot(*solution.position[0, :2]) == pytest.approx(117)
 
 
 def test_a_barely_slack_line_hangs_between_the_seabed_and_the_top_of_its_anchor():
