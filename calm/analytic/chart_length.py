@@ -27,6 +27,8 @@ from calm.analytic.chart_search import (
 
 _POINTS = 60
 _NEAR_ZERO = 0.05
+# Nearer to level than this the height of a piece is lost in rounding.
+_LEAST_RISE = 1.0 + 1e-13
 
 
 @dataclass(frozen=True)
@@ -137,6 +139,8 @@ class LengthSearch:
 
     def _polished(self, start: float, end: float) -> Piece | None:
         """The root Newton's method reaches, or None."""
+        if end <= abs(start) * _LEAST_RISE:
+            return None
         place = np.array([start, end])
         value, slope = self._equations(place)
         farthest = 3.0 * reach(self.branch)
@@ -149,7 +153,7 @@ class LengthSearch:
                 return None
             for _ in range(30):
                 trial = place - step
-                if abs(trial[0]) < trial[1] < farthest:
+                if abs(trial[0]) * _LEAST_RISE < trial[1] < farthest:
                     reached, onward = self._equations(trial)
                     if np.abs(reached).max() < np.abs(value).max():
                         break

@@ -25,7 +25,7 @@ from calm.analytic.chart_branch import Branch, Floats, inverse_log_cosh, log_cos
 Piece = tuple[float, float]
 Path = Callable[[Floats], tuple[Floats, Floats]]
 
-_FINEST = 1e-12
+_FINEST = 1e-10
 """Least share of the reach of a grid; pieces so short are straight to rounding."""
 
 _POINTS = 240

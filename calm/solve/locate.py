@@ -30,13 +30,12 @@ def locate(closing: Closing, lands: bool) -> tuple[Root, float | None]:
     NoEquilibrium
         ``slack``, ``above-surface`` or ``grounded``.
     """
-    line = closing.line
     unknown = closing.whole(lands)
     miss = closing.coarse_miss(unknown)
-    upright = max(closing.water.depth - line.anchor_height - float(line.length.sum()), 0.0)
+    upright = _upright(closing, unknown)
     high = miss(upright)
     if high < 0.0 < upright:
-        # stretch makes the standing line longer than it was cut
+        # the current's pull stretches the line further
         at_surface = miss(0.0)
         if at_surface >= 0.0:
             return closing.coarse_root(unknown, 0.0, at_surface, upright, high), None
@@ -45,6 +44,14 @@ def locate(closing: Closing, lands: bool) -> tuple[Root, float | None]:
         return _at_surface(closing, unknown, high), None
     low_end, other = _below_surface(closing, unknown, upright, high)
     return closing.coarse_root(unknown, *low_end), other
+
+
+def _upright(closing: Closing, unknown: Unknown) -> float:
+    """Depth of the free end of the line standing in still water, with its stretch [m]."""
+    still = Profile(closing.water.still())
+    reach = closing.run(unknown, 0.0, closing.coarse_step, profile=still).z
+    unstretched = -float(closing.line.length.sum())
+    return max(min(reach, unstretched) - unknown.goal, 0.0)
 
 
 Bracket = tuple[float, float, float, float]
