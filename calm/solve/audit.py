@@ -142,7 +142,8 @@ def moment_residual(solution: Solution) -> float:
     angles = _angles(chord[cable], mean[cable])
     # the ends of a very short segment are rounded by more than the limit
     rounding = 4.0 * np.finfo(float).eps * np.abs(solution.position).max()
-    angles -= np.minimum(rounding / np.linalg.norm(chord[cable], axis=1), angles)
+    length = np.maximum(np.linalg.norm(chord[cable], axis=1), rounding)
+    angles = np.maximum(angles - rounding / length, 0.0)
     return max(worst, float(np.max(angles, initial=0.0)))
 
 
