@@ -14,6 +14,7 @@ from calm.files.definition import (
     STEEL_DENSITY,
     Definition,
     refuse_weight_above_mass,
+    volume_from_weights,
 )
 from calm.files.fields import COEFFICIENT, DRAG, LENGTH, Quantity, Role
 from calm.files.flexible import Cable, Chain
@@ -57,9 +58,7 @@ class Anchor(Definition):
     @property
     def displaced_volume(self) -> float | None:
         """Volume of water displaced [m³], None when only the weight is known."""
-        if self.mass is None:
-            return None
-        return (self.mass + self.net_buoyancy / STANDARD_GRAVITY) / CATALOGUE_DENSITY
+        return volume_from_weights(self.mass, self.net_buoyancy)
 
     @model_validator(mode="after")
     def _weight_is_known(self) -> Anchor:

@@ -46,6 +46,13 @@ class Definition(Model):
     slack: Literal["allowed"] | None = None
 
 
+def volume_from_weights(mass: float | None, net_buoyancy: float) -> float | None:
+    """Volume of water displaced [m³, per metre where they are], None where the mass is unknown."""
+    if mass is None:
+        return None
+    return (mass + net_buoyancy / STANDARD_GRAVITY) / CATALOGUE_DENSITY
+
+
 def refuse_weight_above_mass(mass: float | None, net_buoyancy: float) -> None:
     """A thing cannot weigh more in water than in air."""
     if mass is not None and -net_buoyancy > mass * STANDARD_GRAVITY * (1 + DISAGREEMENT):

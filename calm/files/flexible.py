@@ -13,6 +13,7 @@ from calm.files.definition import (
     STEEL_DENSITY,
     Definition,
     refuse_weight_above_mass,
+    volume_from_weights,
 )
 from calm.files.fields import COEFFICIENT, DIAMETER, POSITIVE_FORCE, Quantity, Role
 
@@ -50,9 +51,7 @@ class Cable(Flexible):
     @property
     def displaced_volume(self) -> float | None:
         """Volume of water displaced by a metre [m³/m], None when the mass is unknown."""
-        if self.mass is None:
-            return None
-        return (self.mass + self.net_buoyancy / STANDARD_GRAVITY) / CATALOGUE_DENSITY
+        return volume_from_weights(self.mass, self.net_buoyancy)
 
     @model_validator(mode="after")
     def _weight_is_given_once(self) -> Cable:
@@ -81,10 +80,8 @@ class Chain(Flexible):
     @property
     def displaced_volume(self) -> float | None:
         """Volume of water displaced by a metre [m³/m], None when only its weight is known."""
-        if self.mass is not None:
-            return (self.mass + self.net_buoyancy / STANDARD_GRAVITY) / CATALOGUE_DENSITY
-        if self.weight is not None:
-            return None
+        if self.mass is not None or self.weight is not None:
+            return volume_from_weights(self.mass, self.net_buoyancy)
         return 19.9e3 * self.diameter**2 / (self.density or STEEL_DENSITY)
 
     @model_validator(mode="after")

@@ -13,6 +13,7 @@ from calm.files.definition import (
     STANDARD_GRAVITY,
     Definition,
     refuse_weight_above_mass,
+    volume_from_weights,
 )
 from calm.files.fields import COEFFICIENT, DIAMETER, DRAG, LENGTH, Model, Quantity
 
@@ -67,9 +68,9 @@ class Rigid(Definition):
     @property
     def displaced_volume(self) -> float | None:
         """Volume of water displaced [m³], None when neither it nor the mass is known."""
-        if self.volume is not None or self.mass is None:
+        if self.volume is not None:
             return self.volume
-        return (self.mass + self.net_buoyancy / STANDARD_GRAVITY) / CATALOGUE_DENSITY
+        return volume_from_weights(self.mass, self.net_buoyancy)
 
     @model_validator(mode="after")
     def _weights_agree(self) -> Rigid:

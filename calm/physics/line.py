@@ -102,8 +102,19 @@ class Line(_Arrays):
     @property
     def total_buoyancy(self) -> Floats:
         """(n,) net force of each whole piece with its clamps in reference water [N]."""
-        total = np.where(self.flexible, self.buoyancy * self.length, self.buoyancy)
-        np.add.at(total, self.clamp_piece, self.clamp_buoyancy)
+        return self.net_force(np.zeros(len(self.length)))
+
+    def net_force(self, excess: Floats) -> Floats:
+        """(n,) net force of each whole piece with its clamps [N].
+
+        Parameters
+        ----------
+        excess : (n,) what a displaced cubic metre lifts more than in reference water [N/m³]
+        """
+        whole = np.where(self.flexible, self.length, 1.0)
+        total: Floats = (self.buoyancy + excess * self.volume) * whole
+        on = self.clamp_piece
+        np.add.at(total, on, self.clamp_buoyancy + excess[on] * self.clamp_volume)
         return total
 
     def with_length(self, piece: int, length: float) -> Line:

@@ -18,12 +18,7 @@ def standing_lift(line: Line, water: Water) -> Floats:
     below = np.cumsum(line.length[::-1])[::-1] - 0.5 * line.length
     depth = np.maximum(water.depth - line.anchor_height - below, 0.0)
     _, density = water.at(depth)
-    excess = (density - REFERENCE_DENSITY) * water.gravity
-    whole = np.where(line.flexible, line.length, 1.0)
-    lift = (line.buoyancy + excess * line.volume) * whole
-    on = line.clamp_piece
-    np.add.at(lift, on, line.clamp_buoyancy + excess[on] * line.clamp_volume)
-    return lift
+    return line.net_force((density - REFERENCE_DENSITY) * water.gravity)
 
 
 def refuse_unsupported(line: Line, water: Water) -> None:
