@@ -13,7 +13,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from calm.case import Mooring, Result, load
+    from calm.case import Mooring, Result, Tow, TowResult, load
     from calm.errors import CalmError, InputError, NoEquilibrium, UsageError
 
 __version__ = "0.1.0"
@@ -24,6 +24,8 @@ __all__ = [
     "Mooring",
     "NoEquilibrium",
     "Result",
+    "Tow",
+    "TowResult",
     "UsageError",
     "__version__",
     "load",
@@ -33,6 +35,8 @@ _HOMES = {
     "load": "calm.case",
     "Mooring": "calm.case",
     "Result": "calm.case",
+    "Tow": "calm.case",
+    "TowResult": "calm.case",
     "CalmError": "calm.errors",
     "InputError": "calm.errors",
     "NoEquilibrium": "calm.errors",

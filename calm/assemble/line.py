@@ -1,4 +1,4 @@
-"""The pieces of a mooring file as arrays: net forces, drags, stiffness."""
+"""The pieces of a file as arrays: net forces, drags, stiffness."""
 
 from __future__ import annotations
 
@@ -6,22 +6,37 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from calm.files import Body, Cable, Chain, Component, Cylinder, Piece, Sphere
+from calm.assemble.cables import cable_drag, vibration_law
+from calm.files import Anchor, Body, Cable, Chain, Component, Cylinder, Piece, Solver, Sphere
 from calm.files.components import CylinderShape, SphereShape
 from calm.physics import drag
+from calm.physics.friction import Friction
 from calm.physics.line import Line
 
+TOWED_SPHERE_CX = 0.90
+"""Of a sphere at the free end of a tow, which wavers: Bourget & Marichal, who give 0.45 for one
+that is held."""
 
-def assemble_line(pieces: Sequence[Piece]) -> Line:
-    """The line above the anchor; a piece to be cut to fit has length 0 until it is cut.
+
+def assemble_line(pieces: Sequence[Piece], solver: Solver | None = None) -> Line:
+    """The line above the anchor, or the whole towed line, in the order of the pieces.
+
+    A piece to be cut to fit has length 0 until it is cut.
 
     Parameters
     ----------
-    pieces : top to bottom, the anchor last
+    pieces : top to bottom, the anchor last if there is one
+    solver : the laws of friction and strumming; the usual ones where not given
     """
-    above, anchor = pieces[:-1], pieces[-1]
+    solver = solver or Solver()
+    anchor = pieces[-1].component
+    moored = isinstance(anchor, Anchor)
+    above = pieces[:-1] if moored else pieces
     flexible = [isinstance(piece.component, Cable | Chain) for piece in above]
-    drags = [drag_of(piece.component, piece.length or 0.0) for piece in above]
+    drags = [drag_of(piece.component, piece.length or 0.0, solver) for piece in above]
+    if not moored and isinstance(anchor, Sphere) and anchor.cx is None:
+        k = drag.sphere_drag(anchor.diameter, TOWED_SPHERE_CX)
+        drags[-1] = k, k, False
     clamps = [(i, clamp) for i, piece in enumerate(above) for clamp in piece.clamps]
     return Line(
         length=np.array([piece.length or 0.0 for piece in above]),
@@ -38,17 +53,27 @@ def assemble_line(pieces: Sequence[Piece]) -> Line:
         clamp_buoyancy=np.array([clamp.component.net_buoyancy for _, clamp in clamps]),
         clamp_volume=np.array([clamp.component.displaced_volume or 0.0 for _, clamp in clamps]),
         clamp_drag=np.array([_clamped_drag(clamp.component) for _, clamp in clamps]),
-        anchor_height=anchor.length or 0.0,
+        anchor_height=anchor.length if isinstance(anchor, Anchor) else 0.0,
+        lift=np.array([_lift(piece.component) for piece in above]),
+        clamp_lift=np.array([_lift(clamp.component) for _, clamp in clamps]),
+        diameter=np.array(
+            [p.component.diameter if isinstance(p.component, Cable) else 0.0 for p in above]
+        ),
+        friction=Friction(solver.friction),
+        strumming=vibration_law(solver),
     )
 
 
-def drag_of(component: Component, length: float) -> tuple[float, float, bool]:
+def drag_of(
+    component: Component, length: float, solver: Solver | None = None
+) -> tuple[float, float, bool]:
     """Kn, Kt [N/(m/s)², per metre of cable or chain] and whether drag depends on the axis.
 
     Parameters
     ----------
     component : of any kind; an anchor has no drag
     length : of the piece along the line [m]
+    solver : the laws of friction and strumming of cables and chains; the usual ones where not given
     """
     if isinstance(component, Sphere):
         k = drag.sphere_drag(component.diameter, component.cx)
@@ -58,20 +83,9 @@ def drag_of(component: Component, length: float) -> tuple[float, float, bool]:
         return kn, kt, component.inclination != "insensitive"
     if isinstance(component, Body):
         return _body_drag(component)
-    if isinstance(component, Cable):
-        ct = drag.CABLE_CT[component.finish or "smooth"]
-        return *_line_drag(component, drag.CABLE_CN, ct), True
-    if isinstance(component, Chain):
-        return *_line_drag(component, drag.CHAIN_CN, drag.CHAIN_CT), True
+    if isinstance(component, Cable | Chain):
+        return *cable_drag(component, solver or Solver()), True
     return 0.0, 0.0, False
-
-
-def _line_drag(component: Cable | Chain, cn: float, ct: float) -> tuple[float, float]:
-    return drag.line_drag(
-        component.diameter,
-        cn if component.cn is None else component.cn,
-        ct if component.ct is None else component.ct,
-    )
 
 
 def _body_drag(body: Body) -> tuple[float, float, bool]:
@@ -110,6 +124,10 @@ def _shape_drag(shape: SphereShape | CylinderShape) -> tuple[float, float, bool]
 def _clamped_drag(component: Component) -> float:
     """K of a clamped-on instrument: its normal drag, whatever the inclination of the line."""
     return drag_of(component, getattr(component, "length", 0.0))[0]
+
+
+def _lift(component: Component) -> float:
+    return (component.lift or 0.0) if isinstance(component, Body) else 0.0
 
 
 def _compliance(component: Component) -> float:

@@ -3,3 +3,5 @@
 from calm.case.mooring import Mooring as Mooring
 from calm.case.mooring import load as load
 from calm.case.result import Result as Result
+from calm.case.tow import Tow as Tow
+from calm.case.tow import TowResult as TowResult

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from math import isfinite
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -32,6 +32,15 @@ class Columns:
     def __iter__(self) -> Iterator[SimpleNamespace]:
         return (self[row] for row in range(len(self)))
 
+    def with_row(self, **row: Any) -> Self:
+        """The same table with one more row, a value for every column."""
+        columns = {name: getattr(self, name) for name in self._names()}
+        longer = {
+            name: [*column, row[name]] if isinstance(column, list) else np.append(column, row[name])
+            for name, column in columns.items()
+        }
+        return type(self)(**longer)
+
     def to_dicts(self) -> list[dict[str, Any]]:
         """The rows as dictionaries of plain numbers and text; None where unknown."""
         return [{name: _known(value) for name, value in vars(record).items()} for record in self]
@@ -53,17 +62,19 @@ def _known(value: Any) -> Any:
 
 @dataclass(frozen=True)
 class Components(Columns):
-    """The n pieces of the line in file order, the anchor last; NaN where a figure is unknown.
+    """The n pieces of the line in file order; NaN where a figure is unknown.
+
+    Those of a mooring from the free end down, the anchor last; those of a tow from the ship.
 
     Attributes
     ----------
     index, use, label, kind, role : (n,) which piece, of what component
     length, cut_length : (n,) stretched and unstretched [m]
     depth_top, depth_bottom : (n,) of the first-listed and the other end [m], + down
-    x_top, y_top, x_bottom, y_bottom : (n,) east and north of the anchor [m]
+    x_top, y_top, x_bottom, y_bottom : (n,) east and north of the anchor or the tow point [m]
     tension_top, tension_bottom, tension : (n,) at the ends and the greatest in the piece [N]
     tilt : (n,) of the chord from the lower to the upper end, from the vertical [degrees]
-    knockdown : (n,) depth_top less the same in still water [m]
+    knockdown : (n,) depth_top less the same in still water [m]; NaN in a tow
     safety_factor : (n,) breaking load / greatest tension
     utilisation : (n,) greatest tension / working load
     reynolds : (n,) greatest Reynolds number of speed and diameter
@@ -94,7 +105,7 @@ class Components(Columns):
 
 @dataclass(frozen=True)
 class Clamps(Columns):
-    """The m instruments clamped on the line, from the free end down.
+    """The m instruments clamped on the line, in file order.
 
     Attributes
     ----------

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -11,8 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from calm.assemble import assemble_line, assemble_water
-from calm.case.measure import result_of
+from calm.case.labels import naming_the_piece
+from calm.case.moored import result_of
 from calm.case.result import Result
+from calm.case.tow import Tow
 from calm.errors import InputError, NoEquilibrium, Problem
 from calm.files import MooringFile, read_mooring
 from calm.physics.line import REFERENCE_DENSITY, Line, Water
@@ -25,8 +26,8 @@ def load(
     path: str | Path,
     environment: str | Path | None = None,
     catalogs: Sequence[str | Path] = (),
-) -> Mooring:
-    """Read a mooring file.
+) -> Mooring | Tow:
+    """Read the file of a mooring or a tow.
 
     Parameters
     ----------
@@ -39,9 +40,8 @@ def load(
     InputError
         With every mistake of the file, each with its line and column.
     """
-    return Mooring(
-        read_mooring(path, environment=environment, catalogs=[Path(c) for c in catalogs])
-    )
+    file = read_mooring(path, environment=environment, catalogs=[Path(c) for c in catalogs])
+    return Mooring(file) if file.tow is None else Tow(file)
 
 
 @dataclass(frozen=True)
@@ -70,10 +70,10 @@ class Mooring:
         NoEquilibrium
             Where no length fits.
         """
-        line = assemble_line(self.file.pieces)
+        line = assemble_line(self.file.pieces, self.file.solver)
         for piece in self.file.pieces:
             if piece.fit_top_depth is not None:
-                with self._naming_the_piece():
+                with naming_the_piece(self.file.pieces):
                     length = fit_length(
                         line, self.water, piece.index, piece.fit_top_depth, self.settings
                     )
@@ -98,7 +98,7 @@ class Mooring:
         InputError
             Where the line reaches the surface and the file leaves `buoy_drag` at `immersed`.
         """
-        with self._naming_the_piece():
+        with naming_the_piece(self.file.pieces):
             solution = solve_mooring(self.line, self.water, self.settings)
         if solution.surface and self.file.solver.buoy_drag != "full":
             raise InputError(
@@ -129,18 +129,6 @@ class Mooring:
         kinds = {self.file.pieces[piece].component.kind for piece in lying}
         if not solution.surface and kinds - {"chain"}:
             raise too_heavy(standing_lift(self.line, self.water))
-
-    @contextmanager
-    def _naming_the_piece(self) -> Iterator[None]:
-        """Adds the label of the piece to what the solver, which knows only numbers, says of it."""
-        try:
-            yield
-        except NoEquilibrium as error:
-            if error.piece is None:
-                raise
-            label = self.file.pieces[error.piece].label
-            message = f"{error.message} Piece {error.piece + 1} is {label}."
-            raise NoEquilibrium(error.status, message, error.advice) from error
 
     def _still(self, solution: Solution) -> Solution | None:
         """The same line without current; None where it has no unique shape."""

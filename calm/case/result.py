@@ -9,6 +9,34 @@ from calm.case.columns import Clamps, Components, Shape
 
 if TYPE_CHECKING:
     from calm.case.mooring import Mooring
+    from calm.case.tow import TowResult
+    from calm.files import MooringFile
+
+
+def document_of(result: Result | TowResult, ends: dict[str, Any]) -> dict[str, Any]:
+    """The JSON object of a result, with what its kind tells of the line's ends."""
+    from calm import __version__
+
+    components = result.components.to_dicts()
+    for component in components:
+        for name in ("kind", "role", "tension"):
+            del component[name]
+    return {
+        "calm": __version__,
+        "name": result.name,
+        "type": result.type,
+        "status": result.status,
+        "iterations": result.iterations,
+        "segments": result.segments,
+        "miss": result.miss,
+        "closure": result.closure,
+        "accuracy": asdict(result.accuracy),
+        **ends,
+        "components": components,
+        "clamps": result.clamps.to_dicts(),
+        "shape": {name: column.tolist() for name, column in vars(result.shape).items()},
+        "warnings": list(result.warnings),
+    }
 
 
 @dataclass(frozen=True)
@@ -53,6 +81,19 @@ class AnchorLoad:
 
 
 @dataclass(frozen=True)
+class Strumming:
+    """How the cables strum: the frequency [Hz], and the range of their Cn.
+
+    `frequency` is the one at which all of a towed cable vibrates, elsewhere the highest at which
+    any cable sheds its vortices.
+    """
+
+    frequency: float
+    cn_min: float
+    cn_max: float
+
+
+@dataclass(frozen=True)
 class Result:
     """A converged mooring. Lengths and depths [m], forces [N], angles [degrees].
 
@@ -73,37 +114,26 @@ class Result:
     accuracy: Accuracy
     top: Top
     anchor: AnchorLoad
+    strumming: Strumming | None
     components: Components = field(repr=False)
     clamps: Clamps = field(repr=False)
     shape: Shape = field(repr=False)
     still_shape: Shape | None = field(repr=False)
     warnings: tuple[str, ...] = ()
 
+    @property
+    def file(self) -> MooringFile:
+        """The file as read."""
+        return self.mooring.file
+
     def to_dict(self) -> dict[str, Any]:
         """The JSON object of the result format; None stands where a figure is unknown."""
-        from calm import __version__
-
-        components = self.components.to_dicts()
-        for component in components:
-            for name in ("kind", "role", "tension"):
-                del component[name]
-        return {
-            "calm": __version__,
-            "name": self.name,
-            "type": self.type,
-            "status": self.status,
-            "iterations": self.iterations,
-            "segments": self.segments,
-            "miss": self.miss,
-            "closure": self.closure,
-            "accuracy": asdict(self.accuracy),
+        ends = {
             "top": asdict(self.top),
             "anchor": asdict(self.anchor),
-            "components": components,
-            "clamps": self.clamps.to_dicts(),
-            "shape": {name: column.tolist() for name, column in vars(self.shape).items()},
-            "warnings": list(self.warnings),
+            "strumming": None if self.strumming is None else asdict(self.strumming),
         }
+        return document_of(self, ends)
 
     def to_dataframe(self) -> Any:
         """The components as a pandas data frame (pandas is not installed with CALM)."""

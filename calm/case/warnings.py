@@ -7,11 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from calm.case.measure import clamps_in
 from calm.files import Cable, Component
 from calm.solve import Solution
+from calm.solve.audit import flow_across
 
 if TYPE_CHECKING:
     from calm.case.result import Result
+    from calm.case.tow import TowResult
 
 LARGEST_REYNOLDS = 2e5
 """Above it a constant drag coefficient of a smooth sphere or cylinder no longer holds."""
@@ -30,12 +33,20 @@ def is_synthetic(component: Component) -> bool:
 
 
 def warnings_of(result: Result, solution: Solution) -> tuple[str, ...]:
-    """Every warning of a result, the file's own notices first."""
-    told = [warning for worry in _WORRIES for warning in worry(result, solution)]
-    return (*result.mooring.file.notices, *told)
+    """Every warning of a mooring's result, the file's own notices first."""
+    of_any = [warning for worry in _WORRIES for warning in worry(result, solution)]
+    own = [warning for worry in _MOORING_WORRIES for warning in worry(result, solution)]
+    return (*result.file.notices, *of_any, *own)
 
 
-def _overloaded(result: Result, _: Solution) -> Iterator[str]:
+def tow_warnings_of(result: TowResult, solution: Solution) -> tuple[str, ...]:
+    """Every warning of a tow's result, the file's own notices first."""
+    of_any = [warning for worry in _WORRIES for warning in worry(result, solution)]
+    own = [warning for worry in _TOW_WORRIES for warning in worry(result, solution)]
+    return (*result.file.notices, *of_any, *own)
+
+
+def _overloaded(result: Result | TowResult, _: Solution) -> Iterator[str]:
     for row in result.components:
         if row.safety_factor < 1.0:
             yield f"{row.label} breaks: {row.tension:.0f} N is above its breaking load."
@@ -52,17 +63,12 @@ def _anchor_too_light(result: Result, _: Solution) -> Iterator[str]:
         )
 
 
-def _tilted(result: Result, solution: Solution) -> Iterator[str]:
+def _tilted(result: Result | TowResult, _: Solution) -> Iterator[str]:
     leaning = [
-        (row.label, row.tilt, result.mooring.file.pieces[row.index].component)
-        for row in result.components
+        (row.label, row.tilt, result.file.pieces[row.index].component) for row in result.components
     ]
-    clamps = [clamp for piece in result.mooring.file.pieces for clamp in piece.clamps]
-    which = solution.element_clamp[solution.element_clamp >= 0]
-    leaning += [
-        (row.label, row.tilt, clamps[m].component)
-        for row, m in zip(result.clamps, which, strict=True)
-    ]
+    clamped = {clamp.label: clamp.component for clamp in clamps_in(result.file.pieces)}
+    leaning += [(row.label, row.tilt, clamped[row.label]) for row in result.clamps]
     for label, tilt, component in leaning:
         limit, warned = component.max_tilt, component.warn_tilt
         if limit is not None and tilt > limit:
@@ -71,8 +77,8 @@ def _tilted(result: Result, solution: Solution) -> Iterator[str]:
             yield f"{label} leans {tilt:.1f} degrees, more than the {warned:g} it should."
 
 
-def _stiffness_unknown(result: Result, _: Solution) -> Iterator[str]:
-    for piece in result.mooring.file.pieces:
+def _stiffness_unknown(result: Result | TowResult, _: Solution) -> Iterator[str]:
+    for piece in result.file.pieces:
         component = piece.component
         if isinstance(component, Cable) and is_synthetic(component) and component.stiffness is None:
             yield (
@@ -81,7 +87,7 @@ def _stiffness_unknown(result: Result, _: Solution) -> Iterator[str]:
             )
 
 
-def _overstretched(result: Result, solution: Solution) -> Iterator[str]:
+def _overstretched(result: Result | TowResult, solution: Solution) -> Iterator[str]:
     greatest = np.zeros(len(solution.line.length))
     np.maximum.at(greatest, solution.element_piece, solution.strain)
     for index in np.flatnonzero(greatest > LARGEST_STRAIN):
@@ -89,7 +95,7 @@ def _overstretched(result: Result, solution: Solution) -> Iterator[str]:
         yield f"{label} stretches by {100 * greatest[index]:.0f} %: beyond any linear stiffness."
 
 
-def _fast_flow(result: Result, _: Solution) -> Iterator[str]:
+def _fast_flow(result: Result | TowResult, _: Solution) -> Iterator[str]:
     fast = [
         row for row in result.components
         if row.kind in ("sphere", "cylinder") and row.reynolds > LARGEST_REYNOLDS
@@ -117,7 +123,7 @@ def _on_the_seabed(result: Result, solution: Solution) -> Iterator[str]:
     lying = solution.element_piece[solution.hanging :]
     rigid = [p for p in dict.fromkeys(lying.tolist()) if not solution.line.flexible[p]]
     clamps = [m for m in solution.element_clamp[solution.hanging :].tolist() if m >= 0]
-    known = [clamp.label for piece in result.mooring.file.pieces for clamp in piece.clamps]
+    known = [clamp.label for clamp in clamps_in(result.file.pieces)]
     names = [result.components.label[p] for p in rigid] + [known[m] for m in clamps]
     if names:
         yield f"On the seabed: {', '.join(names)}."
@@ -125,28 +131,57 @@ def _on_the_seabed(result: Result, solution: Solution) -> Iterator[str]:
         yield "In still water the part on the seabed has no direction: the offset is its greatest."
 
 
-def _other_equilibrium(_: Result, solution: Solution) -> Iterator[str]:
+def _other_equilibrium(_: Result | TowResult, solution: Solution) -> Iterator[str]:
     if solution.other_depth is not None:
         yield (
             "Another equilibrium exists with the free end near "
-            f"{solution.other_depth:.0f} m: the current grows with depth."
+            f"{solution.other_depth:.0f} m: the current changes with depth."
         )
 
 
 def _wind_ignored(result: Result, _: Solution) -> Iterator[str]:
-    if result.mooring.file.environment.wind is not None:
+    if result.file.environment.wind is not None:
         yield "The wind is not taken into account in this version."
 
 
-_WORRIES: tuple[Callable[[Result, Solution], Iterator[str]], ...] = (
+def _below_the_sea(result: TowResult, _: Solution) -> Iterator[str]:
+    lowest = float(result.shape.depth.max())
+    tow = result.tow
+    if tow.towing.in_air and tow.towing.height > 0.0 and lowest > 0.0:
+        yield f"The line reaches {lowest:.1f} m below the sea, but all of it is taken as in air."
+
+
+def _strums_along_the_flow(result: TowResult, solution: Solution) -> Iterator[str]:
+    law = solution.line.strumming
+    if law is None or result.strumming is None:
+        return
+    current, _ = solution.water.at(-solution.position[:-1, 2])
+    speed = np.linalg.norm(current, axis=1)
+    sine = np.divide(flow_across(solution), speed, out=np.ones(len(speed)), where=speed > 0)
+    cables = solution.line.diameter[solution.element_piece] > 0.0
+    least = np.degrees(np.arcsin(np.min(sine[cables & (solution.cut > 0.0)], initial=1.0)))
+    if least < np.degrees(law.LEAST_ANGLE):
+        yield (
+            f"The cable comes within {least:.1f} degrees of the flow: its drag at rest, "
+            f"C0 = {law.rest:g}, is only claimed above 15 degrees."
+        )
+
+
+_WORRIES: tuple[Callable[[Result | TowResult, Solution], Iterator[str]], ...] = (
     _overloaded,
-    _anchor_too_light,
     _tilted,
     _stiffness_unknown,
     _overstretched,
     _fast_flow,
+    _other_equilibrium,
+)
+_MOORING_WORRIES: tuple[Callable[[Result, Solution], Iterator[str]], ...] = (
+    _anchor_too_light,
     _bight,
     _on_the_seabed,
-    _other_equilibrium,
     _wind_ignored,
+)
+_TOW_WORRIES: tuple[Callable[[TowResult, Solution], Iterator[str]], ...] = (
+    _below_the_sea,
+    _strums_along_the_flow,
 )

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import inf, sqrt
+from math import asin, copysign, inf, sqrt
 
-from calm.physics.element import axis_along, drag_force, drag_share
+from calm.physics.element import Vector, amplified_share, axis_along, drag_force, drag_share
+from calm.physics.friction import Friction
 from calm.physics.line import REFERENCE_DENSITY
 from calm.physics.profile import Profile
 from calm.physics.state import MarchError, State, Trace
-from calm.physics.track import Cable
+from calm.physics.track import Cable, Vibration
 
 MOST_SEGMENTS = 50_000
 _PASSES = 200
@@ -105,12 +106,15 @@ def _pass_segment(
     until its rise per unstretched metre settles. They contract by about change/earlier each.
     """
     kn, kt = cable.normal_drag, cable.tangential_drag
+    berteaux, hoerner = (cable.friction is law for law in (Friction.BERTEAUX, Friction.HOERNER))
+    vibration = cable.vibration
     compliance, thinning = cable.compliance, cable.thinning
     levels, rows, gravity = profile.levels, profile.rows, profile.gravity
     fx, fy, fz, z, level = state.fx, state.fy, state.fz, state.z, state.level
     half = 0.5 * cut
     strain = compliance * sqrt(fx * fx + fy * fy + fz * fz)
     rise = state.tz * (1.0 + strain)
+    axis: Vector = (-fx, -fy, -fz)
     earlier = inf
     for _ in range(_PASSES):
         depth = -z - half * rise
@@ -124,11 +128,21 @@ def _pass_segment(
         if strain:
             area *= (1.0 + strain) ** thinning
         lift = cut * (cable.buoyancy + (density - REFERENCE_DENSITY) * gravity * cable.volume)
-        az = fz + 0.5 * lift
-        c = drag_share(fx, fy, az, 0.5 * kn * area, u, v, w)
-        tx, ty, tz = axis_along(fx, fy, az, c, u, v, w)
-        qx, qy, qz = drag_force(kn * area, kt * area, u, v, w, tx, ty, tz)
-        hx, hy, hz = fx + 0.5 * qx, fy + 0.5 * qy, az + 0.5 * qz
+        ax, ay, az = fx, fy, fz + 0.5 * lift
+        if hoerner:
+            pull = 0.5 * kt * area * sqrt(u * u + v * v + w * w)
+            ax, ay, az = ax + pull * u, ay + pull * v, az + pull * w
+        if vibration is None:
+            factor, c = 1.0, drag_share(ax, ay, az, 0.5 * kn * area, u, v, w)
+        else:
+            c, factor = _vibrating_share(vibration, ax, ay, az, 0.5 * kn * area, u, v, w, axis)
+        axis = tx, ty, tz = axis_along(ax, ay, az, c, u, v, w)
+        along = kt * area if berteaux else 0.0
+        qx, qy, qz = drag_force(factor * kn * area, along, u, v, w, tx, ty, tz)
+        if not berteaux:
+            px, py, pz = _friction_force(cable.friction, kt * area, u, v, w, tx, ty, tz)
+            qx, qy, qz = qx + px, qy + py, qz + pz
+        hx, hy, hz = fx + 0.5 * qx, fy + 0.5 * qy, fz + 0.5 * (qz + lift)
         if hx * tx + hy * ty + hz * tz > 0.0:
             tx, ty, tz = -tx, -ty, -tz
         strain = compliance * sqrt(hx * hx + hy * hy + hz * hz)
@@ -148,6 +162,56 @@ def _pass_segment(
     if trace is not None:
         trace.element(cable.piece, -1, cut, strain)
         trace.node(state.x, state.y, state.z, (state.fx, state.fy, state.fz))
+
+
+def _friction_force(
+    friction: Friction,
+    kt: float,
+    u: float,
+    v: float,
+    w: float,
+    tx: float,
+    ty: float,
+    tz: float,
+) -> Vector:
+    """Friction of the current u, v, w on a cable of axis t [N], by a law that is not Berteaux's."""
+    squared = u * u + v * v + w * w
+    if friction is Friction.HOERNER:
+        pull = kt * sqrt(squared)
+        return pull * u, pull * v, pull * w
+    along = u * tx + v * ty + w * tz
+    pull = copysign(kt * squared, along) if along else 0.0
+    return pull * tx, pull * ty, pull * tz
+
+
+def _vibrating_share(
+    vibration: Vibration,
+    ax: float,
+    ay: float,
+    az: float,
+    k: float,
+    u: float,
+    v: float,
+    w: float,
+    axis: Vector,
+) -> tuple[float, float]:
+    """`drag_share` of a cable that strums, and the factor on its Cn.
+
+    `axis` is the last known one. Where the segment's own drag hardly turns it the factor there
+    will do for this pass.
+    """
+    speed = sqrt(u * u + v * v + w * w)
+    if speed == 0.0:
+        return 0.0, 1.0
+    law, beat = vibration.law, vibration.beat / speed
+    if k * law.greatest * speed * speed > 0.1 * sqrt(ax * ax + ay * ay + az * az):
+        return amplified_share(ax, ay, az, k, lambda sine: law.factor(asin(sine), beat), u, v, w)
+    tx, ty, tz = axis
+    cx, cy, cz = v * tz - w * ty, w * tx - u * tz, u * ty - v * tx
+    across = sqrt(cx * cx + cy * cy + cz * cz)
+    sine = across / (speed * sqrt(tx * tx + ty * ty + tz * tz))
+    factor = law.factor(asin(min(sine, 1.0)), beat)
+    return drag_share(ax, ay, az, k * factor, u, v, w), factor
 
 
 def segment_length(
@@ -190,6 +254,8 @@ def _rate_of_turn(
     if tension > 0.0:
         tx, ty, tz = -state.fx / tension, -state.fy / tension, -state.fz / tension
     kn = cable.normal_drag * density / REFERENCE_DENSITY
+    if cable.vibration is not None:
+        kn *= cable.vibration.law.greatest
     qx, qy, qz = drag_force(kn, 0.0, u, v, w, tx, ty, tz)
     along = lift * tz
     qx, qy, qz = qx - along * tx, qy - along * ty, qz + lift - along * tz

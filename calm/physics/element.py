@@ -12,7 +12,8 @@ one scalar equation for c, solved here exactly however strong the drag is.
 
 from __future__ import annotations
 
-from math import sqrt
+from collections.abc import Callable
+from math import inf, sqrt
 
 Vector = tuple[float, float, float]
 
@@ -67,6 +68,61 @@ def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, 
             return following
         c = following
     return c
+
+
+def amplified_share(
+    ax: float,
+    ay: float,
+    az: float,
+    k: float,
+    amplified: Callable[[float], float],
+    vx: float,
+    vy: float,
+    vz: float,
+) -> tuple[float, float]:
+    """`drag_share` for a coefficient that grows as the element leans: k f(sin φ).
+
+    Parameters
+    ----------
+    k : half its normal drag coefficient at rest [N/(m/s)²]
+    amplified : f ≥ 1 of the sine of the angle φ between axis and current, falling with it
+
+    Returns
+    -------
+    c [N/(m/s)], the smallest root of c |A + c V| = k f |V × A|, and f there. Putting f(c) back
+    climbs to it from below and never past it; the climb is extrapolated as long as that stays
+    below, too.
+    """
+    speed = sqrt(vx * vx + vy * vy + vz * vz)
+    cx, cy, cz = ay * vz - az * vy, az * vx - ax * vz, ax * vy - ay * vx
+    across = sqrt(cx * cx + cy * cy + cz * cz)
+    if k == 0.0 or across == 0.0:
+        return 0.0, 1.0
+
+    def factor(c: float) -> float:
+        x, y, z = ax + c * vx, ay + c * vy, az + c * vz
+        return amplified(min(across / (speed * sqrt(x * x + y * y + z * z)), 1.0))
+
+    def climbed(c: float) -> float:
+        return drag_share(ax, ay, az, k * factor(c), vx, vy, vz)
+
+    c, above = drag_share(ax, ay, az, k, vx, vy, vz), inf
+    first = climbed(c)
+    for _ in range(100):
+        second = climbed(first)
+        gain = second - first
+        if gain <= 1e-14 * second:
+            return second, factor(second)
+        ratio = gain / (first - c)
+        trial = second + gain * ratio / (1.0 - ratio) if ratio < 1.0 else inf
+        if trial >= above:
+            trial = 0.5 * (second + above) if above < inf else 2.0 * second
+        following = climbed(trial)
+        if following >= trial:
+            c, first = trial, following
+        else:
+            c, first, above = first, second, trial
+    return first, factor(first)
 
 
 def axis_along(

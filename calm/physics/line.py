@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from math import inf
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from calm.physics.friction import Friction
+from calm.physics.strumming import BourgetMarichal
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -21,14 +24,14 @@ class _Arrays:
     """Freezes every array field as float64, int64 or bool and asserts that it is finite."""
 
     def __post_init__(self) -> None:
-        for field in fields(self):  # type: ignore[arg-type]
-            if field.type not in _DTYPES:
+        for column in fields(self):  # type: ignore[arg-type]
+            if column.type not in _DTYPES:
                 continue
-            value = np.array(getattr(self, field.name), dtype=_DTYPES[str(field.type)], ndmin=1)
+            value = np.array(getattr(self, column.name), dtype=_DTYPES[str(column.type)], ndmin=1)
             if not np.isfinite(value).all():
-                raise ValueError(f"{type(self).__name__}.{field.name} must be finite")
+                raise ValueError(f"{type(self).__name__}.{column.name} must be finite")
             value.setflags(write=False)
-            object.__setattr__(self, field.name, value)
+            object.__setattr__(self, column.name, value)
 
     def _same_length(self, *names: str) -> None:
         lengths = {name: len(getattr(self, name)) for name in names}
@@ -43,9 +46,16 @@ _DTYPES: dict[str, Any] = {
 }
 
 
+def _none() -> Floats:
+    return np.zeros(0)
+
+
 @dataclass(frozen=True)
 class Line(_Arrays):
-    """The n pieces above the anchor, free end first, and the m instruments clamped on them.
+    """The n pieces of a line and the m instruments clamped on them.
+
+    Those of a mooring stand above the anchor, free end first; those of a tow reach from the ship
+    to the towed body.
 
     Buoyancies and drags are those in sea water of 1025 kg/m³. Where a piece is `flexible`
     (cable, chain) its `buoyancy`, `volume` and drags are per unstretched metre.
@@ -65,6 +75,11 @@ class Line(_Arrays):
     clamp_at : (m,) distance from that piece's top along its unstretched length [m]
     clamp_buoyancy, clamp_volume, clamp_drag : (m,) [N], [m³], K of K|V|V [N/(m/s)²]
     anchor_height : the line ends this far above the seabed [m]
+    lift, clamp_lift : (n,), (m,) upward force of bodies at 1 m/s [N/(m/s)²]; 0 where not given
+    diameter : (n,) of cables and chains [m]; 0 where not given, and then nothing strums
+    friction : the law of `tangential_drag` on cables and chains
+    strumming : of the cables, whose `normal_drag` then is that at rest; None without
+    towed : whether the free end is towed: then no pieces there are rigid with one another
     """
 
     length: Floats
@@ -82,15 +97,28 @@ class Line(_Arrays):
     clamp_volume: Floats
     clamp_drag: Floats
     anchor_height: float = 0.0
+    lift: Floats = field(default_factory=_none)
+    clamp_lift: Floats = field(default_factory=_none)
+    diameter: Floats = field(default_factory=_none)
+    friction: Friction = Friction.BERTEAUX
+    strumming: BourgetMarichal | None = None
+    towed: bool = False
 
     def __post_init__(self) -> None:
+        for name, like in (("lift", "length"), ("clamp_lift", "clamp_at"), ("diameter", "length")):
+            if not np.size(getattr(self, name)):
+                object.__setattr__(self, name, np.zeros(np.size(getattr(self, like))))
         super().__post_init__()
         self._same_length(
             "length", "flexible", "buoyancy", "volume", "normal_drag", "tangential_drag",
-            "directional", "compliance", "thinning",
+            "directional", "compliance", "thinning", "lift", "diameter",
         )  # fmt: skip
-        self._same_length("clamp_piece", "clamp_at", "clamp_buoyancy", "clamp_volume", "clamp_drag")
-        for name in ("length", "normal_drag", "tangential_drag", "compliance", "clamp_drag"):
+        self._same_length(
+            "clamp_piece", "clamp_at", "clamp_buoyancy", "clamp_volume", "clamp_drag", "clamp_lift"
+        )
+        for name in (
+            "length", "normal_drag", "tangential_drag", "compliance", "clamp_drag", "diameter",
+        ):  # fmt: skip
             if (getattr(self, name) < 0).any():
                 raise ValueError(f"Line.{name} must not be negative")
         on = self.clamp_piece
@@ -123,6 +151,21 @@ class Line(_Arrays):
         lengths[piece] = length
         return replace(self, length=lengths)
 
+    def reversed(self) -> Line:
+        """The same line listed from its other end, from where its clamps are measured then."""
+        columns = {
+            column.name: getattr(self, column.name)[::-1]
+            for column in fields(self)
+            if column.type in _DTYPES and not column.name.startswith("clamp_")
+        }
+        on = self.clamp_piece
+        return replace(
+            self,
+            **columns,
+            clamp_piece=len(self.length) - 1 - on,
+            clamp_at=np.maximum(self.length[on] - self.clamp_at, 0.0),
+        )
+
 
 @dataclass(frozen=True)
 class Water(_Arrays):
@@ -130,7 +173,7 @@ class Water(_Arrays):
 
     Attributes
     ----------
-    depth : water depth [m]
+    depth : water depth [m]; inf where the seabed is out of reach (of a tow)
     level : (k,) depths of the levels [m], strictly increasing, k ≥ 1
     u, v, w : (k,) current to the east, to the north, upward [m/s]
     density : (k,) [kg/m³]
@@ -150,7 +193,7 @@ class Water(_Arrays):
     def __post_init__(self) -> None:
         super().__post_init__()
         self._same_length("level", "u", "v", "w", "density")
-        positive = 0.0 < self.depth < inf and 0.0 < self.gravity < inf
+        positive = self.depth > 0.0 and 0.0 < self.gravity < inf
         if not positive or (np.diff(self.level) <= 0).any() or (self.density <= 0).any():
             raise ValueError("Water: depth, gravity and densities must be positive, levels rise")
 

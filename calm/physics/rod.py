@@ -14,10 +14,12 @@ _PASSES = 200
 
 
 def load_force(load: Load, profile: Profile, depth: float, axis: Vector, level: int) -> Vector:
-    """Buoyancy and drag of a rigid piece or clamp at a depth [N]; `level` is where to search."""
+    """Buoyancy, drag and lift of a rigid piece or clamp at a depth [N], searched from `level`."""
     u, v, w, density = profile.at(depth, level)
     scale = density / REFERENCE_DENSITY
     lift = load.buoyancy + (density - REFERENCE_DENSITY) * profile.gravity * load.volume
+    if load.lift:
+        lift += scale * load.lift * (u * u + v * v + w * w)
     if load.directional:
         qx, qy, qz = drag_force(
             scale * load.normal_drag, scale * load.tangential_drag, u, v, w, *axis
@@ -108,6 +110,8 @@ def _next_axis(rod: Rod, profile: Profile, state: State, axis: Vector) -> Vector
         scale = load.lever * density / REFERENCE_DENSITY
         excess = (density - REFERENCE_DENSITY) * profile.gravity
         az += load.lever * (load.buoyancy + excess * load.volume)
+        if load.lift:
+            az += scale * load.lift * (u * u + v * v + w * w)
         if load.directional:
             normals.append((scale * load.normal_drag, u, v, w))
         else:

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from calm.physics.friction import Friction
 from calm.physics.line import Line
+from calm.physics.strumming import BourgetMarichal
 
 
 @dataclass(frozen=True)
@@ -24,6 +26,7 @@ class Load:
     normal_drag: float
     tangential_drag: float
     directional: bool
+    lift: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -40,6 +43,14 @@ class Rod:
 
 
 @dataclass(frozen=True)
+class Vibration:
+    """A cable that strums: the law, and its frequency times its diameter [m/s]."""
+
+    law: BourgetMarichal
+    beat: float
+
+
+@dataclass(frozen=True)
 class Cable:
     """A stretch of cable or chain without clamps: a whole piece, or the part between two clamps."""
 
@@ -51,6 +62,8 @@ class Cable:
     tangential_drag: float
     compliance: float
     thinning: float
+    friction: Friction = Friction.BERTEAUX
+    vibration: Vibration | None = None
 
 
 Stage = Rod | Cable | Load
@@ -73,13 +86,16 @@ class Track:
         return lifting[-1] + 1 if lifting else 0
 
     @staticmethod
-    def of(line: Line) -> Track:
-        """Lay out a line; its head (see `head_count`) becomes one rod."""
+    def of(line: Line, frequency: float = 0.0) -> Track:
+        """Lay out a line, free end first; its head (see `head_count`) becomes one rod.
+
+        `frequency` is that of the cables that strum [Hz].
+        """
         head = head_count(line)
         stages: list[Stage] = [_rod(line, range(head))] if head else []
         for piece in range(head, len(line.length)):
             if line.flexible[piece]:
-                stages.extend(_cable_stages(line, piece))
+                stages.extend(_cable_stages(line, piece, frequency))
             else:
                 stages.append(_rod(line, range(piece, piece + 1)))
         return Track(tuple(stages))
@@ -94,8 +110,11 @@ def head_count(line: Line) -> int:
     """How many pieces at the free end make one rigid body: down to the first buoyant piece.
 
     Pieces without buoyancy listed above the first buoyant one (a beacon, ballast) are rigid with
-    it; where a cable lies between, or nothing is buoyant, the first piece stands alone.
+    it; where a cable lies between, or nothing is buoyant, the first piece stands alone. At a
+    towed end each does.
     """
+    if line.towed:
+        return 0
     for piece in range(len(line.length)):
         if line.flexible[piece]:
             break
@@ -120,6 +139,7 @@ def _clamp_load(line: Line, m: int, at: float = 0.0, lever: float = 0.5) -> Load
         normal_drag=float(line.clamp_drag[m]),
         tangential_drag=0.0,
         directional=False,
+        lift=float(line.clamp_lift[m]),
     )
 
 
@@ -144,6 +164,7 @@ def _rod(line: Line, pieces: range) -> Rod:
                 normal_drag=float(line.normal_drag[piece]),
                 tangential_drag=float(line.tangential_drag[piece]),
                 directional=bool(line.directional[piece]),
+                lift=float(line.lift[piece]),
             )
         )
         for m in _clamps_of(line, piece):
@@ -153,7 +174,11 @@ def _rod(line: Line, pieces: range) -> Rod:
     return Rod(tuple(pieces), lengths, tuple(loads))
 
 
-def _cable_stages(line: Line, piece: int) -> Iterable[Stage]:
+def _cable_stages(line: Line, piece: int, frequency: float) -> Iterable[Stage]:
+    vibration = None
+    if line.strumming is not None and frequency * line.diameter[piece] > 0.0:
+        vibration = Vibration(line.strumming, frequency * float(line.diameter[piece]))
+
     def stretch(length: float) -> Cable:
         return Cable(
             piece=piece,
@@ -164,6 +189,8 @@ def _cable_stages(line: Line, piece: int) -> Iterable[Stage]:
             tangential_drag=float(line.tangential_drag[piece]),
             compliance=float(line.compliance[piece]),
             thinning=float(line.thinning[piece]),
+            friction=line.friction,
+            vibration=vibration,
         )
 
     start, end = 0.0, float(line.length[piece])

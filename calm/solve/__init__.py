@@ -1,7 +1,10 @@
-"""What is unknown in a mooring and how it is found. Arrays in, `Solution` out."""
+"""What is unknown in a mooring or a tow and how it is found. Arrays in, `Solution` out."""
 
 from calm.solve.fit import fit_length as fit_length
+from calm.solve.fit import fit_tow_length as fit_tow_length
 from calm.solve.mooring import solve_mooring as solve_mooring
 from calm.solve.solution import Settings as Settings
 from calm.solve.solution import Solution as Solution
 from calm.solve.status import Status as Status
+from calm.solve.tow import Towing as Towing
+from calm.solve.tow import solve_tow as solve_tow

@@ -1,14 +1,17 @@
 """What every solution must satisfy, recomputed from its coordinates without the march.
 
-Closure: buoyancy and drag of every element from the final positions and axes sum to the force on
-the anchor. Moments: every axis lies along the mean of the forces at its two ends. Neither uses
+Closure: buoyancy and drag of every element from the final positions and axes sum to the force at
+the line's end. Moments: every axis lies along the mean of the forces at its two ends. Neither uses
 a number that the march left behind, but for the positions and the strains.
 """
 
 from __future__ import annotations
 
+from math import asin
+
 import numpy as np
 
+from calm.physics.friction import Friction
 from calm.physics.line import REFERENCE_DENSITY, Floats
 from calm.physics.track import head_count
 from calm.solve.solution import Solution
@@ -46,16 +49,26 @@ def loads(solution: Solution) -> Floats:
     np.divide(solution.cut, line.length[piece], out=whole, where=line.length[piece] > 0)
     amount = np.where(line.flexible[piece], solution.cut, whole)
     grown = amount * (1.0 + solution.strain) ** line.thinning[piece]
-    directional = line.directional[piece][:, None]
+    normal_drag = line.normal_drag[piece] * amplification(solution)
     drag = np.where(
-        directional,
-        line.normal_drag[piece][:, None] * squared(normal)
+        line.directional[piece][:, None],
+        normal_drag[:, None] * squared(normal)
         + line.tangential_drag[piece][:, None] * squared(along),
         line.normal_drag[piece][:, None] * squared(current),
     )
+    cables = line.flexible[piece] & (clamp < 0)
+    if line.friction is not Friction.BERTEAUX:
+        otherwise = squared(current)
+        if line.friction is Friction.CONSTANT:
+            way = np.sign(np.sum(current * axis, axis=1, keepdims=True))
+            otherwise = np.sum(current**2, axis=1, keepdims=True) * way * axis
+        change = line.tangential_drag[piece][:, None] * (otherwise - squared(along))
+        drag[cables] += change[cables]
     drag *= (grown * density / REFERENCE_DENSITY)[:, None]
     excess = (density - REFERENCE_DENSITY) * water.gravity
     lift = amount * (line.buoyancy[piece] + excess * line.volume[piece])
+    raised = np.sum(current**2, axis=1) * density / REFERENCE_DENSITY
+    lift += np.where(line.flexible[piece], 0.0, amount * line.lift[piece] * raised)
 
     here = clamp >= 0
     which = clamp[here]
@@ -64,12 +77,42 @@ def loads(solution: Solution) -> Floats:
         * (line.clamp_drag[which] * density[here] / REFERENCE_DENSITY)[:, None]
     )
     lift[here] = line.clamp_buoyancy[which] + excess[here] * line.clamp_volume[which]
+    lift[here] += line.clamp_lift[which] * raised[here]
     drag[:, 2] += lift
     return drag
 
 
+def amplification(solution: Solution) -> Floats:
+    """(k,) how much strumming raises the normal drag of every element above that at rest."""
+    line, factor = solution.line, np.ones(len(solution.cut))
+    law, diameter = line.strumming, line.diameter[solution.element_piece]
+    if law is None or solution.frequency == 0.0:
+        return factor
+    current, _ = _flow(solution)
+    speed, across = np.linalg.norm(current, axis=1), flow_across(solution)
+    for element in np.flatnonzero((diameter > 0.0) & (across > 0.0)):
+        angle = asin(min(across[element] / speed[element], 1.0))
+        beat = solution.frequency * diameter[element] / speed[element]
+        factor[element] = law.factor(angle, beat)
+    return factor
+
+
+def flow_across(solution: Solution) -> Floats:
+    """(k,) speed of the current across the axis of every element [m/s]; 0 without length."""
+    chord = np.diff(solution.position, axis=0)
+    size = np.linalg.norm(chord, axis=1)
+    across = np.linalg.norm(np.cross(_flow(solution)[0], chord), axis=1)
+    speed: Floats = np.divide(across, size, out=np.zeros(len(size)), where=size > 0)
+    return speed
+
+
+def _flow(solution: Solution) -> tuple[Floats, Floats]:
+    """Current (k, 3) [m/s] and density (k,) [kg/m³] at the middle of every element."""
+    return solution.water.at(-0.5 * (solution.position[:-1] + solution.position[1:])[:, 2])
+
+
 def closure(solution: Solution) -> float:
-    """Relative departure of the recomputed loads' sum from the force on the anchor.
+    """Relative departure of the recomputed loads' sum from the force at the line's end.
 
     Where the line lies on the seabed, the loads above its touchdown must leave no vertical force
     there: but a downward one where a rigid piece or clamp stands, and an upward one that the

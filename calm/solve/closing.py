@@ -21,7 +21,7 @@ from calm.solve.status import Status
 COARSE_STEP = radians(4.0)
 """Angle step of the marches that only look for the neighbourhood of a root."""
 REACH = 0.01
-"""Longest segment at an angle step of 1°, as a share of the water depth."""
+"""Longest segment at an angle step of 1°, as a share of the span."""
 SHARE_TOLERANCE = 1e-9
 """How well the share of a surface float's buoyancy in use is found."""
 COARSEST_BRACKET = 1e-7
@@ -50,6 +50,7 @@ class Unknown:
     afloat : the piece at the surface whose share of buoyancy is sought; None below the surface
     above : the floats at the surface above that piece
     lands : whether the line may come down on the seabed before its end
+    part : whether the track is but a part of the line
     """
 
     track: Track
@@ -57,6 +58,7 @@ class Unknown:
     afloat: int | None = None
     above: tuple[Afloat, ...] = ()
     lands: bool = False
+    part: bool = False
 
     def shares(self, x: float) -> dict[int, float]:
         """Share of its buoyancy in use of every float at the surface, for the unknown's value x."""
@@ -73,7 +75,7 @@ class Unknown:
         """The question for the part of the line above a float: to bring its top to the surface."""
         stages = self.track.stages
         end = next(i for i, s in enumerate(stages) if isinstance(s, Rod) and piece in s.pieces)
-        return replace(self, track=Track(stages[:end]), goal=0.0, lands=False)
+        return replace(self, track=Track(stages[:end]), goal=0.0, lands=False, part=True)
 
 
 def _with_shares(track: Track, shares: dict[int, float]) -> Track:
@@ -121,14 +123,24 @@ class Closed:
 class Closing:
     """The marches of one solve; those of the whole line are counted.
 
-    The *miss* is the height of the line's lower end above the anchor's top [m]. It falls as the
-    free end goes deeper and as more buoyancy is used.
+    The *miss* is the height of the line's last end above where it is to be [m]: the top of its
+    anchor, or the ship that tows it. It falls as the free end goes deeper and as more buoyancy is
+    used.
+
+    Attributes
+    ----------
+    span : what lengths are measured by: the water depth, in a tow the line out [m]
+    allowed : the greatest miss of a solution [m]
+    frequency : of the cables that strum [Hz]
+    marches : done so far
     """
 
     def __init__(self, line: Line, water: Water, settings: Settings) -> None:
         self.line, self.water, self.settings = line, water, settings
         self.profile = Profile(water)
-        self.allowed = settings.tolerance * water.depth
+        self.span = float(line.length.sum()) if line.towed else water.depth
+        self.allowed = settings.tolerance * self.span
+        self.frequency = 0.0
         self.marches = 0
 
     def whole(self, lands: bool) -> Unknown:
@@ -138,6 +150,10 @@ class Closing:
         """
         height = 0.0 if lands else self.line.anchor_height
         return Unknown(Track.of(self.line), height - self.water.depth, lands=lands)
+
+    def towed(self, height: float) -> Unknown:
+        """The whole line towed from a height above the surface [m]."""
+        return Unknown(Track.of(self.line, self.frequency), height)
 
     def clear_of_seabed(self, root: Root) -> Root:
         """The same root for the line hanging clear of the seabed, to be sought again from there."""
@@ -160,14 +176,13 @@ class Closing:
     ) -> End:
         """One march at an angle step, or over given cuts."""
         track, depth = unknown.placed(x)
-        if unknown.goal < 0.0:
-            self.marches += 1
+        self.marches += not unknown.part
         return march(
             track,
             profile or self.profile,
             depth,
             angle_step=step,
-            reach=REACH * degrees(step) * self.water.depth,
+            reach=REACH * degrees(step) * self.span,
             cuts=cuts,
             trace=trace,
             lands=unknown.lands,
@@ -183,16 +198,21 @@ class Closing:
         """Root of the coarse miss between a and b."""
         x, _, slope = bracketed_root(
             self.coarse_miss(unknown), a, miss_a, b, miss_b,
-            small=1e-4 * self.water.depth, narrow=COARSEST_BRACKET * abs(b - a),
+            small=1e-4 * self.span, narrow=COARSEST_BRACKET * abs(b - a),
         )  # fmt: skip
         return Root(unknown, x, slope)
+
+    def coarser(self, root: Root) -> Root:
+        """The coarse root near another one; that one where there is none."""
+        found, *_ = self._near(root, self.coarse_step, None, 1e-4 * self.span, COARSEST_BRACKET)
+        return found or root
 
     def planned(self, root: Root, step: float) -> tuple[Root, Cuts]:
         """The root as the march sees it at a step, near a coarser one, and the cuts it takes there.
 
         With its free choice of cuts the march is not quite continuous, so this is no solution yet.
         """
-        small = 1e-6 * self.water.depth
+        small = 1e-6 * self.span
         found, _, end, _ = self._near(root, step, None, small, COARSEST_BRACKET)
         return found or root, end.cuts
 
@@ -233,8 +253,9 @@ class Closing:
                 raise Status.SLACK.because(
                     "The line is slack: its shape hangs on the last digits of the buoyancy in use."
                 )
+            end_point = "ship" if self.line.towed else "anchor"
             raise Status.NOT_CONVERGED.because(
-                f"The line's end misses the anchor by {abs(miss):.3g} m."
+                f"The line's end misses the {end_point} by {abs(miss):.3g} m."
             )
         hanging, grounded = len(trace.piece), 0.0
         if end.landing is not None:
@@ -263,9 +284,9 @@ class Closing:
             return tried[x][0]
 
         while start is not None:
-            limit = 1.0 if start.unknown.afloat is not None else self.water.depth
+            low, high = self._limits(start.unknown)
             found = root_near(
-                miss, start.x, start.slope, (0.0, limit), small=small, narrow=narrow * limit
+                miss, start.x, start.slope, (low, high), small=small, narrow=narrow * high
             )
             if found is not None:
                 x, _, slope = found
@@ -275,9 +296,15 @@ class Closing:
             start = self._across_the_surface(root.unknown) if start is root else None
         return None, *next(iter(tried.values()))
 
+    def _limits(self, unknown: Unknown) -> tuple[float, float]:
+        """Between what the unknown is sought."""
+        if unknown.afloat is not None:
+            return 0.0, 1.0
+        return (-2.0 * self.span, 2.0 * self.span) if self.line.towed else (0.0, self.span)
+
     def _across_the_surface(self, unknown: Unknown) -> Root | None:
         """Where to seek on when a free end just below the surface should float, or the reverse."""
-        if unknown.above or unknown.goal == 0.0:
+        if unknown.above or unknown.part or self.line.towed:
             return None
         if unknown.afloat is not None:
             return Root(replace(unknown, afloat=None), 0.0, -1.0)

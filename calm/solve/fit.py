@@ -1,7 +1,11 @@
-"""Cutting a piece so that the top of the line sits at a wanted depth in still water."""
+"""Cutting a piece to length: a mooring's top in still water, or a tow at its speed, to a depth."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+from math import inf
+
+from calm.errors import NoEquilibrium
 from calm.physics.line import Line, Water
 from calm.physics.march import march
 from calm.physics.profile import Profile
@@ -12,6 +16,7 @@ from calm.solve.root import root_near
 from calm.solve.solution import Settings
 from calm.solve.standing import refuse_unsupported, standing_lift, too_heavy
 from calm.solve.status import Status
+from calm.solve.tow import Towing, solve_tow
 
 
 def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings: Settings) -> float:
@@ -67,6 +72,52 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
         raise Status.NO_EQUILIBRIUM.because(
             f"No length of piece {piece + 1} puts the top of the line at {top_depth:g} m: the "
             f"other pieces, {others:.2f} m uncut{clamped}, have {room:.2f} m of water to stand in.",
+            piece,
+        )
+    return found[0]
+
+
+def fit_tow_length(
+    line: Line, water: Water, towing: Towing, piece: int, depth: float, settings: Settings
+) -> float:
+    """Unstretched length of a towed cable that brings its lower end to a depth [m].
+
+    Parameters
+    ----------
+    line : from the ship to the towed body; its `piece`, a cable or chain, has any length
+    depth : wanted of that piece's lower end at the speed of the tow [m]
+
+    Raises
+    ------
+    NoEquilibrium
+        ``no-equilibrium`` where no length up to a thousand times the depth does it, and what
+        `solve_tow` raises but for the surface and the seabed.
+    """
+    bottomless = replace(water, depth=inf)
+    node = len(line.length) - 1 - piece
+
+    def lacking(length: float) -> float:
+        try:
+            out = line.with_length(piece, length)
+            solution = solve_tow(out, bottomless, towing, settings)
+        except NoEquilibrium as refusal:
+            if refusal.status != Status.ABOVE_SURFACE.label:
+                raise
+            return depth
+        return depth + float(solution.position[solution.piece_nodes[node, 0], 2])
+
+    shortest = float(line.clamp_at[line.clamp_piece == piece].max(initial=1e-3 * depth))
+    longest = 1000.0 * depth
+    start = max(depth + towing.height, shortest)
+    # where a solution's cuts change their number its depth makes a step, within its accuracy
+    found = root_near(
+        lacking, start, -1.0, (shortest, longest), small=1e-7 * depth, narrow=1e-9 * depth
+    )
+    if found is None or found[1] > 1e-4 * depth:
+        reached = depth - lacking(longest if found is None else found[0])
+        raise Status.NO_EQUILIBRIUM.because(
+            f"No length of piece {piece + 1} brings its lower end to {depth:g} m at this speed: "
+            f"with {longest:g} m out it runs at {reached:.2f} m.",
             piece,
         )
     return found[0]

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from calm.errors import NoEquilibrium
-from calm.physics.line import REFERENCE_DENSITY, Floats, Line, Water
+from calm.physics.line import Floats, Line, Water
 from calm.physics.state import MarchError, Trace
 from calm.physics.track import Track
-from calm.solve import audit
-from calm.solve.closing import Closed, Closing, Root
+from calm.solve.closing import Closing, Root
+from calm.solve.finish import finished
 from calm.solve.locate import locate
 from calm.solve.refine import refine
-from calm.solve.solution import Settings, Solution, nodes_of
+from calm.solve.solution import Settings, Solution
 from calm.solve.standing import refuse_unsupported, standing_lift, too_heavy
 from calm.solve.status import Status
 
@@ -107,78 +105,10 @@ def _grounded(piece: int, below: float) -> NoEquilibrium:
 
 def _solution(closing: Closing, root: Root, other_depth: float | None) -> Solution:
     """The audited solution near a coarse root."""
-    refined = refine(closing, root)
-    fine = refined.closed
-    position, force = nodes_of(fine.trace)
-    used, reserve = _buoyancy_in_use(closing, fine)
-    solution = Solution(
-        line=closing.line,
-        water=closing.water,
-        settings=closing.settings,
-        position=position,
-        force=force,
-        element_piece=np.array(fine.trace.piece, dtype=np.int64),
-        element_clamp=np.array(fine.trace.clamp, dtype=np.int64),
-        landed=fine.end.landing is not None,
-        hanging=fine.hanging,
-        grounded_length=fine.grounded_length,
-        cut=np.array(fine.trace.cut),
-        strain=np.array(fine.trace.strain),
-        afloat=tuple(fine.root.unknown.shares(fine.root.x)),
-        buoyancy_used=used,
-        reserve=reserve,
-        carried=_carried(closing.line, fine.root.unknown.shares(fine.root.x)),
-        marches=closing.marches,
-        segments=fine.end.segments,
-        miss=fine.miss,
-        depth_error=refined.depth_error + abs(fine.miss),
-        tension_error=refined.tension_error,
-        other_depth=other_depth,
-    )
-    return _audited(solution)
+    return finished(closing, refine(closing, root), other_depth, _refuse_out_of_the_water)
 
 
-def _buoyancy_in_use(closing: Closing, fine: Closed) -> tuple[float, float]:
-    """Share in use of the buoyancy of the floats at the surface, and the rest of it [N]."""
-    shares = fine.root.unknown.shares(fine.root.x)
-    if not shares:
-        return 1.0, 0.0
-    _, density = closing.water.at(np.zeros(1))
-    excess = (float(density[0]) - REFERENCE_DENSITY) * closing.water.gravity
-    lift = {p: float(closing.line.buoyancy[p] + excess * closing.line.volume[p]) for p in shares}
-    total = sum(lift.values())
-    used = sum(shares[p] * lift[p] for p in shares)
-    return used / total, total - used
-
-
-def _carried(line: Line, shares: dict[int, float]) -> Line:
-    """The line with the buoyancies in use: floats at the surface count by their share."""
-    share = np.ones(len(line.length))
-    for piece, used in shares.items():
-        share[piece] = used
-    return replace(line, buoyancy=line.buoyancy * share, volume=line.volume * share)
-
-
-def _audited(solution: Solution) -> Solution:
-    """The solution with its closure and moment residual; refused where a check fails."""
-    _within_the_water(solution)
-    solution = replace(
-        solution,
-        closure=audit.closure(solution),
-        moment_residual=audit.moment_residual(solution),
-    )
-    if not solution.closure <= audit.LARGEST_CLOSURE:
-        raise Status.NOT_CONVERGED.because(
-            f"The loads do not sum to the anchor force: they are {solution.closure:.1e} off."
-        )
-    if not solution.moment_residual <= audit.LARGEST_MOMENT:
-        raise Status.NOT_CONVERGED.because(
-            f"A piece is {solution.moment_residual:.1e} rad out of balance."
-        )
-    return solution
-
-
-def _within_the_water(solution: Solution) -> None:
+def _refuse_out_of_the_water(solution: Solution) -> None:
     height: Floats = solution.position[:, 2]
     depth = solution.water.depth
     margin = max(solution.depth_error, 1e-6 * depth)
@@ -186,15 +116,11 @@ def _within_the_water(solution: Solution) -> None:
     standing = float(solution.line.length[list(solution.afloat)].sum())
     lowest, highest = int(np.argmin(height)), int(np.argmax(height))
     if height[lowest] < -depth - margin:
-        raise _grounded(_piece_at(solution, lowest), -depth - height[lowest])
+        raise _grounded(solution.piece_at(lowest), -depth - height[lowest])
     if height[highest] > margin + standing:
-        piece = _piece_at(solution, highest)
+        piece = solution.piece_at(highest)
         raise Status.ABOVE_SURFACE.because(
             f"The line would rise out of the water: piece {piece + 1} comes "
             f"{height[highest]:.2f} m above the surface.",
             piece,
         )
-
-
-def _piece_at(solution: Solution, node: int) -> int:
-    return int(solution.element_piece[max(node - 1, 0)])

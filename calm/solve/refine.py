@@ -19,7 +19,7 @@ from calm.solve.solution import nodes_of
 
 DEPTH_TARGET = 4e-5
 TENSION_TARGET = 1.6e-4
-"""Error estimates, relative to the water depth and to the tension, above which the step is taken
+"""Error estimates, relative to the span and to the tension, above which the step is taken
 smaller, at an angle step of 1°; they follow its square."""
 MOST_ROUNDS = 6
 MOST_SEGMENTS = 20_000
@@ -51,7 +51,7 @@ def refine(closing: Closing, root: Root) -> Refined:
         depth_error, tension_error, relative = _errors(closing.line, coarse, fine)
         target = degrees(wanted) ** 2
         excess = max(
-            depth_error / (DEPTH_TARGET * target * closing.water.depth),
+            depth_error / (DEPTH_TARGET * target * closing.span),
             relative / (TENSION_TARGET * target),
         )
         if excess <= 1.0 or fine.end.segments > MOST_SEGMENTS:

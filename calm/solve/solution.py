@@ -45,8 +45,9 @@ class Solution:
 
     Attributes
     ----------
-    line, water, settings : what was solved
-    position : (k+1, 3) east and north of the anchor, up from the surface [m]
+    line, water, settings : what was solved; of a tow the line from its free end, and the water as
+        the ship sees it
+    position : (k+1, 3) east and north of the anchor or the tow point, up from the surface [m]
     force : (k+1, 3) sum of all external forces on the free-end side of a node [N]
     element_piece : (k,) piece of the line each element belongs to
     element_clamp : (k,) clamp it is (an element without length), or -1
@@ -60,12 +61,13 @@ class Solution:
     reserve : the rest of it [N]
     carried : the line with the buoyancies in use (floats at the surface reduced)
     marches, segments : the work done for this solution
-    miss : height of the line's end above the anchor's top [m]
-    closure : |sum of the loads, recomputed - anchor force| / anchor force
+    miss : height of the line's end above the anchor's top, or the tow point [m]
+    closure : |sum of the loads, recomputed - force at the line's end| / that force
     moment_residual : worst departure of an element's axis from its moment balance [rad]
     depth_error, tension_error : own estimate of the worst error of any depth or offset [m] and
         of any tension [N]
     other_depth : depth of the free end in another equilibrium that the scan came upon [m]
+    frequency : of the cables that strum [Hz]; 0 where none does
     """
 
     line: Line
@@ -90,6 +92,7 @@ class Solution:
     depth_error: float
     tension_error: float
     other_depth: float | None = None
+    frequency: float = 0.0
     closure: float = nan
     moment_residual: float = nan
 
@@ -112,6 +115,10 @@ class Solution:
         first = np.searchsorted(pieces, np.arange(n), side="left")
         last = np.searchsorted(pieces, np.arange(n), side="right")
         return np.column_stack([first, last]).astype(np.int64)
+
+    def piece_at(self, node: int) -> int:
+        """The piece that ends at a node, or passes it."""
+        return int(self.element_piece[max(node - 1, 0)])
 
 
 def nodes_of(trace: Trace) -> tuple[Floats, Floats]:

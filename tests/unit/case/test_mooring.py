@@ -143,7 +143,7 @@ def test_a_refusal_names_the_piece(solve):
     with pytest.raises(calm.NoEquilibrium) as caught:
         solve(folded, speed="0 m/s")
     assert caught.value.status == "slack"
-    assert "Piece 3 is meter" in caught.value.message
+    assert "meter (piece 3)" in caught.value.message
 
 
 def test_fit_cuts_the_piece_once_for_every_current(solve):

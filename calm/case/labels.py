@@ -1,0 +1,29 @@
+"""Names for what the solver knows by number only."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
+from calm.errors import NoEquilibrium
+from calm.files import Piece
+
+
+@contextmanager
+def naming_the_piece(pieces: Sequence[Piece], *, towed: bool = False) -> Iterator[None]:
+    """Adds the label of the piece to what a solver says of it.
+
+    Parameters
+    ----------
+    pieces : in the order of the file
+    towed : whether the solver counts them from the other end
+    """
+    try:
+        yield
+    except NoEquilibrium as error:
+        if error.piece is None:
+            raise
+        piece = pieces[len(pieces) - 1 - error.piece if towed else error.piece]
+        counted = f"piece {error.piece + 1}"
+        message = error.message.replace(counted, f"{piece.label} (piece {piece.index + 1})")
+        raise NoEquilibrium(error.status, message, error.advice) from error

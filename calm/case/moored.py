@@ -1,0 +1,101 @@
+"""The result of a moored line: its ends, its anchor, its knockdown."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import nan
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from calm.case.columns import Components
+from calm.case.measure import clamps_of, components_of, shape_of
+from calm.case.result import Accuracy, AnchorLoad, Result, Top
+from calm.case.strumming import strumming_of
+from calm.case.warnings import warnings_of
+from calm.checks.anchor import required_weight
+from calm.files import Piece
+from calm.solve import Solution, Status
+
+if TYPE_CHECKING:
+    from calm.case.mooring import Mooring
+
+
+def result_of(mooring: Mooring, solution: Solution, still: Solution | None) -> Result:
+    """Measure a solution against its still-water shape, None where that is not unique."""
+    pieces = mooring.file.pieces
+    above = components_of(pieces[:-1], solution, still)
+    components = _with_anchor(above, pieces[-1], mooring.water.depth)
+    knockdown = float(components.knockdown[0])
+    result = Result(
+        mooring=mooring,
+        name=mooring.file.name,
+        type="surface" if solution.surface else "subsurface",
+        status=Status.CONVERGED.label,
+        iterations=solution.marches,
+        segments=solution.segments,
+        miss=solution.miss,
+        closure=solution.closure,
+        accuracy=Accuracy(solution.depth_error, solution.tension_error),
+        top=Top(
+            depth=float(components.depth_top[0]),
+            x=float(components.x_top[0]),
+            y=float(components.y_top[0]),
+            knockdown=None if still is None else knockdown,
+            used_buoyancy=solution.buoyancy_used,
+            reserve=solution.reserve,
+        ),
+        anchor=_anchor_load(mooring, solution),
+        strumming=strumming_of(mooring.file.solver, solution),
+        components=components,
+        clamps=clamps_of(pieces[:-1], solution, still),
+        shape=shape_of(solution),
+        still_shape=None if still is None else shape_of(still),
+    )
+    return replace(result, warnings=warnings_of(result, solution))
+
+
+def _with_anchor(above: Components, anchor: Piece, depth: float) -> Components:
+    """The components with the anchor, which stands upright below the line's end."""
+    line_end = above[-1]
+    pull, height = line_end.tension_bottom, anchor.length or 0.0
+    breaking, working = anchor.component.breaking_load, anchor.component.working_load
+    return above.with_row(
+        index=anchor.index,
+        use=anchor.use,
+        label=anchor.label,
+        kind=anchor.component.kind,
+        role=anchor.component.role,
+        length=height,
+        cut_length=height,
+        depth_top=line_end.depth_bottom,
+        depth_bottom=depth,
+        x_top=line_end.x_bottom,
+        y_top=line_end.y_bottom,
+        x_bottom=0.0,
+        y_bottom=0.0,
+        tension_top=pull,
+        tension_bottom=pull,
+        tension=pull,
+        tilt=0.0,
+        knockdown=0.0,
+        safety_factor=breaking / pull if breaking and pull else nan,
+        utilisation=pull / working if working else nan,
+        reynolds=nan,
+    )
+
+
+def _anchor_load(mooring: Mooring, solution: Solution) -> AnchorLoad:
+    anchor, checks = mooring.file.anchor, mooring.file.checks
+    force = solution.force[-1]
+    vertical, horizontal = float(force[2]), float(np.hypot(force[0], force[1]))
+    friction = anchor.friction or checks.anchor_friction
+    return AnchorLoad(
+        tension=float(solution.tension[-1]),
+        vertical=vertical,
+        horizontal=horizontal,
+        angle=float(np.degrees(np.arctan2(horizontal, vertical))),
+        required_weight=required_weight(vertical, horizontal, checks.anchor_factor, friction),
+        weight=mooring.anchor_weight,
+        grounded_length=solution.grounded_length,
+    )

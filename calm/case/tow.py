@@ -1,0 +1,224 @@
+"""A tow file, ready to be solved, and what it tells when it is."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field, replace
+from functools import cached_property
+from math import atan2, degrees, hypot
+from typing import Any
+
+from calm.assemble import assemble_line, assemble_water
+from calm.case.columns import Clamps, Components, Shape
+from calm.case.labels import naming_the_piece
+from calm.case.measure import clamps_of, components_of, shape_of
+from calm.case.result import Accuracy, Strumming, document_of
+from calm.case.strumming import strumming_of
+from calm.case.warnings import tow_warnings_of
+from calm.files import MooringFile, TowKeys
+from calm.files.tables import components
+from calm.physics.line import Line, Water
+from calm.solve import Settings, Solution, Status, Towing, fit_tow_length, solve_tow
+
+
+@dataclass(frozen=True)
+class TowPoint:
+    """What the line does to the ship: its tension, downward and backward [N].
+
+    `angle` is that of the line there below the horizontal [degrees].
+    """
+
+    tension: float
+    angle: float
+    vertical: float
+    horizontal: float
+
+
+@dataclass(frozen=True)
+class TowedBody:
+    """The upper end of the lowest piece, or the free end of a bare cable.
+
+    Depth and horizontal distance from the tow point [m], tension there [N], and the angle of the
+    line above it from the horizontal [degrees].
+    """
+
+    depth: float
+    layback: float
+    tension: float
+    angle: float
+
+
+@dataclass(frozen=True)
+class TowResult:
+    """A converged tow. Lengths and depths [m], forces [N], angles [degrees], speed [m/s].
+
+    `components` run from the ship down, `shape` from the free end; x and y are east and north of
+    the tow point, depths above the water negative. `miss`, `closure` and `accuracy` are as in
+    `Result`, the ship in place of the anchor.
+    """
+
+    tow: Tow = field(repr=False)
+    name: str
+    type: str
+    status: str
+    iterations: int
+    segments: int
+    miss: float
+    closure: float
+    accuracy: Accuracy
+    speed: float
+    toward: float
+    tow_point: TowPoint
+    body: TowedBody
+    strumming: Strumming | None
+    components: Components = field(repr=False)
+    clamps: Clamps = field(repr=False)
+    shape: Shape = field(repr=False)
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def file(self) -> MooringFile:
+        """The file as read."""
+        return self.tow.file
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON object of the result format; None stands where a figure is unknown."""
+        ends = {
+            "speed": self.speed,
+            "toward": self.toward,
+            "tow_point": asdict(self.tow_point),
+            "body": asdict(self.body),
+            "strumming": None if self.strumming is None else asdict(self.strumming),
+        }
+        return document_of(self, ends)
+
+    def to_dataframe(self) -> Any:
+        """The components as a pandas data frame (pandas is not installed with CALM)."""
+        return self.components.to_dataframe()
+
+    def _repr_html_(self) -> str:
+        """The table of the line, for notebooks."""
+        from importlib import import_module
+
+        # the report room stands above this one, so it is asked for by name at run time
+        html: str = import_module("calm.report.notebook").to_html(self)
+        return html
+
+
+@dataclass(frozen=True)
+class Tow:
+    """A tow as read from its file; `line`, `water` and `towing` are what the solver takes."""
+
+    file: MooringFile
+
+    @property
+    def keys(self) -> TowKeys:
+        """The `tow:` of the file."""
+        assert self.file.tow is not None
+        return self.file.tow
+
+    @cached_property
+    def water(self) -> Water:
+        """Depth, current over the ground and density by level."""
+        return assemble_water(self.file.environment)
+
+    @property
+    def settings(self) -> Settings:
+        """How the line is solved."""
+        return Settings(self.file.solver.angle_step, self.file.solver.tolerance)
+
+    @property
+    def towing(self) -> Towing:
+        """The ship's way, the sheave's height and the wind."""
+        wind = self.file.environment.wind
+        return Towing(
+            *components(self.keys.speed, self.keys.toward),
+            height=self.keys.height,
+            wind=(0.0, 0.0) if wind is None else components(wind.speed, wind.toward),
+            in_air=self.file.environment.fluid == "air",
+        )
+
+    @cached_property
+    def line(self) -> Line:
+        """The pieces from the ship down, one that is paid out to a depth at its cut length.
+
+        Raises
+        ------
+        NoEquilibrium
+            Where no length reaches the depth.
+        """
+        line = assemble_line(self.file.pieces, self.file.solver)
+        for piece in self.file.pieces:
+            if piece.fit_body_depth is not None:
+                with naming_the_piece(self.file.pieces):
+                    length = fit_tow_length(
+                        line, self.water, self.towing, piece.index, piece.fit_body_depth,
+                        self.settings,
+                    )  # fmt: skip
+                return line.with_length(piece.index, length)
+        return line
+
+    def at_speed(self, speed: float) -> Tow:
+        """The same tow at another speed of the ship [m/s], a fitted cable as long as at its own."""
+        keys = self.keys.model_copy(update={"speed": speed})
+        other = Tow(replace(self.file, tow=keys))
+        other.__dict__["line"] = self.line
+        return other
+
+    def solve(self) -> TowResult:
+        """Find the steady shape.
+
+        Raises
+        ------
+        NoEquilibrium
+            With status, message and advice, where there is none that passes every check.
+        """
+        with naming_the_piece(self.file.pieces, towed=True):
+            solution = solve_tow(self.line, self.water, self.towing, self.settings)
+        return _result_of(self, solution)
+
+
+def _result_of(tow: Tow, solution: Solution) -> TowResult:
+    pieces = tow.file.pieces
+    force = solution.force[-1]
+    backward = hypot(force[0], force[1])
+    result = TowResult(
+        tow=tow,
+        name=tow.file.name,
+        type="tow",
+        status=Status.CONVERGED.label,
+        iterations=solution.marches,
+        segments=solution.segments,
+        miss=solution.miss,
+        closure=solution.closure,
+        accuracy=Accuracy(solution.depth_error, solution.tension_error),
+        speed=tow.keys.speed,
+        toward=tow.keys.toward,
+        tow_point=TowPoint(
+            tension=float(solution.tension[-1]),
+            angle=degrees(atan2(-force[2], backward)),
+            vertical=-float(force[2]),
+            horizontal=backward,
+        ),
+        body=_body(solution),
+        strumming=strumming_of(tow.file.solver, solution),
+        components=components_of(pieces, solution),
+        clamps=clamps_of(pieces, solution),
+        shape=shape_of(solution),
+    )
+    return replace(result, warnings=tow_warnings_of(result, solution))
+
+
+def _body(solution: Solution) -> TowedBody:
+    """Where the lowest piece hangs on the line; of a cable, where it ends."""
+    bare = bool(solution.line.flexible[0])
+    node = 0 if bare else int(solution.piece_nodes[0, 1])
+    x, y, z = solution.position[node]
+    pull = -solution.force[node]
+    if bare:
+        pull = solution.position[1] - solution.position[0]
+    return TowedBody(
+        depth=-float(z),
+        layback=hypot(x, y),
+        tension=float(solution.tension[node]),
+        angle=degrees(atan2(pull[2], hypot(pull[0], pull[1]))),
+    )

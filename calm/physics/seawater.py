@@ -1,0 +1,122 @@
+"""Sea water and gravity: density by TEOS-10, viscosity by Sharqawy, gravity by latitude.
+
+Positions are geographic, in degrees north and east, as TEOS-10 takes them.
+"""
+
+from __future__ import annotations
+
+from math import radians, sin
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from calm.physics.line import Floats
+
+KINEMATIC_VISCOSITY = 1.36e-6
+"""Where temperature and salinity are not given [m²/s]: sea water of 10 °C and 35."""
+
+MID_LATITUDE = 45.0
+"""Where no position is given [degrees]. Latitude only turns depth into pressure: between the
+equator and a pole the density at 5000 m differs by 0.12 kg/m³."""
+
+SOUTHERNMOST = -86.0
+"""No sea, and no entry in the atlas of its composition, lies beyond this latitude [degrees]."""
+
+
+def dynamic_viscosity(temperature: ArrayLike, salinity: ArrayLike) -> Floats:
+    """Dynamic viscosity of sea water [Pa s].
+
+    Parameters
+    ----------
+    temperature : (...) in situ [°C], 0 to 180
+    salinity : (...) [g/kg], 0 to 150; a practical salinity is 0.5 % less, which changes nothing
+        here
+
+    Valid at atmospheric pressure, to 1.5 %; the pressure of the deep sea changes it by a few
+    percent at most.
+
+    Source: Sharqawy, Lienhard & Zubair (2010), Desalination and Water Treatment 16, 354-380,
+    equations 22 and 23.
+    """
+    t, s = np.asarray(temperature, dtype=float), 1e-3 * np.asarray(salinity, dtype=float)
+    pure = 4.2844e-5 + 1.0 / (0.157 * (t + 64.993) ** 2 - 91.296)
+    a = 1.541 + (1.998e-2 - 9.52e-5 * t) * t
+    b = 7.974 + (-7.561e-2 + 4.724e-4 * t) * t
+    viscosity: Floats = pure * (1.0 + (a + b * s) * s)
+    return viscosity
+
+
+def kinematic_viscosity(temperature: ArrayLike, salinity: ArrayLike, density: ArrayLike) -> Floats:
+    """Kinematic viscosity of sea water [m²/s] of a temperature [°C], salinity, density [kg/m³]."""
+    viscosity: Floats = dynamic_viscosity(temperature, salinity) / np.asarray(density, dtype=float)
+    return viscosity
+
+
+def gravity(latitude: float) -> float:
+    """Acceleration of gravity at the sea surface [m/s²], by latitude [degrees].
+
+    It grows by 0.011 m/s² down to 5000 m, which is left out.
+
+    Source: the international gravity formula as TEOS-10 takes it, to 1e-6 m/s².
+    """
+    square = sin(radians(latitude)) ** 2
+    return 9.780327 * (1.0 + 0.0053024 * square - 0.0000058 * sin(radians(2.0 * latitude)) ** 2)
+
+
+def density(
+    temperature: ArrayLike,
+    salinity: ArrayLike,
+    depth: ArrayLike,
+    latitude: float = MID_LATITUDE,
+    longitude: float | None = None,
+) -> Floats:
+    """Density in situ [kg/m³] from what a probe measures.
+
+    Parameters
+    ----------
+    temperature : (...) in situ, ITS-90 [°C]
+    salinity : (...) practical [-]
+    depth : (...) below the surface [m]
+    latitude : [degrees]
+    longitude : [degrees]; without one, and on land, sea water is of the reference composition,
+        whose density is off by less than 0.03 kg/m³ in the open ocean
+
+    Returns
+    -------
+    (...) as the three are broadcast.
+
+    Valid for the sea: 0 to 42 g/kg, -6 to 40 °C, down to 10 km.
+    """
+    import gsw
+
+    pressure = gsw.p_from_z(-np.asarray(depth, dtype=float), latitude)
+    if longitude is None or latitude < SOUTHERNMOST:
+        absolute = gsw.SR_from_SP(salinity)
+    else:
+        absolute = gsw.SA_from_SP(salinity, pressure, longitude, latitude)
+    conservative = gsw.CT_from_t(absolute, temperature, pressure)
+    return absolute_density(absolute, conservative, depth, latitude)
+
+
+def absolute_density(
+    absolute_salinity: ArrayLike,
+    conservative_temperature: ArrayLike,
+    depth: ArrayLike,
+    latitude: float = MID_LATITUDE,
+) -> Floats:
+    """Density in situ [kg/m³] from TEOS-10's own variables.
+
+    Parameters
+    ----------
+    absolute_salinity : (...) [g/kg]
+    conservative_temperature : (...) [°C]
+    depth : (...) below the surface [m]
+    latitude : [degrees]
+
+    Source: IOC, SCOR & IAPSO (2010), the thermodynamic equation of seawater; 75-term expression
+    of Roquet et al. (2015), Ocean Modelling 90, 29-43, by way of the library gsw.
+    """
+    import gsw
+
+    pressure = gsw.p_from_z(-np.asarray(depth, dtype=float), latitude)
+    return np.asarray(gsw.rho(absolute_salinity, conservative_temperature, pressure), dtype=float)

@@ -1,0 +1,209 @@
+"""A towed line: how deep its free end runs behind a ship that steams on steadily."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from calm.physics.line import Floats, Line, Water
+from calm.physics.march import End
+from calm.physics.state import MarchError
+from calm.solve.closing import Closing, Root
+from calm.solve.finish import finished
+from calm.solve.refine import Refined, refine
+from calm.solve.root import bracketed_root
+from calm.solve.solution import Settings, Solution
+from calm.solve.status import Status
+
+AIR_DENSITY = 1.225
+"""Of the air above the water [kg/m³]: the standard atmosphere at sea level."""
+SURFACE = 1e-9
+"""Thickness of the step from water to air, as a share of the line out."""
+SCAN = 16
+"""Depths tried where the flow changes with depth: how finely separate equilibria are told apart."""
+FREQUENCY_TOLERANCE = 1e-9
+_ROUNDS = 12
+
+
+@dataclass(frozen=True)
+class Towing:
+    """What tows a line, and in what.
+
+    Attributes
+    ----------
+    east, north : velocity of the ship over the ground [m/s]
+    height : of the tow point above the surface [m]
+    wind : velocity of the air to the east and north [m/s], for what of the line is above water
+    in_air : whether the whole line is in the fluid of the `Water`, which has no surface: air
+    """
+
+    east: float
+    north: float
+    height: float = 0.0
+    wind: tuple[float, float] = (0.0, 0.0)
+    in_air: bool = False
+
+
+def solve_tow(
+    line: Line, water: Water, towing: Towing, settings: Settings | None = None
+) -> Solution:
+    """Solve for the steady shape of a towed line.
+
+    Parameters
+    ----------
+    line : from the ship to the towed body
+    water : current over the ground; its depth is inf where there is no seabed to touch
+    settings : angle step, and tolerance as a share of the line out; 1° and 1e-7 where not given
+
+    Returns
+    -------
+    Solution : from the free end: its piece 0 is the last of `line`, and x, y are those from the
+        tow point. Of several equilibria the deepest, the first that a ship gathering way meets.
+        At 1° positions are within 5e-5 of the line out, tensions within 2e-4.
+
+    Raises
+    ------
+    NoEquilibrium
+        ``above-surface`` where a part would leave the water, ``grounded`` where one would touch
+        the seabed, ``not-converged`` where no shape passes every check.
+    """
+    towed = replace(line.reversed(), towed=True)
+    closing = Closing(towed, _relative(line, water, towing), settings or Settings())
+    try:
+        if line.strumming is not None and line.diameter.any():
+            refined, other_depth = _strumming(closing, towing)
+        else:
+            root, other_depth = _locate(closing, towing)
+            refined = refine(closing, root)
+    except MarchError as error:
+        raise Status.NOT_CONVERGED.because(f"The march stopped: {error}.") from error
+    return finished(
+        closing, refined, other_depth, lambda solution: _refuse_misplaced(solution, towing)
+    )
+
+
+def _relative(line: Line, water: Water, towing: Towing) -> Water:
+    """The water as the ship sees it, air above its surface where the line passes that."""
+    u, v = water.u - towing.east, water.v - towing.north
+    if towing.in_air or towing.height == 0.0:
+        return replace(water, u=u, v=v)
+    below = water.level > 0.0
+    surface, density = water.at(np.zeros(()))
+
+    def column(air: float, at_surface: float, values: Floats) -> list[float]:
+        return [air, at_surface, *values[below].tolist()]
+
+    return replace(
+        water,
+        level=np.array([-SURFACE * line.length.sum(), 0.0, *water.level[below].tolist()]),
+        u=np.array(column(towing.wind[0] - towing.east, surface[0] - towing.east, u)),
+        v=np.array(column(towing.wind[1] - towing.north, surface[1] - towing.north, v)),
+        w=np.array(column(0.0, surface[2], water.w)),
+        density=np.array(column(AIR_DENSITY, float(density), water.density)),
+    )
+
+
+def _locate(closing: Closing, towing: Towing) -> tuple[Root, float | None]:
+    """The deepest coarse root, and the depth of the free end near another one [m]."""
+    unknown = closing.towed(towing.height)
+    miss = closing.coarse_miss(unknown)
+    shallowest = -towing.height - closing.span if towing.in_air else 0.0
+    depth = max(closing.span - towing.height, closing.span * 1e-3)
+    low = miss(depth)
+    while low > 0.0:  # the line stretches
+        if depth > 100.0 * closing.span:
+            raise Status.NOT_CONVERGED.because("The line stretches without end.")
+        depth += 2.0 * low
+        low = miss(depth)
+    bracket: tuple[float, float, float, float] | None = None
+    for upper in _upwards(closing, depth, low, shallowest):
+        high = miss(upper)
+        if low <= 0.0 < high or (upper == shallowest and low <= 0.0 <= high + closing.allowed):
+            if bracket is not None:
+                return closing.coarse_root(unknown, *bracket), upper
+            bracket = upper, max(high, 0.0), depth, low
+        depth, low = upper, high
+    if bracket is None:
+        raise Status.ABOVE_SURFACE.because(
+            "The towed body would come out of the water: even at the surface the line's upper end "
+            f"is {-low:.2f} m below the tow point."
+        )
+    return closing.coarse_root(unknown, *bracket), None
+
+
+def _upwards(closing: Closing, depth: float, low: float, shallowest: float) -> list[float]:
+    """Depths to try, from below; where nothing changes with depth the miss itself is the way."""
+    water = closing.water
+    if any(np.ptp(column) for column in (water.u, water.v, water.w, water.density)):
+        steps: list[float] = np.linspace(depth, shallowest, SCAN + 1)[1:].tolist()
+        return steps
+    return [max(depth + low - closing.allowed, shallowest)]
+
+
+def _strumming(closing: Closing, towing: Towing) -> tuple[Refined, float | None]:
+    """The line at the frequency that its own angle at the ship gives it.
+
+    The frequency that follows falls as the one assumed rises, since more drag lifts the line: so
+    there is one. Coarse marches bracket it, and their slope leads on to that of the finer shape.
+    """
+    root, other_depth = _locate(closing, towing)
+
+    def excess(frequency: float) -> float:
+        nonlocal root
+        closing.frequency = frequency
+        root = closing.coarser(replace(root, unknown=closing.towed(towing.height)))
+        end = closing.run(root.unknown, root.x, closing.coarse_step)
+        return _frequency(closing, end) - frequency
+
+    most = excess(0.0)
+    if most > 0.0:
+        frequency, _, slope = bracketed_root(
+            excess, 0.0, most, most, excess(most), small=1e-3 * most, narrow=1e-9 * most
+        )
+        for _ in range(_ROUNDS):
+            closing.frequency = frequency
+            refined = refine(closing, replace(root, unknown=closing.towed(towing.height)))
+            root = refined.closed.root
+            lacking = _frequency(closing, refined.closed.end) - frequency
+            if abs(lacking) <= FREQUENCY_TOLERANCE * frequency:
+                return refined, other_depth
+            frequency -= lacking / slope
+        raise Status.NOT_CONVERGED.because("The frequency of the strumming line does not settle.")
+    return refine(closing, root), other_depth
+
+
+def _frequency(closing: Closing, end: End) -> float:
+    """F = 0.166 V₀ sin φ_n/D [Hz], from the angle to the flow at the ship."""
+    law, line = closing.line.strumming, closing.line
+    assert law is not None
+    diameter = float(line.diameter[line.diameter > 0.0][-1])
+    flow, _ = closing.water.at(np.zeros(()))
+    force = np.array(end.force)
+    across = float(np.linalg.norm(np.cross(flow, force)) / np.linalg.norm(force))
+    return law.strouhal * across / diameter
+
+
+def _refuse_misplaced(solution: Solution, towing: Towing) -> None:
+    """Only what hangs between the surface and the ship may be in the air; nothing is in the bed."""
+    height, depth = solution.position[:, 2], solution.water.depth
+    margin = max(solution.depth_error, 1e-6 * float(solution.line.length.sum()))
+    lowest = int(np.argmin(height))
+    if height[lowest] < -depth - margin:
+        piece = solution.piece_at(lowest)
+        raise Status.GROUNDED.because(
+            f"The towed line would touch the seabed: piece {piece + 1} comes "
+            f"{-depth - height[lowest]:.2f} m below it.",
+            piece,
+        )
+    if towing.in_air:
+        return
+    wetted = np.flatnonzero(height <= margin)
+    out = int(np.argmax(height[: wetted[-1] + 1])) if len(wetted) else 0
+    if not len(wetted) or height[out] > margin:
+        piece = solution.piece_at(out)
+        raise Status.ABOVE_SURFACE.because(
+            f"The towed line would rise out of the water: piece {piece + 1} comes "
+            f"{height[out]:.2f} m above the surface.",
+            piece,
+        )
