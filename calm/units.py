@@ -104,11 +104,18 @@ DIMENSIONS: Mapping[str, Dimension] = {
         {"N/(m/s)^2": 1.0, "kgf/(m/s)^2": KILOGRAM_FORCE, "lbf/(ft/s)^2": _POUND_FORCE / _FOOT**2},
     ),
     "temperature": Dimension("a temperature", "degC", {"degC": 1.0}),
+    "salinity": Dimension(
+        "a salinity (practical: 35; or in g/kg)",
+        "",
+        {"": 1.0, "PSU": 1.0, "psu": 1.0, "g/kg": 35 / 35.16504},
+    ),
     "angle": Dimension("an angle", "deg", {"deg": 1.0, "rad": 180 / math.pi}),
 }
 """Every kind of quantity, by name.
 
 Angles are kept in degrees and temperatures in degrees Celsius, as files and reports have them.
+Salinities are practical ones; a mass fraction is turned into one as in sea water of the reference
+composition, by the factor that defines it (Millero et al. 2008, Deep-Sea Research I 55, 50-72).
 """
 
 _SPELLINGS = {
@@ -125,6 +132,7 @@ _SPELLINGS = {
     "l": "L",
     "m*s^-1": "m/s",
     "cm*s^-1": "cm/s",
+    "g*kg^-1": "g/kg",
 }
 
 _MASS_AND_FORCE = {"kg": "kgf", "g": "gf", "t": "tf", "lb": "lbf", "kg/m": "kgf/m", "g/m": "gf/m"}
@@ -220,6 +228,9 @@ def unit_factor(text: str, dimension: str) -> float:
     if wanted.unit == "degC":
         # Other scales have other zeros, which no factor can express.
         raise QuantityError("is not a temperature in degC", "degC" if unit == "C" else None)
+    if dimension == "salinity":
+        # Pint would make a plain number of any ratio, and that would pass for a practical salinity.
+        raise QuantityError(f"is not {_described(wanted)}")
     if len(unit) > _LONGEST or not _UNIT.fullmatch(unit):
         raise QuantityError(f"cannot be read; {_described(wanted)} is needed")
     return _factor_by_pint(unit, wanted)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import nan
+from math import isnan, nan
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,7 +26,9 @@ def result_of(mooring: Mooring, solution: Solution, still: Solution | None) -> R
     pieces = mooring.file.pieces
     above = components_of(pieces[:-1], solution, still)
     components = _with_anchor(above, pieces[-1], mooring.water.depth)
-    knockdown = float(components.knockdown[0])
+    knockdown, riding = float(components.knockdown[0]), solution.riding
+    shape = shape_of(solution)
+    still_shape = shape if still is solution else None if still is None else shape_of(still)
     result = Result(
         mooring=mooring,
         name=mooring.file.name,
@@ -44,13 +46,15 @@ def result_of(mooring: Mooring, solution: Solution, still: Solution | None) -> R
             knockdown=None if still is None else knockdown,
             used_buoyancy=solution.buoyancy_used,
             reserve=solution.reserve,
+            draft=None if riding is None or isnan(riding.draft) else riding.draft,
+            freeboard=None if riding is None or isnan(riding.freeboard) else riding.freeboard,
         ),
         anchor=_anchor_load(mooring, solution),
         strumming=strumming_of(mooring.file.solver, solution),
         components=components,
         clamps=clamps_of(pieces[:-1], solution, still),
-        shape=shape_of(solution),
-        still_shape=None if still is None else shape_of(still),
+        shape=shape,
+        still_shape=still_shape,
     )
     return replace(result, warnings=warnings_of(result, solution))
 

@@ -9,12 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
-from calm.assemble import assemble_line, assemble_water
+from calm.assemble import assemble_floating, assemble_line, assemble_water
 from calm.case.labels import naming_the_piece
 from calm.case.moored import result_of
 from calm.case.result import Result
 from calm.case.tow import Tow
-from calm.errors import InputError, NoEquilibrium, Problem
+from calm.errors import NoEquilibrium
 from calm.files import MooringFile, read_mooring
 from calm.physics.line import REFERENCE_DENSITY, Line, Water
 from calm.solve import Settings, Solution, Status, fit_length, solve_mooring
@@ -71,6 +71,9 @@ class Mooring:
             Where no length fits.
         """
         line = assemble_line(self.file.pieces, self.file.solver)
+        if self.file.solver.buoy_drag == "immersed":
+            floating = assemble_floating(self.file.pieces, self.file.environment, self.water)
+            line = replace(line, floating=floating)
         for piece in self.file.pieces:
             if piece.fit_top_depth is not None:
                 with naming_the_piece(self.file.pieces):
@@ -95,23 +98,9 @@ class Mooring:
         ------
         NoEquilibrium
             With status, message and advice, where there is none that passes every check.
-        InputError
-            Where the line reaches the surface and the file leaves `buoy_drag` at `immersed`.
         """
         with naming_the_piece(self.file.pieces):
             solution = solve_mooring(self.line, self.water, self.settings)
-        if solution.surface and self.file.solver.buoy_drag != "full":
-            raise InputError(
-                [
-                    Problem(
-                        str(self.file.path or self.file.name),
-                        0,
-                        0,
-                        "the float of this line is at the surface, and `buoy_drag: immersed` is "
-                        "not available in this version; write `solver: {buoy_drag: full}`",
-                    )
-                ]
-            )
         self._refuse_a_lifted_anchor(solution)
         self._refuse_a_heap(solution)
         return result_of(self, solution, self._still(solution))
@@ -132,11 +121,16 @@ class Mooring:
 
     def _still(self, solution: Solution) -> Solution | None:
         """The same line without current; None where it has no unique shape."""
-        if not self.water.moving:
+        floating = self.line.floating
+        blown = solution.riding is not None and floating is not None and floating.blown
+        if not (self.water.moving or blown):
             return solution
+        line = self.line
+        if floating is not None:
+            line = replace(line, floating=replace(floating, wind=(0.0, 0.0)))
         # a plumb line is exact with long segments
         settings = replace(self.settings, angle_step=max(self.settings.angle_step, COARSE_STEP))
         try:
-            return solve_mooring(self.line, self.water.still(), settings)
+            return solve_mooring(line, self.water.still(), settings)
         except NoEquilibrium:
             return None

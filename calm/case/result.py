@@ -52,7 +52,8 @@ class Top:
     """The free end: depth, offsets east and north, knockdown [m]; None where there is none.
 
     `used_buoyancy` is the share in use of the buoyancy that is at the surface, `reserve` the
-    rest of it [N]; 1 and 0 below the surface.
+    rest of it [N]; 1 and 0 below the surface. `draft` and `freeboard` [m] are those of a float at
+    the surface whose hull is known.
     """
 
     depth: float
@@ -61,6 +62,8 @@ class Top:
     knockdown: float | None
     used_buoyancy: float
     reserve: float
+    draft: float | None = None
+    freeboard: float | None = None
 
 
 @dataclass(frozen=True)

@@ -127,7 +127,7 @@ def _on_the_seabed(result: Result, solution: Solution) -> Iterator[str]:
     names = [result.components.label[p] for p in rigid] + [known[m] for m in clamps]
     if names:
         yield f"On the seabed: {', '.join(names)}."
-    if solution.landed and not result.mooring.water.moving:
+    if solution.landed and result.still_shape is result.shape:
         yield "In still water the part on the seabed has no direction: the offset is its greatest."
 
 
@@ -139,9 +139,24 @@ def _other_equilibrium(_: Result | TowResult, solution: Solution) -> Iterator[st
         )
 
 
-def _wind_ignored(result: Result, _: Solution) -> Iterator[str]:
-    if result.file.environment.wind is not None:
-        yield "The wind is not taken into account in this version."
+def _hull_unknown(result: Result, solution: Solution) -> Iterator[str]:
+    """A float that has no draft is taken as just immersed, or dragged as its `k_surface` has it."""
+    riding, told = solution.riding, result.file.solver.buoy_drag == "immersed"
+    if solution.surface and told and (riding is None or np.isnan(riding.draft)):
+        afloat = [result.components.label[piece] for piece in solution.afloat]
+        reason = (
+            "gives no hull, or no mass or volume for one"
+            if len(afloat) == 1
+            else "are several floats at the surface"
+        )
+        taken = "just immersed" if riding is None else "dragged by its `k_surface`"
+        yield f"{', '.join(afloat)} {reason}: {taken}, without a draft."
+
+
+def _wind_ignored(result: Result, solution: Solution) -> Iterator[str]:
+    wind = result.file.environment.wind
+    if wind is not None and solution.surface and solution.riding is None:
+        yield "The wind on the float is not taken into account: it is taken as just immersed."
 
 
 def _below_the_sea(result: TowResult, _: Solution) -> Iterator[str]:
@@ -179,6 +194,7 @@ _MOORING_WORRIES: tuple[Callable[[Result, Solution], Iterator[str]], ...] = (
     _anchor_too_light,
     _bight,
     _on_the_seabed,
+    _hull_unknown,
     _wind_ignored,
 )
 _TOW_WORRIES: tuple[Callable[[TowResult, Solution], Iterator[str]], ...] = (

@@ -3,30 +3,44 @@
 from calm.files.catalogue import Assembly, Catalogue
 from calm.files.components import Anchor, Body, Cable, Chain, Component, Cylinder, Sphere
 from calm.files.environment import Environment, Wind
-from calm.files.mooring import Checks, Clamp, MooringFile, Piece, Position, Solver
+from calm.files.mooring import Checks, Clamp, MooringFile, Piece, Position, Solver, TowKeys
 from calm.files.reader import read_mooring
 from calm.files.schema import mooring_schema
-from calm.files.tables import CurrentTable, DensityTable
+from calm.files.strumming import (
+    AmplitudeModel,
+    BourgetMarichalKeys,
+    ConstantCn,
+    Strumming,
+    StrummingFactor,
+)
+from calm.files.tables import CurrentTable, DepthTable, SeaWater
 
 __all__ = [
+    "AmplitudeModel",
     "Anchor",
     "Assembly",
     "Body",
+    "BourgetMarichalKeys",
     "Cable",
     "Catalogue",
     "Chain",
     "Checks",
     "Clamp",
     "Component",
+    "ConstantCn",
     "CurrentTable",
     "Cylinder",
-    "DensityTable",
+    "DepthTable",
     "Environment",
     "MooringFile",
     "Piece",
     "Position",
+    "SeaWater",
     "Solver",
     "Sphere",
+    "Strumming",
+    "StrummingFactor",
+    "TowKeys",
     "Wind",
     "mooring_schema",
     "read_mooring",

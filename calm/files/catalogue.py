@@ -174,9 +174,17 @@ def user_folder() -> Path:
 
 
 def define(
-    entry: Entry, section: Section, problems: list[Problem], *, also_allowed: Iterable[str] = ()
+    entry: Entry,
+    section: Section,
+    problems: list[Problem],
+    *,
+    also_allowed: Iterable[str] = (),
+    context: Mapping[str, object] | None = None,
 ) -> Component | Assembly | None:
-    """The model of an entry, or of a section laid over it; None when it has mistakes."""
+    """The model of an entry, or of a section laid over it; None when it has mistakes.
+
+    `context` is None or, where it is to be used in air, `IN_AIR`.
+    """
     kind = section.data.get("kind")
     if kind is None:
         problems.append(section.problem((), f"`{entry.id}`: `kind` is missing ({_kinds()})"))
@@ -194,7 +202,7 @@ def define(
         section = section.over(family_default)
     if kind == "assembly":
         return validate(Assembly, section, problems)
-    return validate(KINDS[kind], section, problems, also_allowed=also_allowed)
+    return validate(KINDS[kind], section, problems, also_allowed=also_allowed, context=context)
 
 
 def _kinds() -> str:

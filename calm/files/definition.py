@@ -6,7 +6,10 @@ in sea water of `CATALOGUE_DENSITY` under standard gravity.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Literal
+
+from pydantic import ValidationInfo
 
 from calm.files.fields import POSITIVE_FORCE, POSITIVE_LENGTH, TILT, Model, Quantity, Role, Text
 from calm.units import KILOGRAM_FORCE
@@ -22,6 +25,9 @@ STEEL_DENSITY = 7850.0
 
 DISAGREEMENT = 0.01
 """Share by which figures that say the same thing may differ."""
+
+IN_AIR: Mapping[str, object] = {"fluid": "air"}
+"""Context of a definition that is read for use in air, where its mass is all that is needed."""
 
 MASS = Quantity("mass", at_least=0)
 DENSITY = Quantity("density", above=0)
@@ -44,6 +50,11 @@ class Definition(Model):
     max_tilt: Annotated[float | None, TILT] = None
     warn_tilt: Annotated[float | None, TILT] = None
     slack: Literal["allowed"] | None = None
+
+
+def is_in_air(info: ValidationInfo) -> bool:
+    """Whether the definition that is being validated is read for use in air."""
+    return info.context == IN_AIR
 
 
 def volume_from_weights(mass: float | None, net_buoyancy: float) -> float | None:

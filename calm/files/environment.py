@@ -1,73 +1,90 @@
-"""The environment of a mooring: water depth, density, gravity, current and wind."""
+"""What a line stands in or is towed through: water or air, its depth, density, current and wind."""
 
 from __future__ import annotations
 
+import math
 import os.path
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
-from pydantic import BeforeValidator, Discriminator, Tag, ValidationError
+from pydantic import BeforeValidator, Discriminator, Tag, model_validator
 
 from calm.errors import InputError, Problem
 from calm.files.current_file import read_current_file
+from calm.files.density import USUAL_DENSITY, Density, check_density, read_density
 from calm.files.explain import shown, validate
-from calm.files.fields import Model, Quantity, Text
+from calm.files.fields import POSITIVE_LENGTH, Model, Quantity, Text
 from calm.files.section import Section
 from calm.files.tables import (
     CurrentTable,
-    DensityTable,
-    Report,
+    DepthTable,
+    SeaWater,
+    Table,
     components,
     read_current,
-    read_density,
+    report_at,
+    table_of,
 )
 from calm.files.times import TimeChoiceError
 from calm.units import QuantityError
 
-_DENSITY = Quantity("density", above=0)
+if TYPE_CHECKING:
+    from calm.files.mooring import Position
+
 _SPEED = Quantity("speed", at_least=0)
 _DIRECTION = Quantity("angle")
 
 
 @dataclass(frozen=True)
 class Environment:
-    """What the mooring stands in.
+    """What the line stands in, or is towed through.
 
     Attributes
     ----------
     name : str or None
         Of the variant or environment file in use.
-    depth : float
-        Water depth [m].
-    density : float or DensityTable
-        Of the water [kg/m³].
+    fluid : "water" or "air"
+        Air in a tow only.
+    depth : float or None
+        Water depth [m]; None in a tow that gives none.
+    density : float, DepthTable or SeaWater
+        Of the fluid [kg/m³], or the temperature and salinity that it follows from.
     gravity : float or None
         [m/s²], where the file gives it.
     current : CurrentTable
     wind : Wind or None
+        Over the water.
+    position : Position or None
     """
 
     name: str | None
-    depth: float
-    density: float | DensityTable
+    fluid: Literal["water", "air"]
+    depth: float | None
+    density: float | DepthTable | SeaWater
     gravity: float | None
     current: CurrentTable
     wind: Wind | None
+    position: Position | None
 
 
 class Wind(Model):
-    """Wind over the water: speed [m/s], and where it blows to [degrees]."""
+    """Wind over the water: speed [m/s], and where it blows to [degrees].
+
+    It drives the water at the surface at `surface_drift`, a share of its own speed, and the water
+    below ever less, linearly, down to `drift_depth` [m]: the seabed where it is None.
+    """
 
     speed: Annotated[float, _SPEED]
     toward: Annotated[float, _DIRECTION]
+    surface_drift: Annotated[float, Quantity("number", at_least=0, at_most=0.1)] = 0.0
+    drift_depth: Annotated[float | None, POSITIVE_LENGTH] = None
 
-
-class Table(Model):
-    """Columns, each a name and its unit, and rows of values."""
-
-    columns: tuple[Text, ...]
-    rows: tuple[tuple[Text | None, ...], ...]
+    @model_validator(mode="after")
+    def _depth_of_a_drift(self) -> Wind:
+        if self.drift_depth is not None and "surface_drift" not in self.model_fields_set:
+            raise ValueError("`drift_depth` needs `surface_drift`, a share of the wind's speed")
+        return self
 
 
 class UniformCurrent(Model):
@@ -93,34 +110,18 @@ def _current_form(value: object) -> str:
     return "table" if {"columns", "rows"} & set(value) else "uniform"
 
 
-def _density_form(value: object) -> str:
-    return "table" if isinstance(value, dict) else "constant"
-
-
-def _no_sea_water_formula(value: object) -> object:
-    if isinstance(value, dict) and {"temperature", "salinity"} & set(value):
-        raise QuantityError(
-            "from temperature and salinity is not available in this version; give a density"
-        )
-    return value
-
-
 def _water_only(value: object) -> object:
     if value == "air":
-        raise QuantityError("is not available in this version; a mooring stands in water")
+        raise QuantityError("is for tows; a mooring stands in water")
     return value
 
 
-class EnvironmentKeys(Model):
-    """The keys of `environment:` as a person writes them."""
+class TowEnvironmentKeys(Model):
+    """The keys of `environment:` as a person writes them for a tow."""
 
-    fluid: Annotated[Literal["water"], BeforeValidator(_water_only)] = "water"
-    depth: Annotated[float, Quantity("length", above=0)]
-    density: Annotated[
-        Annotated[Annotated[float, _DENSITY], Tag("constant")] | Annotated[Table, Tag("table")],
-        Discriminator(_density_form),
-        BeforeValidator(_no_sea_water_formula),
-    ] = 1025.0
+    fluid: Literal["water", "air"] = "water"
+    depth: Annotated[float | None, POSITIVE_LENGTH] = None
+    density: Density = USUAL_DENSITY["water"]
     gravity: Annotated[float | None, Quantity("acceleration", above=0)] = None
     current: Annotated[
         Annotated[Table, Tag("table")]
@@ -131,44 +132,73 @@ class EnvironmentKeys(Model):
     wind: Wind | None = None
 
 
+class EnvironmentKeys(TowEnvironmentKeys):
+    """The same for a mooring, which stands in water of a given depth."""
+
+    fluid: Annotated[Literal["water"], BeforeValidator(_water_only)] = "water"
+    depth: Annotated[float, POSITIVE_LENGTH]
+
+
 def read_environment(
     section: Section,
     name: str | None,
     problems: list[Problem],
     notices: list[str],
     *,
+    towed: bool = False,
+    position: Position | None = None,
     open_files: bool = True,
 ) -> Environment | None:
     """The environment of a section; its mistakes are added to `problems`, and None returned.
 
-    A current file is looked for beside the file that names it. With `open_files` false it is not
-    read, and the environment returned is none.
+    A tow may be in air and need not give the water's depth. A current file is looked for beside
+    the file that names it. With `open_files` false it is not read, and the environment returned is
+    none.
     """
-    keys = validate(EnvironmentKeys, section, problems)
+    keys = validate(TowEnvironmentKeys if towed else EnvironmentKeys, section, problems)
     if keys is None:
-        _check_profiles(section, problems)
+        _check_tables(section, problems)
         return None
-    density: float | DensityTable | None
-    if isinstance(keys.density, Table):
-        report = _reporter(section, "density")
-        density = read_density(keys.density.columns, keys.density.rows, report, problems)
-    else:
-        density = keys.density
+    before = len(problems)
+    given = keys.density if "density" in keys.model_fields_set else USUAL_DENSITY[keys.fluid]
+    density = read_density(given, section, problems)
+    if isinstance(density, SeaWater) and keys.fluid == "air":
+        message = "temperature and salinity are those of the sea, not of air"
+        problems.append(section.problem(("density",), message))
+    _check_wind(keys, section, problems)
     current = _current(keys, section, problems, notices, open_files)
-    if density is None or current is None:
+    if density is None or current is None or len(problems) > before:
         return None
-    return Environment(name, keys.depth, density, keys.gravity, current, keys.wind)
+    if isinstance(density, SeaWater) and position is None:
+        notices.append(
+            "Density from temperature and salinity without a `position`: taken at 45 degrees of "
+            "latitude, in sea water of the reference composition."
+        )
+    gravity, wind = keys.gravity, keys.wind
+    return Environment(name, keys.fluid, keys.depth, density, gravity, current, wind, position)
+
+
+def _check_wind(keys: TowEnvironmentKeys, section: Section, problems: list[Problem]) -> None:
+    """Wind blows over water, and drives it down to a known depth."""
+    if keys.wind is None:
+        return
+    if keys.fluid == "air":
+        message = "`wind` blows over water; in air the wind is the `current`"
+        problems.append(section.problem(("wind",), message, key=True))
+    elif keys.wind.surface_drift and keys.wind.drift_depth is None and keys.depth is None:
+        message = "`surface_drift` needs `drift_depth`, as `depth` is not given"
+        problems.append(section.problem(("wind", "surface_drift"), message, key=True))
 
 
 def _current(
-    keys: EnvironmentKeys,
+    keys: TowEnvironmentKeys,
     section: Section,
     problems: list[Problem],
     notices: list[str],
     open_files: bool,
 ) -> CurrentTable | None:
     current = keys.current
-    report = _reporter(section, "current")
+    report = report_at(section, "current")
     if isinstance(current, Table):
         return read_current(current.columns, current.rows, report, problems)
     if isinstance(current, UniformCurrent):
@@ -180,8 +210,9 @@ def _current(
         return None
     if not open_files:
         return None
+    bottom = math.inf if keys.depth is None else keys.depth
     try:
-        table, told = read_current_file(path, current.time, keys.depth)
+        table, told = read_current_file(path, current.time, bottom)
     except TimeChoiceError as error:
         problems.append(report(("time",), str(error)))
     except InputError as error:
@@ -192,15 +223,9 @@ def _current(
     return None
 
 
-def _check_profiles(section: Section, problems: list[Problem]) -> None:
+def _check_tables(section: Section, problems: list[Problem]) -> None:
     """Look into the tables although other keys are wrong, so that all mistakes are told at once."""
-    for key, read in (("current", read_current), ("density", read_density)):
-        try:
-            table = Table.model_validate(section.data.get(key))
-        except ValidationError:
-            continue
-        read(table.columns, table.rows, _reporter(section, key), problems)
-
-
-def _reporter(section: Section, key: str) -> Report:
-    return lambda location, message: section.problem((key, *location), message)
+    check_density(section, problems)
+    table = table_of(section.data.get("current"))
+    if table is not None:
+        read_current(table.columns, table.rows, report_at(section, "current"), problems)

@@ -16,11 +16,7 @@ from calm.units import QuantityError
 
 LONGEST_TEXT = 60
 
-NOT_AVAILABLE: Mapping[str, str] = {
-    "elongation": "give the line's `stiffness`",
-    "tow": "a line must end in an anchor",
-    "body_depth": "it belongs to tows",
-}
+NOT_AVAILABLE: Mapping[str, str] = {"elongation": "give the line's `stiffness`"}
 """Keys of the format that this version does not compute, and what to do without."""
 
 M = TypeVar("M", bound=BaseModel)
@@ -32,13 +28,15 @@ def validate(
     problems: list[Problem],
     *,
     also_allowed: Iterable[str] = (),
+    context: Mapping[str, object] | None = None,
 ) -> M | None:
     """The model of a mapping; its mistakes are added to `problems`, and None returned.
 
-    `also_allowed` are keys that stand in the same mapping and belong to something else.
+    `also_allowed` are keys that stand in the same mapping and belong to something else, `context`
+    what the validators of the model may need to know.
     """
     try:
-        return model.model_validate(section.data)
+        return model.model_validate(section.data, context=context)
     except ValidationError as error:
         problems.extend(_explain(error, model, section, also_allowed))
         return None
@@ -53,6 +51,14 @@ def unknown(what: str, text: str, known: Iterable[str]) -> str:
     if len(names) <= 12:
         return f"{what}; allowed: {', '.join(sorted(names)) or 'none'}"
     return what
+
+
+def not_among(name: str, text: str, allowed: Iterable[str], offer: str | None = None) -> str:
+    """A value is none of those allowed; `offer` is meant when no other is like it."""
+    choices = list(allowed)
+    meant = nearest(text, choices) or offer
+    message = f"`{name}: {text}` must be one of {', '.join(choices)}"
+    return f"{message}; did you mean `{name}: {meant}`?" if meant else message
 
 
 def nearest(text: str, known: Iterable[str]) -> str | None:
@@ -148,10 +154,7 @@ def _about_value(details: Any, field: str, value: object) -> str:
     if kind in ("literal_error", "union_tag_invalid"):
         allowed = re.findall(r"'([^']*)'", context.get("expected", context.get("expected_tags")))
         text = str(value.get("kind", "")) if isinstance(value, dict) else shown(value)
-        name = "kind" if isinstance(value, dict) else field
-        near = nearest(text, allowed)
-        choice = f"; did you mean `{name}: {near}`?" if near else ""
-        return f"`{name}: {text}` must be one of {', '.join(allowed)}{choice}"
+        return not_among("kind" if isinstance(value, dict) else field, text, allowed)
     return f"`{field}` {_SHAPES.get(kind, details['msg'])}"
 
 
@@ -176,7 +179,7 @@ def _keys(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
         if fields:
             models = [inner for field in fields for inner in _models_in(field.annotation)]
         else:
-            models = [m for m in models if _tag(m) == part] or models
+            models = [m for m in models if part in (_tag(m), m.__name__)] or models
     return [name for m in models for name in m.model_fields]
 
 

@@ -55,7 +55,8 @@ class Quantity:
         kind = DIMENSIONS[self.dimension]
         number = r"^\s*[-+]?[0-9.]+([eE][-+]?[0-9]+)?(\s*[0-9]*/[0-9]+)?"
         if not kind.unit:
-            return {"type": ["number", "string"], "pattern": number + r"\s*%?$"}
+            units = "|".join(kind.units)
+            return {"type": ["number", "string"], "pattern": rf"{number}\s*({units})$"}
         units = ", ".join(kind.units)
         return {
             "description": f"{kind.noun} with its unit ({units})",

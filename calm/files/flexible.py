@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import model_validator
+from pydantic import ValidationInfo, model_validator
 
 from calm.files.definition import (
     CATALOGUE_DENSITY,
@@ -12,6 +12,7 @@ from calm.files.definition import (
     STANDARD_GRAVITY,
     STEEL_DENSITY,
     Definition,
+    is_in_air,
     refuse_weight_above_mass,
     volume_from_weights,
 )
@@ -40,26 +41,35 @@ class Cable(Flexible):
 
     @property
     def net_buoyancy(self) -> float:
-        """Net force in water of a metre, positive up [N/m]."""
+        """Net force in water of a metre, positive up; of a mass alone, that in air [N/m]."""
         if self.buoyancy is not None:
             return self.buoyancy
         if self.weight is not None:
             return -self.weight
-        assert self.mass is not None and self.density is not None
-        return (CATALOGUE_DENSITY / self.density - 1) * self.mass * STANDARD_GRAVITY
+        assert self.mass is not None
+        borne = 0.0 if self.density is None else CATALOGUE_DENSITY / self.density
+        return (borne - 1) * self.mass * STANDARD_GRAVITY
 
     @property
     def displaced_volume(self) -> float | None:
-        """Volume of water displaced by a metre [m³/m], None when the mass is unknown."""
+        """Volume displaced by a metre [m³/m], None when the mass is unknown, or is all."""
+        if self._gives_no_force and self.density is None:
+            return None
         return volume_from_weights(self.mass, self.net_buoyancy)
 
+    @property
+    def _gives_no_force(self) -> bool:
+        return self.weight is None and self.buoyancy is None
+
     @model_validator(mode="after")
-    def _weight_is_given_once(self) -> Cable:
+    def _weight_is_given_once(self, info: ValidationInfo) -> Cable:
         if self.weight is not None and self.buoyancy is not None:
             raise ValueError("gives both `weight` and `buoyancy`; one is the other negated")
-        in_air_only = self.weight is None and self.buoyancy is None
-        if in_air_only and (self.mass is None or self.density is None):
-            raise ValueError("needs `weight` or `buoyancy` in water, or `mass` with `density`")
+        if self._gives_no_force:
+            if not is_in_air(info) and (self.mass is None or self.density is None):
+                raise ValueError("needs `weight` or `buoyancy` in water, or `mass` with `density`")
+            if self.mass is None:
+                raise ValueError("needs `mass`, or `weight`")
         refuse_weight_above_mass(self.mass, self.net_buoyancy)
         return self
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Iterable
 from dataclasses import replace
 
 from calm.errors import Problem
 from calm.files.catalogue import Assembly, Catalogue, Entry, define
 from calm.files.components import Anchor, Body, Cable, Chain, Component, Cylinder, Sphere
+from calm.files.definition import IN_AIR
 from calm.files.explain import about_quantity, shown, unknown
 from calm.files.fields import LENGTH, POSITIVE_LENGTH, Quantity
 from calm.files.mooring import Clamp, Piece
@@ -21,18 +21,31 @@ MOST_PIECES = 10_000
 """Pieces a line may have, after assemblies and counts are expanded."""
 
 _COUNT = Quantity("number", at_least=1, at_most=MOST_PIECES)
-_ITEM_KEYS = frozenset({"use", "label", "count", "length", "top_depth", "clamps"})
+_ITEM_KEYS = frozenset({"use", "label", "count", "length", "top_depth", "body_depth", "clamps"})
 _ASSEMBLY_KEYS = frozenset({"use", "label", "count"})
 _CLAMP_KEYS = frozenset({"use", "label", "at"})
 
 
 class LineReader:
-    """Expands line items; mistakes are added to `problems`, things worth telling to `notices`."""
+    """Expands line items; mistakes are added to `problems`, things worth telling to `notices`.
 
-    def __init__(self, catalogue: Catalogue, problems: list[Problem], notices: list[str]) -> None:
+    `towed` and `in_air` tell which keys and figures the line may have.
+    """
+
+    def __init__(
+        self,
+        catalogue: Catalogue,
+        problems: list[Problem],
+        notices: list[str],
+        *,
+        towed: bool = False,
+        in_air: bool = False,
+    ) -> None:
         self._catalogue = catalogue
         self._problems = problems
         self._notices = notices
+        self._towed = towed
+        self._in_air = in_air
         self._defined: dict[str, Component | Assembly | None] = {}
         self._assemblies: dict[str, tuple[Piece, ...]] = {}
         self._open: list[str] = []
@@ -42,7 +55,7 @@ class LineReader:
         for id in ids:
             entry = self._catalogue.entry(id)
             if entry is not None:
-                definition = self._defined[id] = define(entry, entry.section, self._problems)
+                definition = self._defined[id] = self._define(entry, entry.section)
                 if isinstance(definition, Assembly):
                     self._assembly(entry, entry.section)
 
@@ -91,28 +104,56 @@ class LineReader:
 
     def _piece(self, component: Component, item: Section) -> tuple[Piece, ...]:
         length: float | None
-        fit_top_depth = None
-        if isinstance(component, (Cable, Chain)):
-            if item.data.get("length") == "fit":
-                length = None
-                fit_top_depth = self._quantity(item, "top_depth", LENGTH, "`length: fit` needs it")
-            else:
-                need = "a cable or chain needs it"
-                length = self._quantity(item, "length", POSITIVE_LENGTH, need) or math.nan
-        else:
+        if not isinstance(component, (Cable, Chain)):
             length = component.length
-        if "top_depth" in item.data and item.data.get("length") != "fit":
-            self._refuse(item, ("top_depth",), "`top_depth` goes with `length: fit`", key=True)
+        elif item.data.get("length") == "fit":
+            length = None
+        else:
+            need = "a cable or chain needs it"
+            length = self._quantity(item, "length", POSITIVE_LENGTH, need) or math.nan
+        fit_depth = self._fit_depth(item, fits=length is None)
         if isinstance(component, Anchor) and "clamps" in item.data:
             self._refuse(item, ("clamps",), "nothing can be clamped on an anchor", key=True)
         clamps = self._clamps(item, length)
         place = item.problem((), "")
         use = item.data["use"]
-        label = self._label(item)
+        self._tell_of_mass(use, component)
         piece = Piece(
-            0, use, label, component, length, fit_top_depth, clamps, place.line, place.column
+            index=0,
+            use=use,
+            label=self._label(item),
+            component=component,
+            length=length,
+            fit_top_depth=None if self._towed else fit_depth,
+            clamps=clamps,
+            line=place.line,
+            column=place.column,
+            fit_body_depth=fit_depth if self._towed else None,
         )
         return (piece,)
+
+    def _fit_depth(self, item: Section, *, fits: bool) -> float | None:
+        """The depth a piece is cut to fit: of the line's top, in a tow of its own lower end."""
+        key, foreign, home = ("top_depth", "body_depth", "tows")
+        if self._towed:
+            key, foreign, home = ("body_depth", "top_depth", "moorings")
+        if foreign in item.data:
+            message = f"`{foreign}` belongs to {home}; here it is `{key}`"
+            self._refuse(item, (foreign,), message, key=True)
+        if fits and (key in item.data or foreign not in item.data):
+            # depths are counted from the water, above which a tow in air may end
+            kind = Quantity("length") if self._in_air else LENGTH
+            return self._quantity(item, key, kind, "`length: fit` needs it")
+        if key in item.data:
+            self._refuse(item, (key,), f"`{key}` goes with `length: fit`", key=True)
+        return None
+
+    def _tell_of_mass(self, use: str, component: Component) -> None:
+        """In air, a net force in water has to do where it is all that is known."""
+        if self._in_air and component.mass is None and component.displaced_volume is None:
+            notice = f"{use}: no mass is known; its net force in water is taken for that in air"
+            if notice not in self._notices:
+                self._notices.append(notice)
 
     def _clamps(self, item: Section, length: float | None) -> tuple[Clamp, ...]:
         """The clamps of an item, none beyond its length where that is known."""
@@ -125,6 +166,7 @@ class LineReader:
                 message = f"`at: {shown(clamp.data['at'])}` is beyond the piece, {length:g} m long"
                 self._refuse(clamp, ("at",), message)
             if isinstance(component, (Sphere, Cylinder, Body)) and at is not None:
+                self._tell_of_mass(clamp.data["use"], component)
                 clamps.append(Clamp(clamp.data["use"], self._label(clamp), component, at))
             elif component is not None and at is not None:
                 message = f"a component of kind {component.kind} cannot be clamped on a line"
@@ -172,7 +214,7 @@ class LineReader:
     ) -> Component | Assembly | None:
         """What an item uses, the item's overrides applied."""
         if entry.id not in self._defined:
-            self._defined[entry.id] = define(entry, entry.section, self._problems)
+            self._defined[entry.id] = self._define(entry, entry.section)
         definition = self._defined[entry.id]
         if isinstance(definition, Assembly):
             for key in item.data.keys() - _ASSEMBLY_KEYS:
@@ -192,15 +234,22 @@ class LineReader:
         void = contradicted(definition.kind, entry.section.data.keys(), overriding.keys())
         override = Section.of(item.document, item.location, overriding)
         section = override.over(entry.section, dropping=void)
-        component = define(entry, section, self._problems, also_allowed=item_keys)
+        component = self._define(entry, section, also_allowed=item_keys)
         if isinstance(component, Assembly) or component is None:
             return None
-        if "mass" in overriding and component.net_buoyancy == definition.net_buoyancy:
+        force_stays = component.net_buoyancy == definition.net_buoyancy
+        if "mass" in overriding and force_stays and not self._in_air:
             self._notices.append(
                 f"line {item.problem((), '').line}: `mass` of {entry.id} is overridden, its net "
                 "force in water is not; override that too if it changes"
             )
         return component
+
+    def _define(
+        self, entry: Entry, section: Section, *, also_allowed: Iterable[str] = ()
+    ) -> Component | Assembly | None:
+        context = IN_AIR if self._in_air else None
+        return define(entry, section, self._problems, also_allowed=also_allowed, context=context)
 
     def _count(self, item: Section) -> int:
         text = item.data.get("count", "1")
@@ -233,31 +282,3 @@ class LineReader:
         self, section: Section, location: tuple[str | int, ...], message: str, *, key: bool = False
     ) -> None:
         self._problems.append(section.problem(location, message, key=key))
-
-
-def numbered(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
-    """The pieces with their index, and labels that occur more than once numbered down the line."""
-    pieces = tuple(pieces)
-    labels = [[piece.label, *(clamp.label for clamp in piece.clamps)] for piece in pieces]
-    total = Counter(label for group in labels for label in group)
-    seen: Counter[str] = Counter()
-
-    def numbered_label(text: str) -> str:
-        if total[text] == 1:
-            return text
-        seen[text] += 1
-        while f"{text} {seen[text]}" in total:
-            seen[text] += 1
-        return f"{text} {seen[text]}"
-
-    return tuple(
-        replace(
-            piece,
-            index=index,
-            label=numbered_label(piece.label),
-            clamps=tuple(
-                replace(clamp, label=numbered_label(clamp.label)) for clamp in piece.clamps
-            ),
-        )
-        for index, piece in enumerate(pieces)
-    )

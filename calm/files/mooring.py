@@ -11,6 +11,7 @@ from pydantic import AfterValidator, BeforeValidator, Field
 from calm.files.components import Anchor, Component
 from calm.files.environment import Environment
 from calm.files.fields import LENGTH, POSITIVE_LENGTH, Model, Quantity
+from calm.files.strumming import Strumming
 from calm.units import QuantityError
 
 _FACTOR = Quantity("number", above=0)
@@ -19,15 +20,10 @@ _SPEED = Quantity("speed", at_least=0)
 _LEAST_TENSION = Quantity("force", at_least=0)
 
 
-def _until_available(*later: str) -> BeforeValidator:
-    """Refuses the choices of the format that this version does not compute."""
-
-    def check(value: object) -> object:
-        if isinstance(value, dict) or value in later:
-            raise QuantityError("is not available in this version")
-        return value
-
-    return BeforeValidator(check)
+def _constant_until_available(drag: object) -> object:
+    if drag == "reynolds":
+        raise QuantityError("is not available in this version")
+    return drag
 
 
 class Position(Model):
@@ -37,6 +33,14 @@ class Position(Model):
     longitude: Annotated[float, Quantity("angle", at_least=-360, at_most=360)]
 
 
+class TowKeys(Model):
+    """What tows the line: speed over ground [m/s], where to [degrees], height above water [m]."""
+
+    speed: Annotated[float, Quantity("speed", above=0)]
+    toward: Annotated[float, Quantity("angle")]
+    height: Annotated[float, LENGTH] = 0.0
+
+
 class Solver(Model):
     """How the line is solved; `angle_step` in radians, `tolerance` as a share of the depth."""
 
@@ -44,12 +48,9 @@ class Solver(Model):
         float, Quantity("angle", above=0, at_most=10), AfterValidator(math.radians)
     ] = math.radians(1)
     tolerance: Annotated[float, Quantity("number", above=0, at_most=2e-4)] = 1e-7
-    drag: Annotated[Literal["constant"], _until_available("reynolds")] = "constant"
-    friction: Annotated[Literal["berteaux"], _until_available("hoerner", "constant")] = "berteaux"
-    strumming: Annotated[
-        Literal["none"],
-        _until_available("bourget-marichal", "vandiver", "blevins", "skop-griffin"),
-    ] = "none"
+    drag: Annotated[Literal["constant"], BeforeValidator(_constant_until_available)] = "constant"
+    friction: Literal["berteaux", "hoerner", "constant"] = "berteaux"
+    strumming: Strumming = None
     buoy_drag: Literal["immersed", "full"] = "immersed"
     seabed_friction: Annotated[float, Quantity("number", at_least=0)] = 0.0
 
@@ -103,7 +104,7 @@ class Piece:
     Attributes
     ----------
     index : int
-        Position in the line, 0 at the top.
+        Position in the line, 0 at the top (in a tow, at the ship).
     use, label : str
         Id of the component; the label is unique in the line.
     component : Component
@@ -115,6 +116,8 @@ class Piece:
     clamps : tuple of Clamp
     line, column : int
         The item in the mooring file, counted from 1.
+    fit_body_depth : float or None
+        Depth wanted for the lower end of the piece at the tow's speed [m], where it is cut to fit.
     """
 
     index: int
@@ -126,20 +129,23 @@ class Piece:
     clamps: tuple[Clamp, ...]
     line: int
     column: int
+    fit_body_depth: float | None = None
 
 
 @dataclass(frozen=True)
 class MooringFile:
-    """A mooring file with everything in it resolved: the line from its top to its anchor.
+    """A mooring file with everything in it resolved.
 
-    `notices` tell what a person may want to know: a catalogue entry hidden by a nearer one,
-    levels dropped from a measured current.
+    `pieces` lead from the top of a mooring to its anchor; in a tow, where `tow` is not None, from
+    the ship to the towed body. `notices` tell what a person may want to know: a catalogue entry
+    hidden by a nearer one, levels dropped from a measured current.
     """
 
     path: str
     name: str
     description: str
     position: Position | None
+    tow: TowKeys | None
     environment: Environment
     pieces: tuple[Piece, ...]
     solver: Solver
@@ -148,7 +154,7 @@ class MooringFile:
 
     @property
     def anchor(self) -> Anchor:
-        """The last piece of the line."""
+        """The last piece of a mooring's line."""
         anchor = self.pieces[-1].component
         assert isinstance(anchor, Anchor)
         return anchor

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, Tag, ValidationInfo, model_validator
 
 from calm.files.definition import (
     CATALOGUE_DENSITY,
@@ -12,10 +12,12 @@ from calm.files.definition import (
     MASS,
     STANDARD_GRAVITY,
     Definition,
+    is_in_air,
     refuse_weight_above_mass,
     volume_from_weights,
 )
 from calm.files.fields import COEFFICIENT, DIAMETER, DRAG, LENGTH, Model, Quantity
+from calm.physics.hull import tabulated_hull
 
 _AREA = Quantity("area", at_least=0)
 
@@ -34,6 +36,11 @@ class Displacement(Model):
         ],
         ...,
     ]
+
+    @model_validator(mode="after")
+    def _grows(self) -> Displacement:
+        tabulated_hull(self.displacement)
+        return self
 
 
 def _hull_form(value: object) -> str:
@@ -59,24 +66,26 @@ class Rigid(Definition):
 
     @property
     def net_buoyancy(self) -> float:
-        """Net force in water, positive up [N]."""
+        """Net force in water, positive up; of a mass alone, that in air [N]."""
         if self.buoyancy is not None:
             return self.buoyancy
-        assert self.mass is not None and self.volume is not None
-        return (CATALOGUE_DENSITY * self.volume - self.mass) * STANDARD_GRAVITY
+        assert self.mass is not None
+        return (CATALOGUE_DENSITY * (self.volume or 0.0) - self.mass) * STANDARD_GRAVITY
 
     @property
     def displaced_volume(self) -> float | None:
-        """Volume of water displaced [m³], None when neither it nor the mass is known."""
-        if self.volume is not None:
+        """Volume displaced [m³], None when it is not known, nor follows from the weights."""
+        if self.volume is not None or self.buoyancy is None:
             return self.volume
         return volume_from_weights(self.mass, self.net_buoyancy)
 
     @model_validator(mode="after")
-    def _weights_agree(self) -> Rigid:
+    def _weights_agree(self, info: ValidationInfo) -> Rigid:
         if self.mass is None or self.volume is None:
-            if self.buoyancy is None:
+            if self.buoyancy is None and not is_in_air(info):
                 raise ValueError("needs `buoyancy`, or `mass` with `volume`")
+            if self.buoyancy is None and self.mass is None:
+                raise ValueError("needs `mass`, or `buoyancy`")
         elif self.buoyancy is not None:
             computed = (CATALOGUE_DENSITY * self.volume - self.mass) * STANDARD_GRAVITY
             largest = max(abs(self.buoyancy), abs(computed))

@@ -13,7 +13,7 @@ from pydantic.json_schema import models_json_schema
 
 from calm.files.catalogue import Assembly
 from calm.files.components import KINDS
-from calm.files.environment import EnvironmentKeys
+from calm.files.environment import EnvironmentKeys, TowEnvironmentKeys
 from calm.files.fields import LENGTH
 from calm.files.line import MOST_PIECES
 from calm.files.reader import MooringKeys
@@ -23,6 +23,7 @@ Schema = dict[str, Any]
 _DESCRIPTIONS = {
     "at": "distance from the top of the piece, unstretched",
     "angle_step": "how much a cable may turn from one segment to the next, e.g. 1 deg",
+    "body_depth": "depth wanted in a tow for the lower end of this cable, at the tow's speed",
     "breaking_load": "load at which it breaks, e.g. 40 kN",
     "buoyancy": "net force in sea water of 1025 kg/m^3, positive up (per metre of a cable)",
     "buoy_drag": "of a float at the surface: at its draft, or fully immersed",
@@ -42,14 +43,18 @@ _DESCRIPTIONS = {
     "drag_area": "area seen by the current, e.g. 0.12 m^2",
     "drag_measurements": "forces measured at several speeds",
     "environments": "named variants, each overriding keys of `environment`",
+    "factor": "what the Cn of every cable is multiplied by, e.g. 1.5",
     "finish": "of the surface of a cable",
-    "friction": "of an anchor, the coefficient on the seabed",
+    "fluid": "what the line is in: a tow may be in air",
+    "friction": "along cables, the law; of an anchor, its coefficient on the seabed",
+    "height": "of the tow point above the water, e.g. 4 m",
     "inclination": "whether drag follows the inclination of the piece",
     "kn": "drag across the axis at 1 m/s, e.g. 26 N/(m/s)^2",
     "kt": "drag along the axis at 1 m/s",
     "label": "name of the piece in results; the id when there is none",
-    "length": "along the line, unstretched; `fit` cuts a cable so that the top is at `top_depth`",
-    "line": "the pieces from the top to the anchor",
+    "length": "along the line, unstretched; `fit` cuts a cable to reach a depth",
+    "lift": "of a towed body at 1 m/s, positive up",
+    "line": "the pieces from the top to the anchor; in a tow, from the ship to the towed body",
     "made_of": "simple shapes whose drags add up",
     "mass": "in air (per metre of a cable or chain)",
     "max_tilt": "tilt beyond which it is not to be trusted",
@@ -58,10 +63,13 @@ _DESCRIPTIONS = {
     "rows": "values, top to bottom",
     "source": "where the figures come from",
     "stiffness": "EA, the force that would double the length, e.g. 4 MN",
+    "strouhal": "frequency of the cable times diameter over the speed across it",
+    "strumming": "how much vibration raises the Cn of cables",
     "time": "of the profile wanted, e.g. 2026-03-01T06:00",
     "tolerance": "of the depth of the anchor, as a share of the water depth",
     "top_depth": "depth wanted in still water for the top of the line",
-    "toward": "direction it flows to, clockwise from north, e.g. 90 deg",
+    "tow": "what tows the line, in place of an anchor",
+    "toward": "direction it flows or goes to, clockwise from north, e.g. 90 deg",
     "use": "id of a component of the catalogue or of `components`",
     "volume": "of water displaced, e.g. 0.9 m^3",
     "warn_tilt": "tilt to be warned of",
@@ -72,30 +80,36 @@ _DESCRIPTIONS = {
 
 def mooring_schema() -> Schema:
     """The JSON Schema (draft 2020-12) of a mooring file."""
-    models: list[type[BaseModel]] = [MooringKeys, EnvironmentKeys, Assembly, *KINDS.values()]
+    models: list[type[BaseModel]] = [MooringKeys, EnvironmentKeys, TowEnvironmentKeys, Assembly]
+    models += KINDS.values()
     names, definitions = models_json_schema(
         [(model, "validation") for model in models], ref_template="#/$defs/{model}"
     )
     refs = {model: names[(model, "validation")] for model in models}
     schemas: dict[str, Schema] = definitions["$defs"]
-    variant = dict(schemas["EnvironmentKeys"])
-    variant.pop("required")
     component = {"oneOf": [refs[model] for model in (*KINDS.values(), Assembly)]}
     fields = _fields([schemas[kind.__name__] for kind in KINDS.values()])
-    schemas |= {"EnvironmentVariant": variant, "Clamp": _clamp(fields), "Item": _item(fields)}
+    schemas |= {"Clamp": _clamp(fields), "Item": _item(fields)}
     items = {"type": "array", "minItems": 1, "items": {"$ref": "#/$defs/Item"}}
     schemas["Assembly"]["properties"]["parts"] = items
     top = schemas.pop("MooringKeys")
     top["properties"] |= {
-        "environment": refs[EnvironmentKeys],
+        "environment": {"type": "object"},
         "line": items,
         "components": {"type": ["object", "null"], "additionalProperties": component},
         "environments": {
             "type": ["object", "null"],
-            "additionalProperties": {"$ref": "#/$defs/EnvironmentVariant"},
+            "additionalProperties": refs[TowEnvironmentKeys],
         },
     }
-    top["required"] = ["environment", "line"]
+    # Only a tow may do without an environment, or without a depth in it; a variant always may.
+    top["required"] = ["line"]
+    top["if"] = {"required": ["tow"]}
+    top["then"] = {"properties": {"environment": refs[TowEnvironmentKeys]}}
+    top["else"] = {
+        "properties": {"environment": refs[EnvironmentKeys]},
+        "required": ["environment"],
+    }
     schema = {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         **top,
@@ -110,7 +124,8 @@ def _item(fields: Schema) -> Schema:
     fit = {"anyOf": [{"const": "fit"}, LENGTH.json_schema()]}
     count = {"type": "integer", "minimum": 1, "maximum": MOST_PIECES}
     clamps = {"type": "array", "items": {"$ref": "#/$defs/Clamp"}}
-    own = {"count": count, "length": fit, "top_depth": LENGTH.json_schema(), "clamps": clamps}
+    depths = {"top_depth": LENGTH.json_schema(), "body_depth": LENGTH.json_schema()}
+    own = {"count": count, "length": fit, **depths, "clamps": clamps}
     return _mapping("A piece of the line; other fields override the component's.", fields | own)
 
 

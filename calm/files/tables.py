@@ -7,24 +7,47 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
+from pydantic import ValidationError
+
 from calm.errors import Problem
+from calm.files.definition import DENSITY
 from calm.files.explain import about_quantity, shown, unknown
-from calm.units import DIMENSIONS, QuantityError, parse_quantity, unit_factor
+from calm.files.fields import Model, Quantity, Text
+from calm.files.section import Section
+from calm.units import DIMENSIONS, QuantityError, unit_factor
 
 Report = Callable[[Sequence[str | int], str], Problem]
 """Makes a problem of a message, at ``("columns", j)`` or ``("rows", i, j)``."""
 
 _BARE_NUMBER = re.compile(r"[-+.,/\deE ]*")
 
-DENSITY_COLUMNS = {"depth": "length", "density": "density"}
-CURRENT_COLUMNS = {
-    "depth": "length",
-    "u": "speed",
-    "v": "speed",
-    "w": "speed",
-    "speed": "speed",
-    "toward": "angle",
+TEMPERATURE = Quantity("temperature", at_least=-6, at_most=40)
+SALINITY = Quantity("salinity", at_least=0, at_most=42)
+"""Temperatures and salinities are limited to those that TEOS-10 is valid for."""
+
+_DEPTH = Quantity("length")
+_SPEED = Quantity("speed")
+_CURRENT = {
+    "depth": _DEPTH,
+    "u": _SPEED,
+    "v": _SPEED,
+    "w": _SPEED,
+    "speed": _SPEED,
+    "toward": Quantity("angle"),
 }
+_WATER = {
+    "depth": _DEPTH,
+    "density": DENSITY,
+    "temperature": TEMPERATURE,
+    "salinity": SALINITY,
+}
+
+
+class Table(Model):
+    """Columns, each a name and its unit, and rows of values."""
+
+    columns: tuple[Text, ...]
+    rows: tuple[tuple[Text | None, ...], ...]
 
 
 @dataclass(frozen=True)
@@ -38,11 +61,19 @@ class CurrentTable:
 
 
 @dataclass(frozen=True)
-class DensityTable:
-    """A density profile [kg/m³] at increasing depths [m]."""
+class DepthTable:
+    """A quantity at increasing depths [m]; linear between them, constant beyond."""
 
     depth: tuple[float, ...]
-    density: tuple[float, ...]
+    value: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class SeaWater:
+    """Sea water by its temperature in situ [°C] and its practical salinity."""
+
+    temperature: DepthTable
+    salinity: DepthTable
 
 
 def read_current(
@@ -62,11 +93,9 @@ def read_current(
         Numbers, or quantities with a unit, as text.
     """
     before = len(problems)
-    values = _read_columns(columns, rows, CURRENT_COLUMNS, report, problems)
+    values = _read_columns(columns, rows, _CURRENT, report, problems)
     given = values.keys()
     if len(given) == len(columns):
-        if "depth" not in given:
-            problems.append(report(("columns",), "the table has no `depth` column"))
         if given & {"u", "v"} and given & {"speed", "toward"}:
             message = "give `u` and `v`, or `speed` and `toward`, not both"
             problems.append(report(("columns",), message))
@@ -89,29 +118,59 @@ def read_current(
     return CurrentTable(tuple(values["depth"]), tuple(u), tuple(v), tuple(w))
 
 
-def read_density(
+def read_water(
     columns: Sequence[str],
     rows: Sequence[Sequence[str | None]],
     report: Report,
     problems: list[Problem],
-) -> DensityTable | None:
-    """A density profile from a table with the columns `depth` and `density`, as `read_current`."""
+) -> DepthTable | SeaWater | None:
+    """Densities [kg/m³], or sea water, from a table as that of `read_current`.
+
+    Its columns are `depth`, and `density` or `temperature` and `salinity`.
+    """
     before = len(problems)
-    values = _read_columns(columns, rows, DENSITY_COLUMNS, report, problems)
-    if len(values) == len(columns):
-        problems.extend(
-            report(("columns",), f"the table has no `{name}` column")
-            for name in DENSITY_COLUMNS
-            if name not in values
-        )
-    for i, density in enumerate(values.get("density", ())):
-        if density <= 0:
-            place = ("rows", i, list(values).index("density"))
-            problems.append(report(place, f"`density` {density:g} kg/m^3 must be more than 0"))
+    values = _read_columns(columns, rows, _WATER, report, problems)
+    given = values.keys() - {"depth"}
+    if len(values) == len(columns) and given not in ({"density"}, {"temperature", "salinity"}):
+        message = "needs `density`, or `temperature` and `salinity`; the columns are "
+        problems.append(report(("columns",), f"a density {message}{', '.join(values)}"))
     _check_depths(values, report, problems)
     if len(problems) > before:
         return None
-    return DensityTable(tuple(values["depth"]), tuple(values["density"]))
+    tables = {name: DepthTable(tuple(values["depth"]), tuple(values[name])) for name in given}
+    return tables["density"] if "density" in given else SeaWater(**tables)
+
+
+def read_profile(
+    name: str,
+    columns: Sequence[str],
+    rows: Sequence[Sequence[str | None]],
+    report: Report,
+    problems: list[Problem],
+) -> DepthTable | None:
+    """`temperature` [°C] or `salinity` from a table of it by depth, as that of `read_current`."""
+    before = len(problems)
+    known = {"depth": _DEPTH, name: _WATER[name]}
+    values = _read_columns(columns, rows, known, report, problems)
+    if len(values) == len(columns) and name not in values:
+        problems.append(report(("columns",), f"the table has no `{name}` column"))
+    _check_depths(values, report, problems)
+    if len(problems) > before:
+        return None
+    return DepthTable(tuple(values["depth"]), tuple(values[name]))
+
+
+def table_of(value: object) -> Table | None:
+    """The table that a value of a file is, None where it is none."""
+    try:
+        return Table.model_validate(value)
+    except ValidationError:
+        return None
+
+
+def report_at(section: Section, *place: str) -> Report:
+    """Tells problems at places below a key of a section, or below a key under that."""
+    return lambda location, message: section.problem((*place, *location), message)
 
 
 def components(speed: float, toward: float) -> tuple[float, float]:
@@ -123,12 +182,14 @@ def components(speed: float, toward: float) -> tuple[float, float]:
 def _read_columns(
     columns: Sequence[str],
     rows: Sequence[Sequence[str | None]],
-    dimensions: Mapping[str, str],
+    known: Mapping[str, Quantity],
     report: Report,
     problems: list[Problem],
 ) -> dict[str, list[float]]:
     """The known columns by name, in SI, NaN where a value is wrong."""
-    units = _read_headings(columns, dimensions, report, problems)
+    units = _read_headings(columns, known, report, problems)
+    if len(units) == len(columns) and "depth" not in units:
+        problems.append(report(("columns",), "the table has no `depth` column"))
     values: dict[str, list[float]] = {name: [] for name in units}
     if not rows:
         problems.append(report(("rows",), "the table has no rows"))
@@ -142,7 +203,7 @@ def _read_columns(
         elif len(units) == len(columns):
             for j, (name, unit) in enumerate(units.items()):
                 try:
-                    values[name][i] = _read_cell(row[j], unit, dimensions[name])
+                    values[name][i] = _read_cell(row[j], unit, known[name])
                 except QuantityError as error:
                     problems.append(report(("rows", i, j), about_quantity(name, row[j], error)))
     return values
@@ -150,7 +211,7 @@ def _read_columns(
 
 def _read_headings(
     columns: Sequence[str],
-    dimensions: Mapping[str, str],
+    known: Mapping[str, Quantity],
     report: Report,
     problems: list[Problem],
 ) -> dict[str, str]:
@@ -159,14 +220,15 @@ def _read_headings(
     for j, column in enumerate(columns):
         name, _, unit = column.replace("[", " ", 1).strip().removesuffix("]").partition(" ")
         unit = unit.strip()
-        if name not in dimensions:
-            message = unknown(f"no column is called `{shown(name)}`", name, dimensions)
+        if name not in known:
+            message = unknown(f"no column is called `{shown(name)}`", name, known)
             problems.append(report(("columns", j), message))
         elif name in units:
             problems.append(report(("columns", j), f"column `{name}` is given twice"))
         else:
+            dimension = known[name].dimension
             try:
-                unit_factor(unit or DIMENSIONS[dimensions[name]].unit, dimensions[name])
+                unit_factor(unit or DIMENSIONS[dimension].unit, dimension)
             except QuantityError as error:
                 offer = f"; did you mean `{name} {error.suggestion}`?" if error.suggestion else ""
                 message = f"`{shown(column)}` {error.complaint}{offer}"
@@ -176,12 +238,10 @@ def _read_headings(
     return units
 
 
-def _read_cell(text: str | None, unit: str, dimension: str) -> float:
-    if text is None:
-        raise QuantityError("has no value")
-    if unit and _BARE_NUMBER.fullmatch(text):
+def _read_cell(text: str | None, unit: str, quantity: Quantity) -> float:
+    if text is not None and unit and _BARE_NUMBER.fullmatch(text):
         text = f"{text} {unit}"
-    return parse_quantity(text, dimension)
+    return quantity.read(text)
 
 
 def _check_depths(

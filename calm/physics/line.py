@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.physics.friction import Friction
+from calm.physics.hull import Floating
 from calm.physics.strumming import BourgetMarichal
 
 Floats = NDArray[np.float64]
@@ -80,6 +81,8 @@ class Line(_Arrays):
     friction : the law of `tangential_drag` on cables and chains
     strumming : of the cables, whose `normal_drag` then is that at rest; None without
     towed : whether the free end is towed: then no pieces there are rigid with one another
+    push_east, push_north : (n,) force of the wind on a piece [N]; 0 where not given
+    floating : how the first float rides when it is at the surface; None leaves it just below
     """
 
     length: Floats
@@ -103,15 +106,20 @@ class Line(_Arrays):
     friction: Friction = Friction.BERTEAUX
     strumming: BourgetMarichal | None = None
     towed: bool = False
+    push_east: Floats = field(default_factory=_none)
+    push_north: Floats = field(default_factory=_none)
+    floating: Floating | None = None
 
     def __post_init__(self) -> None:
-        for name, like in (("lift", "length"), ("clamp_lift", "clamp_at"), ("diameter", "length")):
+        for name in ("lift", "diameter", "push_east", "push_north", "clamp_lift"):
             if not np.size(getattr(self, name)):
-                object.__setattr__(self, name, np.zeros(np.size(getattr(self, like))))
+                like = self.clamp_at if name.startswith("clamp_") else self.length
+                object.__setattr__(self, name, np.zeros(np.size(like)))
         super().__post_init__()
         self._same_length(
             "length", "flexible", "buoyancy", "volume", "normal_drag", "tangential_drag",
             "directional", "compliance", "thinning", "lift", "diameter",
+            "push_east", "push_north",
         )  # fmt: skip
         self._same_length(
             "clamp_piece", "clamp_at", "clamp_buoyancy", "clamp_volume", "clamp_drag", "clamp_lift"

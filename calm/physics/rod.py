@@ -27,7 +27,7 @@ def load_force(load: Load, profile: Profile, depth: float, axis: Vector, level: 
     else:
         drag = scale * load.normal_drag * sqrt(u * u + v * v + w * w)
         qx, qy, qz = drag * u, drag * v, drag * w
-    return qx, qy, qz + lift
+    return qx + load.push_east, qy + load.push_north, qz + lift
 
 
 def pass_rod(
@@ -106,6 +106,7 @@ def _next_axis(rod: Rod, profile: Profile, state: State, axis: Vector) -> Vector
     ax, ay, az = state.fx, state.fy, state.fz
     normals = []
     for load in rod.loads:
+        ax, ay = ax + load.lever * load.push_east, ay + load.lever * load.push_north
         u, v, w, density = profile.at(-state.z - load.at * axis[2], state.level)
         scale = load.lever * density / REFERENCE_DENSITY
         excess = (density - REFERENCE_DENSITY) * profile.gravity

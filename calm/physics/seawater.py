@@ -78,7 +78,7 @@ def density(
     salinity : (...) practical [-]
     depth : (...) below the surface [m]
     latitude : [degrees]
-    longitude : [degrees]; without one, and on land, sea water is of the reference composition,
+    longitude : [degrees]; without one, and far inland, sea water is of the reference composition,
         whose density is off by less than 0.03 kg/m³ in the open ocean
 
     Returns

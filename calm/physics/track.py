@@ -27,6 +27,8 @@ class Load:
     tangential_drag: float
     directional: bool
     lift: float = 0.0
+    push_east: float = 0.0
+    push_north: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -79,6 +79,9 @@ def loads(solution: Solution) -> Floats:
     lift[here] = line.clamp_buoyancy[which] + excess[here] * line.clamp_volume[which]
     lift[here] += line.clamp_lift[which] * raised[here]
     drag[:, 2] += lift
+    rigid_own = np.where(line.flexible[piece] | (clamp >= 0), 0.0, amount)
+    drag[:, 0] += rigid_own * line.push_east[piece]
+    drag[:, 1] += rigid_own * line.push_north[piece]
     return drag
 
 

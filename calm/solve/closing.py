@@ -8,12 +8,14 @@ from math import degrees, radians
 
 import numpy as np
 
+from calm.physics.hull import Floating, Riding
 from calm.physics.line import Line, Water
 from calm.physics.march import Cuts, End, march
 from calm.physics.profile import Profile
+from calm.physics.rod import rod_axis
 from calm.physics.seabed import lie_down
-from calm.physics.state import Trace
-from calm.physics.track import Cable, Load, Rod, Track
+from calm.physics.state import State, Trace
+from calm.physics.track import Cable, Load, Rod, Stage, Track
 from calm.solve.root import bracketed_root, root_near
 from calm.solve.solution import Settings
 from calm.solve.status import Status
@@ -24,6 +26,7 @@ REACH = 0.01
 """Longest segment at an angle step of 1°, as a share of the span."""
 SHARE_TOLERANCE = 1e-9
 """How well the share of a surface float's buoyancy in use is found."""
+_LEANINGS = 50
 COARSEST_BRACKET = 1e-7
 NARROWEST_BRACKET = 1e-15
 """Width of the last bracket, as a share of the whole range: of a march that chooses its cuts, and
@@ -51,6 +54,7 @@ class Unknown:
     above : the floats at the surface above that piece
     lands : whether the line may come down on the seabed before its end
     part : whether the track is but a part of the line
+    floating : how the first float rides at the surface; None leaves it just below
     """
 
     track: Track
@@ -59,17 +63,29 @@ class Unknown:
     above: tuple[Afloat, ...] = ()
     lands: bool = False
     part: bool = False
+    floating: Floating | None = None
 
     def shares(self, x: float) -> dict[int, float]:
         """Share of its buoyancy in use of every float at the surface, for the unknown's value x."""
         above = {afloat.piece: afloat.share for afloat in self.above}
         return above if self.afloat is None else {**above, self.afloat: x}
 
-    def placed(self, x: float) -> tuple[Track, float]:
+    def riding(self, x: float) -> Riding | None:
+        """How the first float rides, while it is the only one at the surface."""
+        if self.floating is None or self.afloat is None or self.above:
+            return None
+        return self.floating.riding(x)
+
+    def placed(self, x: float, profile: Profile) -> tuple[Track, float]:
         """Track and depth of the free end [m] for the value x of the unknown."""
         if self.afloat is None:
             return self.track, x
-        return _with_shares(self.track, self.shares(x)), 0.0
+        track = _with_shares(self.track, self.shares(x))
+        riding = self.riding(x)
+        if riding is None:
+            return track, 0.0
+        track = _as_riding(track, self.afloat, riding)
+        return track, _depth_of_free_end(track.stages[0], self.afloat, riding, profile)
 
     def down_to(self, piece: int) -> Unknown:
         """The question for the part of the line above a float: to bring its top to the surface."""
@@ -93,6 +109,48 @@ def _with_shares(track: Track, shares: dict[int, float]) -> Track:
             for stage in track.stages
         )
     )
+
+
+def _as_riding(track: Track, piece: int, riding: Riding) -> Track:
+    """The track with the float's drag and the wind on it, which heads it."""
+
+    def loaded(load: Load) -> Load:
+        if load.clamp >= 0 or load.piece != piece:
+            return load
+        return replace(
+            load,
+            normal_drag=riding.drag * load.normal_drag,
+            tangential_drag=riding.drag * load.tangential_drag,
+            push_east=riding.push[0],
+            push_north=riding.push[1],
+        )
+
+    stages = [
+        replace(stage, loads=tuple(map(loaded, stage.loads)))
+        if isinstance(stage, Rod) and piece in stage.pieces
+        else stage
+        for stage in track.stages
+    ]
+    return Track(tuple(stages))
+
+
+def _depth_of_free_end(head: Stage, piece: int, riding: Riding, profile: Profile) -> float:
+    """Depth of the free end that brings the waterline of the float to the surface [m].
+
+    The head of the line leans as its loads have it, and they depend a little on its depth.
+    """
+    if not isinstance(head, Rod) or piece not in head.pieces:
+        return 0.0
+    *above, own = head.lengths[: head.pieces.index(piece) + 1]
+    out = riding.above * sum(above) + riding.standing * own
+    depth = -out
+    for _ in range(_LEANINGS):
+        state = State(0.0, 0.0, -depth, level=profile.interval(depth, 0))
+        following = min(out * rod_axis(head, profile, state)[2], 0.0)
+        if abs(following - depth) <= 1e-14 * out:
+            break
+        depth = following
+    return depth
 
 
 @dataclass(frozen=True)
@@ -149,7 +207,12 @@ class Closing:
         A line on the seabed ends there, not at the top of its anchor.
         """
         height = 0.0 if lands else self.line.anchor_height
-        return Unknown(Track.of(self.line), height - self.water.depth, lands=lands)
+        return Unknown(
+            Track.of(self.line),
+            height - self.water.depth,
+            lands=lands,
+            floating=self.line.floating,
+        )
 
     def towed(self, height: float) -> Unknown:
         """The whole line towed from a height above the surface [m]."""
@@ -159,6 +222,12 @@ class Closing:
         """The same root for the line hanging clear of the seabed, to be sought again from there."""
         goal = self.line.anchor_height - self.water.depth
         return replace(root, unknown=replace(root.unknown, goal=goal, lands=False))
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether neither water nor wind moves."""
+        floating = self.line.floating
+        return not (self.water.moving or (floating is not None and floating.blown))
 
     @property
     def coarse_step(self) -> float:
@@ -175,11 +244,12 @@ class Closing:
         trace: Trace | None = None,
     ) -> End:
         """One march at an angle step, or over given cuts."""
-        track, depth = unknown.placed(x)
+        profile = profile or self.profile
+        track, depth = unknown.placed(x, profile)
         self.marches += not unknown.part
         return march(
             track,
-            profile or self.profile,
+            profile,
             depth,
             angle_step=step,
             reach=REACH * degrees(step) * self.span,
@@ -259,7 +329,7 @@ class Closing:
             )
         hanging, grounded = len(trace.piece), 0.0
         if end.landing is not None:
-            track, _ = found.unknown.placed(found.x)
+            track, _ = found.unknown.placed(found.x, self.profile)
             friction = self.settings.seabed_friction
             grounded = lie_down(track, self.profile, end, trace, found.unknown.goal, friction)
         return Closed(found, miss, end, trace, hanging, grounded)

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from calm.physics.hull import Riding
 from calm.physics.line import REFERENCE_DENSITY, Line
 from calm.solve import audit
 from calm.solve.closing import Closed, Closing
@@ -36,6 +37,7 @@ def finished(
     fine = refined.closed
     position, force = nodes_of(fine.trace)
     shares = fine.root.unknown.shares(fine.root.x)
+    riding = fine.root.unknown.riding(fine.root.x)
     used, reserve = _buoyancy_in_use(closing, fine)
     solution = Solution(
         line=closing.line,
@@ -53,7 +55,8 @@ def finished(
         afloat=tuple(shares),
         buoyancy_used=used,
         reserve=reserve,
-        carried=_carried(closing.line, shares),
+        carried=_carried(closing.line, shares, riding),
+        riding=riding,
         marches=closing.marches,
         segments=fine.end.segments,
         miss=fine.miss,
@@ -79,12 +82,23 @@ def _buoyancy_in_use(closing: Closing, fine: Closed) -> tuple[float, float]:
     return used / total, total - used
 
 
-def _carried(line: Line, shares: dict[int, float]) -> Line:
-    """The line with the buoyancies in use: floats at the surface count by their share."""
-    share = np.ones(len(line.length))
+def _carried(line: Line, shares: dict[int, float], riding: Riding | None) -> Line:
+    """The line as it is loaded: floats at the surface lift and drag by what is in use of them."""
+    share, drag = np.ones(len(line.length)), np.ones(len(line.length))
+    push = np.zeros((2, len(line.length)))
     for piece, used in shares.items():
         share[piece] = used
-    return replace(line, buoyancy=line.buoyancy * share, volume=line.volume * share)
+        if riding is not None:
+            drag[piece], push[:, piece] = riding.drag, riding.push
+    return replace(
+        line,
+        buoyancy=line.buoyancy * share,
+        volume=line.volume * share,
+        normal_drag=line.normal_drag * drag,
+        tangential_drag=line.tangential_drag * drag,
+        push_east=push[0],
+        push_north=push[1],
+    )
 
 
 def _audited(solution: Solution) -> Solution:

@@ -133,7 +133,7 @@ def _at_surface(closing: Closing, unknown: Unknown, deep: float) -> Root:
     floats = np.flatnonzero(~line.flexible & (line.buoyancy > 0.0)).tolist()
     for piece, lower in zip(floats, [*floats[1:], None], strict=True):
         unknown = replace(unknown, afloat=piece)
-        if not closing.water.moving and (unknown.lands or _slack_at_rest(closing, unknown)):
+        if closing.at_rest and (unknown.lands or _slack_at_rest(closing, unknown)):
             length = float(line.length.sum())
             radius = sqrt(max(length**2 - closing.water.depth**2, 0.0))
             raise Status.SLACK.because(

@@ -114,6 +114,8 @@ def _refuse_out_of_the_water(solution: Solution) -> None:
     margin = max(solution.depth_error, 1e-6 * depth)
     # a float at the surface may stand out of it, however it is turned
     standing = float(solution.line.length[list(solution.afloat)].sum())
+    if solution.riding is not None:
+        standing = float(solution.line.length[: max(solution.afloat) + 1].sum())
     lowest, highest = int(np.argmin(height)), int(np.argmax(height))
     if height[lowest] < -depth - margin:
         raise _grounded(solution.piece_at(lowest), -depth - height[lowest])

@@ -8,6 +8,7 @@ from math import nan, radians
 
 import numpy as np
 
+from calm.physics.hull import Riding
 from calm.physics.line import Floats, Integers, Line, Water
 from calm.physics.state import Trace
 
@@ -59,7 +60,8 @@ class Solution:
     afloat : the pieces that float at the surface, none for a sub-surface line
     buoyancy_used : share of the buoyancy of the floats at the surface that the line needs
     reserve : the rest of it [N]
-    carried : the line with the buoyancies in use (floats at the surface reduced)
+    carried : the line with the buoyancies and drags in use (floats at the surface reduced)
+    riding : how the float at the surface sits there; None below it, or where it is just immersed
     marches, segments : the work done for this solution
     miss : height of the line's end above the anchor's top, or the tow point [m]
     closure : |sum of the loads, recomputed - force at the line's end| / that force
@@ -93,6 +95,7 @@ class Solution:
     tension_error: float
     other_depth: float | None = None
     frequency: float = 0.0
+    riding: Riding | None = None
     closure: float = nan
     moment_residual: float = nan
 

@@ -35,7 +35,7 @@ def refuse_unsupported(line: Line, water: Water) -> None:
     above = np.cumsum(lift)
     if not (above > 0.0).any():
         raise too_heavy(lift)
-    if water.moving:
+    if water.moving or (line.floating is not None and line.floating.blown):
         return
     first, last = int(np.argmax(above > 0.0)), int(np.flatnonzero(lift > 0.0)[-1])
     short = np.flatnonzero(above[first:last] <= 0.0)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from calm.physics.hull import AIR_DENSITY
 from calm.physics.line import Floats, Line, Water
 from calm.physics.march import End
 from calm.physics.state import MarchError
@@ -16,8 +17,6 @@ from calm.solve.root import bracketed_root
 from calm.solve.solution import Settings, Solution
 from calm.solve.status import Status
 
-AIR_DENSITY = 1.225
-"""Of the air above the water [kg/m³]: the standard atmosphere at sea level."""
 SURFACE = 1e-9
 """Thickness of the step from water to air, as a share of the line out."""
 SCAN = 16

@@ -43,12 +43,28 @@ solver: {angle_step: 1 deg, buoy_drag: full}
 checks: {safety_factor: {steel: 3}}
 """
 
+TOW = """\
+name: Towed
+tow: {speed: 2 knot, toward: 90 deg, height: 40 m}
+environment: {fluid: air, density: 1.2 kg/m^3}
+line:
+  - {use: rope, length: fit, body_depth: -20 m, clamps: [{use: ball, at: 2 m}]}
+  - {use: fish, count: 2}
+components:
+  rope: {kind: cable, diameter: 12 mm, mass: 0.1 kg/m}
+  ball: {kind: sphere, diameter: 1 m, mass: 2 kg}
+  fish: {kind: body, length: 1 m, buoyancy: -9 kgf, kn: 9 N/(m/s)^2, kt: 2 N/(m/s)^2}
+environments:
+  sea: {fluid: water, depth: 90 m, current: {speed: 1 m/s, toward: 90 deg}}
+solver: {friction: constant, strumming: {model: bourget-marichal, a1: 1.6, c0: 1.2}}
+"""
+
 FRAGMENTS = [
     "\t", "\n", " ", ":", "- ", "{", "}", "[", "]", ",", "&a ", "*a", "!x ", "|", ">", "'", '"',
     "#", "%", "@", "?", "<<", "~", "null", ".nan", ".inf", "-.inf", "1e400", "1e9", "-1", "0",
     "use", "count: ", "length: fit", "kind: ", "m/s", "kg", "°", "\u2028", "\ufeff", "\x07",
     "0x10", "true", "2026-03-01", "file: x.nc", "parts: ", "9" * 400, "é", "made_of: ", "hull: ",
-    "0,5", "1/0",
+    "0,5", "1/0", "tow: ", "body_depth: ", "fluid: air", "strumming: ", "factor: ",
 ]  # fmt: skip
 
 VALUES = st.recursive(
@@ -98,22 +114,24 @@ def examples(count: int) -> settings:
     return settings(max_examples=count, suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
-def test_the_file_is_good(tmp_path: Path) -> None:
+def test_the_files_are_good(tmp_path: Path) -> None:
     path = tmp_path / "mooring.yaml"
     path.write_text(GOOD)
     assert len(read_mooring(path, environment="storm").pieces) == 7
+    path.write_text(TOW)
+    assert len(read_mooring(path).pieces) == 3
 
 
 @examples(300)
 @given(
+    text=st.sampled_from([GOOD, TOW]),
     edits=st.lists(
         st.tuples(st.integers(0, len(GOOD)), st.integers(0, 30), st.sampled_from(FRAGMENTS)),
         min_size=1,
         max_size=4,
-    )
+    ),
 )
-def test_edits_of_the_text(tmp_path: Path, edits: list[tuple[int, int, str]]) -> None:
-    text = GOOD
+def test_edits_of_the_text(tmp_path: Path, text: str, edits: list[tuple[int, int, str]]) -> None:
     for start, length, fragment in edits:
         text = text[:start] + fragment + text[start + length :]
     reads_or_refuses(tmp_path, text.encode())
@@ -144,20 +162,34 @@ def places(data: Any, at: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
     return found
 
 
-PLACES = places(YAML(typ="safe", pure=True).load(GOOD))
+PLACES = [
+    (text, place)
+    for text in (GOOD, TOW)
+    for place in places(YAML(typ="safe", pure=True).load(text))
+]
+
+KEYS = [
+    "use", "kind", "length", "at", "file", "time", "w", "slack", "tow", "fluid", "factor", "model",
+    "cn", "a1", "body_depth", "top_depth",
+]  # fmt: skip
 
 
 @examples(400)
 @given(
-    place=st.sampled_from(PLACES),
+    text_and_place=st.sampled_from(PLACES),
     value=VALUES,
-    key=st.none() | st.sampled_from(["use", "kind", "length", "at", "file", "time", "w", "slack"]),
-    environment=st.sampled_from([None, "storm", "none", "nowhere.yaml"]),
+    key=st.none() | st.sampled_from(KEYS),
+    environment=st.sampled_from([None, "storm", "sea", "none", "nowhere.yaml"]),
 )
 def test_values_of_any_shape(
-    tmp_path: Path, place: tuple[Any, ...], value: Any, key: str | None, environment: str | None
+    tmp_path: Path,
+    text_and_place: tuple[str, tuple[Any, ...]],
+    value: Any,
+    key: str | None,
+    environment: str | None,
 ) -> None:
-    data = YAML(typ="safe", pure=True).load(GOOD)
+    text, place = text_and_place
+    data = YAML(typ="safe", pure=True).load(text)
     around = data
     for part in place[:-1]:
         around = around[part]

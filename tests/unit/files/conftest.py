@@ -37,6 +37,14 @@ line:
   - {use: deadweight}
 """
 
+TOW = """\
+name: Sonar
+tow: {speed: 2 knot, toward: 90 deg, height: 4 m}
+line:
+  - {use: rope-12, length: 100 m, clamps: [{use: meter, at: 90 m}]}
+  - {use: plate, label: fish}
+"""
+
 Place = tuple[int, int, str]
 
 

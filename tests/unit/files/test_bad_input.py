@@ -280,29 +280,17 @@ ONE_MISTAKE = {
         changed("{use: plate}", "{use: pair, mass: 3 kg}"),
         (12, 17, "`mass` cannot be set on an assembly; allowed: count, label, use"),
     ),
-    "not yet: tow": (
-        GOOD + "tow: {speed: 2 knot, toward: 90 deg}\n",
-        (14, 1, "`tow` is not available in this version; a line must end in an anchor"),
-    ),
     "not yet: drag": (
         GOOD + "solver: {drag: reynolds}\n",
         (14, 16, "`drag: reynolds` is not available in this version"),
     ),
-    "not yet: friction": (
-        GOOD + "solver: {friction: hoerner}\n",
-        (14, 20, "`friction: hoerner` is not available in this version"),
-    ),
-    "not yet: strumming": (
-        GOOD + "solver: {strumming: {factor: 1.5}}\n",
-        (14, 21, "`strumming: …` is not available in this version"),
-    ),
-    "not yet: sea water": (
-        changed("1100 m\n", "1100 m\n  density: {temperature: 8 degC, salinity: 35}\n"),
+    "friction misspelt": (
+        GOOD + "solver: {friction: hörner}\n",
         (
-            4,
-            12,
-            "`density: …` from temperature and salinity is not available in this version; "
-            "give a density",
+            14,
+            20,
+            "`friction: hörner` must be one of berteaux, hoerner, constant; "
+            "did you mean `friction: hoerner`?",
         ),
     ),
     "not yet: elongation": (

@@ -257,7 +257,7 @@ def test_density_table(read: Read) -> None:
     density = read(GOOD.replace("1100 m\n", f"1100 m\n  density: {table}\n")).environment.density
     assert not isinstance(density, float)
     assert density.depth == (0.0, 1000.0)
-    assert density.density == pytest.approx((1024.0, 1028.0), rel=1e-15)
+    assert density.value == pytest.approx((1024.0, 1028.0), rel=1e-15)
 
 
 def test_paths_are_shown_as_given(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

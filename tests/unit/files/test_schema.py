@@ -9,7 +9,8 @@ from ruamel.yaml import YAML
 
 from calm.files import MooringFile, mooring_schema
 
-from .conftest import GOOD
+from . import test_strumming, test_tow
+from .conftest import GOOD, TOW
 from .test_bad_input import ONE_MISTAKE
 
 VALIDATOR = jsonschema.Draft202012Validator(mooring_schema())
@@ -51,6 +52,18 @@ solver: {angle_step: 1 deg, tolerance: 1e-7, drag: constant, buoy_drag: full}
 checks: {safety_factor: {steel: 3}, minimum_tension: {wire: 50 kgf}, maximum_tilt: 30 deg}
 """
 
+TOWED = """\
+tow: {speed: 2 knot, toward: 0, height: 4 m}
+environment: {gravity: 9.81 m/s^2}
+line:
+  - {use: rope-12, length: fit, body_depth: 70 m, clamps: [{use: meter, at: 0}]}
+  - {use: plate, lift: -9 N/(m/s)^2}
+environments:
+  shallow: {depth: 90 m, fluid: water}
+  air: {fluid: air, density: 1.2 kg/m^3}
+solver: {friction: constant, strumming: {model: bourget-marichal, a1: 1.6, strouhal: 0.17}}
+"""
+
 
 def plain(text: str) -> Any:
     return YAML(typ="safe", pure=True).load(text)
@@ -60,15 +73,21 @@ def test_schema_is_one() -> None:
     jsonschema.Draft202012Validator.check_schema(mooring_schema())
 
 
-@pytest.mark.parametrize("text", [GOOD, EVERYTHING])
+@pytest.mark.parametrize("text", [GOOD, EVERYTHING, TOW, TOWED, test_tow.HELICOPTER])
 def test_good_files(text: str) -> None:
     VALIDATOR.validate(plain(text))
+
+
+@pytest.mark.parametrize("strumming", ["none", "vandiver", "{factor: 1.5}", "{cn: 1.85}"])
+def test_ways_of_strumming(strumming: str) -> None:
+    VALIDATOR.validate(plain(GOOD + f"solver: {{strumming: {strumming}}}\n"))
 
 
 def test_the_reader_takes_everything_too(read: Callable[..., MooringFile], tmp_path: Any) -> None:
     (tmp_path / "current.csv").write_text("depth[m],u[m/s],v[m/s]\n0,1,1\n")
     text = EVERYTHING.replace("{use: chain}", "{use: chain, length: 2 m}")
     assert len(read(text).pieces) == 9
+    assert len(read(TOWED, "shallow").pieces) == 2
 
 
 KNOWN_TO_THE_SCHEMA = [
@@ -84,7 +103,6 @@ KNOWN_TO_THE_SCHEMA = [
     "text for a mapping",
     "item that is text",
     "count of none",
-    "not yet: tow",
     "not yet: drag",
     "choice misspelt",
     "limit misspelt",
@@ -94,6 +112,38 @@ KNOWN_TO_THE_SCHEMA = [
 @pytest.mark.parametrize("mistake", KNOWN_TO_THE_SCHEMA)
 def test_mistakes_the_schema_knows(mistake: str) -> None:
     assert not VALIDATOR.is_valid(plain(ONE_MISTAKE[mistake][0]))
+
+
+KNOWN_OF_TOWS = [
+    "speed missing",
+    "direction missing",
+    "speed without a unit",
+    "key misspelt",
+    "nothing",
+    "a speed alone",
+    "no line",
+    "line empty",
+    "depth misspelt",
+    "environment empty",
+]
+
+
+@pytest.mark.parametrize("mistake", KNOWN_OF_TOWS)
+def test_mistakes_of_tows_the_schema_knows(mistake: str) -> None:
+    assert not VALIDATOR.is_valid(plain(test_tow.ONE_MISTAKE[mistake][0]))
+
+
+@pytest.mark.parametrize("strumming", test_strumming.KNOWN_TO_THE_SCHEMA)
+def test_mistakes_of_strumming_the_schema_knows(strumming: str) -> None:
+    assert not VALIDATOR.is_valid(plain(TOW + f"solver: {{strumming: {strumming}}}\n"))
+
+
+def test_only_a_mooring_needs_a_depth() -> None:
+    line = GOOD[GOOD.index("line:") :]
+    tow = "tow: {speed: 1 m/s, toward: 0}\n"
+    for environment in ("", "environment: {}\n"):
+        assert not VALIDATOR.is_valid(plain(environment + line))
+        assert VALIDATOR.is_valid(plain(tow + environment + line))
 
 
 def test_fields_are_described() -> None:

@@ -6,7 +6,14 @@ from collections.abc import Sequence
 import pytest
 
 from calm.errors import Problem
-from calm.files.tables import CurrentTable, read_current, read_density
+from calm.files.tables import (
+    CurrentTable,
+    DepthTable,
+    SeaWater,
+    read_current,
+    read_profile,
+    read_water,
+)
 
 
 def report(location: Sequence[str | int], message: str) -> Problem:
@@ -119,12 +126,80 @@ def test_places_are_right_after_a_row_of_the_wrong_width() -> None:
 
 
 def test_density() -> None:
+    table = read_water(["depth m", "density g/cm^3"], [["0", "1.02"], ["9", "1.03"]], report, [])
+    assert table == DepthTable((0.0, 9.0), (1020.0, 1030.0))
+
+
+def test_temperature_and_salinity() -> None:
+    columns = ["salinity", "depth[m]", "temperature[degC]"]
+    found = read_water(columns, [["35", "0", "-1.5"], ["35.16504 g/kg", "9", "4"]], report, [])
+    assert isinstance(found, SeaWater)
+    assert found.temperature == DepthTable((0.0, 9.0), (-1.5, 4.0))
+    assert found.salinity.value == pytest.approx((35.0, 35.0), rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("columns", "row", "problem"),
+    [
+        (
+            ["depth m", "density kg/m^3"],
+            ["0", "-3"],
+            "rows.0.1: `density: -3` must be more than 0 kg/m^3",
+        ),
+        (
+            ["depth m"],
+            ["0"],
+            "columns: a density needs `density`, or `temperature` and `salinity`; "
+            "the columns are depth",
+        ),
+        (
+            ["depth m", "temperature degC"],
+            ["0", "9"],
+            "columns: a density needs `density`, or `temperature` and `salinity`; "
+            "the columns are depth, temperature",
+        ),
+        (
+            ["depth m", "temperature degC", "salinity", "density kg/m^3"],
+            ["0", "9", "35", "1027"],
+            "columns: a density needs `density`, or `temperature` and `salinity`; "
+            "the columns are depth, temperature, salinity, density",
+        ),
+        (["density kg/m^3"], ["1027"], "columns: the table has no `depth` column"),
+        (
+            ["depth m", "temperature degC", "salinity"],
+            ["0", "-10", "35"],
+            "rows.0.1: `temperature: -10` must be at least -6 degC",
+        ),
+        (
+            ["depth m", "temperature degC", "salinity g/kg"],
+            ["0", "10", "-35"],
+            "rows.0.2: `salinity: -35` must be at least 0",
+        ),
+        (
+            ["depth m", "temperature F", "salinity"],
+            ["0", "10", "35"],
+            "columns.1: `temperature F` is not a temperature in degC",
+        ),
+    ],
+)
+def test_mistakes_in_a_table_of_the_water(columns: list[str], row: list[str], problem: str) -> None:
     problems: list[Problem] = []
-    assert read_density(["depth m", "density kg/m^3"], [["0", "-3"]], report, problems) is None
-    assert read_density(["depth m"], [["0"]], report, problems) is None
+    assert read_water(columns, [row], report, problems) is None
+    assert [str(problem) for problem in problems] == [problem]
+
+
+def test_profile_of_one_quantity() -> None:
+    table = read_profile("salinity", ["depth m", "salinity PSU"], [["5", "35"]], report, [])
+    assert table == DepthTable((5.0,), (35.0,))
+    problems: list[Problem] = []
+    assert read_profile("salinity", ["depth m"], [["5"]], report, problems) is None
+    assert (
+        read_profile("salinity", ["depth m", "temperature degC"], [["5", "3"]], report, problems)
+        is None
+    )
     assert [str(problem) for problem in problems] == [
-        "rows.0.1: `density` -3 kg/m^3 must be more than 0",
-        "columns: the table has no `density` column",
+        "columns: the table has no `salinity` column",
+        "columns.1: no column is called `temperature`; allowed: depth, salinity",
     ]
 
 

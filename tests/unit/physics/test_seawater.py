@@ -113,3 +113,5 @@ def test_density_without_a_position():
     # the North Pacific holds the most of what the reference composition lacks
     pacific = seawater.density(2, 34.8, 5000, 45, -150)
     assert 0.01 < pacific - at_home < 0.03
+    # the atlas ends at 86 degrees south, and the sea before it
+    assert seawater.density(2, 34.8, 500, -88, 0) == seawater.density(2, 34.8, 500, -88)

@@ -1,0 +1,95 @@
+"""Which environment a mooring stands in: the file's own, or another laid over it."""
+
+from __future__ import annotations
+
+import os.path
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from calm.errors import InputError, Problem
+from calm.files.document import read_document
+from calm.files.environment import read_environment
+from calm.files.explain import unknown, validate
+from calm.files.fields import Model, Text
+from calm.files.section import Section
+
+
+class EnvironmentFileKeys(Model):
+    """The keys at the top level of an environment file."""
+
+    name: Text | None = None
+    environment: dict[str, Any]
+
+
+def choose_environment(
+    top: Section, chosen: str | Path | None, problems: list[Problem], *, towed: bool
+) -> tuple[Section, str | None] | None:
+    """The `environment` of a file, or the chosen one laid over it, and its name; yet to be read.
+
+    Variants that are not chosen, and the own environment where another one is, are checked here,
+    so that mistakes are told where they are. None where there is no environment.
+
+    Parameters
+    ----------
+    top : the mooring file
+    chosen : a variant named in the file, or an environment file; None for the file's own
+    towed : a tow may be without an environment: in deep, still sea water
+    """
+    own = top.child("environment") if _is_mapping(top, "environment") else None
+    if own is None:
+        if "environment" in top.data:
+            return None
+        if chosen is None and not towed:
+            problems.append(top.problem((), "`environment` is missing"))
+            return None
+        own = Section.of(top.document, (), {})
+    variants = top.child("environments") if _is_mapping(top, "environments") else None
+    overlays = dict(_mappings(variants)) if variants else {}
+    for overlay in overlays.values():
+        _check(overlay, problems, towed)
+    if chosen is None:
+        return own, None
+    _check(own, problems, towed)
+    if isinstance(chosen, str) and chosen in overlays:
+        return overlays[chosen].over(own), chosen
+    if isinstance(chosen, str) and not _is_file_name(chosen):
+        message = unknown(f"no environment is called `{chosen}`", chosen, overlays)
+        problems.append(top.problem(("environments",), message, key=True))
+        return None
+    return _from_file(Path(chosen), own, problems)
+
+
+def _from_file(
+    path: Path, own: Section, problems: list[Problem]
+) -> tuple[Section, str | None] | None:
+    try:
+        document = read_document(path)
+    except InputError as error:
+        problems.extend(error.problems)
+        return None
+    file = Section.of(document, (), document.data)
+    keys = validate(EnvironmentFileKeys, file, problems)
+    if keys is None:
+        return None
+    return file.child("environment").over(own), keys.name or path.stem
+
+
+def _check(section: Section, problems: list[Problem], towed: bool) -> None:
+    """Look for mistakes in keys that may stand over, or under, others: on any depth."""
+    section = section.over(Section.of(section.document, (), {"depth": "1 m"}))
+    read_environment(section, None, problems, [], open_files=False, towed=towed)
+
+
+def _mappings(section: Section) -> Iterator[tuple[str, Section]]:
+    for key in section.data:
+        if _is_mapping(section, key):
+            yield key, section.child(key)
+
+
+def _is_mapping(section: Section, key: str) -> bool:
+    return isinstance(section.data.get(key), dict)
+
+
+def _is_file_name(text: str) -> bool:
+    return os.path.isfile(text) or os.sep in text or text.endswith((".yaml", ".yml"))

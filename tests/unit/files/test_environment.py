@@ -1,0 +1,263 @@
+"""The environment section: what it may say of sea water, air and wind, and how it goes wrong."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import jsonschema
+import pytest
+from ruamel.yaml import YAML
+
+from calm.errors import Problem
+from calm.files import DepthTable, Environment, MooringFile, SeaWater, mooring_schema
+from calm.files.document import read_document
+from calm.files.environment import read_environment
+from calm.files.section import Section
+
+from .conftest import GOOD, Place
+
+Read = Callable[..., MooringFile]
+Towed = Callable[[str], tuple[Environment | None, list[str]]]
+Mistakes = Callable[..., list[Place]]
+
+SCHEMA = jsonschema.Draft202012Validator(mooring_schema())
+
+
+def with_keys(*lines: str) -> str:
+    """The good mooring with more lines in its environment, from line 4 on."""
+    keys = "".join(f"  {line}\n" for line in lines)
+    return GOOD.replace("  depth: 1100 m\n", "  depth: 1100 m\n" + keys)
+
+
+@pytest.fixture
+def towed(tmp_path: Path) -> Towed:
+    """Reads the environment of a tow: itself, and the messages of its mistakes."""
+
+    def read(text: str) -> tuple[Environment | None, list[str]]:
+        path = tmp_path / "environment.yaml"
+        path.write_text(text)
+        document = read_document(path)
+        problems: list[Problem] = []
+        section = Section.of(document, (), document.data)
+        environment = read_environment(section, None, problems, [], towed=True)
+        return environment, [problem.message for problem in problems]
+
+    return read
+
+
+TEN_AND_35 = SeaWater(DepthTable((0.0,), (10.0,)), DepthTable((0.0,), (35.0,)))
+
+
+@pytest.mark.parametrize(
+    ("lines", "sea"),
+    [
+        (["density: {temperature: 10 degC, salinity: 35}"], TEN_AND_35),
+        (["density: {temperature: 10 °C, salinity: 35 PSU}"], TEN_AND_35),
+        (["density: {temperature: 10 degC, salinity: 35.16504 g/kg}"], TEN_AND_35),
+        (
+            ["density: {columns: [depth m, temperature degC, salinity], rows: [[0, 10, 35]]}"],
+            TEN_AND_35,
+        ),
+        (
+            [
+                "density:",
+                "  temperature: {columns: [depth m, temperature degC], rows: [[0, 18], [90, 4]]}",
+                "  salinity: 34",
+            ],
+            SeaWater(DepthTable((0.0, 90.0), (18.0, 4.0)), DepthTable((0.0,), (34.0,))),
+        ),
+        (
+            [
+                "density:",
+                "  temperature: 4 degC",
+                "  salinity: {columns: [depth m, salinity], rows: [[5, 30], [10, 34]]}",
+            ],
+            SeaWater(DepthTable((0.0,), (4.0,)), DepthTable((5.0, 10.0), (30.0, 34.0))),
+        ),
+    ],
+    ids=["constants", "other units", "mass fraction", "one table", "one of two", "the other"],
+)
+def test_sea_water(read: Read, lines: list[str], sea: SeaWater) -> None:
+    text = with_keys(*lines)
+    mooring = read(text)
+    assert mooring.environment.density == sea
+    [notice] = mooring.notices
+    assert notice.startswith("Density from temperature and salinity without a `position`")
+    SCHEMA.validate(YAML(typ="safe", pure=True).load(text))
+
+
+def test_sea_water_at_a_position(read: Read) -> None:
+    place = "position: {latitude: 48.3 deg, longitude: -5.2 deg}\n"
+    mooring = read(place + with_keys("density: {temperature: 10 degC, salinity: 35}"))
+    assert mooring.notices == ()
+    assert mooring.environment.position == mooring.position
+    assert mooring.environment.density == TEN_AND_35
+
+
+def test_a_drift_is_off_unless_asked_for(read: Read) -> None:
+    wind = read(with_keys("wind: {speed: 10 m/s, toward: 0 deg}")).environment.wind
+    assert wind is not None
+    assert (wind.surface_drift, wind.drift_depth) == (0.0, None)
+    drift = "surface_drift: 2 %, drift_depth: 50 m"
+    wind = read(with_keys(f"wind: {{speed: 10 m/s, toward: 0 deg, {drift}}}")).environment.wind
+    assert wind is not None
+    assert (wind.surface_drift, wind.drift_depth) == (0.02, 50.0)
+
+
+NEEDS = "a density needs `density`, or `temperature` and `salinity`; the columns are "
+WIND = "wind: {speed: 9 m/s, toward: 0, "
+
+
+@pytest.mark.parametrize(
+    ("lines", "mistake"),
+    [
+        (["density: {temperature: 10 degC}"], (4, 12, "`salinity` is missing")),
+        (["density: {salinity: 35}"], (4, 12, "`temperature` is missing")),
+        (
+            ["density: {temprature: 10 degC, salinity: 35}"],
+            (4, 13, "unknown key `temprature`; did you mean `temperature`?"),
+        ),
+        (
+            ["density: {temperature: -10 degC, salinity: 35}"],
+            (4, 26, "`temperature: -10 degC` must be at least -6 degC"),
+        ),
+        (
+            ["density: {temperature: 283 K, salinity: 35}"],
+            (4, 26, "`temperature: 283 K` is not a temperature in degC"),
+        ),
+        (
+            ["density: {temperature: 10, salinity: 35}"],
+            (4, 26, "`temperature: 10` needs a unit; did you mean `temperature: 10 degC`?"),
+        ),
+        (
+            ["density: {temperature: 10 degC, salinity: -1}"],
+            (4, 45, "`salinity: -1` must be at least 0"),
+        ),
+        (
+            ["density: {temperature: 10 degC, salinity: 350}"],
+            (4, 45, "`salinity: 350` must be at most 42"),
+        ),
+        (
+            ["density: {temperature: 10 degC, salinity: 35 kg/m^3}"],
+            (
+                4,
+                45,
+                "`salinity: 35 kg/m^3` is a density; "
+                "a salinity (practical: 35; or in g/kg) is needed",
+            ),
+        ),
+        (
+            ["density: {temperature: 10 degC, salinity: }"],
+            (4, 35, "`salinity` has no value"),
+        ),
+        (
+            ["density: {columns: [depth m, temperature degC], rows: [[0, 10]]}"],
+            (4, 22, NEEDS + "depth, temperature"),
+        ),
+        (
+            ["density: {columns: [depth m, temprature degC, salinity], rows: [[0, 10, 35]]}"],
+            (4, 32, "no column is called `temprature`; did you mean `temperature`?"),
+        ),
+        (
+            ["density: {columns: [depth m, temperature degC, salinity], rows: [[0, 50, 35]]}"],
+            (4, 72, "`temperature: 50` must be at most 40 degC"),
+        ),
+        (
+            [
+                "density:",
+                "  salinity: 35",
+                "  temperature: {columns: [depth m, salinity], rows: [[0, 10]]}",
+            ],
+            (6, 38, "no column is called `salinity`; allowed: depth, temperature"),
+        ),
+        (
+            [
+                "density:",
+                "  salinity: 35",
+                "  temperature: {columns: [depth m, temperature degC], rows: [[9, 10], [3, 9]]}",
+            ],
+            (6, 74, "depth 3 m comes after 9 m; depths must increase"),
+        ),
+        (["fluid: air"], (4, 10, "`fluid: air` is for tows; a mooring stands in water")),
+        (
+            ["fluid: ari"],
+            (4, 10, "`fluid: ari` must be one of water"),
+        ),
+        (
+            [WIND + "surface_drift: 2}"],
+            (4, 50, "`surface_drift: 2` must be at most 0.1"),
+        ),
+        (
+            [WIND + "surface_drift: -1 %}"],
+            (4, 50, "`surface_drift: -1 %` must be at least 0"),
+        ),
+        (
+            [WIND + "drift_depth: 50 m}"],
+            (4, 9, "`drift_depth` needs `surface_drift`, a share of the wind's speed"),
+        ),
+        (
+            [WIND + "surface_drift: 2 %, drift_depth: 0}"],
+            (4, 68, "`drift_depth: 0` must be more than 0 m"),
+        ),
+    ],
+)
+def test_one_mistake(mistakes: Mistakes, lines: list[str], mistake: Place) -> None:
+    assert mistakes(with_keys(*lines)) == [mistake]
+
+
+def test_all_mistakes_of_sea_water_at_once(mistakes: Mistakes) -> None:
+    text = with_keys(
+        "density:",
+        "  temperature: {columns: [depth m, temperature degC], rows: [[0, -10], [0, 9]]}",
+        "  salinity: -3",
+        "gravity: 9.81",
+    )
+    assert mistakes(text) == [
+        (5, 68, "`temperature: -10` must be at least -6 degC"),
+        (5, 75, "depth 0 m repeats 0 m; depths must increase"),
+        (6, 15, "`salinity: -3` must be at least 0"),
+        (7, 12, "`gravity: 9.81` needs a unit; did you mean `gravity: 9.81 m/s^2`?"),
+    ]
+
+
+def test_mistakes_of_a_variant_are_told_where_they_are(mistakes: Mistakes) -> None:
+    text = GOOD + "environments: {summer: {density: {temperature: 20 degC}}}\n"
+    assert mistakes(text) == [(14, 34, "`salinity` is missing")]
+
+
+def test_a_tow_needs_no_depth(towed: Towed) -> None:
+    environment, problems = towed("gravity: 9.81 m/s^2\n")
+    assert problems == []
+    assert environment is not None
+    assert (environment.fluid, environment.depth, environment.density) == ("water", None, 1025.0)
+
+
+def test_a_tow_may_be_in_air(towed: Towed) -> None:
+    environment, _ = towed("fluid: air\n")
+    assert environment is not None
+    assert (environment.fluid, environment.density) == ("air", 1.225)
+    thin, _ = towed("{fluid: air, density: 0.9 kg/m^3}\n")
+    assert thin is not None
+    assert thin.density == 0.9
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            "{fluid: air, density: {temperature: 10 degC, salinity: 35}}",
+            "temperature and salinity are those of the sea, not of air",
+        ),
+        (
+            "{fluid: air, wind: {speed: 5 m/s, toward: 0}}",
+            "`wind` blows over water; in air the wind is the `current`",
+        ),
+        (
+            "wind: {speed: 5 m/s, toward: 0, surface_drift: 2 %}",
+            "`surface_drift` needs `drift_depth`, as `depth` is not given",
+        ),
+        ("depth:", "`depth` has no value"),
+        ("fluid: ari", "`fluid: ari` must be one of water, air; did you mean `fluid: air`?"),
+    ],
+)
+def test_mistakes_of_a_tow(towed: Towed, text: str, message: str) -> None:
+    assert towed(text + "\n") == (None, [message])
