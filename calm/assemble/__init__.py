@@ -4,4 +4,5 @@ from calm.assemble.floating import assemble_floating as assemble_floating
 from calm.assemble.floating import first_float as first_float
 from calm.assemble.line import assemble_line as assemble_line
 from calm.assemble.line import drag_of as drag_of
+from calm.assemble.line import net_buoyancy as net_buoyancy
 from calm.assemble.water import assemble_water as assemble_water

@@ -7,9 +7,9 @@ from math import cbrt, pi, sqrt
 
 import numpy as np
 
-from calm.assemble.line import drag_of
+from calm.assemble.line import drag_of, net_buoyancy
 from calm.files import Body, Cable, Chain, Cylinder, Environment, Piece, Sphere
-from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
+from calm.files.definition import CATALOGUE_DENSITY
 from calm.files.rigid import Displacement
 from calm.files.tables import components
 from calm.physics.hull import Floating, Hull, cylindrical_hull, spherical_hull, tabulated_hull
@@ -42,12 +42,13 @@ def assemble_floating(
         return None
     _, density = water.at(np.zeros(()))
     volume = _volume(component) or 0.0
-    lift = component.net_buoyancy + (float(density) - CATALOGUE_DENSITY) * water.gravity * volume
+    net = net_buoyancy(component, water.gravity)
+    lift = net + (float(density) - CATALOGUE_DENSITY) * water.gravity * volume
     below, *_ = drag_of(component, component.length)
     wind = environment.wind
     return Floating(
         hull=hull,
-        weight=CATALOGUE_DENSITY * STANDARD_GRAVITY * volume - component.net_buoyancy,
+        weight=CATALOGUE_DENSITY * water.gravity * volume - net,
         lift=lift,
         surface_drag=component.k_surface / below if component.k_surface is not None else None,
         wind=(0.0, 0.0) if wind is None else components(wind.speed, wind.toward),

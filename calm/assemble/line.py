@@ -9,6 +9,7 @@ import numpy as np
 from calm.assemble.cables import cable_drag, vibration_law
 from calm.files import Anchor, Body, Cable, Chain, Component, Cylinder, Piece, Solver, Sphere
 from calm.files.components import CylinderShape, SphereShape
+from calm.files.definition import STANDARD_GRAVITY
 from calm.physics import drag
 from calm.physics.friction import Friction
 from calm.physics.line import Line
@@ -18,7 +19,9 @@ TOWED_SPHERE_CX = 0.90
 that is held."""
 
 
-def assemble_line(pieces: Sequence[Piece], solver: Solver | None = None) -> Line:
+def assemble_line(
+    pieces: Sequence[Piece], solver: Solver | None = None, gravity: float = STANDARD_GRAVITY
+) -> Line:
     """The line above the anchor, or the whole towed line, in the order of the pieces.
 
     A piece to be cut to fit has length 0 until it is cut.
@@ -27,6 +30,7 @@ def assemble_line(pieces: Sequence[Piece], solver: Solver | None = None) -> Line
     ----------
     pieces : top to bottom, the anchor last if there is one
     solver : the laws of friction and strumming; the usual ones where not given
+    gravity : under which masses weigh [m/s²]
     """
     solver = solver or Solver()
     anchor = pieces[-1].component
@@ -41,7 +45,7 @@ def assemble_line(pieces: Sequence[Piece], solver: Solver | None = None) -> Line
     return Line(
         length=np.array([piece.length or 0.0 for piece in above]),
         flexible=np.array(flexible),
-        buoyancy=np.array([piece.component.net_buoyancy for piece in above]),
+        buoyancy=np.array([net_buoyancy(piece.component, gravity) for piece in above]),
         volume=np.array([piece.component.displaced_volume or 0.0 for piece in above]),
         normal_drag=np.array([kn for kn, _, _ in drags]),
         tangential_drag=np.array([kt for _, kt, _ in drags]),
@@ -50,7 +54,7 @@ def assemble_line(pieces: Sequence[Piece], solver: Solver | None = None) -> Line
         thinning=np.array([0.5 if isinstance(p.component, Cable) else 0.0 for p in above]),
         clamp_piece=np.array([i for i, _ in clamps]),
         clamp_at=np.array([clamp.at for _, clamp in clamps]),
-        clamp_buoyancy=np.array([clamp.component.net_buoyancy for _, clamp in clamps]),
+        clamp_buoyancy=np.array([net_buoyancy(clamp.component, gravity) for _, clamp in clamps]),
         clamp_volume=np.array([clamp.component.displaced_volume or 0.0 for _, clamp in clamps]),
         clamp_drag=np.array([_clamped_drag(clamp.component) for _, clamp in clamps]),
         anchor_height=anchor.length if isinstance(anchor, Anchor) else 0.0,
@@ -62,6 +66,17 @@ def assemble_line(pieces: Sequence[Piece], solver: Solver | None = None) -> Line
         friction=Friction(solver.friction),
         strumming=vibration_law(solver),
     )
+
+
+def net_buoyancy(component: Component, gravity: float) -> float:
+    """Net force in reference water, + up [N, N/m]: as given, or that of the masses under a gravity.
+
+    Parameters
+    ----------
+    gravity : [m/s²]
+    """
+    given = any(getattr(component, name, None) is not None for name in ("buoyancy", "weight"))
+    return component.net_buoyancy * (1.0 if given else gravity / STANDARD_GRAVITY)
 
 
 def drag_of(

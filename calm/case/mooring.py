@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from calm.assemble import assemble_floating, assemble_line, assemble_water
+from calm.assemble import assemble_floating, assemble_line, assemble_water, net_buoyancy
 from calm.case.labels import naming_the_piece
 from calm.case.moored import result_of
 from calm.case.result import Result
@@ -70,7 +70,7 @@ class Mooring:
         NoEquilibrium
             Where no length fits.
         """
-        line = assemble_line(self.file.pieces, self.file.solver)
+        line = assemble_line(self.file.pieces, self.file.solver, self.water.gravity)
         if self.file.solver.buoy_drag == "immersed":
             floating = assemble_floating(self.file.pieces, self.file.environment, self.water)
             line = replace(line, floating=floating)
@@ -89,7 +89,7 @@ class Mooring:
         anchor, water = self.file.anchor, self.water
         _, density = water.at(np.array(water.depth))
         excess = (float(density) - REFERENCE_DENSITY) * water.gravity
-        return -(anchor.net_buoyancy + excess * (anchor.displaced_volume or 0.0))
+        return -(net_buoyancy(anchor, water.gravity) + excess * (anchor.displaced_volume or 0.0))
 
     def solve(self) -> Result:
         """Find the static equilibrium.

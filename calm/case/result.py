@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from calm.case.band import StrummingBand, mooring_band
 from calm.case.columns import Clamps, Components, Shape
 
 if TYPE_CHECKING:
@@ -37,6 +39,11 @@ def document_of(result: Result | TowResult, ends: dict[str, Any]) -> dict[str, A
         "shape": {name: column.tolist() for name, column in vars(result.shape).items()},
         "warnings": list(result.warnings),
     }
+
+
+def known(part: Strumming | StrummingBand | None) -> dict[str, Any] | None:
+    """A part of a result as a dictionary; None where there is none."""
+    return None if part is None else asdict(part)
 
 
 @dataclass(frozen=True)
@@ -129,12 +136,19 @@ class Result:
         """The file as read."""
         return self.mooring.file
 
+    @cached_property
+    def strumming_band(self) -> StrummingBand | None:
+        """The same mooring with more drag on its cables; solved when first asked for."""
+        still = self.still_shape
+        return mooring_band(self.mooring, None if still is None else float(still.depth[0]))
+
     def to_dict(self) -> dict[str, Any]:
         """The JSON object of the result format; None stands where a figure is unknown."""
         ends = {
             "top": asdict(self.top),
             "anchor": asdict(self.anchor),
-            "strumming": None if self.strumming is None else asdict(self.strumming),
+            "strumming": known(self.strumming),
+            "strumming_band": known(self.strumming_band),
         }
         return document_of(self, ends)
 

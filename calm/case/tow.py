@@ -8,10 +8,11 @@ from math import atan2, degrees, hypot
 from typing import Any
 
 from calm.assemble import assemble_line, assemble_water
+from calm.case.band import StrummingBand, tow_band
 from calm.case.columns import Clamps, Components, Shape
 from calm.case.labels import naming_the_piece
 from calm.case.measure import clamps_of, components_of, shape_of
-from calm.case.result import Accuracy, Strumming, document_of
+from calm.case.result import Accuracy, Strumming, document_of, known
 from calm.case.strumming import strumming_of
 from calm.case.warnings import tow_warnings_of
 from calm.files import MooringFile, TowKeys
@@ -80,6 +81,11 @@ class TowResult:
         """The file as read."""
         return self.tow.file
 
+    @cached_property
+    def strumming_band(self) -> StrummingBand | None:
+        """The same tow with more drag on its cables; solved when first asked for."""
+        return tow_band(self.tow)
+
     def to_dict(self) -> dict[str, Any]:
         """The JSON object of the result format; None stands where a figure is unknown."""
         ends = {
@@ -87,7 +93,8 @@ class TowResult:
             "toward": self.toward,
             "tow_point": asdict(self.tow_point),
             "body": asdict(self.body),
-            "strumming": None if self.strumming is None else asdict(self.strumming),
+            "strumming": known(self.strumming),
+            "strumming_band": known(self.strumming_band),
         }
         return document_of(self, ends)
 
@@ -146,7 +153,7 @@ class Tow:
         NoEquilibrium
             Where no length reaches the depth.
         """
-        line = assemble_line(self.file.pieces, self.file.solver)
+        line = assemble_line(self.file.pieces, self.file.solver, self.water.gravity)
         for piece in self.file.pieces:
             if piece.fit_body_depth is not None:
                 with naming_the_piece(self.file.pieces):
@@ -209,12 +216,10 @@ def _result_of(tow: Tow, solution: Solution) -> TowResult:
 
 
 def _body(solution: Solution) -> TowedBody:
-    """Where the lowest piece hangs on the line; of a cable, where it ends."""
-    bare = bool(solution.line.flexible[0])
-    node = 0 if bare else int(solution.piece_nodes[0, 1])
+    node = solution.body_node
     x, y, z = solution.position[node]
     pull = -solution.force[node]
-    if bare:
+    if solution.line.flexible[0]:
         pull = solution.position[1] - solution.position[0]
     return TowedBody(
         depth=-float(z),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from math import acos, asin, hypot, nan, pi, sin, sqrt
 
 AIR_DENSITY = 1.225
@@ -66,9 +67,9 @@ def tabulated_hull(rows: Sequence[tuple[float, float, float]]) -> Hull:
     keel = () if rows[0][0] == 0.0 else ((0.0, 0.0, 0.0),)
     drafts, volumes, areas = (list(column) for column in zip(*keel, *rows, strict=True))
     for name, column in (("draft", drafts), ("volume", volumes)):
-        if any(b <= a for a, b in zip(column, column[1:], strict=False)):
+        if any(b <= a for a, b in pairwise(column)):
             raise ValueError(f"the {name} must grow from row to row")
-    if any(b < a for a, b in zip(areas, areas[1:], strict=False)) or len(drafts) < 2:
+    if any(b < a for a, b in pairwise(areas)) or len(drafts) < 2:
         raise ValueError("the area must not fall from row to row, and one row is not enough")
 
     def curve(share: float) -> tuple[float, float]:

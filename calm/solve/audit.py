@@ -1,18 +1,21 @@
 """What every solution must satisfy, recomputed from its coordinates without the march.
 
 Closure: buoyancy and drag of every element from the final positions and axes sum to the force at
-the line's end. Moments: every axis lies along the mean of the forces at its two ends. Neither uses
-a number that the march left behind, but for the positions and the strains.
+the line's end. Moments: every axis lies along the mean of the forces at its two ends, and a cable
+is stretched as that force has it. Neither uses a number that the march left behind, but for the
+positions.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import asin
 
 import numpy as np
 
 from calm.physics.friction import Friction
-from calm.physics.line import REFERENCE_DENSITY, Floats
+from calm.physics.line import REFERENCE_DENSITY, Floats, Integers
+from calm.physics.reynolds import DragCurve
 from calm.physics.track import head_count
 from calm.solve.solution import Solution
 
@@ -36,6 +39,7 @@ def loads(solution: Solution) -> Floats:
     chord = bottom - top
     size = np.linalg.norm(chord, axis=1, keepdims=True)
     axis = np.divide(chord, size, out=np.zeros_like(chord), where=size > 0)
+    axis[rigid] = _rigid_axes(solution)[piece[rigid]]
     along = np.sum(current * axis, axis=1, keepdims=True) * axis
     normal = current - along
 
@@ -48,13 +52,17 @@ def loads(solution: Solution) -> Floats:
     whole = np.where(last, 1.0, 0.0)
     np.divide(solution.cut, line.length[piece], out=whole, where=line.length[piece] > 0)
     amount = np.where(line.flexible[piece], solution.cut, whole)
-    grown = amount * (1.0 + solution.strain) ** line.thinning[piece]
-    normal_drag = line.normal_drag[piece] * amplification(solution)
+    grown = amount * (1.0 + _stretch(solution)) ** line.thinning[piece]
+    directional = line.directional[piece][:, None]
+    speed = np.linalg.norm(np.where(directional, normal, current), axis=1)
+    viscosity = water.viscosity_at(-0.5 * (top + bottom)[:, 2])
+    varied = _on_curves(line.drag_curve, piece, speed / viscosity)
+    normal_drag = line.normal_drag[piece] * amplification(solution) * varied
     drag = np.where(
-        line.directional[piece][:, None],
+        directional,
         normal_drag[:, None] * squared(normal)
         + line.tangential_drag[piece][:, None] * squared(along),
-        line.normal_drag[piece][:, None] * squared(current),
+        normal_drag[:, None] * squared(current),
     )
     cables = line.flexible[piece] & (clamp < 0)
     if line.friction is not Friction.BERTEAUX:
@@ -72,10 +80,10 @@ def loads(solution: Solution) -> Floats:
 
     here = clamp >= 0
     which = clamp[here]
-    drag[here] = (
-        squared(current[here])
-        * (line.clamp_drag[which] * density[here] / REFERENCE_DENSITY)[:, None]
-    )
+    flow = current[here]
+    per_metre = np.linalg.norm(flow, axis=1) / viscosity[here]
+    resistance = line.clamp_drag[which] * _on_curves(line.clamp_drag_curve, which, per_metre)
+    drag[here] = squared(flow) * (resistance * density[here] / REFERENCE_DENSITY)[:, None]
     lift[here] = line.clamp_buoyancy[which] + excess[here] * line.clamp_volume[which]
     lift[here] += line.clamp_lift[which] * raised[here]
     drag[:, 2] += lift
@@ -83,6 +91,54 @@ def loads(solution: Solution) -> Floats:
     drag[:, 0] += rigid_own * line.push_east[piece]
     drag[:, 1] += rigid_own * line.push_north[piece]
     return drag
+
+
+def _rigid_axes(solution: Solution) -> Floats:
+    """(n, 3) axes of the rigid pieces; one without length lies along the mean force at its ends."""
+    nodes = solution.piece_nodes.copy()
+    head = head_count(solution.line)
+    if head:
+        nodes[:head] = nodes[0, 0], nodes[head - 1, 1]
+    first, last = nodes.T
+    axis = solution.position[last] - solution.position[first]
+    plumb = np.linalg.norm(axis, axis=1) == 0.0
+    axis[plumb] = -(solution.force[first] + solution.force[last])[plumb]
+    size = np.linalg.norm(axis, axis=1, keepdims=True)
+    unit: Floats = np.divide(axis, size, out=np.zeros_like(axis), where=size > 0)
+    return unit
+
+
+def _on_curves(
+    curves: Sequence[DragCurve | None], which: Integers, reynolds_per_metre: Floats
+) -> Floats:
+    """How many times its constant drag each element has: 1 where `which` of the curves is none."""
+    varied = np.ones(len(which))
+    for element, index in enumerate(which):
+        curve = curves[index]
+        if curve is not None:
+            varied[element] = curve.factor(curve.diameter * reynolds_per_metre[element])
+    return varied
+
+
+def _stretch(solution: Solution) -> Floats:
+    """(k,) strain of every element by its coordinates; 0 of what is rigid or has no length."""
+    cut = solution.cut
+    length = np.linalg.norm(np.diff(solution.position, axis=0), axis=1)
+    cable = solution.line.flexible[solution.element_piece] & (cut > 0.0)
+    return np.where(cable, np.divide(length, cut, out=np.ones(len(cut)), where=cable) - 1.0, 0.0)
+
+
+def _expected_stretch(solution: Solution, above: Floats) -> Floats:
+    """(k,) strain that the forces at the ends of every element (k+1, 3) ask for."""
+    line, piece = solution.line, solution.element_piece
+    middle = np.linalg.norm(0.5 * (above[:-1] + above[1:]), axis=1)
+    half = 0.5 * np.diff(np.linalg.norm(above, axis=1))
+    expected: Floats = line.compliance[piece] * middle
+    for element, index in enumerate(piece):
+        curve = line.elongation[index]
+        if curve is not None:
+            expected[element] = curve.mean_strain(middle[element], half[element])
+    return expected
 
 
 def amplification(solution: Solution) -> Floats:
@@ -165,7 +221,8 @@ def _weight_on_seabed(solution: Solution) -> float:
 def moment_residual(solution: Solution) -> float:
     """Largest angle between an element's axis and the mean of the forces at its ends [rad].
 
-    Beyond the rounding of the coordinates.
+    Or, where that is larger, departure of a cable's strain from what these forces ask for. Both
+    beyond the rounding of the coordinates.
     """
     load = loads(solution)
     above = np.vstack([np.zeros(3), np.cumsum(load, axis=0)])
@@ -190,7 +247,9 @@ def moment_residual(solution: Solution) -> float:
     rounding = 4.0 * np.finfo(float).eps * np.abs(solution.position).max()
     length = np.maximum(np.linalg.norm(chord[cable], axis=1), rounding)
     angles = np.maximum(angles - rounding / length, 0.0)
-    return max(worst, float(np.max(angles, initial=0.0)))
+    strained = np.abs(_stretch(solution) - _expected_stretch(solution, above))[cable]
+    strained = np.maximum(strained - rounding / solution.cut[cable], 0.0)
+    return max(worst, float(np.max(angles, initial=0.0)), float(np.max(strained, initial=0.0)))
 
 
 def _rod_residual(solution: Solution, load: Floats, above: Floats, rod: list[int]) -> float:

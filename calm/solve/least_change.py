@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import pairwise
 from math import ceil, floor, inf, isfinite, log10
 
 from calm.solve.root import bracketed_root
@@ -59,10 +60,17 @@ class LeastChange:
         first = self.at(start)
         if first <= 0.0 or (self.exact and abs(first) <= self.small):
             return start
-        bracket = self._outward(start) or self._around_the_least(start)
-        if bracket is None:
+        held = self._outward(start)
+        if held is None:
+            held = self._around_the_least()
+        if held is None:
             return None
-        return self._whole(*bracket) if self.whole else self._root(*bracket)
+        found = self._nearest(start, held)
+        # as far on the other side, where the steps were others
+        mirrored = 2.0 * start - found
+        if self.low <= mirrored <= self.high and self.at(mirrored) <= 0.0:
+            return self._nearest(start, mirrored)
+        return found
 
     @property
     def least(self) -> float | None:
@@ -74,8 +82,8 @@ class LeastChange:
     def steady(self) -> bool:
         """Whether the excess only rises or only falls over the numbers tried."""
         excesses = [self.tried[x] for x in sorted(self.tried) if isfinite(self.tried[x])]
-        noise = 1e-6 * (max(excesses, default=0.0) - min(excesses, default=0.0))
-        steps = [b - a for a, b in zip(excesses, excesses[1:], strict=False)]
+        noise = 1e-6 * max(map(abs, excesses), default=0.0)
+        steps = [b - a for a, b in pairwise(excesses)]
         return not (any(step > noise for step in steps) and any(step < -noise for step in steps))
 
     def neighbours(self, x: float) -> tuple[float, float]:
@@ -84,18 +92,13 @@ class LeastChange:
         above = min((t for t in self.tried if t > x), default=x)
         return below, above
 
-    def _outward(self, start: float) -> tuple[float, float] | None:
-        """A number at which the condition fails, and one behind it at which it holds."""
-        last = {1: start, -1: start}
-        steps = [
-            (abs(x - start), sign, x)
-            for sign, room in ((1, self.high - start), (-1, start - self.low))
-            for x in (start + sign * step for step in self._steps(room))
-        ]
-        for _, sign, x in sorted(steps, key=lambda step: step[0]):
+    def _outward(self, start: float) -> float | None:
+        """The first of ever larger steps to either side at which the condition holds."""
+        upward = [start + step for step in self._steps(self.high - start)]
+        downward = [start - step for step in self._steps(start - self.low)]
+        for x in sorted(upward + downward, key=lambda x: abs(x - start)):
             if self.at(x) <= 0.0:
-                return last[sign], x
-            last[sign] = x
+                return x
         return None
 
     def _steps(self, room: float) -> list[float]:
@@ -106,7 +109,7 @@ class LeastChange:
             return [*doubled, room]
         return [room * 2.0 ** (k - DOUBLINGS) for k in range(DOUBLINGS + 1)]
 
-    def _around_the_least(self, start: float) -> tuple[float, float] | None:
+    def _around_the_least(self) -> float | None:
         """The same by halving the wider of the two gaps beside the least excess, as often as pays.
 
         That finds a dip between two steps, and the last numbers before those without answer.
@@ -122,10 +125,14 @@ class LeastChange:
             if x in self.tried or abs(far - best) <= 1e-7 * (self.high - self.low):
                 return None
             if self.at(x) <= 0.0:
-                towards_start = [t for t in self.tried if min(start, x) <= t <= max(start, x)]
-                bad = min((t for t in towards_start if t != x), key=lambda t: abs(t - x))
-                return bad, x
+                return x
         return None
+
+    def _nearest(self, start: float, good: float) -> float:
+        """Where the condition begins to hold between the start and a number at which it does."""
+        between = [x for x in self.tried if min(start, good) <= x <= max(start, good)]
+        bad = min((x for x in between if self.tried[x] > 0.0), key=lambda x: abs(x - good))
+        return self._whole(bad, good) if self.whole else self._root(bad, good)
 
     def _whole(self, bad: float, good: float) -> float:
         while abs(good - bad) > 1.0:

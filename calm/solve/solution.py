@@ -119,6 +119,11 @@ class Solution:
         last = np.searchsorted(pieces, np.arange(n), side="right")
         return np.column_stack([first, last]).astype(np.int64)
 
+    @property
+    def body_node(self) -> int:
+        """Where the lowest piece of a tow hangs on the line; of a bare cable, where that ends."""
+        return 0 if self.line.flexible[0] else int(self.piece_nodes[0, 1])
+
     def piece_at(self, node: int) -> int:
         """The piece that ends at a node, or passes it."""
         return int(self.element_piece[max(node - 1, 0)])

@@ -144,7 +144,7 @@ def _strumming(closing: Closing, towing: Towing) -> tuple[Refined, float | None]
     """The line at the frequency that its own angle at the ship gives it.
 
     The frequency that follows falls as the one assumed rises, since more drag lifts the line: so
-    there is one. Coarse marches bracket it, and their slope leads on to that of the finer shape.
+    there is one. Coarse marches bracket it, secants lead on to that of the finer shape.
     """
     root, other_depth = _locate(closing, towing)
 
@@ -157,9 +157,10 @@ def _strumming(closing: Closing, towing: Towing) -> tuple[Refined, float | None]
 
     most = excess(0.0)
     if most > 0.0:
-        frequency, _, slope = bracketed_root(
+        frequency, *_ = bracketed_root(
             excess, 0.0, most, most, excess(most), small=1e-3 * most, narrow=1e-9 * most
         )
+        before, lacked, slope = 0.0, 0.0, -1.0
         for _ in range(_ROUNDS):
             closing.frequency = frequency
             refined = refine(closing, replace(root, unknown=closing.towed(towing.height)))
@@ -167,6 +168,9 @@ def _strumming(closing: Closing, towing: Towing) -> tuple[Refined, float | None]
             lacking = _frequency(closing, refined.closed.end) - frequency
             if abs(lacking) <= FREQUENCY_TOLERANCE * frequency:
                 return refined, other_depth
+            if before:
+                slope = min((lacking - lacked) / (frequency - before), -1.0)
+            before, lacked = frequency, lacking
             frequency -= lacking / slope
         raise Status.NOT_CONVERGED.because("The frequency of the strumming line does not settle.")
     return refine(closing, root), other_depth

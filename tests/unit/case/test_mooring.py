@@ -95,7 +95,9 @@ def test_the_result_is_plain_json(solve):
     assert set(data["clamps"][0]) == {
         "index", "use", "label", "depth", "x", "y", "tension", "tilt", "knockdown",
     }  # fmt: skip
-    assert set(data["top"]) == {"depth", "x", "y", "knockdown", "used_buoyancy", "reserve"}
+    assert set(data["top"]) == {
+        "depth", "x", "y", "knockdown", "used_buoyancy", "reserve", "draft", "freeboard",
+    }  # fmt: skip
     assert set(data["anchor"]) >= {
         "tension", "vertical", "horizontal", "angle", "required_weight", "grounded_length",
     }  # fmt: skip

@@ -1,0 +1,171 @@
+"""How much of a mooring's shape each of its drags causes.
+
+Let y(λ₁ … λ_p) be what is to be explained, such as the knockdown, of the line whose drag i is λ_i
+times what it is. The share of drag i is that of Aumann and Shapley,
+
+    share_i = ∫₀¹ ∂y/∂λ_i (s, …, s) ds
+
+All drags grow together from nothing to what they are, and at every stage each is charged with what
+its own growth adds. The shares add up to y(1 … 1) − y(0 … 0). No other rule does that, is blind to
+how the line is divided into components and charges nothing to a drag that moves nothing (Billera &
+Heath, Mathematics of Operations Research 7, 1982). To take one component away and look at the
+difference is not such a rule: the differences do not add up, since drags act on each other.
+
+With drags that follow the square of the speed the stage s = t² is the mooring in t times its
+current.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import radians
+
+import numpy as np
+
+from calm.physics.line import Floats, Integers, Line, Water
+from calm.solve import Settings, Solution, solve_mooring
+from calm.solve.nearby import Nearby
+
+STAGES = (4, 8)
+"""Gauss points in t: the second number where the first misses the whole by `FAIR`."""
+FAIR = 0.01
+LEAST_DRAG = 1e-3
+"""Where the line has no unique shape without drag, its shares count from this share of the drag."""
+
+_STEP = 2e-4
+"""Growth of a drag for its derivative: large against the tolerance, small against its own use."""
+_SETTINGS = Settings(angle_step=radians(4.0), tolerance=1e-10)
+"""Coarse: what the shares lack is made up when they are scaled to the whole."""
+
+
+Part = tuple[int, int]
+"""A piece of the line, and the clamp on it that is meant, or -1."""
+
+
+@dataclass(frozen=True)
+class Attribution:
+    """The shares of p drags, each of a piece or of an instrument clamped on it.
+
+    The columns of `start` and `shares` are the depth and excursion of a point of the line [m] and
+    the share in use of the buoyancy at the surface.
+
+    Attributes
+    ----------
+    piece, clamp : (p,) indices in the line; clamp is -1 where the piece itself is meant
+    start : (3,) without drag, or with the least of it
+    shares : (p, 3) what each drag adds to it; the sums are the whole growth
+    miss : (3,) by how much of the whole growth the sums missed it before they were scaled
+    """
+
+    piece: Integers
+    clamp: Integers
+    start: Floats
+    shares: Floats
+    miss: Floats
+
+
+def attribute(
+    line: Line, water: Water, start: Floats | None, whole: Floats, point: Part
+) -> Attribution:
+    """Share out a point's depth and excursion, and the buoyancy in use, among the drags.
+
+    Parameters
+    ----------
+    line, water : see `calm.physics.line`
+    start : (3,) the values without drag, in the columns of `Attribution`; None where the line has
+        no unique shape then, and the shares are to count from `LEAST_DRAG`
+    whole : (3,) the values with all the drag
+    point : the top of a piece, or a clamp
+
+    Raises
+    ------
+    NoEquilibrium
+        The line has no equilibrium at one of the stages.
+    """
+    parts = _parts_with_drag(line)
+    least = 0.0
+    if start is None:
+        least = LEAST_DRAG
+        first = solve_mooring(with_drag(line, least), water, _SETTINGS)
+        start = _observed(first.position, first.buoyancy_used, _node(first, point))
+    growth = whole - start
+    for stages in STAGES:
+        shares = _integral(line, water, parts, least, stages, point)
+        total = shares.sum(axis=0)
+        grows = np.abs(growth) > 1e-9 * np.maximum(np.abs(whole), 1.0)
+        miss = np.where(grows, total / np.where(grows, growth, 1.0) - 1.0, 0.0)
+        if np.abs(miss).max() <= FAIR:
+            break
+    scaled = shares * np.where(grows & (total != 0.0), growth / np.where(total, total, 1.0), 0.0)
+    return Attribution(
+        piece=np.array([p for p, _ in parts], dtype=np.int64),
+        clamp=np.array([m for _, m in parts], dtype=np.int64),
+        start=start,
+        shares=scaled,
+        miss=miss,
+    )
+
+
+def with_drag(line: Line, factor: float) -> Line:
+    """The same line with all its drags multiplied."""
+    return replace(
+        line,
+        normal_drag=factor * line.normal_drag,
+        tangential_drag=factor * line.tangential_drag,
+        clamp_drag=factor * line.clamp_drag,
+    )
+
+
+def _parts_with_drag(line: Line) -> list[Part]:
+    """Down the line, the clamps of a piece behind it."""
+    pieces = np.flatnonzero((line.normal_drag > 0.0) | (line.tangential_drag > 0.0))
+    clamps = np.flatnonzero(line.clamp_drag > 0.0)
+    parts = [(int(p), -1) for p in pieces] + [(int(line.clamp_piece[m]), int(m)) for m in clamps]
+    return sorted(parts)
+
+
+def _with_part(line: Line, part: Part, factor: float) -> Line:
+    piece, clamp = part
+    if clamp >= 0:
+        factors = np.ones(len(line.clamp_drag))
+        factors[clamp] = factor
+        return replace(line, clamp_drag=factors * line.clamp_drag)
+    factors = np.ones(len(line.length))
+    factors[piece] = factor
+    return replace(
+        line,
+        normal_drag=factors * line.normal_drag,
+        tangential_drag=factors * line.tangential_drag,
+    )
+
+
+def _integral(
+    line: Line, water: Water, parts: list[Part], least: float, stages: int, point: Part
+) -> Floats:
+    """(p, 3) ∫ ∂y/∂λ ds from `least` to 1, with s = t² and ∂y/∂λ = (∂y/∂ln λ)/s."""
+    abscissae, weights = np.polynomial.legendre.leggauss(stages)
+    low = np.sqrt(least)
+    half = 0.5 * (1.0 - low)
+    shares = np.zeros((len(parts), 3))
+    for abscissa, weight in zip(abscissae, weights, strict=True):
+        t = low + half * (1.0 + abscissa)
+        stage = with_drag(line, t * t)
+        nearby = Nearby(stage, water, _SETTINGS)
+        node = nearby.node(*point)
+        there = _observed(*nearby.shape(stage), node)
+        for i, part in enumerate(parts):
+            more = _observed(*nearby.shape(_with_part(stage, part, 1.0 + _STEP)), node)
+            shares[i] += half * weight * 2.0 / t * (more - there) / _STEP
+    return shares
+
+
+def _observed(position: Floats, used: float, node: int) -> Floats:
+    x, y, z = position[node]
+    return np.array([-z, np.hypot(x, y), used])
+
+
+def _node(solution: Solution, point: Part) -> int:
+    piece, clamp = point
+    if clamp >= 0:
+        return int(np.flatnonzero(solution.element_clamp == clamp)[0])
+    return int(solution.piece_nodes[piece, 0])

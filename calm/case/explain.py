@@ -1,0 +1,268 @@
+"""Why a mooring stands as it does: what each drag causes, and what a change would do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from calm.case.attribution import FAIR, Attribution, Part, attribute, with_drag
+from calm.case.columns import Columns
+from calm.case.figures import Figures, figures_of
+from calm.case.mooring import Mooring
+from calm.errors import NoEquilibrium
+from calm.physics.line import Floats, Integers, Line, Water
+from calm.solve import solve_mooring
+
+if TYPE_CHECKING:
+    from calm.case.result import Result
+
+CHANGE = 0.1
+"""By how much the buoyancy, the drag and the current are changed."""
+
+
+@dataclass(frozen=True)
+class Causes(Columns):
+    """The p pieces and clamped instruments that have drag, in file order.
+
+    Attributes
+    ----------
+    index : (p,) of the piece, or of the piece it is clamped on
+    label : (p,)
+    clamped : (p,)
+    drag : (p,) horizontal force of the water on it [N]
+    knockdown, excursion, used_buoyancy : (p,) its share of that of the mooring [m], [m], [-]
+    """
+
+    index: Integers
+    label: list[str]
+    clamped: list[bool]
+    drag: Floats
+    knockdown: Floats
+    excursion: Floats
+    used_buoyancy: Floats
+
+
+@dataclass(frozen=True)
+class WhatIf:
+    """What if: its name, and the figures it leads to, or why there are none."""
+
+    name: str
+    figures: Figures | None = None
+    failure: NoEquilibrium | None = None
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """What causes the knockdown and excursion of a mooring, and what would change them.
+
+    Attributes
+    ----------
+    label : of the piece or clamp explained
+    quantities : the columns of `causes` that mean something: knockdown and excursion, or, of a
+        line without a unique shape in still water, excursion and the buoyancy in use
+    figures : as they are
+    without_drag : what of each quantity no drag causes
+    causes : the share of each drag in the rest; None where they cannot be told
+    miss : the worst of the shares' sums, before they were scaled to the whole, as a share of it
+    changes : what more buoyancy, less drag, more and less current would lead to
+    notes : what to keep in mind
+    """
+
+    label: str
+    quantities: tuple[str, ...]
+    figures: Figures
+    without_drag: dict[str, float]
+    causes: Causes | None
+    miss: float
+    changes: tuple[WhatIf, ...]
+    notes: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The object `explain` of the result format: SI, null where a figure is unknown."""
+        causes = None
+        if self.causes is not None:
+            told = ("index", "label", "clamped", "drag", *self.quantities)
+            rows = self.causes.to_dicts()
+            causes = [{name: row[name] for name in told} for row in rows]
+        return {
+            "label": self.label,
+            "quantities": list(self.quantities),
+            "figures": asdict(self.figures),
+            "without_drag": self.without_drag,
+            "causes": causes,
+            "miss": self.miss,
+            "changes": [_change_document(change) for change in self.changes],
+            "notes": list(self.notes),
+        }
+
+
+def _change_document(change: WhatIf) -> dict[str, Any]:
+    if change.failure is not None:
+        failure = change.failure
+        return {
+            "change": change.name,
+            "status": failure.status,
+            "message": failure.message,
+            "advice": failure.advice,
+        }
+    assert change.figures is not None
+    return {"change": change.name, "status": "converged", **asdict(change.figures)}
+
+
+def explain(result: Result, label: str | None = None) -> Explanation:
+    """Explain a solved mooring.
+
+    Parameters
+    ----------
+    result : of a mooring
+    label : of the piece (its upper end) or clamp to explain; the top of the line when absent
+
+    Returns
+    -------
+    Explanation : the shares are those of `calm.case.attribution`; the changes are solved anew,
+        with the settings of the result. A piece cut to fit keeps its length in them.
+    """
+    mooring = result.mooring
+    label = label or result.components.label[0]
+    figures = figures_of(result, label)
+    quantities: tuple[str, ...] = ("knockdown", "excursion")
+    if figures.knockdown is None or result.type == "surface":
+        quantities = ("excursion", "used_buoyancy") if result.type == "surface" else ("excursion",)
+    notes = list(_notes(result, quantities))
+    causes, without_drag, miss = None, dict.fromkeys(quantities, 0.0), 0.0
+    try:
+        shares = _shares(mooring, figures, "knockdown" in quantities, _point(mooring, label))
+    except NoEquilibrium as failure:
+        notes.append(
+            "What each drag causes cannot be told: with less drag the line has no equilibrium "
+            f"({failure.status}: {failure.message})"
+        )
+    else:
+        causes = _causes(mooring, shares)
+        columns = [_COLUMNS.index(name) for name in quantities]
+        miss = float(np.abs(shares.miss[columns]).max())
+        for name, column in zip(quantities, columns, strict=True):
+            without_drag[name] = 0.0 if name == "knockdown" else float(shares.start[column])
+        if miss > FAIR:
+            notes.append(
+                f"The shares are rough: they grow unevenly with the drag ({miss:.0%} were scaled)."
+            )
+    return Explanation(
+        label=label,
+        quantities=quantities,
+        figures=figures,
+        without_drag=without_drag,
+        causes=causes,
+        miss=miss,
+        changes=tuple(_changed(name, other, label) for name, other in _variations(mooring)),
+        notes=tuple(notes),
+    )
+
+
+_COLUMNS = ("knockdown", "excursion", "used_buoyancy")
+"""What the columns of an `Attribution` add to."""
+
+
+def _notes(result: Result, quantities: tuple[str, ...]) -> Iterator[str]:
+    if result.type == "surface":
+        yield (
+            "A float at the surface is not knocked down: its excursion and the buoyancy it "
+            "uses are explained instead."
+        )
+    elif "knockdown" not in quantities:
+        yield (
+            "In still water the line has no unique shape, so there is no knockdown: its excursion "
+            "is explained instead."
+        )
+    if not result.mooring.water.moving:
+        yield "There is no current, and so no drag."
+
+
+def _point(mooring: Mooring, label: str) -> Part:
+    clamps = _clamp_labels(mooring)
+    if label in clamps:
+        m = clamps.index(label)
+        return int(mooring.line.clamp_piece[m]), m
+    labels = [piece.label for piece in mooring.file.pieces[:-1]]
+    return labels.index(label), -1
+
+
+def _clamp_labels(mooring: Mooring) -> list[str]:
+    return [clamp.label for piece in mooring.file.pieces for clamp in piece.clamps]
+
+
+def _shares(mooring: Mooring, figures: Figures, stands: bool, point: Part) -> Attribution:
+    whole = np.array([figures.depth, figures.excursion, figures.used_buoyancy])
+    start = None
+    if stands:
+        assert figures.knockdown is not None
+        start = np.array([figures.depth - figures.knockdown, 0.0, 1.0])
+    return attribute(mooring.line, mooring.water, start, whole, point)
+
+
+def _causes(mooring: Mooring, shares: Attribution) -> Causes:
+    labels, clamps = [piece.label for piece in mooring.file.pieces], _clamp_labels(mooring)
+    parts = list(zip(shares.piece.tolist(), shares.clamp.tolist(), strict=True))
+    return Causes(
+        index=shares.piece,
+        label=[clamps[m] if m >= 0 else labels[p] for p, m in parts],
+        clamped=[m >= 0 for _, m in parts],
+        drag=_drags(mooring, parts),
+        knockdown=shares.shares[:, 0],
+        excursion=shares.shares[:, 1],
+        used_buoyancy=shares.shares[:, 2],
+    )
+
+
+def _drags(mooring: Mooring, parts: list[Part]) -> Floats:
+    """(p,) size of the horizontal force of the water on each part [N]."""
+    solution = solve_mooring(mooring.line, mooring.water, mooring.settings)
+    change = np.diff(solution.force[: solution.hanging + 1, :2], axis=0)
+    piece = solution.element_piece[: solution.hanging]
+    clamp = solution.element_clamp[: solution.hanging]
+    sums = [change[(piece == p) & (clamp == m)].sum(axis=0) for p, m in parts]
+    return np.array([np.hypot(*force) for force in sums])
+
+
+def _variations(mooring: Mooring) -> Iterator[tuple[str, Mooring]]:
+    line, water, percent = mooring.line, mooring.water, f"{CHANGE:.0%}".replace("%", " %")
+    yield f"buoyancy +{percent}", _with(mooring, line=_with_buoyancy(line, 1.0 + CHANGE))
+    yield f"drag −{percent}", _with(mooring, line=with_drag(line, 1.0 - CHANGE))
+    yield f"current +{percent}", _with(mooring, water=_with_current(water, 1.0 + CHANGE))
+    yield f"current −{percent}", _with(mooring, water=_with_current(water, 1.0 - CHANGE))
+
+
+def _with(mooring: Mooring, **arrays: Line | Water) -> Mooring:
+    """The same mooring with another line or water than those of its file."""
+    other = Mooring(mooring.file)
+    # a cached property is what stands under its name in the instance
+    vars(other).update({"line": mooring.line, "water": mooring.water} | arrays)
+    return other
+
+
+def _with_buoyancy(line: Line, factor: float) -> Line:
+    """The line with the net force of everything buoyant in it multiplied."""
+    floating, floats = line.floating, np.flatnonzero(~line.flexible & (line.buoyancy > 0.0))
+    if floating is not None and len(floats):
+        more = (factor - 1.0) * float(line.buoyancy[floats[0]])
+        floating = replace(floating, lift=floating.lift + more)
+    return replace(
+        line,
+        floating=floating,
+        buoyancy=np.where(line.buoyancy > 0.0, factor, 1.0) * line.buoyancy,
+        clamp_buoyancy=np.where(line.clamp_buoyancy > 0.0, factor, 1.0) * line.clamp_buoyancy,
+    )
+
+
+def _with_current(water: Water, factor: float) -> Water:
+    return replace(water, u=factor * water.u, v=factor * water.v, w=factor * water.w)
+
+
+def _changed(name: str, mooring: Mooring, label: str) -> WhatIf:
+    try:
+        return WhatIf(name, figures_of(mooring.solve(), label))
+    except NoEquilibrium as failure:
+        return WhatIf(name, failure=failure)

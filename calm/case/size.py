@@ -1,0 +1,259 @@
+"""Inverse design: the smallest change of a mooring that meets a target."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from calm.case.adjustment import Adjustment
+from calm.case.changes import parse_change, parse_range
+from calm.case.figures import Figures, figures_of
+from calm.case.mooring import Mooring
+from calm.case.result import Result
+from calm.case.targets import Target, parse_target
+from calm.errors import NoEquilibrium, UsageError
+from calm.solve.least_change import LeastChange
+
+MET, MET_ALREADY, NOT_MET = "met", "met-already", "not-met"
+"""The statuses of a sizing."""
+
+_NOTHING = 1e-6
+"""A change of the target's quantity, as a share of it, that is none."""
+_EXACT = 1e-7
+"""How near an `=` target is met, as a share of the limit or of how far one was from it."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """The mooring with one value of what is changed.
+
+    Attributes
+    ----------
+    value : of what is changed, in the unit of the adjustment
+    measured : the target's quantity, SI and degrees; None without an equilibrium
+    result : the solved mooring, or None
+    failure : why there is none
+    """
+
+    value: float
+    measured: float | None = None
+    result: Result | None = None
+    failure: NoEquilibrium | None = None
+
+    @property
+    def figures(self) -> Figures | None:
+        """Of the line and its top."""
+        return None if self.result is None else figures_of(self.result)
+
+
+@dataclass(frozen=True)
+class Sizing:
+    """What became of a sizing.
+
+    Attributes
+    ----------
+    target, change : what was wanted, and what might be changed for it
+    range : between what it was changed
+    status : ``met``, ``met-already`` (nothing to change) or ``not-met``
+    before, after : the mooring as it is, and with the smallest change that meets the target, solved
+        with the settings of its file; `after` is None where the target is not met
+    message, advice : why it is not met, and what to do
+    steady : whether the quantity only rose or only fell over the values tried
+    solves : how many equilibria were sought
+    """
+
+    target: Target
+    change: Adjustment
+    range: tuple[float, float]
+    status: str
+    before: Trial
+    after: Trial | None
+    message: str
+    advice: str
+    steady: bool
+    solves: int
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What to keep in mind with the answer."""
+        notes = [self.change.note] if self.change.note and self.status == MET else []
+        if not self.steady:
+            notes.append(
+                f"{self.target.quantity} does not go steadily with {self.change.text}: "
+                "other values may meet the target too."
+            )
+        return tuple(notes)
+
+    def to_dict(self) -> dict[str, Any]:
+        """A JSON object: SI and degrees, null where a figure is unknown."""
+        from calm import __version__
+
+        document: dict[str, Any] = {
+            "calm": __version__,
+            "name": self.change.file.name,
+            "status": self.status,
+            "target": asdict(self.target) | {"unit": self.target.unit},
+            "change": {
+                "text": self.change.text,
+                "labels": list(self.change.labels),
+                "unit": self.change.unit,
+                "range": list(self.range),
+            },
+            "before": _trial_document(self.before),
+            "after": None if self.after is None else _trial_document(self.after),
+            "steady": self.steady,
+            "solves": self.solves,
+            "notes": list(self.notes),
+        }
+        if self.status == NOT_MET:
+            document |= {"message": self.message, "advice": self.advice}
+        return document
+
+
+def _trial_document(outcome: Trial) -> dict[str, Any]:
+    document: dict[str, Any] = {"value": outcome.value, "measured": outcome.measured}
+    if outcome.failure is not None:
+        document["status"] = outcome.failure.status
+        document["message"] = outcome.failure.message
+    if outcome.figures is not None and outcome.result is not None:
+        document |= {"status": outcome.result.status, **asdict(outcome.figures)}
+        document["warnings"] = list(outcome.result.warnings)
+    return document
+
+
+def size(
+    mooring: Mooring, target: str, change: str, between: tuple[str, str] | None = None
+) -> Sizing:
+    """Find the smallest change of a mooring that meets a target.
+
+    Every value tried is solved as `Mooring.solve` does, a piece cut to fit being cut anew.
+
+    Parameters
+    ----------
+    target : e.g. ``knockdown(top) <= 20 m``, see `calm.case.targets`
+    change : e.g. ``top float.buoyancy``, see `calm.case.changes`
+    between : the range of the change, each end with its unit; by default a buoyancy goes from 0
+        to a hundred times what it is, a length to twice the water depth, a count to 1000
+
+    Raises
+    ------
+    UsageError
+        Target, change or range cannot be understood; all their mistakes at once.
+    """
+    wanted, adjustment, limits = _understood(mooring, target, change, between)
+    trials = _Trials(wanted, adjustment)
+    before = trials.at(adjustment.now)
+    if wanted.relation == "=" and before.measured is None:
+        raise UsageError(
+            f"{wanted.text}: as it is the mooring has no such figure to start from"
+            f"{f' ({before.failure})' if before.failure else ''}; write <= or >="
+        )
+    first = 0.0 if before.measured is None else before.measured - wanted.limit
+    sign = -1.0 if wanted.relation == ">=" or (wanted.relation == "=" and first < 0.0) else 1.0
+    search = LeastChange(
+        lambda value: trials.excess(value, sign),
+        *limits,
+        whole=adjustment.whole,
+        exact=wanted.relation == "=",
+        small=_EXACT * max(abs(wanted.limit), abs(first)),
+    )
+    found = search.find(adjustment.now)
+    message, advice = ("", "") if found is not None else _why_not(search, trials)
+    status = NOT_MET if found is None else MET_ALREADY if found == adjustment.now else MET
+    return Sizing(
+        target=wanted,
+        change=adjustment,
+        range=limits,
+        status=status,
+        before=before,
+        after=None if found is None else trials.at(found),
+        message=message,
+        advice=advice,
+        steady=search.steady,
+        solves=len(trials.tried),
+    )
+
+
+class _Trials:
+    """The mooring solved for value after value, each once."""
+
+    def __init__(self, target: Target, change: Adjustment) -> None:
+        self.target, self.change = target, change
+        self.tried: dict[float, Trial] = {}
+
+    def at(self, value: float) -> Trial:
+        if value not in self.tried:
+            self.tried[value] = self._solved(value)
+        return self.tried[value]
+
+    def excess(self, value: float, sign: float) -> float | None:
+        measured = self.at(value).measured
+        return None if measured is None else sign * (measured - self.target.limit)
+
+    def _solved(self, value: float) -> Trial:
+        file = self.change.file if value == self.change.now else self.change.to(value)
+        try:
+            result = Mooring(file).solve()
+        except NoEquilibrium as failure:
+            return Trial(value, failure=failure)
+        return Trial(value, self.target.value(result), result)
+
+
+def _understood(
+    mooring: Mooring, target: str, change: str, between: tuple[str, str] | None
+) -> tuple[Target, Adjustment, tuple[float, float]]:
+    mistakes: list[str] = []
+    wanted, adjustment, limits = None, None, None
+    try:
+        wanted = parse_target(target, mooring.file.pieces)
+    except UsageError as error:
+        mistakes.append(str(error))
+    try:
+        adjustment = parse_change(change, mooring.file)
+        limits = parse_range(between, adjustment)
+    except UsageError as error:
+        mistakes.append(str(error))
+    if wanted is not None and adjustment is not None and adjustment.whole:
+        if wanted.label in adjustment.labels:
+            mistakes.append(
+                f"{wanted.label} is one of those that {adjustment.text} adds or takes away; "
+                "set the target for another part"
+            )
+        if wanted.relation == "=":
+            mistakes.append(f"{adjustment.text} goes in steps; write <= or >= in the target")
+    if wanted is None or adjustment is None or limits is None or mistakes:
+        raise UsageError("\n".join(mistakes))
+    return wanted, adjustment, limits
+
+
+def _why_not(search: LeastChange, trials: _Trials) -> tuple[str, str]:
+    """Why no value was found, and what to do."""
+    change, target = trials.change, trials.target
+    least = search.least
+    span = f"from {_with_unit(search.low, change.unit)} to {_with_unit(search.high, change.unit)}"
+    if least is None:
+        failure = trials.at(change.now).failure or next(
+            (one.failure for one in trials.tried.values() if one.failure), None
+        )
+        if failure is None:
+            message = f"In still water the line has no unique shape: there is no {target.quantity}."
+            return message, "Choose another quantity."
+        message = f"With no {change.text} {span} has the mooring an equilibrium. As it is:"
+        return f"{message} {failure.status}: {failure.message}", failure.advice
+    best = trials.at(least)
+    assert best.measured is not None
+    nearest, where = _with_unit(best.measured, target.unit), _with_unit(least, change.unit)
+    as_it_is = trials.at(change.now).measured
+    if as_it_is is not None and abs(best.measured - as_it_is) <= _NOTHING * abs(as_it_is):
+        message = f"It is nearest as it is, at {nearest}; {change.text} was tried {span}."
+    else:
+        message = f"The nearest is {nearest}, with {change.text} at {where}; tried {span}."
+    for neighbour, side in zip(search.neighbours(least), ("Below", "Above"), strict=True):
+        failure = trials.at(neighbour).failure
+        if failure is not None:
+            message += f" {side} that: {failure.status}: {failure.message}"
+    return message, "Ask for less, change another part, or allow more with --between."
+
+
+def _with_unit(value: float, unit: str) -> str:
+    return f"{value:.6g} {unit}".rstrip()

@@ -1,0 +1,120 @@
+"""What a mooring is to reach, as a person writes it: ``knockdown(CTD) <= 20 m``."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from calm.case.figures import spot_of
+from calm.case.parts import TOP, labels_of, one_label
+from calm.errors import UsageError
+from calm.files import Piece
+from calm.files.explain import unknown
+from calm.units import DIMENSIONS, QuantityError, parse_quantity
+
+if TYPE_CHECKING:
+    from calm.case.result import Result
+
+QUANTITIES = {
+    "knockdown": "length",
+    "depth": "length",
+    "excursion": "length",
+    "tilt": "angle",
+    "tension": "force",
+    "required_weight": "force",
+}
+"""What can be a target, and of what dimension it is; the last is that of the anchor."""
+
+RELATIONS = {"<=": "<=", "≤": "<=", ">=": ">=", "≥": ">=", "=": "=", "==": "="}
+
+_FORM = re.compile(
+    r"\s*(?P<quantity>[^\s(<>=≤≥]*)\s*(?P<part>\((?P<label>.*)\))?\s*"
+    r"(?P<relation>[<>=≤≥]*)\s*(?P<limit>.*)"
+)
+_EXAMPLE = "knockdown(top) <= 20 m"
+
+
+def pointed(option: str, text: str, column: int, message: str) -> UsageError:
+    """A mistake in an option, with a caret under where it is."""
+    return UsageError(f"{option}: {message}\n  {text}\n  {' ' * column}^")
+
+
+@dataclass(frozen=True)
+class Target:
+    """A limit for one quantity of one part of the line.
+
+    Attributes
+    ----------
+    text : as it was written
+    quantity : one of `QUANTITIES`
+    label : of the part; None for the top of the line, and for the anchor's required weight
+    relation : ``<=``, ``>=`` or ``=``
+    limit : SI, degrees
+    """
+
+    text: str
+    quantity: str
+    label: str | None
+    relation: str
+    limit: float
+
+    @property
+    def unit(self) -> str:
+        """SI unit, or degrees."""
+        return DIMENSIONS[QUANTITIES[self.quantity]].unit
+
+    def value(self, result: Result) -> float | None:
+        """The quantity in a result; None for a knockdown that has no meaning."""
+        if self.quantity == "required_weight":
+            return result.anchor.required_weight
+        spot = spot_of(result, self.label or result.components.label[0])
+        value: float | None = getattr(spot, self.quantity)
+        return value
+
+
+def parse_target(text: str, pieces: Sequence[Piece]) -> Target:
+    """Read a target, e.g. ``tilt(current meter 2) <= 5 deg`` or ``required_weight <= 8 kN``.
+
+    Parameters
+    ----------
+    text : a quantity, the part of the line in brackets (``top``, when not given), ``<=``, ``>=``
+        or ``=``, and a limit with its unit
+    pieces : of the line, in which labels are looked up
+
+    Raises
+    ------
+    UsageError
+        With a caret under what is wrong, and the nearest right thing.
+    """
+    text = " ".join(text.split())
+    found = _FORM.fullmatch(text)
+    assert found is not None  # the form fits any text of one line
+
+    def mistake(group: str, message: str) -> UsageError:
+        return pointed("--target", text, found.start(group), message)
+
+    quantity = found["quantity"]
+    if quantity not in QUANTITIES:
+        what = f"unknown quantity `{quantity}`" if quantity else "there is no quantity"
+        raise mistake("quantity", unknown(what, quantity, QUANTITIES))
+    relation = found["relation"]
+    if relation not in RELATIONS:
+        what = f"`{relation}` is no relation" if relation else "there is no relation"
+        raise mistake("relation", f"{what}; write <=, >= or =, as in `{_EXAMPLE}`")
+    label = None
+    if found["part"] is not None and quantity == "required_weight":
+        raise mistake("part", "the required weight is the anchor's; leave the brackets out")
+    part = TOP if found["part"] is None else found["label"].strip()
+    if part != TOP or TOP in labels_of(pieces):
+        try:
+            label = one_label(pieces, part)
+        except LookupError as error:
+            raise mistake("label", str(error.args[0])) from None
+    try:
+        limit = parse_quantity(found["limit"], QUANTITIES[quantity])
+    except QuantityError as error:
+        shown = f"`{found['limit']}` {error}" if found["limit"] else "there is no limit"
+        raise mistake("limit", shown) from None
+    return Target(text, quantity, label, RELATIONS[relation], limit)
