@@ -83,8 +83,9 @@ _TABLE = (
     Quantity("depth", "depth", "m", "Depth below the still-water surface."),
     Quantity("height", "height", "m", "Height above the seabed."),
     Quantity("offset", "offset", "m", "Horizontal distance from the anchor."),
-    Quantity("x", "east", "m", "Distance east of the anchor.", symbol="x"),
-    Quantity("y", "north", "m", "Distance north of the anchor.", symbol="y"),
+    Quantity("layback", "layback", "m", "Horizontal distance behind the tow point."),
+    Quantity("x", "east", "m", "Distance east of the anchor or the tow point.", symbol="x"),
+    Quantity("y", "north", "m", "Distance north of the anchor or the tow point.", symbol="y"),
     Quantity(
         "length",
         "length",
@@ -96,10 +97,10 @@ _TABLE = (
     Quantity("cut_length", "cut length", "m", "Length before any load.", decimals=2),
     Quantity("depth_top", "depth, upper end", "m", "Depth of the upper end."),
     Quantity("depth_bottom", "depth, lower end", "m", "Depth of the lower end."),
-    Quantity("x_top", "east, upper end", "m", "Distance east of the anchor, upper end."),
-    Quantity("y_top", "north, upper end", "m", "Distance north of the anchor, upper end."),
-    Quantity("x_bottom", "east, lower end", "m", "Distance east of the anchor, lower end."),
-    Quantity("y_bottom", "north, lower end", "m", "Distance north of the anchor, lower end."),
+    Quantity("x_top", "east, upper end", "m", "Like x, of the upper end."),
+    Quantity("y_top", "north, upper end", "m", "Like y, of the upper end."),
+    Quantity("x_bottom", "east, lower end", "m", "Like x, of the lower end."),
+    Quantity("y_bottom", "north, lower end", "m", "Like y, of the lower end."),
     Quantity("tension", "tension", "N", "Pull in the line.", decimals=0, symbol="T"),
     Quantity("tension_top", "tension, upper end", "N", "Pull at the upper end.", decimals=0),
     Quantity("tension_bottom", "tension, lower end", "N", "Pull at the lower end.", decimals=0),
@@ -119,20 +120,38 @@ _TABLE = (
     Quantity(
         "reserve", "reserve", "N", "Buoyancy of the surface float that is not in use.", decimals=0
     ),
+    Quantity("draft", "draft", "m", "How deep a floating hull is immersed.", decimals=2),
+    Quantity("freeboard", "freeboard", "m", "How far a floating hull stands out.", decimals=2),
     Quantity(
-        "vertical", "vertical pull", "N", "Upward pull on the anchor.", decimals=0, symbol="V"
+        "vertical",
+        "vertical pull",
+        "N",
+        "Upward pull on the anchor, downward pull on the tow point.",
+        decimals=0,
+        symbol="V",
     ),
     Quantity(
-        "horizontal", "horizontal pull", "N", "Sideways pull on the anchor.", decimals=0, symbol="H"
+        "horizontal",
+        "horizontal pull",
+        "N",
+        "Sideways pull on the anchor or the tow point.",
+        decimals=0,
+        symbol="H",
     ),
     Quantity(
-        "angle", "angle", "deg", "Angle of the pull on the anchor from the vertical.", display="°"
+        "angle",
+        "angle",
+        "deg",
+        "Angle of the pull: on an anchor from the vertical, in a tow from the horizontal.",
+        display="°",
     ),
+    Quantity("body_tension", "tension at the body", "N", "Pull on the towed body.", decimals=0),
+    Quantity("frequency", "frequency", "Hz", "Frequency at which the cable vibrates.", decimals=2),
     Quantity(
         "required_weight", "required weight", "N", "Weight in water the anchor needs.", decimals=0
     ),
     Quantity("grounded_length", "grounded length", "m", "Cut length that lies on the seabed."),
-    Quantity("speed", "speed", "m/s", "Speed of the water.", decimals=2),
+    Quantity("speed", "speed", "m/s", "Speed of the water, or of the ship.", decimals=2),
     Quantity(
         "diameter",
         "diameter",

@@ -13,6 +13,8 @@ from calm.files.definition import STANDARD_GRAVITY
 from calm.physics import drag
 from calm.physics.friction import Friction
 from calm.physics.line import Line
+from calm.physics.reynolds import DragCurve
+from calm.physics.stretch import ElongationCurve
 
 TOWED_SPHERE_CX = 0.90
 """Of a sphere at the free end of a tow, which wavers: Bourget & Marichal, who give 0.45 for one
@@ -29,7 +31,7 @@ def assemble_line(
     Parameters
     ----------
     pieces : top to bottom, the anchor last if there is one
-    solver : the laws of friction and strumming; the usual ones where not given
+    solver : the laws of drag, friction and strumming; the usual ones where not given
     gravity : under which masses weigh [m/s²]
     """
     solver = solver or Solver()
@@ -38,9 +40,10 @@ def assemble_line(
     above = pieces[:-1] if moored else pieces
     flexible = [isinstance(piece.component, Cable | Chain) for piece in above]
     drags = [drag_of(piece.component, piece.length or 0.0, solver) for piece in above]
+    curves = [_drag_curve(piece.component, solver) for piece in above]
     if not moored and isinstance(anchor, Sphere) and anchor.cx is None:
         k = drag.sphere_drag(anchor.diameter, TOWED_SPHERE_CX)
-        drags[-1] = k, k, False
+        drags[-1], curves[-1] = (k, k, False), None
     clamps = [(i, clamp) for i, piece in enumerate(above) for clamp in piece.clamps]
     return Line(
         length=np.array([piece.length or 0.0 for piece in above]),
@@ -65,6 +68,9 @@ def assemble_line(
         ),
         friction=Friction(solver.friction),
         strumming=vibration_law(solver),
+        elongation=tuple(_elongation(piece.component) for piece in above),
+        drag_curve=tuple(curves),
+        clamp_drag_curve=tuple(_drag_curve(clamp.component, solver) for _, clamp in clamps),
     )
 
 
@@ -101,6 +107,29 @@ def drag_of(
     if isinstance(component, Cable | Chain):
         return *cable_drag(component, solver or Solver()), True
     return 0.0, 0.0, False
+
+
+def _drag_curve(component: Component, solver: Solver) -> DragCurve | None:
+    """The curve of a smooth sphere or cylinder; one that gives a drag of its own has none."""
+    if solver.drag == "constant":
+        return None
+    if not isinstance(component, Sphere | Cylinder) or component.surface != "smooth":
+        return None
+    given = component.cx if isinstance(component, Sphere) else component.cn
+    if given is not None or component.k_surface is not None:
+        return None
+    if isinstance(component, Sphere):
+        return DragCurve(component.diameter)
+    return DragCurve(component.diameter, component.length / component.diameter)
+
+
+def _elongation(component: Component) -> ElongationCurve | None:
+    if not isinstance(component, Cable) or component.elongation is None:
+        return None
+    assert component.breaking_load is not None
+    return ElongationCurve(
+        component.elongation, component.breaking_load, component.permanent_elongation or 0.0
+    )
 
 
 def _body_drag(body: Body) -> tuple[float, float, bool]:

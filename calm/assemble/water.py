@@ -10,7 +10,7 @@ from calm.files import CurrentTable, DepthTable, Environment, SeaWater
 from calm.files.definition import STANDARD_GRAVITY
 from calm.files.tables import components
 from calm.physics import seawater
-from calm.physics.line import Floats, Water
+from calm.physics.line import REFERENCE_VISCOSITY, Floats, Water
 
 DEEPEST = 11_000.0
 """Depth of the water where a tow gives none [m]: the deepest trench holds no more."""
@@ -25,7 +25,7 @@ _QUARTERS = np.array([0.25, 0.5, 0.75])
 
 
 def assemble_water(environment: Environment) -> Water:
-    """Current and density on the union of their levels; both are linear between levels."""
+    """Current and density on the union of their levels, viscosity on its own; linear between."""
     flows = [environment.current, *_surface_drift(environment)]
     density_levels, density = _density(environment)
     levels = np.unique(np.concatenate([density_levels, *(flow.depth for flow in flows)]))
@@ -33,6 +33,7 @@ def assemble_water(environment: Environment) -> Water:
     for flow in flows:
         velocity += [np.interp(levels, flow.depth, part) for part in (flow.u, flow.v, flow.w)]
     u, v, w = velocity
+    viscosity_level, viscosity = _viscosity(environment, density_levels, density)
     return Water(
         depth=_depth(environment),
         level=levels,
@@ -41,20 +42,20 @@ def assemble_water(environment: Environment) -> Water:
         w=w,
         density=np.interp(levels, density_levels, density),
         gravity=_gravity(environment),
+        viscosity_level=viscosity_level,
+        viscosity=viscosity,
     )
 
 
-def viscosity_of(environment: Environment) -> tuple[Floats, Floats]:
-    """Depths [m], increasing, and the kinematic viscosity at them [m²/s].
+def _viscosity(environment: Environment, levels: Floats, density: Floats) -> tuple[Floats, Floats]:
+    """Depths [m] and the kinematic viscosity at them [m²/s], from the levels of the density.
 
-    It is linear between the depths and constant beyond. Where temperature and salinity are not
-    given it is that of sea water of 10 °C and 35.
+    Where temperature and salinity are not given it is that of sea water of 10 °C and 35.
     """
     sea = environment.density
     if not isinstance(sea, SeaWater):
         in_air = environment.fluid == "air"
-        return np.zeros(1), np.array([AIR_VISCOSITY if in_air else seawater.KINEMATIC_VISCOSITY])
-    levels, density = _density(environment)
+        return np.zeros(1), np.array([AIR_VISCOSITY if in_air else REFERENCE_VISCOSITY])
     return levels, seawater.kinematic_viscosity(*_probed(sea, levels), density)
 
 

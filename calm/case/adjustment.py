@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
-from calm.files import Cable, Component, MooringFile, Piece
+from calm.files import Cable, Clamp, Component, MooringFile, Piece
 from calm.files.definition import STANDARD_GRAVITY
 from calm.files.labels import numbered
 from calm.units import DIMENSIONS
@@ -184,7 +184,8 @@ def pieces_called(file: MooringFile, labels: tuple[str, ...]) -> tuple[Piece, ..
 def components_called(file: MooringFile, labels: tuple[str, ...]) -> Iterator[Component]:
     """The components of the pieces and clamps of these labels."""
     for piece in file.pieces:
-        for part in (piece, *piece.clamps):
+        parts: tuple[Piece | Clamp, ...] = (piece, *piece.clamps)
+        for part in parts:
             if part.label in labels:
                 yield part.component
 

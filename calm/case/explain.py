@@ -12,7 +12,8 @@ from calm.case.attribution import FAIR, Attribution, Part, attribute, with_drag
 from calm.case.columns import Columns
 from calm.case.figures import Figures, figures_of
 from calm.case.mooring import Mooring
-from calm.errors import NoEquilibrium
+from calm.case.parts import TOP, one_label
+from calm.errors import NoEquilibrium, UsageError
 from calm.physics.line import Floats, Integers, Line, Water
 from calm.solve import solve_mooring
 
@@ -118,15 +119,23 @@ def explain(result: Result, label: str | None = None) -> Explanation:
     Parameters
     ----------
     result : of a mooring
-    label : of the piece (its upper end) or clamp to explain; the top of the line when absent
+    label : of the piece (its upper end) or clamp to explain; ``top``, the free end, when absent
 
     Returns
     -------
     Explanation : the shares are those of `calm.case.attribution`; the changes are solved anew,
         with the settings of the result. A piece cut to fit keeps its length in them.
+
+    Raises
+    ------
+    UsageError
+        No part above the anchor is called so.
     """
     mooring = result.mooring
-    label = label or result.components.label[0]
+    try:
+        label = one_label(mooring.file.pieces[:-1], label or TOP)
+    except LookupError as error:
+        raise UsageError(str(error.args[0])) from None
     figures = figures_of(result, label)
     quantities: tuple[str, ...] = ("knockdown", "excursion")
     if figures.knockdown is None or result.type == "surface":

@@ -9,6 +9,8 @@ import numpy as np
 
 from calm.case.measure import clamps_in
 from calm.files import Cable, Component
+from calm.physics.line import Floats
+from calm.physics.stretch import FIBRES, published_stiffnesses
 from calm.solve import Solution
 from calm.solve.audit import flow_across
 
@@ -20,16 +22,12 @@ LARGEST_REYNOLDS = 2e5
 """Above it a constant drag coefficient of a smooth sphere or cylinder no longer holds."""
 LARGEST_STRAIN = 0.25
 """New nylon fails near it; no linear stiffness holds so far."""
-SYNTHETICS = (
-    "nylon", "polyamide", "polyester", "dacron", "polypropylene", "polyethylene", "polyolefin",
-    "hmpe", "dyneema", "spectra", "aramid", "kevlar", "vectran", "perlon",
-)  # fmt: skip
 
 
 def is_synthetic(component: Component) -> bool:
     """Whether a component is a rope of a synthetic fibre, by its `material`."""
     material = (component.material or "").lower()
-    return component.kind == "cable" and any(fibre in material for fibre in SYNTHETICS)
+    return component.kind == "cable" and any(fibre in material for fibre in FIBRES)
 
 
 def warnings_of(result: Result, solution: Solution) -> tuple[str, ...]:
@@ -78,35 +76,83 @@ def _tilted(result: Result | TowResult, _: Solution) -> Iterator[str]:
 
 
 def _stiffness_unknown(result: Result | TowResult, _: Solution) -> Iterator[str]:
-    for piece in result.file.pieces:
+    for piece, tension in zip(result.file.pieces, result.components.tension, strict=True):
         component = piece.component
-        if isinstance(component, Cable) and is_synthetic(component) and component.stiffness is None:
+        if not isinstance(component, Cable) or not is_synthetic(component):
+            continue
+        if component.stiffness is None and component.elongation is None:
+            strains = [
+                tension / stiffness
+                for stiffness in published_stiffnesses(component.material or "", component.diameter)
+            ]
             yield (
-                f"{piece.label} is {component.material} of unknown stiffness: "
-                "it is taken as inextensible."
+                f"{piece.label} is {component.material} of unknown stiffness, taken as "
+                f"inextensible: {_published(strains)}"
             )
 
 
+def _published(strains: list[float]) -> str:
+    """What the published stiffnesses of a rope make of its tension, the greatest strain first."""
+    if not strains:
+        return "none is published of such a rope."
+    if len(strains) == 1:
+        return f"by the one that is published it would stretch by {_percent(strains[0])} %."
+    return (
+        f"those published of such a rope differ by a factor of {strains[0] / strains[-1]:.2g}; "
+        f"at its tension it could stretch by {_percent(strains[-1])} to {_percent(strains[0])} %."
+    )
+
+
+def _percent(share: float) -> str:
+    """In two digits."""
+    return f"{100 * share:.2g}" if share < 0.995 else f"{100 * share:.0f}"
+
+
 def _overstretched(result: Result | TowResult, solution: Solution) -> Iterator[str]:
-    greatest = np.zeros(len(solution.line.length))
-    np.maximum.at(greatest, solution.element_piece, solution.strain)
-    for index in np.flatnonzero(greatest > LARGEST_STRAIN):
-        label = result.components.label[index]
-        yield f"{label} stretches by {100 * greatest[index]:.0f} %: beyond any linear stiffness."
+    for label, strain in zip(result.components.label, _greatest_strain(solution), strict=False):
+        if strain > LARGEST_STRAIN:
+            yield f"{label} stretches by {100 * strain:.0f} %: beyond any linear stiffness."
 
 
-def _fast_flow(result: Result | TowResult, _: Solution) -> Iterator[str]:
+def _greatest_strain(solution: Solution) -> Floats:
+    """(n,) of every piece with a linear stiffness, in file order; 0 of the others."""
+    line, greatest = solution.line, np.zeros(len(solution.line.length))
+    linear = line.compliance[solution.element_piece] > 0.0
+    np.maximum.at(greatest, solution.element_piece, np.where(linear, solution.strain, 0.0))
+    return greatest[::-1] if line.towed else greatest
+
+
+def _beyond_the_table(result: Result | TowResult, solution: Solution) -> Iterator[str]:
+    line = solution.line.reversed() if solution.line.towed else solution.line
+    for row, curve in zip(result.components, line.elongation, strict=False):
+        if curve is not None and row.tension > curve.limit:
+            yield (
+                f"{row.label} is loaded beyond its elongation table: {row.tension:.0f} N, and it "
+                f"is trusted up to {curve.limit:.0f} N."
+            )
+
+
+def _fast_flow(result: Result | TowResult, solution: Solution) -> Iterator[str]:
+    line = solution.line.reversed() if solution.line.towed else solution.line
+    curves = [*line.drag_curve, None]
     fast = [
-        row for row in result.components
-        if row.kind in ("sphere", "cylinder") and row.reynolds > LARGEST_REYNOLDS
-    ]  # fmt: skip
+        (row, LARGEST_REYNOLDS if curve is None else curve.largest_reynolds)
+        for row, curve in zip(result.components, curves, strict=False)
+        if row.kind in ("sphere", "cylinder")
+    ]
+    fast = [(row, limit) for row, limit in fast if row.reynolds > limit]
     if fast:
-        row = max(fast, key=lambda row: row.reynolds)
+        row, limit = max(fast, key=lambda entry: entry[0].reynolds / entry[1])
         others = f" and {len(fast) - 1} more" if len(fast) > 1 else ""
         yield (
-            f"Reynolds number above 2e5 ({row.label}: {row.reynolds:.1e}{others}): "
+            f"Reynolds number above {_power(limit)} ({row.label}: {_power(row.reynolds)}{others}): "
             "the drag coefficient needs a look."
         )
+
+
+def _power(number: float) -> str:
+    """In two digits, as 2e5."""
+    return f"{number:.2g}".replace("e+0", "e")
 
 
 def _bight(result: Result, solution: Solution) -> Iterator[str]:
@@ -187,6 +233,7 @@ _WORRIES: tuple[Callable[[Result | TowResult, Solution], Iterator[str]], ...] = 
     _tilted,
     _stiffness_unknown,
     _overstretched,
+    _beyond_the_table,
     _fast_flow,
     _other_equilibrium,
 )

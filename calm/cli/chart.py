@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
 from cyclopts import App, Group, Parameter
 
 from calm.cli.exit_codes import ExitCode
-from calm.cli.streams import narrate, show, show_rich
+from calm.cli.options import option, quantities
+from calm.cli.outputs import Outputs
+from calm.cli.streams import narrate
 from calm.errors import UsageError
-
-if TYPE_CHECKING:
-    from calm.analytic.chart import ChartAnswer
 
 _BUOY = """  calm chart solve --k 2.4 --weight "5 N/m" \\
       --phi-b "75 deg" --tension-b "350 N" --height "20 m\""""
@@ -39,7 +38,6 @@ _DRAW_EXAMPLES = """Examples:
   calm chart draw --k 0.6 -o chart.svg
   calm chart draw --k 2.4 --lower-end above-90 -o chart.pdf"""
 
-_STDOUT = Path("-")
 _SEA_WATER = 1025.0
 
 _MEDIUM = Group("The cable and the current", sort_key=1)
@@ -107,9 +105,11 @@ def solve(
         Write the answer as JSON, - to print it.
     """
     from calm.analytic.chart import chart_solve
+    from calm.report.chart_answer import answer_document, answer_table
 
-    _check_output(json)
-    known = _quantities(
+    outputs = Outputs(json=json)
+    outputs.check()
+    known = quantities(
         {
             "weight": (weight, "force per length"),
             "k": (k, "number"),
@@ -130,15 +130,12 @@ def solve(
     for name in known.keys() & {"phi_a", "phi_b"}:
         known[name] = math.radians(known[name])
     answer = chart_solve(_drag_over_weight(cable), cable["weight"], **known)
-    if json is not None:
-        _write_json(json, answer)
+    outputs.write_answer(
+        answer_document(answer), answer_table(answer) if answer.solutions else None
+    )
     if not answer.solutions:
         narrate(f"calm: {answer.status}: {answer.message} {answer.advice}")
         return ExitCode.NO_EQUILIBRIUM
-    if json != _STDOUT:
-        from calm.report.chart_answer import answer_table
-
-        show_rich(answer_table(answer))
     return ExitCode.DONE
 
 
@@ -160,13 +157,13 @@ def draw(
     lower_end
         The cables drawn: those whose angle at A is below 90° (when not given), or above.
     """
-    from calm.report.chart import chart_picture, check_chart_format
+    from calm.report.chart import CHART_FORMATS, chart_picture
+    from calm.report.picture import check_format
+    from calm.report.write import check_destination, write_file
 
-    check_chart_format(output)
-    _check_output(output)
-    (drag_over_weight,) = _quantities({"k": (k, "number")}).values()
-    from calm.report.write import write_file
-
+    check_format(output, CHART_FORMATS)
+    check_destination(output)
+    (drag_over_weight,) = quantities({"k": (k, "number")}).values()
     write_file(output, chart_picture(drag_over_weight, lower_end, output.suffix))
     narrate(f"{output} written")
     return ExitCode.DONE
@@ -175,66 +172,21 @@ def draw(
 _CABLE = ("weight", "k", "diameter", "cd", "speed", "density")
 
 
-def _quantities(given: dict[str, tuple[str | None, str]]) -> dict[str, float]:
-    """The quantities that were given, in SI and degrees; or all that is wrong with them."""
-    from calm.units import QuantityError, parse_quantity
-
-    values: dict[str, float] = {}
-    complaints: list[str] = []
-    for name, (text, dimension) in given.items():
-        if text is None:
-            continue
-        try:
-            values[name] = parse_quantity(text, dimension)
-        except QuantityError as error:
-            complaints.append(f"{_option(name)}: `{text}` {error}")
-    if complaints:
-        raise UsageError("; ".join(complaints))
-    return values
-
-
 def _drag_over_weight(cable: dict[str, float]) -> float:
     """K as given, or of the cable and the current."""
     parts = ("diameter", "cd", "speed")
     if "k" in cable:
-        also = [_option(name) for name in (*parts, "density") if name in cable]
+        also = [option(name) for name in (*parts, "density") if name in cable]
         if also:
             raise UsageError(f"give either --k or {', '.join(also)}")
         return cable["k"]
-    missing = [_option(name) for name in parts if name not in cable]
+    missing = [option(name) for name in parts if name not in cable]
     if missing:
         raise UsageError(f"give --k, or also {', '.join(missing)}")
     for name in (*parts, "density"):
         if cable.get(name, 0.0) < 0.0:
-            raise UsageError(f"{_option(name)} must not be negative")
+            raise UsageError(f"{option(name)} must not be negative")
     if cable["weight"] == 0.0:
         raise UsageError("--weight must not be 0")
     drag = cable.get("density", _SEA_WATER) * cable["cd"] * cable["diameter"] * cable["speed"] ** 2
     return drag / (2.0 * abs(cable["weight"]))
-
-
-def _option(name: str) -> str:
-    return f"--{name.replace('_', '-')}"
-
-
-def _check_output(path: Path | None) -> None:
-    """Refuse an output that could not be written, before anything is solved."""
-    from calm.report.write import check_destination
-
-    if path is None or path == _STDOUT:
-        return
-    if str(path).startswith("-"):
-        raise UsageError(f"{path} stands where a path is needed; write ./{path} for a file")
-    check_destination(path)
-
-
-def _write_json(path: Path, answer: ChartAnswer) -> None:
-    from calm.report.chart_answer import answer_document
-    from calm.report.document import to_json
-    from calm.report.write import write_file
-
-    text = to_json([answer_document(answer)])
-    if path == _STDOUT:
-        show(text)
-    else:
-        write_file(path, text.encode())

@@ -13,8 +13,12 @@ from calm.cli.catalog import catalog
 from calm.cli.chart import chart
 from calm.cli.exit_codes import ExitCode
 from calm.cli.run import RUN_EXAMPLES, run
+from calm.cli.size import SIZE_EXAMPLES, size
 from calm.cli.starter import NEW_EXAMPLES, SCHEMA_EXAMPLES, new, schema
 from calm.cli.streams import narrate, prepare
+from calm.cli.strumming import STRUMMING_EXAMPLES, strumming
+from calm.cli.tow import TOW_EXAMPLES, tow
+from calm.cli.verify import VERIFY_EXAMPLES, verify
 from calm.errors import CalmError, InputError, NoEquilibrium
 
 _EPILOGUE = """Examples:
@@ -35,7 +39,7 @@ def _version() -> str:
 
 app = App(
     name="calm",
-    help="Statics of oceanographic moorings: shape, tensions and anchor load in a current.",
+    help="Statics of oceanographic moorings and tows: shape and tensions in a current.",
     help_epilogue=_EPILOGUE,
     help_format="plaintext",
     version=_version,
@@ -44,8 +48,12 @@ app = App(
     result_action="return_value",
 )
 app.command(run, usage="Usage: calm run [OPTIONS] FILE...", help_epilogue=RUN_EXAMPLES)
+app.command(tow, usage="Usage: calm tow [OPTIONS] FILE...", help_epilogue=TOW_EXAMPLES)
+app.command(size, help_epilogue=SIZE_EXAMPLES)
+app.command(strumming, help_epilogue=STRUMMING_EXAMPLES)
 app.command(catalog)
 app.command(chart)
+app.command(verify, usage="Usage: calm verify [OPTIONS] [WORD...]", help_epilogue=VERIFY_EXAMPLES)
 app.command(new, help_epilogue=NEW_EXAMPLES)
 app.command(schema, help_epilogue=SCHEMA_EXAMPLES)
 

@@ -4,44 +4,101 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any, Protocol
+
+from cyclopts import Parameter
 
 from calm.cli.exit_codes import ExitCode
 from calm.cli.streams import narrate, show, show_rich
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
-    from calm.case import Result
+    from rich.console import RenderableType
 
-_STDOUT = Path("-")
+    from calm.case import Result, TowResult
+    from calm.case.explain import Explanation
+
+OutputPath = Annotated[Path | None, Parameter(allow_leading_hyphen=True)]
+"""Type of an option that takes a path, or - for the standard output."""
+
+STDOUT = Path("-")
+"""What a path says that stands for the standard output."""
+
+
+class Shown(Protocol):
+    """What a command has to show of one file."""
+
+    @property
+    def file(self) -> Path:
+        """The file it was read from."""
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What neither a CSV table nor an exit code can tell."""
+
+    def document(self) -> dict[str, Any]:
+        """The JSON object."""
+
+    def tables(self) -> list[RenderableType]:
+        """What a terminal shows; nothing where there is nothing to show."""
+
+    def picture(self, suffix: str) -> bytes | None:
+        """The drawing, in the format of a file's ending; None where there is nothing to draw."""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one mooring file: a result, or the reason why there is none."""
+    """What became of one file: a result, or the reason why there is none."""
 
     file: Path
     name: str
-    result: Result | None = None
+    result: Result | TowResult | None = None
     failure: NoEquilibrium | None = None
+    explanation: Explanation | None = None
 
     @property
     def code(self) -> ExitCode:
-        """The exit code of this mooring alone."""
+        """The exit code of this file alone."""
         return ExitCode.NO_EQUILIBRIUM if self.failure else ExitCode.DONE
 
     @property
+    def warnings(self) -> tuple[str, ...]:
+        """Those of the result."""
+        return self.result.warnings if self.result else ()
+
     def document(self) -> dict[str, Any]:
-        """The JSON object of this mooring."""
+        """The JSON object of the result, or of the failure."""
         from calm.report.document import failure_document
 
         if self.failure:
             return failure_document(self.name, self.failure)
         assert self.result is not None
-        return self.result.to_dict()
+        document = self.result.to_dict()
+        if self.explanation is not None:
+            document["explain"] = self.explanation.to_dict()
+        return document
+
+    def tables(self) -> list[RenderableType]:
+        """The table of the line, and its explanation where one was asked for."""
+        tables: list[RenderableType] = []
+        if self.result is not None:
+            from calm.report.table import result_table
+
+            tables.append(result_table(self.result))
+        if self.explanation is not None:
+            from calm.report.explain import explanation_table
+
+            tables.append(explanation_table(self.explanation))
+        return tables
+
+    def picture(self, suffix: str) -> bytes | None:
+        """The line drawn."""
+        from calm.report.plot import picture
+
+        return picture(self.result, suffix) if self.result else None
 
 
 @dataclass(frozen=True)
@@ -51,15 +108,15 @@ class Outputs:
     Parameters
     ----------
     files : tuple of Path
-        The mooring files the outputs are made from.
+        The files the outputs are made from; none where the question is in the options.
     json, csv, plot : Path or None
         One JSON document, one CSV table; a picture for each file.
     """
 
-    files: tuple[Path, ...]
-    json: Path | None
-    csv: Path | None
-    plot: Path | None
+    files: tuple[Path, ...] = ()
+    json: Path | None = None
+    csv: Path | None = None
+    plot: Path | None = None
 
     @property
     def plots(self) -> tuple[Path, ...]:
@@ -84,10 +141,10 @@ class Outputs:
 
         asked = [path for path in (self.json, self.csv, *self.plots) if path is not None]
         for path in asked:
-            if str(path).startswith("-") and path != _STDOUT:
+            if str(path).startswith("-") and path != STDOUT:
                 raise UsageError(f"{path} stands where a path is needed; write ./{path} for a file")
         if self.plot is not None:
-            from calm.report.plot import check_format
+            from calm.report.picture import check_format
 
             check_format(self.plot)
         mooring_files = set(map(os.path.realpath, self.files))
@@ -97,49 +154,64 @@ class Outputs:
             if real in mooring_files:
                 raise UsageError(f"{os.path.relpath(real)} is a mooring file; it is kept")
         for path in asked:
-            if path != _STDOUT:
+            if path != STDOUT:
                 check_destination(path)
 
-    def write(self, outcomes: Sequence[Outcome]) -> None:
-        """Write the files, then the standard output: what was asked for there, or the tables.
+    def write_answer(self, document: dict[str, Any], table: RenderableType | None) -> None:
+        """Write what a command without files answers: `json`, and the table unless that is shown.
 
         Raises
         ------
         UsageError
             The system refuses to write.
         """
+        from calm.report.document import to_json
         from calm.report.write import write_file
 
-        results = [outcome.result for outcome in outcomes if outcome.result is not None]
+        text = to_json([document])
+        if self.json == STDOUT:
+            show(text)
+            return
+        if self.json is not None:
+            write_file(self.json, text.encode())
+        if table is not None:
+            show_rich(table)
+
+    def write(self, shown: Sequence[Shown], to_csv: Callable[[], str]) -> None:
+        """Write the files, then the standard output: what was asked for there, or the tables.
+
+        Parameters
+        ----------
+        shown : sequence of Shown
+            One for each of `files`, in order.
+        to_csv : callable
+            Makes the CSV table of all of them; called only where it was asked for.
+
+        Raises
+        ------
+        UsageError
+            The system refuses to write.
+        """
+        from calm.report.document import to_json
+        from calm.report.write import write_file
+
         texts: dict[Path, str] = {}
         if self.json is not None:
-            from calm.report.document import to_json
-
-            texts[self.json] = to_json([outcome.document for outcome in outcomes])
+            texts[self.json] = to_json([each.document() for each in shown])
         if self.csv is not None:
-            from calm.report.csv import to_csv
-
-            texts[self.csv] = to_csv(results)
+            texts[self.csv] = to_csv()
         for path, text in texts.items():
-            if path != _STDOUT:
+            if path != STDOUT:
                 write_file(path, text.encode("utf-8", "replace"))
-        for path, outcome in zip(self.plots, outcomes, strict=False):
-            if outcome.result is not None:
-                from calm.report.plot import picture
-
-                write_file(path, picture(outcome.result, path.suffix))
-        if _STDOUT in texts:
-            show(texts[_STDOUT])
+        for path, each in zip(self.plots, shown, strict=False):
+            content = each.picture(path.suffix)
+            if content is not None:
+                write_file(path, content)
+        if STDOUT in texts:
+            show(texts[STDOUT])
         else:
-            from calm.report.table import result_table
-
-            show_rich(*map(result_table, results))
-        if self.csv == _STDOUT:
-            _narrate_warnings(outcomes)
-
-
-def _narrate_warnings(outcomes: Sequence[Outcome]) -> None:
-    """Tell what neither a CSV table nor an exit code can."""
-    for outcome in outcomes:
-        for warning in outcome.result.warnings if outcome.result else ():
-            narrate(f"{outcome.file}: {warning}")
+            show_rich(*(table for each in shown for table in each.tables()))
+        if self.csv == STDOUT:
+            for each in shown:
+                for warning in each.warnings:
+                    narrate(f"{each.file}: {warning}")

@@ -1,28 +1,27 @@
-"""``calm run``: solve moorings and show them."""
+"""``calm run``: solve moorings and tows, and show them."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-from cyclopts import Parameter
+from typing import TYPE_CHECKING
 
 from calm.cli.exit_codes import ExitCode, gravest
-from calm.cli.outputs import Outcome, Outputs
+from calm.cli.outputs import Outcome, OutputPath, Outputs
 from calm.cli.streams import narrate
-from calm.errors import InputError, NoEquilibrium, Problem
+from calm.errors import InputError, NoEquilibrium, Problem, UsageError
 
 if TYPE_CHECKING:
-    from calm.case import Mooring
+    from calm.case import Mooring, Tow
 
 RUN_EXAMPLES = """Examples:
 
   calm run mooring.yaml
   calm run mooring.yaml --environment storm --plot storm.png
   calm run mooring.yaml --csv components.csv --json result.json
-  calm run spring.yaml neap.yaml --json -"""
-
-OutputPath = Annotated[Path | None, Parameter(allow_leading_hyphen=True)]
+  calm run mooring.yaml --explain
+  calm run spring.yaml neap.yaml tow.yaml --json -"""
 
 
 def run(
@@ -34,8 +33,9 @@ def run(
     json: OutputPath = None,
     csv: OutputPath = None,
     plot: Path | None = None,
+    explain: bool = False,
 ) -> ExitCode:
-    """Solve moorings and print the table of each line.
+    """Solve moorings and tows, and print the table of each line.
 
     All files are read first: if one of them cannot be used, its mistakes are
     listed and nothing is solved. The table is printed unless - asks for JSON or
@@ -44,7 +44,7 @@ def run(
     Parameters
     ----------
     files
-        Mooring files.
+        Mooring files; one with `tow:` is a tow.
     environment
         An environment named in the files, or an environment file, in place of their own.
     catalog
@@ -55,37 +55,77 @@ def run(
         Write the components as CSV, units in the header, - to print it.
     plot
         Draw it, as .png or .svg; for several files p.png becomes p-FILE.png for each.
+    explain
+        Tell how much of the knockdown each drag causes, and what more buoyancy, less
+        drag or another current would change; in the JSON too. Moorings only.
     """
     outputs = Outputs(tuple(files), json, csv, plot)
     outputs.check()
-    moorings = _read(files, environment, catalog or [])
-    outcomes = [_solve(file, mooring) for file, mooring in zip(files, moorings, strict=True)]
-    outputs.write(outcomes)
-    return gravest(outcome.code for outcome in outcomes)
+    lines = read_files(files, environment, catalog or [])
+    if explain:
+        _refuse_tows(files, lines)
+    return solve_and_show(lines, outputs, explain=explain)
 
 
-def _read(files: list[Path], environment: str | None, catalogs: list[Path]) -> list[Mooring]:
-    """All moorings, or an `InputError` with the mistakes of all of them."""
+def read_files(
+    files: Sequence[Path], environment: str | None, catalogs: Sequence[Path]
+) -> list[Mooring | Tow]:
+    """All moorings and tows, or an `InputError` with the mistakes of all of them."""
     import calm
 
-    moorings: list[Mooring] = []
+    read: list[Mooring | Tow] = []
     problems: dict[Problem, None] = {}
     for file in files:
         try:
-            moorings.append(calm.load(file, environment=environment, catalogs=catalogs))
+            read.append(calm.load(file, environment=environment, catalogs=catalogs))
         except InputError as error:
             # A catalogue that all files share has its mistakes told once.
             problems |= dict.fromkeys(error.problems)
     if problems:
         raise InputError(list(problems))
-    return moorings
+    return read
 
 
-def _solve(file: Path, mooring: Mooring) -> Outcome:
+def solve_and_show(
+    lines: Sequence[Mooring | Tow], outputs: Outputs, *, explain: bool = False
+) -> ExitCode:
+    """Solve what was read from the files of the outputs, explain it if asked, and write those."""
+    outcomes = [_solve(file, line) for file, line in zip(outputs.files, lines, strict=True)]
+    if explain:
+        outcomes = [_explained(outcome) for outcome in outcomes]
+
+    def to_csv() -> str:
+        from calm.report.csv import to_csv
+
+        return to_csv([outcome.result for outcome in outcomes if outcome.result is not None])
+
+    outputs.write(outcomes, to_csv)
+    return gravest(outcome.code for outcome in outcomes)
+
+
+def _solve(file: Path, line: Mooring | Tow) -> Outcome:
     try:
-        return Outcome(file, mooring.file.name, result=mooring.solve())
+        return Outcome(file, line.file.name, result=line.solve())
     except NoEquilibrium as failure:
-        for notice in mooring.file.notices:  # a result has them among its warnings
+        for notice in line.file.notices:  # a result has them among its warnings
             narrate(f"{file}: {notice}")
         narrate(f"{file}: {failure}")
-        return Outcome(file, mooring.file.name, failure=failure)
+        return Outcome(file, line.file.name, failure=failure)
+
+
+def _refuse_tows(files: Sequence[Path], lines: Sequence[Mooring | Tow]) -> None:
+    from calm.case import Tow
+
+    tows = [str(file) for file, line in zip(files, lines, strict=True) if isinstance(line, Tow)]
+    if tows:
+        raise UsageError(f"--explain is for moorings; towed: {', '.join(tows)}")
+
+
+def _explained(outcome: Outcome) -> Outcome:
+    """The outcome with its explanation, where there is a mooring to explain."""
+    from calm.case import Result
+    from calm.case.explain import explain
+
+    if not isinstance(outcome.result, Result):
+        return outcome
+    return replace(outcome, explanation=explain(outcome.result))

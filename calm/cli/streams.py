@@ -6,12 +6,18 @@ import io
 import os
 import re
 import sys
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
+from time import monotonic
+from typing import TYPE_CHECKING, TypeVar
 
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
+
+_Item = TypeVar("_Item")
+_PATIENCE = 1.0  # seconds before progress is told
+_PACE = 0.1  # seconds between two tellings
 
 
 def prepare() -> None:
@@ -58,6 +64,21 @@ def show_rich(*renderables: RenderableType) -> None:
 def narrate(text: str) -> None:
     """Write a line to the standard error."""
     print(text, file=sys.stderr)
+
+
+def progress(items: Sequence[_Item], what: str) -> Iterator[_Item]:
+    """The items one by one; when they take long, a terminal is told how many are done."""
+    if sys.stderr is None or not sys.stderr.isatty():
+        yield from items
+        return
+    told, due = False, monotonic() + _PATIENCE
+    for done, item in enumerate(items):
+        if monotonic() >= due:
+            print(f"\r{done} of {len(items)} {what}", end="", file=sys.stderr, flush=True)
+            told, due = True, monotonic() + _PACE
+        yield item
+    if told:
+        print("\r\x1b[K", end="", file=sys.stderr, flush=True)
 
 
 def _abandon_output() -> None:

@@ -16,9 +16,6 @@ from calm.units import QuantityError
 
 LONGEST_TEXT = 60
 
-NOT_AVAILABLE: Mapping[str, str] = {"elongation": "give the line's `stiffness`"}
-"""Keys of the format that this version does not compute, and what to do without."""
-
 M = TypeVar("M", bound=BaseModel)
 
 
@@ -101,7 +98,7 @@ def _explain(
             if also_allowed:
                 keys.remove("kind")
             near = nearest(name, keys)
-            if near and name not in NOT_AVAILABLE:
+            if near:
                 misspelt.add((location[:-1], near))
             kind = _tag(model) if len(details["loc"]) == 1 else None
             message = _about_key(name, value, keys, kind)
@@ -133,8 +130,6 @@ def _existing(data: Any, loc: tuple[int | str, ...]) -> tuple[Location, Any]:
 
 
 def _about_key(name: str, value: object, keys: list[str], kind: str | None) -> str:
-    if name in NOT_AVAILABLE:
-        return f"`{name}` is not available in this version; {NOT_AVAILABLE[name]}"
     if value is None and name[:1].isdigit():
         return f"`{shown(name)}` is no key; a decimal comma? (write 0.8, not 0,8)"
     owner = f" for kind {kind}" if kind else ""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import ValidationInfo, model_validator
+from pydantic import AfterValidator, ValidationInfo, model_validator
 
 from calm.files.definition import (
     CATALOGUE_DENSITY,
@@ -17,6 +17,27 @@ from calm.files.definition import (
     volume_from_weights,
 )
 from calm.files.fields import COEFFICIENT, DIAMETER, POSITIVE_FORCE, Quantity, Role
+from calm.physics.stretch import ElongationCurve
+
+_LOAD = Quantity("number", at_least=0, at_most=1)
+_STRAIN = Quantity("number", at_least=0)
+
+Points = tuple[tuple[float, float], ...]
+
+
+def _refuse_what_is_no_curve(points: Points) -> Points:
+    try:
+        ElongationCurve(points, breaking_load=1.0)
+    except ValueError as error:
+        raise ValueError(f"`elongation`: {error}") from error
+    return points
+
+
+Elongation = Annotated[
+    tuple[tuple[Annotated[float, _LOAD], Annotated[float, _STRAIN]], ...],
+    AfterValidator(_refuse_what_is_no_curve),
+]
+"""Load over breaking load, and the strain under it: rows by growing load."""
 
 
 class Flexible(Definition):
@@ -38,6 +59,8 @@ class Cable(Flexible):
     kind: Literal["cable"]
     buoyancy: Annotated[float | None, Quantity("force per length")] = None
     finish: Literal["smooth", "rough", "very-rough"] | None = None
+    elongation: Elongation | None = None
+    permanent_elongation: Annotated[float | None, Quantity("number", at_least=0, at_most=1)] = None
 
     @property
     def net_buoyancy(self) -> float:
@@ -71,6 +94,17 @@ class Cable(Flexible):
             if self.mass is None:
                 raise ValueError("needs `mass`, or `weight`")
         refuse_weight_above_mass(self.mass, self.net_buoyancy)
+        return self
+
+    @model_validator(mode="after")
+    def _stretch_is_given_once(self) -> Cable:
+        if self.elongation is None:
+            if self.permanent_elongation is not None:
+                raise ValueError("`permanent_elongation` needs `elongation`")
+        elif self.stiffness is not None:
+            raise ValueError("gives both `stiffness` and `elongation`; one says how it stretches")
+        elif self.breaking_load is None:
+            raise ValueError("`elongation` needs `breaking_load`: its loads are shares of that")
         return self
 
 

@@ -6,24 +6,17 @@ import math
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Field
+from pydantic import AfterValidator, Field
 
 from calm.files.components import Anchor, Component
 from calm.files.environment import Environment
 from calm.files.fields import LENGTH, POSITIVE_LENGTH, Model, Quantity
 from calm.files.strumming import Strumming
-from calm.units import QuantityError
 
 _FACTOR = Quantity("number", above=0)
 _SHARE = Quantity("number", at_least=0, at_most=1)
 _SPEED = Quantity("speed", at_least=0)
 _LEAST_TENSION = Quantity("force", at_least=0)
-
-
-def _constant_until_available(drag: object) -> object:
-    if drag == "reynolds":
-        raise QuantityError("is not available in this version")
-    return drag
 
 
 class Position(Model):
@@ -48,7 +41,7 @@ class Solver(Model):
         float, Quantity("angle", above=0, at_most=10), AfterValidator(math.radians)
     ] = math.radians(1)
     tolerance: Annotated[float, Quantity("number", above=0, at_most=2e-4)] = 1e-7
-    drag: Annotated[Literal["constant"], BeforeValidator(_constant_until_available)] = "constant"
+    drag: Literal["constant", "reynolds"] = "constant"
     friction: Literal["berteaux", "hoerner", "constant"] = "berteaux"
     strumming: Strumming = None
     buoy_drag: Literal["immersed", "full"] = "immersed"

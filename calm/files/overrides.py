@@ -36,6 +36,8 @@ def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str
     cable            `weight` or `buoyancy`      the other of the two
     cable            `density`, or `mass` where  `weight`, `buoyancy`, which then follow
                      a density is known
+    cable            `stiffness`                 `elongation`, `permanent_elongation`
+    cable            `elongation`                `stiffness`
     chain, anchor    `mass` or `density`         `weight`, which then follows
     ================ =========================== ==============================================
     """
@@ -55,6 +57,10 @@ def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str
             known >= {"mass", "density"} and override & {"mass", "density"}
         ):
             void |= {"weight", "buoyancy"}
+        if "stiffness" in override:
+            void |= {"elongation", "permanent_elongation"}
+        if "elongation" in override:
+            void.add("stiffness")
     elif override & {"mass", "density"}:
         void.add("weight")
     return frozenset(void - override)

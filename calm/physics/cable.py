@@ -108,11 +108,12 @@ def _pass_segment(
     kn, kt = cable.normal_drag, cable.tangential_drag
     berteaux, hoerner = (cable.friction is law for law in (Friction.BERTEAUX, Friction.HOERNER))
     vibration = cable.vibration
-    compliance, thinning = cable.compliance, cable.thinning
+    compliance, thinning, elongation = cable.compliance, cable.thinning, cable.elongation
     levels, rows, gravity = profile.levels, profile.rows, profile.gravity
     fx, fy, fz, z, level = state.fx, state.fy, state.fz, state.z, state.level
     half = 0.5 * cut
-    strain = compliance * sqrt(fx * fx + fy * fy + fz * fz)
+    tension = sqrt(fx * fx + fy * fy + fz * fz)
+    strain = compliance * tension if elongation is None else elongation.strain(tension)
     rise = state.tz * (1.0 + strain)
     axis: Vector = (-fx, -fy, -fz)
     earlier = inf
@@ -146,6 +147,10 @@ def _pass_segment(
         if hx * tx + hy * ty + hz * tz > 0.0:
             tx, ty, tz = -tx, -ty, -tz
         strain = compliance * sqrt(hx * hx + hy * hy + hz * hz)
+        if elongation is not None:  # of all the tensions in it, so that it may be as long as others
+            bottom = sqrt((fx + qx) ** 2 + (fy + qy) ** 2 + (fz + qz + lift) ** 2)
+            middle = sqrt(hx * hx + hy * hy + hz * hz)
+            strain = elongation.mean_strain(middle, 0.5 * (bottom - tension))
         change = abs(tz * (1.0 + strain) - rise)
         rise = tz * (1.0 + strain)
         if change < 1e-12 or change * change < 1e-12 * earlier < inf:
@@ -225,7 +230,7 @@ def segment_length(
     tension = sqrt(state.fx * state.fx + state.fy * state.fy + state.fz * state.fz)
     depth = -state.z
     sinking = state.fz / tension if tension > 0.0 else 1.0
-    length, floor = reach, 1e-5 * reach
+    length, floor = reach, 1e-4 * reach
     for _ in (0, 1):
         rate = _rate_of_turn(cable, profile, state, tension, depth, angle_step)
         if rate > 0.0:

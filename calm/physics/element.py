@@ -17,6 +17,8 @@ from math import inf, sqrt
 
 Vector = tuple[float, float, float]
 
+_SCAN = 16
+
 
 def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, vz: float) -> float:
     """Solve c |A + c V| = k |V × A| for its smallest root c ≥ 0.
@@ -123,6 +125,65 @@ def amplified_share(
         else:
             c, first, above = first, second, trial
     return first, factor(first)
+
+
+def varying_share(
+    ax: float,
+    ay: float,
+    az: float,
+    k: float,
+    varied: Callable[[float], float],
+    vx: float,
+    vy: float,
+    vz: float,
+) -> float:
+    """`drag_share` for a coefficient that varies with the speed across the element: k f(|Vn|).
+
+    Parameters
+    ----------
+    k : half its normal drag coefficient where f = 1 [N/(m/s)²]
+    varied : f > 0, continuous, of |Vn| [m/s]
+
+    Returns
+    -------
+    c = k f(s) s [N/(m/s)] for the smallest root s = |Vn| of s |A + k f(s) s V| = |V × A|, told
+    apart from others to |V|/16. In the drag crisis, where less speed makes more drag, an element
+    may lean in the slow flow along it or stand in the fast flow across it; the smallest root, the
+    more drag, is the one reached when the current grows from rest.
+    """
+    speed = sqrt(vx * vx + vy * vy + vz * vz)
+    cx, cy, cz = ay * vz - az * vy, az * vx - ax * vz, ax * vy - ay * vx
+    across = sqrt(cx * cx + cy * cy + cz * cz)
+    if k == 0.0 or across == 0.0:
+        return 0.0
+
+    def excess(s: float) -> float:
+        c = k * varied(s) * s
+        x, y, z = ax + c * vx, ay + c * vy, az + c * vz
+        return s * sqrt(x * x + y * y + z * z) - across
+
+    low, below, side = 0.0, -across, 0
+    for i in range(1, _SCAN + 1):
+        high = speed * i / _SCAN
+        above = excess(high)
+        if above >= 0.0:
+            break
+        if i < _SCAN:
+            low, below = high, above
+    above = max(above, 0.0)  # at |V| it may be below by rounding
+    for _ in range(100):
+        s = (low * above - high * below) / (above - below)
+        found = excess(s)
+        if abs(found) <= 1e-14 * across:
+            break
+        # the secant keeps to one side of the root unless the other side is made light of
+        if found > 0.0:
+            high, above, below = s, found, below * (0.5 if side > 0 else 1.0)
+            side = 1
+        else:
+            low, below, above = s, found, above * (0.5 if side < 0 else 1.0)
+            side = -1
+    return k * varied(s) * s
 
 
 def axis_along(

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields, replace
+from functools import partial
 from math import inf
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,12 +14,19 @@ from calm.physics.friction import Friction
 from calm.physics.hull import Floating
 from calm.physics.strumming import BourgetMarichal
 
+if TYPE_CHECKING:
+    from calm.physics.reynolds import DragCurve
+    from calm.physics.stretch import ElongationCurve
+
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Booleans = NDArray[np.bool_]
 
 REFERENCE_DENSITY = 1025.0
 """Density of the sea water [kg/m³] for which buoyancies and drags are given."""
+
+REFERENCE_VISCOSITY = 1.36e-6
+"""Kinematic viscosity of sea water of 10 °C and 35 [m²/s], where nothing else is known."""
 
 
 class _Arrays:
@@ -49,6 +57,13 @@ _DTYPES: dict[str, Any] = {
 
 def _none() -> Floats:
     return np.zeros(0)
+
+
+def _one(value: float) -> Floats:
+    return np.array([value])
+
+
+_CURVES = ("elongation", "drag_curve", "clamp_drag_curve")
 
 
 @dataclass(frozen=True)
@@ -83,6 +98,10 @@ class Line(_Arrays):
     towed : whether the free end is towed: then no pieces there are rigid with one another
     push_east, push_north : (n,) force of the wind on a piece [N]; 0 where not given
     floating : how the first float rides when it is at the surface; None leaves it just below
+    elongation : (n,) of cables that stretch by a table, whose `compliance` is not used; None for
+        the others, and nothing, (), where no cable does
+    drag_curve, clamp_drag_curve : (n,), (m,) how the normal drag of a smooth sphere or cylinder
+        goes with the Reynolds number; None for the others, and (), where none does
     """
 
     length: Floats
@@ -109,6 +128,9 @@ class Line(_Arrays):
     push_east: Floats = field(default_factory=_none)
     push_north: Floats = field(default_factory=_none)
     floating: Floating | None = None
+    elongation: tuple[ElongationCurve | None, ...] = ()
+    drag_curve: tuple[DragCurve | None, ...] = ()
+    clamp_drag_curve: tuple[DragCurve | None, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("lift", "diameter", "push_east", "push_north", "clamp_lift"):
@@ -124,6 +146,9 @@ class Line(_Arrays):
         self._same_length(
             "clamp_piece", "clamp_at", "clamp_buoyancy", "clamp_volume", "clamp_drag", "clamp_lift"
         )
+        for name in _CURVES:
+            if getattr(self, name):
+                self._same_length(name, "clamp_at" if name.startswith("clamp_") else "length")
         for name in (
             "length", "normal_drag", "tangential_drag", "compliance", "clamp_drag", "diameter",
         ):  # fmt: skip
@@ -164,7 +189,8 @@ class Line(_Arrays):
         columns = {
             column.name: getattr(self, column.name)[::-1]
             for column in fields(self)
-            if column.type in _DTYPES and not column.name.startswith("clamp_")
+            if (column.type in _DTYPES or column.name in _CURVES)
+            and not column.name.startswith("clamp_")
         }
         on = self.clamp_piece
         return replace(
@@ -186,6 +212,8 @@ class Water(_Arrays):
     u, v, w : (k,) current to the east, to the north, upward [m/s]
     density : (k,) [kg/m³]
     gravity : [m/s²]
+    viscosity_level, viscosity : (j,), (j,) depths [m], strictly increasing, and the kinematic
+        viscosity at them [m²/s], for drags that go with the Reynolds number
 
     Between levels everything is linear in depth; above the first and below the last it is constant.
     """
@@ -197,13 +225,19 @@ class Water(_Arrays):
     w: Floats
     density: Floats
     gravity: float = 9.80665
+    viscosity_level: Floats = field(default_factory=partial(_one, 0.0))
+    viscosity: Floats = field(default_factory=partial(_one, REFERENCE_VISCOSITY))
 
     def __post_init__(self) -> None:
         super().__post_init__()
         self._same_length("level", "u", "v", "w", "density")
-        positive = self.depth > 0.0 and 0.0 < self.gravity < inf
-        if not positive or (np.diff(self.level) <= 0).any() or (self.density <= 0).any():
-            raise ValueError("Water: depth, gravity and densities must be positive, levels rise")
+        self._same_length("viscosity_level", "viscosity")
+        if not (self.depth > 0.0 and 0.0 < self.gravity < inf):
+            raise ValueError("Water: depth and gravity must be positive")
+        if (self.density <= 0).any() or (self.viscosity <= 0).any():
+            raise ValueError("Water: densities and viscosities must be positive")
+        if (np.diff(self.level) <= 0).any() or (np.diff(self.viscosity_level) <= 0).any():
+            raise ValueError("Water: levels must rise")
 
     @property
     def moving(self) -> bool:
@@ -219,3 +253,7 @@ class Water(_Arrays):
         """Current (..., 3) [m/s] and density (...) [kg/m³] at depths of any shape [m]."""
         current = np.stack([np.interp(depth, self.level, c) for c in (self.u, self.v, self.w)], -1)
         return current, np.interp(depth, self.level, self.density)
+
+    def viscosity_at(self, depth: Floats) -> Floats:
+        """Kinematic viscosity (...) [m²/s] at depths of any shape [m]."""
+        return np.interp(depth, self.viscosity_level, self.viscosity)

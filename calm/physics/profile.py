@@ -1,7 +1,8 @@
-"""Current and density by depth, as the march looks them up."""
+"""Current, density and viscosity by depth, as the march looks them up."""
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from math import inf, isfinite
 
 from calm.physics.line import Water
@@ -31,6 +32,8 @@ class Profile:
             (origin, *(number for column in columns for number in column[i]))
             for i, origin in enumerate(origins)
         ]
+        self._viscous = [float(depth) for depth in water.viscosity_level]
+        self._viscosity = _values_and_slopes(self._viscous, [float(v) for v in water.viscosity])
 
     def interval(self, depth: float, i: int) -> int:
         """Index of the interval that holds `depth`, searched from interval `i`."""
@@ -53,6 +56,12 @@ class Profile:
             w + dw * below,
             density + ddensity * below,
         )
+
+    def viscosity(self, depth: float) -> float:
+        """Kinematic viscosity at a depth [m²/s]."""
+        i = bisect_right(self._viscous, depth)
+        value, slope = self._viscosity[i]
+        return value + slope * (depth - self._viscous[max(i - 1, 0)])
 
     def distance_to_level(self, depth: float, sinking: float, i: int, least: float = 0.0) -> float:
         """Way to the next level from a depth [m], along a path that sinks so much per metre.

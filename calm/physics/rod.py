@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import inf, sqrt
 
-from calm.physics.element import Vector, axis_along, drag_force, drag_share
+from calm.physics.element import Vector, axis_along, drag_force, drag_share, varying_share
 from calm.physics.line import REFERENCE_DENSITY
 from calm.physics.profile import Profile
+from calm.physics.reynolds import DragCurve
 from calm.physics.state import MarchError, State, Trace
 from calm.physics.track import Load, Rod
 
@@ -20,14 +22,31 @@ def load_force(load: Load, profile: Profile, depth: float, axis: Vector, level: 
     lift = load.buoyancy + (density - REFERENCE_DENSITY) * profile.gravity * load.volume
     if load.lift:
         lift += scale * load.lift * (u * u + v * v + w * w)
+    kn = scale * load.normal_drag
     if load.directional:
-        qx, qy, qz = drag_force(
-            scale * load.normal_drag, scale * load.tangential_drag, u, v, w, *axis
-        )
+        if load.curve is not None:
+            kn *= _variation(load.curve, profile, depth)(_speed_across(axis, u, v, w))
+        qx, qy, qz = drag_force(kn, scale * load.tangential_drag, u, v, w, *axis)
     else:
-        drag = scale * load.normal_drag * sqrt(u * u + v * v + w * w)
+        speed = sqrt(u * u + v * v + w * w)
+        if load.curve is not None:
+            kn *= _variation(load.curve, profile, depth)(speed)
+        drag = kn * speed
         qx, qy, qz = drag * u, drag * v, drag * w
     return qx + load.push_east, qy + load.push_north, qz + lift
+
+
+def _variation(curve: DragCurve, profile: Profile, depth: float) -> Callable[[float], float]:
+    """How many times its constant drag a load on a curve has, by the speed it goes with [m/s]."""
+    per_speed = curve.diameter / profile.viscosity(depth)
+    return lambda speed: curve.factor(per_speed * speed)
+
+
+def _speed_across(axis: Vector, u: float, v: float, w: float) -> float:
+    """|V × t| [m/s]."""
+    tx, ty, tz = axis
+    cx, cy, cz = v * tz - w * ty, w * tx - u * tz, u * ty - v * tx
+    return sqrt(cx * cx + cy * cy + cz * cz)
 
 
 def pass_rod(
@@ -74,8 +93,9 @@ def rod_axis(rod: Rod, profile: Profile, state: State) -> Vector:
 
     With several loads q_i at distances a_i from the top the rule of one load becomes
     t ∥ F + Σ (1 - a_i/L) q_i. The normal drags are gathered into one current and one coefficient
-    that reproduce their sum at the present axis, so each pass solves a single element exactly and
-    only shear along the rod is left to the passes.
+    that reproduce their sum at the present axis, so each pass solves a single element exactly,
+    its drag curve included, and only shear along the rod is left to the passes; where several
+    drags follow curves, these are, too.
 
     Raises
     ------
@@ -104,22 +124,37 @@ def rod_axis(rod: Rod, profile: Profile, state: State) -> Vector:
 
 def _next_axis(rod: Rod, profile: Profile, state: State, axis: Vector) -> Vector:
     ax, ay, az = state.fx, state.fy, state.fz
-    normals = []
+    normals: list[tuple[float, float, float, float]] = []
+    curved: list[tuple[int, Callable[[float], float]]] = []
     for load in rod.loads:
         ax, ay = ax + load.lever * load.push_east, ay + load.lever * load.push_north
-        u, v, w, density = profile.at(-state.z - load.at * axis[2], state.level)
+        depth = -state.z - load.at * axis[2]
+        u, v, w, density = profile.at(depth, state.level)
         scale = load.lever * density / REFERENCE_DENSITY
         excess = (density - REFERENCE_DENSITY) * profile.gravity
         az += load.lever * (load.buoyancy + excess * load.volume)
         if load.lift:
             az += scale * load.lift * (u * u + v * v + w * w)
+        kn = scale * load.normal_drag
         if load.directional:
-            normals.append((scale * load.normal_drag, u, v, w))
+            if load.curve is not None:
+                curved.append((len(normals), _variation(load.curve, profile, depth)))
+            normals.append((kn, u, v, w))
         else:
-            drag = scale * load.normal_drag * sqrt(u * u + v * v + w * w)
+            speed = sqrt(u * u + v * v + w * w)
+            if load.curve is not None:
+                kn *= _variation(load.curve, profile, depth)(speed)
+            drag = kn * speed
             ax, ay, az = ax + drag * u, ay + drag * v, az + drag * w
-    k, gx, gy, gz = _gather(normals, axis)
-    c = drag_share(ax, ay, az, k, gx, gy, gz)
+    if curved and len(normals) == 1:
+        k, gx, gy, gz = normals[0]
+        c = varying_share(ax, ay, az, k, curved[0][1], gx, gy, gz)
+    else:
+        for i, varied in curved:
+            k, u, v, w = normals[i]
+            normals[i] = k * varied(_speed_across(axis, u, v, w)), u, v, w
+        k, gx, gy, gz = _gather(normals, axis)
+        c = drag_share(ax, ay, az, k, gx, gy, gz)
     tx, ty, tz = following = axis_along(ax, ay, az, c, gx, gy, gz)
     mx, my, mz = state.fx, state.fy, state.fz
     for load in rod.loads:
@@ -135,18 +170,15 @@ def _gather(
     """One coefficient K and current V with K|V × t|V = Σ K_i|V_i × t|V_i at the axis t."""
     if len(normals) == 1:
         return normals[0]
-    tx, ty, tz = axis
     total = gx = gy = gz = 0.0
     for k, u, v, w in normals:
-        cx, cy, cz = v * tz - w * ty, w * tx - u * tz, u * ty - v * tx
-        share = k * sqrt(cx * cx + cy * cy + cz * cz)
+        share = k * _speed_across(axis, u, v, w)
         total += share
         gx, gy, gz = gx + share * u, gy + share * v, gz + share * w
     if total == 0.0:
         return 0.0, 0.0, 0.0, 0.0
     gx, gy, gz = gx / total, gy / total, gz / total
-    cx, cy, cz = gy * tz - gz * ty, gz * tx - gx * tz, gx * ty - gy * tx
-    across = sqrt(cx * cx + cy * cy + cz * cz)
+    across = _speed_across(axis, gx, gy, gz)
     return (total / across if across > 0.0 else 0.0), gx, gy, gz
 
 

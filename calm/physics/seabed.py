@@ -43,9 +43,9 @@ def lie_down(
     hanging = end.landing.hanging
     for stage in track.stages[end.landing.stage :]:
         for piece, clamp, length, weight in _lying(stage, hanging, excess):
-            compliance = stage.compliance if isinstance(stage, Cable) else 0.0
-            mean, tension = _held_back(tension, friction * weight)
-            strain = compliance * mean
+            pulled, left = _held_back(tension, friction * weight)
+            strain = _strain(stage, pulled, tension, left) if isinstance(stage, Cable) else 0.0
+            tension = left
             x += length * (1.0 + strain) * east
             y += length * (1.0 + strain) * north
             grounded += length
@@ -98,7 +98,17 @@ def _lying_rod(rod: Rod, excess: float) -> list[Part]:
 
 
 def _held_back(tension: float, hold: float) -> tuple[float, float]:
-    """Mean tension over a part that friction holds back by up to `hold`, and what is left [N]."""
+    """Share of a part that the tension reaches into against friction, up to `hold`, and what is
+    left of it at its end [N]."""
     if hold <= tension:
-        return tension - 0.5 * hold, tension - hold
-    return 0.5 * tension * tension / hold, 0.0
+        return 1.0, tension - hold
+    return tension / hold, 0.0
+
+
+def _strain(cable: Cable, pulled: float, tension: float, left: float) -> float:
+    """Mean strain of a part where the tension falls evenly over a share `pulled` of its length."""
+    middle = 0.5 * (tension + left)
+    if cable.elongation is None:
+        return pulled * cable.compliance * middle
+    strain = cable.elongation.mean_strain(middle, 0.5 * (tension - left))
+    return pulled * strain + (1.0 - pulled) * cable.elongation.strain(0.0)

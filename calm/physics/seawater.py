@@ -12,9 +12,6 @@ from numpy.typing import ArrayLike
 
 from calm.physics.line import Floats
 
-KINEMATIC_VISCOSITY = 1.36e-6
-"""Where temperature and salinity are not given [m²/s]: sea water of 10 °C and 35."""
-
 MID_LATITUDE = 45.0
 """Where no position is given [degrees]. Latitude only turns depth into pressure: between the
 equator and a pole the density at 5000 m differs by 0.12 kg/m³."""

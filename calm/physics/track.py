@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 from calm.physics.friction import Friction
 from calm.physics.line import Line
+from calm.physics.reynolds import DragCurve
+from calm.physics.stretch import ElongationCurve
 from calm.physics.strumming import BourgetMarichal
 
 
@@ -29,6 +31,7 @@ class Load:
     lift: float = 0.0
     push_east: float = 0.0
     push_north: float = 0.0
+    curve: DragCurve | None = None
 
 
 @dataclass(frozen=True)
@@ -64,6 +67,7 @@ class Cable:
     tangential_drag: float
     compliance: float
     thinning: float
+    elongation: ElongationCurve | None = None
     friction: Friction = Friction.BERTEAUX
     vibration: Vibration | None = None
 
@@ -142,6 +146,7 @@ def _clamp_load(line: Line, m: int, at: float = 0.0, lever: float = 0.5) -> Load
         tangential_drag=0.0,
         directional=False,
         lift=float(line.clamp_lift[m]),
+        curve=line.clamp_drag_curve[m] if line.clamp_drag_curve else None,
     )
 
 
@@ -167,6 +172,7 @@ def _rod(line: Line, pieces: range) -> Rod:
                 tangential_drag=float(line.tangential_drag[piece]),
                 directional=bool(line.directional[piece]),
                 lift=float(line.lift[piece]),
+                curve=line.drag_curve[piece] if line.drag_curve else None,
             )
         )
         for m in _clamps_of(line, piece):
@@ -191,16 +197,18 @@ def _cable_stages(line: Line, piece: int, frequency: float) -> Iterable[Stage]:
             tangential_drag=float(line.tangential_drag[piece]),
             compliance=float(line.compliance[piece]),
             thinning=float(line.thinning[piece]),
+            elongation=line.elongation[piece] if line.elongation else None,
             friction=line.friction,
             vibration=vibration,
         )
 
     start, end = 0.0, float(line.length[piece])
+    rounding = 1e-12 * end  # a clamp so near to an end, or to another, is there
     for m in _clamps_of(line, piece):
         at = float(line.clamp_at[m])
-        if at > start:
+        if at - start > rounding:
             yield stretch(at - start)
             start = at
         yield _clamp_load(line, m)
-    if end > start or end == 0.0:
+    if end - start > rounding or end == 0.0:
         yield stretch(end - start)

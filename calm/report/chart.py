@@ -7,10 +7,8 @@ and B, A the lower: L/H, D/H and T_A/(wH) are constant along them.
 
 from __future__ import annotations
 
-import io
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +16,7 @@ from calm.analytic.chart_branch import critical_angle
 from calm.analytic.chart_curve import CurvePoints, curve
 from calm.errors import UsageError
 from calm.report.chart_labels import Labels
+from calm.report.picture import image
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -55,21 +54,8 @@ _FAMILIES = (
 )  # fmt: skip
 
 
-def check_chart_format(path: Path) -> None:
-    """Refuse a chart whose file name does not end in one of `CHART_FORMATS`.
-
-    Raises
-    ------
-    UsageError
-        Naming the endings that are allowed.
-    """
-    if path.suffix.lower() not in CHART_FORMATS:
-        allowed = f"{', '.join(CHART_FORMATS[:-1])} or {CHART_FORMATS[-1]}"
-        raise UsageError(f"cannot draw {path}: a chart's name ends in {allowed}")
-
-
 def chart_picture(k: float, lower_end: str, suffix: str) -> bytes:
-    """The chart as a file: vectors with its texts as text, or PNG at 150 dots per inch.
+    """The chart as a file.
 
     Parameters
     ----------
@@ -78,19 +64,7 @@ def chart_picture(k: float, lower_end: str, suffix: str) -> bytes:
     suffix : str
         One of `CHART_FORMATS`.
     """
-    import matplotlib
-
-    content = io.BytesIO()
-    kind = suffix.lower().removeprefix(".")
-    metadata: dict[str, Any] = {
-        "svg": {"Date": None},
-        "pdf": {"CreationDate": None},
-        "png": {},
-    }[kind]
-    with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": "calm"}):
-        figure = draw_chart(k, lower_end)
-        figure.savefig(content, format=kind, dpi=150, metadata=metadata)
-    return content.getvalue()
+    return image(draw_chart(k, lower_end), suffix)
 
 
 def draw_chart(k: float, lower_end: str = "below-90") -> Figure:

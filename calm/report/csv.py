@@ -1,4 +1,4 @@
-"""Results as CSV: a row for each component and each clamped instrument, top to bottom."""
+"""Results as CSV: a row for each component and each clamped instrument, in file order."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:
-    from calm.case import Result
+    from calm.case import Result, TowResult
 
 _WORDS = ("mooring", "part", "index", "use", "label")
 _NUMBERS = (
@@ -33,8 +33,8 @@ HEADER = (*_WORDS, *(QUANTITIES[name].header for name in _NUMBERS))
 """The first row: names, with the unit in brackets where there is one."""
 
 
-def to_csv(results: Sequence[Result]) -> str:
-    """The components of one mooring or several as CSV text (UTF-8, comma, point, LF).
+def to_csv(results: Sequence[Result | TowResult]) -> str:
+    """The components of one mooring or tow, or of several, as CSV text (UTF-8, comma, point, LF).
 
     `part` is ``component`` or ``clamp``; the rows of clamped instruments follow the piece they sit
     on, with equal figures for both ends and no length. A number that is unknown is left empty.
@@ -47,7 +47,7 @@ def to_csv(results: Sequence[Result]) -> str:
     return text.getvalue()
 
 
-def _rows(result: Result) -> Iterator[list[object]]:
+def _rows(result: Result | TowResult) -> Iterator[list[object]]:
     for component in result.components:
         numbers = (getattr(component, name) for name in _NUMBERS)
         yield [*_words(result, "component", component), *map(_number, numbers)]
@@ -57,7 +57,7 @@ def _rows(result: Result) -> Iterator[list[object]]:
                 yield [*_words(result, "clamp", clamp), *map(_number, numbers)]
 
 
-def _words(result: Result, part: str, row: object) -> list[object]:
+def _words(result: Result | TowResult, part: str, row: object) -> list[object]:
     return [result.name, part, *(getattr(row, name) for name in ("index", "use", "label"))]
 
 

@@ -1,4 +1,4 @@
-"""Which parts of a mooring a drawing names, and where the names stand so that none overlap."""
+"""Which parts of a line a drawing names, and where the names stand so that none overlap."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from calm.case import Result
+    from calm.case import Result, TowResult
 
 NAMED_ROLES = ("float", "instrument", "release", "anchor")
 """The roles a drawing marks; what only joins them is left to the table."""
@@ -24,10 +24,10 @@ class Named:
     depth: float
 
 
-def named_parts(result: Result) -> list[Named]:
-    """The floats, instruments, releases and the anchor, clamped ones too, free end first."""
+def named_parts(result: Result | TowResult) -> list[Named]:
+    """The floats, instruments, releases and the anchor, clamped ones too, in file order."""
     parts = []
-    for piece, component in zip(result.mooring.file.pieces, result.components, strict=True):
+    for piece, component in zip(result.file.pieces, result.components, strict=True):
         x = (component.x_top + component.x_bottom) / 2
         y = (component.y_top + component.y_bottom) / 2
         depth = (component.depth_top + component.depth_bottom) / 2

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from calm.case.warnings import is_synthetic
 
 if TYPE_CHECKING:
-    from calm.case import Result
+    from calm.case import Result, TowResult
     from calm.files import Component
 
 
@@ -30,7 +30,7 @@ def tilt_mark(component: Component, tilt: float) -> Mark:
     return Mark.NONE
 
 
-def safety_mark(result: Result, component: Component, record: SimpleNamespace) -> Mark:
+def safety_mark(result: Result | TowResult, component: Component, record: SimpleNamespace) -> Mark:
     """Mark of a safety factor: the working load decides, the breaking load where that is unknown.
 
     The factor asked on the breaking load is the file's `checks.safety_factor`, for a surface
@@ -38,7 +38,7 @@ def safety_mark(result: Result, component: Component, record: SimpleNamespace) -
     """
     if record.utilisation == record.utilisation:  # NaN where no working load is known
         return Mark.BEYOND if record.utilisation > 1.0 else Mark.NONE
-    limits = result.mooring.file.checks.safety_factor
+    limits = result.file.checks.safety_factor
     if result.type == "surface":
         limit = limits.surface
     else:

@@ -1,4 +1,4 @@
-"""The table of a mooring for a notebook."""
+"""The table of a result for a notebook."""
 
 from __future__ import annotations
 
@@ -7,27 +7,29 @@ from html import escape
 from typing import TYPE_CHECKING
 
 from calm.quantities import QUANTITIES
-from calm.report.rows import COLUMNS, NOTE, Phrase, convergence, rows, summary, title
+from calm.report.rows import Phrase, Sheet
+from calm.report.sheet import sheet
 
 if TYPE_CHECKING:
-    from calm.case import Result
+    from calm.case import Result, TowResult
 
 
-def to_html(result: Result) -> str:
+def to_html(result: Result | TowResult) -> str:
     """The table of a result and the lines below it as an HTML fragment, every text escaped."""
-    heads = "".join(f"<th>{escape(QUANTITIES[name].label)}</th>" for name in COLUMNS)
-    body = "".join(_rows(result))
-    paragraphs = "".join(f"<p>{_phrase(phrase)}</p>" for phrase in summary(result))
-    paragraphs += "".join(f"<p><b>! {escape(warning)}</b></p>" for warning in result.warnings)
+    said = sheet(result)
+    heads = "".join(f"<th>{escape(QUANTITIES[name].label)}</th>" for name in said.columns)
+    body = "".join(_rows(said))
+    paragraphs = "".join(f"<p>{_phrase(phrase)}</p>" for phrase in said.summary)
+    paragraphs += "".join(f"<p><b>! {escape(warning)}</b></p>" for warning in said.warnings)
     return (
-        f"<div><p><b>{escape(title(result))}</b></p>"
+        f"<div><p><b>{escape(said.title)}</b></p>"
         f"<table><thead><tr><th></th>{heads}</tr></thead><tbody>{body}</tbody></table>"
-        f"{paragraphs}<p><small>{escape(NOTE)} {escape(convergence(result))}</small></p></div>"
+        f"{paragraphs}<p><small>{escape(said.note)} {escape(said.convergence)}</small></p></div>"
     )
 
 
-def _rows(result: Result) -> Iterator[str]:
-    for row in rows(result):
+def _rows(said: Sheet) -> Iterator[str]:
+    for row in said.rows:
         indent = "&emsp;" if row.clamped else ""
         cells = "".join(f"<td>{_phrase(cell)}</td>" for cell in row.cells)
         yield f'<tr><th style="text-align:left">{indent}{escape(row.label)}</th>{cells}</tr>'

@@ -1,4 +1,4 @@
-"""The table of a mooring as a technician reads it in a terminal, top of the line first."""
+"""The table of a line as a technician reads it in a terminal, in the order of the file."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ from rich.text import Text
 
 from calm.quantities import QUANTITIES
 from calm.report.limits import Mark
-from calm.report.rows import COLUMNS, NOTE, Phrase, convergence, rows, summary, title
+from calm.report.rows import Phrase, Sheet
+from calm.report.sheet import sheet
 
 if TYPE_CHECKING:
-    from calm.case import Result
+    from calm.case import Result, TowResult
 
 # Headings cut so that the whole table fits 80 columns.
 _HEADINGS = {
@@ -25,51 +26,51 @@ _MARKED = ("tilt", "safety_factor")
 _STYLES = {Mark.NONE: "", Mark.NEAR: "yellow", Mark.BEYOND: "bold red"}
 
 
-def result_table(result: Result) -> RenderableType:
+def result_table(result: Result | TowResult) -> RenderableType:
     """Everything a result says, for a rich console.
 
     A figure beyond its limit carries ``!`` and one near it ``~``, so that nothing hangs on colour.
 
     Parameters
     ----------
-    result : Result
-        A solved mooring.
+    result : Result or TowResult
+        A solved mooring or tow.
 
     Returns
     -------
     RenderableType
-        Title, a row for each component with its clamped instruments below it, the top of the line,
-        the loads on the anchor, the warnings, and how the solution was reached. It fits 80
-        columns; long labels wrap.
+        Title, a row for each component with its clamped instruments below it, the two ends of the
+        line, the warnings, and how the solution was reached. It fits 80 columns; long labels wrap.
     """
+    said = sheet(result)
     return Group(
-        Text(title(result), style="bold"),
+        Text(said.title, style="bold"),
         Text(),
-        _components(result),
+        _components(said),
         Text(),
-        *map(_sentence, summary(result)),
-        *(Text(f"! {warning}", style="bold red") for warning in result.warnings),
+        *map(_sentence, said.summary),
+        *(Text(f"! {warning}", style="bold red") for warning in said.warnings),
         Text(),
-        Text(f"{NOTE}\n{convergence(result)}", style="dim"),
+        Text(f"{said.note}\n{said.convergence}", style="dim"),
     )
 
 
-def _components(result: Result) -> Table:
+def _components(said: Sheet) -> Table:
     table = Table(box=None, padding=(0, 0, 0, 1), pad_edge=False)
     table.add_column(overflow="fold")
-    for name in COLUMNS:
+    for name in said.columns:
         quantity = QUANTITIES[name]
         lines = (*_HEADINGS.get(name, (quantity.heading,)), quantity.display_unit)
         heading = "\n".join(line + _margin(name) for line in lines)
         table.add_column(heading, justify="right", no_wrap=True)
-    for row in rows(result):
+    for row in said.rows:
         label = Text(
             f"  {row.label}" if row.clamped else row.label,
             style="bold" if row.instrument else "",
         )
         cells = (
             Text(f"{cell.text}{cell.mark or _margin(name)}", style=_STYLES[cell.mark])
-            for name, cell in zip(COLUMNS, row.cells, strict=True)
+            for name, cell in zip(said.columns, row.cells, strict=True)
         )
         table.add_row(label, *cells)
     return table

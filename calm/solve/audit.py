@@ -14,7 +14,7 @@ from math import asin
 import numpy as np
 
 from calm.physics.friction import Friction
-from calm.physics.line import REFERENCE_DENSITY, Floats, Integers
+from calm.physics.line import REFERENCE_DENSITY, Floats, Integers, Water
 from calm.physics.reynolds import DragCurve
 from calm.physics.track import head_count
 from calm.solve.solution import Solution
@@ -35,7 +35,8 @@ def loads(solution: Solution) -> Floats:
         solution.position[ends[:, 1]],
     )
 
-    current, density = water.at(-0.5 * (top + bottom)[:, 2])
+    depth = -0.5 * (top + bottom)[:, 2]
+    current, density = water.at(depth)
     chord = bottom - top
     size = np.linalg.norm(chord, axis=1, keepdims=True)
     axis = np.divide(chord, size, out=np.zeros_like(chord), where=size > 0)
@@ -52,18 +53,13 @@ def loads(solution: Solution) -> Floats:
     whole = np.where(last, 1.0, 0.0)
     np.divide(solution.cut, line.length[piece], out=whole, where=line.length[piece] > 0)
     amount = np.where(line.flexible[piece], solution.cut, whole)
-    grown = amount * (1.0 + _stretch(solution)) ** line.thinning[piece]
+    grown = amount * _stretched(solution, size[:, 0]) ** line.thinning[piece]
     directional = line.directional[piece][:, None]
-    speed = np.linalg.norm(np.where(directional, normal, current), axis=1)
-    viscosity = water.viscosity_at(-0.5 * (top + bottom)[:, 2])
-    varied = _on_curves(line.drag_curve, piece, speed / viscosity)
+    opposed = np.where(directional, normal, current)
+    varied = _on_curves(line.drag_curve, piece, opposed, depth, water)
     normal_drag = line.normal_drag[piece] * amplification(solution) * varied
-    drag = np.where(
-        directional,
-        normal_drag[:, None] * squared(normal)
-        + line.tangential_drag[piece][:, None] * squared(along),
-        normal_drag[:, None] * squared(current),
-    )
+    tangential_drag = np.where(directional, line.tangential_drag[piece][:, None], 0.0)
+    drag = normal_drag[:, None] * squared(opposed) + tangential_drag * squared(along)
     cables = line.flexible[piece] & (clamp < 0)
     if line.friction is not Friction.BERTEAUX:
         otherwise = squared(current)
@@ -81,8 +77,8 @@ def loads(solution: Solution) -> Floats:
     here = clamp >= 0
     which = clamp[here]
     flow = current[here]
-    per_metre = np.linalg.norm(flow, axis=1) / viscosity[here]
-    resistance = line.clamp_drag[which] * _on_curves(line.clamp_drag_curve, which, per_metre)
+    varied = _on_curves(line.clamp_drag_curve, which, flow, depth[here], water)
+    resistance = line.clamp_drag[which] * varied
     drag[here] = squared(flow) * (resistance * density[here] / REFERENCE_DENSITY)[:, None]
     lift[here] = line.clamp_buoyancy[which] + excess[here] * line.clamp_volume[which]
     lift[here] += line.clamp_lift[which] * raised[here]
@@ -109,23 +105,27 @@ def _rigid_axes(solution: Solution) -> Floats:
 
 
 def _on_curves(
-    curves: Sequence[DragCurve | None], which: Integers, reynolds_per_metre: Floats
+    curves: Sequence[DragCurve | None], which: Integers, flow: Floats, depth: Floats, water: Water
 ) -> Floats:
-    """How many times its constant drag each element has: 1 where `which` of the curves is none."""
+    """How many times its constant drag each element has, by `which` of the curves it follows.
+
+    In a flow across it (k, 3) [m/s], at a depth (k,) [m].
+    """
     varied = np.ones(len(which))
-    for element, index in enumerate(which):
-        curve = curves[index]
+    for index, curve in enumerate(curves):
         if curve is not None:
-            varied[element] = curve.factor(curve.diameter * reynolds_per_metre[element])
+            for element in np.flatnonzero(which == index):
+                viscosity = float(water.viscosity_at(depth[element]))
+                speed = float(np.linalg.norm(flow[element]))
+                varied[element] = curve.factor(speed * curve.diameter / viscosity)
     return varied
 
 
-def _stretch(solution: Solution) -> Floats:
-    """(k,) strain of every element by its coordinates; 0 of what is rigid or has no length."""
+def _stretched(solution: Solution, length: Floats) -> Floats:
+    """(k,) length of every element [m] over its cut length; 1 of what is rigid or has no length."""
     cut = solution.cut
-    length = np.linalg.norm(np.diff(solution.position, axis=0), axis=1)
     cable = solution.line.flexible[solution.element_piece] & (cut > 0.0)
-    return np.where(cable, np.divide(length, cut, out=np.ones(len(cut)), where=cable) - 1.0, 0.0)
+    return np.divide(length, cut, out=np.ones(len(cut)), where=cable)
 
 
 def _expected_stretch(solution: Solution, above: Floats) -> Floats:
@@ -134,10 +134,10 @@ def _expected_stretch(solution: Solution, above: Floats) -> Floats:
     middle = np.linalg.norm(0.5 * (above[:-1] + above[1:]), axis=1)
     half = 0.5 * np.diff(np.linalg.norm(above, axis=1))
     expected: Floats = line.compliance[piece] * middle
-    for element, index in enumerate(piece):
-        curve = line.elongation[index]
+    for index, curve in enumerate(line.elongation):
         if curve is not None:
-            expected[element] = curve.mean_strain(middle[element], half[element])
+            for element in np.flatnonzero(piece == index):
+                expected[element] = curve.mean_strain(middle[element], half[element])
     return expected
 
 
@@ -244,10 +244,11 @@ def moment_residual(solution: Solution) -> float:
     mean = above[:-1] + 0.5 * load
     angles = _angles(chord[cable], mean[cable])
     # the ends of a very short segment are rounded by more than the limit
-    rounding = 4.0 * np.finfo(float).eps * np.abs(solution.position).max()
-    length = np.maximum(np.linalg.norm(chord[cable], axis=1), rounding)
-    angles = np.maximum(angles - rounding / length, 0.0)
-    strained = np.abs(_stretch(solution) - _expected_stretch(solution, above))[cable]
+    rounding = 32.0 * np.finfo(float).eps * np.abs(solution.position).max()
+    length = np.linalg.norm(chord, axis=1)
+    angles = np.maximum(angles - rounding / np.maximum(length[cable], rounding), 0.0)
+    expected = _expected_stretch(solution, above)
+    strained = np.abs(_stretched(solution, length) - 1.0 - expected)[cable]
     strained = np.maximum(strained - rounding / solution.cut[cable], 0.0)
     return max(worst, float(np.max(angles, initial=0.0)), float(np.max(strained, initial=0.0)))
 

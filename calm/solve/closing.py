@@ -8,17 +8,16 @@ from math import degrees, radians
 
 import numpy as np
 
-from calm.physics.hull import Floating, Riding
 from calm.physics.line import Line, Water
 from calm.physics.march import Cuts, End, march
 from calm.physics.profile import Profile
-from calm.physics.rod import rod_axis
 from calm.physics.seabed import lie_down
-from calm.physics.state import State, Trace
-from calm.physics.track import Cable, Load, Rod, Stage, Track
+from calm.physics.state import Trace
+from calm.physics.track import Cable, Track
 from calm.solve.root import bracketed_root, root_near
 from calm.solve.solution import Settings
 from calm.solve.status import Status
+from calm.solve.unknown import Afloat, Unknown
 
 COARSE_STEP = radians(4.0)
 """Angle step of the marches that only look for the neighbourhood of a root."""
@@ -26,131 +25,10 @@ REACH = 0.01
 """Longest segment at an angle step of 1°, as a share of the span."""
 SHARE_TOLERANCE = 1e-9
 """How well the share of a surface float's buoyancy in use is found."""
-_LEANINGS = 50
 COARSEST_BRACKET = 1e-7
 NARROWEST_BRACKET = 1e-15
 """Width of the last bracket, as a share of the whole range: of a march that chooses its cuts, and
 on fixed ones."""
-
-
-@dataclass(frozen=True)
-class Afloat:
-    """A float at the surface: its piece, the share of its buoyancy in use, the slope there."""
-
-    piece: int
-    share: float
-    slope: float
-
-
-@dataclass(frozen=True)
-class Unknown:
-    """What closes a line: the depth of its free end, or how much of a float's buoyancy is used.
-
-    Attributes
-    ----------
-    track : the line laid out for the march, or its part down to a float at the surface
-    goal : height at which the track must end [m], + up from the surface
-    afloat : the piece at the surface whose share of buoyancy is sought; None below the surface
-    above : the floats at the surface above that piece
-    lands : whether the line may come down on the seabed before its end
-    part : whether the track is but a part of the line
-    floating : how the first float rides at the surface; None leaves it just below
-    """
-
-    track: Track
-    goal: float
-    afloat: int | None = None
-    above: tuple[Afloat, ...] = ()
-    lands: bool = False
-    part: bool = False
-    floating: Floating | None = None
-
-    def shares(self, x: float) -> dict[int, float]:
-        """Share of its buoyancy in use of every float at the surface, for the unknown's value x."""
-        above = {afloat.piece: afloat.share for afloat in self.above}
-        return above if self.afloat is None else {**above, self.afloat: x}
-
-    def riding(self, x: float) -> Riding | None:
-        """How the first float rides, while it is the only one at the surface."""
-        if self.floating is None or self.afloat is None or self.above:
-            return None
-        return self.floating.riding(x)
-
-    def placed(self, x: float, profile: Profile) -> tuple[Track, float]:
-        """Track and depth of the free end [m] for the value x of the unknown."""
-        if self.afloat is None:
-            return self.track, x
-        track = _with_shares(self.track, self.shares(x))
-        riding = self.riding(x)
-        if riding is None:
-            return track, 0.0
-        track = _as_riding(track, self.afloat, riding)
-        return track, _depth_of_free_end(track.stages[0], self.afloat, riding, profile)
-
-    def down_to(self, piece: int) -> Unknown:
-        """The question for the part of the line above a float: to bring its top to the surface."""
-        stages = self.track.stages
-        end = next(i for i, s in enumerate(stages) if isinstance(s, Rod) and piece in s.pieces)
-        return replace(self, track=Track(stages[:end]), goal=0.0, lands=False, part=True)
-
-
-def _with_shares(track: Track, shares: dict[int, float]) -> Track:
-    def loaded(load: Load) -> Load:
-        if load.clamp >= 0 or load.piece not in shares:
-            return load
-        share = shares[load.piece]
-        return replace(load, buoyancy=share * load.buoyancy, volume=share * load.volume)
-
-    return Track(
-        tuple(
-            replace(stage, loads=tuple(map(loaded, stage.loads)))
-            if isinstance(stage, Rod) and not shares.keys().isdisjoint(stage.pieces)
-            else stage
-            for stage in track.stages
-        )
-    )
-
-
-def _as_riding(track: Track, piece: int, riding: Riding) -> Track:
-    """The track with the float's drag and the wind on it, which heads it."""
-
-    def loaded(load: Load) -> Load:
-        if load.clamp >= 0 or load.piece != piece:
-            return load
-        return replace(
-            load,
-            normal_drag=riding.drag * load.normal_drag,
-            tangential_drag=riding.drag * load.tangential_drag,
-            push_east=riding.push[0],
-            push_north=riding.push[1],
-        )
-
-    stages = [
-        replace(stage, loads=tuple(map(loaded, stage.loads)))
-        if isinstance(stage, Rod) and piece in stage.pieces
-        else stage
-        for stage in track.stages
-    ]
-    return Track(tuple(stages))
-
-
-def _depth_of_free_end(head: Stage, piece: int, riding: Riding, profile: Profile) -> float:
-    """Depth of the free end that brings the waterline of the float to the surface [m].
-
-    The head of the line leans as its loads have it, and they depend a little on its depth.
-    """
-    if not isinstance(head, Rod) or piece not in head.pieces:
-        return 0.0
-    *above, own = head.lengths[: head.pieces.index(piece) + 1]
-    out = riding.above * sum(above) + riding.standing * own
-    depth = -out
-    for _ in range(_LEANINGS):
-        state = State(0.0, 0.0, -depth, level=profile.interval(depth, 0))
-        following = min(out * rod_axis(head, profile, state)[2], 0.0)
-        if abs(following - depth) <= 1e-14 * out:
-            break
-        depth = following
-    return depth
 
 
 @dataclass(frozen=True)
@@ -189,6 +67,7 @@ class Closing:
     ----------
     span : what lengths are measured by: the water depth, in a tow the line out [m]
     allowed : the greatest miss of a solution [m]
+    floats : the rigid buoyant pieces, those that may lie at the surface
     frequency : of the cables that strum [Hz]
     marches : done so far
     """
@@ -198,6 +77,7 @@ class Closing:
         self.profile = Profile(water)
         self.span = float(line.length.sum()) if line.towed else water.depth
         self.allowed = settings.tolerance * self.span
+        self.floats = np.flatnonzero(~line.flexible & (line.buoyancy > 0.0)).tolist()
         self.frequency = 0.0
         self.marches = 0
 
@@ -378,7 +258,6 @@ class Closing:
             return None
         if unknown.afloat is not None:
             return Root(replace(unknown, afloat=None), 0.0, -1.0)
-        floats = np.flatnonzero(~self.line.flexible & (self.line.buoyancy > 0.0))
-        if not len(floats):
+        if not self.floats:
             return None
-        return Root(replace(unknown, afloat=int(floats[0])), 1.0, -0.01 * self.water.depth)
+        return Root(replace(unknown, afloat=self.floats[0]), 1.0, -0.01 * self.water.depth)

@@ -4,16 +4,37 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 
-from calm.physics.hull import Riding
 from calm.physics.line import REFERENCE_DENSITY, Line
+from calm.physics.track import Rod, Track
 from calm.solve import audit
 from calm.solve.closing import Closed, Closing
 from calm.solve.refine import Refined
 from calm.solve.solution import Solution, nodes_of
 from calm.solve.status import Status
+
+_OF_CLAMP = {
+    "clamp_buoyancy": "buoyancy",
+    "clamp_volume": "volume",
+    "clamp_drag": "normal_drag",
+    "clamp_lift": "lift",
+}
+_OF_PIECE = {
+    name: name
+    for name in (
+        "buoyancy",
+        "volume",
+        "normal_drag",
+        "tangential_drag",
+        "lift",
+        "push_east",
+        "push_north",
+    )
+}
+"""Columns of a line and what of a load of the march stands there."""
 
 
 def finished(
@@ -36,8 +57,8 @@ def finished(
     """
     fine = refined.closed
     position, force = nodes_of(fine.trace)
-    shares = fine.root.unknown.shares(fine.root.x)
-    riding = fine.root.unknown.riding(fine.root.x)
+    unknown = fine.root.unknown
+    track, _ = unknown.placed(fine.root.x, closing.profile)
     used, reserve = _buoyancy_in_use(closing, fine)
     solution = Solution(
         line=closing.line,
@@ -52,11 +73,11 @@ def finished(
         grounded_length=fine.grounded_length,
         cut=np.array(fine.trace.cut),
         strain=np.array(fine.trace.strain),
-        afloat=tuple(shares),
+        afloat=tuple(unknown.shares(fine.root.x)),
         buoyancy_used=used,
         reserve=reserve,
-        carried=_carried(closing.line, shares, riding),
-        riding=riding,
+        carried=_carried(closing.line, track),
+        riding=unknown.riding(fine.root.x),
         marches=closing.marches,
         segments=fine.end.segments,
         miss=fine.miss,
@@ -82,23 +103,14 @@ def _buoyancy_in_use(closing: Closing, fine: Closed) -> tuple[float, float]:
     return used / total, total - used
 
 
-def _carried(line: Line, shares: dict[int, float], riding: Riding | None) -> Line:
-    """The line as it is loaded: floats at the surface lift and drag by what is in use of them."""
-    share, drag = np.ones(len(line.length)), np.ones(len(line.length))
-    push = np.zeros((2, len(line.length)))
-    for piece, used in shares.items():
-        share[piece] = used
-        if riding is not None:
-            drag[piece], push[:, piece] = riding.drag, riding.push
-    return replace(
-        line,
-        buoyancy=line.buoyancy * share,
-        volume=line.volume * share,
-        normal_drag=line.normal_drag * drag,
-        tangential_drag=line.tangential_drag * drag,
-        push_east=push[0],
-        push_north=push[1],
-    )
+def _carried(line: Line, track: Track) -> Line:
+    """The line as it is loaded: what is at the surface by what is in the water and in use of it."""
+    columns = {name: getattr(line, name).copy() for name in (*_OF_PIECE, *_OF_CLAMP)}
+    for load in chain.from_iterable(s.loads for s in track.stages if isinstance(s, Rod)):
+        where, names = (load.piece, _OF_PIECE) if load.clamp < 0 else (load.clamp, _OF_CLAMP)
+        for column, name in names.items():
+            columns[column][where] = getattr(load, name)
+    return replace(line, **columns)
 
 
 def _audited(solution: Solution) -> Solution:

@@ -2,28 +2,40 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 from math import sqrt
 
 import numpy as np
 
+from calm.physics.hull import AWASH
 from calm.physics.profile import Profile
-from calm.solve.closing import Afloat, Closing, Root, Unknown
+from calm.solve.closing import Closing, Root
 from calm.solve.standing import standing_lift
 from calm.solve.status import Status
+from calm.solve.unknown import Afloat, Unknown
 
 SCAN = 16
 """Depths tried between the upright line and its deepest conceivable knockdown where the current
-grows with depth: the resolution at which separate equilibria are told apart."""
+grows or turns with depth: the resolution at which separate equilibria are told apart."""
+DIP = 8
+"""Depths tried to see whether the miss changes sign between three of those."""
+GOLDEN = 0.381966
+AWASH_SHARES = (1.0, 0.995, 1.0 - AWASH, 0.94, 0.85, 0.7, 0.4, 0.0)
+"""Shares of its buoyancy in use at which a float that would be under water is tried afloat."""
+
+Sample = tuple[float, float]
+"""A value of the unknown and the miss there [m]."""
 
 
-def locate(closing: Closing, lands: bool) -> tuple[Root, float | None]:
-    """Find the highest coarse root, of a line that hangs clear of the seabed or one that lands.
+def locate(closing: Closing, lands: bool) -> tuple[Root, Root | None]:
+    """Find coarse roots, of a line that hangs clear of the seabed or one that lands.
 
     Returns
     -------
-    The root, and the depth of the free end near another equilibrium that the scan came upon [m],
-    None without one.
+    The highest root, and the deepest one that the scan came upon; None where that is the same.
+    Where the miss grows with depth a line does not stay, so such roots do not count.
 
     Raises
     ------
@@ -33,17 +45,21 @@ def locate(closing: Closing, lands: bool) -> tuple[Root, float | None]:
     unknown = closing.whole(lands)
     miss = closing.coarse_miss(unknown)
     upright = _upright(closing, unknown)
-    high = miss(upright)
-    if high < 0.0 < upright:
+    samples = [(upright, miss(upright))]
+    if samples[0][1] < 0.0 < upright:
         # the current's pull stretches the line further
-        at_surface = miss(0.0)
-        if at_surface >= 0.0:
-            return closing.coarse_root(unknown, 0.0, at_surface, upright, high), None
-        high = at_surface
+        samples.insert(0, (0.0, miss(0.0)))
+    depth, high = samples[0]
+    roots = []
     if high < 0.0:
-        return _at_surface(closing, unknown, high), None
-    low_end, other = _below_surface(closing, unknown, upright, high)
-    return closing.coarse_root(unknown, *low_end), other
+        roots.append(_at_surface(closing, unknown, high))
+    elif depth == 0.0 and (awash := _awash(closing, unknown, high)) is not None:
+        roots.append(awash)
+    for upper, lower in _below_surface(closing, unknown, samples):
+        roots.append(closing.coarse_root(unknown, *upper, *lower))
+    if not roots:
+        raise Status.GROUNDED.because("The current drags the whole line down to the seabed.")
+    return roots[0], roots[-1] if len(roots) > 1 else None
 
 
 def _upright(closing: Closing, unknown: Unknown) -> float:
@@ -54,40 +70,88 @@ def _upright(closing: Closing, unknown: Unknown) -> float:
     return max(min(reach, unstretched) - unknown.goal, 0.0)
 
 
-Bracket = tuple[float, float, float, float]
-
-
 def _below_surface(
-    closing: Closing, unknown: Unknown, depth: float, high: float
-) -> tuple[Bracket, float | None]:
-    """Highest interval of depths that holds a root, from `depth` where the miss is `high` ≥ 0.
+    closing: Closing, unknown: Unknown, samples: list[Sample]
+) -> list[tuple[Sample, Sample]]:
+    """Intervals of depth that each hold a root, the highest first, from given samples on.
 
-    Where the current does not grow with depth the miss falls by more than the shift, so the first
-    shift brackets the only root. Where it grows enough to matter, depths are scanned.
+    Where the current neither grows nor turns with depth the miss falls by more than the shift, so
+    that there is one root at most, which the first shift brackets. Where it does so enough to
+    matter, depths are scanned.
     """
     miss, deepest = closing.coarse_miss(unknown), closing.water.depth
-    growth = _growth(closing, depth)
-    if growth > 0.0 and high > closing.allowed:
-        fall = _largest_fall(closing, unknown, depth)
+    (top, high), (depth, low) = samples[0], samples[-1]
+    growth = _growth(closing, top)
+    if growth > 0.0 and (high < 0.0 or high > closing.allowed):
+        fall = _largest_fall(closing, unknown, top)
         if fall * growth > 0.25:
-            return _scan(closing, unknown, depth, high, min(depth + 1.02 * fall, deepest))
-    shift = max(high, closing.allowed)
-    while depth < deepest:
-        lower = min(depth + shift, deepest)
-        low = miss(lower)
-        if low <= 0.0:
-            return (depth, high, lower, low), None
-        depth, high, shift = lower, low, max(low, 2.0 * shift)
-    raise Status.GROUNDED.because("The current drags the whole line down to the seabed.")
+            last = min(depth + 1.02 * fall, deepest)
+            steps = np.linspace(depth, last, SCAN + 1)[1:].tolist()
+            samples += [(lower, miss(lower)) for lower in steps]
+            if last < deepest:
+                samples.append((deepest, miss(deepest)))
+            return _falls(miss, samples)
+    shift = closing.allowed
+    while high >= 0.0 and low >= 0.0 and depth < deepest:
+        shift = max(low, shift)
+        depth, shift = min(depth + shift, deepest), 2.0 * shift
+        low = miss(depth)
+        samples.append((depth, low))
+    return _falls(miss, samples)
+
+
+def _falls(miss: Callable[[float], float], samples: list[Sample]) -> list[tuple[Sample, Sample]]:
+    """Neighbours among the samples between which the miss falls through zero.
+
+    Where it comes near zero and turns back, it is looked for between the samples, too.
+    """
+    seen = samples[:1]
+    for before, here, after in zip(samples, samples[1:], samples[2:], strict=False):
+        seen += _dip(miss, before, here, after)
+    seen += samples[-1:]
+    return [(a, b) for a, b in pairwise(seen) if a[1] >= 0.0 > b[1]]
+
+
+def _dip(
+    miss: Callable[[float], float], before: Sample, here: Sample, after: Sample
+) -> list[Sample]:
+    """The middle sample, and beside it one of the other sign where the miss dips in between.
+
+    By golden section.
+    """
+    sign = 1.0 if here[1] > 0.0 else -1.0
+    if not 0.0 < sign * here[1] < min(sign * before[1], sign * after[1]):
+        return [here]
+    low, best, high = before, here, after
+    for _ in range(DIP):
+        left = best[0] - low[0] > high[0] - best[0]
+        x = best[0] - GOLDEN * (best[0] - low[0] if left else best[0] - high[0])
+        tried = x, miss(x)
+        if sign * tried[1] <= 0.0:
+            return sorted([here, tried])
+        if sign * tried[1] < sign * best[1]:
+            low, best, high = (low, tried, best) if left else (best, tried, high)
+        elif left:
+            low = tried
+        else:
+            high = tried
+    return [here]
 
 
 def _growth(closing: Closing, depth: float) -> float:
-    """Largest growth of the speed with depth below `depth`, relative to the top speed [1/m]."""
+    """Largest growth of the current with depth below `depth`, relative to the top speed [1/m].
+
+    A current that only weakens does not grow; one that turns does, by what is new in it.
+    """
     levels = closing.water.level
     current, _ = closing.water.at(levels)
-    speed = np.linalg.norm(current, axis=1)
-    rise = (np.diff(speed) / np.diff(levels))[levels[1:] > depth]
-    return max(float(rise.max(initial=0.0)), 0.0) / max(float(speed.max()), 1e-300)
+    upper, lower = current[:-1], current[1:]
+    square = np.maximum(np.sum(upper**2, axis=1), 1e-300)
+    left = np.clip(np.sum(upper * lower, axis=1) / square, 0.0, 1.0)
+    new = np.linalg.norm(lower - left[:, None] * upper, axis=1)
+    rise = (new / np.diff(levels))[levels[1:] > depth]
+    speed = float(np.linalg.norm(current, axis=1).max())
+    return float(rise.max(initial=0.0)) / max(speed, 1e-300)
 
 
 def _largest_fall(closing: Closing, unknown: Unknown, depth: float) -> float:
@@ -101,24 +165,22 @@ def _largest_fall(closing: Closing, unknown: Unknown, depth: float) -> float:
     return max(end.z - unknown.goal, closing.allowed)
 
 
-def _scan(
-    closing: Closing, unknown: Unknown, depth: float, high: float, deepest: float
-) -> tuple[Bracket, float | None]:
+def _awash(closing: Closing, unknown: Unknown, immersed: float) -> Root | None:
+    """A float afloat that all its buoyancy would leave under water.
+
+    There its drag is less, or the wind pushes against the current. `immersed` ≥ 0 is the miss with
+    all buoyancy in use.
+    """
+    if not closing.floats or closing.line.floating is None:
+        return None
+    unknown = replace(unknown, afloat=closing.floats[0])
     miss = closing.coarse_miss(unknown)
-    found: Bracket | None = None
-    steps = np.linspace(depth, deepest, SCAN + 1)[1:].tolist()
-    if deepest < closing.water.depth:
-        steps.append(closing.water.depth)
-    for lower in steps:
-        low = miss(lower)
-        if high > 0.0 >= low:
-            if found is not None:
-                return found, lower
-            found = depth, high, lower, low
-        if found is not None and lower >= deepest:
-            return found, None
-        depth, high = lower, low
-    raise Status.GROUNDED.because("The current drags the whole line down to the seabed.")
+    samples = [(share, miss(share)) for share in reversed(AWASH_SHARES[1:])]
+    samples.append((1.0, immersed))
+    for a, b in pairwise(samples):
+        if a[1] > 0.0 >= b[1]:
+            return closing.coarse_root(unknown, *b, *a)
+    return None
 
 
 def _at_surface(closing: Closing, unknown: Unknown, deep: float) -> Root:
@@ -126,11 +188,12 @@ def _at_surface(closing: Closing, unknown: Unknown, deep: float) -> Root:
 
     The top float is tried first. Where it closes the line only with the next float out of the
     water, or not at all, that one lies at the surface too: the share of the upper float then
-    follows from the part of the line between them, and the next float closes the line.
+    follows from the part of the line between them, and the next float closes the line. One float
+    rides at its draft; several are taken as just below the surface.
     `deep` < 0 is the miss with the free end at the surface and all buoyancy in use.
     """
     line = closing.line
-    floats = np.flatnonzero(~line.flexible & (line.buoyancy > 0.0)).tolist()
+    floats = closing.floats
     for piece, lower in zip(floats, [*floats[1:], None], strict=True):
         unknown = replace(unknown, afloat=piece)
         if closing.at_rest and (unknown.lands or _slack_at_rest(closing, unknown)):
@@ -148,6 +211,7 @@ def _at_surface(closing: Closing, unknown: Unknown, deep: float) -> Root:
                 return root
         if lower is None:
             break
+        unknown = replace(unknown, floating=None)
         surfaced = _surfaced(closing, unknown, piece, lower)
         if surfaced is None:
             break

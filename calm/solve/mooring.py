@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
+
 import numpy as np
 
 from calm.errors import NoEquilibrium
@@ -57,33 +60,52 @@ def _solve(closing: Closing) -> Solution:
     refusals = {}
     for way in ways:
         try:
-            return way(closing)
+            return _highest(closing, way)
         except NoEquilibrium as refusal:
             refusals[way] = refusal
     slack = [r for r in refusals.values() if r.status == Status.SLACK.label]
     raise (slack or [refusals[_clear_of_it]])[0]
 
 
-def _clear_of_it(closing: Closing) -> Solution:
+Way = Callable[[Closing, Root], Solution]
+"""From a coarse root to the audited solution near it."""
+
+
+def _highest(closing: Closing, way: Way) -> Solution:
+    """The highest solution of a kind, with the depth of the deepest where that is another."""
+    lands = way is _on_the_seabed
     lift = standing_lift(closing.line, closing.water)
-    if float(lift.sum()) <= 0.0:
+    if not lands and float(lift.sum()) <= 0.0:
         raise too_heavy(lift)
-    root, other_depth = locate(closing, lands=False)
+    root, deeper = locate(closing, lands)
+    solution = way(closing, root)
+    if deeper is None:
+        return solution
+    try:
+        other = way(closing, deeper)
+    except (NoEquilibrium, MarchError):
+        return solution
+    fall = solution.position[0, 2] - other.position[0, 2]
+    if fall <= 2.0 * (solution.depth_error + other.depth_error):
+        return solution
+    return replace(solution, other_depth=-float(other.position[0, 2]))
+
+
+def _clear_of_it(closing: Closing, root: Root) -> Solution:
     _refuse_deep_below(closing, root)
-    return _solution(closing, root, other_depth)
+    return _solution(closing, root)
 
 
-def _on_the_seabed(closing: Closing) -> Solution:
-    root, other_depth = locate(closing, lands=True)
+def _on_the_seabed(closing: Closing, root: Root) -> Solution:
     if closing.run(root.unknown, root.x, closing.coarse_step).landing is None:
-        return _solution(closing, closing.clear_of_seabed(root), other_depth)
-    landed = _solution(closing, root, other_depth)
+        return _solution(closing, closing.clear_of_seabed(root))
+    landed = _solution(closing, root)
     if not landed.landed:
         raise Status.GROUNDED.because("The line does not lie on the seabed.")
     if landed.grounded_length > BARELY_LANDED * closing.line.anchor_height:
         return landed
     try:
-        return _solution(closing, closing.clear_of_seabed(root), other_depth)
+        return _solution(closing, closing.clear_of_seabed(root))
     except NoEquilibrium:
         return landed
 
@@ -103,9 +125,8 @@ def _grounded(piece: int, below: float) -> NoEquilibrium:
     )
 
 
-def _solution(closing: Closing, root: Root, other_depth: float | None) -> Solution:
-    """The audited solution near a coarse root."""
-    return finished(closing, refine(closing, root), other_depth, _refuse_out_of_the_water)
+def _solution(closing: Closing, root: Root) -> Solution:
+    return finished(closing, refine(closing, root), None, _refuse_out_of_the_water)
 
 
 def _refuse_out_of_the_water(solution: Solution) -> None:

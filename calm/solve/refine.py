@@ -7,6 +7,7 @@ finer shape; where that is too much, all is done again with a smaller step.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import degrees, sqrt
 
@@ -34,20 +35,27 @@ class Refined:
     tension_error: float
 
 
-def refine(closing: Closing, root: Root) -> Refined:
+def refine(
+    closing: Closing, root: Root, polish: Callable[[Root, Cuts], Closed] | None = None
+) -> Refined:
     """Close the line finely enough, from a coarse root.
+
+    Parameters
+    ----------
+    polish : closes the line on cuts near a root, where that takes more than `Closing.polish`
 
     Raises
     ------
     NoEquilibrium
         Where the root cannot be polished.
     """
+    polish = polish or closing.polish
     wanted = closing.settings.angle_step
     step = wanted
     for _ in range(MOST_ROUNDS):
         root, cuts = closing.planned(root, 2.0 * step)
-        coarse = closing.polish(root, cuts)
-        fine = closing.polish(coarse.root, _halved(cuts))
+        coarse = polish(root, cuts)
+        fine = polish(coarse.root, _halved(cuts))
         depth_error, tension_error, relative = _errors(closing.line, coarse, fine)
         target = degrees(wanted) ** 2
         excess = max(

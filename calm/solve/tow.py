@@ -8,21 +8,22 @@ import numpy as np
 
 from calm.physics.hull import AIR_DENSITY
 from calm.physics.line import Floats, Line, Water
-from calm.physics.march import End
+from calm.physics.march import Cuts, End
 from calm.physics.state import MarchError
-from calm.solve.closing import Closing, Root
+from calm.solve.closing import Closed, Closing, Root
 from calm.solve.finish import finished
-from calm.solve.refine import Refined, refine
+from calm.solve.refine import refine
 from calm.solve.root import bracketed_root
 from calm.solve.solution import Settings, Solution
 from calm.solve.status import Status
+from calm.solve.waterline import Waterline
 
-SURFACE = 1e-9
-"""Thickness of the step from water to air, as a share of the line out."""
+SURFACE_BAND = 1e-7
+"""Thickness of the band from water to air, as a share of the line out."""
 SCAN = 16
 """Depths tried where the flow changes with depth: how finely separate equilibria are told apart."""
-FREQUENCY_TOLERANCE = 1e-9
-_ROUNDS = 12
+FREQUENCY_TOLERANCE = 1e-8
+_ROUNDS = 20
 
 
 @dataclass(frozen=True)
@@ -70,11 +71,10 @@ def solve_tow(
     towed = replace(line.reversed(), towed=True)
     closing = Closing(towed, _relative(line, water, towing), settings or Settings())
     try:
-        if line.strumming is not None and line.diameter.any():
-            refined, other_depth = _strumming(closing, towing)
-        else:
-            root, other_depth = _locate(closing, towing)
-            refined = refine(closing, root)
+        root, other_depth = _locate(closing, towing)
+        if towed.strumming is not None and towed.diameter.any():
+            root = _at_its_frequency(closing, towing, root)
+        refined = refine(closing, root, lambda near, cuts: _polish(closing, towing, near, cuts))
     except MarchError as error:
         raise Status.NOT_CONVERGED.because(f"The march stopped: {error}.") from error
     return finished(
@@ -83,28 +83,36 @@ def solve_tow(
 
 
 def _relative(line: Line, water: Water, towing: Towing) -> Water:
-    """The water as the ship sees it, air above its surface where the line passes that."""
+    """The water as the ship sees it, air above its surface where the line passes that.
+
+    From water to air the flow and the density change over a thin band about the surface: so thin
+    that the shape is the same, and steady enough that the march is.
+    """
     u, v = water.u - towing.east, water.v - towing.north
     if towing.in_air or towing.height == 0.0:
         return replace(water, u=u, v=v)
-    below = water.level > 0.0
-    surface, density = water.at(np.zeros(()))
+    half = 0.5 * SURFACE_BAND * float(line.length.sum())
+    below = water.level > half
+    current, density = water.at(np.array(half))
+    surface = current - (towing.east, towing.north, 0.0)
+    air = np.array([towing.wind[0] - towing.east, towing.wind[1] - towing.north, 0.0])
 
-    def column(air: float, at_surface: float, values: Floats) -> list[float]:
-        return [air, at_surface, *values[below].tolist()]
+    # the density changes first: dense air, or water with the speed of the wind, would drag hard
+    def column(in_air: float, at_surface: float, values: Floats) -> Floats:
+        return np.array([in_air, at_surface, at_surface, *values[below]])
 
     return replace(
         water,
-        level=np.array([-SURFACE * line.length.sum(), 0.0, *water.level[below].tolist()]),
-        u=np.array(column(towing.wind[0] - towing.east, surface[0] - towing.east, u)),
-        v=np.array(column(towing.wind[1] - towing.north, surface[1] - towing.north, v)),
-        w=np.array(column(0.0, surface[2], water.w)),
-        density=np.array(column(AIR_DENSITY, float(density), water.density)),
+        level=np.array([-3.0 * half, -half, half, *water.level[below]]),
+        u=column(air[0], surface[0], u),
+        v=column(air[1], surface[1], v),
+        w=column(air[2], surface[2], water.w),
+        density=np.array([AIR_DENSITY, AIR_DENSITY, density, *water.density[below]]),
     )
 
 
 def _locate(closing: Closing, towing: Towing) -> tuple[Root, float | None]:
-    """The deepest coarse root, and the depth of the free end near another one [m]."""
+    """The deepest coarse root, and the depth of the free end at the next one above [m]."""
     unknown = closing.towed(towing.height)
     miss = closing.coarse_miss(unknown)
     shallowest = -towing.height - closing.span if towing.in_air else 0.0
@@ -115,20 +123,22 @@ def _locate(closing: Closing, towing: Towing) -> tuple[Root, float | None]:
             raise Status.NOT_CONVERGED.because("The line stretches without end.")
         depth += 2.0 * low
         low = miss(depth)
-    bracket: tuple[float, float, float, float] | None = None
+    roots: list[Root] = []
     for upper in _upwards(closing, depth, low, shallowest):
         high = miss(upper)
-        if low <= 0.0 < high or (upper == shallowest and low <= 0.0 <= high + closing.allowed):
-            if bracket is not None:
-                return closing.coarse_root(unknown, *bracket), upper
-            bracket = upper, max(high, 0.0), depth, low
+        if upper == shallowest and -closing.allowed <= high <= 0.0:
+            high = closing.allowed  # at the surface, to within what is allowed
+        if (low <= 0.0) is not (high <= 0.0):
+            roots.append(closing.coarse_root(unknown, upper, high, depth, low))
+        if len(roots) == 2:
+            return roots[0], roots[1].x
         depth, low = upper, high
-    if bracket is None:
+    if not roots:
         raise Status.ABOVE_SURFACE.because(
             "The towed body would come out of the water: even at the surface the line's upper end "
             f"is {-low:.2f} m below the tow point."
         )
-    return closing.coarse_root(unknown, *bracket), None
+    return roots[0], None
 
 
 def _upwards(closing: Closing, depth: float, low: float, shallowest: float) -> list[float]:
@@ -140,40 +150,50 @@ def _upwards(closing: Closing, depth: float, low: float, shallowest: float) -> l
     return [max(depth + low - closing.allowed, shallowest)]
 
 
-def _strumming(closing: Closing, towing: Towing) -> tuple[Refined, float | None]:
-    """The line at the frequency that its own angle at the ship gives it.
+def _at_its_frequency(closing: Closing, towing: Towing, root: Root) -> Root:
+    """The coarse root of a line that strums at the frequency its own angle at the ship gives it.
 
     The frequency that follows falls as the one assumed rises, since more drag lifts the line: so
-    there is one. Coarse marches bracket it, secants lead on to that of the finer shape.
+    there is one.
     """
-    root, other_depth = _locate(closing, towing)
 
     def excess(frequency: float) -> float:
         nonlocal root
         closing.frequency = frequency
         root = closing.coarser(replace(root, unknown=closing.towed(towing.height)))
-        end = closing.run(root.unknown, root.x, closing.coarse_step)
-        return _frequency(closing, end) - frequency
+        return (
+            _frequency(closing, closing.run(root.unknown, root.x, closing.coarse_step)) - frequency
+        )
 
     most = excess(0.0)
     if most > 0.0:
-        frequency, *_ = bracketed_root(
+        closing.frequency, *_ = bracketed_root(
             excess, 0.0, most, most, excess(most), small=1e-3 * most, narrow=1e-9 * most
         )
-        before, lacked, slope = 0.0, 0.0, -1.0
-        for _ in range(_ROUNDS):
-            closing.frequency = frequency
-            refined = refine(closing, replace(root, unknown=closing.towed(towing.height)))
-            root = refined.closed.root
-            lacking = _frequency(closing, refined.closed.end) - frequency
-            if abs(lacking) <= FREQUENCY_TOLERANCE * frequency:
-                return refined, other_depth
-            if before:
-                slope = min((lacking - lacked) / (frequency - before), -1.0)
-            before, lacked = frequency, lacking
-            frequency -= lacking / slope
-        raise Status.NOT_CONVERGED.because("The frequency of the strumming line does not settle.")
-    return refine(closing, root), other_depth
+    return replace(root, unknown=closing.towed(towing.height))
+
+
+def _polish(closing: Closing, towing: Towing, root: Root, cuts: Cuts) -> Closed:
+    """Close the line on cuts at its own frequency, found by secants, with a node at the surface."""
+    closed = closing.polish(root, cuts)
+    waterline = None
+    if towing.height > 0.0 and not towing.in_air:
+        waterline = Waterline(closing, max(closing.allowed, SURFACE_BAND * closing.span))
+    before, lacked, slope = 0.0, 0.0, -1.0
+    for _ in range(_ROUNDS):
+        frequency, lacking = closing.frequency, 0.0
+        if frequency > 0.0:
+            lacking = _frequency(closing, closed.end) - frequency
+        moved = None if waterline is None else waterline.moved(closed)
+        if abs(lacking) <= FREQUENCY_TOLERANCE * frequency and moved is None:
+            return closed
+        if before and frequency != before:
+            slope = min((lacking - lacked) / (frequency - before), -1.0)
+        before, lacked = frequency, lacking
+        closing.frequency = frequency - lacking / slope
+        near = replace(closed.root, unknown=closing.towed(towing.height))
+        closed = closing.polish(near, moved or closed.end.cuts)
+    raise Status.NOT_CONVERGED.because("The frequency of the strumming line does not settle.")
 
 
 def _frequency(closing: Closing, end: End) -> float:
@@ -181,7 +201,7 @@ def _frequency(closing: Closing, end: End) -> float:
     law, line = closing.line.strumming, closing.line
     assert law is not None
     diameter = float(line.diameter[line.diameter > 0.0][-1])
-    flow, _ = closing.water.at(np.zeros(()))
+    flow, _ = closing.water.at(np.array(0.5 * SURFACE_BAND * closing.span))
     force = np.array(end.force)
     across = float(np.linalg.norm(np.cross(flow, force)) / np.linalg.norm(force))
     return law.strouhal * across / diameter

@@ -23,6 +23,8 @@ def test_no_words_show_the_help(calm):
     "command",
     [
         "run",
+        "tow",
+        "strumming",
         "new",
         "schema",
         "catalog",

@@ -8,7 +8,8 @@ import numpy as np
 
 from calm.solve import Solution
 from tests.validation.closing import Equilibrium
-from tests.validation.loads import DOWN, Load, Profile, Vector
+from tests.validation.loads import DOWN, Load, Profile, Vector, on_clamp, on_piece
+from tests.validation.towed import Towed
 
 
 @dataclass(frozen=True)
@@ -17,7 +18,7 @@ class Difference:
 
     Attributes
     ----------
-    place : of any depth or offset, as a share of the water depth
+    place : of any depth or offset, as a share of the water depth, or of the length of a tow
     tension : of any tension, as a share of that tension, or of a thousandth of the line's
         greatest where it is smaller still
     """
@@ -26,26 +27,29 @@ class Difference:
     tension: float
 
 
-def difference(solution: Solution, referee: Equilibrium) -> Difference:
+def difference(solution: Solution, referee: Equilibrium | Towed) -> Difference:
     """CALM's solution against the referee's."""
     nodes, shape = solution.piece_nodes, referee.shape
+    size = solution.line.length.sum() if isinstance(referee, Towed) else solution.water.depth
     at = np.concatenate([*nodes.T, np.array(clamp_nodes(solution), dtype=int)])
     place = np.abs(solution.position[at] - np.concatenate([shape.top, shape.bottom, shape.clamp]))
     expected = np.linalg.norm(np.concatenate([shape.force_top, shape.force_bottom]), axis=1)
     tension = np.abs(solution.tension[nodes.T.ravel()] - expected)
     relative = tension / np.maximum(expected, 1e-3 * expected.max())
-    return Difference(float(place.max()) / solution.water.depth, float(relative.max()))
+    return Difference(float(place.max() / size), float(relative.max()))
 
 
-def closure(solution: Solution) -> float:
-    """|sum of all loads − force at the anchor| / |force at the anchor|.
+def closure(solution: Solution, profile: Profile | None = None) -> float:
+    """|sum of all loads − force at the line's end| / |force at the line's end|.
 
-    The loads are recomputed here from the final coordinates, by the referee's formulas. Of a line
-    on the seabed they are those above the touchdown; where a rigid piece or a clamp comes down
-    there, it and the seabed settle the vertical ones between them.
+    The loads are recomputed here from the final coordinates, by the referee's formulas, in the
+    water of the solution or in that of `profile`. Of a line on the seabed they are those above the
+    touchdown; where a rigid piece or a clamp comes down there, it and the seabed settle the
+    vertical ones between them.
     """
-    line, water, position = solution.carried, solution.water, solution.position
-    profile, total = Profile(water), np.zeros(3)
+    line, position = solution.carried, solution.position
+    gravity = solution.water.gravity
+    profile, total = profile or Profile(solution.water), np.zeros(3)
 
     def pull(load: Load, start: Vector, end: Vector, swelling: float = 1.0) -> Vector:
         chord = float(np.linalg.norm(end - start))
@@ -55,17 +59,12 @@ def closure(solution: Solution) -> float:
     for clamp, node in enumerate(clamp_nodes(solution)):
         if node >= solution.hanging:
             continue
-        drag = line.clamp_drag[clamp]
-        lift = line.clamp_buoyancy[clamp], line.clamp_volume[clamp]
-        load = Load(*lift, drag, drag, False, water.gravity)
+        load = on_clamp(line, clamp, gravity)
         total += pull(load, position[node], position[node])
     for piece, (first, last) in enumerate(np.minimum(solution.piece_nodes, solution.hanging)):
         if first == last:
             continue
-        load = Load(
-            line.buoyancy[piece], line.volume[piece], line.normal_drag[piece],
-            line.tangential_drag[piece], line.directional[piece], water.gravity,
-        )  # fmt: skip
+        load = on_piece(line, piece, gravity, frequency=solution.frequency)
         if not line.flexible[piece]:
             total += pull(load, position[first], position[last])
             continue

@@ -3,7 +3,7 @@
 With the force above F (every force on the free-end side) and the position r, z up,
 
     dr/ds = (1 + ε) t,    dF/ds = (0, 0, b) + (1 + ε)^m (Kn |Vn| Vn + Kt |Vt| Vt) ρ/1025,
-    t = -F/|F|,           ε = |F|/EA,        b = buoyancy + (ρ - 1025) g · volume.
+    t = -F/|F|,           ε = ε(|F|),        b = buoyancy + (ρ - 1025) g · volume.
 
 An eighth-order Runge–Kutta method restarts wherever the cable passes a level of the profile, so
 that no kink lies inside a step.
@@ -11,6 +11,7 @@ that no kink lies inside a step.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import sqrt
 
@@ -37,11 +38,14 @@ class Folded(NoContinuousSolution):
 
 @dataclass(frozen=True)
 class Cable:
-    """A stretch of cable without clamps; `load` is that of one unstretched metre."""
+    """A stretch of cable without clamps.
+
+    `load` is that of one unstretched metre, `strain` its law by tension [N].
+    """
 
     load: Load
     length: float
-    compliance: float
+    strain: Callable[[float], float]
     thinning: float
 
 
@@ -80,7 +84,7 @@ def follow(
         if evaluations > MOST_EVALUATIONS:
             raise Folded("a cable is too slack over too long a way to be followed")
         tension = sqrt(state[3] ** 2 + state[4] ** 2 + state[5] ** 2)
-        stretched = 1.0 + tension * cable.compliance
+        stretched = 1.0 + cable.strain(tension)
         axis = state[3:] / -tension
         flow = profile.flow(-state[2], band)
         pull = cable.load.force(flow, axis, stretched**cable.thinning)

@@ -2,7 +2,7 @@
 
 A line whose free end, left at the surface with its full buoyancy, hangs too deep for its anchor
 floats: its free end is at the surface and the unknown is the part in use of the buoyancy of the
-first float. If that leaves the next float in the air or the line too high, the next one is at the
+first float, which may have a draft. If that leaves the next float in the air or the line too high, the next one is at the
 surface too, the part of the first being what leaves it there, and its own part is the unknown.
 Otherwise the unknown is the depth of the free end. Each is searched from the upright side in
 `SCAN` steps, then closed by Brent's method to rounding.
@@ -17,12 +17,15 @@ import numpy as np
 from scipy.optimize import brentq
 
 from calm.physics.line import Line, Water
+from tests.validation.afloat import Hull, depth_of_free_end, first_float, riding
 from tests.validation.cables import Folded, NoContinuousSolution
 from tests.validation.continuous import March, Shape
 from tests.validation.loads import Vector
 
 COARSE, FINE = 1e-5, 1e-11
 SCAN = 60
+AWASH = np.array([0.0, 1e-6, 1e-5, 1e-4, 5e-4, 2e-3, 5e-3, 0.01, 0.015, 0.02, 0.025])
+"""Shares of a float's buoyancy, not in use, that are tried besides."""
 SLACK = 1e-6
 """Least tension in a cable, as a part of the greatest: below it the line hangs in a sharp fold."""
 
@@ -41,8 +44,10 @@ class Equilibrium:
     surface: bool
 
 
-def solve_continuous(line: Line, water: Water) -> Equilibrium:
+def solve_continuous(line: Line, water: Water, hull: Hull | None = None) -> Equilibrium:
     """The highest equilibrium of a mooring: clear of the seabed or else lying on it at the end.
+
+    `hull` is the form of its first float; without it the one that the line has.
 
     Raises
     ------
@@ -52,7 +57,7 @@ def solve_continuous(line: Line, water: Water) -> Equilibrium:
     refusals: list[NoContinuousSolution] = []
     for lands in (False, True):
         try:
-            found = _closed(line, water, lands)
+            found = _closed(line, water, lands, hull)
         except NoContinuousSolution as refusal:
             refusals.append(refusal)
             continue
@@ -61,7 +66,7 @@ def solve_continuous(line: Line, water: Water) -> Equilibrium:
     raise refusals[0]
 
 
-def _closed(line: Line, water: Water, lands: bool) -> Equilibrium:
+def _closed(line: Line, water: Water, lands: bool, hull: Hull | None) -> Equilibrium:
     # A line on the seabed ends there, not at the top of its anchor.
     bottom = water.depth - (0.0 if lands else line.anchor_height)
     rough, fine = March(line, water, COARSE), March(line, water, FINE)
@@ -70,6 +75,10 @@ def _closed(line: Line, water: Water, lands: bool) -> Equilibrium:
         """How much deeper than it should the line ends [m]."""
         return float(-march.down(depth, share, lands=lands).bottom[-1, 2] - bottom)
 
+    riding = _riding(line, water, excess, hull)
+    if riding is not None:
+        fine, share, depth = riding
+        return _standing(fine, water, share, depth, lands, surface=True)
     share, depth = np.ones(len(line.length)), 0.0
     surface = excess(fine, 0.0, share) > 0.0
     if surface:
@@ -79,9 +88,52 @@ def _closed(line: Line, water: Water, lands: bool) -> Equilibrium:
             lambda d: excess(rough, d, share), lambda d: excess(fine, d, share),
             _depths(line, water, share, bottom),
         )  # fmt: skip
-    shape = fine.down(depth, share, lands=lands)
-    _refuse_impossible(shape, line, water, share)
+    return _standing(fine, water, share, depth, lands, surface)
+
+
+def _standing(
+    march: March, water: Water, share: Vector, depth: float, lands: bool, surface: bool
+) -> Equilibrium:
+    shape = march.down(depth, share, lands=lands)
+    _refuse_impossible(shape, march.line, water, share)
     return Equilibrium(shape.shifted(-shape.bottom[-1, :2]), share, depth, surface)
+
+
+def _riding(
+    line: Line, water: Water, excess: Callable[[March, float, Vector], float], hull: Hull | None
+) -> tuple[March, Vector, float] | None:
+    """The first float alone at the surface, at its draft: the march, the parts in use, the depth.
+
+    None where it has no draft, is under water or leaves another float in the air. The highest
+    root is sought from the unloaded float on.
+    """
+    if line.floating is None:
+        return None
+    first, n = first_float(line), len(line.length)
+    following = [p for p in range(first + 1, n) if line.buoyancy[p] > 0.0 and not line.flexible[p]]
+
+    def placed(part: float, tolerance: float) -> tuple[March, Vector, float]:
+        loaded, out = riding(line, water, hull, part)
+        march, share = March(loaded, water, tolerance), np.where(np.arange(n) == first, part, 1.0)
+        return march, share, depth_of_free_end(march, share, out)
+
+    def lacking(part: float, tolerance: float) -> float:
+        march, share, depth = placed(part, tolerance)
+        return excess(march, depth, share)
+
+    parts = np.unique(np.concatenate([np.linspace(0.0, 1.0, SCAN) ** 2, 1.0 - AWASH]))
+    try:
+        part = _first_root(lambda p: lacking(p, COARSE), lambda p: lacking(p, FINE), parts)
+    except Folded:
+        raise
+    except NoContinuousSolution:
+        return None
+    found = march, share, depth = placed(part, FINE)
+    if following:
+        top = march.down(depth, share, until=following[0]).bottom[following[0] - 1, 2]
+        if top > 1e-9 * water.depth:
+            return None
+    return found
 
 
 def _depths(line: Line, water: Water, share: Vector, bottom: float) -> Vector:
@@ -110,6 +162,8 @@ def _afloat(
             return float(march.down(0.0, parts, until=piece).bottom[piece - 1, 2])
 
         try:
+            if line.floating is not None and this == floats[0]:
+                raise refusal  # it would have a draft
             parts = used(_share(excess, used, rough, fine))
             if following < 0 or height(fine, parts) <= 1e-9 * fine.depth:
                 return parts
@@ -162,7 +216,9 @@ def _first_root(
 
 
 def _refuse_impossible(shape: Shape, line: Line, water: Water, share: Vector) -> None:
-    afloat = float(line.length[share < 1.0].sum())  # a float may stand out of the water
+    afloat = float(line.length[share < 1.0].sum())  # a float may stand out of the water,
+    if line.floating is not None:  # and with it what is on it
+        afloat += float(line.length[: first_float(line)].sum())
     if min(shape.depths) < -afloat - 1e-9 * water.depth:
         raise NoContinuousSolution("a part of the line is in the air")
     if max(shape.depths) > water.depth * (1.0 + 1e-9):

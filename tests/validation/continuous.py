@@ -16,8 +16,9 @@ import numpy as np
 
 from calm.physics.line import Line, Water
 from tests.validation.cables import Cable, Folded, NoContinuousSolution, follow
-from tests.validation.loads import DOWN, Load, Profile, Vector
+from tests.validation.loads import DOWN, Load, Profile, Vector, on_clamp, on_piece
 from tests.validation.rods import rod_axis
+from tests.validation.ropes import strain_law
 
 Key = tuple[int, float, int]
 
@@ -71,10 +72,14 @@ class Place:
 
 
 class March:
-    """Goes down one line in one water; `tolerance` is the relative error of a step."""
+    """Goes down one line in one water; `tolerance` is the relative error of a step.
+
+    The `frequency` [Hz] is that of a line that strums.
+    """
 
     def __init__(self, line: Line, water: Water, tolerance: float) -> None:
         self.line, self.profile, self.tolerance = line, Profile(water), tolerance
+        self.frequency = 0.0
         self.gravity, self.depth = float(water.gravity), float(water.depth)
         self.head = head(line)
         self.clamps = [
@@ -111,17 +116,10 @@ class March:
         return shape
 
     def _load(self, piece: int, share: Vector) -> Load:
-        line, part = self.line, float(share[piece])
-        return Load(
-            part * float(line.buoyancy[piece]), part * float(line.volume[piece]),
-            float(line.normal_drag[piece]), float(line.tangential_drag[piece]),
-            bool(line.directional[piece]), self.gravity,
-        )  # fmt: skip
+        return on_piece(self.line, piece, self.gravity, float(share[piece]), self.frequency)
 
     def _clamp(self, clamp: int) -> Load:
-        line, drag = self.line, float(self.line.clamp_drag[clamp])
-        buoyancy, volume = float(line.clamp_buoyancy[clamp]), float(line.clamp_volume[clamp])
-        return Load(buoyancy, volume, drag, drag, False, self.gravity)
+        return on_clamp(self.line, clamp, self.gravity)
 
     def _on_rod(self, rod: range, share: Vector) -> list[tuple[int, int, float, Load]]:
         """What loads a rod, downwards: piece, clamp or -1, distance from its upper end, load."""
@@ -195,10 +193,10 @@ class March:
         lands: bool,
     ) -> None:  # fmt: skip
         """Along a stretch of cable without clamps, in the water and then on the seabed."""
-        compliance, thinning = float(self.line.compliance[piece]), float(self.line.thinning[piece])
+        strain, thinning = strain_law(self.line, piece), float(self.line.thinning[piece])
         length = end - start
         if not place.lying and length > 0.0:
-            cable = Cable(load, length, compliance, thinning)
+            cable = Cable(load, length, strain, thinning)
             may_land = lands and (piece, end, 0) > self.lowest_lift
             way = follow(cable, place.position, place.force, self.profile, self.tolerance, may_land)
             place.position, place.force = way.position, way.force
@@ -208,13 +206,18 @@ class March:
             if length > 0.0:
                 place.lie_down()
         if place.lying:
-            strain = compliance * float(np.linalg.norm(place.force))
+            stretched = 1.0 + strain(float(np.linalg.norm(place.force)))
             shape.grounded = (shape.grounded or 0.0) + length
-            place.position = place.position + length * (1.0 + strain) * place.way_on()
+            place.position = place.position + length * stretched * place.way_on()
 
 
 def head(line: Line) -> int:
-    """How many pieces from the free end on are one rod: up to the first float if all are rigid."""
+    """How many pieces from the free end on are one rod: up to the first float if all are rigid.
+
+    Of a tow each is its own.
+    """
+    if line.towed:
+        return 1
     for piece, flexible in enumerate(line.flexible):
         if flexible:
             break

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
+from collections.abc import Sequence
 from dataclasses import dataclass
-from math import sqrt
+from math import copysign, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.physics.line import Water
+from calm.physics.friction import Friction
+from calm.physics.line import Line, Water
+from calm.physics.reynolds import DragCurve
+from tests.validation.smooth import Smooth
+from tests.validation.vibration import Vibration
 
 Vector = NDArray[np.float64]
 Flow = tuple[float, float, float, float]
@@ -28,26 +33,77 @@ class Load:
     tangential_drag: float
     directional: bool
     gravity: float
+    lift: float = 0.0
+    friction: Friction = Friction.BERTEAUX
+    vibration: Vibration | None = None
+    smooth: Smooth | None = None
+    push: tuple[float, float] = (0.0, 0.0)
 
     def force(self, flow: Flow, axis: Vector, swelling: float = 1.0) -> Vector:
-        """Buoyancy and drag [N] with the axis along the unit vector `axis`."""
+        """Buoyancy, lift, drag and wind [N] with the axis along the unit vector `axis`."""
         u, v, w, density = flow
         x, y, z = axis
-        tangential = 0.0
+        speed = sqrt(u * u + v * v + w * w)
+        # Drag is `normal` times the flow and `tangential` times the axis.
+        varied = self.smooth.factor if self.smooth else lambda _: 1.0
+        normal, tangential = self.normal_drag * varied(speed) * speed, 0.0
         if self.directional:
             along = u * x + v * y + w * z
-            u, v, w = u - along * x, v - along * y, w - along * z
-            tangential = self.tangential_drag * abs(along) * along
-        normal = self.normal_drag * sqrt(u * u + v * v + w * w)
+            across = sqrt((u - along * x) ** 2 + (v - along * y) ** 2 + (w - along * z) ** 2)
+            normal = self.normal_drag * varied(across) * across
+            if self.vibration:
+                normal *= self.vibration.factor(speed, across)
+            tangential = -normal * along
+            if self.friction is Friction.BERTEAUX:
+                tangential += self.tangential_drag * abs(along) * along
+            elif self.friction is Friction.HOERNER:
+                normal += self.tangential_drag * speed
+            else:
+                tangential += self.tangential_drag * copysign(speed, along) * speed
         scale = density / 1025.0 * swelling
-        lift = self.buoyancy + (density - 1025.0) * self.gravity * self.volume
+        lift = density / 1025.0 * self.lift * speed * speed
+        lift += self.buoyancy + (density - 1025.0) * self.gravity * self.volume
         return np.array(
             (
-                scale * (normal * u + tangential * x),
-                scale * (normal * v + tangential * y),
+                scale * (normal * u + tangential * x) + self.push[0],
+                scale * (normal * v + tangential * y) + self.push[1],
                 scale * (normal * w + tangential * z) + lift,
             )
         )
+
+
+def on_piece(
+    line: Line, piece: int, gravity: float, share: float = 1.0, frequency: float = 0.0
+) -> Load:
+    """The load of a piece of a line, or of a metre of it where it is cable.
+
+    `share` is the part of its buoyancy in use, `frequency` [Hz] that of a line that strums.
+    """
+    cable = bool(line.flexible[piece])
+    strums = cable and line.strumming is not None and line.diameter[piece] > 0.0
+    return Load(
+        share * float(line.buoyancy[piece]), share * float(line.volume[piece]),
+        float(line.normal_drag[piece]), float(line.tangential_drag[piece]),
+        bool(line.directional[piece]), gravity, float(line.lift[piece]),
+        line.friction if cable else Friction.BERTEAUX,
+        Vibration(line.strumming, float(line.diameter[piece]), frequency) if strums else None,
+        _smooth(line.drag_curve, piece),
+        (float(line.push_east[piece]), float(line.push_north[piece])),
+    )  # fmt: skip
+
+
+def on_clamp(line: Line, clamp: int, gravity: float) -> Load:
+    """The load of a clamped instrument."""
+    drag = float(line.clamp_drag[clamp])
+    return Load(
+        float(line.clamp_buoyancy[clamp]), float(line.clamp_volume[clamp]), drag, drag, False,
+        gravity, float(line.clamp_lift[clamp]), smooth=_smooth(line.clamp_drag_curve, clamp),
+    )  # fmt: skip
+
+
+def _smooth(curves: Sequence[DragCurve | None], index: int) -> Smooth | None:
+    curve = curves[index] if curves else None
+    return Smooth(curve.diameter, curve.slenderness) if curve else None
 
 
 class Profile:

@@ -7,7 +7,9 @@ from math import pi
 
 import numpy as np
 
+from calm.physics.friction import Friction
 from calm.physics.line import Line, Water
+from calm.physics.strumming import BourgetMarichal
 
 HALF_DENSITY = 1025.0 / 2.0
 GRAVITY = 9.81
@@ -17,7 +19,7 @@ GRAVITY = 9.81
 class Piece:
     """One piece of a line; the names and units are those of `Line`.
 
-    `clamps` holds (distance from the piece's top, buoyancy, volume, drag) of each.
+    `clamps` holds (distance from the piece's top, buoyancy, volume, drag, lift if any) of each.
     """
 
     length: float
@@ -29,19 +31,21 @@ class Piece:
     volume: float = 0.0
     compliance: float = 0.0
     thinning: float = 0.0
-    clamps: list[tuple[float, float, float, float]] = field(default_factory=list)
+    clamps: list[tuple[float, ...]] = field(default_factory=list)
+    lift: float = 0.0
+    diameter: float = 0.0
 
     @property
     def total(self) -> float:
         """Net force with the clamps [N]."""
         own = self.buoyancy * (self.length if self.flexible else 1.0)
-        return own + sum(buoyancy for _, buoyancy, _, _ in self.clamps)
+        return own + sum(buoyancy for _, buoyancy, *_ in self.clamps)
 
     @property
     def resistance(self) -> float:
         """Drag at 1 m/s across it, with the clamps [N/(m/s)²]."""
         own = self.normal_drag * (self.length if self.flexible else 1.0)
-        return own + sum(drag for _, _, _, drag in self.clamps)
+        return own + sum(drag for _, _, _, drag, *_ in self.clamps)
 
 
 def point(buoyancy: float, drag: float) -> Piece:
@@ -60,23 +64,32 @@ def cable(
     """Rope or wire: weight in water [N/m], Cn on its diameter, Ct on its surface π D."""
     normal, tangential = HALF_DENSITY * diameter * cn, HALF_DENSITY * pi * diameter * ct
     return Piece(
-        length, True, -weight, normal, tangential, compliance=compliance, thinning=0.5
+        length, True, -weight, normal, tangential, compliance=compliance, thinning=0.5,
+        diameter=diameter,
     )  # fmt: skip
 
 
-def line_of(*pieces: Piece, anchor_height: float = 0.0) -> Line:
+def line_of(
+    *pieces: Piece,
+    anchor_height: float = 0.0,
+    friction: Friction = Friction.BERTEAUX,
+    strumming: BourgetMarichal | None = None,
+) -> Line:
     """The arrays of a list of pieces."""
-    held = [(owner, *clamp) for owner, piece in enumerate(pieces) for clamp in piece.clamps]
-    owner, at, buoyancy, volume, drag = zip(*held, strict=True) if held else ((),) * 5
+    held = [
+        (owner, *clamp, 0.0)[:6] for owner, piece in enumerate(pieces) for clamp in piece.clamps
+    ]
+    owner, at, buoyancy, volume, drag, lift = zip(*held, strict=True) if held else ((),) * 6
     columns = (
         "length", "flexible", "buoyancy", "volume", "normal_drag", "tangential_drag",
-        "directional", "compliance", "thinning",
+        "directional", "compliance", "thinning", "lift", "diameter",
     )  # fmt: skip
     return Line(
         **{name: np.array([getattr(piece, name) for piece in pieces]) for name in columns},
         clamp_piece=np.array(owner, dtype=int), clamp_at=np.array(at),
         clamp_buoyancy=np.array(buoyancy), clamp_volume=np.array(volume),
-        clamp_drag=np.array(drag), anchor_height=anchor_height,
+        clamp_drag=np.array(drag), clamp_lift=np.array(lift), anchor_height=anchor_height,
+        friction=friction, strumming=strumming,
     )  # fmt: skip
 
 

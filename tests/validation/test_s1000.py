@@ -1,9 +1,7 @@
-"""S1000: 1000 m of stretchy cable in a sheared current, and the order of the march.
+"""S1000 along its whole length, against the referee.
 
-Water 1100 m, 1025 kg/m³; current 1.0, 0.6, 0.2, 0.05 m/s at 0, 200, 500, 1100 m. Float of 4000 N
-and 0.6 m² of drag area × Cd at the line's top; cable 10 mm, 2 N/m, Cn 1.3, Ct 0.01, EA 4 MN.
-Known to seven digits from a solution by initial-value integration and bracketing: float at
-131.4256 m, offset 237.3218 m, anchor tension 2068.154 N, knockdown 32.1756 m.
+The figures known of it are cases of `calm.verification.s1000`; here the referee, which shares
+nothing with CALM, has them too, and judges every other place and tension.
 """
 
 from __future__ import annotations
@@ -15,12 +13,12 @@ import numpy as np
 import pytest
 
 from calm.solve import Settings, solve_mooring
+from calm.verification import s1000
+from calm.verification.s1000 import SEA
 from tests.validation.agreement import difference
 from tests.validation.closing import solve_continuous
-from tests.validation.pieces import HALF_DENSITY, cable, line_of, point, profile, stream
 
-LINE = line_of(point(4000.0, HALF_DENSITY * 0.6), cable(1000.0, 0.01, 2.0, 1.3, 0.01, 1.0 / 4e6))
-SEA = profile(1100.0, [(0.0, 1.0), (200.0, 0.6), (500.0, 0.2), (1100.0, 0.05)])
+LINE = s1000.mooring()
 
 
 @pytest.fixture(scope="module")
@@ -29,11 +27,11 @@ def referee():
 
 
 def test_referee_has_the_known_digits(referee) -> None:
-    assert referee.depth == pytest.approx(131.4256, abs=5e-5)
-    assert referee.shape.top[0, 0] == pytest.approx(237.3218, abs=5e-5)
-    assert np.linalg.norm(referee.shape.force_bottom[-1]) == pytest.approx(2068.154, abs=5e-4)
-    upright = solve_continuous(LINE, stream(1100.0, 0.0)).depth
-    assert referee.depth - upright == pytest.approx(32.1756, abs=1e-4)
+    assert referee.depth == pytest.approx(s1000.DEPTH, abs=5e-5)
+    assert referee.shape.top[0, 0] == pytest.approx(s1000.OFFSET, abs=5e-5)
+    assert np.linalg.norm(referee.shape.force_bottom[-1]) == pytest.approx(s1000.TENSION, abs=5e-4)
+    upright = solve_continuous(LINE, SEA.still()).depth
+    assert referee.depth - upright == pytest.approx(s1000.KNOCKDOWN, abs=1e-4)
 
 
 @pytest.mark.parametrize(

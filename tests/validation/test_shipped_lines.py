@@ -1,8 +1,8 @@
-"""Every shipped mooring against the continuous solution.
+"""Every shipped mooring and tow against the continuous solution.
 
-The limits are CALM's promises: depths and offsets within 5e-5 of the water depth and tensions
-within 2e-4 at the default angle step of 1°; 2e-6 and 1e-5 at 0.1°. Forces close to 1e-6, recomputed
-here from the final coordinates.
+The limits are CALM's promises: depths and offsets within 5e-5 of the water depth (in a tow, of the
+line out) and tensions within 2e-4 at the default angle step of 1°; 2e-6 and 1e-5 at 0.1°. Forces
+close to 1e-6, recomputed here from the final coordinates.
 """
 
 from __future__ import annotations
@@ -13,18 +13,35 @@ from pathlib import Path
 import pytest
 
 import calm
-from calm.solve import Settings, solve_mooring
+from calm.solve import Settings, solve_mooring, solve_tow
 from tests.validation.agreement import closure, difference
 from tests.validation.closing import solve_continuous
+from tests.validation.towed import Passing, solve_continuous_tow
 
 LINES = sorted((Path(__file__).parents[2] / "lines").glob("*.yaml"))
+TOWS = [path for path in LINES if "\ntow:" in path.read_text(encoding="utf-8")]
+MOORINGS = [path for path in LINES if path not in TOWS]
 
 
 def test_there_are_shipped_lines() -> None:
-    assert len(LINES) >= 10
+    assert len(MOORINGS) >= 10
+    assert len(TOWS) >= 4
 
 
-@pytest.mark.parametrize("path", LINES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", TOWS, ids=lambda path: path.stem)
+def test_calm_agrees_with_the_referee_on_tows(path) -> None:
+    tow = calm.load(path)
+    referee = solve_continuous_tow(tow.line, tow.water, tow.towing)
+    for degrees, near, close in [(1.0, 5e-5, 2e-4), (0.1, 2e-6, 1e-5)]:
+        solution = solve_tow(tow.line, tow.water, tow.towing, Settings(radians(degrees)))
+        found = difference(solution, referee)
+        assert found.place <= near, f"at {degrees}°"
+        assert found.tension <= close, f"at {degrees}°"
+        assert solution.frequency == pytest.approx(referee.frequency, rel=close)
+        assert closure(solution, Passing(tow.water, tow.towing)) <= 1e-6
+
+
+@pytest.mark.parametrize("path", MOORINGS, ids=lambda path: path.stem)
 def test_calm_agrees_with_the_referee(path) -> None:
     mooring = calm.load(path)
     referee = solve_continuous(mooring.line, mooring.water)
@@ -38,7 +55,7 @@ def test_calm_agrees_with_the_referee(path) -> None:
         assert solution.surface == referee.surface
 
 
-@pytest.mark.parametrize("path", LINES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", MOORINGS, ids=lambda path: path.stem)
 def test_the_accuracy_it_states_holds(path) -> None:
     """What the result says of its own error, against its error; half of it is the allowance."""
     mooring = calm.load(path)
@@ -47,3 +64,12 @@ def test_the_accuracy_it_states_holds(path) -> None:
     solution = solve_mooring(mooring.line, mooring.water)
     error = difference(solution, referee).place * mooring.water.depth
     assert error <= 1.5 * result.accuracy.depth + 1e-7 * mooring.water.depth
+
+
+@pytest.mark.parametrize("path", TOWS, ids=lambda path: path.stem)
+def test_the_accuracy_a_tow_states_holds(path) -> None:
+    tow = calm.load(path)
+    referee = solve_continuous_tow(tow.line, tow.water, tow.towing)
+    length = tow.line.length.sum()
+    error = difference(solve_tow(tow.line, tow.water, tow.towing), referee).place * length
+    assert error <= 1.5 * tow.solve().accuracy.depth + 1e-7 * length

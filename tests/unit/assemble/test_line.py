@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from calm.assemble import assemble_line, drag_of
-from calm.files import Anchor, Body, Cable, Chain, Clamp, Cylinder, Piece, Sphere
+from calm.files import Anchor, Body, Cable, Chain, Clamp, Cylinder, Piece, Solver, Sphere
+from calm.physics.reynolds import DragCurve
 
 HALF_DENSITY = 512.5
 
@@ -111,3 +112,60 @@ def test_a_line_of_pieces():
     assert line.clamp_drag == pytest.approx([HALF_DENSITY * 0.1])
     assert line.anchor_height == pytest.approx(0.4)
     assert np.isfinite(line.total_buoyancy).all()
+
+
+SMOOTH = {"buoyancy": "500 N", "surface": "smooth"}
+ROPE = Cable(kind="cable", diameter="12 mm", weight="0.2 N/m", finish="smooth")
+
+
+@pytest.mark.parametrize(
+    ("component", "curve"),
+    [
+        (Sphere(kind="sphere", diameter="1 m", **SMOOTH), DragCurve(1.0)),
+        (Cylinder(kind="cylinder", diameter="0.2 m", length="1 m", **SMOOTH), DragCurve(0.2, 5.0)),
+        (Sphere(kind="sphere", diameter="1 m", **SMOOTH, cx=0.5), None),
+        (Sphere(kind="sphere", diameter="1 m", **SMOOTH, k_surface="90 N/(m/s)^2"), None),
+        (Cylinder(kind="cylinder", diameter="0.2 m", length="1 m", **SMOOTH, cn=1), None),
+        (Sphere(kind="sphere", diameter="1 m", buoyancy="5 N", surface="painted"), None),
+        (Sphere(kind="sphere", diameter="1 m", buoyancy="5 N"), None),
+        (body(made_of=[{"kind": "sphere", "diameter": "1 m"}]), None),
+    ],
+)
+def test_who_follows_the_curves_of_the_reynolds_number(component, curve):
+    """Smooth spheres and cylinders without a drag of their own, in the line or clamped on it."""
+    pieces = [
+        piece(0, component),
+        piece(1, ROPE, 50.0, [Clamp("id", "clamped", component, 7.0)]),
+        piece(2, Anchor(kind="anchor", mass="800 kg")),
+    ]
+    line = assemble_line(pieces, Solver(drag="reynolds"))
+    assert line.drag_curve == (curve, None)
+    assert line.clamp_drag_curve == (curve,)
+    constant = assemble_line(pieces, Solver())
+    assert constant.drag_curve == (None, None)
+    assert constant.clamp_drag_curve == (None,)
+    assert (line.normal_drag == constant.normal_drag).all()
+    assert line.reversed().drag_curve == (None, curve)
+
+
+def test_a_towed_sphere_wavers_and_follows_no_curve():
+    sphere = Sphere(kind="sphere", diameter="0.1 m", **SMOOTH)
+    line = assemble_line([piece(0, ROPE, 4.0), piece(1, sphere)], Solver(drag="reynolds"))
+    assert line.drag_curve == (None, None)
+    assert line.normal_drag[1] == pytest.approx(HALF_DENSITY * 0.9 * pi / 4 * 0.01)
+
+
+def test_an_elongation_table_in_place_of_a_stiffness():
+    rope = Cable(
+        kind="cable", diameter="19 mm", weight="0.3 N/m", breaking_load="60 kN",
+        elongation=[[0.05, 0.05], ["20 %", "12 %"]], permanent_elongation="4 %",
+    )  # fmt: skip
+    line = assemble_line(
+        [piece(0, ROPE, 4.0), piece(1, rope, 9.0), piece(2, body(cd=1, drag_area=0))]
+    )
+    none, curve, rigid = line.elongation
+    assert none is rigid is None
+    assert (curve.tensions, curve.strains) == ([0, 3e3, 12e3], [0, 0.05, 0.12])
+    assert (curve.permanent, curve.limit) == (0.04, 12e3)
+    assert line.compliance.tolist() == [0, 0, 0]
+    assert line.reversed().elongation == (None, curve, None)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import calm
-from calm.assemble.water import DEEPEST, assemble_water, viscosity_of
+from calm.assemble.water import DEEPEST, assemble_water
 from calm.files import CurrentTable, DepthTable, Environment, Position, SeaWater, Wind
 
 SHEARED = CurrentTable((0.0, 200.0, 900.0), (0.8, 0.3, 0.1), (0.0, 0.1, -0.2), (0.0, 0.01, 0.0))
@@ -98,12 +98,12 @@ def test_the_water_of_a_tow_without_depth_is_deep() -> None:
 
 def test_viscosity_follows_temperature_and_salinity() -> None:
     sea = SeaWater(table({0.0: 20.0, 100.0: 10.0, 200.0: 0.0}), table({0.0: 35.0}))
-    levels, viscosity = viscosity_of(environment(density=sea, depth=200.0))
-    got = np.interp([0.0, 100.0, 200.0], levels, viscosity)
+    water = assemble_water(environment(density=sea, depth=200.0))
+    got = water.viscosity_at(np.array([0.0, 100.0, 200.0]))
     # Printed at the surface, 1e-6 m²/s; at 200 m the water is 0.1 % denser.
     assert got == pytest.approx([1.0506e-6, 1.3601e-6, 1.8535e-6], rel=1.1e-3)
     # between rows 10 degrees apart it is no straight line: 1.1890 at 15 degrees, not 1.2054
-    assert np.interp(50.0, levels, viscosity) == pytest.approx(1.1890e-6, rel=1.1e-3)
+    assert water.viscosity_at(np.array(50.0)) == pytest.approx(1.1890e-6, rel=1.1e-3)
 
 
 @pytest.mark.parametrize(
@@ -116,8 +116,8 @@ def test_viscosity_follows_temperature_and_salinity() -> None:
     ids=["sea water", "of a density profile", "air"],
 )
 def test_viscosity_where_temperature_is_not_known(keys: dict[str, Any], expected: float) -> None:
-    levels, viscosity = viscosity_of(environment(**keys))
-    assert (levels.tolist(), viscosity.tolist()) == ([0.0], [expected])
+    water = assemble_water(environment(**keys))
+    assert (water.viscosity_at(np.array([-5.0, 0.0, 900.0])) == expected).all()
 
 
 def test_wind_drives_the_surface_and_ever_less_the_water_below() -> None:

@@ -280,9 +280,13 @@ ONE_MISTAKE = {
         changed("{use: plate}", "{use: pair, mass: 3 kg}"),
         (12, 17, "`mass` cannot be set on an assembly; allowed: count, label, use"),
     ),
-    "not yet: drag": (
-        GOOD + "solver: {drag: reynolds}\n",
-        (14, 16, "`drag: reynolds` is not available in this version"),
+    "drag misspelt": (
+        GOOD + "solver: {drag: reynold}\n",
+        (
+            14,
+            16,
+            "`drag: reynold` must be one of constant, reynolds; did you mean `drag: reynolds`?",
+        ),
     ),
     "friction misspelt": (
         GOOD + "solver: {friction: hörner}\n",
@@ -293,9 +297,64 @@ ONE_MISTAKE = {
             "did you mean `friction: hoerner`?",
         ),
     ),
-    "not yet: elongation": (
-        changed("length: 480 m", "length: 480 m, elongation: [[0.1, 0.02]]"),
-        (11, 35, "`elongation` is not available in this version; give the line's `stiffness`"),
+    "elongation without breaking load": (
+        GOOD + "components:\n  own: {kind: cable, diameter: 8 mm, weight: 1 N/m, "
+        "elongation: [[0.1, 0.02]]}\n",
+        (15, 8, "`elongation` needs `breaking_load`: its loads are shares of that"),
+    ),
+    "elongation beside stiffness": (
+        changed("length: 480 m", "length: 480 m, stiffness: 2 MN, elongation: [[0.1, 0.02]]"),
+        (11, 5, "gives both `stiffness` and `elongation`; one says how it stretches"),
+    ),
+    "elongation that stays, of nothing": (
+        changed("length: 480 m", "length: 480 m, permanent_elongation: 4 %"),
+        (11, 5, "`permanent_elongation` needs `elongation`"),
+    ),
+    "elongation that stays, in percent": (
+        changed("length: 480 m", "length: 480 m, elongation: [[1, 0.2]], permanent_elongation: 4"),
+        (11, 81, "`permanent_elongation: 4` must be at most 1"),
+    ),
+    "elongation that falls": (
+        changed("length: 480 m", "length: 480 m, elongation: [[0.1, 0.02], [0.2, 0.01]]"),
+        (11, 47, "`elongation`: point 2: the strain 0.01 falls"),
+    ),
+    "elongation of loads that do not grow": (
+        changed("length: 480 m", "length: 480 m, elongation: [[0.2, 0.02], [10 %, 0.03]]"),
+        (11, 47, "`elongation`: point 2: the load 0.1 does not grow"),
+    ),
+    "elongation at no load": (
+        changed("length: 480 m", "length: 480 m, elongation: [[0, 0.02], [0.2, 0.04]]"),
+        (
+            11,
+            47,
+            "`elongation`: the strain at no load must be 0; it is a `permanent_elongation`",
+        ),
+    ),
+    "elongation of no points": (
+        changed("length: 480 m", "length: 480 m, elongation: []"),
+        (11, 47, "`elongation`: an elongation curve needs a point with a load"),
+    ),
+    "elongation by force": (
+        changed("length: 480 m", "length: 480 m, elongation: [[5 kN, 0.02]]"),
+        (11, 49, "`elongation: 5 kN` is a force; a plain number is needed"),
+    ),
+    "elongation beyond the breaking load": (
+        changed("length: 480 m", "length: 480 m, elongation: [[20, 0.02]]"),
+        (11, 49, "`elongation: 20` must be at most 1"),
+    ),
+    "elongation of three figures": (
+        changed("length: 480 m", "length: 480 m, elongation: [[0.1, 0.02, 3]]"),
+        (11, 48, "`elongation` has a row with too many values"),
+    ),
+    "elongation that is no table": (
+        changed("length: 480 m", "length: 480 m, elongation: 3 %"),
+        (11, 47, "`elongation` must be a list"),
+    ),
+    "elongation of a chain": (
+        changed("use: rope-12", "use: chain-13").replace(
+            "length: 480 m", "length: 480 m, elongation: [[0.1, 0.02]]"
+        ),
+        (11, 36, "unknown key `elongation` for kind chain"),
     ),
     "choice misspelt": (
         GOOD + "solver: {buoy_drag: ful}\n",
@@ -352,7 +411,7 @@ components:
   empty:
 environments:
   storm: {curent: {speed: 1 m/s, toward: 90 deg}}
-solver: {angle_step: 20 deg, drag: reynolds}
+solver: {angle_step: 20 deg, drag: reynold}
 checks: {maximum_tilt: 30}
 """
     assert [place[:2] for place in mistakes(text)] == [

@@ -39,6 +39,8 @@ components:
   frame: {kind: assembly, parts: [{use: own, length: 1/2 ft}, {use: chain}]}
   chain: {kind: chain, diameter: 13 mm, cn: 2.75}
   own: {kind: cable, diameter: 8 mm, mass: 0.2 kg/m, density: 0.91 g/cm^3, finish: very-rough}
+  nylon: {kind: cable, diameter: 8 mm, weight: 0, breaking_load: 12 kN,
+    elongation: [[0, 0], [0.1, 3 %], [50 %, 0.12]], permanent_elongation: 4 %}
   measured: {kind: body, length: 0 m, mass: 20 kg, volume: 9 L, drag_area: 0.1 m^2, cd: 1.2}
   shapes:
     kind: body
@@ -48,7 +50,7 @@ components:
 environments:
   storm: {current: {columns: [depth m, u m/s, v m/s, w m/s], rows: [[0, 1, 0, 0.01]]}}
   record: {current: {file: current.csv, time: "2026-03-01T06:00"}}
-solver: {angle_step: 1 deg, tolerance: 1e-7, drag: constant, buoy_drag: full}
+solver: {angle_step: 1 deg, tolerance: 1e-7, drag: reynolds, buoy_drag: full}
 checks: {safety_factor: {steel: 3}, minimum_tension: {wire: 50 kgf}, maximum_tilt: 30 deg}
 """
 
@@ -103,7 +105,7 @@ KNOWN_TO_THE_SCHEMA = [
     "text for a mapping",
     "item that is text",
     "count of none",
-    "not yet: drag",
+    "drag misspelt",
     "choice misspelt",
     "limit misspelt",
 ]

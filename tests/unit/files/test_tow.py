@@ -244,7 +244,7 @@ line:
   - {use: deadweight}
 environments:
   storm: {curent: {speed: 1 m/s, toward: 90 deg}}
-solver: {strumming: {factor: 0}, friction: pode, drag: reynolds}
+solver: {strumming: {factor: 0}, friction: pode, drag: reynold}
 """
     assert [place[:2] for place in mistakes(text)] == [
         (1, 6),

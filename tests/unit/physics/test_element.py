@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from calm.physics.element import axis_along, drag_force, drag_share
+from calm.physics.element import axis_along, drag_force, drag_share, varying_share
+from calm.physics.reynolds import DragCurve
 
 component = st.floats(-3, 3)
 vectors = st.tuples(component, component, component)
@@ -29,6 +30,46 @@ def test_the_smallest_of_three_roots_is_taken():
     crossings = shares[:-1][np.diff(np.sign(excess)) != 0]
     assert len(crossings) == 3
     assert drag_share(*a, k, *v) == pytest.approx(crossings[0], abs=1e-5)
+
+
+@given(force=vectors, current=vectors, k=st.floats(0, 50), constant=st.floats(0.1, 4))
+def test_a_varying_share_that_does_not_vary_is_the_share(force, current, k, constant):
+    """Where no three roots are too near each other to be told apart."""
+    a, v = np.array(force), np.array(current)
+    assume(a @ v >= 0.0)
+    varying = varying_share(*force, k, lambda _: constant, *current)
+    assert varying == pytest.approx(drag_share(*force, constant * k, *current), rel=1e-9, abs=1e-14)
+
+
+@given(force=vectors, current=vectors, k=st.floats(0, 50), diameter=st.floats(0.05, 1.0))
+def test_a_varying_share_solves_its_equation(force, current, k, diameter):
+    """c |A + c V| = k f(|Vn|) |V × A| with the speed across the axis that follows."""
+    curve, v = DragCurve(diameter, 5.0), np.array(current)
+
+    def varied(speed):
+        return curve.factor(speed * diameter / 1.36e-6)
+
+    c = varying_share(*force, k, varied, *current)
+    axis = np.array(axis_along(*force, c, *current))
+    across = float(np.linalg.norm(np.cross(v, axis)))
+    # c and |Vn| each err by 1e-14 of |V × A|/|A|; the curve's slope makes up to three times that
+    assert c == pytest.approx(k * varied(across) * across, rel=1e-8, abs=1e-10 * (1 + k))
+
+
+def test_of_leaning_and_standing_in_the_drag_crisis_the_first_from_rest_is_taken():
+    """A light cylinder in 4 m/s: it may lean by 73 degrees, or by 65 in less of a drag."""
+    curve, force, k, v = DragCurve(0.5, 5.0), 100.0, 100.0, 4.0
+
+    def varied(speed):
+        return curve.factor(speed * 0.5 / 1.36e-6)
+
+    speeds = np.linspace(0.0, v, 200_001)[1:]
+    c = k * np.array([varied(s) for s in speeds]) * speeds
+    excess = speeds * np.hypot(force, c * v) - v * force
+    crossings = speeds[:-1][np.diff(np.sign(excess)) != 0]
+    assert len(crossings) == 3
+    share = varying_share(0.0, 0.0, force, k, varied, v, 0.0, 0.0)
+    assert v * force / np.hypot(force, share * v) == pytest.approx(crossings[0], abs=2e-5)
 
 
 @given(force=vectors, current=vectors, kn=st.floats(0, 50), kt=st.floats(0, 5))

@@ -24,6 +24,17 @@ def test_agrees_with_linear_interpolation_wherever_the_search_starts(start):
         assert profile.at(depth, start) == pytest.approx((*current, density), rel=1e-14)
 
 
+def test_viscosity_is_linear_between_levels_of_its_own_and_held_outside():
+    water = Water(
+        depth=1000, level=[0], u=[0], v=[0], w=[0], density=[1025],
+        viscosity_level=[0, 100, 400], viscosity=[1.0e-6, 1.4e-6, 1.7e-6],
+    )  # fmt: skip
+    profile, depths = Profile(water), np.array([-3.0, 0.0, 25.0, 100.0, 250.0, 400.0, 900.0])
+    expected = [1.0e-6, 1.0e-6, 1.1e-6, 1.4e-6, 1.55e-6, 1.7e-6, 1.7e-6]
+    assert [profile.viscosity(depth) for depth in depths] == pytest.approx(expected, rel=1e-14)
+    assert water.viscosity_at(depths) == pytest.approx(expected, rel=1e-14)
+
+
 def test_a_single_level_is_uniform():
     profile = Profile(Water(depth=50, level=[0.0], u=[0.5], v=[0], w=[0], density=[1025]))
     assert profile.at(-1, 0) == profile.at(0, 0) == profile.at(49, 1) == (0.5, 0, 0, 1025)
@@ -38,7 +49,7 @@ def test_distance_to_the_next_level_either_way():
 
 
 def test_arrays_are_refused_when_they_cannot_be():
-    with pytest.raises(ValueError, match="levels rise"):
+    with pytest.raises(ValueError, match="levels must rise"):
         Water(depth=50, level=[0, 0], u=[0, 0], v=[0, 0], w=[0, 0], density=[1025, 1025])
     with pytest.raises(ValueError, match="finite"):
         Water(depth=50, level=[0], u=[np.nan], v=[0], w=[0], density=[1025])

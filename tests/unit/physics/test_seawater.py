@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from calm.physics import seawater
+from calm.physics.line import REFERENCE_VISCOSITY
 
 TEMPERATURES = (0, 5, 10, 15, 20, 25, 30)
 
@@ -56,7 +57,7 @@ def test_kinematic_viscosity_to_the_printed_digits():
         for t, rho in zip(TEMPERATURES, density, strict=True)
     ]
     assert got == pytest.approx(printed, abs=5.5e-5)
-    assert got[2] == pytest.approx(1e6 * seawater.KINEMATIC_VISCOSITY, abs=5e-4)
+    assert got[2] == pytest.approx(1e6 * REFERENCE_VISCOSITY, abs=5e-4)
 
 
 @pytest.mark.parametrize(

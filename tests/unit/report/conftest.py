@@ -5,6 +5,10 @@ from types import SimpleNamespace as Record
 import numpy as np
 import pytest
 
+from calm.case import TowResult
+from calm.case.band import StrummingBand
+from calm.files.strumming import BourgetMarichalKeys
+
 NAN = float("nan")
 
 
@@ -68,7 +72,10 @@ def build_result(**changes):
         Record(label="adcp", component=adcp),
     )
     limits = Record(steel=3.0, synthetic=5.0, surface=5.0)
-    file = Record(pieces=pieces, checks=Record(safety_factor=limits))
+    file = Record(
+        pieces=pieces, checks=Record(safety_factor=limits), environment=Record(depth=1100.0),
+        solver=Record(strumming=None),
+    )  # fmt: skip
     water = Record(
         depth=1100.0,
         level=np.array([0.0, 200.0, 1100.0]),
@@ -81,12 +88,14 @@ def build_result(**changes):
     fields = dict(
         name="Iroise 2026", type="subsurface", status="converged", iterations=5, segments=214,
         miss=1.2e-7, closure=3e-12, accuracy=Record(depth=0.003, tension=0.8),
-        top=Record(depth=113.2, x=61.0, y=4.0, knockdown=8.25, used_buoyancy=1.0, reserve=0.0),
+        top=Record(depth=113.2, x=61.0, y=4.0, knockdown=8.25, used_buoyancy=1.0, reserve=0.0,
+                   draft=None, freeboard=None),
         anchor=Record(tension=5210.0, vertical=5100.0, horizontal=1060.0, angle=11.74,
                       required_weight=10300.0, weight=9800.0, grounded_length=0.0),
         components=components, clamps=clamps, shape=shape, still_shape=still,
         warnings=("adcp leans 16.0°, its warning is at 15°",),
-        mooring=Record(file=file, water=water),
+        mooring=Record(file=file, water=water), file=file, strumming=None,
+        strumming_band=StrummingBand(1.5, "converged", 118.0, 13.05, 5333.3),
     )  # fmt: skip
     result = Record(**(fields | changes))
     result.to_dict = lambda: {"name": result.name, "status": result.status, "miss": result.miss}
@@ -101,3 +110,58 @@ def result():
 @pytest.fixture
 def make_result():
     return build_result
+
+
+def build_tow_result(**changes):
+    """A tow towards the east with its line north of the ship's track, in water of 300 m."""
+    components = Columns(
+        [
+            component(0, "wire-8", "tow wire", "line", 200.0, (-3.0, 120.0), (0.0, -140.0),
+                      (3000.4, 1500.0), 48.0, safety_factor=2.5),
+            component(1, "fish", "fish", "instrument", 1.5, (120.0, 121.5), (-140.0, -140.5),
+                      (1500.0, 0.0), 18.0, safety_factor=20.0),
+        ]
+    )  # fmt: skip
+    clamps = Columns(
+        [
+            Record(index=0, use="sbe37", label="sbe37", depth=60.0, x=-60.0, y=4.0,
+                   tension=2000.0, tilt=60.0, knockdown=NAN),
+        ]
+    )  # fmt: skip
+    wire = Record(kind="cable", material="steel", max_tilt=None, warn_tilt=None)
+    fish = Record(kind="body", role="instrument", material=None, max_tilt=15.0, warn_tilt=None)
+    ctd = Record(kind="body", role="instrument", material=None, max_tilt=None, warn_tilt=None)
+    pieces = (
+        Record(component=wire, clamps=(Record(label="sbe37", component=ctd),)),
+        Record(component=fish, clamps=()),
+    )
+    file = Record(
+        name="Survey", pieces=pieces, environment=Record(depth=300.0, fluid="water"),
+        checks=Record(safety_factor=Record(steel=3.0, synthetic=5.0, surface=5.0)),
+        solver=Record(strumming=BourgetMarichalKeys()),
+    )  # fmt: skip
+    water = Record(level=np.array([0.0, 100.0]), u=np.array([0.5, 0.0]), v=np.array([0.0, 0.0]))
+    along = np.linspace(1.0, 0.0, 12)
+    shape = Record(depth=-3.0 + 124.5 * along, x=-140.5 * along, y=10.0 * along * (1.0 - along))
+    fields = dict(
+        tow=Record(file=file, water=water, keys=Record(height=3.0)),
+        name="Survey", type="tow", status="converged", iterations=7, segments=90, miss=2e-9,
+        closure=3e-13, accuracy=Record(depth=0.002, tension=0.3), speed=1.0289, toward=90.0,
+        tow_point=Record(tension=3000.4, angle=35.26, vertical=1732.0, horizontal=2450.0),
+        body=Record(depth=120.0, layback=140.0, tension=1500.0, angle=71.6),
+        strumming=Record(frequency=3.559, cn_min=1.2504, cn_max=3.0),
+        components=components, clamps=clamps, shape=shape, warnings=("fish is loose",),
+    )  # fmt: skip
+    result = TowResult(**(fields | changes))
+    result.__dict__["strumming_band"] = None  # which would be solved
+    return result
+
+
+@pytest.fixture
+def make_tow_result():
+    return build_tow_result
+
+
+@pytest.fixture
+def tow_result():
+    return build_tow_result()

@@ -12,7 +12,8 @@ from matplotlib.transforms import Bbox
 
 from calm.analytic.chart_curve import curve
 from calm.errors import UsageError
-from calm.report.chart import chart_picture, check_chart_format, draw_chart
+from calm.report.chart import CHART_FORMATS, chart_picture, draw_chart
+from calm.report.picture import check_format
 
 PLATES = [(0.0, "below-90"), (0.15, "below-90"), (0.6, "below-90")]
 PLATES += [(2.4, "below-90"), (2.4, "above-90")]
@@ -118,7 +119,7 @@ def test_a_drawing_is_the_same_file_each_time_and_its_texts_are_texts() -> None:
 
 def test_pictures_of_other_formats_are_refused() -> None:
     with pytest.raises(UsageError, match=r"ends in \.svg, \.png or \.pdf"):
-        check_chart_format(Path("chart.jpg"))
+        check_format(Path("chart.jpg"), CHART_FORMATS)
 
 
 def test_no_chart_above_90_degrees_without_a_current() -> None:

@@ -7,7 +7,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 
 from calm.errors import UsageError
-from calm.report.plot import check_format, draw, picture
+from calm.report.picture import check_format
+from calm.report.plot import draw, picture
 
 
 def drawn_names(result):

@@ -4,6 +4,8 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
+from calm.case.band import StrummingBand
+from calm.case.result import Strumming
 from calm.report.limits import Mark, safety_mark, tilt_mark
 from calm.report.table import result_table
 
@@ -87,3 +89,29 @@ def test_safety_marks(make_result, index, mooring_type, factor, utilisation, mar
     record.safety_factor = float("nan") if factor is None else factor
     record.utilisation = float("nan") if utilisation is None else utilisation
     assert safety_mark(result, result.mooring.file.pieces[index].component, record) is mark
+
+
+def test_draft_where_the_hull_is_known(make_result):
+    result = make_result(type="surface")
+    result.top.used_buoyancy, result.top.draft, result.top.freeboard = 0.5, 0.614, 0.386
+    assert "\nHull: draft 0.61 m, freeboard 0.39 m\n" in text(result, 100)
+
+
+@pytest.mark.parametrize(
+    ("kind", "band", "told"),
+    [
+        ("subsurface", ("converged", 118.0, 13.05, 5333.3), "knockdown 13.1 m, anchor 5333 N"),
+        ("surface", ("converged", 0.0, 0.0, 5333.3), "top at the surface, anchor 5333 N"),
+        ("surface", ("converged", 2.0, 2.0, 5333.3), "knockdown 2.0 m, anchor 5333 N"),
+        ("subsurface", ("no-equilibrium",), "no-equilibrium"),
+    ],
+)
+def test_what_strumming_would_do(make_result, kind, band, told):
+    result = make_result(type=kind, strumming_band=StrummingBand(1.5, *band))
+    assert f"If the cables strum, Cn × 1.5: {told}\n" in text(result, 100)
+
+
+def test_what_strumming_does(make_result):
+    result = make_result(strumming=Strumming(frequency=12.3, cn_min=1.95, cn_max=1.95))
+    assert "Strumming at up to 12.30 Hz, Cn from 1.950 to 1.950\n" in text(result, 100)
+    assert "If the cables strum" not in text(result, 100)

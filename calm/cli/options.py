@@ -1,0 +1,91 @@
+"""Quantities given as options, and the range of speeds of a sweep."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from calm.errors import UsageError
+
+MOST_SPEEDS = 10_000
+"""No more speeds than this in one sweep."""
+
+_ROUNDING = 1e-9  # of a step: what unit conversion may leave between the last step and the end
+
+
+def option(name: str) -> str:
+    """How a parameter is written on the command line."""
+    return f"--{name.replace('_', '-')}"
+
+
+def quantities(given: Mapping[str, tuple[str | None, str]]) -> dict[str, float]:
+    """The quantities that were given, in SI and degrees; or all that is wrong with them.
+
+    Parameters
+    ----------
+    given : mapping
+        Of the parameter's name to its text (None where absent) and its dimension.
+
+    Raises
+    ------
+    UsageError
+        With every text that is no quantity of its dimension.
+    """
+    from calm.units import QuantityError, parse_quantity
+
+    values: dict[str, float] = {}
+    complaints: list[str] = []
+    for name, (text, dimension) in given.items():
+        if text is None:
+            continue
+        try:
+            values[name] = parse_quantity(text, dimension)
+        except QuantityError as error:
+            complaints.append(f"{option(name)}: `{text}` {error}")
+    if complaints:
+        raise UsageError("; ".join(complaints))
+    return values
+
+
+def speed_range(text: str) -> list[float]:
+    """The speeds [m/s] of ``A:B:STEP``, from A to B, both included; the last step may be shorter.
+
+    Raises
+    ------
+    UsageError
+        Not three speeds with their units; A not above 0, B below A, a step not above 0; more
+        than `MOST_SPEEDS`.
+    """
+    from calm.units import QuantityError, parse_quantity
+
+    parts = text.split(":")
+    if len(parts) != 3:
+        raise UsageError(f"--speeds: `{text}` is not A:B:STEP, such as `1 knot:12 knot:0.5 knot`")
+    values: list[float] = []
+    complaints: list[str] = []
+    for part in parts:
+        try:
+            values.append(parse_quantity(part, "speed"))
+        except QuantityError as error:
+            complaints.append(f"`{part.strip()}` {error}")
+    if complaints:
+        raise UsageError(f"--speeds: {'; '.join(complaints)}")
+    return _steps(text, *values)
+
+
+def _steps(text: str, first: float, last: float, step: float) -> list[float]:
+    if first <= 0.0:
+        raise UsageError(f"--speeds: `{text}` begins at {first:g} m/s; a tow needs a speed above 0")
+    if last < first:
+        raise UsageError(
+            f"--speeds: `{text}` ends at {last:g} m/s, below its beginning, {first:g} m/s"
+        )
+    if step <= 0.0:
+        raise UsageError(f"--speeds: `{text}` has a step of {step:g} m/s; it must be above 0")
+    whole = math.floor((last - first) / step + _ROUNDING) if last > first else 0
+    if whole >= MOST_SPEEDS:
+        raise UsageError(f"--speeds: `{text}` makes more than {MOST_SPEEDS} speeds; widen the step")
+    speeds = [first + number * step for number in range(whole + 1)]
+    if last - speeds[-1] > _ROUNDING * step:
+        return [*speeds, last]
+    return [*speeds[:-1], last]

@@ -1,0 +1,172 @@
+"""``calm tow``: towed lines, at their own speed or at many."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from calm.cli.exit_codes import ExitCode, gravest
+from calm.cli.options import speed_range
+from calm.cli.outputs import Outcome, OutputPath, Outputs
+from calm.cli.run import read_files, solve_and_show
+from calm.cli.streams import narrate, progress
+from calm.errors import NoEquilibrium, UsageError
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from calm.case import Tow
+    from calm.report.tabulation import Tabulation
+
+TOW_EXAMPLES = """Examples:
+
+  calm tow tow.yaml
+  calm tow tow.yaml --speeds "1 knot:12 knot:0.5 knot" --plot sweep.png
+  calm tow tow.yaml --speeds "0.5 m/s:3 m/s:0.1 m/s" --csv sweep.csv
+  calm tow tow.yaml --sensitivity"""
+
+
+def tow(
+    files: list[Path],
+    /,
+    *,
+    environment: str | None = None,
+    catalog: list[Path] | None = None,
+    json: OutputPath = None,
+    csv: OutputPath = None,
+    plot: Path | None = None,
+    speeds: str | None = None,
+    sensitivity: bool = False,
+) -> ExitCode:
+    """Solve towed lines, at the speed of their file or at many speeds.
+
+    Without --speeds and --sensitivity it does what `calm run` does, for tows
+    only. With --speeds a speed without equilibrium is a row with its status; the
+    others are solved all the same, and the exit code is then 3.
+
+    Parameters
+    ----------
+    files
+        Mooring files with `tow:`.
+    environment
+        An environment named in the files, or an environment file, in place of their own.
+    catalog
+        A catalogue of your own; its components hide others of the same id. Repeatable.
+    json
+        Write the result as JSON, - to print it; several files give an array.
+    csv
+        Write the components, or with --speeds the speeds, as CSV, - to print it.
+    plot
+        Draw it, or with --speeds depth, layback and tension by speed; files as in `calm run`.
+    speeds
+        Solve at speeds A:B:STEP with their units, both ends included.
+    sensitivity
+        Solve with A1, B1 and C1 of bourget-marichal strumming each 10 % smaller and greater.
+    """
+    if speeds is not None and sensitivity:
+        raise UsageError("give either --speeds or --sensitivity")
+    if sensitivity and plot is not None:
+        raise UsageError("--sensitivity is a table; it has no --plot")
+    chosen = None if speeds is None else speed_range(speeds)
+    outputs = Outputs(tuple(files), json, csv, plot)
+    outputs.check()
+    tows = _only_tows(files, environment, catalog or [])
+    if chosen is not None:
+        return _tabulate(tows, outputs, lambda file, each: _sweep(file, each, chosen))
+    if sensitivity:
+        return _tabulate(tows, outputs, _vary)
+    return solve_and_show(tows, outputs)
+
+
+@dataclass(frozen=True)
+class _Tabulated:
+    """A tow solved many times."""
+
+    file: Path
+    tabulation: Tabulation
+
+    @property
+    def code(self) -> ExitCode:
+        failed = any(row.result is None for row in self.tabulation.rows)
+        return ExitCode.NO_EQUILIBRIUM if failed else ExitCode.DONE
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        return self.tabulation.warnings
+
+    def document(self) -> dict[str, Any]:
+        from calm.report.tabulation import to_document
+
+        return to_document(self.tabulation)
+
+    def tables(self) -> list[RenderableType]:
+        from calm.report.tabulation_table import tabulation_table
+
+        return [tabulation_table(self.tabulation)]
+
+    def picture(self, suffix: str) -> bytes:
+        from calm.report.picture import image
+        from calm.report.plot_sweep import draw_sweep
+
+        return image(draw_sweep(self.tabulation), suffix)
+
+
+def _only_tows(files: list[Path], environment: str | None, catalogs: list[Path]) -> list[Tow]:
+    from calm.case import Tow
+
+    read = read_files(files, environment, catalogs)
+    moorings = [file for file, line in zip(files, read, strict=True) if not isinstance(line, Tow)]
+    if moorings:
+        raise UsageError(
+            "; ".join(f"{file} is a mooring, not a tow: calm run {file}" for file in moorings)
+        )
+    return [line for line in read if isinstance(line, Tow)]
+
+
+def _sweep(file: Path, each: Tow, speeds: list[float]) -> _Tabulated:
+    from calm.case.sweep import sweep
+    from calm.report.tabulation import by_speed
+
+    outcomes = sweep(each, progress(speeds, f"speeds of {file}"))
+    failed = [
+        (speed, outcome)
+        for speed, outcome in zip(speeds, outcomes, strict=True)
+        if isinstance(outcome, NoEquilibrium)
+    ]
+    if failed:
+        speed, failure = failed[0]
+        narrate(
+            f"{file}: no equilibrium at {len(failed)} of {len(speeds)} speeds; "
+            f"at {speed:.3g} m/s, {failure}"
+        )
+    return _Tabulated(file, by_speed(each, speeds, outcomes))
+
+
+def _vary(file: Path, each: Tow) -> _Tabulated:
+    from calm.case.sweep import sensitivity
+    from calm.report.tabulation import by_coefficient
+
+    return _Tabulated(file, by_coefficient(each, sensitivity(each)))
+
+
+def _tabulate(
+    tows: Sequence[Tow], outputs: Outputs, tabulate: Callable[[Path, Tow], _Tabulated]
+) -> ExitCode:
+    """Solve each tow many times, and write the outputs."""
+    shown: list[_Tabulated | Outcome] = []
+    for file, each in zip(outputs.files, tows, strict=True):
+        try:
+            shown.append(tabulate(file, each))
+        except NoEquilibrium as failure:  # no length of cable fits: there is nothing to tabulate
+            narrate(f"{file}: {failure}")
+            shown.append(Outcome(file, each.file.name, failure=failure))
+
+    def to_csv() -> str:
+        from calm.report.tabulation import to_csv
+
+        return to_csv([each.tabulation for each in shown if isinstance(each, _Tabulated)])
+
+    outputs.write(shown, to_csv)
+    return gravest(each.code for each in shown)

@@ -1,0 +1,184 @@
+"""How a rope stretches: an elongation curve, and what is published where none is known."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterable, Mapping
+from itertools import pairwise
+from math import isfinite, sqrt
+from types import MappingProxyType
+
+TRUSTED_LOAD = 0.8
+"""Share of the breaking load beyond which an elongation curve should not be trusted."""
+
+_GAUSS = sqrt(1.0 / 3.0)
+
+
+class ElongationCurve:
+    """Strain of a rope against its tension, through a maker's table.
+
+    Monotone cubic interpolation: it passes through every point, has a continuous slope and never
+    falls where the table does not. Beyond the last point it goes on straight, with the chord of
+    the last interval. A table of one point is a linear stiffness.
+
+    Parameters
+    ----------
+    points : (load / breaking load [-], strain [-]) by growing load, up to 1; (0, 0) is added
+        where the table does not begin with it
+    breaking_load : [N]
+    permanent : elongation that stays once the rope has been loaded [-], added at every tension
+
+    Attributes
+    ----------
+    tensions, strains : the points of the table, from (0, 0) on [N], [-]
+    permanent : as given [-]
+    limit : tension beyond which an answer deserves a warning [N]: that of the last point, and at
+        most 80 % of the breaking load
+
+    Raises
+    ------
+    ValueError
+        Loads that do not grow, strains that fall, a strain at no load, a load above the breaking
+        load, figures that are negative or not finite.
+
+    Source: F. N. Fritsch & J. Butland (1984), SIAM J. Sci. Stat. Comput. 5, 300-304, for the
+    slopes at the points.
+    """
+
+    __slots__ = ("_cubics", "limit", "permanent", "strains", "tensions")
+
+    def __init__(
+        self,
+        points: Iterable[tuple[float, float]],
+        breaking_load: float,
+        permanent: float = 0.0,
+    ) -> None:
+        if not (isfinite(breaking_load) and breaking_load > 0.0):
+            raise ValueError("the breaking load must be positive")
+        if not (isfinite(permanent) and permanent >= 0.0):
+            raise ValueError("the permanent elongation must not be negative")
+        loads, self.strains = _checked(points)
+        self.tensions = [load * breaking_load for load in loads]
+        self.permanent = permanent
+        self.limit = min(loads[-1], TRUSTED_LOAD) * breaking_load
+        self._cubics = _cubics(self.tensions, self.strains)
+
+    def strain(self, tension: float) -> float:
+        """Strain at a tension ≥ 0 [N], permanent elongation included [-]."""
+        i = bisect_right(self.tensions, tension, 1) - 1
+        a, b, c, d = self._cubics[i]
+        x = tension - self.tensions[i]
+        return self.permanent + a + x * (b + x * (c + x * d))
+
+    def mean_strain(self, tension: float, half: float) -> float:
+        """Mean strain where the tension goes evenly from `tension` - `half` to `tension` + `half`.
+
+        By two Gauss points, exact where the range lies between two points of the table [-].
+        """
+        away = abs(half) * _GAUSS
+        return 0.5 * (self.strain(tension - away) + self.strain(tension + away))
+
+
+def _checked(points: Iterable[tuple[float, float]]) -> tuple[list[float], list[float]]:
+    """Loads and strains of a table that can be a rope's, (0, 0) in front."""
+    loads, strains = [0.0], [0.0]
+    for number, (load, strain) in enumerate(points, start=1):
+        if not (isfinite(load) and isfinite(strain)):
+            raise ValueError(f"point {number}: a load or a strain is not a number")
+        if number == 1 and load == 0.0:
+            if strain != 0.0:
+                raise ValueError("the strain at no load must be 0; it is a `permanent_elongation`")
+            continue
+        if load > 1.0:
+            raise ValueError(f"point {number}: a load of {load:g} times the breaking load")
+        if load <= loads[-1]:
+            raise ValueError(f"point {number}: the load {load:g} does not grow")
+        if strain < strains[-1]:
+            raise ValueError(f"point {number}: the strain {strain:g} falls")
+        loads.append(load)
+        strains.append(strain)
+    if len(loads) == 1:
+        raise ValueError("an elongation curve needs a point with a load")
+    return loads, strains
+
+
+def _cubics(xs: list[float], ys: list[float]) -> list[tuple[float, float, float, float]]:
+    """Coefficients of y in powers of x - xs[i], for every interval and the line beyond the last."""
+    widths = [b - a for a, b in pairwise(xs)]
+    chords = [(b - a) / h for (a, b), h in zip(pairwise(ys), widths, strict=True)]
+    slopes = _slopes(widths, chords)
+    cubics = [
+        (ys[i], slopes[i], (3.0 * m - 2.0 * slopes[i] - slopes[i + 1]) / h,
+         (slopes[i] + slopes[i + 1] - 2.0 * m) / (h * h))
+        for i, (h, m) in enumerate(zip(widths, chords, strict=True))
+    ]  # fmt: skip
+    return [*cubics, (ys[-1], chords[-1], 0.0, 0.0)]
+
+
+def _slopes(widths: list[float], chords: list[float]) -> list[float]:
+    """Slope at every point: at the ends of a parabola, elsewhere a weighted harmonic mean."""
+    if len(chords) == 1:
+        return [chords[0], chords[0]]
+    slopes = [_end_slope(widths[0], widths[1], chords[0], chords[1])]
+    for i in range(1, len(chords)):
+        left, right = chords[i - 1], chords[i]
+        if left == 0.0 or right == 0.0:
+            slopes.append(0.0)
+            continue
+        before, after = 2.0 * widths[i] + widths[i - 1], widths[i] + 2.0 * widths[i - 1]
+        slopes.append((before + after) / (before / left + after / right))
+    return [*slopes, _end_slope(widths[-1], widths[-2], chords[-1], chords[-2])]
+
+
+def _end_slope(width: float, next_width: float, chord: float, next_chord: float) -> float:
+    slope = ((2.0 * width + next_width) * chord - width * next_chord) / (width + next_width)
+    return max(slope, 0.0)
+
+
+StiffnessLaw = tuple[float, float]
+"""a and b of EA = a D² + b D³ [N/m²], [N/m³]."""
+
+_NYLON: tuple[StiffnessLaw, ...] = ((1.18e8, 0.0), (2.71e8, 0.0), (1.035e9, 1.15e9))
+_POLYESTER: tuple[StiffnessLaw, ...] = ((1.09e9, 0.0), (5.42e8, 0.0), (4.312e9, 0.0))
+_POLYETHYLENE: tuple[StiffnessLaw, ...] = ((5.42e8, 0.0),)
+_HMPE: tuple[StiffnessLaw, ...] = ((7.85e10, 0.0), (3.248e10, 3.6456e10))
+_ARAMID: tuple[StiffnessLaw, ...] = ((5.42e10, 0.0),)
+
+FIBRES: Mapping[str, tuple[StiffnessLaw, ...]] = MappingProxyType(
+    {
+        "nylon": _NYLON,
+        "polyamide": _NYLON,
+        "perlon": _NYLON,
+        "polyester": _POLYESTER,
+        "dacron": _POLYESTER,
+        "polypropylene": ((1.06e9, 0.0), (2.71e8, 0.0)),
+        "polyethylene": _POLYETHYLENE,
+        "polyolefin": (),
+        "hmpe": _HMPE,
+        "dyneema": _HMPE,
+        "spectra": _HMPE,
+        "aramid": _ARAMID,
+        "kevlar": _ARAMID,
+        "vectran": (),
+    }
+)
+"""The published stiffnesses of ropes, by a word in the name of the material.
+
+Sources: the rope tables of OrcaFlex, as MoorPy takes them over (nylon, polyester, polypropylene);
+the moduli of R. Dewey's Mooring Design & Dynamics, on πD²/4; MoorPy's default properties (nylon 5,
+polyester 14, HMPE 56 times its breaking load).
+"""
+
+
+def published_stiffnesses(material: str, diameter: float) -> tuple[float, ...]:
+    """EA of a rope by everyone who gives one for its fibre [N], the softest first.
+
+    Parameters
+    ----------
+    material : as a person writes it; of a blend, the first fibre named
+    diameter : [m]
+    """
+    text = material.lower()
+    named = [fibre for fibre in FIBRES if fibre in text]
+    laws = FIBRES[min(named, key=text.index)] if named else ()
+    return tuple(sorted((a + b * diameter) * diameter**2 for a, b in laws))

@@ -1,0 +1,92 @@
+"""What the angle of a bare towed cable tells of its vibration, as a table and as a document."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from calm.physics.strumming import BourgetMarichal
+
+
+@dataclass(frozen=True)
+class BareCable:
+    """A cable towed with nothing at its end.
+
+    Attributes
+    ----------
+    angle : to the horizontal, measured [degrees], above 0 and below 90
+    speed : of the ship through the water [m/s], > 0
+    diameter : [m], > 0
+    weight : of a metre in water [N/m], > 0
+    density : of the water [kg/m³], > 0
+    """
+
+    angle: float
+    speed: float
+    diameter: float
+    weight: float
+    density: float
+
+    @property
+    def vibration(self) -> tuple[float, float]:
+        """C* and a/D, by `BourgetMarichal.from_bare_cable`."""
+        return BourgetMarichal().from_bare_cable(
+            math.radians(self.angle), self.speed, self.diameter, self.weight, self.density
+        )
+
+    @property
+    def frequency(self) -> float:
+        """Of the vibration [Hz]."""
+        angle = math.radians(self.angle)
+        return BourgetMarichal().frequency(self.speed, angle, self.diameter)
+
+
+def bare_cable_document(cable: BareCable) -> dict[str, Any]:
+    """The JSON object: what was given (SI, degrees), `cn`, `amplitude` a/D, `frequency`, `notes`.
+
+    `frequency` is None where the cable does not vibrate.
+    """
+    cn, amplitude = cable.vibration
+    return {
+        **vars(cable),
+        "cn": cn,
+        "amplitude": amplitude,
+        "frequency": cable.frequency if amplitude else None,
+        "notes": list(_notes(cable)),
+    }
+
+
+def bare_cable_table(cable: BareCable) -> RenderableType:
+    """The answer and what to think of it, for a rich console."""
+    cn, amplitude = cable.vibration
+    table = Table(box=None, show_header=False, padding=(0, 2, 0, 0), pad_edge=False)
+    table.add_row("weight in water", f"{cable.weight:.3f} N/m")
+    table.add_row("drag coefficient C*", f"{cn:.3f}")
+    table.add_row("amplitude a/D", f"{amplitude:.3f}")
+    if amplitude:
+        table.add_row("amplitude a", f"{1000.0 * amplitude * cable.diameter:.1f} mm")
+        table.add_row("frequency", f"{cable.frequency:.2f} Hz")
+    title = f"Bare cable at {cable.angle:g}° behind a ship at {cable.speed:.3g} m/s"
+    notes = [Text(f"! {note}", style="bold red") for note in _notes(cable)]
+    return Group(Text(title, style="bold"), Text(), table, *([Text(), *notes] if notes else []))
+
+
+def _notes(cable: BareCable) -> Iterator[str]:
+    law = BourgetMarichal()
+    cn, amplitude = cable.vibration
+    least = math.degrees(law.LEAST_ANGLE)
+    if cable.angle < least:
+        yield (
+            f"Below {least:.0f}° the coefficient of a cable at rest, C0 = {law.rest:g}, is not "
+            "claimed: a/D needs a look."
+        )
+    if not amplitude:
+        yield f"C* is not above C0 = {law.rest:g}, a cable at rest: it does not vibrate."
+    if cn > law.ceiling:
+        yield f"C* is above {law.ceiling:g}, the greatest of the method: look at what was measured."

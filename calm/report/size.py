@@ -1,0 +1,120 @@
+"""A sizing as a person reads it: what to change, and the mooring before and after."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from calm.quantities import QUANTITIES
+
+if TYPE_CHECKING:
+    from calm.case.size import Sizing, Trial
+
+_ROWS = (
+    ("depth", "depth", "depth of the top"),
+    ("knockdown", "knockdown", "knockdown of the top"),
+    ("excursion", "offset", "excursion of the top"),
+    ("used_buoyancy", "used_buoyancy", "buoyancy used, of 1"),
+    ("tension", "tension", "pull on the anchor"),
+    ("vertical", "vertical", "  up"),
+    ("horizontal", "horizontal", "  sideways"),
+    ("required_weight", "required_weight", "anchor weight needed"),
+)
+"""Rows: name in `Figures`, quantity, words."""
+
+
+def sizing_table(sizing: Sizing) -> RenderableType:
+    """What to change so that the target is met, and what else that changes, for a rich console.
+
+    Parameters
+    ----------
+    sizing : one whose target is met; of the others there is only a reason to tell
+    """
+    assert sizing.after is not None
+    file = sizing.change.file
+    parts: list[RenderableType] = [
+        Text(f"{file.name}: {sizing.target.text}", style="bold"),
+        Text(),
+        Text(_answer(sizing)),
+        Text(),
+        _comparison(sizing, sizing.before, sizing.after),
+        Text(),
+    ]
+    if sizing.before.failure is not None:
+        parts.append(Text(f"As it is: {sizing.before.failure}", style="yellow"))
+    parts += [Text(f"! {warning}", style="bold red") for warning in _new_warnings(sizing)]
+    parts += [Text(note) for note in sizing.notes]
+    return Group(*parts, Text(_effort(sizing), style="dim"))
+
+
+def refusal(sizing: Sizing) -> str:
+    """Why a target is not met, and what to do, in a line."""
+    return f"{sizing.target.text} is not met. {sizing.message} {sizing.advice}"
+
+
+def _answer(sizing: Sizing) -> str:
+    change, before, after = sizing.change, sizing.before, sizing.after
+    assert after is not None
+    if after.value == before.value:
+        return f"Nothing to change: the target is met with {change.text} as it is."
+    growth = after.value - before.value
+    share = f" ({growth / abs(before.value):+.1%})".replace("%", " %") if before.value else ""
+    return (
+        f"{change.text}: {_digits(before.value, change.unit)} → "
+        f"{_digits(after.value, change.unit)}, {growth:+.6g}{share}{_each(sizing)}"
+    )
+
+
+def _each(sizing: Sizing) -> str:
+    several = len(sizing.change.labels) > 1 and not sizing.change.whole
+    return f", each of {len(sizing.change.labels)}" if several else ""
+
+
+def _digits(value: float, unit: str) -> str:
+    return f"{value:.6g} {unit}".rstrip()
+
+
+def _comparison(sizing: Sizing, before: Trial, after: Trial) -> Table:
+    table = Table(box=None, padding=(0, 0, 0, 2), pad_edge=False)
+    table.add_column(overflow="fold")
+    table.add_column()
+    table.add_column("before", justify="right")
+    table.add_column("after", justify="right")
+    target, both = sizing.target, (before, after)
+    words_of = {field: words for field, _, words in _ROWS}
+    name = words_of.get(target.quantity, f"{target.quantity} of the top")
+    if target.label is not None:
+        name = f"{target.quantity} of {target.label}"
+    measured = ("-" if one.measured is None else f"{one.measured:.6g}" for one in both)
+    table.add_row(name, _sign(target.unit), *measured, style="bold")
+    for field, quantity, words in _ROWS:
+        if words == name or (field == "used_buoyancy" and not _at_the_surface(after)):
+            continue
+        shown = QUANTITIES[quantity]
+        figures = (getattr(one.figures, field, None) for one in both)
+        table.add_row(words, shown.display_unit, *map(shown.format, figures))
+    return table
+
+
+def _at_the_surface(trial: Trial) -> bool:
+    return trial.result is not None and trial.result.type == "surface"
+
+
+def _sign(unit: str) -> str:
+    return "°" if unit == "deg" else unit
+
+
+def _new_warnings(sizing: Sizing) -> list[str]:
+    """Those of the mooring after the change that it did not have before."""
+    old = sizing.before.result.warnings if sizing.before.result is not None else ()
+    new = sizing.after.result.warnings if sizing.after and sizing.after.result else ()
+    return [warning for warning in new if warning not in old]
+
+
+def _effort(sizing: Sizing) -> str:
+    if sizing.solves == 1:
+        return "Solved as it is."
+    return f"Found by {sizing.solves} solves, with the settings of the file."

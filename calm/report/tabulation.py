@@ -1,0 +1,167 @@
+"""One tow solved many times, a row each: at several speeds, or with a coefficient changed."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from calm.errors import NoEquilibrium
+from calm.quantities import QUANTITIES
+
+if TYPE_CHECKING:
+    from calm.case import Tow, TowResult
+    from calm.case.sweep import Variation
+
+FIGURES = ("depth", "layback", "tension", "angle", "body_tension", "frequency")
+"""What a row tells of a result: depth and layback of the body, tension and angle at the ship."""
+
+_KNOTS = replace(QUANTITIES["speed"], display="knot", scale=3600.0 / 1852.0)
+
+
+@dataclass(frozen=True)
+class TabulationRow:
+    """One solve: what was chosen, as data and in the words of the table, and what came out."""
+
+    chosen: Mapping[str, float | str]
+    shown: tuple[str, ...]
+    outcome: TowResult | NoEquilibrium
+
+    @property
+    def result(self) -> TowResult | None:
+        """The equilibrium, where there is one."""
+        return None if isinstance(self.outcome, NoEquilibrium) else self.outcome
+
+    @property
+    def figures(self) -> dict[str, float | None]:
+        """`FIGURES` by name, None where unknown."""
+        result = self.result
+        if result is None:
+            return dict.fromkeys(FIGURES)
+        return {
+            "depth": result.body.depth,
+            "layback": result.body.layback,
+            "tension": result.tow_point.tension,
+            "angle": result.tow_point.angle,
+            "body_tension": result.body.tension,
+            "frequency": result.strumming.frequency if result.strumming else None,
+        }
+
+
+@dataclass(frozen=True)
+class Tabulation:
+    """A tow solved many times.
+
+    Attributes
+    ----------
+    name : of the tow
+    subject : what differs between the rows: the key of the rows in the document
+    title : of the table
+    headings : over the first columns of the table, those of `TabulationRow.shown`
+    rows : in the order chosen
+    """
+
+    name: str
+    subject: str
+    title: str
+    headings: tuple[str, ...]
+    rows: tuple[TabulationRow, ...]
+
+    @property
+    def strumming(self) -> bool:
+        """Whether any row has a frequency."""
+        return any(row.figures["frequency"] is not None for row in self.rows)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What holds for every row that has an equilibrium."""
+        told = [row.result.warnings for row in self.rows if row.result is not None]
+        first = told[0] if told else ()
+        return tuple(text for text in first if all(text in each for each in told))
+
+
+def by_speed(
+    tow: Tow, speeds: Sequence[float], outcomes: Sequence[TowResult | NoEquilibrium]
+) -> Tabulation:
+    """A row for each speed [m/s]."""
+    speed = QUANTITIES["speed"]
+    return Tabulation(
+        name=tow.file.name,
+        subject="speeds",
+        title=f"{tow.file.name}: tow at {len(speeds)} speeds",
+        headings=(f"speed\n{speed.unit}", _KNOTS.display),
+        rows=tuple(
+            TabulationRow({"speed": value}, (speed.format(value), _KNOTS.format(value)), outcome)
+            for value, outcome in zip(speeds, outcomes, strict=True)
+        ),
+    )
+
+
+def by_coefficient(tow: Tow, variations: Sequence[Variation]) -> Tabulation:
+    """A row for each coefficient and change, after one for the tow as it is."""
+    return Tabulation(
+        name=tow.file.name,
+        subject="sensitivity",
+        title=f"{tow.file.name}: what its strumming makes of A1, B1 and C1",
+        headings=("changed",),
+        rows=tuple(
+            TabulationRow(
+                {"coefficient": variation.coefficient, "change": variation.change},
+                (_changed(variation),),
+                variation.outcome,
+            )
+            for variation in variations
+        ),
+    )
+
+
+def to_document(tabulation: Tabulation) -> dict[str, Any]:
+    """The JSON object: `calm`, `name`, `type` and, under the subject, an object for each row.
+
+    A row has what was chosen, `status` and `FIGURES` (SI and degrees; `frequency` only where the
+    cable strums), and its `warnings`, or, without an equilibrium, `message` and `advice`.
+    """
+    from calm import __version__
+
+    return {
+        "calm": __version__,
+        "name": tabulation.name,
+        "type": "tow",
+        tabulation.subject: [_row_document(tabulation, row) for row in tabulation.rows],
+    }
+
+
+def to_csv(tabulations: Sequence[Tabulation]) -> str:
+    """The rows of one tow or several, of one subject, as CSV text (UTF-8, comma, point, LF)."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    chosen = list(tabulations[0].rows[0].chosen) if tabulations else []
+    figures = [QUANTITIES[name].header for name in FIGURES]
+    writer.writerow(["tow", *map(_header, chosen), "status", *figures])
+    for tabulation in tabulations:
+        for row in tabulation.rows:
+            numbers = ["" if value is None else value for value in row.figures.values()]
+            writer.writerow([tabulation.name, *row.chosen.values(), row.outcome.status, *numbers])
+    return text.getvalue()
+
+
+def _changed(variation: Variation) -> str:
+    if not variation.coefficient:
+        return "nothing"
+    return f"{variation.coefficient.upper()} {variation.change:+.0%}"
+
+
+def _header(name: str) -> str:
+    return QUANTITIES[name].header if name in QUANTITIES else name
+
+
+def _row_document(tabulation: Tabulation, row: TabulationRow) -> dict[str, Any]:
+    figures = row.figures
+    if not tabulation.strumming:
+        del figures["frequency"]
+    document = {**row.chosen, "status": row.outcome.status, **figures}
+    if isinstance(row.outcome, NoEquilibrium):
+        return document | {"message": row.outcome.message, "advice": row.outcome.advice}
+    return document | {"warnings": list(row.outcome.warnings)}

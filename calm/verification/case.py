@@ -1,0 +1,133 @@
+"""A published figure, how CALM comes to it, and what a check of it finds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from math import nan
+from typing import Generic, TypeVar
+
+Answer = TypeVar("Answer")
+
+
+@dataclass(frozen=True)
+class Case:
+    """One figure to reproduce.
+
+    Attributes
+    ----------
+    name : what the figure is, unique within its source
+    expected : the figure, as printed
+    unit : that of `expected`, as text for a reader; empty for a pure number
+    tolerance : greatest difference allowed [unit], > 0
+    why : the reason for the tolerance, a sentence
+    got : computes CALM's figure [unit]; whatever it raises counts as a figure missed
+    """
+
+    name: str
+    expected: float
+    unit: str
+    tolerance: float
+    why: str
+    got: Callable[[], float]
+
+    def check(self) -> Outcome:
+        """Compute the figure; never raises, but for what stops the whole program."""
+        try:
+            return Outcome(self, float(self.got()))
+        except Exception as error:
+            return Outcome(self, nan, f"{type(error).__name__}: {error}")
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a case: CALM's figure, or NaN and the reason why there is none."""
+
+    case: Case
+    got: float
+    reason: str = ""
+
+    @property
+    def difference(self) -> float:
+        """CALM's figure less the expected one [unit of the case]."""
+        return self.got - self.case.expected
+
+    @property
+    def within(self) -> bool:
+        """Whether the figure is met."""
+        return abs(self.difference) <= self.case.tolerance
+
+
+@dataclass(frozen=True)
+class Source:
+    """The figures that come from one place.
+
+    Attributes
+    ----------
+    title : a few words
+    text : who printed or derived the figures, what of CALM is held against them, and why a
+        published figure differs where one does; Markdown, a paragraph to each blank line
+    cases : the figures
+    picture : stem of the picture that shows them, empty where none does
+    """
+
+    title: str
+    text: str
+    cases: tuple[Case, ...]
+    picture: str = ""
+
+    def having(self, words: Iterable[str]) -> Source:
+        """The same source with the cases whose name, or its title, has every word (or part)."""
+        wanted = [word.casefold() for word in words]
+        chosen = tuple(
+            case
+            for case in self.cases
+            if all(word in f"{self.title} {case.name}".casefold() for word in wanted)
+        )
+        return Source(self.title, self.text, chosen, self.picture)
+
+
+@dataclass(frozen=True)
+class Figure(Generic[Answer]):
+    """A column of a published table.
+
+    Attributes
+    ----------
+    name, unit : of the figure
+    tolerance : greatest difference allowed [unit], or as a share of the figure if `relative`
+    of : picks the figure out of CALM's answer
+    """
+
+    name: str
+    unit: str
+    tolerance: float
+    of: Callable[[Answer], float]
+    relative: bool = False
+
+    def case(self, row: str, expected: float, why: str, solve: Callable[[], Answer]) -> Case:
+        """The case of one cell of the table."""
+        share = abs(expected) if self.relative else 1.0
+        return Case(
+            f"{row}: {self.name}", expected, self.unit, self.tolerance * share, why,
+            lambda: self.of(solve()),
+        )  # fmt: skip
+
+
+def table(
+    figures: Sequence[Figure[Answer]],
+    rows: Iterable[tuple[str, Callable[[], Answer], Sequence[float]]],
+    why: str,
+) -> tuple[Case, ...]:
+    """The cases of a published table, row by row.
+
+    Parameters
+    ----------
+    figures : its columns
+    rows : the name of each row, what solves it, and its printed figures, one for each column
+    why : the reason for the tolerances
+    """
+    return tuple(
+        figure.case(name, value, why, solve)
+        for name, solve, values in rows
+        for figure, value in zip(figures, values, strict=True)
+    )

@@ -1,0 +1,190 @@
+"""C16: CDMS-1, a mooring of Berteaux's CDMS manual that two other programs have solved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache, partial
+from math import atan2, degrees, pi
+
+import numpy as np
+
+from calm.physics.line import Floats, Integers, Line, Water
+from calm.solve import solve_mooring
+from calm.verification.case import Case, Figure, Source, table
+from calm.verification.pieces import GRAVITY, HALF_DENSITY, Piece, cable, line_of, sphere_drag
+
+_SEABED = 525.0
+_STILL = np.zeros(3)
+SEA = Water(
+    depth=_SEABED, level=np.array([0.0, 200.0, _SEABED]), u=np.array([1.5, 0.6, 0.1]), v=_STILL,
+    w=_STILL, density=np.array([1024.0, 1025.0, 1026.0]), gravity=GRAVITY,
+)  # fmt: skip
+_FIRST_KEVLAR, _THIRD_METER, _FIRST_GLASS = 3, 6, 8
+
+
+@dataclass(frozen=True)
+class Answer:
+    """The mooring as CALM finds it; forces in kilograms-force of the case's gravity.
+
+    Attributes
+    ----------
+    offset, height : (k+1,) of every node downstream of the anchor and above the seabed [m]
+    tension : (k+1,) at the nodes [kgf]
+    centre : (n, 2) offset and height of the middle of each piece [m]
+    last : (n,) node at the lower end of each piece
+    stretched : (n,) length of each piece under load [m]
+    horizontal, vertical : pull on the anchor [kgf]
+    """
+
+    offset: Floats
+    height: Floats
+    tension: Floats
+    centre: Floats
+    last: Integers
+    stretched: Floats
+    horizontal: float
+    vertical: float
+
+    @property
+    def nodes_of_tensions(self) -> tuple[int, int, int]:
+        """Where tensions are printed: below the sphere, below the third meter, at the anchor."""
+        return int(self.last[0]), int(self.last[_THIRD_METER]), int(self.last[-1])
+
+    @property
+    def lean(self) -> float:
+        """Angle of the pull on the anchor from the vertical [degrees]."""
+        return degrees(atan2(self.horizontal, self.vertical))
+
+
+def _sphere(diameter: float, lift: float, cx: float) -> Piece:
+    drag = sphere_drag(diameter, cx)
+    return Piece(diameter, False, lift * GRAVITY, drag, directional=False)
+
+
+def _rope(length: float, diameter: float, weight: float, modulus: float, ct: float) -> Piece:
+    compliance = 1.0 / (modulus * pi / 4.0 * diameter**2) if modulus else 0.0
+    return cable(length, diameter, weight * GRAVITY, 1.3, ct, compliance)
+
+
+def mooring(ct: float = 0.0) -> Line:
+    """The line, its cables with a Ct on their surface."""
+    meter = Piece(2.0, False, -20.0 * GRAVITY, HALF_DENSITY * 1.2 * 0.2 * 2.0)
+    kevlar = [_rope(length, 0.007, 0.009, 6.9e10, ct) for length in (98.0, 98.0, 212.9)]
+    return line_of(
+        _sphere(1.2, 682.0, 0.5),
+        _rope(10.0, 0.007, 0.12, 1.38e11, ct),
+        meter, kevlar[0], meter, kevlar[1], meter, kevlar[2],
+        *[_sphere(0.51, 23.0, 0.95)] * 10,
+        meter,  # the release has the meters' figures
+        _rope(4.8, 0.022, 2.33, 0.0, ct),
+        anchor_height=0.55,
+    )  # fmt: skip
+
+
+@cache
+def solved() -> Answer:
+    """CALM's answer at its default settings."""
+    solution = solve_mooring(mooring(), SEA)
+    offset, height = solution.position[:, 0], _SEABED + solution.position[:, 2]
+    first, last = solution.piece_nodes.T
+    place = np.column_stack([offset, height])
+    segment = np.linalg.norm(np.diff(solution.position, axis=0), axis=1)
+    horizontal, _, vertical = (solution.force[-1] / GRAVITY).tolist()
+    return Answer(
+        offset=offset,
+        height=height,
+        tension=solution.tension / GRAVITY,
+        centre=(place[first] + place[last]) / 2.0,
+        last=last,
+        stretched=np.add.reduceat(segment, first),
+        horizontal=horizontal,
+        vertical=vertical,
+    )
+
+
+_HEIGHT = Figure[Answer]("height of the sphere", "m", 1.0, lambda a: float(a.centre[0, 1]))
+_OFFSET = Figure[Answer]("offset of the sphere", "m", 0.2, lambda a: float(a.centre[0, 0]))
+_PLACES = ("below the sphere", "below the third meter", "at the anchor")
+
+
+def _tension(number: int, answer: Answer) -> float:
+    return float(answer.tension[answer.nodes_of_tensions[number]])
+
+
+def _tensions(share: float) -> list[Figure[Answer]]:
+    return [
+        Figure(f"tension {place}", "kgf", share, partial(_tension, number), True)
+        for number, place in enumerate(_PLACES)
+    ]
+
+
+PROGRAMS = {
+    "SSMOOR": (432.4, 71.0, 682.9, 620.4, 812.8),
+    "MD&D": (432.07, 75.5, 682.9, 631.7, 827.2),
+    "independent": (431.82, 76.81, 682.9, 621.3, 815.06),
+}
+"""Height and offset of the sphere [m]; tension below it, below the third meter, at the anchor
+[kgf], as printed."""
+
+_PROGRAM = (
+    "Heights 1 m and tensions 2 %: the two programs carry 1 to 4 % of their own and disagree with "
+    "each other by as much."
+)
+_RANGE = "The programs' range, with half a unit of their last digit."
+
+SOURCE = Source(
+    "CDMS-1",
+    """An intermediate mooring of the user manual of Berteaux's CDMS package (C16), with the answers
+of Berteaux's SSMOOR and of R. Dewey's *Mooring Design & Dynamics* (MD&D), both printed in the MD&D
+users guide. A sphere of 1.2 m; 10 m of wire; three current meters, 98 m of Kevlar below the first
+and the second and 212.9 m below the third; ten glass balls; a release; 4.8 m of chain; the anchor.
+525 m of water, 1.5, 0.6 and 0.1 m/s at heights of 525, 325 and 0 m.
+
+**Why the programs differ.** MD&D's tensions are 2 % above SSMOOR's from the third meter down. The
+gap is the downward part of the normal drag: on an inclined line a drag normal to the line has a
+component that pushes it down and takes tension off its lower part. SSMOOR has it, CALM has it; the
+drag law of the MD&D version that solved the case (Cd cos³ θ and 0.01 π θ/90°, both along the
+current) has not. The users guide puts the gap down to |U|Uᵢ against Uᵢ², which cannot differ in a
+current of one direction. An independent solution with rigid links and segments of 0.25 to 1 m
+gives 815.1 kgf at the anchor with normal drag, 826.6 with MD&D's law: each within 0.3 % of the
+program it stands for. SSMOOR's offset is 4 to 6 m shorter than everyone else's. CALM takes normal
+drag and no tangential drag here; it agrees with the independent solution to 0.1 m in height and
+0.2 % in tension.""",
+    (
+        *(
+            case
+            for name in ("SSMOOR", "MD&D")
+            for case in table(
+                [_HEIGHT, *_tensions(0.02)],
+                [(f"C16 {name}", solved, (PROGRAMS[name][0], *PROGRAMS[name][2:]))],
+                _PROGRAM,
+            )
+        ),
+        Case("C16 both programs: offset of the sphere", 74.0, "m", 3.0,
+             "71.0 m to 77.0 m: from SSMOOR's 71.0 past MD&D's 75.5 to the independent 76.8.",
+             lambda: _OFFSET.of(solved())),
+        Case("C16 both programs: angle at the anchor", 9.3, "°", 0.25, f"9.1° to 9.5°. {_RANGE}",
+             lambda: solved().lean),
+        *table(
+            [replace(_HEIGHT, tolerance=0.1), _OFFSET, *_tensions(0.002)],
+            [("C16 independent solution", solved, PROGRAMS["independent"])],
+            "Heights 0.1 m, offset 0.2 m, tensions 0.2 %: the figures printed for the mooring fix "
+            "it no better.",
+        ),
+        *(
+            Case(f"C16 independent solution: {name}", kgf, "kgf", 0.002 * kgf,
+                 "0.2 %: the figures printed for the mooring fix it no better.", got)
+            for name, kgf, got in (
+                ("anchor, horizontal", 131.6, lambda: solved().horizontal),
+                ("anchor, vertical", 804.4, lambda: solved().vertical),
+            )
+        ),
+        Case("C16 printed: height of the first glass ball", 12.03, "m", 0.01,
+             "The centimetre it is printed to; the line below it hardly leans.",
+             lambda: float(solved().centre[_FIRST_GLASS, 1])),
+        Case("C16 printed: 98 m of Kevlar under load", 98.24, "m", 0.011,
+             "The centimetre it is printed to, and 2 % of the stretch for its tension.",
+             lambda: float(solved().stretched[_FIRST_KEVLAR])),
+    ),
+    picture="verification-cdms-1",
+)  # fmt: skip

@@ -1,0 +1,111 @@
+"""Lines and waters of published cases, put together without a mooring file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import cos, inf, pi, sin
+
+import numpy as np
+
+from calm.physics.line import REFERENCE_DENSITY, Floats, Line, Water
+
+GRAVITY = 9.81
+"""[m/s²] of every case that does not name another."""
+
+HALF_DENSITY = REFERENCE_DENSITY / 2.0
+
+
+@dataclass(frozen=True)
+class Piece:
+    """One piece of a line; the names and units are those of `calm.physics.line.Line`.
+
+    `clamps` holds (distance from the piece's top, buoyancy, volume, drag) of each.
+    """
+
+    length: float
+    flexible: bool
+    buoyancy: float
+    normal_drag: float = 0.0
+    tangential_drag: float = 0.0
+    directional: bool = True
+    volume: float = 0.0
+    compliance: float = 0.0
+    thinning: float = 0.0
+    clamps: tuple[tuple[float, float, float, float], ...] = ()
+
+
+def point(buoyancy: float, drag: float) -> Piece:
+    """A piece without length: buoyancy [N], drag at 1 m/s [N/(m/s)²]."""
+    return Piece(0.0, False, buoyancy, drag, drag, directional=False)
+
+
+def sphere_drag(diameter: float, cx: float) -> float:
+    """Drag of a sphere at 1 m/s [N/(m/s)²]."""
+    return HALF_DENSITY * cx * pi / 4.0 * diameter**2
+
+
+def cable(
+    length: float, diameter: float, weight: float, cn: float, ct: float, compliance: float = 0.0
+) -> Piece:
+    """Rope or wire: weight in water [N/m], Cn on its diameter, Ct on its surface π D."""
+    normal, tangential = HALF_DENSITY * diameter * cn, HALF_DENSITY * pi * diameter * ct
+    return Piece(
+        length, True, -weight, normal, tangential, compliance=compliance, thinning=0.5
+    )  # fmt: skip
+
+
+def line_of(*pieces: Piece, anchor_height: float = 0.0) -> Line:
+    """The arrays of a list of pieces, free end first."""
+    held = [(owner, *clamp) for owner, piece in enumerate(pieces) for clamp in piece.clamps]
+    clamps = np.array(held, dtype=np.float64).reshape(len(held), 5)
+
+    def column(name: str) -> Floats:
+        return np.array([getattr(piece, name) for piece in pieces], dtype=np.float64)
+
+    return Line(
+        length=column("length"),
+        flexible=column("flexible").astype(bool),
+        buoyancy=column("buoyancy"),
+        volume=column("volume"),
+        normal_drag=column("normal_drag"),
+        tangential_drag=column("tangential_drag"),
+        directional=column("directional").astype(bool),
+        compliance=column("compliance"),
+        thinning=column("thinning"),
+        clamp_piece=clamps[:, 0].astype(np.int64),
+        clamp_at=clamps[:, 1],
+        clamp_buoyancy=clamps[:, 2],
+        clamp_volume=clamps[:, 3],
+        clamp_drag=clamps[:, 4],
+        anchor_height=anchor_height,
+    )
+
+
+def stream(
+    depth: float, speed: float, density: float = REFERENCE_DENSITY, toward: float = 0.0
+) -> Water:
+    """Water with the same current everywhere, towards an angle counted from east [rad]."""
+    u, v = speed * cos(toward), speed * sin(toward)
+    return Water(
+        depth=depth, level=np.array([0.0]), u=np.array([u]), v=np.array([v]), w=np.array([0.0]),
+        density=np.array([density]), gravity=GRAVITY,
+    )  # fmt: skip
+
+
+def profile(depth: float, rows: Sequence[tuple[float, float]]) -> Water:
+    """Water with an eastward current: rows of (depth [m], speed [m/s])."""
+    level, u = np.array(rows).T
+    still = np.zeros_like(u)
+    return Water(
+        depth=depth, level=level, u=u, v=still, w=still, density=still + REFERENCE_DENSITY,
+        gravity=GRAVITY,
+    )  # fmt: skip
+
+
+def deep_water(density: float = REFERENCE_DENSITY) -> Water:
+    """Still water without a seabed, for tows: the ship makes the current."""
+    zero = np.zeros(1)
+    return Water(
+        depth=inf, level=zero, u=zero, v=zero, w=zero, density=zero + density, gravity=GRAVITY
+    )

@@ -1,0 +1,191 @@
+"""Write `docs/verification.md` and its pictures from the cases of `calm verify`.
+
+python docs/generate_verification.py            # write them
+python docs/generate_verification.py --check    # exit 1 where the page is out of date
+
+Pictures are not compared: their bytes depend on the version of matplotlib.
+"""
+
+import sys
+from collections.abc import Callable, Iterator
+from itertools import groupby
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from calm.physics.reynolds import cylinder_coefficient, sphere_coefficient
+from calm.report.picture import image
+from calm.report.verification import COLUMNS, figures
+from calm.verification import SOURCES, Outcome, Source, cdms_1, convergence, drag_curves, s1000
+
+PAGE = Path(__file__).with_name("verification.md")
+IMAGES = Path(__file__).with_name("images")
+HEAD = """# Verification
+
+Printed by `python docs/generate_verification.py`; do not edit.
+
+`calm verify` computes {number} figures that others have printed, or that must hold for any line,
+and compares; it ends with exit code 1 when one is out of its tolerance. `calm verify cdms tension`
+takes those whose source or name has both words, `--json -` gives every digit. The cases live in
+`calm/verification/`, one module for each source, and the tests run them.
+
+Each table stands below the reason for its tolerance. What was got, and the difference, are rounded
+a digit or two beyond the tolerance. A case keeps the number, C1 to C23, of the list it was drawn
+from.
+
+Not here, because a figure alone does not tell it: the tests hold every mooring of `lines/` and
+hundreds of random moorings against an independent integration of the differential
+equations.
+
+| source | figures |
+| --- | --- |
+{contents}
+"""
+ORDER_TWO = {"color": "grey", "linestyle": "--", "linewidth": 1, "label": "second order"}
+STYLES = {"SSMOOR": ("s", "#cc3311"), "MD&D": ("D", "#e69f00"), "independent": ("^", "#009e73")}
+LINE = "#0b3c5d"
+
+
+def page() -> str:
+    """The text of the page."""
+    contents = "\n".join(
+        f"| [{source.title}](#{anchor(source.title)}) | {len(source.cases)} |" for source in SOURCES
+    )
+    number = sum(len(source.cases) for source in SOURCES)
+    head = HEAD.format(number=number, contents=contents)
+    return "\n".join([head, *map(section, SOURCES)])
+
+
+def anchor(title: str) -> str:
+    """Where a heading is on the page, as GitHub names it."""
+    kept = (sign for sign in title.lower() if sign.isalnum() or sign in " -")
+    return "".join(kept).replace(" ", "-")
+
+
+def section(source: Source) -> str:
+    """A source: where its figures come from, its picture, a table for each tolerance."""
+    parts = [f"## {source.title}", source.text]
+    if source.picture:
+        parts.append(f"![{source.title}](images/{source.picture}.svg)")
+    for why, cases in groupby(source.cases, key=lambda case: case.why):
+        parts.append(f"Tolerance: {why}")
+        parts.append("\n".join(table([case.check() for case in cases])))
+    return "\n\n".join(parts) + "\n"
+
+
+def table(outcomes: list[Outcome]) -> Iterator[str]:
+    """The lines of a table."""
+    yield f"| {' | '.join(COLUMNS)} |"
+    yield "| --- | ---: | ---: | ---: | ---: | --- |"
+    for outcome in outcomes:
+        name, *others = figures(outcome)
+        if not outcome.within:
+            name = f"**out: {name}** {outcome.reason}"
+        yield f"| {' | '.join(text.replace('|', '∣') for text in (name, *others))} |"
+
+
+def draw_cdms_1() -> Figure:
+    """Shape and tensions of CDMS-1 with what the programs print."""
+    figure = Figure(figsize=(9, 5), layout="constrained")
+    shape, tension = figure.subplots(1, 2, sharey=True)
+    answer = cdms_1.solved()
+    shape.plot(answer.offset, answer.height, color=LINE, label="CALM")
+    tension.plot(answer.tension[1:], answer.height[1:], color=LINE, label="CALM")
+    heights = [answer.height[node] for node in answer.nodes_of_tensions]
+    for program, (height, offset, *tensions) in cdms_1.PROGRAMS.items():
+        marker, colour = STYLES[program]
+        look = {"marker": marker, "color": colour, "linestyle": "none", "fillstyle": "none"}
+        shape.plot(offset, height, label=program, **look)
+        tension.plot(tensions, heights, label=program, **look)
+    shape.set(xlabel="offset [m]", ylabel="height above the seabed [m]", title="shape")
+    tension.set(xlabel="tension [kgf]", title="tension; printed below the sphere,\nbelow the third "
+                "meter and at the anchor")  # fmt: skip
+    shape.legend(frameon=False)
+    return figure
+
+
+def draw_s1000() -> Figure:
+    """Shape of S1000 with the known place of its float, and the errors by angle step."""
+    figure = Figure(figsize=(9, 4.5), layout="constrained")
+    shape, errors = figure.subplots(1, 2)
+    solution = s1000.solved(1.0)
+    shape.plot(solution.position[:, 0], -solution.position[:, 2], color=LINE, label="CALM at 1°")
+    shape.plot(s1000.OFFSET, s1000.DEPTH, "o", color="#cc3311", label="float, known")
+    shape.set(xlabel="offset [m]", ylabel="depth [m]", ylim=(1100.0, 0.0))
+    shape.legend(frameon=False)
+
+    steps = np.array(convergence.ANGLE_STEPS)
+    solved = [s1000.solved(step) for step in steps.tolist()]
+    depth = np.array([abs(s1000.depth(each) - s1000.DEPTH) for each in solved])
+    offset = np.array([abs(each.position[0, 0] - s1000.OFFSET) for each in solved])
+    stated = np.array([each.depth_error for each in solved])
+    errors.plot(steps, depth, "o-", color=LINE, label="depth of the float")
+    errors.plot(steps, offset, "s-", color="#cc3311", label="its offset")
+    errors.plot(steps, stated, "x:", color="black", label="what CALM states, any place")
+    errors.axhline(5e-5, color="#999999", linewidth=0.8)
+    errors.annotate("half the last digit known", (steps[0], 5e-5), va="bottom", ha="right", size=8)
+    finish(errors, steps, offset)
+    return figure
+
+
+def draw_convergence() -> Figure:
+    """Miss of a heavy line's free end by angle step."""
+    figure = Figure(figsize=(5, 4), layout="constrained")
+    axes = figure.subplots()
+    steps = np.array(convergence.ANGLE_STEPS)
+    missed = np.array([convergence.heavy_line_error(step) for step in steps.tolist()])
+    axes.plot(steps, missed, "o-", color=LINE, label="miss of the free end, 1000 m of line")
+    finish(axes, steps, missed)
+    return figure
+
+
+def finish(axes: Axes, steps: np.ndarray, errors: np.ndarray) -> None:
+    """Scales and labels of errors by angle step, and a line of second order beside them."""
+    axes.plot(steps, 2.0 * errors[0] * (steps / steps[0]) ** 2, **ORDER_TWO)
+    axes.set(xscale="log", yscale="log", xlabel="angle step [°]", ylabel="error [m]")
+    axes.set_xticks(steps, [f"{step:g}" for step in steps], minor=False)
+    axes.set_xticks([], minor=True)
+    axes.legend(frameon=False)
+
+
+def draw_drag_curves() -> Figure:
+    """Drag coefficients by Reynolds number, with the points they come from."""
+    figure = Figure(figsize=(8, 4.5), layout="constrained")
+    axes = figure.subplots()
+    published = (
+        ("Wieselsberger, measured", drag_curves.WIESELSBERGER, "o", LINE),
+        ("DNV-RP-C205", drag_curves.DNV, "D", "#e69f00"),
+        ("Morrison, sphere", drag_curves.MORRISON, "^", "#cc3311"),
+    )
+    for name, points, marker, colour in published:
+        axes.plot(*zip(*points, strict=True), marker, color=colour, fillstyle="none", label=name)
+    for name, coefficient, colour, least, greatest in (
+        ("CALM, smooth cylinder", cylinder_coefficient, LINE, 3.0, 5e6),
+        ("CALM, smooth sphere", sphere_coefficient, "#cc3311", 1.0, 1e6),
+    ):
+        reynolds = np.geomspace(least, greatest, 600)
+        axes.plot(reynolds, [coefficient(re) for re in reynolds], color=colour, label=name)
+    axes.set(xscale="log", yscale="log", xlabel="Reynolds number", ylabel="drag coefficient")
+    axes.legend(frameon=False)
+    return figure
+
+
+PICTURES: dict[str, Callable[[], Figure]] = {
+    cdms_1.SOURCE.picture: draw_cdms_1,
+    s1000.SOURCE.picture: draw_s1000,
+    convergence.SOURCE.picture: draw_convergence,
+    drag_curves.SOURCE.picture: draw_drag_curves,
+}
+
+
+if __name__ == "__main__":
+    if sys.argv[1:] == ["--check"]:
+        missing = [name for name in PICTURES if not (IMAGES / f"{name}.svg").exists()]
+        if missing or not PAGE.exists() or PAGE.read_text(encoding="utf-8") != page():
+            sys.exit(f"{PAGE} is out of date; run python docs/generate_verification.py")
+    else:
+        PAGE.write_text(page(), encoding="utf-8")
+        for name, draw in PICTURES.items():
+            (IMAGES / f"{name}.svg").write_bytes(image(draw(), ".svg"))

@@ -1,0 +1,52 @@
+"""CALM against the referee on random tows: 60 that have an equilibrium.
+
+What a tow can be is told in `tests.validation.random_tows`. The limits are CALM's promises:
+positions within 5e-5 of the line out and tensions within 2e-4 at the default angle step of 1°, 2e-6
+and 1e-5 at 0.1°, in at most 60 marches but where a line strums; its forces close to 1e-6,
+recomputed here. A frequency, which weighs little in them, is within 1e-4. Where the referee finds
+no shape, CALM must find none either; a line that hangs in a sharp fold, or that has something half
+out of the water, it may solve or refuse.
+"""
+
+from __future__ import annotations
+
+from math import radians
+from random import Random
+
+import pytest
+
+from calm.errors import NoEquilibrium
+from calm.solve import Settings, solve_tow
+from tests.validation.agreement import closure, difference
+from tests.validation.cables import Folded, NoContinuousSolution
+from tests.validation.random_tows import tow
+from tests.validation.towed import HalfOut, Passing, solve_continuous_tow
+
+TOWED = 5
+
+
+@pytest.mark.parametrize("block", range(12))
+def test_calm_agrees_with_the_referee(block) -> None:
+    """Five tows a block; a failure names the number that draws its tow."""
+    number, towed = 1000 * block, 0
+    while towed < TOWED:
+        number += 1
+        line, water, towing = tow(Random(number))
+        try:
+            referee = solve_continuous_tow(line, water, towing)
+        except (Folded, HalfOut):
+            continue
+        except NoContinuousSolution:
+            with pytest.raises(NoEquilibrium):
+                pytest.fail(f"tow {number}: {solve_tow(line, water, towing).position[0]}")
+            continue
+        towed += 1
+        for degrees, near, close in [(1.0, 5e-5, 2e-4), (0.1, 2e-6, 1e-5)]:
+            case = f"tow {number} at {degrees}°"
+            solution = solve_tow(line, water, towing, Settings(radians(degrees)))
+            found = difference(solution, referee)
+            assert found.place <= near, case
+            assert found.tension <= close, case
+            assert solution.frequency == pytest.approx(referee.frequency, rel=1e-4), case
+            assert solution.marches <= 60 or line.strumming is not None, case
+            assert closure(solution, Passing(water, towing)) <= 1e-6, case

@@ -1,0 +1,92 @@
+"""Undercurrents in which a line has several equilibria, counted by the referee.
+
+With the free end at a depth the line ends some way above its anchor. It stands where this vanishes,
+and stays there where it falls with depth: where it grows a line pushed down goes on down. CALM gives
+the highest and tells the deepest that it comes upon.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from calm.physics.line import Line, Water
+from calm.solve import Settings, solve_mooring
+from tests.validation.closing import COARSE, FINE
+from tests.validation.continuous import March
+from tests.validation.pieces import cable, line_of, point, profile
+
+NEAR = 5e-5
+"""Of the depth: what CALM promises at an angle step of 1°."""
+
+THREAD = line_of(point(500.0, 100.0), cable(100.0, 0.0, 0.0, 1.3, 0.0))
+ROPE = line_of(point(900.0, 250.0), cable(260.0, 0.006, 0.3, 1.3, 0.01, 2e-6))
+LONG = line_of(point(2000.0, 800.0), cable(401.0, 0.006, 0.3, 1.3, 0.01, 2e-6))
+
+
+def sheet(speed: float, depth: float) -> Water:
+    """400 m of water with a current in a sheet of it that begins at a depth."""
+    rows = [(0.0, 0.05), (depth, 0.05), (depth + 27.0, speed), (depth + 102.0, 0.1)]
+    return profile(400.0, rows)
+
+
+def turning(speed: float, depth: float) -> Water:
+    """400 m of water with a current that runs the other way below a depth, no faster."""
+    level, u = np.array([0.0, depth, depth + 10.0, 400.0]), speed * np.array([-1.0, -1.0, 1.0, 1.0])
+    still = np.zeros(4)
+    return Water(400.0, level, u, still, still, still + 1025.0)
+
+
+def stays(line: Line, water: Water, steps: int) -> list[float]:
+    """Depths of the free end below the surface at which the line stands and stays."""
+    rough, fine = March(line, water, COARSE), March(line, water, FINE)
+    bottom, whole = water.depth - line.anchor_height, np.ones(len(line.length))
+
+    def short(depth: float, march: March = fine) -> float:
+        return float(march.down(depth, whole).bottom[-1, 2] + bottom)
+
+    tried = [(depth, short(depth, rough)) for depth in np.linspace(0.0, water.depth, steps + 1)]
+    falls = [(a[0], b[0]) for a, b in pairwise(tried) if a[1] > 0.0 >= b[1]]
+    return [float(brentq(short, *bounds, xtol=1e-9)) for bounds in falls]
+
+
+@pytest.mark.parametrize(
+    ("line", "water", "expected"),
+    [
+        pytest.param(THREAD, profile(110.0, [(0, 0.2), (12, 0.2), (30, 3.0)]), 2, id="jet"),
+        pytest.param(ROPE, sheet(1.4, 148.0), 2, id="sheet"),
+        pytest.param(ROPE, sheet(0.8, 148.0), 1, id="weak sheet"),
+        pytest.param(ROPE, sheet(1.8, 148.0), 1, id="strong sheet"),
+        pytest.param(ROPE, turning(1.0, 160.0), 2, id="turning"),
+        pytest.param(ROPE, turning(1.0, 146.0), 1, id="turning above"),
+        pytest.param(ROPE, profile(400.0, [(0, 2.5), (400, 0.1)]), 1, id="decaying"),
+    ],
+)  # fmt: skip
+def test_the_highest_is_given_and_the_deepest_told(line, water, expected) -> None:
+    depths = stays(line, water, 150)
+    assert len(depths) == expected
+    solution = solve_mooring(line, water)
+    assert -solution.position[0, 2] == pytest.approx(depths[0], abs=NEAR * water.depth)
+    if expected == 1:
+        assert solution.other_depth is None
+    else:
+        assert solution.other_depth == pytest.approx(depths[-1], abs=NEAR * water.depth)
+
+
+def test_a_line_afloat_that_an_undercurrent_would_hold_down() -> None:
+    (held,) = stays(LONG, sheet(1.1, 8.0), 150)
+    solution = solve_mooring(LONG, sheet(1.1, 8.0))
+    assert solution.surface
+    assert solution.other_depth == pytest.approx(held, abs=NEAR * 400.0)
+
+
+def test_the_other_is_as_good_as_the_first() -> None:
+    water = profile(110.0, [(0, 0.2), (12, 0.2), (30, 3.0)])
+    tight = solve_mooring(THREAD, water, replace(Settings(), tolerance=1e-9))
+    highest, deepest = stays(THREAD, water, 150)
+    assert -tight.position[0, 2] == pytest.approx(highest, abs=1e-7)
+    assert tight.other_depth == pytest.approx(deepest, abs=1e-7)
