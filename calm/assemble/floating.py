@@ -45,12 +45,13 @@ def assemble_floating(
     net = net_buoyancy(component, water.gravity)
     lift = net + (float(density) - CATALOGUE_DENSITY) * water.gravity * volume
     below, *_ = drag_of(component, component.length)
+    afloat = component.k_surface if below > 0.0 else None
     wind = environment.wind
     return Floating(
         hull=hull,
         weight=CATALOGUE_DENSITY * water.gravity * volume - net,
         lift=lift,
-        surface_drag=component.k_surface / below if component.k_surface is not None else None,
+        surface_drag=None if afloat is None else afloat / below,
         wind=(0.0, 0.0) if wind is None else components(wind.speed, wind.toward),
         wind_area=component.wind_area,
         wind_cd=1.0 if component.wind_cd is None else component.wind_cd,

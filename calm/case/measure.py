@@ -12,9 +12,6 @@ from calm.physics.line import Floats
 from calm.physics.track import head_count
 from calm.solve import Solution
 
-KINEMATIC_VISCOSITY = 1.36e-6
-"""Of sea water at 10 °C and 35 g/kg [m²/s], for the Reynolds numbers."""
-
 
 def clamps_in(pieces: Sequence[Piece]) -> list[Clamp]:
     """The clamps of a line in the order of the file, which is that of the solver's."""
@@ -142,5 +139,5 @@ def _reynolds(pieces: Sequence[Piece], solution: Solution) -> Floats:
     middle = -0.5 * (solution.position[:-1] + solution.position[1:])[:, 2]
     speed = np.linalg.norm(solution.water.at(middle)[0], axis=1)
     greatest = np.zeros(len(solution.line.length))
-    np.maximum.at(greatest, solution.element_piece, speed)
-    return greatest / KINEMATIC_VISCOSITY
+    np.maximum.at(greatest, solution.element_piece, speed / solution.water.viscosity_at(middle))
+    return greatest

@@ -8,7 +8,7 @@ from itertools import chain
 
 import numpy as np
 
-from calm.physics.line import REFERENCE_DENSITY, Line
+from calm.physics.line import REFERENCE_DENSITY, Floats, Line
 from calm.physics.track import Rod, Track
 from calm.solve import audit
 from calm.solve.closing import Closed, Closing
@@ -82,7 +82,7 @@ def finished(
         segments=fine.end.segments,
         miss=fine.miss,
         depth_error=refined.depth_error + abs(fine.miss),
-        tension_error=refined.tension_error,
+        tension_error=refined.tension_error + _tension_of_miss(closing, fine, force),
         other_depth=other_depth,
         frequency=closing.frequency,
     )
@@ -101,6 +101,20 @@ def _buoyancy_in_use(closing: Closing, fine: Closed) -> tuple[float, float]:
     total = sum(lift.values())
     used = sum(shares[p] * lift[p] for p in shares)
     return used / total, total - used
+
+
+def _tension_of_miss(closing: Closing, fine: Closed, force: Floats) -> float:
+    """What the miss left may be worth in tension [N].
+
+    That of the buoyancy it stands for, or, where no float is at the surface, the share of the
+    greatest tension that it is of the span.
+    """
+    unknown = fine.root.unknown
+    worth = float(np.linalg.norm(force, axis=1).max()) * abs(fine.miss) / closing.span
+    if unknown.afloat is not None and fine.root.slope:
+        share = abs(fine.miss / fine.root.slope)
+        worth = max(worth, share * float(closing.line.buoyancy[unknown.afloat]))
+    return worth
 
 
 def _carried(line: Line, track: Track) -> Line:

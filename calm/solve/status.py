@@ -40,6 +40,11 @@ class Status(Enum):
         self.label = label
         self.advice = advice
 
-    def because(self, message: str, piece: int | None = None) -> NoEquilibrium:
-        """The exception that tells this outcome, at a piece of the line where it has one."""
-        return NoEquilibrium(self.label, message, self.advice, piece)
+    def because(
+        self, message: str, piece: int | None = None, advice: str | None = None
+    ) -> NoEquilibrium:
+        """The exception that tells this outcome, at a piece of the line where it has one.
+
+        `advice` is in place of the outcome's own, which is that for moorings.
+        """
+        return NoEquilibrium(self.label, message, self.advice if advice is None else advice, piece)

@@ -23,6 +23,7 @@ SURFACE_BAND = 1e-7
 SCAN = 16
 """Depths tried where the flow changes with depth: how finely separate equilibria are told apart."""
 FREQUENCY_TOLERANCE = 1e-8
+STAY_BELOW = "Give it more weight or a depressor, or tow slower."
 _ROUNDS = 20
 
 
@@ -136,7 +137,8 @@ def _locate(closing: Closing, towing: Towing) -> tuple[Root, float | None]:
     if not roots:
         raise Status.ABOVE_SURFACE.because(
             "The towed body would come out of the water: even at the surface the line's upper end "
-            f"is {-low:.2f} m below the tow point."
+            f"is {-low:.2f} m below the tow point.",
+            advice=STAY_BELOW,
         )
     return roots[0], None
 
@@ -218,6 +220,7 @@ def _refuse_misplaced(solution: Solution, towing: Towing) -> None:
             f"The towed line would touch the seabed: piece {piece + 1} comes "
             f"{-depth - height[lowest]:.2f} m below it.",
             piece,
+            "Pay out less line, tow faster, or take weight off.",
         )
     if towing.in_air:
         return
@@ -229,4 +232,5 @@ def _refuse_misplaced(solution: Solution, towing: Towing) -> None:
             f"The towed line would rise out of the water: piece {piece + 1} comes "
             f"{height[out]:.2f} m above the surface.",
             piece,
+            STAY_BELOW,
         )

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-HEAVY = {"scipy", "pint", "xarray", "matplotlib", "pandas", "numba", "textual"}
+HEAVY = {"scipy", "pint", "xarray", "matplotlib", "pandas", "numba", "textual", "gsw"}
 
 COMMAND = """
 import contextlib, io, json, sys

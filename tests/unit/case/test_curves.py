@@ -104,3 +104,12 @@ components:
     )
     [told] = [text for text in calm.load(path).solve().warnings if "elongation" in text]
     assert told.startswith("upper is loaded beyond its elongation table")
+
+
+def test_a_rope_with_a_table_is_cut_to_fit_as_exactly_as_any(solve):
+    """The still line is marched in long segments: a bend of the table in one costs micrometres."""
+    text = FILE.replace("length: 150 m", "length: fit, top_depth: 80 m")
+    text = text.replace("weight: 0.3 N/m", "weight: 12 N/m")
+    result = solve(text=text)
+    assert result.components.cut_length[1] < 200.0
+    assert result.still_shape.depth[0] == pytest.approx(80.0, abs=1e-4)

@@ -129,14 +129,80 @@ def test_an_anchor_that_is_too_light_is_lifted(solve):
     assert "2000 N" in caught.value.message
 
 
-def test_a_float_at_the_surface_needs_full_drag_in_this_version(solve):
-    shallow = FILE.replace("depth: 200 m", "depth: 121.5 m")
-    with pytest.raises(calm.InputError, match="buoy_drag: full"):
-        solve(shallow)
-    result = solve(shallow + "solver: {buoy_drag: full}\n")
+SHALLOW = FILE.replace("depth: 200 m", "depth: 121.5 m")
+WEIGHED = SHALLOW.replace("buoyancy: 3000 N", "buoyancy: 3000 N, mass: 100 kg")
+WINDY = "  wind: {speed: 15 m/s, toward: 90 deg}\nline:"
+
+
+def test_a_float_at_the_surface_sits_at_its_draft(solve):
+    result = solve(WEIGHED)
     assert result.type == "surface"
-    assert result.top.depth == 0
+    top = result.top
+    assert top.draft + top.freeboard == pytest.approx(1)
+    # 100 kg and what the line pulls, of 100 kg and 3000 N
+    weight, used = 100 * 9.80665, 3000 - top.reserve
+    draft = top.draft
+    assert draft**2 * (3 - 2 * draft) == pytest.approx((weight + used) / (weight + 3000))
+    lean = np.cos(np.radians(result.components.tilt[0]))
+    assert top.depth == pytest.approx(-top.freeboard * lean, abs=1e-9)
     assert result.top.knockdown is None
+    assert not any("draft" in warning for warning in result.warnings)
+    assert result.to_dict()["top"]["draft"] == draft
+
+
+def test_wind_takes_it_further(solve):
+    still, windy = solve(WEIGHED), solve(WEIGHED.replace("line:", WINDY))
+    assert windy.top.x > still.top.x + 0.01
+    assert windy.anchor.horizontal > still.anchor.horizontal
+    assert not any("wind" in warning for warning in windy.warnings)
+
+
+def test_full_drag_knows_no_draft_and_no_wind(solve):
+    full = "solver: {buoy_drag: full}\n"
+    result = solve(WEIGHED.replace("line:", WINDY) + full)
+    assert (result.top.depth, result.top.draft, result.top.freeboard) == (0, None, None)
+    assert result.top.x == solve(WEIGHED + full).top.x
+    assert any("wind" in warning for warning in result.warnings)
+
+
+def test_a_float_without_mass_or_volume_is_taken_as_just_immersed(solve):
+    result, full = solve(SHALLOW), solve(SHALLOW + "solver: {buoy_drag: full}\n")
+    (told,) = set(result.warnings) - set(full.warnings)
+    assert told.startswith("top gives no hull, or no mass or volume for one")
+    assert result.top.depth == 0
+    assert (result.shape.depth == full.shape.depth).all()
+    assert (result.shape.tension == full.shape.tension).all()
+
+
+def test_a_drag_afloat_needs_no_hull(solve):
+    result = solve(SHALLOW.replace("cx: 0.6,", "cx: 0.6, k_surface: 60 N/(m/s)^2,"))
+    full = solve(SHALLOW + "solver: {buoy_drag: full}\n")
+    assert result.top.draft is None
+    assert result.anchor.horizontal < full.anchor.horizontal
+    assert any("k_surface" in warning for warning in result.warnings)
+
+
+def test_several_floats_at_the_surface_are_told_to_have_no_draft(solve):
+    two = WEIGHED.replace("{use: thin, length: 80 m", "{use: thin, length: 20 m")
+    two = two.replace(
+        "  - {use: meter}", "  - {use: ball, label: second}\n  - {use: thin, length: 110 m}"
+    )
+    two = two.replace("{use: thin, length: 20 m", "{use: thin, weight: 20 N/m, length: 20 m")
+    result = solve(two.replace("clamps: [{use: logger, at: 30 m}]", "clamps: []"))
+    assert result.top.draft is None
+    assert any("several floats at the surface" in warning for warning in result.warnings)
+
+
+def test_a_slack_line_at_rest_tells_its_watch_circle(solve):
+    """Scope 2 in 540 m of water: a circle of √(1080² − 540²) = 935 m."""
+    slack = FILE.replace("depth: 200 m", "depth: 540 m").replace("80 m", "959 m")
+    slack = slack.replace("length: 40 m", "length: 119 m").replace("length: 0.5 m", "length: 0 m")
+    slack = slack.replace("weight: 1 N/m", "weight: 0.1 N/m")
+    with pytest.raises(calm.NoEquilibrium) as caught:
+        solve(slack, speed="0 m/s")
+    assert caught.value.status == "slack"
+    assert "935 m" in caught.value.message
+    assert caught.value.advice
 
 
 def test_a_refusal_names_the_piece(solve):
