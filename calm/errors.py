@@ -66,3 +66,7 @@ class NoEquilibrium(CalmError):
         self.advice = advice
         self.piece = piece
         super().__init__(f"{status}: {message} {advice}")
+
+    def to_dict(self) -> dict[str, str]:
+        """`status`, `message` and `advice`, as they stand in JSON in place of a result."""
+        return {"status": self.status, "message": self.message, "advice": self.advice}

@@ -203,6 +203,11 @@ def parse_quantity(text: object, dimension: str, *, usual_unit: str | None = Non
     return value
 
 
+def with_unit(value: float, unit: str) -> str:
+    """A value in six digits with its unit, as a person reads it."""
+    return f"{value:.6g} {unit}".rstrip()
+
+
 def unit_factor(text: str, dimension: str) -> float:
     """What a number in this unit is multiplied by to be in SI (degrees, degC).
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from calm.errors import NoEquilibrium
-from calm.solve import Status, solve_mooring, solve_tow
+from calm.solve import Solution, Status, solve_mooring, solve_tow
 
 if TYPE_CHECKING:
     from calm.case.mooring import Mooring
@@ -44,14 +45,30 @@ def mooring_band(mooring: Mooring, still_depth: float | None) -> StrummingBand |
 
     None where nothing can strum or a law of strumming is already in use.
     """
-    line = _strumming(mooring.line)
-    if line is None or mooring.file.solver.strumming is not None:
+    return _band(
+        mooring,
+        lambda line: solve_mooring(line, mooring.water, mooring.settings),
+        still_depth,
+    )
+
+
+def tow_band(tow: Tow) -> StrummingBand | None:
+    """The band of a tow; None as for `mooring_band`."""
+    return _band(tow, lambda line: solve_tow(line, tow.water, tow.towing, tow.settings))
+
+
+def _band(
+    case: Mooring | Tow, solve: Callable[[Line], Solution], still_depth: float | None = None
+) -> StrummingBand | None:
+    line = _strumming(case.line)
+    if line is None or case.file.solver.strumming is not None:
         return None
     try:
-        solution = solve_mooring(line, mooring.water, mooring.settings)
+        solution = solve(line)
     except NoEquilibrium as failure:
         return StrummingBand(FACTOR, failure.status)
-    depth = -float(solution.position[0, 2])
+    node = solution.body_node if solution.line.towed else 0
+    depth = -float(solution.position[node, 2])
     return StrummingBand(
         FACTOR,
         Status.CONVERGED.label,
@@ -59,19 +76,6 @@ def mooring_band(mooring: Mooring, still_depth: float | None) -> StrummingBand |
         None if still_depth is None else depth - still_depth,
         float(solution.tension[-1]),
     )
-
-
-def tow_band(tow: Tow) -> StrummingBand | None:
-    """The band of a tow; None as for `mooring_band`."""
-    line = _strumming(tow.line)
-    if line is None or tow.file.solver.strumming is not None:
-        return None
-    try:
-        solution = solve_tow(line, tow.water, tow.towing, tow.settings)
-    except NoEquilibrium as failure:
-        return StrummingBand(FACTOR, failure.status)
-    depth = -float(solution.position[solution.body_node, 2])
-    return StrummingBand(FACTOR, Status.CONVERGED.label, depth, None, float(solution.tension[-1]))
 
 
 def _strumming(line: Line) -> Line | None:

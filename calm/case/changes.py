@@ -15,7 +15,7 @@ from calm.case.targets import pointed
 from calm.errors import UsageError
 from calm.files import Anchor, Cable, Chain, Component, MooringFile, Piece
 from calm.files.explain import unknown
-from calm.units import QuantityError, parse_quantity
+from calm.units import QuantityError, parse_quantity, with_unit
 
 
 def parse_change(text: str, file: MooringFile) -> Adjustment:
@@ -69,7 +69,7 @@ def parse_range(texts: tuple[str, str] | None, change: Adjustment) -> tuple[floa
         raise UsageError(f"--between: {texts[0]} is not below {texts[1]}")
     least = change.range[0] if isinstance(change, Length | Count) else low
     if low < least:
-        limit = f"{least:g} {change.unit}".rstrip()
+        limit = with_unit(least, change.unit)
         raise UsageError(f"--between: `{texts[0]}` must be at least {limit}")
     if change.whole and (low % 1 or high % 1):
         raise UsageError("--between: a count is a whole number")

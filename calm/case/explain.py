@@ -11,6 +11,7 @@ import numpy as np
 from calm.case.attribution import FAIR, Attribution, Part, attribute, with_drag
 from calm.case.columns import Columns
 from calm.case.figures import Figures, figures_of
+from calm.case.measure import clamps_in
 from calm.case.mooring import Mooring
 from calm.case.parts import TOP, one_label
 from calm.errors import NoEquilibrium, UsageError
@@ -48,7 +49,7 @@ class Causes(Columns):
 
 @dataclass(frozen=True)
 class WhatIf:
-    """What if: its name, and the figures it leads to, or why there are none."""
+    """A change by its name, and the figures it leads to, or why there are none."""
 
     name: str
     figures: Figures | None = None
@@ -102,13 +103,7 @@ class Explanation:
 
 def _change_document(change: WhatIf) -> dict[str, Any]:
     if change.failure is not None:
-        failure = change.failure
-        return {
-            "change": change.name,
-            "status": failure.status,
-            "message": failure.message,
-            "advice": failure.advice,
-        }
+        return {"change": change.name, **change.failure.to_dict()}
     assert change.figures is not None
     return {"change": change.name, "status": "converged", **asdict(change.figures)}
 
@@ -191,16 +186,17 @@ def _notes(result: Result, quantities: tuple[str, ...]) -> Iterator[str]:
 
 
 def _point(mooring: Mooring, label: str) -> Part:
-    clamps = _clamp_labels(mooring)
+    pieces, clamps = _labels(mooring)
     if label in clamps:
         m = clamps.index(label)
         return int(mooring.line.clamp_piece[m]), m
-    labels = [piece.label for piece in mooring.file.pieces[:-1]]
-    return labels.index(label), -1
+    return pieces.index(label), -1
 
 
-def _clamp_labels(mooring: Mooring) -> list[str]:
-    return [clamp.label for piece in mooring.file.pieces for clamp in piece.clamps]
+def _labels(mooring: Mooring) -> tuple[list[str], list[str]]:
+    """Of the pieces and of the clamps, in the order of the solver."""
+    pieces = mooring.file.pieces
+    return [piece.label for piece in pieces], [clamp.label for clamp in clamps_in(pieces)]
 
 
 def _shares(mooring: Mooring, figures: Figures, stands: bool, point: Part) -> Attribution:
@@ -213,11 +209,11 @@ def _shares(mooring: Mooring, figures: Figures, stands: bool, point: Part) -> At
 
 
 def _causes(mooring: Mooring, shares: Attribution) -> Causes:
-    labels, clamps = [piece.label for piece in mooring.file.pieces], _clamp_labels(mooring)
+    pieces, clamps = _labels(mooring)
     parts = list(zip(shares.piece.tolist(), shares.clamp.tolist(), strict=True))
     return Causes(
         index=shares.piece,
-        label=[clamps[m] if m >= 0 else labels[p] for p, m in parts],
+        label=[clamps[m] if m >= 0 else pieces[p] for p, m in parts],
         clamped=[m >= 0 for _, m in parts],
         drag=_drags(mooring, parts),
         knockdown=shares.shares[:, 0],

@@ -55,6 +55,7 @@ def result_of(mooring: Mooring, solution: Solution, still: Solution | None) -> R
         clamps=clamps_of(pieces[:-1], solution, still),
         shape=shape,
         still_shape=still_shape,
+        other_depth=solution.other_depth,
     )
     return replace(result, warnings=warnings_of(result, solution))
 

@@ -34,6 +34,7 @@ def document_of(result: Result | TowResult, ends: dict[str, Any]) -> dict[str, A
         "closure": result.closure,
         "accuracy": asdict(result.accuracy),
         **ends,
+        "other_equilibrium": None if result.other_depth is None else {"depth": result.other_depth},
         "components": components,
         "clamps": result.clamps.to_dicts(),
         "shape": {name: column.tolist() for name, column in vars(result.shape).items()},
@@ -110,7 +111,7 @@ class Result:
     `iterations` counts marches, `segments` the cuts of the final one, `miss` is the height
     of the line's end above the anchor's top, `closure` the relative force residual recomputed
     from the final coordinates. `still_shape` is the same line without current, None where that
-    has no unique shape.
+    has no unique shape. `other_depth` is that of the free end in another equilibrium that was found.
     """
 
     mooring: Mooring = field(repr=False)
@@ -129,6 +130,7 @@ class Result:
     clamps: Clamps = field(repr=False)
     shape: Shape = field(repr=False)
     still_shape: Shape | None = field(repr=False)
+    other_depth: float | None = None
     warnings: tuple[str, ...] = ()
 
     @property

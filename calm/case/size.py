@@ -13,6 +13,7 @@ from calm.case.result import Result
 from calm.case.targets import Target, parse_target
 from calm.errors import NoEquilibrium, UsageError
 from calm.solve.least_change import LeastChange
+from calm.units import with_unit
 
 MET, MET_ALREADY, NOT_MET = "met", "met-already", "not-met"
 """The statuses of a sizing."""
@@ -110,14 +111,13 @@ class Sizing:
         return document
 
 
-def _trial_document(outcome: Trial) -> dict[str, Any]:
-    document: dict[str, Any] = {"value": outcome.value, "measured": outcome.measured}
-    if outcome.failure is not None:
-        document["status"] = outcome.failure.status
-        document["message"] = outcome.failure.message
-    if outcome.figures is not None and outcome.result is not None:
-        document |= {"status": outcome.result.status, **asdict(outcome.figures)}
-        document["warnings"] = list(outcome.result.warnings)
+def _trial_document(trial: Trial) -> dict[str, Any]:
+    document: dict[str, Any] = {"value": trial.value, "measured": trial.measured}
+    if trial.failure is not None:
+        document |= trial.failure.to_dict()
+    if trial.figures is not None and trial.result is not None:
+        document |= {"status": trial.result.status, **asdict(trial.figures)}
+        document["warnings"] = list(trial.result.warnings)
     return document
 
 
@@ -230,7 +230,7 @@ def _why_not(search: LeastChange, trials: _Trials) -> tuple[str, str]:
     """Why no value was found, and what to do."""
     change, target = trials.change, trials.target
     least = search.least
-    span = f"from {_with_unit(search.low, change.unit)} to {_with_unit(search.high, change.unit)}"
+    span = f"from {with_unit(search.low, change.unit)} to {with_unit(search.high, change.unit)}"
     if least is None:
         failure = trials.at(change.now).failure or next(
             (one.failure for one in trials.tried.values() if one.failure), None
@@ -242,7 +242,7 @@ def _why_not(search: LeastChange, trials: _Trials) -> tuple[str, str]:
         return f"{message} {failure.status}: {failure.message}", failure.advice
     best = trials.at(least)
     assert best.measured is not None
-    nearest, where = _with_unit(best.measured, target.unit), _with_unit(least, change.unit)
+    nearest, where = with_unit(best.measured, target.unit), with_unit(least, change.unit)
     as_it_is = trials.at(change.now).measured
     if as_it_is is not None and abs(best.measured - as_it_is) <= _NOTHING * abs(as_it_is):
         message = f"It is nearest as it is, at {nearest}; {change.text} was tried {span}."
@@ -253,7 +253,3 @@ def _why_not(search: LeastChange, trials: _Trials) -> tuple[str, str]:
         if failure is not None:
             message += f" {side} that: {failure.status}: {failure.message}"
     return message, "Ask for less, change another part, or allow more with --between."
-
-
-def _with_unit(value: float, unit: str) -> str:
-    return f"{value:.6g} {unit}".rstrip()

@@ -74,6 +74,7 @@ class TowResult:
     components: Components = field(repr=False)
     clamps: Clamps = field(repr=False)
     shape: Shape = field(repr=False)
+    other_depth: float | None = None
     warnings: tuple[str, ...] = ()
 
     @property
@@ -168,7 +169,8 @@ class Tow:
         """The same tow at another speed of the ship [m/s], a fitted cable as long as at its own."""
         keys = self.keys.model_copy(update={"speed": speed})
         other = Tow(replace(self.file, tow=keys))
-        other.__dict__["line"] = self.line
+        # a cached property is what stands under its name in the instance
+        vars(other)["line"] = self.line
         return other
 
     def solve(self) -> TowResult:
@@ -211,6 +213,7 @@ def _result_of(tow: Tow, solution: Solution) -> TowResult:
         components=components_of(pieces, solution),
         clamps=clamps_of(pieces, solution),
         shape=shape_of(solution),
+        other_depth=solution.other_depth,
     )
     return replace(result, warnings=tow_warnings_of(result, solution))
 

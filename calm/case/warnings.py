@@ -180,8 +180,8 @@ def _on_the_seabed(result: Result, solution: Solution) -> Iterator[str]:
 def _other_equilibrium(_: Result | TowResult, solution: Solution) -> Iterator[str]:
     if solution.other_depth is not None:
         yield (
-            "Another equilibrium exists with the free end near "
-            f"{solution.other_depth:.0f} m: the current changes with depth."
+            "Another equilibrium exists, with the free end at a depth of "
+            f"{solution.other_depth:.1f} m."
         )
 
 
@@ -201,8 +201,10 @@ def _hull_unknown(result: Result, solution: Solution) -> Iterator[str]:
 
 def _wind_ignored(result: Result, solution: Solution) -> Iterator[str]:
     wind = result.file.environment.wind
-    if wind is not None and solution.surface and solution.riding is None:
-        yield "The wind on the float is not taken into account: it is taken as just immersed."
+    floating = solution.line.floating
+    felt = floating is not None and (floating.hull is not None or floating.wind_area is not None)
+    if wind is not None and solution.surface and not (solution.riding is not None and felt):
+        yield "The wind on the float is not taken into account: nothing of it is known to stand out."
 
 
 def _below_the_sea(result: TowResult, _: Solution) -> Iterator[str]:
@@ -221,10 +223,11 @@ def _strums_along_the_flow(result: TowResult, solution: Solution) -> Iterator[st
     sine = np.divide(flow_across(solution), speed, out=np.ones(len(speed)), where=speed > 0)
     cables = solution.line.diameter[solution.element_piece] > 0.0
     least = np.degrees(np.arcsin(np.min(sine[cables & (solution.cut > 0.0)], initial=1.0)))
-    if least < np.degrees(law.LEAST_ANGLE):
+    claimed = np.degrees(law.LEAST_ANGLE)
+    if least < claimed:
         yield (
             f"The cable comes within {least:.1f} degrees of the flow: its drag at rest, "
-            f"C0 = {law.rest:g}, is only claimed above 15 degrees."
+            f"C0 = {law.rest:g}, is only claimed above {claimed:.0f} degrees."
         )
 
 

@@ -38,8 +38,6 @@ _DRAW_EXAMPLES = """Examples:
   calm chart draw --k 0.6 -o chart.svg
   calm chart draw --k 2.4 --lower-end above-90 -o chart.pdf"""
 
-_SEA_WATER = 1025.0
-
 _MEDIUM = Group("The cable and the current", sort_key=1)
 _SEVEN = Group("Three of these seven", sort_key=2)
 _OUTPUT = Group("Output", sort_key=3)
@@ -174,6 +172,8 @@ _CABLE = ("weight", "k", "diameter", "cd", "speed", "density")
 
 def _drag_over_weight(cable: dict[str, float]) -> float:
     """K as given, or of the cable and the current."""
+    from calm.physics.line import REFERENCE_DENSITY
+
     parts = ("diameter", "cd", "speed")
     if "k" in cable:
         also = [option(name) for name in (*parts, "density") if name in cable]
@@ -188,5 +188,6 @@ def _drag_over_weight(cable: dict[str, float]) -> float:
             raise UsageError(f"{option(name)} must not be negative")
     if cable["weight"] == 0.0:
         raise UsageError("--weight must not be 0")
-    drag = cable.get("density", _SEA_WATER) * cable["cd"] * cable["diameter"] * cable["speed"] ** 2
+    density = cable.get("density", REFERENCE_DENSITY)
+    drag = density * cable["cd"] * cable["diameter"] * cable["speed"] ** 2
     return drag / (2.0 * abs(cable["weight"]))

@@ -95,6 +95,13 @@ class Rigid(Definition):
                     f"{computed:.5g} N, more than 1 % apart; leave one of the three out"
                 )
         refuse_weight_above_mass(self.mass, self.net_buoyancy)
+        if isinstance(self.hull, Displacement):
+            largest = self.hull.displacement[-1][1]
+            if CATALOGUE_DENSITY * STANDARD_GRAVITY * largest < self.net_buoyancy:
+                raise ValueError(
+                    f"the `hull` displaces {largest:g} m³ at most, less than its net buoyancy of "
+                    f"{self.net_buoyancy:.5g} N takes"
+                )
         return self
 
 

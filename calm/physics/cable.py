@@ -14,6 +14,7 @@ from calm.physics.track import Cable, Vibration
 
 MOST_SEGMENTS = 50_000
 _PASSES = 200
+_BERTEAUX, _HOERNER = Friction.BERTEAUX, Friction.HOERNER
 
 
 def march_cable(
@@ -106,7 +107,7 @@ def _pass_segment(
     until its rise per unstretched metre settles. They contract by about change/earlier each.
     """
     kn, kt = cable.normal_drag, cable.tangential_drag
-    berteaux, hoerner = (cable.friction is law for law in (Friction.BERTEAUX, Friction.HOERNER))
+    berteaux, hoerner = cable.friction is _BERTEAUX, cable.friction is _HOERNER
     vibration = cable.vibration
     compliance, thinning, elongation = cable.compliance, cable.thinning, cable.elongation
     levels, rows, gravity = profile.levels, profile.rows, profile.gravity
@@ -181,7 +182,7 @@ def _friction_force(
 ) -> Vector:
     """Friction of the current u, v, w on a cable of axis t [N], by a law that is not Berteaux's."""
     squared = u * u + v * v + w * w
-    if friction is Friction.HOERNER:
+    if friction is _HOERNER:
         pull = kt * sqrt(squared)
         return pull * u, pull * v, pull * w
     along = u * tx + v * ty + w * tz

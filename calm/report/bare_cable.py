@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from rich.console import Group, RenderableType
-from rich.table import Table
 from rich.text import Text
 
 from calm.physics.strumming import BourgetMarichal
+from calm.report.terminal import plain_table, warning
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ def bare_cable_document(cable: BareCable) -> dict[str, Any]:
 def bare_cable_table(cable: BareCable) -> RenderableType:
     """The answer and what to think of it, for a rich console."""
     cn, amplitude = cable.vibration
-    table = Table(box=None, show_header=False, padding=(0, 2, 0, 0), pad_edge=False)
+    table = plain_table(header=False)
     table.add_row("weight in water", f"{cable.weight:.3f} N/m")
     table.add_row("drag coefficient C*", f"{cn:.3f}")
     table.add_row("amplitude a/D", f"{amplitude:.3f}")
@@ -73,7 +73,7 @@ def bare_cable_table(cable: BareCable) -> RenderableType:
         table.add_row("amplitude a", f"{1000.0 * amplitude * cable.diameter:.1f} mm")
         table.add_row("frequency", f"{cable.frequency:.2f} Hz")
     title = f"Bare cable at {cable.angle:g}° behind a ship at {cable.speed:.3g} m/s"
-    notes = [Text(f"! {note}", style="bold red") for note in _notes(cable)]
+    notes = [warning(note) for note in _notes(cable)]
     return Group(Text(title, style="bold"), Text(), table, *([Text(), *notes] if notes else []))
 
 

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 from pydantic import BaseModel
 from rich.console import Group, RenderableType
 from rich.padding import Padding
-from rich.table import Table
 from rich.text import Text
 
 from calm.quantities import QUANTITIES
+from calm.report.terminal import plain_table
 
 if TYPE_CHECKING:
     from calm.files import Catalogue, Component
@@ -27,7 +27,7 @@ _HEADING_OF_OTHERS = "other"
 
 def to_list(catalogue: Catalogue, definitions: Mapping[str, Definition]) -> RenderableType:
     """One line for each definition, under the name of its family."""
-    table = Table(box=None, padding=(0, 0, 0, 1), pad_edge=False)
+    table = plain_table(gap=1)
     table.add_column("id", overflow="fold")
     table.add_column("name", overflow="fold")
     table.add_column("net force\nin water", justify="right", no_wrap=True)
@@ -47,7 +47,7 @@ def to_list(catalogue: Catalogue, definitions: Mapping[str, Definition]) -> Rend
 
 def to_card(identifier: str, definition: Definition) -> RenderableType:
     """Every figure that a definition gives, in the units people read, and where it comes from."""
-    rows = Table(box=None, show_header=False, padding=(0, 2, 0, 0), pad_edge=False)
+    rows = plain_table(header=False)
     for heading, text in _figures(definition):
         rows.add_row(Text(heading), Text(text))
     return Group(Text(identifier, style="bold"), Padding(rows, (0, 0, 0, 2)))

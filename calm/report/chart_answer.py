@@ -6,8 +6,9 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Group, RenderableType
-from rich.table import Table
 from rich.text import Text
+
+from calm.report.terminal import plain_table
 
 if TYPE_CHECKING:
     from calm.analytic.chart import ChartAnswer, ChartSolution
@@ -39,7 +40,7 @@ def answer_document(answer: ChartAnswer) -> dict[str, Any]:
 
 def answer_table(answer: ChartAnswer) -> RenderableType:
     """A column for each cable, for a rich console."""
-    table = Table(box=None, padding=(0, 0, 0, 2), pad_edge=False)
+    table = plain_table()
     table.add_column()
     table.add_column()
     for number, _ in enumerate(answer.solutions, start=1):

@@ -24,12 +24,7 @@ def failure_document(name: str, failure: NoEquilibrium) -> dict[str, Any]:
     dict
         `name`, `status`, `message` and `advice`, all text.
     """
-    return {
-        "name": name,
-        "status": failure.status,
-        "message": failure.message,
-        "advice": failure.advice,
-    }
+    return {"name": name, **failure.to_dict()}
 
 
 def to_json(documents: list[dict[str, Any]]) -> str:

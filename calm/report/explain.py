@@ -11,9 +11,10 @@ from rich.table import Table
 from rich.text import Text
 
 from calm.quantities import QUANTITIES
+from calm.report.terminal import plain_table, warning
 
 if TYPE_CHECKING:
-    from calm.case.explain import Explanation, WhatIf
+    from calm.case.explain import Explanation
     from calm.case.figures import Figures
 
 SMALLEST_SHARE = 0.005
@@ -74,14 +75,9 @@ def explanation_table(explanation: Explanation) -> RenderableType:
         parts += [Text()] * bool(explanation.notes) + [_causes(explanation), Text()]
     parts += [_changes(explanation), Text()]
     failures = [change for change in explanation.changes if change.failure is not None]
-    parts += [Text(_failure(change), style="bold red") for change in failures]
+    parts += [warning(f"{change.name}: {change.failure}") for change in failures]
     told = f"{_SHARES}\n{_CHANGES}" if explanation.causes is not None else _CHANGES
     return Group(*parts, Text(told, style="dim"))
-
-
-def _failure(change: WhatIf) -> str:
-    assert change.failure is not None
-    return f"! {change.name}: {change.failure}"
 
 
 def _causes(explanation: Explanation) -> Table:
@@ -166,6 +162,6 @@ def _decimals(column: _Column, whole: float) -> int:
 
 
 def _table() -> Table:
-    table = Table(box=None, padding=(0, 0, 0, 2), pad_edge=False)
+    table = plain_table()
     table.add_column(overflow="fold")
     return table

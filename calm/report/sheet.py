@@ -101,7 +101,7 @@ def _tow_summary(result: TowResult) -> tuple[Phrase, ...]:
             f"{say('horizontal', point.horizontal)} back"
         ),
         Phrase(
-            f"Body {_level(result)}, layback {say('layback', body.layback)}; "
+            f"Body {_level(result, body.depth)}, layback {say('layback', body.layback)}; "
             f"pulled by {_pull(body.tension, body.angle)}"
         ),
         *_strumming(result),
@@ -117,19 +117,23 @@ def _strumming(result: Result | TowResult) -> tuple[Phrase, ...]:
         least, greatest = say("cn", strumming.cn_min), say("cn", strumming.cn_max)
         return (Phrase(f"Strumming at {frequency}, Cn from {least} to {greatest}"),)
     if band is not None:
-        return (Phrase(f"If the cables strum, Cn × {band.factor:g}: {_with(band, result.type)}"),)
+        return (Phrase(f"If the cables strum, Cn × {band.factor:g}: {_with(result, band)}"),)
     return ()
 
 
-def _with(band: StrummingBand, kind: str) -> str:
+def _with(result: Result | TowResult, band: StrummingBand) -> str:
     """What the line would do with more drag on its cables."""
     if band.status != Status.CONVERGED.label:
         return band.status
-    if kind == "tow":
-        return f"body {say('depth', band.depth)} deep, tow point {say('tension', band.tension)}"
-    top = f"knockdown {say('knockdown', band.knockdown)}"
-    if kind == "surface" and band.depth == 0.0:
+    assert band.depth is not None
+    if isinstance(result, TowResult):
+        return f"body {_level(result, band.depth)}, tow point {say('tension', band.tension)}"
+    if result.type == "surface" and band.depth <= 0.0:  # a float at its draft stands out
         top = "top at the surface"
+    elif band.knockdown is None:
+        top = f"top {say('depth', band.depth)} deep"
+    else:
+        top = f"knockdown {say('knockdown', band.knockdown)}"
     return f"{top}, anchor {say('tension', band.tension)}"
 
 
@@ -137,9 +141,8 @@ def _pull(tension: float, angle: float) -> str:
     return f"{say('tension', tension)}, {say('angle', angle)} from the horizontal"
 
 
-def _level(result: TowResult) -> str:
+def _level(result: TowResult, depth: float) -> str:
     """How deep the body is, or how high it flies."""
-    depth = result.body.depth
     if result.file.environment.fluid == "air":
         return f"{say('depth', depth + result.tow.keys.height)} below the tow point"
     return f"{say('depth', depth)} deep" if depth >= 0.0 else f"{say('depth', -depth)} in the air"

@@ -9,6 +9,8 @@ from rich.table import Table
 from rich.text import Text
 
 from calm.quantities import QUANTITIES
+from calm.report.terminal import plain_table, warning
+from calm.units import with_unit
 
 if TYPE_CHECKING:
     from calm.case.size import Sizing, Trial
@@ -45,7 +47,7 @@ def sizing_table(sizing: Sizing) -> RenderableType:
     ]
     if sizing.before.failure is not None:
         parts.append(Text(f"As it is: {sizing.before.failure}", style="yellow"))
-    parts += [Text(f"! {warning}", style="bold red") for warning in _new_warnings(sizing)]
+    parts += [warning(text) for text in _new_warnings(sizing)]
     parts += [Text(note) for note in sizing.notes]
     return Group(*parts, Text(_effort(sizing), style="dim"))
 
@@ -63,8 +65,8 @@ def _answer(sizing: Sizing) -> str:
     growth = after.value - before.value
     share = f" ({growth / abs(before.value):+.1%})".replace("%", " %") if before.value else ""
     return (
-        f"{change.text}: {_digits(before.value, change.unit)} → "
-        f"{_digits(after.value, change.unit)}, {growth:+.6g}{share}{_each(sizing)}"
+        f"{change.text}: {with_unit(before.value, change.unit)} → "
+        f"{with_unit(after.value, change.unit)}, {growth:+.6g}{share}{_each(sizing)}"
     )
 
 
@@ -73,12 +75,8 @@ def _each(sizing: Sizing) -> str:
     return f", each of {len(sizing.change.labels)}" if several else ""
 
 
-def _digits(value: float, unit: str) -> str:
-    return f"{value:.6g} {unit}".rstrip()
-
-
 def _comparison(sizing: Sizing, before: Trial, after: Trial) -> Table:
-    table = Table(box=None, padding=(0, 0, 0, 2), pad_edge=False)
+    table = plain_table()
     table.add_column(overflow="fold")
     table.add_column()
     table.add_column("before", justify="right")

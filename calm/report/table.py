@@ -12,6 +12,7 @@ from calm.quantities import QUANTITIES
 from calm.report.limits import Mark
 from calm.report.rows import Phrase, Sheet
 from calm.report.sheet import sheet
+from calm.report.terminal import WARNED, plain_table, warning
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
@@ -23,7 +24,7 @@ _HEADINGS = {
     "safety_factor": ("safety", "factor"),
 }
 _MARKED = ("tilt", "safety_factor")
-_STYLES = {Mark.NONE: "", Mark.NEAR: "yellow", Mark.BEYOND: "bold red"}
+_STYLES = {Mark.NONE: "", Mark.NEAR: "yellow", Mark.BEYOND: WARNED}
 
 
 def result_table(result: Result | TowResult) -> RenderableType:
@@ -49,14 +50,14 @@ def result_table(result: Result | TowResult) -> RenderableType:
         _components(said),
         Text(),
         *map(_sentence, said.summary),
-        *(Text(f"! {warning}", style="bold red") for warning in said.warnings),
+        *(warning(text) for text in said.warnings),
         Text(),
         Text(f"{said.note}\n{said.convergence}", style="dim"),
     )
 
 
 def _components(said: Sheet) -> Table:
-    table = Table(box=None, padding=(0, 0, 0, 1), pad_edge=False)
+    table = plain_table(gap=1)
     table.add_column(overflow="fold")
     for name in said.columns:
         quantity = QUANTITIES[name]

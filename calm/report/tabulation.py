@@ -163,5 +163,5 @@ def _row_document(tabulation: Tabulation, row: TabulationRow) -> dict[str, Any]:
         del figures["frequency"]
     document = {**row.chosen, "status": row.outcome.status, **figures}
     if isinstance(row.outcome, NoEquilibrium):
-        return document | {"message": row.outcome.message, "advice": row.outcome.advice}
+        return document | row.outcome.to_dict()
     return document | {"warnings": list(row.outcome.warnings)}

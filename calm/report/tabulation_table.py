@@ -6,12 +6,12 @@ from dataclasses import replace
 from math import floor, log10
 
 from rich.console import Group, RenderableType
-from rich.table import Table
 from rich.text import Text
 
 from calm.errors import NoEquilibrium
 from calm.quantities import QUANTITIES, Quantity
 from calm.report.tabulation import FIGURES, Tabulation, TabulationRow
+from calm.report.terminal import WARNED, plain_table, warning
 
 _HEADINGS = {"body_tension": "tension\nat body"}
 _NOTE = "Depth and layback: of the body. Tension and angle: at the tow point, from the horizontal."
@@ -26,7 +26,7 @@ def tabulation_table(tabulation: Tabulation) -> RenderableType:
     all rows share stand below.
     """
     figures = [name for name in FIGURES if name != "frequency" or tabulation.strumming]
-    table = Table(box=None, padding=(0, 0, 0, 2), pad_edge=False)
+    table = plain_table()
     for heading in tabulation.headings:
         table.add_column(heading, justify="right", no_wrap=True)
     for name in figures:
@@ -39,14 +39,14 @@ def tabulation_table(tabulation: Tabulation) -> RenderableType:
     for row, remark in zip(tabulation.rows, remarks, strict=True):
         values = row.figures
         cells = (quantity.format(values[quantity.name]) for quantity in quantities)
-        table.add_row(*row.shown, *cells, Text(remark, style="bold red"))
+        table.add_row(*row.shown, *cells, Text(remark, style=WARNED))
     note = f"{_NOTE} {_WARNED}" if "!" in remarks else _NOTE
     return Group(
         Text(tabulation.title, style="bold"),
         Text(),
         table,
         Text(),
-        *(Text(f"! {warning}", style="bold red") for warning in tabulation.warnings),
+        *(warning(text) for text in tabulation.warnings),
         Text(note, style="dim"),
     )
 

@@ -7,8 +7,9 @@ from math import ceil, isnan, log10
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Group, RenderableType
-from rich.table import Table
 from rich.text import Text
+
+from calm.report.terminal import WARNED, plain_table, warning
 
 if TYPE_CHECKING:
     from calm.verification import Outcome, Source
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     Findings = Sequence[tuple[Source, Sequence[Outcome]]]
 
 COLUMNS = ("case", "expected", "got", "difference", "tolerance", "unit")
-_OUT = "bold red"
 _SMALL = 1e-3
 """Figures below it are given with a power of ten."""
 
@@ -99,7 +99,7 @@ def _case(source: Source, outcome: Outcome) -> dict[str, Any]:
 
 
 def _of_source(source: Source, outcomes: Sequence[Outcome]) -> RenderableType:
-    table = Table(box=None, padding=(0, 0, 0, 2), pad_edge=False)
+    table = plain_table()
     for name in COLUMNS:
         if name in ("case", "unit"):
             table.add_column(name, overflow="fold")
@@ -108,11 +108,9 @@ def _of_source(source: Source, outcomes: Sequence[Outcome]) -> RenderableType:
     for outcome in outcomes:
         name, *others = figures(outcome)
         label = name if outcome.within else f"! {name}"
-        table.add_row(*map(Text, (label, *others)), style="" if outcome.within else _OUT)
+        table.add_row(*map(Text, (label, *others)), style="" if outcome.within else WARNED)
     reasons = (
-        Text(f"! {outcome.case.name}: {outcome.reason}", style=_OUT)
-        for outcome in outcomes
-        if outcome.reason
+        warning(f"{outcome.case.name}: {outcome.reason}") for outcome in outcomes if outcome.reason
     )
     return Group(Text(source.title, style="bold"), table, *reasons, Text())
 
@@ -126,5 +124,5 @@ def _sum(findings: Findings) -> Text:
     out = sum(not outcome.within for outcome in outcomes)
     checked = f"Checked {_count(outcomes, 'figure')} of {_count(findings, 'source')}"
     if out:
-        return Text(f"{checked}: {out} out of tolerance", style=_OUT)
+        return Text(f"{checked}: {out} out of tolerance", style=WARNED)
     return Text(f"{checked}: all within tolerance")

@@ -228,6 +228,8 @@ def moment_residual(solution: Solution) -> float:
     above = np.vstack([np.zeros(3), np.cumsum(load, axis=0)])
     chord = np.diff(solution.position, axis=0)
     worst = 0.0
+    cable = solution.line.flexible[solution.element_piece] & (solution.element_clamp < 0)
+    single = cable.copy()  # elements that balance by themselves
     head = head_count(solution.line)
     rods = [
         list(range(head)),
@@ -236,17 +238,19 @@ def moment_residual(solution: Solution) -> float:
     for rod in rods:
         if not rod or not solution.line.length[rod].sum() > 0.0:
             continue
-        if solution.piece_nodes[rod[-1], 1] > solution.hanging:
-            continue
-        worst = max(worst, _rod_residual(solution, load, above, rod))
-    cable = solution.line.flexible[solution.element_piece] & (solution.element_clamp < 0)
-    cable &= (solution.cut > 0) & (np.arange(len(cable)) < solution.hanging)
+        first, last = solution.piece_nodes[rod[0], 0], solution.piece_nodes[rod[-1], 1]
+        if last - first == 1:
+            single[first] = True
+        elif last <= solution.hanging:
+            worst = max(worst, _rod_residual(solution, load, above, rod))
+    hanging = (solution.cut > 0) & (np.arange(len(cable)) < solution.hanging)
+    cable, single = cable & hanging, single & hanging
     mean = above[:-1] + 0.5 * load
-    angles = _angles(chord[cable], mean[cable])
+    angles = _angles(chord[single], mean[single])
     # the ends of a very short segment are rounded by more than the limit
     rounding = 32.0 * np.finfo(float).eps * np.abs(solution.position).max()
     length = np.linalg.norm(chord, axis=1)
-    angles = np.maximum(angles - rounding / np.maximum(length[cable], rounding), 0.0)
+    angles = np.maximum(angles - rounding / np.maximum(length[single], rounding), 0.0)
     expected = _expected_stretch(solution, above)
     strained = np.abs(_stretched(solution, length) - 1.0 - expected)[cable]
     strained = np.maximum(strained - rounding / solution.cut[cable], 0.0)

@@ -16,6 +16,10 @@ from calm.solve.refine import Refined
 from calm.solve.solution import Solution, nodes_of
 from calm.solve.status import Status
 
+UNSEEN = 1e-9
+"""Error, as a share of the span and of the greatest force, that both step sizes may have alike:
+of rounding, of a share of buoyancy, of a node that should be at a level and is just beside it."""
+
 _OF_CLAMP = {
     "clamp_buoyancy": "buoyancy",
     "clamp_volume": "volume",
@@ -60,6 +64,7 @@ def finished(
     unknown = fine.root.unknown
     track, _ = unknown.placed(fine.root.x, closing.profile)
     used, reserve = _buoyancy_in_use(closing, fine)
+    unclosed = abs(fine.miss) / closing.span + UNSEEN
     solution = Solution(
         line=closing.line,
         water=closing.water,
@@ -81,8 +86,8 @@ def finished(
         marches=closing.marches,
         segments=fine.end.segments,
         miss=fine.miss,
-        depth_error=refined.depth_error + abs(fine.miss),
-        tension_error=refined.tension_error + _tension_of_miss(closing, fine, force),
+        depth_error=refined.depth_error + closing.span * unclosed,
+        tension_error=refined.tension_error + _greatest_force(closing, fine, force) * unclosed,
         other_depth=other_depth,
         frequency=closing.frequency,
     )
@@ -103,18 +108,10 @@ def _buoyancy_in_use(closing: Closing, fine: Closed) -> tuple[float, float]:
     return used / total, total - used
 
 
-def _tension_of_miss(closing: Closing, fine: Closed, force: Floats) -> float:
-    """What the miss left may be worth in tension [N].
-
-    That of the buoyancy it stands for, or, where no float is at the surface, the share of the
-    greatest tension that it is of the span.
-    """
-    unknown = fine.root.unknown
-    worth = float(np.linalg.norm(force, axis=1).max()) * abs(fine.miss) / closing.span
-    if unknown.afloat is not None and fine.root.slope:
-        share = abs(fine.miss / fine.root.slope)
-        worth = max(worth, share * float(closing.line.buoyancy[unknown.afloat]))
-    return worth
+def _greatest_force(closing: Closing, fine: Closed, force: Floats) -> float:
+    """The greatest tension, or buoyancy of a float whose share in use is sought [N]."""
+    lift = closing.line.buoyancy[list(fine.root.unknown.shares(fine.root.x))]
+    return max([float(np.linalg.norm(force, axis=1).max()), *lift.tolist()])
 
 
 def _carried(line: Line, track: Track) -> Line:

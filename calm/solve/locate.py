@@ -22,7 +22,7 @@ grows or turns with depth: the resolution at which separate equilibria are told 
 DIP = 8
 """Depths tried to see whether the miss changes sign between three of those."""
 GOLDEN = 0.381966
-AWASH_SHARES = (1.0, 0.995, 1.0 - AWASH, 0.94, 0.85, 0.7, 0.4, 0.0)
+SHARES = (0.0, 0.4, 0.7, 0.85, 0.94, 1.0 - AWASH, 0.995)
 """Shares of its buoyancy in use at which a float that would be under water is tried afloat."""
 
 Sample = tuple[float, float]
@@ -166,20 +166,22 @@ def _largest_fall(closing: Closing, unknown: Unknown, depth: float) -> float:
 
 
 def _awash(closing: Closing, unknown: Unknown, immersed: float) -> Root | None:
-    """A float afloat that all its buoyancy would leave under water.
+    """The highest root with a float at the surface that could be under water as well.
 
     There its drag is less, or the wind pushes against the current. `immersed` ≥ 0 is the miss with
     all buoyancy in use.
     """
-    if not closing.floats or closing.line.floating is None:
+    if closing.line.floating is None:
         return None
-    unknown = replace(unknown, afloat=closing.floats[0])
+    piece, *lower = closing.floats
+    unknown = replace(unknown, afloat=piece)
     miss = closing.coarse_miss(unknown)
-    samples = [(share, miss(share)) for share in reversed(AWASH_SHARES[1:])]
-    samples.append((1.0, immersed))
+    samples = [*((share, miss(share)) for share in SHARES), (1.0, immersed)]
     for a, b in pairwise(samples):
         if a[1] > 0.0 >= b[1]:
-            return closing.coarse_root(unknown, *b, *a)
+            root = closing.coarse_root(unknown, *b, *a)
+            in_water = not lower or _height_at(closing, root, lower[0]) <= closing.allowed
+            return root if in_water else None
     return None
 
 

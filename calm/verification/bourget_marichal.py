@@ -11,7 +11,7 @@ import numpy as np
 from calm.physics.line import Line
 from calm.physics.strumming import BourgetMarichal
 from calm.solve import Settings
-from calm.verification.case import Case, Figure, Source, table
+from calm.verification.case import PRINTED, Case, Figure, Source, table
 from calm.verification.ends import Wake, towed
 from calm.verification.pieces import (
     GRAVITY,
@@ -71,7 +71,6 @@ def _amplitude(speed: float) -> float:
     return _LAW.amplitude(radians(_bare(speed).angle))
 
 
-_PRINTED = "Half a unit of the last digit printed, and a tenth."
 _FITTED = (
     "One unit of the last digit: A₁, B₁ and C₁ are fitted to these figures and given to six digits."
 )
@@ -99,7 +98,7 @@ The paper computes 3.56 Hz and measured 4.07 Hz; CALM's 3.559 Hz is the former, 
             [("strumming", lambda: _example(True), (16.280, 3.559, 1.6529))],
             _FITTED,
         ),
-        Case("strumming: frequency, as the paper has it", 3.56, "Hz", 5.5e-3, _PRINTED,
+        Case("strumming: frequency, as the paper has it", 3.56, "Hz", 5.5e-3, PRINTED,
              lambda: _example(True).frequency),
         Case("strumming: C* at the sphere", 1.250, "", 1e-3, _FITTED, _at_the_sphere),
         Case("strumming: C* at the ship", 3.0, "", 1e-9, "The model's ceiling.", _at_the_ship),
@@ -117,7 +116,7 @@ The paper computes 3.56 Hz and measured 4.07 Hz; CALM's 3.559 Hz is the former, 
                 Figure[Wake]("tension at the ship", "N", 5.5e-5, lambda wake: wake.tension),
             ],
             [("constant C = 1.2", lambda: _example(False), (24.362, 1.9191, 16.9495))],
-            _PRINTED,
+            PRINTED,
         ),
     ),
 )  # fmt: skip

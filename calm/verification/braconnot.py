@@ -10,7 +10,7 @@ from calm.analytic.chart_branch import critical_angle
 from calm.analytic.chart_curve import CurvePoints, curve
 from calm.physics.line import Line, Water
 from calm.solve import Solution, solve_mooring
-from calm.verification.case import Case, Figure, Source, table
+from calm.verification.case import PRINTED, Case, Figure, Source, table
 from calm.verification.ends import FINE, Ends, Wake, finely, towed
 from calm.verification.pieces import Piece, deep_water, line_of, point, stream
 
@@ -100,7 +100,6 @@ _FIVE = _figures(5.5e-4, 5.5e-4, 5.5e-3)
 _TOWED = _figures(5.5e-4, 5.5e-4, 5.5e-4)
 _EIGHT = _figures(5.5e-7, 5.5e-6, 5.5e-7)
 _READ = _figures(0.02 * 20.0, 0.5, 0.02 * 250.0)
-_PRINTED = "Half a unit of the last digit printed, and a tenth."
 
 SOURCE = Source(
     "Braconnot's charts",
@@ -125,7 +124,7 @@ against the march as well.""",
         *table(
             [_FIVE[name] for name in ("L", "D", "phi_a", "T_A")],
             [("buoy", partial(_buoy, _K), (28.467, 18.782, 22.027, 250.00))],
-            _PRINTED,
+            PRINTED,
         ),
         *table(
             [
@@ -153,12 +152,12 @@ against the march as well.""",
                 Figure[ChartSolution]("distance D", "m", 5.5e-3, lambda cable: cable.distance),
             ],
             [("buoy at its true K, 2.7", partial(_buoy, 2.7), (30.71, 21.50))],
-            _PRINTED,
+            PRINTED,
         ),
         *table(
             [_TOWED[name] for name in ("H", "D", "phi_a", "T_A")],
             [("tow", partial(_tow, _K), (73.198, -67.215, 116.373, 63.401))],
-            _PRINTED,
+            PRINTED,
         ),
         *table(
             [
@@ -170,7 +169,7 @@ against the march as well.""",
             [("tow", _towed, (73.198, -67.215, 140.0, 100.0))],
             "T_A and φ_A of the body are printed to 5e-4 N and 5e-4°.",
         ),
-        Case("tow at 1 knot, K 3.176: depth H", 82.87, "m", 5.5e-3, _PRINTED,
+        Case("tow at 1 knot, K 3.176: depth H", 82.87, "m", 5.5e-3, PRINTED,
              lambda: _tow(3.176).height),
         *table(
             [_EIGHT[name] for name in ("phi_b", "T_B", "H", "D")],
@@ -179,7 +178,7 @@ against the march as well.""",
                 ("through the apex", _through_the_apex,
                  (107.31124, 105.978848, 91.9576956, 126.772138)),
             ],
-            _PRINTED,
+            PRINTED,
         ),
         *table(
             [
@@ -188,9 +187,9 @@ against the march as well.""",
                 Figure[CurvePoints]("z′", "", 5.5e-6, lambda point: float(point.height)),
             ],
             [("curve at 75°", _point, (0.96945, 0.75437, 0.49348))],
-            _PRINTED,
+            PRINTED,
         ),
-        Case("critical angle, K 2.4", 144.4, "°", 0.055, _PRINTED,
+        Case("critical angle, K 2.4", 144.4, "°", 0.055, PRINTED,
              lambda: degrees(float(critical_angle(_K)))),
     ),
 )  # fmt: skip

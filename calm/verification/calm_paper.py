@@ -6,7 +6,7 @@ from functools import partial
 
 from calm.physics.drag import measured_drag
 from calm.physics.seawater import dynamic_viscosity
-from calm.verification.case import Case, Source
+from calm.verification.case import PRINTED, Case, Source
 
 _TEMPERATURES = (0, 5, 10, 15, 20, 25, 30)
 
@@ -45,7 +45,7 @@ a plate of that instrument's size bears out, so that K is 26.4 N/(m/s)².""",
             for temperature, printed in zip(_TEMPERATURES, row, strict=True)
         ),
         Case("RCM4/RCM5: K", 2.694, "kgf/(m/s)²", 5.5e-4,
-             "Half a unit of the last digit printed, and a tenth.",
+             PRINTED,
              partial(measured_drag, _METER_SPEED, _METER_DRAG)),
     ),
 )  # fmt: skip

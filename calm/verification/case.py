@@ -9,6 +9,9 @@ from typing import Generic, TypeVar
 
 Answer = TypeVar("Answer")
 
+PRINTED = "Half a unit of the last digit printed, and a tenth."
+"""The reason for a tolerance where CALM is exact beside the figure as printed."""
+
 
 @dataclass(frozen=True)
 class Case:

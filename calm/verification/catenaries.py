@@ -11,11 +11,10 @@ from numpy.typing import ArrayLike
 from calm.analytic.catenary import Catenary, between
 from calm.physics.line import Line
 from calm.solve import Solution, solve_mooring
-from calm.verification.case import Case, Figure, Source, table
+from calm.verification.case import PRINTED, Case, Figure, Source, table
 from calm.verification.ends import FINE, ends_of
 from calm.verification.pieces import Piece, line_of, point, stream
 
-_PRINTED = "Half a unit of the last digit printed, and a tenth."
 _MARCH = (
     "1e-6 of the line's length or of the pull; the float pulls with the printed forces, and the "
     "march errs by less than that at an angle step of 0.1°."
@@ -117,16 +116,16 @@ the line can be moored, against the march.""",
         *table(
             [*_pulls(5.5e-4), _LOWER_END],
             [("C12 suspended", _suspended, (*_SUSPENDED, 30611.346, 291.876))],
-            _PRINTED,
+            PRINTED,
         ),
-        *table(_pulls(5.5e-4), [("C12 taut", _taut, (*_TAUT, 116583.005))], _PRINTED),
+        *table(_pulls(5.5e-4), [("C12 taut", _taut, (*_TAUT, 116583.005))], PRINTED),
         *table(
             [*_pulls(5.5e-7), _GROUNDED],
             [("C13 touchdown", _touchdown, (*_TOUCHDOWN, 3.508667, 3.674364))],
-            _PRINTED,
+            PRINTED,
         ),
         *(
-            Case(f"C14 level span: {name}", expected, unit, 5.5e-7, _PRINTED, got)
+            Case(f"C14 level span: {name}", expected, unit, 5.5e-7, PRINTED, got)
             for name, expected, unit, got in (
                 ("horizontal pull", 3929.783686, "N", lambda: _number(_level().horizontal)),
                 ("greatest tension", 5131.588430, "N", lambda: float(_level().tension_top)),

@@ -11,7 +11,7 @@ from calm.physics.reynolds import (
     finite_length_factor_above,
     sphere_coefficient,
 )
-from calm.verification.case import Case, Source
+from calm.verification.case import PRINTED, Case, Source
 
 WIESELSBERGER = (
     (3.18, 4.87), (8.01, 2.94), (17.7, 2.12), (31.7, 1.73), (63.6, 1.48), (196.0, 1.27),
@@ -45,7 +45,6 @@ _KAPPA_ABOVE = (0.80, 0.80, 0.82, 0.90, 0.98, 0.99, 1.00)
 _END_FACE = ((0.1, 1.17), (0.6, 1.07), (0.88, 0.97), (1.3, 0.86), (1.8, 0.82))
 
 _COPIED = "The printed digits: they are the points CALM's curve is drawn through."
-_PRINTED = "Half a unit of the last digit printed, and a tenth."
 _SHARE = 1e-9
 
 
@@ -94,7 +93,7 @@ Moorings take these curves only where a component is declared smooth.""",
                  partial(finite_length_factor_above, slenderness))
             for slenderness, kappa in zip(_SLENDERNESS, _KAPPA_ABOVE, strict=True)
         ),
-        Case("C23 κ, L/D 1, Wieselsberger", 0.52, "", 5.5e-3, _PRINTED,
+        Case("C23 κ, L/D 1, Wieselsberger", 0.52, "", 5.5e-3, PRINTED,
              partial(finite_length_factor, 1.0)),
         *(
             Case(f"C23 end face, L/D {slenderness:g}", ct, "", _SHARE, _COPIED,
@@ -102,7 +101,7 @@ Moorings take these curves only where a component is declared smooth.""",
             for slenderness, ct in _END_FACE
         ),
         *(
-            Case(f"C23 sphere, Re {reynolds:g}", cx, "", 5.5e-4 if cx > 10.0 else 5.5e-5, _PRINTED,
+            Case(f"C23 sphere, Re {reynolds:g}", cx, "", 5.5e-4 if cx > 10.0 else 5.5e-5, PRINTED,
                  partial(sphere_coefficient, reynolds))
             for reynolds, cx in MORRISON
         ),

@@ -9,7 +9,7 @@ from math import degrees, radians
 from calm.analytic.pode import CableFunctions, cable_functions
 from calm.analytic.uniform import critical_angle, critical_weight_ratio, tension_ratio
 from calm.physics.friction import Friction
-from calm.verification.case import Case, Figure, Source, table
+from calm.verification.case import PRINTED, Case, Figure, Source, table
 from calm.verification.ends import Wake, towed
 from calm.verification.pieces import Piece, deep_water, line_of, point
 
@@ -41,8 +41,6 @@ _CRITICAL = (
 
 _PULL = 100.0
 """Of the body that the march tows [N]."""
-
-_PRINTED = "Half a unit of the last digit printed, and a tenth."
 
 
 @cache
@@ -80,7 +78,7 @@ def _tension(critical: float, angle: float, tau: float) -> Case:
         return float(tension_ratio(radians(angle), radians(90.0), ratio))
 
     return Case(
-        f"{_name(critical, 0.0, angle)}: τ, closed form", tau, "", 5.5e-7, _PRINTED, got
+        f"{_name(critical, 0.0, angle)}: τ, closed form", tau, "", 5.5e-7, PRINTED, got
     )  # fmt: skip
 
 
@@ -108,7 +106,7 @@ cos φc = √(1 + p²/4) − p/2, is E. E. Zajac's, too (Bell System Technical J
             [(_name(*given), partial(_functions, *given), row)
              for *given, tau, sigma, xi, eta in _TABLE
              for row in [(tau, sigma, xi, eta)]],
-            _PRINTED,
+            PRINTED,
         ),
         *table(
             [
@@ -127,7 +125,7 @@ cos φc = √(1 + p²/4) − p/2, is E. E. Zajac's, too (Bell System Technical J
         Case("C6 all rows: greatest |τ − 1 − p η − f σ|", 0.0, "", 1e-11,
              "Exact; the quadratures go on to 1e-12.", _identity_missed),
         *(
-            Case(f"critical angle, p {ratio:g}", expected, "°", 5.5e-5, _PRINTED,
+            Case(f"critical angle, p {ratio:g}", expected, "°", 5.5e-5, PRINTED,
                  partial(_critical_angle, ratio))
             for ratio, expected in _CRITICAL
         ),

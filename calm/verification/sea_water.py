@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 from calm.physics import seawater
-from calm.verification.case import Case, Source
+from calm.verification.case import PRINTED, Case, Source
 
 _TEMPERATURES = (0, 5, 10, 15, 20, 25, 30)
 
@@ -30,8 +30,6 @@ _GRAVITY = ((0, 9.780327), (30, 9.793249), (45, 9.806200), (60, 9.819179), (90, 
 """Latitude [degrees], gravity at the sea surface [m/s²]."""
 
 _LATITUDE = 30.0
-
-_PRINTED = "Half a unit of the last digit printed, and a tenth."
 
 
 def _viscosity(temperature: float, salinity: float) -> float:
@@ -58,28 +56,28 @@ other measurements, and the accepted viscosity of pure water at 20 °C stand bes
     (
         *(
             Case(f"C23 dynamic viscosity, {temperature} °C, {salinity} g/kg", printed, "mPa s",
-                 5.5e-5, _PRINTED, partial(_viscosity, temperature, salinity))
+                 5.5e-5, PRINTED, partial(_viscosity, temperature, salinity))
             for salinity, row in _VISCOSITY
             for temperature, printed in zip(_TEMPERATURES, row, strict=True)
         ),
         *(
             Case(f"C23 kinematic viscosity, {temperature} °C, 35", printed, "1e-6 m²/s", 5.5e-5,
-                 _PRINTED, partial(_kinematic, temperature))
+                 PRINTED, partial(_kinematic, temperature))
             for temperature, printed in zip(_TEMPERATURES, _KINEMATIC, strict=True)
         ),
         Case("C23 dynamic viscosity, 10 °C, 30 g/kg, to six digits", 1.38238, "mPa s", 5.5e-6,
-             _PRINTED, partial(_viscosity, 10, 30)),
+             PRINTED, partial(_viscosity, 10, 30)),
         Case("C23 Dorsey 1940, 10 °C, 30 g/kg", 1.383779, "mPa s", 0.015 * 1.383779,
              "1.5 %, the accuracy of the formula.", partial(_viscosity, 10, 30)),
         Case("C23 pure water, 20 °C, accepted", 1.0016, "mPa s", 0.015 * 1.0016,
              "1.5 %, the accuracy of the formula.", partial(_viscosity, 20, 0)),
         *(
             Case(f"C23 density, SA {salinity}, CT {temperature:g}, {depth} m", printed, "kg/m³",
-                 5.5e-4, _PRINTED, partial(_density, salinity, temperature, depth))
+                 5.5e-4, PRINTED, partial(_density, salinity, temperature, depth))
             for salinity, temperature, depth, printed in _DENSITY
         ),
         *(
-            Case(f"C23 gravity, latitude {latitude}°", printed, "m/s²", 5.5e-7, _PRINTED,
+            Case(f"C23 gravity, latitude {latitude}°", printed, "m/s²", 5.5e-7, PRINTED,
                  partial(seawater.gravity, latitude))
             for latitude, printed in _GRAVITY
         ),

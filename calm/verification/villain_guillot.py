@@ -7,7 +7,7 @@ from math import cos, radians, sin
 
 from calm.analytic.station import Station
 from calm.analytic.villain_guillot import linear_cable
-from calm.verification.case import Figure, Source, table
+from calm.verification.case import PRINTED, Figure, Source, table
 
 _LENGTH, _UNIT = 1.25, 0.5
 """L and ℓ = T₀/√((μg)² + (kV)²) of the figure."""
@@ -41,6 +41,6 @@ shape are right.""",
                 (30, 60, 0.879717, 0.879444),
             )
         ],
-        "Half a unit of the last digit printed, and a tenth.",
+        PRINTED,
     ),
 )

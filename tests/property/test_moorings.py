@@ -62,7 +62,7 @@ def without_clamps(line: Line) -> Line:
     none = np.array([])
     return replace(
         line, clamp_piece=none.astype(int), clamp_at=none, clamp_buoyancy=none,
-        clamp_volume=none, clamp_drag=none,
+        clamp_volume=none, clamp_drag=none, clamp_lift=none,
     )  # fmt: skip
 
 
@@ -76,7 +76,7 @@ def cut(line: Line, parts: int) -> Line:
     first = np.cumsum(repeats) - repeats
     columns = (
         "flexible", "buoyancy", "volume", "normal_drag", "tangential_drag", "directional",
-        "compliance", "thinning",
+        "compliance", "thinning", "lift", "diameter", "push_east", "push_north",
     )  # fmt: skip
     return replace(
         line,

@@ -1,10 +1,10 @@
 """The referee's float at the surface: how deep it sits, what of it is dragged, the wind on it.
 
 The water displaced carries the float's weight and what the line pulls. The waterline of the hull
-lies at z = 0 on the float's axis, as a share of the float's length; current drags the immersed area
-only, wind pushes at the float's middle with ½ ρ Cd A |W| W on the area above. What stands on the
-float is out of the water but for the last 2 % of its buoyancy, in which it goes under; so is a given
-wind area, and a given drag afloat becomes that below.
+lies at z = 0 on the float's axis, as a share of the float's length; current drags the immersed
+area only, wind pushes at the float's middle with ½ ρ Cd A |W| W on the area above. What stands on
+the float is out of the water but for the last 2 % of its buoyancy, in which it goes under; so is a
+given wind area, and a given drag afloat becomes that below.
 """
 
 from __future__ import annotations

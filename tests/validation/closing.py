@@ -2,8 +2,9 @@
 
 A line whose free end, left at the surface with its full buoyancy, hangs too deep for its anchor
 floats: its free end is at the surface and the unknown is the part in use of the buoyancy of the
-first float, which may have a draft. If that leaves the next float in the air or the line too high, the next one is at the
-surface too, the part of the first being what leaves it there, and its own part is the unknown.
+first float, which may have a draft. If that leaves the next float in the air or the line too high,
+the next one is at the surface too, the part of the first being what leaves it there, and its own
+part is the unknown.
 Otherwise the unknown is the depth of the free end. Each is searched from the upright side in
 `SCAN` steps, then closed by Brent's method to rounding.
 """

@@ -1,9 +1,9 @@
 """CALM against the referee on random moorings with a float at its draft: 48 that are afloat.
 
 The moorings of `test_random_moorings` that are made for the surface, with a hull on the first
-float, wind, and now and then a given drag afloat or a given area in the wind. The same limits: depths
-and offsets within 5e-5 of the water depth and tensions within 2e-4 at an angle step of 1°, 2e-6 and
-1e-5 at 0.1°; forces close to 1e-6, recomputed here. Draft and freeboard are those of the hull.
+float, wind, and now and then a given drag afloat or a given area in the wind. The same limits:
+depths and offsets within 5e-5 of the water depth and tensions within 2e-4 at an angle step of 1°,
+2e-6 and 1e-5 at 0.1°; forces close to 1e-6, recomputed here. Draft and freeboard are the hull's.
 """
 
 from __future__ import annotations

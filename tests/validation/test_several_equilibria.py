@@ -1,8 +1,8 @@
 """Undercurrents in which a line has several equilibria, counted by the referee.
 
-With the free end at a depth the line ends some way above its anchor. It stands where this vanishes,
-and stays there where it falls with depth: where it grows a line pushed down goes on down. CALM gives
-the highest and tells the deepest that it comes upon.
+With the free end at a depth the line ends some way above its anchor. It stands where this
+vanishes, and stays there where it falls with depth: where it grows a line pushed down goes on down.
+CALM gives the highest and tells the deepest that it comes upon.
 """
 
 from __future__ import annotations

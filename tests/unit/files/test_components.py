@@ -93,7 +93,7 @@ def test_all_common_fields() -> None:
         max_tilt="27 deg",
         warn_tilt="20 deg",
         slack="allowed",
-        hull={"displacement": [["0.1 m", "20 L", "0.2 m^2"], ["0.2 m", "50 L", "0.3 m^2"]]},
+        hull={"displacement": [["0.1 m", "20 L", "0.2 m^2"], ["0.2 m", "500 L", "0.3 m^2"]]},
         k_surface="40 N/(m/s)^2",
         wind_area="0.5 m^2",
         wind_cd="1.1",
@@ -102,7 +102,7 @@ def test_all_common_fields() -> None:
     assert (sphere.depth_rating, sphere.working_load) == (800.0, 40e3)
     assert sphere.breaking_load == pytest.approx(12e3 * G, rel=1e-15)
     assert (sphere.max_tilt, sphere.warn_tilt, sphere.slack) == (27.0, 20.0, "allowed")
-    assert sphere.hull.displacement == ((0.1, 0.02, 0.2), (0.2, 0.05, 0.3))
+    assert sphere.hull.displacement == ((0.1, 0.02, 0.2), (0.2, 0.5, 0.3))
     assert (sphere.part_number, sphere.date) == ("3846", "2026-11-21")
 
 
@@ -331,3 +331,11 @@ def test_components_are_frozen() -> None:
     component: Component = good(kind="anchor", mass="1 t")
     with pytest.raises(ValueError, match="frozen"):
         component.length = 3.0
+
+
+def test_a_hull_must_displace_what_the_float_lifts():
+    table = {"displacement": [["0.1 m", "20 L", "0.2 m^2"], ["0.2 m", "50 L", "0.3 m^2"]]}
+    _, problems = parse({"kind": "sphere", "diameter": "1 m", "buoyancy": "1 kN", "hull": table})
+    assert problems == [
+        "the `hull` displaces 0.05 m³ at most, less than its net buoyancy of 1000 N takes"
+    ]

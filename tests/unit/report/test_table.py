@@ -102,7 +102,9 @@ def test_draft_where_the_hull_is_known(make_result):
     [
         ("subsurface", ("converged", 118.0, 13.05, 5333.3), "knockdown 13.1 m, anchor 5333 N"),
         ("surface", ("converged", 0.0, 0.0, 5333.3), "top at the surface, anchor 5333 N"),
+        ("surface", ("converged", -0.4, 0.0, 5333.3), "top at the surface, anchor 5333 N"),
         ("surface", ("converged", 2.0, 2.0, 5333.3), "knockdown 2.0 m, anchor 5333 N"),
+        ("surface", ("converged", 2.0, None, 5333.3), "top 2.0 m deep, anchor 5333 N"),
         ("subsurface", ("no-equilibrium",), "no-equilibrium"),
     ],
 )

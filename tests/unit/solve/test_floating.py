@@ -40,7 +40,8 @@ def test_what_it_displaces_is_its_weight_and_the_pull_of_the_line():
     displaced = draft**2 * (3.0 - 2.0 * draft) * 1025.0 * GRAVITY * pi / 6
     assert displaced == pytest.approx(weight + end_of_float(solution)[2], rel=1e-12)
     assert solution.riding.freeboard == pytest.approx(1.0 - draft)
-    assert solution.reserve == pytest.approx(solution.line.floating.lift - end_of_float(solution)[2])
+    spare = solution.line.floating.lift - end_of_float(solution)[2]
+    assert solution.reserve == pytest.approx(spare)
 
 
 def test_on_a_taut_thread_the_forces_across_balance():
@@ -93,7 +94,8 @@ def test_a_drag_afloat_takes_the_place_of_that_of_the_immersed_part():
 def test_without_a_hull_it_is_as_ever():
     """`full`: just below the surface, all of its drag, no wind."""
     piece, _ = ball()
-    solution = solve_mooring(line(piece, rope(99.3, diameter=0.0)), water(100, (0, 0.8, 0, 0)), TIGHT)
+    thread = line(piece, rope(99.3, diameter=0.0))
+    solution = solve_mooring(thread, water(100, (0, 0.8, 0, 0)), TIGHT)
     assert solution.riding is None
     assert solution.position[0, 2] == 0
     assert solution.force[-1, 0] == pytest.approx(0.5 * 1025.0 * 0.5 * pi / 4 * 0.64, rel=1e-12)
@@ -194,7 +196,7 @@ def test_a_light_goes_under_with_its_float():
 
 
 def test_a_spar_is_pulled_under_without_a_leap():
-    """A spar's drag grows no faster than its buoyancy: there is one equilibrium in every current."""
+    """Its drag grows no faster than its buoyancy: there is one equilibrium in every current."""
     spar = rigid(3.0, 4000.0, drag=400.0, directional=True, volume=0.55)
     riding = Floating(cylindrical_hull(0.48, 3.0), 1025.0 * GRAVITY * 0.55 - 4000.0, 4000.0)
     solutions = swept(replace(line(spar, rope(98.0, weight=0.5)), floating=riding), 0.8, 1.2)

@@ -109,3 +109,16 @@ def test_a_barely_slack_line_hangs_between_the_seabed_and_the_top_of_its_anchor(
     solution = solve_mooring(slack, water(70, CURRENT))
     assert not solution.landed
     assert solution.position[-1, 2] == pytest.approx(-68, abs=1e-5)
+
+
+def test_a_line_that_lies_at_rest_lies_until_the_current_has_lifted_it():
+    """Near the end it could hang between the seabed and the top of its anchor, too."""
+    slack = line(FLOAT, rope(60, weight=1), rope(20, weight=60), anchor_height=1.0)
+    speeds = np.linspace(0.2, 2.0, 37)
+    solutions = [solve_mooring(slack, water(70, (0, speed, 0, 0))) for speed in speeds]
+    lying = np.array([solution.grounded_length for solution in solutions])
+    assert solutions[0].landed
+    assert not solutions[-1].landed
+    assert (np.diff(lying) <= 1e-6).all()
+    offset = np.array([solution.position[0, 0] for solution in solutions])
+    assert (np.diff(offset) > 0).all()
