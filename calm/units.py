@@ -22,7 +22,7 @@ _POUND = 0.45359237
 _POUND_FORCE = _POUND * KILOGRAM_FORCE
 _FOOT = 0.3048
 _INCH = 0.0254
-_KNOT = 1852 / 3600
+KNOT = 1852 / 3600
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ DIMENSIONS: Mapping[str, Dimension] = {
     "speed": Dimension(
         "a speed",
         "m/s",
-        {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "knot": _KNOT, "km/h": 1 / 3.6, "ft/s": _FOOT},
+        {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "knot": KNOT, "km/h": 1 / 3.6, "ft/s": _FOOT},
     ),
     "acceleration": Dimension("an acceleration", "m/s^2", {"m/s^2": 1.0, "ft/s^2": _FOOT}),
     "mass": Dimension("a mass", "kg", {"kg": 1.0, "g": 1e-3, "t": 1e3, "lb": _POUND}),

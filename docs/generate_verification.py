@@ -32,8 +32,7 @@ takes those whose source or name has both words, `--json -` gives every digit. T
 `calm/verification/`, one module for each source, and the tests run them.
 
 Each table stands below the reason for its tolerance. What was got, and the difference, are rounded
-a digit or two beyond the tolerance. A case keeps the number, C1 to C23, of the list it was drawn
-from.
+a digit or two beyond the tolerance. C1 to C23 are the names of cases in the code and the tests.
 
 Not here, because a figure alone does not tell it: the tests hold every mooring of `lines/` and
 hundreds of random moorings against an independent integration of the differential

@@ -1,7 +1,6 @@
 """Models and environment to arrays: what a person wrote becomes what the march takes."""
 
 from calm.assemble.floating import assemble_floating as assemble_floating
-from calm.assemble.floating import first_float as first_float
 from calm.assemble.line import assemble_line as assemble_line
 from calm.assemble.line import drag_of as drag_of
 from calm.assemble.line import net_buoyancy as net_buoyancy

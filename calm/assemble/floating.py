@@ -16,7 +16,7 @@ from calm.physics.hull import Floating, Hull, cylindrical_hull, spherical_hull, 
 from calm.physics.line import Water
 
 
-def first_float(pieces: Sequence[Piece]) -> Piece | None:
+def _first_float(pieces: Sequence[Piece]) -> Piece | None:
     """The first rigid buoyant piece of a line, None where there is none."""
     for piece in pieces:
         component = piece.component
@@ -33,7 +33,7 @@ def assemble_floating(
     A hull is that of the component's `hull`, or of its kind for a sphere and a cylinder; without
     mass or volume there is no draft, and only a `k_surface` makes a difference.
     """
-    piece = first_float(pieces)
+    piece = _first_float(pieces)
     component = None if piece is None else piece.component
     if not isinstance(component, Sphere | Cylinder | Body):
         return None

@@ -111,7 +111,8 @@ class Result:
     `iterations` counts marches, `segments` the cuts of the final one, `miss` is the height
     of the line's end above the anchor's top, `closure` the relative force residual recomputed
     from the final coordinates. `still_shape` is the same line without current, None where that
-    has no unique shape. `other_depth` is that of the free end in another equilibrium that was found.
+    has no unique shape. `other_depth` is that of the free end in another equilibrium that was
+    found.
     """
 
     mooring: Mooring = field(repr=False)

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from calm.case.result import Strumming
 from calm.files import Solver
 from calm.physics.drag import line_drag
-from calm.physics.strumming import STROUHAL
+from calm.physics.strumming import shedding_frequency
 from calm.solve import Solution
 from calm.solve.audit import amplification, flow_across
 
@@ -23,5 +21,6 @@ def strumming_of(solver: Solver, solution: Solution) -> Strumming | None:
     cn = line.normal_drag[piece[cables]] / (unit * diameter) * amplification(solution)[cables]
     frequency = solution.frequency
     if not frequency:
-        frequency = float(np.max(STROUHAL * flow_across(solution)[cables] / diameter))
+        speeds = flow_across(solution)[cables].tolist()
+        frequency = max(map(shedding_frequency, speeds, diameter.tolist()))
     return Strumming(frequency, float(cn.min()), float(cn.max()))

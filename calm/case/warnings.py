@@ -204,7 +204,9 @@ def _wind_ignored(result: Result, solution: Solution) -> Iterator[str]:
     floating = solution.line.floating
     felt = floating is not None and (floating.hull is not None or floating.wind_area is not None)
     if wind is not None and solution.surface and not (solution.riding is not None and felt):
-        yield "The wind on the float is not taken into account: nothing of it is known to stand out."
+        yield (
+            "The wind on the float is not taken into account: nothing of it is known to stand out."
+        )
 
 
 def _below_the_sea(result: TowResult, _: Solution) -> Iterator[str]:

@@ -13,7 +13,7 @@ from calm.cli.outputs import OutputPath, Outputs
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
-    from calm.report.bare_cable import BareCable
+    from calm.case.bare_cable import BareCable
 
 STRUMMING_EXAMPLES = """Examples:
 
@@ -81,8 +81,8 @@ def strumming(
 
 def _cable(given: dict[str, float]) -> BareCable:
     """The cable that was measured, or what is wrong with it."""
+    from calm.case.bare_cable import BareCable
     from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
-    from calm.report.bare_cable import BareCable
 
     if ("weight" in given) == ("solid_density" in given):
         raise UsageError("give one of --weight and --solid-density")

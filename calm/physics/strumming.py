@@ -7,7 +7,6 @@ current, with attachments or fairing, it strums less, and these factors are the 
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import cbrt, cos, degrees, pi, pow, radians, sin, sqrt
@@ -22,32 +21,7 @@ STRUCTURAL_DAMPING = 0.005
 CABLE_MODE = 1.155
 """Mode factor γ of a taut line, √(4/3): its crests move more than a rigid cylinder would; 1.0."""
 
-# Fey, König & Eckelmann: St = a + b/√Re from each Reynolds number up. They leave 230 to 360 out,
-# where the wake turns three-dimensional: a straight join over 1/√Re.
-_STROUHAL_FROM = (47.0, 180.0, 230.0, 360.0, 1300.0, 5000.0)
-_STROUHAL_FIT = (
-    (0.2684, -1.0356), (0.2437, -0.8607), (0.2644, -1.1752),
-    (0.2257, -0.4402), (0.2040, 0.3364), (0.1776, 2.2023),
-)  # fmt: skip
-_STROUHAL_END = 2e5
-
 _BLEVINS_CAP = 1.0
-
-
-def strouhal(reynolds: float) -> float:
-    """Strouhal number of a smooth cylinder, 0 below Re = 47, where no vortices are shed.
-
-    Parameters
-    ----------
-    reynolds : |Vn| D/ν [-], up to 2e5; held above it
-
-    Source: Fey, König & Eckelmann (1998), Physics of Fluids 10, 1547-1549. The step of 6 % at
-    Re = 180 is theirs: there the wake changes its mode.
-    """
-    if reynolds < _STROUHAL_FROM[0]:
-        return 0.0
-    a, b = _STROUHAL_FIT[bisect_right(_STROUHAL_FROM, reynolds) - 1]
-    return a + b / sqrt(min(reynolds, _STROUHAL_END))
 
 
 def shedding_frequency(speed: float, diameter: float, strouhal: float = STROUHAL) -> float:
@@ -82,15 +56,6 @@ def griffin_skop(damping: float, mode: float = CABLE_MODE) -> float:
     the double amplitude, 1.29 γ.
     """
     return 0.645 * mode * pow(1.0 + 0.43 * damping, -3.35)
-
-
-def sarpkaya(damping: float, mode: float = CABLE_MODE) -> float:
-    """A/D at resonance from the reduced damping S_G: 0.16 γ/√(0.06 + S_G²).
-
-    Source: Sarpkaya (1979), Journal of Applied Mechanics 46, 241-258, as a double amplitude,
-    0.32 γ: so read, it agrees with `griffin_skop` to 1 % at no damping.
-    """
-    return 0.16 * mode / sqrt(0.06 + damping**2)
 
 
 def line_amplitude(

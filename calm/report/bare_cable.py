@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Group, RenderableType
 from rich.text import Text
@@ -13,38 +12,8 @@ from rich.text import Text
 from calm.physics.strumming import BourgetMarichal
 from calm.report.terminal import plain_table, warning
 
-
-@dataclass(frozen=True)
-class BareCable:
-    """A cable towed with nothing at its end.
-
-    Attributes
-    ----------
-    angle : to the horizontal, measured [degrees], above 0 and below 90
-    speed : of the ship through the water [m/s], > 0
-    diameter : [m], > 0
-    weight : of a metre in water [N/m], > 0
-    density : of the water [kg/m³], > 0
-    """
-
-    angle: float
-    speed: float
-    diameter: float
-    weight: float
-    density: float
-
-    @property
-    def vibration(self) -> tuple[float, float]:
-        """C* and a/D, by `BourgetMarichal.from_bare_cable`."""
-        return BourgetMarichal().from_bare_cable(
-            math.radians(self.angle), self.speed, self.diameter, self.weight, self.density
-        )
-
-    @property
-    def frequency(self) -> float:
-        """Of the vibration [Hz]."""
-        angle = math.radians(self.angle)
-        return BourgetMarichal().frequency(self.speed, angle, self.diameter)
+if TYPE_CHECKING:
+    from calm.case.bare_cable import BareCable
 
 
 def bare_cable_document(cable: BareCable) -> dict[str, Any]:

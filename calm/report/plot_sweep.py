@@ -9,6 +9,7 @@ import numpy as np
 
 from calm.quantities import QUANTITIES
 from calm.report.drawing import LINE_STYLE, WATER_COLOUR, WIDTH
+from calm.units import KNOT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
     from calm.report.tabulation import Tabulation
 
 _HEIGHT = 4.5  # inches
-_KNOT = 1852.0 / 3600.0  # m/s
 _MOST_MARKED = 60  # points that can still be told apart
 
 
@@ -60,7 +60,7 @@ def _draw(
     axes.set_ylabel(QUANTITIES[name].label)
     axes.grid(alpha=0.3)
     if not axes.child_axes:
-        to_knots, from_knots = partial(np.multiply, 1.0 / _KNOT), partial(np.multiply, _KNOT)
+        to_knots, from_knots = partial(np.multiply, 1.0 / KNOT), partial(np.multiply, KNOT)
         knots = axes.secondary_xaxis("top", functions=(to_knots, from_knots))
         knots.set_xlabel("speed [knot]")
         knots.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))

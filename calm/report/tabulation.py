@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from calm.errors import NoEquilibrium
 from calm.quantities import QUANTITIES
+from calm.units import KNOT
 
 if TYPE_CHECKING:
     from calm.case import Tow, TowResult
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 FIGURES = ("depth", "layback", "tension", "angle", "body_tension", "frequency")
 """What a row tells of a result: depth and layback of the body, tension and angle at the ship."""
 
-_KNOTS = replace(QUANTITIES["speed"], display="knot", scale=3600.0 / 1852.0)
+_KNOTS = replace(QUANTITIES["speed"], display="knot", scale=1.0 / KNOT)
 
 
 @dataclass(frozen=True)

@@ -111,7 +111,7 @@ def _buoyancy_in_use(closing: Closing, fine: Closed) -> tuple[float, float]:
 def _greatest_force(closing: Closing, fine: Closed, force: Floats) -> float:
     """The greatest tension, or buoyancy of a float whose share in use is sought [N]."""
     lift = closing.line.buoyancy[list(fine.root.unknown.shares(fine.root.x))]
-    return max([float(np.linalg.norm(force, axis=1).max()), *lift.tolist()])
+    return max(float(np.linalg.norm(force, axis=1).max()), float(lift.max(initial=0.0)))
 
 
 def _carried(line: Line, track: Track) -> Line:

@@ -3,6 +3,10 @@
 The march chooses its cuts at twice the angle step; on these the line is closed, and again with
 every segment halved. The march is of second order, so a third of the change is the error of the
 finer shape; where that is too much, all is done again with a smaller step.
+
+A load or stretch that changes abruptly inside a segment, where a law of drag switches or a table
+bends, may count for the same on coarse and on halved segments. It shows as a bend between
+neighbours, and that is added.
 """
 
 from __future__ import annotations
@@ -13,7 +17,7 @@ from math import degrees, sqrt
 
 import numpy as np
 
-from calm.physics.line import Line
+from calm.physics.line import Floats, Line
 from calm.physics.march import Cuts
 from calm.solve.closing import Closed, Closing, Root
 from calm.solve.solution import nodes_of
@@ -24,6 +28,8 @@ TENSION_TARGET = 1.6e-4
 smaller, at an angle step of 1°; they follow its square."""
 MOST_ROUNDS = 6
 MOST_SEGMENTS = 20_000
+AT_A_LEVEL = 0.05
+"""How near to a level, in segments, a node is as good as there: bends are at home at levels."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +71,8 @@ def refine(
         if excess <= 1.0 or fine.end.segments > MOST_SEGMENTS:
             break
         root, step = fine.root, step * max(0.8 / sqrt(excess), 0.2)
-    return Refined(fine, depth_error, tension_error)
+    strayed, lost = _abrupt(closing.line, fine, closing.water.level)
+    return Refined(fine, depth_error + strayed, tension_error + lost)
 
 
 def _halved(cuts: Cuts) -> Cuts:
@@ -94,3 +101,34 @@ def _errors(line: Line, coarse: Closed, fine: Closed) -> tuple[float, float, flo
         float(change.max()),
         float((change / np.maximum(tension, max(floor, 1e-300))).max()),
     )
+
+
+def _abrupt(line: Line, fine: Closed, levels: Floats) -> tuple[float, float]:
+    """What the worst abrupt change inside a segment may cost: in place [m], in force [N].
+
+    If the slope of what a segment adds per metre bends by Δ inside one of length h, its value at
+    the middle is off by up to Δh²/8. Where the curve is smooth the segments two away bend alike:
+    only what exceeds their bend is abrupt.
+    """
+    hanging = fine.hanging
+    piece, clamp = (np.array(column[:hanging]) for column in (fine.trace.piece, fine.trace.clamp))
+    cut = np.array(fine.trace.cut[:hanging])
+    segment = line.flexible[piece] & (clamp < 0) & (cut > 0.0)
+    longer = np.maximum(cut[1:], cut[:-1])
+    position, force = (nodes[: hanging + 1] for nodes in nodes_of(fine.trace))
+    off = np.abs(position[1:-1, 2, None] + levels).min(axis=1)
+    smooth = segment[1:] & segment[:-1] & (piece[1:] == piece[:-1]) & (off > AT_A_LEVEL * longer)
+    between = smooth[1:] & smooth[:-1]
+    if not between.any():
+        return 0.0, 0.0
+    length = np.where(segment, cut, 1.0)
+    apart = 0.5 * (length[1:] + length[:-1])
+
+    def worst(nodes: Floats) -> float:
+        slope = np.diff(np.diff(nodes, axis=0) / length[:, None], axis=0) / apart[:, None]
+        bend = np.linalg.norm(np.diff(slope, axis=0), axis=1) * length[1:-1] ** 2 / 8.0
+        around = np.pad(np.where(between, bend, -1.0), 2, constant_values=-1.0)
+        usual = np.maximum(around[:-4], around[4:])
+        return float((bend - usual)[between & (usual >= 0.0)].max(initial=0.0))
+
+    return worst(position), worst(force)

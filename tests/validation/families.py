@@ -29,9 +29,7 @@ Family = Callable[[Random], Case]
 
 
 def _moored(line: Line, water: Water, friction: float = 0.0) -> Case:
-    return lambda settings: solve_mooring(
-        line, water, replace(settings, seabed_friction=friction)
-    )
+    return lambda settings: solve_mooring(line, water, replace(settings, seabed_friction=friction))
 
 
 def _of_depth(least: float, most: float) -> Family:
@@ -56,14 +54,13 @@ def _at_its_draft(random: Random) -> Case:
 
 
 def _on_the_seabed(random: Random) -> Case:
-    """A scope of 1.05 to 2, the lower part heavy; half of them with friction on the seabed."""
+    """A scope of 1.05 to 2, the lower part chain; half of them with friction on the seabed."""
     depth = _log(random, 20.0, 1000.0)
     water = _fitted(sea(random), depth)
-    pieces = hardware(random, depth * random.uniform(0.3, 0.9))
-    scope = depth * random.uniform(1.05, 2.0)
-    bottom = scope - sum(piece.length for piece in pieces)
-    bar = random.uniform(0.008, 0.03)
-    pieces.append(_chain(bar, bottom))
+    share = random.uniform(0.3, 0.9)
+    pieces = hardware(random, share * depth)
+    bottom = (random.uniform(1.05, 2.0) - share) * depth
+    pieces.append(_chain(random.uniform(0.008, 0.03), bottom))
     weight = max(0.0, -min(np.cumsum([piece.total for piece in pieces])))
     tension = 100.0 + weight
     for piece in pieces:

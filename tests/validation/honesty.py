@@ -1,0 +1,96 @@
+"""How the error that a solution states compares with the error it has.
+
+The true error is the departure from the same case solved at a tenth of the angle step, closed to
+1e-10: a hundredth of the error, and itself held against the independent referee in the tests of
+random moorings, floats and tows. Slack moorings, which somewhere carry less than 1e-5 of their
+greatest tension, hang in folds there that are no shape of their own: they are left out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import radians
+from random import Random
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from calm.errors import NoEquilibrium
+from calm.physics.line import Floats, Integers
+from calm.solve import Settings, Solution
+from tests.validation.agreement import clamp_nodes
+from tests.validation.families import FAMILIES
+
+FINE = Settings(radians(0.1), 1e-10)
+SLACK = 1e-5
+
+
+@dataclass(frozen=True)
+class Honesty:
+    """True over stated error: of the worst depth or offset, and of the worst tension.
+
+    `place` and `tension` are those at the ends of all pieces and at all clamps; `shape` and
+    `pull` those at the nodes inside the cables.
+    """
+
+    place: float
+    tension: float
+    shape: float
+    pull: float
+
+
+def honesty(family: str, number: int) -> Honesty | str:
+    """That of a case of a family, or why it counts for nothing: its status, or that it is slack."""
+    case = FAMILIES[family](Random(f"{family} {number}"))
+    try:
+        solution = case(Settings())
+    except NoEquilibrium as refusal:
+        return str(refusal.status)
+    slackest = float(solution.tension[1:].min())
+    if slackest < SLACK * solution.tension.max() and not solution.line.towed:
+        return "slack somewhere"
+    try:
+        fine = case(FINE)
+    except NoEquilibrium as refusal:
+        return f"at a tenth of the step {refusal.status}"
+    if (solution.landed, solution.afloat) != (fine.landed, fine.afloat):
+        return "on the limit between two ways to stand"
+    at, there = _ends(solution), _ends(fine)
+    place = np.abs(solution.position[at] - fine.position[there]).max()
+    tension = np.abs(solution.tension[at] - fine.tension[there]).max()
+    inside = _inside(solution, fine)
+    shape, pull = (inside[:, :3].max(), inside[:, 3].max()) if len(inside) else (0.0, 0.0)
+    depth_error, tension_error = solution.depth_error, solution.tension_error
+    return Honesty(
+        float(place / depth_error), float(tension / tension_error),
+        float(shape / depth_error), float(pull / tension_error),
+    )  # fmt: skip
+
+
+def _ends(solution: Solution) -> Integers:
+    """The nodes at the ends of all pieces and above all clamps."""
+    return np.concatenate([*solution.piece_nodes.T, np.array(clamp_nodes(solution), dtype=int)])
+
+
+def _inside(solution: Solution, fine: Solution) -> Floats:
+    """(k, 4) departures in x, y, z and tension at the nodes inside cables, between their clamps."""
+    departures = [np.zeros((0, 4))]
+    for ours, theirs in zip(_runs(solution), _runs(fine), strict=True):
+        if len(theirs[0]) > 3:
+            there = PchipInterpolator(*theirs)(ours[0])
+            departures.append(np.abs(there - ours[1]))
+    return np.concatenate(departures)
+
+
+def _runs(solution: Solution) -> list[tuple[Floats, Floats]]:
+    """Of every stretch of cable without clamps: unstretched length and x, y, z, tension."""
+    columns = np.column_stack([solution.position, solution.tension])
+    runs = []
+    for first, last in solution.piece_nodes[solution.line.flexible]:
+        clamped = np.flatnonzero(solution.element_clamp[first:last] >= 0) + first
+        starts, stops = [first, *(clamped + 1)], [*clamped, last]
+        for start, stop in zip(starts, stops, strict=True):
+            along = np.concatenate([[0.0], np.cumsum(solution.cut[start:stop])])
+            if along[-1] > 0.0:
+                runs.append((along, columns[start : stop + 1]))
+    return runs
