@@ -7,7 +7,7 @@ import sys
 import traceback
 from collections.abc import Sequence
 
-from cyclopts import App, CycloptsError, Parameter
+from cyclopts import App, CycloptsError, Parameter, UnusedCliTokensError
 
 from calm.cli.catalog import catalog
 from calm.cli.chart import chart
@@ -82,6 +82,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except NoEquilibrium as error:
         narrate(f"calm: {error}")
         return ExitCode.NO_EQUILIBRIUM
+    except UnusedCliTokensError as error:
+        narrate(f"calm: too many words: {' '.join(error.unused_tokens or ())}")
+        return ExitCode.BAD_INPUT
     except (CycloptsError, CalmError) as error:
         narrate(f"calm: {error}")
         return ExitCode.BAD_INPUT

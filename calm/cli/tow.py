@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
 
 from calm.cli.exit_codes import ExitCode, gravest
 from calm.cli.options import speed_range
@@ -37,7 +39,7 @@ def tow(
     json: OutputPath = None,
     csv: OutputPath = None,
     plot: Path | None = None,
-    speeds: str | None = None,
+    speeds: Annotated[str | None, Parameter(allow_leading_hyphen=True)] = None,
     sensitivity: bool = False,
 ) -> ExitCode:
     """Solve towed lines, at the speed of their file or at many speeds.

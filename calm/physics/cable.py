@@ -114,7 +114,7 @@ def _pass_segment(
     fx, fy, fz, z, level = state.fx, state.fy, state.fz, state.z, state.level
     half = 0.5 * cut
     tension = sqrt(fx * fx + fy * fy + fz * fz)
-    strain = compliance * tension if elongation is None else elongation.strain(tension)
+    strain = cable.strain(tension)
     rise = state.tz * (1.0 + strain)
     axis: Vector = (-fx, -fy, -fz)
     earlier = inf
@@ -230,7 +230,8 @@ def segment_length(
     """
     tension = sqrt(state.fx * state.fx + state.fy * state.fy + state.fz * state.fz)
     depth = -state.z
-    sinking = state.fz / tension if tension > 0.0 else 1.0
+    strain = cable.strain(tension)
+    sinking = (1.0 + strain) * state.fz / tension if tension > 0.0 else 1.0
     length, floor = reach, 1e-4 * reach
     for _ in (0, 1):
         rate = _rate_of_turn(cable, profile, state, tension, depth, angle_step)

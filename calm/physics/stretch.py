@@ -73,10 +73,19 @@ class ElongationCurve:
     def mean_strain(self, tension: float, half: float) -> float:
         """Mean strain where the tension goes evenly from `tension` - `half` to `tension` + `half`.
 
-        By two Gauss points, exact where the range lies between two points of the table [-].
+        By two Gauss points between the points of the table that lie in the range: exact [-].
         """
-        away = abs(half) * _GAUSS
-        return 0.5 * (self.strain(tension - away) + self.strain(tension + away))
+        half = abs(half)
+        low, high = tension - half, tension + half
+        first, last = (bisect_right(self.tensions, end) for end in (low, high))
+        if first == last:
+            away = half * _GAUSS
+            return 0.5 * (self.strain(tension - away) + self.strain(tension + away))
+        total = 0.0
+        for a, b in pairwise([low, *self.tensions[first:last], high]):
+            middle, away = 0.5 * (a + b), 0.5 * (b - a) * _GAUSS
+            total += 0.5 * (b - a) * (self.strain(middle - away) + self.strain(middle + away))
+        return total / (2.0 * half)
 
 
 def _checked(points: Iterable[tuple[float, float]]) -> tuple[list[float], list[float]]:

@@ -71,6 +71,12 @@ class Cable:
     friction: Friction = Friction.BERTEAUX
     vibration: Vibration | None = None
 
+    def strain(self, tension: float) -> float:
+        """At a tension [N]."""
+        if self.elongation is None:
+            return self.compliance * tension
+        return self.elongation.strain(tension)
+
 
 Stage = Rod | Cable | Load
 

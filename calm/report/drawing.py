@@ -39,6 +39,8 @@ _LEAST_HEIGHT, _GREATEST_HEIGHT = 6.5, 20.0  # inches
 _FRAME = 1.5  # inches above and below the axes, for titles and ticks
 # The drawn line keeps to this share of the width of the elevation; the names stand beyond it.
 _SHARE_OF_LINE = 0.55
+# Distances are drawn to at least this share of the height, lest a still line look tortured.
+_LEAST_SPAN = 0.1
 
 
 def texts(result: Result | TowResult, extent: float) -> list[tuple[str, Named]]:
@@ -57,9 +59,12 @@ def figure_height(written: list[tuple[str, Named]]) -> float:
     return min(max(_LEAST_HEIGHT, len(written) * _LINE_HEIGHT + _FRAME), _GREATEST_HEIGHT)
 
 
-def set_span(axes: Axes, start: float, end: float) -> None:
-    """Give the line, from `start` to `end` [m], its share of the width."""
-    span = end - start
+def set_span(axes: Axes, start: float, end: float, height: float) -> None:
+    """Give the line, from `start` to `end` [m], its share of the width; plumb lines look plumb.
+
+    `height` [m] is that of the drawing.
+    """
+    span = max(end - start, _LEAST_SPAN * height)
     axes.set_xlim(start - 0.05 * span, start + span / _SHARE_OF_LINE)
 
 

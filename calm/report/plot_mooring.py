@@ -32,9 +32,6 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-# Offsets are drawn to at least this share of the depth, lest a still line look tortured.
-_LEAST_SPAN = 0.1
-
 
 def draw_mooring(result: Result) -> Figure:
     """A figure of three views, which belongs to no window.
@@ -79,8 +76,7 @@ def _draw_elevation(axes: Axes, result: Result, plane: Floats) -> None:
     axes.plot(offset, result.shape.depth, label="in the current", **LINE_STYLE)
     axes.legend(ncols=2, **LEGEND)
     mark_parts(axes, result, lambda part: (float(along(part.x, part.y, plane)), part.depth))
-    left, right = min(0.0, offset.min()), max(0.0, offset.max())
-    set_span(axes, left, max(right, left + _LEAST_SPAN * depth))
+    set_span(axes, min(0.0, offset.min()), max(0.0, offset.max()), depth)
     axes.set_ylim(1.03 * depth, min(-0.03 * depth, result.shape.depth.min()))
     axes.set_xlabel(f"{QUANTITIES['offset'].label}, towards {_bearing(plane):.0f}°")
     axes.set_ylabel(QUANTITIES["depth"].label)

@@ -95,7 +95,8 @@ def _draw_elevation(axes: Axes, result: TowResult, behind: Floats) -> None:
     axes.plot(distance, result.shape.depth, **LINE_STYLE)
     axes.plot(distance[-1], result.shape.depth[-1], **_SHIP)
     mark_parts(axes, result, lambda part: (float(along(part.x, part.y, behind)), part.depth))
-    set_span(axes, min(0.0, float(distance.min())), float(distance.max()))
+    height = float(np.ptp(result.shape.depth))
+    set_span(axes, min(0.0, float(distance.min())), float(distance.max()), height)
     axes.set_xlabel(f"distance behind the tow point [m], heading {result.toward:.0f}°")
     axes.set_ylabel(QUANTITIES["depth"].label)
 

@@ -91,7 +91,7 @@ def by_speed(
     return Tabulation(
         name=tow.file.name,
         subject="speeds",
-        title=f"{tow.file.name}: tow at {len(speeds)} speeds",
+        title=f"{tow.file.name}: tow at {len(speeds)} speed{'s' if len(speeds) != 1 else ''}",
         headings=(f"speed\n{speed.unit}", _KNOTS.display),
         rows=tuple(
             TabulationRow({"speed": value}, (speed.format(value), _KNOTS.format(value)), outcome)

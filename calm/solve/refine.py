@@ -104,7 +104,7 @@ def _errors(line: Line, coarse: Closed, fine: Closed) -> tuple[float, float, flo
 
 
 def _abrupt(line: Line, fine: Closed, levels: Floats) -> tuple[float, float]:
-    """What the worst abrupt change inside a segment may cost: in place [m], in force [N].
+    """What the worst abrupt change inside a segment may cost: in place [m], in tension [N].
 
     If the slope of what a segment adds per metre bends by Δ inside one of length h, its value at
     the middle is off by up to Δh²/8. Where the curve is smooth the segments two away bend alike:
@@ -124,11 +124,20 @@ def _abrupt(line: Line, fine: Closed, levels: Floats) -> tuple[float, float]:
     length = np.where(segment, cut, 1.0)
     apart = 0.5 * (length[1:] + length[:-1])
 
-    def worst(nodes: Floats) -> float:
+    def excess(nodes: Floats) -> Floats:
         slope = np.diff(np.diff(nodes, axis=0) / length[:, None], axis=0) / apart[:, None]
-        bend = np.linalg.norm(np.diff(slope, axis=0), axis=1) * length[1:-1] ** 2 / 8.0
-        around = np.pad(np.where(between, bend, -1.0), 2, constant_values=-1.0)
+        bend = np.diff(slope, axis=0) * length[1:-1, None] ** 2 / 8.0
+        size = np.linalg.norm(bend, axis=1)
+        around = np.pad(np.where(between, size, -1.0), 2, constant_values=-1.0)
         usual = np.maximum(around[:-4], around[4:])
-        return float((bend - usual)[between & (usual >= 0.0)].max(initial=0.0))
+        abrupt = between & (usual >= 0.0) & (size > usual)
+        share = np.divide(size - usual, size, out=np.zeros_like(size), where=abrupt)
+        exceeding: Floats = share[:, None] * bend
+        return exceeding
 
-    return worst(position), worst(force)
+    # what a force adds to the tension there, and where the line hangs from in the end
+    lost = excess(force)
+    tension = np.linalg.norm(force[1:], axis=1, keepdims=True)
+    axis = np.divide(force[1:], tension, out=np.zeros_like(force[1:]), where=tension > 0.0)
+    along = np.maximum(np.abs((lost * axis[1:-1]).sum(axis=1)), np.abs(lost @ axis[-1]))
+    return float(np.linalg.norm(excess(position), axis=1).max()), float(along.max())

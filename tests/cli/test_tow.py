@@ -146,6 +146,7 @@ def test_a_sweep_is_drawn(calm, write_tow, folder):
         ("1 knot:2 knot:-1 knot", "must be above 0"),
         ("2 knot:1 knot:0.5 knot", "below its beginning"),
         ("0 knot:1 knot:0.5 knot", "a speed above 0"),
+        ("-1 knot:1 knot:0.5 knot", "a speed above 0"),
         ("1 m/s:2 m/s:0.0001 m/s", "more than 10000 speeds"),
     ],
 )

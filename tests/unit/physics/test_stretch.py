@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from scipy.integrate import quad
 from scipy.interpolate import PchipInterpolator
 
 from calm.physics.stretch import ElongationCurve, published_stiffnesses
@@ -136,3 +137,12 @@ def test_nylon_of_19_mm_at_1000_kgf():
 )  # fmt: skip
 def test_how_many_stiffnesses_are_published(material, count):
     assert len(published_stiffnesses(material, 0.012)) == count
+
+
+def test_mean_strain_across_points_of_the_table_is_exact():
+    """Against quadrature that knows where the cubics meet."""
+    curve = ElongationCurve([(0.1, 0.02), (0.3, 0.035), (0.6, 0.06)], 50e3)
+    low, high = 2e3, 32e3
+    exact, _ = quad(curve.strain, low, high, points=[5e3, 15e3, 30e3], epsabs=0.0, epsrel=1e-13)
+    mean = curve.mean_strain(0.5 * (low + high), 0.5 * (high - low))
+    assert mean == pytest.approx(exact / (high - low), rel=1e-13)

@@ -107,4 +107,6 @@ def test_drawing_leaves_a_gap_where_there_is_no_equilibrium(swept):
 
 def test_one_speed_can_be_drawn(make_tow_result):
     result = make_tow_result()
-    assert draw_sweep(by_speed(result.tow, [1.0], [result])).axes[0].get_xlim() == (0.0, 2.0)
+    tabulation = by_speed(result.tow, [1.0], [result])
+    assert tabulation.title == "Survey: tow at 1 speed"
+    assert draw_sweep(tabulation).axes[0].get_xlim() == (0.0, 2.0)

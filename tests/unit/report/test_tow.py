@@ -129,6 +129,17 @@ def test_a_bare_cable_is_drawn(make_tow_result):
     assert picture(result, ".png").startswith(b"\x89PNG")
 
 
+def test_a_line_at_rest_is_drawn_plumb(make_tow_result):
+    result = make_tow_result()
+    shape = result.shape
+    shape.x, shape.y = 0.0 * shape.x, 0.0 * shape.y
+    left, right = draw(result).axes[0].get_xlim()
+    # a tenth of the height at least, in 0.55 of the width
+    height = shape.depth.max() - shape.depth.min()
+    assert right == pytest.approx(0.1 * height / 0.55, rel=1e-12)
+    assert left < 0.0
+
+
 def test_what_strumming_would_do(make_tow_result):
     result = make_tow_result(strumming=None)
     result.__dict__["strumming_band"] = StrummingBand(1.5, "converged", 95.0, None, 2900.0)
