@@ -147,7 +147,7 @@ def explain(result: Result, label: str | None = None) -> Explanation:
     else:
         causes = _causes(mooring, shares)
         columns = [_COLUMNS.index(name) for name in quantities]
-        miss = float(np.abs(shares.miss[columns]).max())
+        miss = float(np.abs(shares.miss[columns]).max()) if mooring.water.moving else 0.0
         for name, column in zip(quantities, columns, strict=True):
             without_drag[name] = 0.0 if name == "knockdown" else float(shares.start[column])
         if miss > FAIR:

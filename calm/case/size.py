@@ -232,12 +232,13 @@ def _why_not(search: LeastChange, trials: _Trials) -> tuple[str, str]:
     least = search.least
     span = f"from {with_unit(search.low, change.unit)} to {with_unit(search.high, change.unit)}"
     if least is None:
-        failure = trials.at(change.now).failure or next(
-            (one.failure for one in trials.tried.values() if one.failure), None
-        )
+        failure = trials.at(change.now).failure
         if failure is None:
-            message = f"In still water the line has no unique shape: there is no {target.quantity}."
-            return message, "Choose another quantity."
+            message = (
+                "A float at the surface, or a line without a unique shape in still water, has no "
+                f"{target.quantity}."
+            )
+            return message, "Choose another quantity, such as the excursion."
         message = f"With no {change.text} {span} has the mooring an equilibrium. As it is:"
         return f"{message} {failure.status}: {failure.message}", failure.advice
     best = trials.at(least)

@@ -107,7 +107,7 @@ def parse_target(text: str, pieces: Sequence[Piece]) -> Target:
     if found["part"] is not None and quantity == "required_weight":
         raise mistake("part", "the required weight is the anchor's; leave the brackets out")
     part = TOP if found["part"] is None else found["label"].strip()
-    if part != TOP or TOP in labels_of(pieces):
+    if quantity != "required_weight" and (part != TOP or TOP in labels_of(pieces)):
         try:
             label = one_label(pieces, part)
         except LookupError as error:

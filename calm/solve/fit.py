@@ -114,10 +114,12 @@ def fit_tow_length(
         lacking, start, -1.0, (shortest, longest), small=1e-7 * depth, narrow=1e-9 * depth
     )
     if found is None or found[1] > 1e-4 * depth:
-        reached = depth - lacking(longest if found is None else found[0])
+        short = lacking(shortest)
+        out, lack = (shortest, short) if short < 0.0 else (longest, lacking(longest))
         raise Status.NO_EQUILIBRIUM.because(
             f"No length of piece {piece + 1} brings its lower end to {depth:g} m at this speed: "
-            f"with {longest:g} m out it runs at {reached:.2f} m.",
+            f"with {out:g} m out it runs at {depth - lack:.2f} m.",
             piece,
+            "Choose another depth or speed, or change what the cable or its body weighs.",
         )
     return found[0]

@@ -6,10 +6,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from calm.errors import NoEquilibrium
 from calm.physics.hull import AIR_DENSITY
 from calm.physics.line import Floats, Line, Water
 from calm.physics.march import Cuts, End
-from calm.physics.state import MarchError
+from calm.physics.state import MarchError, Trace
 from calm.solve.closing import Closed, Closing, Root
 from calm.solve.finish import finished
 from calm.solve.refine import refine
@@ -23,6 +24,9 @@ SURFACE_BAND = 1e-7
 SCAN = 16
 """Depths tried where the flow changes with depth: how finely separate equilibria are told apart."""
 FREQUENCY_TOLERANCE = 1e-8
+PAY_OUT = "Pay out more line."
+NEARLY_OUT = 2e-3
+"""Depth at which a line that will not close is taken to be leaving the water, as a share of it."""
 STAY_BELOW = "Give it more weight or a depressor, or tow slower."
 _ROUNDS = 20
 
@@ -71,13 +75,23 @@ def solve_tow(
     """
     towed = replace(line.reversed(), towed=True)
     closing = Closing(towed, _relative(line, water, towing), settings or Settings())
+    root: Root | None = None
     try:
+        if closing.span == 0.0:
+            raise Status.NO_EQUILIBRIUM.because("The towed line has no length.", advice=PAY_OUT)
         root, other_depth = _locate(closing, towing)
         if towed.strumming is not None and towed.diameter.any():
             root = _at_its_frequency(closing, towing, root)
         refined = refine(closing, root, lambda near, cuts: _polish(closing, towing, near, cuts))
-    except MarchError as error:
-        raise Status.NOT_CONVERGED.because(f"The march stopped: {error}.") from error
+    except (MarchError, NoEquilibrium) as failure:
+        if root is not None and not towing.in_air and _surfaces(closing, root):
+            raise Status.ABOVE_SURFACE.because(
+                "The towed line comes up to the surface behind the ship.", advice=STAY_BELOW
+            ) from failure
+        if isinstance(failure, MarchError):
+            message = f"The march stopped: {failure}."
+            raise Status.NOT_CONVERGED.because(message) from failure
+        raise
     return finished(
         closing, refined, other_depth, lambda solution: _refuse_misplaced(solution, towing)
     )
@@ -134,6 +148,12 @@ def _locate(closing: Closing, towing: Towing) -> tuple[Root, float | None]:
         if len(roots) == 2:
             return roots[0], roots[1].x
         depth, low = upper, high
+    if not roots and closing.span <= towing.height:
+        raise Status.ABOVE_SURFACE.because(
+            f"The line, {closing.span:.2f} m long, does not reach the water from "
+            f"{towing.height:g} m above it.",
+            advice=PAY_OUT,
+        )
     if not roots:
         raise Status.ABOVE_SURFACE.because(
             "The towed body would come out of the water: even at the surface the line's upper end "
@@ -209,6 +229,17 @@ def _frequency(closing: Closing, end: End) -> float:
     return law.strouhal * across / diameter
 
 
+def _surfaces(closing: Closing, root: Root) -> bool:
+    """Whether the line comes near to the surface on the far side of its lowest point."""
+    trace = Trace()
+    try:
+        closing.run(root.unknown, root.x, closing.coarse_step, trace=trace)
+    except MarchError:
+        return root.x < NEARLY_OUT * closing.span
+    height = np.array(trace.z)
+    return bool(height[: int(np.argmin(height)) + 1].max() > -NEARLY_OUT * closing.span)
+
+
 def _refuse_misplaced(solution: Solution, towing: Towing) -> None:
     """Only what hangs between the surface and the ship may be in the air; nothing is in the bed."""
     height, depth = solution.position[:, 2], solution.water.depth
@@ -225,7 +256,8 @@ def _refuse_misplaced(solution: Solution, towing: Towing) -> None:
     if towing.in_air:
         return
     wetted = np.flatnonzero(height <= margin)
-    out = int(np.argmax(height[: wetted[-1] + 1])) if len(wetted) else 0
+    below_water = max(int(wetted[-1]), solution.body_node) if len(wetted) else 0
+    out = int(np.argmax(height[: below_water + 1]))
     if not len(wetted) or height[out] > margin:
         piece = solution.piece_at(out)
         raise Status.ABOVE_SURFACE.because(

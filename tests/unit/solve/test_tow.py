@@ -1,0 +1,89 @@
+"""Tows that cannot be: each is told with its own status and what to do."""
+
+from math import inf
+
+import numpy as np
+import pytest
+
+from calm.errors import NoEquilibrium
+from calm.physics.line import Line, Water
+from calm.solve import Settings, Towing, fit_tow_length, solve_tow
+
+DEEP = Water(inf, [0.0], [0.0], [0.0], [0.0], [1025.0])
+
+
+def line(length: float, weight: float, body: float, *, body_length: float = 0.0) -> Line:
+    """A 10 mm cable of a weight per metre [N/m] above a body of a weight [N]; none of 0 N."""
+    bare = body == 0.0
+    n = 1 if bare else 2
+    return Line(
+        length=[length, body_length][:n],
+        flexible=[True, False][:n],
+        buoyancy=[-weight, -body][:n],
+        volume=np.zeros(n),
+        normal_drag=[6.7, 5.0][:n],
+        tangential_drag=[0.08, 5.0][:n],
+        directional=[True, False][:n],
+        compliance=np.zeros(n),
+        thinning=np.zeros(n),
+        clamp_piece=[],
+        clamp_at=[],
+        clamp_buoyancy=[],
+        clamp_volume=[],
+        clamp_drag=[],
+        diameter=[0.01, 0.0][:n],
+    )
+
+
+@pytest.mark.parametrize("height", [0.0, 4.0])
+@pytest.mark.parametrize("speed", [2.0, 3.0, 5.0, 7.0])
+def test_a_floating_line_comes_to_the_surface(height, speed):
+    with pytest.raises(NoEquilibrium) as caught:
+        solve_tow(line(100.0, -0.5, 5.0), DEEP, Towing(speed, 0.0, height))
+    assert caught.value.status == "above-surface"
+    assert "depressor" in caught.value.advice
+
+
+def test_a_line_that_does_not_reach_the_water():
+    with pytest.raises(NoEquilibrium, match=r"12.00 m long, does not reach .* 20 m") as caught:
+        solve_tow(line(12.0, 2.5, 100.0), DEEP, Towing(1.0, 0.0, 20.0))
+    assert (caught.value.status, caught.value.advice) == ("above-surface", "Pay out more line.")
+
+
+def test_a_line_without_length():
+    with pytest.raises(NoEquilibrium, match="no length"):
+        solve_tow(line(0.0, 2.5, 100.0), DEEP, Towing(1.0, 0.0))
+
+
+def test_the_seabed_is_told_with_advice_for_a_tow():
+    shallow = Water(50.0, [0.0], [0.0], [0.0], [0.0], [1025.0])
+    with pytest.raises(NoEquilibrium, match="seabed: piece 1") as caught:
+        solve_tow(line(100.0, 2.5, 500.0), shallow, Towing(0.5, 0.0))
+    assert caught.value.status == "grounded"
+    assert "Pay out less line" in caught.value.advice
+
+
+def test_a_fit_too_deep_already_says_so():
+    deep_body = line(100.0, 2.5, 5000.0)
+    clamped = Line(
+        **{
+            **{name: getattr(deep_body, name) for name in vars(deep_body)},
+            "clamp_piece": [0],
+            "clamp_at": [60.0],
+            "clamp_buoyancy": [-1.0],
+            "clamp_volume": [0.0],
+            "clamp_drag": [0.0],
+            "clamp_lift": [0.0],
+            "clamp_drag_curve": (),
+        }
+    )
+    with pytest.raises(NoEquilibrium, match=r"with 60 m out it runs at (59|60)\."):
+        fit_tow_length(clamped, DEEP, Towing(0.5, 0.0), 0, 20.0, Settings())
+
+
+def test_a_ship_that_drifts_with_the_water():
+    """The line hangs plumb."""
+    drifting = Water(inf, [0.0], [1.0], [0.0], [0.0], [1025.0])
+    solution = solve_tow(line(100.0, 2.5, 500.0), drifting, Towing(1.0, 0.0))
+    assert solution.position[0] == pytest.approx([0.0, 0.0, -100.0], abs=1e-4)
+    assert solution.tension[-1] == pytest.approx(750.0, rel=1e-6)
