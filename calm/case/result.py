@@ -104,8 +104,26 @@ class Strumming:
     cn_max: float
 
 
+class Solved:
+    """How a result shows its table, whatever was solved."""
+
+    components: Components
+
+    def to_dataframe(self) -> Any:
+        """The components as a pandas data frame (pandas is not installed with CALM)."""
+        return self.components.to_dataframe()
+
+    def _repr_html_(self) -> str:
+        """The table of the line, for notebooks."""
+        from importlib import import_module
+
+        # the report room stands above this one, so it is asked for by name at run time
+        html: str = import_module("calm.report.notebook").to_html(self)
+        return html
+
+
 @dataclass(frozen=True)
-class Result:
+class Result(Solved):
     """A converged mooring. Lengths and depths [m], forces [N], angles [degrees].
 
     `iterations` counts marches, `segments` the cuts of the final one, `miss` is the height
@@ -154,15 +172,3 @@ class Result:
             "strumming_band": known(self.strumming_band),
         }
         return document_of(self, ends)
-
-    def to_dataframe(self) -> Any:
-        """The components as a pandas data frame (pandas is not installed with CALM)."""
-        return self.components.to_dataframe()
-
-    def _repr_html_(self) -> str:
-        """The table of the line, for notebooks."""
-        from importlib import import_module
-
-        # the report room stands above this one, so it is asked for by name at run time
-        html: str = import_module("calm.report.notebook").to_html(self)
-        return html

@@ -12,7 +12,7 @@ from calm.case.band import StrummingBand, tow_band
 from calm.case.columns import Clamps, Components, Shape
 from calm.case.labels import naming_the_piece
 from calm.case.measure import clamps_of, components_of, shape_of
-from calm.case.result import Accuracy, Strumming, document_of, known
+from calm.case.result import Accuracy, Solved, Strumming, document_of, known
 from calm.case.strumming import strumming_of
 from calm.case.warnings import tow_warnings_of
 from calm.files import MooringFile, TowKeys
@@ -49,7 +49,7 @@ class TowedBody:
 
 
 @dataclass(frozen=True)
-class TowResult:
+class TowResult(Solved):
     """A converged tow. Lengths and depths [m], forces [N], angles [degrees], speed [m/s].
 
     `components` run from the ship down, `shape` from the free end; x and y are east and north of
@@ -98,18 +98,6 @@ class TowResult:
             "strumming_band": known(self.strumming_band),
         }
         return document_of(self, ends)
-
-    def to_dataframe(self) -> Any:
-        """The components as a pandas data frame (pandas is not installed with CALM)."""
-        return self.components.to_dataframe()
-
-    def _repr_html_(self) -> str:
-        """The table of the line, for notebooks."""
-        from importlib import import_module
-
-        # the report room stands above this one, so it is asked for by name at run time
-        html: str = import_module("calm.report.notebook").to_html(self)
-        return html
 
 
 @dataclass(frozen=True)
