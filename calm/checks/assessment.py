@@ -1,0 +1,78 @@
+"""A mooring judged: in each of its environments, on its way down, and on its way up."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from calm.checks.finding import Finding
+
+if TYPE_CHECKING:
+    from calm.case import Mooring, Result
+    from calm.checks.backup import Break
+    from calm.checks.inventory import Item
+    from calm.checks.launch import Launch
+    from calm.checks.recovery import Recovery
+    from calm.errors import NoEquilibrium
+
+
+@dataclass(frozen=True)
+class Situation:
+    """A mooring solved in an environment, as given or with something changed.
+
+    Either `result` or `failure` is None.
+    """
+
+    name: str
+    result: Result | None
+    failure: NoEquilibrium | None
+
+
+@dataclass(frozen=True)
+class Stand:
+    """A mooring in one environment: its situations, the first as given, and what was found."""
+
+    environment: str
+    mooring: Mooring
+    situations: tuple[Situation, ...]
+    findings: tuple[Finding, ...]
+
+    @property
+    def result(self) -> Result | None:
+        """As given; None where that has no equilibrium."""
+        return self.situations[0].result
+
+
+@dataclass(frozen=True)
+class Assessment:
+    """All that the design check says of one mooring.
+
+    Attributes
+    ----------
+    name : of the mooring, unlike that of any other that is judged with it
+    stands : one for each environment, at least one
+    launch, recovery : in the first environment; None where they could not be solved
+    backup : a break at each connection above the release, from the top
+    inventory : the pieces and clamps as they come to the deck
+    findings : those of the launch, the recovery and the breaks
+    """
+
+    name: str
+    stands: tuple[Stand, ...]
+    launch: Launch | None
+    recovery: Recovery | None
+    backup: tuple[Break, ...]
+    inventory: tuple[Item, ...]
+    findings: tuple[Finding, ...]
+
+    @property
+    def mooring(self) -> Mooring:
+        """In its first environment."""
+        return self.stands[0].mooring
+
+    def all_findings(self) -> Iterator[Finding]:
+        """Those of every environment, then those of launch, recovery and breaks."""
+        for stand in self.stands:
+            yield from stand.findings
+        yield from self.findings
