@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from calm.case import Mooring, Result, Tow, TowResult, load
+    from calm.checks.assess import check
     from calm.errors import CalmError, InputError, NoEquilibrium, UsageError
 
 __version__ = "0.1.0"
@@ -28,11 +29,13 @@ __all__ = [
     "TowResult",
     "UsageError",
     "__version__",
+    "check",
     "load",
 ]
 
 _HOMES = {
     "load": "calm.case",
+    "check": "calm.checks.assess",
     "Mooring": "calm.case",
     "Result": "calm.case",
     "Tow": "calm.case",

@@ -150,6 +150,7 @@ _TABLE = (
     Quantity(
         "required_weight", "required weight", "N", "Weight in water the anchor needs.", decimals=0
     ),
+    Quantity("scope", "scope", "", "Cut length of the line over the water depth.", decimals=3),
     Quantity("grounded_length", "grounded length", "m", "Cut length that lies on the seabed."),
     Quantity("speed", "speed", "m/s", "Speed of the water, or of the ship.", decimals=2),
     Quantity(

@@ -73,6 +73,7 @@ class Components(Columns):
     depth_top, depth_bottom : (n,) of the first-listed and the other end [m], + down
     x_top, y_top, x_bottom, y_bottom : (n,) east and north of the anchor or the tow point [m]
     tension_top, tension_bottom, tension : (n,) at the ends and the greatest in the piece [N]
+    least_tension : (n,) of what does not lie on the seabed [N]; NaN where all of a piece does
     tilt : (n,) of the chord from the lower to the upper end, from the vertical [degrees]
     knockdown : (n,) depth_top less the same in still water [m]; NaN in a tow
     safety_factor : (n,) breaking load / greatest tension
@@ -96,6 +97,7 @@ class Components(Columns):
     tension_top: Floats
     tension_bottom: Floats
     tension: Floats
+    least_tension: Floats
     tilt: Floats
     knockdown: Floats
     safety_factor: Floats

@@ -35,6 +35,8 @@ def components_of(
     top, bottom = solution.position[upper], solution.position[lower]
     tension = solution.tension
     greatest = np.maximum(np.maximum.reduceat(tension[:-1], first), tension[last])[ahead]
+    hanging = np.where(np.arange(len(tension)) <= solution.hanging, tension, np.inf)
+    least = np.minimum(np.minimum.reduceat(hanging[:-1], first), hanging[last])[ahead]
     chord = top - bottom
     pull = solution.force[upper] + solution.force[lower]
     lean = np.where(
@@ -67,6 +69,7 @@ def components_of(
         tension_top=tension[upper],
         tension_bottom=tension[lower],
         tension=greatest,
+        least_tension=np.where(np.isfinite(least), least, np.nan),
         tilt=lean,
         knockdown=knockdown,
         safety_factor=breaking / pulled,

@@ -82,6 +82,7 @@ def _with_anchor(above: Components, anchor: Piece, depth: float) -> Components:
         tension_top=pull,
         tension_bottom=pull,
         tension=pull,
+        least_tension=pull,
         tilt=0.0,
         knockdown=0.0,
         safety_factor=breaking / pull if breaking and pull else nan,

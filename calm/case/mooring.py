@@ -50,6 +50,10 @@ class Mooring:
 
     file: MooringFile
 
+    def __reduce__(self) -> tuple[type[Mooring], tuple[MooringFile]]:
+        """What another process needs: all else follows from the file."""
+        return Mooring, (self.file,)
+
     @cached_property
     def water(self) -> Water:
         """Depth, current and density by level."""

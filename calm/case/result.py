@@ -21,7 +21,7 @@ def document_of(result: Result | TowResult, ends: dict[str, Any]) -> dict[str, A
 
     components = result.components.to_dicts()
     for component in components:
-        for name in ("kind", "role", "tension"):
+        for name in ("kind", "role", "tension", "least_tension"):
             del component[name]
     return {
         "calm": __version__,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
 from enum import StrEnum
 from typing import Any
@@ -13,15 +14,90 @@ AS_GIVEN = "as given"
 class State(StrEnum):
     """How a rule judges, the least grave first; unknown where a figure that it needs is missing."""
 
-    PASS = "pass"
     UNKNOWN = "unknown"
+    PASS = "pass"
     WARN = "warn"
     FAIL = "fail"
 
     @property
     def gravity(self) -> int:
-        """0 for a pass, more the graver."""
+        """0 for what is unknown, more the graver."""
         return list(State).index(self)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a rule says of a mooring, or of one of its components.
+
+    Attributes
+    ----------
+    component : label of a piece or a clamp; None of the mooring as a whole
+    value, limit : SI units and degrees; None where unknown
+    margin : how far the value keeps within the limit, in its unit, negative where it does not
+    state : pass, warn, fail or unknown
+    message : what was found, with both figures
+    remedy : what to change; None where nothing need be
+    """
+
+    component: str | None
+    value: float | None
+    limit: float | None
+    margin: float | None
+    state: State
+    message: str
+    remedy: str | None = None
+
+    @property
+    def share(self) -> float | None:
+        """The margin as a share of the limit, which tells the worst of several; None if unknown."""
+        if self.margin is None or not self.limit:
+            return None
+        return self.margin / abs(self.limit)
+
+
+def at_most(
+    component: str | None,
+    value: float,
+    limit: float,
+    message: str,
+    remedy: str,
+    beyond: State = State.FAIL,
+) -> Verdict:
+    """The verdict on a value that may not pass a limit; `beyond` is its state where it does."""
+    return _verdict(component, value, limit, limit - value, message, remedy, beyond)
+
+
+def at_least(
+    component: str | None,
+    value: float,
+    limit: float,
+    message: str,
+    remedy: str,
+    beyond: State = State.FAIL,
+) -> Verdict:
+    """The verdict on a value that may not fall short of a limit."""
+    return _verdict(component, value, limit, value - limit, message, remedy, beyond)
+
+
+def unknown(
+    component: str | None, message: str, remedy: str, value: float | None = None
+) -> Verdict:
+    """The verdict where a figure that the rule needs is missing."""
+    return Verdict(component, value, None, None, State.UNKNOWN, message, remedy)
+
+
+def _verdict(
+    component: str | None,
+    value: float,
+    limit: float,
+    margin: float,
+    message: str,
+    remedy: str,
+    beyond: State,
+) -> Verdict:
+    kept = margin >= 0.0
+    state = State.PASS if kept else beyond
+    return Verdict(component, value, limit, margin, state, message, None if kept else remedy)
 
 
 @dataclass(frozen=True)
@@ -34,52 +110,56 @@ class Rule:
     title : for people
     quantity : of `calm.quantities`, whose unit its values and limits have
     source : of the rule and of its default limit
+    judge : from the evidence, a `Result` for most rules, to verdicts
     """
 
     name: str
     title: str
     quantity: str
     source: str
+    judge: Callable[[Any], Iterator[Verdict]]
+
+    def find(
+        self, verdict: Verdict, mooring: str, environment: str, situation: str = AS_GIVEN
+    ) -> Finding:
+        """The verdict as a finding of this rule."""
+        return Finding(
+            **vars(verdict),
+            mooring=mooring,
+            environment=environment,
+            rule=self.name,
+            source=self.source,
+            situation=situation,
+        )
 
 
-@dataclass(frozen=True)
-class Finding:
-    """What a rule says of one mooring, or of one of its components, in one environment.
+def rule(
+    name: str, title: str, quantity: str, source: str
+) -> Callable[[Callable[[Any], Iterator[Verdict]]], Rule]:
+    """Make a function that judges into the `Rule` of that name."""
 
-    Attributes
-    ----------
-    mooring, environment : their names
-    rule : name of the `Rule`
-    component : label of a piece or a clamp; None of the mooring as a whole
-    value, limit : SI units and degrees; None where unknown
-    margin : how far the value keeps within the limit, in its unit, negative where it does not
-    state : pass, warn, fail or unknown
-    message : what was found, in a sentence with both figures
-    remedy : what to change; None where nothing need be
-    source : of the rule and its limit
-    situation : what was changed for this finding; `AS_GIVEN` where nothing was
+    def of(judge: Callable[[Any], Iterator[Verdict]]) -> Rule:
+        return Rule(name, title, quantity, source, judge)
+
+    return of
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding(Verdict):
+    """A verdict, and which rule gave it of which mooring in which environment and situation.
+
+    `source` is that of the rule and its limit; `situation` tells what was changed for it,
+    `AS_GIVEN` where nothing was.
     """
 
     mooring: str
     environment: str
     rule: str
-    component: str | None
-    value: float | None
-    limit: float | None
-    margin: float | None
-    state: State
-    message: str
-    remedy: str | None
     source: str
     situation: str = AS_GIVEN
 
-    @property
-    def share(self) -> float | None:
-        """The margin as a share of the limit, which tells the worst of several; None if unknown."""
-        if self.margin is None or not self.limit:
-            return None
-        return self.margin / abs(self.limit)
-
     def to_dict(self) -> dict[str, Any]:
         """The finding in JSON."""
-        return asdict(self)
+        first = ("mooring", "environment", "situation", "rule", "component")
+        values = asdict(self)
+        return {name: values.pop(name) for name in first} | values

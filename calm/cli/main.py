@@ -11,6 +11,7 @@ from cyclopts import App, CycloptsError, Parameter, UnusedCliTokensError
 
 from calm.cli.catalog import catalog
 from calm.cli.chart import chart
+from calm.cli.check import CHECK_EXAMPLES, check
 from calm.cli.exit_codes import ExitCode
 from calm.cli.run import RUN_EXAMPLES, run
 from calm.cli.size import SIZE_EXAMPLES, size
@@ -48,6 +49,7 @@ app = App(
     result_action="return_value",
 )
 app.command(run, usage="Usage: calm run [OPTIONS] FILE...", help_epilogue=RUN_EXAMPLES)
+app.command(check, usage="Usage: calm check [OPTIONS] FILE...", help_epilogue=CHECK_EXAMPLES)
 app.command(tow, usage="Usage: calm tow [OPTIONS] FILE...", help_epilogue=TOW_EXAMPLES)
 app.command(size, help_epilogue=SIZE_EXAMPLES)
 app.command(strumming, help_epilogue=STRUMMING_EXAMPLES)

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from calm.case import Result, TowResult
     from calm.case.explain import Explanation
+    from calm.report.schematic_text import TerminalSchematic
 
 OutputPath = Annotated[Path | None, Parameter(allow_leading_hyphen=True)]
 """Type of an option that takes a path, or - for the standard output."""
@@ -58,6 +59,7 @@ class Outcome:
     result: Result | TowResult | None = None
     failure: NoEquilibrium | None = None
     explanation: Explanation | None = None
+    schematic: TerminalSchematic | None = None
 
     @property
     def code(self) -> ExitCode:
@@ -82,8 +84,10 @@ class Outcome:
         return document
 
     def tables(self) -> list[RenderableType]:
-        """The table of the line, and its explanation where one was asked for."""
+        """The table of the line, with its schematic and its explanation where asked for."""
         tables: list[RenderableType] = []
+        if self.schematic is not None:
+            tables.append(self.schematic)
         if self.result is not None:
             from calm.report.table import result_table
 

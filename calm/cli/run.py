@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -21,6 +22,7 @@ RUN_EXAMPLES = """Examples:
   calm run mooring.yaml --environment storm --plot storm.png
   calm run mooring.yaml --csv components.csv --json result.json
   calm run mooring.yaml --explain
+  calm run mooring.yaml --schematic
   calm run spring.yaml neap.yaml tow.yaml --json -"""
 
 
@@ -34,6 +36,7 @@ def run(
     csv: OutputPath = None,
     plot: Path | None = None,
     explain: bool = False,
+    schematic: bool = False,
 ) -> ExitCode:
     """Solve moorings and tows, and print the table of each line.
 
@@ -58,13 +61,16 @@ def run(
     explain
         Tell how much of the knockdown each drag causes, and what more buoyancy, less
         drag or another current would change; in the JSON too. Moorings only.
+    schematic
+        Draw the line, part by part and not to scale, above its table; where there is no
+        equilibrium, in its place.
     """
     outputs = Outputs(tuple(files), json, csv, plot)
     outputs.check()
     lines = read_files(files, environment, catalog or [])
     if explain:
         _refuse_tows(files, lines)
-    return solve_and_show(lines, outputs, explain=explain)
+    return solve_and_show(lines, outputs, explain=explain, schematic=schematic)
 
 
 def read_files(
@@ -87,12 +93,24 @@ def read_files(
 
 
 def solve_and_show(
-    lines: Sequence[Mooring | Tow], outputs: Outputs, *, explain: bool = False
+    lines: Sequence[Mooring | Tow],
+    outputs: Outputs,
+    *,
+    explain: bool = False,
+    schematic: bool = False,
 ) -> ExitCode:
-    """Solve what was read from the files of the outputs, explain it if asked, and write those."""
+    """Solve what was read from the files of the outputs, and write those.
+
+    Parameters
+    ----------
+    explain, schematic : bool
+        Explain what was solved; draw each line for the terminal.
+    """
     outcomes = [_solve(file, line) for file, line in zip(outputs.files, lines, strict=True)]
     if explain:
         outcomes = [_explained(outcome) for outcome in outcomes]
+    if schematic:
+        outcomes = [_drawn(*pair) for pair in zip(outcomes, lines, strict=True)]
 
     def to_csv() -> str:
         from calm.report.csv import to_csv
@@ -129,3 +147,11 @@ def _explained(outcome: Outcome) -> Outcome:
     if not isinstance(outcome.result, Result):
         return outcome
     return replace(outcome, explanation=explain(outcome.result))
+
+
+def _drawn(outcome: Outcome, line: Mooring | Tow) -> Outcome:
+    """The outcome with its line drawn in the signs that the standard output can carry."""
+    from calm.report.schematic_text import TerminalSchematic, can_carry
+
+    plain = not can_carry(getattr(sys.stdout, "encoding", None))
+    return replace(outcome, schematic=TerminalSchematic(line.file, outcome.result, plain))

@@ -6,7 +6,7 @@ import io
 import os
 import re
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sized
 from time import monotonic
 from typing import TYPE_CHECKING, TypeVar
 
@@ -66,15 +66,23 @@ def narrate(text: str) -> None:
     print(text, file=sys.stderr)
 
 
-def progress(items: Sequence[_Item], what: str) -> Iterator[_Item]:
-    """The items one by one; when they take long, a terminal is told how many are done."""
+def progress(items: Iterable[_Item], what: str, total: int | None = None) -> Iterator[_Item]:
+    """The items one by one; when they take long, a terminal is told how many are done.
+
+    Parameters
+    ----------
+    what : the items, in the plural
+    total : how many there are, where `items` cannot tell
+    """
+    if total is None:
+        total = len(items) if isinstance(items, Sized) else 0
     if sys.stderr is None or not sys.stderr.isatty():
         yield from items
         return
     told, due = False, monotonic() + _PATIENCE
     for done, item in enumerate(items):
         if monotonic() >= due:
-            print(f"\r{done} of {len(items)} {what}", end="", file=sys.stderr, flush=True)
+            print(f"\r{done} of {total} {what}", end="", file=sys.stderr, flush=True)
             told, due = True, monotonic() + _PACE
         yield item
     if told:

@@ -41,6 +41,7 @@ def tow(
     plot: Path | None = None,
     speeds: Annotated[str | None, Parameter(allow_leading_hyphen=True)] = None,
     sensitivity: bool = False,
+    schematic: bool = False,
 ) -> ExitCode:
     """Solve towed lines, at the speed of their file or at many speeds.
 
@@ -66,11 +67,15 @@ def tow(
         Solve at speeds A:B:STEP with their units, both ends included.
     sensitivity
         Solve with A1, B1 and C1 of bourget-marichal strumming each 10 % smaller and greater.
+    schematic
+        Draw the line as `calm run` does; at the speed of its file only.
     """
     if speeds is not None and sensitivity:
         raise UsageError("give either --speeds or --sensitivity")
     if sensitivity and plot is not None:
         raise UsageError("--sensitivity is a table; it has no --plot")
+    if schematic and (speeds is not None or sensitivity):
+        raise UsageError("--schematic draws a tow at the speed of its file")
     chosen = None if speeds is None else speed_range(speeds)
     outputs = Outputs(tuple(files), json, csv, plot)
     outputs.check()
@@ -79,7 +84,7 @@ def tow(
         return _tabulate(tows, outputs, lambda file, each: _sweep(file, each, chosen))
     if sensitivity:
         return _tabulate(tows, outputs, _vary)
-    return solve_and_show(tows, outputs)
+    return solve_and_show(tows, outputs, schematic=schematic)
 
 
 @dataclass(frozen=True)

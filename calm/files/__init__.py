@@ -2,7 +2,7 @@
 
 from calm.files.catalogue import Assembly, Catalogue
 from calm.files.components import Anchor, Body, Cable, Chain, Component, Cylinder, Sphere
-from calm.files.environment import Environment, Wind
+from calm.files.environment import Environment, Fouling, Wind
 from calm.files.mooring import Checks, Clamp, MooringFile, Piece, Position, Solver, TowKeys
 from calm.files.reader import read_mooring
 from calm.files.schema import mooring_schema
@@ -32,6 +32,7 @@ __all__ = [
     "Cylinder",
     "DepthTable",
     "Environment",
+    "Fouling",
     "MooringFile",
     "Piece",
     "Position",

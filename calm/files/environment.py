@@ -56,6 +56,10 @@ class Environment:
     wind : Wind or None
         Over the water.
     position : Position or None
+    depth_range : pair of floats or None
+        Water depth at low and at high water [m].
+    fouling : Fouling or None
+        What grows on the cables.
     """
 
     name: str | None
@@ -66,6 +70,15 @@ class Environment:
     current: CurrentTable
     wind: Wind | None
     position: Position | None
+    depth_range: tuple[float, float] | None = None
+    fouling: Fouling | None = None
+
+
+class Fouling(Model):
+    """Growth on the cables [m]: how thick it is, from the surface down to a depth."""
+
+    depth: Annotated[float, POSITIVE_LENGTH]
+    thickness: Annotated[float, Quantity("length", usual_unit="mm", above=0)]
 
 
 class Wind(Model):
@@ -137,6 +150,10 @@ class EnvironmentKeys(TowEnvironmentKeys):
 
     fluid: Annotated[Literal["water"], BeforeValidator(_water_only)] = "water"
     depth: Annotated[float, POSITIVE_LENGTH]
+    depth_range: (
+        tuple[Annotated[float, POSITIVE_LENGTH], Annotated[float, POSITIVE_LENGTH]] | None
+    ) = None
+    fouling: Fouling | None = None
 
 
 def read_environment(
@@ -166,6 +183,8 @@ def read_environment(
         message = "temperature and salinity are those of the sea, not of air"
         problems.append(section.problem(("density",), message))
     _check_wind(keys, section, problems)
+    if open_files:  # otherwise the depth may be that of another section
+        _check_depth_range(keys, section, problems)
     current = _current(keys, section, problems, notices, open_files)
     if density is None or current is None or len(problems) > before:
         return None
@@ -174,8 +193,32 @@ def read_environment(
             "Density from temperature and salinity without a `position`: taken at 45 degrees of "
             "latitude, in sea water of the reference composition."
         )
-    gravity, wind = keys.gravity, keys.wind
-    return Environment(name, keys.fluid, keys.depth, density, gravity, current, wind, position)
+    return Environment(
+        name=name,
+        fluid=keys.fluid,
+        depth=keys.depth,
+        density=density,
+        gravity=keys.gravity,
+        current=current,
+        wind=keys.wind,
+        position=position,
+        depth_range=getattr(keys, "depth_range", None),
+        fouling=getattr(keys, "fouling", None),
+    )
+
+
+def _check_depth_range(keys: TowEnvironmentKeys, section: Section, problems: list[Problem]) -> None:
+    """Low water, then high water, and the depth between them."""
+    depth, levels = keys.depth, getattr(keys, "depth_range", None)
+    if levels is None or depth is None:
+        return
+    low, high = levels
+    if not low <= depth <= high:
+        message = (
+            f"`depth_range` is low and high water, with `depth`, {depth:g} m, between them: "
+            f"e.g. [{depth - 2:g} m, {depth + 2:g} m]"
+        )
+        problems.append(section.problem(("depth_range",), message, key=True))
 
 
 def _check_wind(keys: TowEnvironmentKeys, section: Section, problems: list[Problem]) -> None:

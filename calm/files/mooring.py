@@ -131,7 +131,8 @@ class MooringFile:
 
     `pieces` lead from the top of a mooring to its anchor; in a tow, where `tow` is not None, from
     the ship to the towed body. `notices` tell what a person may want to know: a catalogue entry
-    hidden by a nearer one, levels dropped from a measured current.
+    hidden by a nearer one, levels dropped from a measured current. `variants` are the names of
+    the environments it gives besides its own.
     """
 
     path: str
@@ -144,6 +145,7 @@ class MooringFile:
     solver: Solver
     checks: Checks
     notices: tuple[str, ...]
+    variants: tuple[str, ...] = ()
 
     @property
     def anchor(self) -> Anchor:

@@ -104,6 +104,7 @@ def read_mooring(
         solver=keys.solver or Solver(),
         checks=keys.checks or Checks(),
         notices=tuple(notices),
+        variants=tuple(keys.environments or ()),
     )
 
 

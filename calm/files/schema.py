@@ -37,7 +37,8 @@ _DESCRIPTIONS = {
     "current": "a table, one speed for all depths, or a file",
     "cx": "drag coefficient of a sphere",
     "density": "of the water, or of the material of a component",
-    "depth": "water depth, e.g. 1100 m",
+    "depth": "water depth, e.g. 1100 m; of fouling, how far down it grows",
+    "depth_range": "water depth at low and at high water, e.g. [98 m, 104 m]",
     "depth_rating": "deepest it may be used",
     "diameter": "e.g. 12 mm; of a chain, that of its bar",
     "drag_area": "area seen by the current, e.g. 0.12 m^2",
@@ -47,6 +48,7 @@ _DESCRIPTIONS = {
     "factor": "what the Cn of every cable is multiplied by, e.g. 1.5",
     "finish": "of the surface of a cable",
     "fluid": "what the line is in: a tow may be in air",
+    "fouling": "growth on the cables from the surface down, for the design check",
     "friction": "along cables, the law; of an anchor, its coefficient on the seabed",
     "height": "of the tow point above the water, e.g. 4 m",
     "inclination": "whether drag follows the inclination of the piece",
@@ -67,6 +69,7 @@ _DESCRIPTIONS = {
     "stiffness": "EA, the force that would double the length, e.g. 4 MN",
     "strouhal": "frequency of the cable times diameter over the speed across it",
     "strumming": "how much vibration raises the Cn of cables",
+    "thickness": "of the growth all around a cable, e.g. 20 mm",
     "time": "of the profile wanted, e.g. 2026-03-01T06:00",
     "tolerance": "of the depth of the anchor, as a share of the water depth",
     "top_depth": "depth wanted in still water for the top of the line",
@@ -94,6 +97,7 @@ def mooring_schema() -> Schema:
     schemas |= {"Clamp": _clamp(fields), "Item": _item(fields)}
     items = {"type": "array", "minItems": 1, "items": {"$ref": "#/$defs/Item"}}
     schemas["Assembly"]["properties"]["parts"] = items
+    variant = {key: value for key, value in schemas["EnvironmentKeys"].items() if key != "required"}
     top = schemas.pop("MooringKeys")
     top["properties"] |= {
         "environment": {"type": "object"},
@@ -101,7 +105,7 @@ def mooring_schema() -> Schema:
         "components": {"type": ["object", "null"], "additionalProperties": component},
         "environments": {
             "type": ["object", "null"],
-            "additionalProperties": refs[TowEnvironmentKeys],
+            "additionalProperties": {"anyOf": [refs[TowEnvironmentKeys], variant]},
         },
     }
     # Only a tow may do without an environment, or without a depth in it; a variant always may.

@@ -56,11 +56,19 @@ def names(parts: list[Named], near: float) -> list[tuple[str, Named]]:
             runs.append([part])
     texts = []
     for run in runs:
-        text = run[0].text
-        if len(run) > 1:
-            text += f"–{_number(run[-1])}"
-        texts.append((text, run[len(run) // 2]))
+        texts.append((together([part.text for part in run]), run[len(run) // 2]))
     return texts
+
+
+def alike(label: str, other: str) -> bool:
+    """Whether two labels differ only by a number at the end."""
+    stems = [text.removesuffix(_number(text)) for text in (label, other)]
+    return stems[0] == stems[1] and bool(_number(other))
+
+
+def together(labels: list[str]) -> str:
+    """One name for labels that are alike: ``glass 1–6``."""
+    return labels[0] if len(labels) == 1 else f"{labels[0]}–{_number(labels[-1])}"
 
 
 def spread(wanted: list[float], gap: float, start: float, end: float) -> list[float]:
@@ -84,10 +92,9 @@ def spread(wanted: list[float], gap: float, start: float, end: float) -> list[fl
 
 def _is_next(part: Named, other: Named) -> bool:
     """Whether two parts are the same component under the same label but for its number."""
-    stems = [named.text.removesuffix(_number(named)) for named in (part, other)]
-    return part.use == other.use and stems[0] == stems[1] and bool(_number(other))
+    return part.use == other.use and alike(part.text, other.text)
 
 
-def _number(part: Named) -> str:
+def _number(label: str) -> str:
     """The digits at the end of a label."""
-    return part.text[len(part.text.rstrip("0123456789")) :]
+    return label[len(label.rstrip("0123456789")) :]

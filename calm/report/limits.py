@@ -6,7 +6,7 @@ from enum import StrEnum
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
-from calm.case.warnings import is_synthetic
+from calm.checks.strength import safety_factor
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
@@ -38,9 +38,6 @@ def safety_mark(result: Result | TowResult, component: Component, record: Simple
     """
     if record.utilisation == record.utilisation:  # NaN where no working load is known
         return Mark.BEYOND if record.utilisation > 1.0 else Mark.NONE
-    limits = result.file.checks.safety_factor
-    if result.type == "surface":
-        limit = limits.surface
-    else:
-        limit = limits.synthetic if is_synthetic(component) else limits.steel
+    factors = result.file.checks.safety_factor
+    limit = safety_factor(component, factors, result.type == "surface")
     return Mark.BEYOND if record.safety_factor < limit else Mark.NONE

@@ -48,7 +48,7 @@ def draw_mooring(result: Result) -> Figure:
     current.sharey(elevation)
     figure.suptitle(result.name, parse_math=False)
 
-    plane = _plane(result)
+    plane = plane_of(result)
     _draw_elevation(elevation, result, plane)
     write_names(elevation, written, height, lambda part: float(along(part.x, part.y, plane)))
     _draw_current(current, result, plane)
@@ -56,7 +56,7 @@ def draw_mooring(result: Result) -> Figure:
     return figure
 
 
-def _plane(result: Result) -> Floats:
+def plane_of(result: Result) -> Floats:
     """(2,) direction, east and north, from the anchor to the free end; east when upright."""
     excursion = np.array([result.top.x, result.top.y])
     distance = np.linalg.norm(excursion)

@@ -1,0 +1,86 @@
+"""Whether the anchor holds: as a whole, against the lift, and against the slide."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from calm.checks.finding import Verdict, at_least, at_most, rule
+from calm.checks.inventory import anchor_dry_mass
+from calm.quantities import say
+
+if TYPE_CHECKING:
+    from calm.case import Result
+
+
+@rule(
+    "anchor-weight",
+    "Anchor weight",
+    "tension",
+    "Dewey, Mooring Design & Dynamics: weight in water ≥ 1.5 (V + H/0.6)",
+)
+def anchor_weight(result: Result) -> Iterator[Verdict]:
+    """Weight in water ≥ factor (V + H / friction): Dewey's rule for deadweights, factor 1.5."""
+    load, label = result.anchor, result.file.pieces[-1].label
+    yield at_least(
+        label,
+        load.weight,
+        load.required_weight,
+        f"The anchor weighs {say('tension', load.weight)} in water; "
+        f"{say('tension', load.required_weight)} are required.",
+        _heavier(result, load.required_weight),
+    )
+
+
+@rule(
+    "anchor-uplift",
+    "Anchor uplift",
+    "tension",
+    "The same rule apart: V ≤ weight in water / 1.5",
+)
+def anchor_uplift(result: Result) -> Iterator[Verdict]:
+    """Upward pull V ≤ weight in water / factor."""
+    load, factor = result.anchor, result.file.checks.anchor_factor
+    limit = load.weight / factor
+    yield at_most(
+        result.file.pieces[-1].label,
+        load.vertical,
+        limit,
+        f"The line pulls up with {say('tension', load.vertical)}; the anchor's weight in water "
+        f"over {factor:g} is {say('tension', limit)}.",
+        _heavier(result, factor * load.vertical),
+    )
+
+
+@rule(
+    "anchor-sliding",
+    "Anchor sliding",
+    "tension",
+    "The same rule apart: H ≤ friction (weight in water / 1.5 - V), friction 0.6 of a deadweight",
+)
+def anchor_sliding(result: Result) -> Iterator[Verdict]:
+    """Horizontal pull H ≤ friction (weight in water / factor - V)."""
+    load, factor = result.anchor, result.file.checks.anchor_factor
+    friction = result.file.anchor.friction or result.file.checks.anchor_friction
+    limit = friction * (load.weight / factor - load.vertical)
+    yield at_most(
+        result.file.pieces[-1].label,
+        load.horizontal,
+        limit,
+        f"The line pulls sideways with {say('tension', load.horizontal)}; friction of "
+        f"{friction:g} holds {say('tension', max(limit, 0.0))}.",
+        _heavier(result, load.required_weight),
+    )
+
+
+def _heavier(result: Result, weight: float) -> str:
+    """Advice: the weight in water that is needed, and what weighs so much, in air."""
+    water = result.mooring.water
+    _, density = water.at(np.array(water.depth))
+    steel, concrete = anchor_dry_mass(weight, float(density), water.gravity)
+    return (
+        f"Take an anchor of {say('tension', weight)} in water: {steel:.0f} kg of steel or "
+        f"{concrete:.0f} kg of concrete in air."
+    )

@@ -1,0 +1,197 @@
+"""Deployment and recovery: back-up buoyancy, launch and rise."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown
+from calm.checks.slack import release_of
+from calm.quantities import say
+
+if TYPE_CHECKING:
+    from calm.case import Mooring
+    from calm.checks.backup import Break
+    from calm.checks.launch import Launch
+    from calm.checks.recovery import Recovery
+    from calm.files import MooringFile, Piece
+
+GREATEST_TOUCHDOWN_SPEED = 2.5
+"""Above it an anchor may bury itself or break what stands on it [m/s]."""
+USUAL_RISE_SPEED = 0.7
+"""A rise slower than this is warned of: it takes hours from the deep sea, and drifts away [m/s]."""
+
+
+@dataclass(frozen=True)
+class Handling:
+    """What the rules of launch, recovery and breaks look at; None where it could not be solved."""
+
+    mooring: Mooring
+    launch: Launch | None
+    recovery: Recovery | None
+    backup: tuple[Break, ...]
+
+
+@rule(
+    "backup",
+    "Back-up buoyancy",
+    "tension",
+    "URI GSO mooring program: if any one link breaks, everything above the release still floats",
+)
+def backup(handling: Handling) -> Iterator[Verdict]:
+    """Net buoyancy of what holds the release after the worst break above the back-up floats.
+
+    It should be a tenth of the weight it lifts, and 250 N. Floats on one chain are one cluster,
+    whole or lost: a break inside or below the lowest cluster leaves the release on the seabed in
+    any design, and is judged only where there is no other, which means no back-up.
+    """
+    if release_of(handling.mooring.file) is None:
+        yield unknown(
+            None,
+            "There is no release in the line: nothing is meant to come up after a break.",
+            "Give the release `role: release`.",
+        )
+        return
+    if not handling.backup:
+        return
+    lowest = _lowest_cluster(handling.mooring.file)
+    judged = [one for one in handling.backup if one.break_after < lowest] or handling.backup[-1:]
+    worst = min(judged, key=lambda one: one.margin - one.required)
+    yield at_least(
+        worst.label,
+        worst.margin,
+        worst.required,
+        f"After a break below {worst.label} what holds the release has a buoyancy of "
+        f"{say('tension', worst.margin)}; {say('tension', worst.required)} bring it up.",
+        f"Add {say('tension', worst.required - worst.margin)} of buoyancy above the release.",
+    )
+
+
+def _lowest_cluster(file: MooringFile) -> int:
+    """Index of the first piece of the lowest floats above the release, with what links them.
+
+    0 where there are no floats but those at the top.
+    """
+    pieces = list(file.pieces[: release_of(file)])
+    while pieces and not _is_float(pieces[-1]):
+        pieces.pop()
+    while pieces and (_is_float(pieces[-1]) or _links(pieces[-1])):
+        pieces.pop()
+    return len(pieces)
+
+
+def _is_float(piece: Piece) -> bool:
+    return "float" in (piece.component.role, *(clamp.component.role for clamp in piece.clamps))
+
+
+def _links(piece: Piece) -> bool:
+    return piece.component.role == "connector" or piece.component.kind == "chain"
+
+
+@rule(
+    "launch-strength",
+    "Strength in the launch",
+    "tension",
+    "Anchor-last launch at terminal speed (URI GSO program); breaking load over 2",
+)
+def launch_strength(handling: Handling) -> Iterator[Verdict]:
+    """Tension of every piece as the line falls behind its anchor, against its breaking load."""
+    launch, factor = handling.launch, handling.mooring.file.checks.launch_safety_factor
+    if launch is None:
+        return
+    greatest = np.maximum(launch.tension_top, launch.tension_bottom)
+    for piece, tension in zip(handling.mooring.file.pieces, greatest.tolist(), strict=False):
+        breaking = piece.component.breaking_load
+        bears = f"{piece.label} bears {say('tension', tension)} in the fall"
+        if breaking is None:
+            yield unknown(
+                piece.label,
+                f"{bears}; its breaking load is not known.",
+                "Give its `breaking_load`.",
+                tension,
+            )
+            continue
+        yield at_most(
+            piece.label,
+            tension,
+            breaking / factor,
+            f"{bears}; its breaking load over {factor:g} is {say('tension', breaking / factor)}.",
+            "Take a stronger one, or lower the anchor on a parachute or a wire.",
+        )
+
+
+@rule(
+    "launch-speed",
+    "Speed at touchdown",
+    "speed",
+    "CALM: an anchor that lands faster than 2.5 m/s buries itself or breaks what stands on it",
+)
+def launch_speed(handling: Handling) -> Iterator[Verdict]:
+    """Terminal speed of the anchor as it meets the seabed."""
+    launch = handling.launch
+    if launch is None:
+        yield unknown(None, "The fall of the line could not be solved.", "Judge it by hand.")
+        return
+    label, speed = handling.mooring.file.pieces[-1].label, launch.touchdown_speed
+    slow, fast = launch.fall_speed_band
+    message = (
+        f"The anchor lands with {say('speed', speed)} ({slow:.2f} to {fast:.2f} with half and "
+        f"double the drag along the line); {GREATEST_TOUCHDOWN_SPEED:g} m/s should not be passed"
+    )
+    remedy = "Lower it, or add drag: a parachute, a wider anchor."
+    if launch.anchor_drag_known:
+        limit = GREATEST_TOUCHDOWN_SPEED
+        yield at_most(label, speed, limit, f"{message}.", remedy, State.WARN)
+        return
+    message += ". Its own drag is not known: this is the greatest."
+    if speed <= GREATEST_TOUCHDOWN_SPEED:
+        yield at_most(label, speed, GREATEST_TOUCHDOWN_SPEED, message, remedy, State.WARN)
+    else:
+        yield unknown(label, message, "Give the anchor's `kt`.", speed)
+
+
+@rule(
+    "recovery",
+    "Rise",
+    "speed",
+    "CALM: slower than 0.3 m/s a rise is in doubt, slower than 0.7 m/s it takes long",
+)
+def recovery(handling: Handling) -> Iterator[Verdict]:
+    """Terminal speed of the line as it rises without its anchor."""
+    rise, limit = handling.recovery, handling.mooring.file.checks.minimum_rise_speed
+    if rise is None:
+        yield unknown(None, "The rise of the line could not be solved.", "Judge it by hand.")
+        return
+    label = handling.mooring.file.pieces[rise.released].label
+    if rise.rise_speed > 0.0:
+        message = f"Freed below {label}, the line rises with {say('speed', rise.rise_speed)}"
+    else:
+        message = f"Freed below {label}, the line does not rise"
+    message += f"; {say('speed', limit)} are asked for."
+    remedy = "Add buoyancy above the release, or take weight off."
+    verdict = at_least(label, rise.rise_speed, limit, message, remedy)
+    if verdict.state is State.PASS and rise.rise_speed < USUAL_RISE_SPEED:
+        verdict = replace(verdict, state=State.WARN, remedy=remedy)
+    yield verdict
+
+
+@rule("tangling", "Tangling in the rise", "speed", "CALM: a part that overtakes what is above it")
+def tangling(handling: Handling) -> Iterator[Verdict]:
+    """Whether the line doubles back on itself as it rises."""
+    rise = handling.recovery
+    if rise is None or not rise.tangles:
+        return
+    labels = [handling.mooring.file.pieces[piece].label for piece in rise.tangles]
+    named = ", ".join(labels[:3]) + (f" and {len(labels) - 3} more" if len(labels) > 3 else "")
+    yield Verdict(
+        labels[0],
+        None,
+        None,
+        None,
+        State.WARN,
+        f"What is below overtakes {named} in the rise: the line doubles back and may tangle.",
+        "Put more of the buoyancy at the top.",
+    )

@@ -1,0 +1,148 @@
+"""What comes to the deck: every piece and every clamped instrument, with its mass and weight."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from calm.assemble import net_buoyancy
+from calm.errors import NoEquilibrium
+from calm.files import Anchor, Cable, Chain, Component, Piece
+from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY, STEEL_DENSITY
+
+if TYPE_CHECKING:
+    from calm.case import Mooring
+
+CONCRETE_DENSITY = 2400.0
+"""Density of ordinary concrete [kg/m³]."""
+
+
+@dataclass(frozen=True)
+class Item:
+    """A piece of the line or an instrument clamped on one.
+
+    Attributes
+    ----------
+    index : of the piece, of a clamp that of the piece it is on
+    use, label, role, kind : as in the file
+    name : of the component, None where it gives none
+    clamped_on : label of the piece that a clamp is on; None of a piece
+    cut_length : along the line [m]; None of a cable that no length fits
+    dry_mass : in air [kg]; None where it is not known and does not follow
+    wet_weight : in water of 1025 kg/m³ under the gravity of the file [N], + down; None where the
+        length is not known
+    lift_mass : of a piece with its clamps [kg]; None of a clamp, and where a mass is not known
+    count : of the component in this item
+    """
+
+    index: int
+    use: str
+    label: str
+    role: str
+    kind: str
+    name: str | None
+    clamped_on: str | None
+    cut_length: float | None
+    dry_mass: float | None
+    wet_weight: float | None
+    lift_mass: float | None
+    count: int = 1
+
+
+def inventory_of(mooring: Mooring) -> tuple[Item, ...]:
+    """Every piece from the top to the anchor, the clamps of a piece behind it."""
+    try:
+        lengths: list[float | None] = [*mooring.line.length.tolist()]
+    except NoEquilibrium:
+        lengths = [piece.length for piece in mooring.file.pieces[:-1]]
+    lengths.append(mooring.file.anchor.length)
+    gravity = mooring.water.gravity
+    return tuple(
+        item
+        for piece, length in zip(mooring.file.pieces, lengths, strict=True)
+        for item in _items(piece, length, gravity)
+    )
+
+
+def _items(piece: Piece, length: float | None, gravity: float) -> Iterator[Item]:
+    clamped = [_dry_mass(clamp.component, 0.0) for clamp in piece.clamps]
+    masses = [_dry_mass(piece.component, length), *clamped]
+    known = [mass for mass in masses if mass is not None]
+    yield Item(
+        index=piece.index,
+        use=piece.use,
+        label=piece.label,
+        role=piece.component.role,
+        kind=piece.component.kind,
+        name=piece.component.name,
+        clamped_on=None,
+        cut_length=length,
+        dry_mass=masses[0],
+        wet_weight=_wet_weight(piece.component, length, gravity),
+        lift_mass=sum(known) if len(known) == len(masses) else None,
+    )
+    for clamp, mass in zip(piece.clamps, clamped, strict=True):
+        along = getattr(clamp.component, "length", 0.0)
+        yield Item(
+            index=piece.index,
+            use=clamp.use,
+            label=clamp.label,
+            role=clamp.component.role,
+            kind=clamp.component.kind,
+            name=clamp.component.name,
+            clamped_on=piece.label,
+            cut_length=along,
+            dry_mass=mass,
+            wet_weight=_wet_weight(clamp.component, along, gravity),
+            lift_mass=None,
+        )
+
+
+def _wet_weight(component: Component, length: float | None, gravity: float) -> float | None:
+    weight = -net_buoyancy(component, gravity)
+    if not isinstance(component, Cable | Chain):
+        return weight
+    return None if length is None else weight * length
+
+
+def _dry_mass(component: Component, length: float | None) -> float | None:
+    """Of a piece of a length [m], in kg."""
+    mass = component.mass if component.mass is not None else _mass_from_weight(component)
+    if not isinstance(component, Cable | Chain):
+        return mass
+    return None if mass is None or length is None else mass * length
+
+
+def _mass_from_weight(component: Component) -> float | None:
+    """Mass, per metre of a cable or chain, that follows from the weight in water [kg, kg/m].
+
+    By the displaced volume, or by the density of the material: that of steel for a chain or an
+    anchor that does not say.
+    """
+    net = component.net_buoyancy / STANDARD_GRAVITY
+    if component.displaced_volume is not None:
+        return CATALOGUE_DENSITY * component.displaced_volume - net
+    density = component.density if isinstance(component, Cable | Chain | Anchor) else None
+    if density is None and isinstance(component, Chain | Anchor):
+        density = STEEL_DENSITY
+    if density is None or density == CATALOGUE_DENSITY:
+        return None
+    mass = -net / (1.0 - CATALOGUE_DENSITY / density)
+    return mass if mass >= 0.0 else None
+
+
+def anchor_dry_mass(required_weight: float, density: float, gravity: float) -> tuple[float, float]:
+    """Mass in air of an anchor of a weight in water: of steel, and of concrete [kg].
+
+    Parameters
+    ----------
+    required_weight : in water [N]
+    density : of the water [kg/m³]
+    gravity : [m/s²]
+    """
+    steel, concrete = (
+        required_weight / (gravity * (1.0 - density / material))
+        for material in (STEEL_DENSITY, CONCRETE_DENSITY)
+    )
+    return steel, concrete

@@ -1,0 +1,104 @@
+"""The launch: what an anchor that is let go last does to the line above it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from calm.physics.line import Floats, Line
+from calm.physics.track import head_count
+from calm.solve import FallingAnchor, FreeMotion, part_of, solve_fall
+
+if TYPE_CHECKING:
+    from calm.case import Mooring, Result
+
+AXIAL_DRAG_BAND = 2.0
+"""By how many times drag along the line and drag of the anchor may be more, or less, than given."""
+
+
+@dataclass(frozen=True)
+class Launch:
+    """The fall of a line behind its anchor, at terminal speed, as the anchor comes to the seabed.
+
+    Where its float rides at the surface, that stays there: the line below it falls, slack until it
+    is paid out. The fall then is the fastest that can be: some of the line hardly moves yet.
+    Neither the swing of the line as it goes down nor the jerk at its end is in these figures.
+
+    Attributes
+    ----------
+    fall_speed : [m/s], + down
+    fall_speed_band : with the drag along cables, chains and cylinders, and the drag of the anchor,
+        doubled and halved: the slow and the fast speed [m/s]
+    anchor_tension : pull of the line on the anchor [N]
+    drift : velocity to the east and to the north [m/s]
+    tension_top, tension_bottom : (n,) of every piece above the anchor [N]; 0 of what stays at the
+        surface
+    anchor_drag_known : False where the anchor gives no `kt`: it is taken to have no drag, and the
+        speed is the greatest there can be
+    tangles : the pieces that have, or part of which has, been overtaken by what was above
+    """
+
+    fall_speed: float
+    fall_speed_band: tuple[float, float]
+    anchor_tension: float
+    drift: tuple[float, float]
+    tension_top: Floats
+    tension_bottom: Floats
+    anchor_drag_known: bool
+    tangles: tuple[int, ...]
+
+    @property
+    def touchdown_speed(self) -> float:
+        """Speed at which the anchor meets the seabed [m/s]."""
+        return self.fall_speed
+
+    def components(self) -> list[dict[str, Any]]:
+        """The pieces above the anchor, by name of figure."""
+        pairs = zip(self.tension_top.tolist(), self.tension_bottom.tolist(), strict=True)
+        return [
+            {"index": index, "tension_top": top, "tension_bottom": bottom}
+            for index, (top, bottom) in enumerate(pairs)
+        ]
+
+
+def launch_of(mooring: Mooring, result: Result) -> Launch:
+    """The launch of a mooring, anchor last.
+
+    Parameters
+    ----------
+    result : of the mooring where it stands; tells whether its float stays at the surface
+
+    Raises
+    ------
+    NoEquilibrium
+        As `solve_fall`.
+    """
+    whole = mooring.line
+    count = len(whole.length)
+    first = head_count(whole) if result.type == "surface" else 0
+    line, kt = part_of(whole, first, count), mooring.file.anchor.kt
+    anchor = FallingAnchor(mooring.anchor_weight, kt or 0.0)
+
+    def fall(drag: float) -> FreeMotion:
+        lighter: Line = replace(line, tangential_drag=drag * line.tangential_drag)
+        return solve_fall(
+            lighter, mooring.water, replace(anchor, drag=drag * anchor.drag), mooring.settings
+        )
+
+    motion = fall(1.0)
+    slow, fast = (-float(fall(drag).velocity[2]) for drag in (AXIAL_DRAG_BAND, 1 / AXIAL_DRAG_BAND))
+    top, bottom = motion.solution.tension[motion.solution.piece_nodes.T]
+    still = np.zeros(first)
+    east, north, up = motion.velocity.tolist()
+    return Launch(
+        fall_speed=-up,
+        fall_speed_band=(slow, fast),
+        anchor_tension=float(motion.solution.tension[-1]),
+        drift=(east, north),
+        tension_top=np.concatenate([still, top]),
+        tension_bottom=np.concatenate([still, bottom]),
+        anchor_drag_known=kt is not None,
+        tangles=tuple(first + piece for piece in motion.tangles),
+    )

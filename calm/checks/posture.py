@@ -1,0 +1,159 @@
+"""Where the line stands: tilt, depth, knockdown and excursion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from math import hypot
+from typing import TYPE_CHECKING
+
+from calm.case.measure import clamps_in
+from calm.checks.finding import State, Verdict, at_most, rule, unknown
+from calm.files import Component
+from calm.quantities import say
+
+if TYPE_CHECKING:
+    from calm.case import Result
+
+AT_SURFACE = 1e-3
+"""Depth, as a share of the water depth, at which a piece is at the surface."""
+
+JUDGED_ROLES = ("float", "instrument", "release")
+"""What is made for a depth; of line and connectors only those that give a rating are judged."""
+
+
+@rule(
+    "tilt",
+    "Tilt",
+    "tilt",
+    "The maker's limit: RCM 27° (BODC), single-point Doppler 30°, ADCP 15 to 20°, release 45°, "
+    "sediment trap 10°",
+)
+def tilt(result: Result) -> Iterator[Verdict]:
+    """Tilt of instruments and releases against their own limits and the design's.
+
+    The makers': an Aanderaa RCM deviates by 27 degrees at most (BODC), a single-point Doppler by
+    30, an ADCP by 20 and is doubtful from 15, a release by 45, a sediment trap by 10.
+    """
+    design = result.file.checks.maximum_tilt
+    for label, leaning, component in _tilted(result):
+        own = component.max_tilt
+        if own is None and component.role not in ("instrument", "release"):
+            continue
+        limits = [limit for limit in (own, design) if limit is not None]
+        leans = f"{label} leans {say('tilt', leaning)}"
+        if not limits:
+            yield unknown(
+                label, f"{leans}; how far it may is not known.", "Give its `max_tilt`.", leaning
+            )
+            continue
+        limit, warned = min(limits), component.warn_tilt
+        message = f"{leans}; {say('tilt', limit)} is its limit."
+        remedy = "Add buoyancy above it, or move it where the line stands straighter."
+        verdict = at_most(label, leaning, limit, message, remedy)
+        if verdict.state is State.PASS and warned is not None and leaning > warned:
+            message = f"{leans}; from {say('tilt', warned)} on its data are doubtful."
+            verdict = replace(verdict, state=State.WARN, message=message, remedy=remedy)
+        yield verdict
+
+
+@rule(
+    "depth-rating",
+    "Depth rating",
+    "depth",
+    "The maker's rating, less a margin for a stronger current than was thought of",
+)
+def depth_rating(result: Result) -> Iterator[Verdict]:
+    """Depth in the current, and a margin, against the rating of floats and instruments.
+
+    A float that is knocked down below its rating is crushed, and the line with it.
+    """
+    margin = result.file.checks.rating_margin
+    for label, depth, component in _at_depth(result):
+        rating = component.depth_rating
+        stands = f"{label} is {say('depth', depth)} deep"
+        if rating is None:
+            if component.role in JUDGED_ROLES:
+                yield unknown(
+                    label,
+                    f"{stands}; what depth it stands is not known.",
+                    "Give its `depth_rating`.",
+                    depth,
+                )
+            continue
+        yield at_most(
+            label,
+            depth,
+            rating - margin,
+            f"{stands}; it is rated to {say('depth_rating', rating)}, less a margin of "
+            f"{say('depth_rating', margin)}.",
+            "Take one that stands more depth, or add buoyancy against the knockdown.",
+        )
+
+
+@rule(
+    "knockdown",
+    "Knockdown",
+    "knockdown",
+    "The design's own `maximum_knockdown`",
+)
+def knockdown(result: Result) -> Iterator[Verdict]:
+    """Knockdown of the top against the design's limit, where it gives one."""
+    limit, label = result.file.checks.maximum_knockdown, result.file.pieces[0].label
+    if limit is None:
+        return
+    if result.top.knockdown is None:
+        yield unknown(
+            label,
+            "The line has no unique shape in still water to measure a knockdown from.",
+            "Judge a slack line by its excursion: `maximum_excursion`.",
+        )
+        return
+    yield at_most(
+        label,
+        result.top.knockdown,
+        limit,
+        f"The top is knocked down by {say('knockdown', result.top.knockdown)}; "
+        f"{say('knockdown', limit)} are allowed.",
+        "Add buoyancy at the top, or take drag off: `calm run --explain` tells which.",
+    )
+
+
+@rule(
+    "excursion",
+    "Excursion",
+    "offset",
+    "The design's own `maximum_excursion`",
+)
+def excursion(result: Result) -> Iterator[Verdict]:
+    """Horizontal offset of the top against the design's limit, where it gives one."""
+    limit, offset = result.file.checks.maximum_excursion, hypot(result.top.x, result.top.y)
+    if limit is None:
+        return
+    yield at_most(
+        result.file.pieces[0].label,
+        offset,
+        limit,
+        f"The top is {say('offset', offset)} off the anchor; {say('offset', limit)} are allowed.",
+        "Add buoyancy, take drag off, or shorten the line.",
+    )
+
+
+def _tilted(result: Result) -> Iterator[tuple[str, float, Component]]:
+    """Label, tilt [degrees] and component of the pieces above the anchor and the clamps."""
+    pieces = result.file.pieces[:-1]
+    for row, piece in zip(result.components, pieces, strict=False):
+        yield row.label, row.tilt, piece.component
+    for clamp_row, clamp in zip(result.clamps, clamps_in(pieces), strict=True):
+        yield clamp_row.label, clamp_row.tilt, clamp.component
+
+
+def _at_depth(result: Result) -> Iterator[tuple[str, float, Component]]:
+    """Label, greatest depth [m] and component of what is under water above the anchor."""
+    pieces, afloat = result.file.pieces[:-1], AT_SURFACE * result.mooring.water.depth
+    for row, piece in zip(result.components, pieces, strict=False):
+        if result.type == "surface" and row.depth_top <= afloat:
+            continue
+        yield row.label, max(row.depth_top, row.depth_bottom), piece.component
+    for clamp_row, clamp in zip(result.clamps, clamps_in(pieces), strict=True):
+        yield clamp_row.label, clamp_row.depth, clamp.component

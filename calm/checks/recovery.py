@@ -1,0 +1,192 @@
+"""The recovery: whether a line comes up without its anchor, how fast, and in what order.
+
+What is above the release and the release itself rise, all of it alike at terminal speed, until the
+first buoyant piece is at the surface. It stays there with what is rigid with it. What is below goes
+on, as a line of its own and in still water, as long as it is buoyant by itself; the line that still
+hangs between counts with it, which makes it slower than it is. So one buoyant piece after another
+comes up, each by the length of line between it and the one before, and the rest hangs below them.
+
+The model leaves out how a line gathers way, that a piece may be carried up beside one that is above
+it in the line, and that floats which have come up are half out of the water. In a rise that tangles
+(`Recovery.tangles`) the order may be another.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import isnan, nan
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from calm.checks.slack import release_of
+from calm.errors import NoEquilibrium
+from calm.physics.line import REFERENCE_DENSITY, Booleans, Floats, Line, Water
+from calm.physics.track import head_count
+from calm.solve import FreeMotion, Settings, part_of, solve_rise
+
+if TYPE_CHECKING:
+    from calm.case import Mooring, Result
+
+
+@dataclass(frozen=True)
+class Recovery:
+    """The rise of a line without its anchor, from where it stands.
+
+    Attributes
+    ----------
+    released : index of the lowest piece that rises: the lowest release, whose lower hook opens, or
+        the piece above the anchor where there is none
+    rise_speed : terminal, of all that rises [m/s], + up; 0 where it does not rise
+    net_buoyancy : of all that rises, where it stands [N]
+    time_to_surface : until the first buoyant piece is there [s]; None where none comes up
+    tension_top, tension_bottom : (n,) of every piece above the anchor, in the rise [N]; nan of one
+        that does not rise
+    arrival : (n,) when each piece is at the surface [s]; nan of one that hangs below, or stays
+    hangs_at : (n,) depth of its upper end when all is up [m], at most that of the seabed; nan of
+        a line that does not rise
+    order : the pieces that come up by themselves, in their order
+    tangles : the pieces that have, or part of which has, overtaken what was above in the rise
+    in_still_water : whether the rise is that in still water, because a line that doubles back
+        finds no steady motion in this current
+    """
+
+    released: int
+    rise_speed: float
+    net_buoyancy: float
+    time_to_surface: float | None
+    tension_top: Floats
+    tension_bottom: Floats
+    arrival: Floats
+    hangs_at: Floats
+    order: tuple[int, ...]
+    tangles: tuple[int, ...]
+    in_still_water: bool = False
+
+    def components(self) -> list[dict[str, Any]]:
+        """The pieces above the anchor, by name of figure; None where there is none."""
+        columns = (self.tension_top, self.tension_bottom, self.arrival, self.hangs_at)
+        names = ("tension_top", "tension_bottom", "arrival", "depth")
+        rows = zip(*(column.tolist() for column in columns), strict=True)
+        return [
+            {"index": index} | {n: None if isnan(v) else v for n, v in zip(names, row, strict=True)}
+            for index, row in enumerate(rows)
+        ]
+
+
+def recovery_of(mooring: Mooring, result: Result) -> Recovery:
+    """The recovery of a mooring from where it stands.
+
+    Parameters
+    ----------
+    result : of the mooring; tells where it stands and how long its pieces are
+
+    Raises
+    ------
+    NoEquilibrium
+        As `solve_rise`, in still water too.
+    """
+    count, water = len(mooring.line.length), mooring.water
+    release = release_of(mooring.file)
+    released = count - 1 if release is None else release
+    line = part_of(mooring.line, 0, released + 1)
+    lifts = _lifts(line, water, result)
+    none = np.full(count, nan)
+    at_rest = Recovery(released, 0.0, float(lifts.sum()), None, none, none, none, none, (), ())
+    if not lifts.sum() > 0.0:
+        return at_rest
+    top = max(result.top.depth, 0.0)
+    motion, still = _rise(line, water, top, mooring.settings)
+    speed = float(motion.velocity[2])
+    if not speed > 0.0:
+        return at_rest
+    length = result.components.length[: released + 1]
+    risers = dict(_risers(line, water.still(), length, lifts, top, speed, mooring.settings))
+    arrival, hangs_at = none.copy(), np.full(count, water.depth)
+    head = head_count(line)
+    for piece, time in risers.items():
+        arrival[0 if piece < head else piece : piece + 1] = time
+    hangs_at[: released + 1] = np.minimum(
+        _hanging(length, np.isfinite(arrival[: released + 1])), water.depth
+    )
+    tension_top, tension_bottom = none.copy(), none.copy()
+    first, last = motion.solution.piece_nodes.T
+    tension_top[: released + 1] = motion.solution.tension[first]
+    tension_bottom[: released + 1] = motion.solution.tension[last]
+    return Recovery(
+        released=released,
+        rise_speed=speed,
+        net_buoyancy=at_rest.net_buoyancy,
+        time_to_surface=min(risers.values()),
+        tension_top=tension_top,
+        tension_bottom=tension_bottom,
+        arrival=arrival,
+        hangs_at=hangs_at,
+        order=tuple(risers),
+        tangles=motion.tangles,
+        in_still_water=still,
+    )
+
+
+def _lifts(line: Line, water: Water, result: Result) -> Floats:
+    """(n,) net forces of the pieces with their clamps where they stand, + up [N]."""
+    rows = slice(len(line.length))
+    depth = 0.5 * (result.components.depth_top[rows] + result.components.depth_bottom[rows])
+    _, density = water.at(depth)
+    return line.net_force((density - REFERENCE_DENSITY) * water.gravity)
+
+
+def _rise(line: Line, water: Water, top: float, settings: Settings) -> tuple[FreeMotion, bool]:
+    """The rise of the whole line, and whether it is that in still water."""
+    try:
+        return solve_rise(line, water, top, settings), False
+    except NoEquilibrium:
+        return solve_rise(line, water.still(), top, settings), True
+
+
+def _risers(
+    line: Line,
+    water: Water,
+    length: Floats,
+    lifts: Floats,
+    top: float,
+    speed: float,
+    settings: Settings,
+) -> Iterator[tuple[int, float]]:
+    """The pieces that come up by themselves, and when [s].
+
+    Parameters
+    ----------
+    water : without current
+    length, lifts : (n,) stretched length [m] and net force [N] of the pieces
+    top, speed : depth of the line's upper end where it stands [m], and its speed at first [m/s]
+    """
+    time, up, count = 0.0, 0, len(length)
+    for piece in np.flatnonzero(lifts > 0.0).tolist():
+        if up > 0 and not lifts[up:].sum() > 0.0:
+            return
+        # a rope is up when its lower end is, a rigid piece when its upper end is
+        way = float(length[up : piece + bool(line.flexible[piece])].sum())
+        if up == 0 and piece < head_count(line):
+            way = 0.0
+        if up == 0:
+            way += top
+        elif way > 0.0:
+            rest = solve_rise(part_of(line, up, count), water, 0.0, settings)
+            speed = float(rest.velocity[2])
+        time += way / speed
+        yield piece, time
+        up = piece + 1
+
+
+def _hanging(length: Floats, up: Booleans) -> Floats:
+    """(n,) depth of the upper ends of the pieces when some are up [m].
+
+    A piece hangs by the shorter way along the line to one that is up, above it or below.
+    """
+    ends = np.concatenate([[0.0], np.cumsum(length)])
+    upper, lower = ends[:-1], ends[1:]
+    above = np.maximum.accumulate(np.where(up, lower, -np.inf))
+    below = np.minimum.accumulate(np.where(up, upper, np.inf)[::-1])[::-1]
+    return np.where(up, 0.0, np.minimum(upper - above, below - upper))

@@ -1,0 +1,49 @@
+"""The rules of the design check, in the order in which a design is reported."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from calm.checks.anchor import anchor_sliding, anchor_uplift, anchor_weight
+from calm.checks.finding import State, Verdict, rule
+from calm.checks.handling import backup, launch_speed, launch_strength, recovery, tangling
+from calm.checks.posture import depth_rating, excursion, knockdown, tilt
+from calm.checks.slack import slack
+from calm.checks.strength import strength, strength_steps
+from calm.checks.surface import freeboard, reserve, scope, watch_circle
+
+if TYPE_CHECKING:
+    from calm.errors import NoEquilibrium
+
+
+@rule("equilibrium", "Equilibrium", "", "A mooring that does not stand cannot be judged")
+def equilibrium(failure: NoEquilibrium) -> Iterator[Verdict]:
+    """Found only where there is none."""
+    message = f"{failure.status}: {failure.message}"
+    yield Verdict(None, None, None, None, State.FAIL, message, failure.advice)
+
+
+STANDING = (
+    strength,
+    strength_steps,
+    tilt,
+    depth_rating,
+    knockdown,
+    excursion,
+    anchor_weight,
+    anchor_uplift,
+    anchor_sliding,
+    slack,
+    reserve,
+    freeboard,
+    watch_circle,
+    scope,
+)
+"""What is judged of a `Result`, in every environment and situation."""
+
+ONCE = (backup, launch_strength, launch_speed, recovery, tangling)
+"""What is judged once of a mooring: its breaks, its launch and its recovery."""
+
+RULES = {each.name: each for each in (equilibrium, *STANDING, *ONCE)}
+"""Every rule by its name."""

@@ -1,0 +1,130 @@
+"""The float of a surface mooring: what buoyancy it keeps, and the circle it watches."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import sqrt
+from typing import TYPE_CHECKING
+
+from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown
+from calm.checks.posture import AT_SURFACE
+from calm.quantities import say
+
+if TYPE_CHECKING:
+    from calm.case import Result
+
+
+def meant_for_the_surface(result: Result) -> bool:
+    """Whether the line has a float at the surface, or had one before the current took it under."""
+    if result.type == "surface":
+        return True
+    still = result.still_shape
+    return still is not None and still.depth[0] <= AT_SURFACE * result.mooring.water.depth
+
+
+@rule(
+    "reserve",
+    "Reserve of buoyancy",
+    "used_buoyancy",
+    "Dewey: a float that uses all its buoyancy goes under; the share kept is for waves",
+)
+def reserve(result: Result) -> Iterator[Verdict]:
+    """Share of the surface float's buoyancy that is left.
+
+    Dewey's and CALM's reserve; the third that is asked for by default covers waves, which a
+    static solution does not see.
+    """
+    if not meant_for_the_surface(result):
+        return
+    label, limit = result.file.pieces[0].label, result.file.checks.minimum_reserve
+    left = 1.0 - result.top.used_buoyancy
+    if result.type == "surface":
+        message = f"{100 * left:.0f} % of the float's buoyancy is left"
+    else:
+        left = 0.0
+        message = f"The current takes the float {say('depth', result.top.depth)} under: 0 % is left"
+    yield at_least(
+        label,
+        left,
+        limit,
+        f"{message}; {100 * limit:.0f} % should be.",
+        "Take a larger float, a lighter line, or more length.",
+    )
+
+
+@rule(
+    "freeboard",
+    "Freeboard",
+    "freeboard",
+    "A float at the surface stands out of it",
+)
+def freeboard(result: Result) -> Iterator[Verdict]:
+    """A float at the surface stands out of the water."""
+    if result.type != "surface":
+        return
+    label, height = result.file.pieces[0].label, result.top.freeboard
+    if height is None:
+        yield unknown(
+            label,
+            "The freeboard of the float is not known.",
+            "Give its `hull`, `mass` and `volume`, and let `buoy_drag` be `immersed`.",
+        )
+        return
+    yield at_least(
+        label,
+        height,
+        0.0,
+        f"The float stands {say('freeboard', height)} out of the water.",
+        "Take a larger float.",
+    )
+
+
+@rule(
+    "watch-circle",
+    "Watch circle",
+    "offset",
+    "Worst case √(L² - depth²), against the design's own `maximum_excursion`",
+)
+def watch_circle(result: Result) -> Iterator[Verdict]:
+    """Radius √(L² - depth²) within which a surface float can be found, with the line stretched.
+
+    Worst case of a slack line, e.g. PacIOOS: 1.73 times the depth at a scope of 2. Judged by
+    `maximum_excursion`, where the design gives it.
+    """
+    limit = result.file.checks.maximum_excursion
+    if not meant_for_the_surface(result) or limit is None:
+        return
+    radius = watch_radius(result)
+    yield at_most(
+        result.file.pieces[0].label,
+        radius,
+        limit,
+        f"The watch circle has a radius of {say('offset', radius)}; "
+        f"{say('offset', limit)} are allowed.",
+        "Shorten the line.",
+    )
+
+
+@rule(
+    "scope",
+    "Scope",
+    "scope",
+    "Told, not judged",
+)
+def scope(result: Result) -> Iterator[Verdict]:
+    """Uncut length over water depth of a line to the surface; it is told, and has no limit."""
+    if not meant_for_the_surface(result):
+        return
+    depth = result.mooring.water.depth
+    ratio = float(result.components.cut_length.sum()) / depth
+    message = (
+        f"The line is {ratio:.3f} times as long as the water is deep, its watch circle "
+        f"{say('offset', watch_radius(result))} in radius."
+    )
+    yield Verdict(None, ratio, None, None, State.PASS, message)
+
+
+def watch_radius(result: Result) -> float:
+    """Of the circle that the top of the line, as it is stretched, cannot leave [m]."""
+    length, depth = float(result.components.length.sum()), result.mooring.water.depth
+    return sqrt(max(length**2 - depth**2, 0.0))

@@ -1,0 +1,121 @@
+"""The findings and the pieces of a design check as CSV (UTF-8, comma, point, LF).
+
+A spreadsheet takes a text that begins with ``=``, ``+``, ``-`` or ``@`` for a formula. Such texts
+are written with an apostrophe before them; numbers are numbers.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from calm.checks.finding import Finding
+from calm.checks.rules import RULES
+from calm.quantities import QUANTITIES
+
+if TYPE_CHECKING:
+    from calm.checks.assessment import Assessment
+
+_FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n")
+
+CHECKS_HEADER = (
+    "mooring",
+    "environment",
+    "situation",
+    "rule",
+    "component",
+    "state",
+    "value",
+    "limit",
+    "margin",
+    "unit",
+    "message",
+    "remedy",
+    "source",
+)
+"""First row of `checks_csv`; value, limit and margin are in the unit of their row."""
+
+INVENTORY_HEADER = (
+    "mooring",
+    "index",
+    "label",
+    "use",
+    "name",
+    "role",
+    "kind",
+    "clamped_on",
+    "count",
+    QUANTITIES["cut_length"].header,
+    "dry_mass[kg]",
+    "wet_weight[N]",
+    "lift_mass[kg]",
+)
+"""First row of `inventory_csv`; weights in water are positive downward."""
+
+
+def checks_csv(assessments: Sequence[Assessment]) -> str:
+    """A row for every finding, of one mooring after the other; what is unknown is left empty."""
+    findings = (finding for each in assessments for finding in each.all_findings())
+    return _csv(CHECKS_HEADER, map(_finding, findings))
+
+
+def inventory_csv(assessments: Sequence[Assessment]) -> str:
+    """A row for every piece and clamp, from the top of each mooring to its anchor."""
+    return _csv(INVENTORY_HEADER, (row for each in assessments for row in _items(each)))
+
+
+def _csv(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(header)
+    writer.writerows(map(_cell, row) for row in rows)
+    return text.getvalue()
+
+
+def _finding(finding: Finding) -> Sequence[object]:
+    quantity = QUANTITIES.get(RULES[finding.rule].quantity)
+    return (
+        finding.mooring,
+        finding.environment,
+        finding.situation,
+        finding.rule,
+        finding.component,
+        finding.state.value,
+        finding.value,
+        finding.limit,
+        finding.margin,
+        quantity.unit if quantity else None,
+        finding.message,
+        finding.remedy,
+        finding.source,
+    )
+
+
+def _items(assessment: Assessment) -> Iterator[Sequence[object]]:
+    for item in assessment.inventory:
+        yield (
+            assessment.name,
+            item.index,
+            item.label,
+            item.use,
+            item.name,
+            item.role,
+            item.kind,
+            item.clamped_on,
+            item.count,
+            item.cut_length,
+            item.dry_mass,
+            item.wet_weight,
+            item.lift_mass,
+        )
+
+
+def _cell(value: object) -> str:
+    """A value as a cell: text that no spreadsheet computes, numbers in full."""
+    if value is None or value != value:
+        return ""
+    if isinstance(value, str):
+        return f"'{value}" if value.startswith(_FORMULA) else value
+    return repr(float(value)) if isinstance(value, float) else str(value)

@@ -1,0 +1,86 @@
+"""The design check as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from calm.checks.assessment import Assessment, Situation
+
+
+def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
+    """The JSON object of a design check; what could not be solved is null.
+
+    Returns
+    -------
+    dict
+        `findings`; of each mooring by its name `launch`, `recovery`, `backup`, `inventory`; and
+        `situations`, what was solved of each mooring in each environment.
+    """
+    from calm import __version__
+
+    return {
+        "calm": __version__,
+        "findings": [finding.to_dict() for each in assessments for finding in each.all_findings()],
+        "situations": {
+            each.name: [
+                {"environment": stand.environment, **_situation(situation)}
+                for stand in each.stands
+                for situation in stand.situations
+            ]
+            for each in assessments
+        },
+        "launch": {each.name: _launch(each) for each in assessments},
+        "recovery": {each.name: _recovery(each) for each in assessments},
+        "backup": {each.name: [asdict(one) for one in each.backup] for each in assessments},
+        "inventory": {each.name: [asdict(one) for one in each.inventory] for each in assessments},
+    }
+
+
+def _situation(situation: Situation) -> dict[str, Any]:
+    said: dict[str, Any] = {"situation": situation.name}
+    if situation.failure is not None:
+        return said | situation.failure.to_dict()
+    result = situation.result
+    assert result is not None
+    return said | {
+        "status": result.status,
+        "type": result.type,
+        "top_depth": result.top.depth,
+        "knockdown": result.top.knockdown,
+        "anchor_vertical": result.anchor.vertical,
+        "anchor_horizontal": result.anchor.horizontal,
+        "required_weight": result.anchor.required_weight,
+        "accuracy": asdict(result.accuracy),
+        "warnings": list(result.warnings),
+    }
+
+
+def _launch(assessment: Assessment) -> dict[str, Any] | None:
+    launch = assessment.launch
+    if launch is None:
+        return None
+    return {
+        "fall_speed": launch.fall_speed,
+        "fall_speed_band": list(launch.fall_speed_band),
+        "anchor_tension": launch.anchor_tension,
+        "anchor_drag_known": launch.anchor_drag_known,
+        "drift": list(launch.drift),
+        "components": launch.components(),
+    }
+
+
+def _recovery(assessment: Assessment) -> dict[str, Any] | None:
+    recovery = assessment.recovery
+    if recovery is None:
+        return None
+    return {
+        "released": recovery.released,
+        "rise_speed": recovery.rise_speed,
+        "time_to_surface": recovery.time_to_surface,
+        "net_buoyancy": recovery.net_buoyancy,
+        "order": list(recovery.order),
+        "components": recovery.components(),
+    }

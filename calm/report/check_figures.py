@@ -1,0 +1,199 @@
+"""A mooring drawn in all of its environments: elevation, current, tension, plan, and breaks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from calm.checks.strength import allowable_load
+from calm.quantities import QUANTITIES
+from calm.report.drawing import SEABED_COLOUR, WATER_COLOUR, along, mark_parts
+from calm.report.plot_mooring import plane_of
+from calm.report.vector import figure_svg
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from calm.case import Result
+    from calm.checks.assessment import Assessment
+    from calm.checks.backup import Break
+
+    Solved = Sequence[tuple[str, Result]]
+
+_WIDTH, _HEIGHT = 7.4, 8.0  # inches: an A4 page between its margins
+_LEGEND_ROW = 0.19  # inches
+_LEGEND_COLUMNS = 4
+_LONGEST_NAME = 22  # signs in the legend
+_FONT_SIZE = 7.0  # points
+_LEAST_SPAN = 0.1  # of the depth: a line that hardly leans is not drawn as if it did
+_FURTHEST_LIMIT = 4.0  # times the greatest tension; what is beyond is drawn at the edge
+_COLOURS = ("#0b3c5d", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#a6761d", "#332288")
+_DASHES: tuple[Any, ...] = ("-", (0, (6, 2)), (0, (1.5, 1.5)))
+_STILL: dict[str, Any] = {"color": "grey", "linestyle": (0, (3, 2)), "linewidth": 1.0}
+_LIMIT: dict[str, Any] = {"colors": "#b3261e", "linewidth": 2.0, "capstyle": "projecting"}
+
+
+def check_figure(assessment: Assessment) -> str:
+    """The figure as SVG: five panels that share one legend, the environments told by line.
+
+    The elevation and the current are of one depth axis; an elevation lies in the plane of its own
+    excursion. Tension is drawn over the distance along the line, with the load that each piece may
+    bear. The breaks are drawn where the mooring has a release.
+    """
+    from matplotlib.figure import Figure
+
+    solved = [(stand.environment, stand.result) for stand in assessment.stands if stand.result]
+    rows = -(-(len(solved) + 4) // _LEGEND_COLUMNS)
+    height = _HEIGHT + rows * _LEGEND_ROW
+    figure = Figure(figsize=(_WIDTH, height))
+
+    def panel(left: float, bottom: float, width: float, tall: float, **shared: Any) -> Axes:
+        """Axes placed in inches."""
+        place = (left / _WIDTH, bottom / height, width / _WIDTH, tall / height)
+        axes = figure.add_axes(place, **shared)
+        axes.tick_params(labelsize=_FONT_SIZE)
+        axes.locator_params(axis="x", nbins=5)
+        return axes
+
+    elevation = panel(0.55, 3.55, 2.6, 4.3)
+    current = panel(3.3, 3.55, 1.0, 4.3, sharey=elevation)
+    tension = panel(5.0, 3.55, 2.3, 4.3)
+    plan = panel(0.55, 0.45, 2.6, 2.4)
+    _draw_elevation(elevation, solved)
+    _draw_current(current, solved)
+    _draw_tension(tension, solved)
+    _draw_plan(plan, solved)
+    if assessment.backup:
+        _draw_breaks(panel(4.0, 0.45, 3.3, 2.4), assessment.backup)
+    for axes in figure.axes:
+        axes.xaxis.label.set_size(_FONT_SIZE)
+        axes.yaxis.label.set_size(_FONT_SIZE)
+    _write_legend(figure, elevation, [name for name, _ in solved])
+    return figure_svg(figure)
+
+
+def _style(number: int) -> dict[str, Any]:
+    """Colour and dashes of an environment: no two of the first twenty-one are alike."""
+    dashes = _DASHES[number // len(_COLOURS) % len(_DASHES)]
+    return {"color": _COLOURS[number % len(_COLOURS)], "linestyle": dashes, "linewidth": 1.2}
+
+
+def _draw_elevation(axes: Axes, solved: Solved) -> None:
+    depth = max(result.mooring.water.depth for _, result in solved)
+    axes.axhline(0.0, color=WATER_COLOUR, linewidth=1.0)
+    axes.axhspan(depth, 1.05 * depth, color=SEABED_COLOUR)
+    _, first = solved[0]
+    plane = plane_of(first)
+    if first.still_shape is not None:
+        still = along(first.still_shape.x, first.still_shape.y, plane)
+        axes.plot(still, first.still_shape.depth, label="still water", **_STILL)
+    furthest = [0.0]
+    for number, (_, result) in enumerate(solved):
+        offset = along(result.shape.x, result.shape.y, plane_of(result))
+        axes.plot(offset, result.shape.depth, **_style(number))
+        furthest += [float(offset.min()), float(offset.max())]
+    mark_parts(axes, first, lambda part: (float(along(part.x, part.y, plane)), part.depth))
+    start, end = min(furthest), max(furthest)
+    span = max(end - start, _LEAST_SPAN * depth)
+    axes.set_xlim(start - 0.08 * span, start + 1.08 * span)
+    axes.set_ylim(1.03 * depth, min(-0.03 * depth, float(first.shape.depth.min())))
+    axes.set_xlabel(QUANTITIES["offset"].label)
+    axes.set_ylabel(QUANTITIES["depth"].label)
+
+
+def _draw_current(axes: Axes, solved: Solved) -> None:
+    for number, (_, result) in enumerate(solved):
+        water = result.mooring.water
+        depth = np.union1d(np.linspace(0.0, water.depth, 60), water.level)
+        depth = depth[(depth >= 0.0) & (depth <= water.depth)]
+        u, v = (np.interp(depth, water.level, speed) for speed in (water.u, water.v))
+        axes.plot(np.hypot(u, v), depth, **_style(number))
+    axes.tick_params(labelleft=False)
+    axes.locator_params(axis="x", nbins=3)
+    axes.set_xlim(left=0.0)
+    axes.set_xlabel(f"current [{QUANTITIES['speed'].display_unit}]")
+
+
+def _draw_tension(axes: Axes, solved: Solved) -> None:
+    """Tension over the stretched length, and what the pieces may bear, where that is known."""
+    greatest = max(float(result.shape.tension.max()) for _, result in solved)
+    for number, (_, result) in enumerate(solved):
+        axes.plot(result.shape.tension, _distance(result), **_style(number))
+    _, first = solved[0]
+    ends = np.concatenate([[0.0], np.cumsum(first.components.length[:-1])])
+    factors, surface = first.file.checks.safety_factor, first.type == "surface"
+    loads = [
+        allowable_load(piece.component, factors, surface) or np.nan
+        for piece in first.file.pieces[:-1]
+    ]
+    edge = min(np.nanmax([*loads, greatest]), _FURTHEST_LIMIT * greatest)
+    axes.vlines(np.minimum(loads, edge), ends[:-1], ends[1:], **_LIMIT)
+    axes.set_xlim(0.0, 1.04 * edge)
+    axes.set_ylim(1.02 * float(ends[-1]), -0.02 * float(ends[-1]))
+    axes.locator_params(axis="x", nbins=4)
+    axes.set_xlabel(QUANTITIES["tension"].label)
+    axes.set_ylabel("distance along the line [m]")
+
+
+def _distance(result: Result) -> Any:
+    """(k,) stretched length from the free end to each node [m]."""
+    shape = result.shape
+    steps = np.sqrt(np.diff(shape.x) ** 2 + np.diff(shape.y) ** 2 + np.diff(shape.depth) ** 2)
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def _draw_plan(axes: Axes, solved: Solved) -> None:
+    for number, (_, result) in enumerate(solved):
+        axes.plot(result.shape.x, result.shape.y, **_style(number))
+        axes.plot(result.top.x, result.top.y, "o", color=_style(number)["color"], markersize=3.5)
+    axes.plot(0.0, 0.0, "v", color="black", markersize=5)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_xlabel(QUANTITIES["x"].label)
+    axes.set_ylabel(QUANTITIES["y"].label)
+
+
+def _draw_breaks(axes: Axes, backup: Sequence[Break]) -> None:
+    """What is left to lift after each break, and what is required of it; grey below all floats."""
+    from matplotlib.ticker import MaxNLocator
+
+    number = np.array([each.break_after for each in backup])
+    required = np.array([each.required for each in backup])
+    for each in backup:
+        kept = "#8fb3cf" if each.margin >= each.required else "#d98880"
+        colour = kept if each.floats_left else "#b8bec4"
+        axes.bar(each.break_after, each.margin, width=0.8, color=colour)
+    axes.hlines(required, number - 0.5, number + 0.5, **_LIMIT)
+    axes.axhline(0.0, color="black", linewidth=0.6)
+    axes.xaxis.set_major_locator(MaxNLocator(8, integer=True))
+    axes.set_xlabel("break below piece no.")
+    axes.set_ylabel("back-up buoyancy left [N]")
+
+
+def _write_legend(figure: Figure, elevation: Axes, names: Sequence[str]) -> None:
+    """One legend above all panels; the texts are set when it stands, since they may be anything."""
+    from matplotlib.lines import Line2D
+
+    handles = [Line2D([], [], **_style(number)) for number in range(len(names))]
+    texts = [_short(name) for name in names]
+    others, labels = elevation.get_legend_handles_labels()
+    limit = Line2D([], [], color=_LIMIT["colors"], linewidth=_LIMIT["linewidth"])
+    legend = figure.legend(
+        [*handles, *others, limit],
+        ["·"] * (len(names) + len(others) + 1),
+        loc="upper left",
+        ncols=_LEGEND_COLUMNS,
+        fontsize=_FONT_SIZE,
+        frameon=False,
+    )
+    for entry, text in zip(legend.get_texts(), [*texts, *labels, "limit"], strict=True):
+        entry.set_text(text)
+        entry.set_parse_math(False)
+
+
+def _short(name: str) -> str:
+    """A name on one line that fits its column of the legend."""
+    line = " ".join(name.split())
+    return line if len(line) <= _LONGEST_NAME else f"{line[: _LONGEST_NAME - 1]}…"

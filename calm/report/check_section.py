@@ -1,0 +1,146 @@
+"""A mooring's part of a design check, and the whole report of several of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from calm.checks.finding import State
+from calm.report.check_figures import check_figure
+from calm.report.check_summary import (
+    failures,
+    matrix_tables,
+    rules_tables,
+    worst_by_rule,
+    worst_table,
+)
+from calm.report.check_tables import (
+    breaks_table,
+    checks_table,
+    deck_table,
+    handling_summary,
+    handling_table,
+    inventory_table,
+    results_table,
+)
+from calm.report.provenance import date
+from calm.report.result_tables import (
+    UNSEEN,
+    current_listing,
+    environments_table,
+    file_listing,
+    line_table,
+    origin,
+    said_below,
+)
+from calm.report.section import (
+    ON_THE_WAY,
+    Block,
+    Figure,
+    Part,
+    Prose,
+    Report,
+    Section,
+    Signatures,
+)
+from calm.report.sheet import sheet
+
+if TYPE_CHECKING:
+    from calm.checks.assessment import Assessment
+
+
+def mooring_section(assessment: Assessment) -> Section:
+    """All that the report says of one mooring; it draws, so it takes some tenths of a second."""
+    columns = (*(stand.environment for stand in assessment.stands), ON_THE_WAY)
+    worst = worst_by_rule(assessment)
+    parts = (
+        Part("Judgement", tuple(_judgement(assessment, columns))),
+        Part("The line", tuple(_line(assessment))),
+        Part("Shape, tension and breaks", tuple(_drawn(assessment))),
+        Part("Checks", tuple(checks_table(assessment.all_findings()))),
+        Part("Launch, recovery, breaks", tuple(_on_the_way(assessment))),
+        Part(
+            "Inventory",
+            (inventory_table(assessment.inventory), deck_table(assessment.inventory)),
+        ),
+        Part("Inputs", tuple(_inputs(assessment))),
+    )
+    return Section(assessment.name, parts, columns, worst)
+
+
+def check_report(sections: Sequence[Section]) -> Report:
+    """The report of a design check: the summary, a section for each mooring, the signatures."""
+    count = len(sections)
+    environments = {column for each in sections for column in each.columns} - {ON_THE_WAY}
+    moorings = sections[0].name if count == 1 else f"{count} moorings"
+    in_all = f"{len(environments)} environment{'s' if len(environments) != 1 else ''}"
+    return Report(
+        title="Design check",
+        subtitle=f"{moorings}, {in_all}",
+        front=(
+            Part("Summary", (*matrix_tables(sections), failures(sections), worst_table(sections))),
+            Part("What is not judged", (Prose(UNSEEN, State.UNKNOWN),)),
+            Part("Signatures", (Signatures(("Designed by", "Checked by", "Approved by")),)),
+        ),
+        sections=tuple(sections),
+        date=date(),
+    )
+
+
+def _judgement(assessment: Assessment, columns: Sequence[str]) -> Iterator[Block]:
+    description = assessment.mooring.file.description
+    if description:
+        yield Prose((description,))
+    yield from rules_tables(columns, worst_by_rule(assessment))
+    yield results_table(assessment.stands)
+
+
+def _line(assessment: Assessment) -> Iterator[Block]:
+    """The schematic and the table of the line in the first environment that it stands in."""
+    from calm.report.schematic import schematic_svg
+
+    stand = next((stand for stand in assessment.stands if stand.result is not None), None)
+    result = stand.result if stand else None
+    title = f"Schematic, environment: {stand.environment}" if stand else "Schematic"
+    yield Figure(title, schematic_svg(assessment.mooring.file, result), tall=True)
+    if stand is not None and result is not None:
+        said = sheet(result)
+        yield line_table(said, f"Table of the line, environment: {stand.environment}")
+        yield from said_below(said)
+
+
+def _drawn(assessment: Assessment) -> Iterator[Block]:
+    if all(stand.result is None for stand in assessment.stands):
+        yield Prose(("The mooring has no equilibrium in any environment.",), State.FAIL)
+        return
+    title = "Elevation, current, tension, plan and breaks"
+    yield Figure(title, check_figure(assessment))
+    yield Prose((_FIGURE_NOTE,))
+
+
+def _on_the_way(assessment: Assessment) -> Iterator[Block]:
+    if assessment.launch is not None or assessment.recovery is not None:
+        yield handling_summary(assessment)
+        yield handling_table(assessment)
+    else:
+        yield Prose(("Neither the launch nor the recovery could be solved.",), State.UNKNOWN)
+    if assessment.backup:
+        yield breaks_table(assessment.backup)
+
+
+def _inputs(assessment: Assessment) -> Iterator[Block]:
+    names = [stand.environment for stand in assessment.stands]
+    waters = [stand.mooring.water for stand in assessment.stands]
+    yield environments_table(names, waters)
+    yield file_listing(assessment.mooring.file)
+    for name, water in zip(names, waters, strict=True):
+        yield current_listing(name, water)
+    yield origin([stand.mooring.file for stand in assessment.stands])
+
+
+_FIGURE_NOTE = (
+    "Elevations: each in the vertical plane of its own excursion; marks and the line in still "
+    "water: of the first environment. Limit: over the tension, the load that a piece may bear "
+    "(its working load, or its breaking load over the safety factor; what lies beyond four times "
+    "the tension is drawn at the edge); over the breaks, the buoyancy required."
+)

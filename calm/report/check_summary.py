@@ -1,0 +1,192 @@
+"""The worst of many findings: of a rule in an environment, of a mooring, of a whole check."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from calm.checks.finding import AS_GIVEN, Finding, State
+from calm.checks.rules import RULES
+from calm.quantities import QUANTITIES
+from calm.report.section import ON_THE_WAY, Cell, Column, Prose, Section, Table, Worst
+
+if TYPE_CHECKING:
+    from calm.checks.assessment import Assessment
+
+_ABREAST = 5
+"""Environments beside each other in a table; more of them take another table."""
+
+
+def graveness(finding: Finding) -> tuple[int, float]:
+    """What sorts findings, the worst first: the state, then the margin as a share of the limit."""
+    share = finding.share
+    return -finding.state.gravity, math.inf if share is None else share
+
+
+def say_in_unit(finding: Finding, value: float | None) -> str:
+    """A value, limit or margin of a finding with its unit; nothing where it is unknown."""
+    return "" if value is None else QUANTITIES[RULES[finding.rule].quantity].say(value)
+
+
+def margin_of(finding: Finding) -> str:
+    """The margin with its sign and unit."""
+    text = say_in_unit(finding, finding.margin)
+    return text if not text or text.startswith("-") else f"+{text}"
+
+
+def place_of(finding: Finding) -> str:
+    """The environment, and what was changed in it."""
+    if finding.situation == AS_GIVEN:
+        return finding.environment
+    return f"{finding.environment}, {finding.situation}"
+
+
+def worst_by_rule(assessment: Assessment) -> tuple[Worst, ...]:
+    """The worst finding of each rule in each column of the summary."""
+    columns = [(stand.environment, stand.findings) for stand in assessment.stands]
+    columns.append((ON_THE_WAY, assessment.findings))
+    return tuple(
+        Worst(column, min(group, key=graveness))
+        for column, findings in columns
+        for group in _groups(findings, lambda each: each.rule)
+    )
+
+
+def worst_by_part(findings: Iterable[Finding]) -> list[Finding]:
+    """The worst finding of each rule on each component, the gravest first."""
+    groups = _groups(findings, lambda each: (each.rule, each.component))
+    return sorted((min(group, key=graveness) for group in groups), key=graveness)
+
+
+def rules_tables(columns: Sequence[str], found: Sequence[Worst]) -> Iterator[Table]:
+    """Rules by environments: state, margin and component of the worst finding of each."""
+    cells = {(each.column, each.finding.rule): each.finding for each in found}
+    for beside in abreast(columns):
+        rules = [
+            rule for rule in RULES.values() if any((one, rule.name) in cells for one in beside)
+        ]
+        rows = tuple(
+            (Cell(rule.title), *(_judged(cells.get((one, rule.name))) for one in beside))
+            for rule in rules
+        )
+        yield Table("Rules by environment", _headed("rule", beside), rows, _RULES_NOTE)
+
+
+def matrix_tables(sections: Sequence[Section]) -> Iterator[Table]:
+    """Moorings by environments: the worst state in each, the rule that makes it, and its margin."""
+    every = dict.fromkeys(column for section in sections for column in section.columns)
+    every.pop(ON_THE_WAY, None)
+    for beside in abreast([*every, ON_THE_WAY]):
+        rows = tuple(
+            (Cell(section.name), *(_of_column(section, column) for column in beside))
+            for section in sections
+        )
+        yield Table("Moorings by environment", _headed("mooring", beside), rows, _MATRIX_NOTE)
+
+
+def worst_table(sections: Sequence[Section]) -> Table:
+    """Each rule with the worst of all its findings, and in how many moorings it fails or warns."""
+    found: dict[str, list[tuple[Section, Finding]]] = {}
+    for section in sections:
+        for each in section.worst:
+            found.setdefault(each.finding.rule, []).append((section, each.finding))
+    rows = []
+    for rule in RULES.values():
+        if rule.name not in found:
+            continue
+        section, finding = min(found[rule.name], key=lambda pair: graveness(pair[1]))
+        rows.append(
+            (
+                Cell(finding.state.value, state=finding.state),
+                Cell(rule.title),
+                Cell(say_in_unit(finding, finding.value)),
+                Cell(say_in_unit(finding, finding.limit)),
+                Cell(margin_of(finding)),
+                Cell(section.name, finding.component or ""),
+                Cell(place_of(finding)),
+                Cell(_moorings(found[rule.name], State.FAIL)),
+                Cell(_moorings(found[rule.name], State.WARN)),
+            )
+        )
+    columns = (
+        Column("state", share=0.0),
+        Column("rule"),
+        Column("value", numeric=True),
+        Column("limit", numeric=True),
+        Column("margin", numeric=True),
+        Column("mooring, component"),
+        Column("environment"),
+        Column("moorings that fail", numeric=True),
+        Column("that warn", numeric=True),
+    )
+    return Table("Worst finding of each rule", columns, tuple(rows), sortable=True)
+
+
+def failures(sections: Sequence[Section]) -> Table | Prose:
+    """Every rule that a mooring fails, with its worst finding and the remedy."""
+    rows = []
+    for section in sections:
+        failed = (each.finding for each in section.worst if each.finding.state is State.FAIL)
+        for group in _groups(failed, lambda each: each.rule):
+            finding, others = min(group, key=graveness), len(group) - 1
+            rows.append(
+                (
+                    Cell(section.name),
+                    Cell(RULES[finding.rule].title),
+                    Cell(place_of(finding), f"and {others} more" if others else ""),
+                    Cell(finding.message, finding.remedy or ""),
+                )
+            )
+    if not rows:
+        return Prose(("No rule fails.",), State.PASS)
+    columns = (
+        Column("mooring"),
+        Column("rule"),
+        Column("environment"),
+        Column("finding and remedy", share=2.5),
+    )
+    return Table("Failures", columns, tuple(rows))
+
+
+_RULES_NOTE = "Under each state: the least margin, and the component that has it."
+_MATRIX_NOTE = "Under each state: the rule that makes it, with the least margin."
+
+
+def _headed(first: str, columns: Sequence[str]) -> tuple[Column, ...]:
+    return (Column(first), *map(Column, columns))
+
+
+def _judged(finding: Finding | None) -> Cell:
+    if finding is None:
+        return Cell("–")
+    detail = " ".join(filter(None, (margin_of(finding), finding.component)))
+    return Cell(finding.state.value, detail, finding.state)
+
+
+def _of_column(section: Section, column: str) -> Cell:
+    here = [each.finding for each in section.worst if each.column == column]
+    if not here:
+        return Cell("–")
+    finding = min(here, key=graveness)
+    title = RULES[finding.rule].title
+    return Cell(finding.state.value, f"{title} {margin_of(finding)}".rstrip(), finding.state)
+
+
+def _moorings(found: Sequence[tuple[Section, Finding]], state: State) -> str:
+    return str(len({section.name for section, finding in found if finding.state is state}))
+
+
+def abreast(columns: Sequence[str]) -> Iterator[Sequence[str]]:
+    """The columns in groups of much the same size that fit the width of a page."""
+    groups = math.ceil(len(columns) / _ABREAST)
+    size = math.ceil(len(columns) / groups)
+    for start in range(0, len(columns), size):
+        yield columns[start : start + size]
+
+
+def _groups(findings: Iterable[Finding], key: Callable[[Finding], Hashable]) -> list[list[Finding]]:
+    groups: dict[Hashable, list[Finding]] = {}
+    for finding in findings:
+        groups.setdefault(key(finding), []).append(finding)
+    return list(groups.values())

@@ -1,0 +1,64 @@
+"""A folder of reports: all of its files appear, or none."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Mapping
+from pathlib import Path
+
+from calm.errors import UsageError
+
+
+def check_folder(folder: Path) -> None:
+    """Refuse a folder in which nothing could be written, before the work for it is done.
+
+    Raises
+    ------
+    UsageError
+        It is a file, it or the nearest folder that exists may not be written.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise UsageError(f"cannot write {folder}: it is a file; a folder is needed")
+    nearest = Path(os.path.realpath(folder))
+    while not nearest.exists():
+        nearest = nearest.parent
+    if not nearest.is_dir() or not os.access(nearest, os.W_OK | os.X_OK):
+        raise UsageError(f"cannot write {folder}: permission denied in {nearest}")
+
+
+def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
+    """Write the files of a report, making the folder where it is missing.
+
+    All are written under temporary names before the first takes its place, so that a full disk
+    leaves the report that was there as it was.
+
+    Parameters
+    ----------
+    files : mapping
+        Of the name in the folder to the content.
+
+    Raises
+    ------
+    UsageError
+        The system refuses: which file, and why. No temporary file is left behind.
+    """
+    parts = {name: folder / f".{name}-{os.getpid()}.part" for name in files}
+    target = folder
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, content in files.items():
+            target = folder / name
+            if target.is_dir():
+                raise IsADirectoryError(None, "it is a folder")
+            parts[name].write_bytes(content)
+        for name in files:
+            target = folder / name
+            os.replace(parts[name], target)
+    except OSError as error:
+        kept = "" if target == folder else "; the report that was there is kept"
+        raise UsageError(f"cannot write {target}: {error.strerror}{kept}") from None
+    finally:
+        for part in parts.values():
+            with contextlib.suppress(OSError):
+                part.unlink()

@@ -1,0 +1,56 @@
+"""A report as PDF, set by typst."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from calm.report.provenance import moment
+
+if TYPE_CHECKING:
+    from calm.case import Result, TowResult
+    from calm.report.section import Report, Section
+
+
+def report_pdf(sections: Sequence[Section]) -> bytes:
+    """The report of a design check, as `calm.report.html.report_html` shows it.
+
+    The same sections give the same bytes: the fonts are those that typst and matplotlib bring, and
+    the only date is that of SOURCE_DATE_EPOCH. A sign that no font has shows as a box.
+    """
+    from calm.report.check_section import check_report
+
+    return printed(check_report(sections))
+
+
+def result_pdf(result: Result | TowResult) -> bytes:
+    """The report of one solved mooring or tow."""
+    from calm.report.result_section import result_report
+
+    return printed(result_report(result))
+
+
+def printed(report: Report) -> bytes:
+    """Any report on A4 pages; its texts reach the template as data, never as markup."""
+    import matplotlib
+    import typst
+
+    text = json.dumps(report, default=_members, ensure_ascii=False)
+    fonts = Path(matplotlib.get_data_path(), "fonts", "ttf")
+    when = moment()
+    return typst.compile(
+        (files("calm.report") / "report.typ").read_bytes(),
+        font_paths=[str(fonts)],
+        ignore_system_fonts=True,
+        sys_inputs={"report": text.encode("utf-8", "replace").decode("utf-8")},
+        pdf_tags=False,  # they make the file ten times as large; the page for a browser has its own
+        timestamp=None if when is None else int(when.timestamp()),
+    )
+
+
+def _members(part: Any) -> dict[str, Any]:
+    """A part of the report with its kind, by which the template knows it."""
+    return {"kind": type(part).__name__, **vars(part)}

@@ -1,0 +1,53 @@
+"""The report of a single solved mooring or tow."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from calm.case import TowResult
+from calm.checks.finding import State
+from calm.report.plot import draw
+from calm.report.provenance import date
+from calm.report.result_tables import (
+    UNSEEN,
+    current_listing,
+    environments_table,
+    file_listing,
+    line_table,
+    origin,
+    said_below,
+)
+from calm.report.section import Figure, Part, Prose, Report, Section
+from calm.report.sheet import sheet
+from calm.report.vector import figure_svg
+
+if TYPE_CHECKING:
+    from calm.case import Result
+
+
+def result_report(result: Result | TowResult) -> Report:
+    """Schematic, table, drawing and inputs of one result."""
+    from calm.report.schematic import schematic_svg
+
+    said, file = sheet(result), result.file
+    water = result.tow.water if isinstance(result, TowResult) else result.mooring.water
+    environment = file.environment.name or "own"
+    described = (Prose((file.description,)),) if file.description else ()
+    parts = (
+        Part("Result", (*described, *said_below(said))),
+        Part("The line", (Figure("Schematic", schematic_svg(file, result), tall=True),
+                          line_table(said, "Table of the line"))),
+        Part("Shape", (Figure("Elevation, current and plan", figure_svg(draw(result))),)),
+        Part("What is not judged", (Prose(UNSEEN, State.UNKNOWN),)),
+        Part(
+            "Inputs",
+            (
+                environments_table([environment], [water]),
+                file_listing(file),
+                current_listing(environment, water),
+                origin([file]),
+            ),
+        ),
+    )  # fmt: skip
+    subtitle = said.title.removeprefix(f"{result.name}: ")
+    return Report(result.name, subtitle, (), (Section(result.name, parts),), date())

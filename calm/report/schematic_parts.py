@@ -1,0 +1,233 @@
+"""What a schematic shows of a line: its parts from the top, and a row of text for each."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from calm.quantities import QUANTITIES, say
+from calm.report.labels import alike, together
+from calm.report.schematic_levels import Levels, levels_of
+from calm.report.schematic_sign import BALLS, Sign, Symbol, sign_of
+
+if TYPE_CHECKING:
+    from calm.case import Result, TowResult
+    from calm.files import Clamp, MooringFile, Piece
+
+HEADINGS = {
+    "cut_length": ("cut", "length"),
+    "depth": ("", "depth"),
+    "height": ("above", "seabed"),
+}
+"""The quantities beside each part, with the two lines of their headings."""
+
+_JOINED = (*BALLS, Symbol.SHACKLE, Symbol.SWIVEL, Symbol.LINK)
+# Signs that XML has no place for, that command a terminal, or that turn other signs around.
+_UNPRINTABLE = re.compile("[\x00-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]")
+
+
+@dataclass(frozen=True)
+class Row:
+    """The text beside a part: its label, its component's name, a cell for each column."""
+
+    label: str
+    name: str
+    cells: tuple[str, ...]
+    strong: bool = False
+
+
+@dataclass(frozen=True)
+class Clamped:
+    """An instrument clamped on a part."""
+
+    sign: Sign
+    row: Row
+
+
+@dataclass(frozen=True)
+class Part:
+    """What is drawn as one: a piece, a run of balls or of connectors, or two releases in a row.
+
+    Attributes
+    ----------
+    sign : Sign
+        What is drawn.
+    labels : tuple of str
+        Of its pieces.
+    rows : tuple of Row
+        One; of two releases, one each.
+    clamps : tuple of Clamped
+        Down the piece.
+    length : float
+        Cut length of a piece [m], NaN where unknown.
+    """
+
+    sign: Sign
+    labels: tuple[str, ...]
+    rows: tuple[Row, ...]
+    clamps: tuple[Clamped, ...]
+    length: float
+
+
+@dataclass(frozen=True)
+class Schematic:
+    """A line as it is drawn, from the top of a mooring, or from the ship down.
+
+    Attributes
+    ----------
+    title, subtitle, note : str
+        Its name; water and place, or speed; how to read the figures.
+    columns : tuple of str
+        Those quantities of `HEADINGS` that can be told.
+    parts : tuple of Part
+    surface : bool
+        Whether the first part floats at the surface.
+    towed_by : Row or None
+        The text at the ship or the helicopter.
+    sea : Row or None
+        The text at the sea surface; None in air.
+    seabed : Row or None
+        The text at the seabed; None where its depth is unknown.
+    """
+
+    title: str
+    subtitle: str
+    note: str
+    columns: tuple[str, ...]
+    parts: tuple[Part, ...]
+    surface: bool
+    towed_by: Row | None
+    sea: Row | None
+    seabed: Row | None
+
+
+def schematic_of(file: MooringFile, result: Result | TowResult | None = None) -> Schematic:
+    """What the schematic of a line shows.
+
+    Parameters
+    ----------
+    file : MooringFile
+        The line as read.
+    result : Result or TowResult, optional
+        Its solution, which tells depths under load and in the current.
+    """
+    levels = levels_of(file, result)
+    bottom = file.environment.depth
+    cells = _Cells(bottom)
+    pieces = list(zip(file.pieces, levels.lengths, levels.depths, strict=True))
+    parts = [_part(cells, levels, *piece) for piece in pieces]
+    sea = Row("sea surface", "", cells.at(0.0))
+    return Schematic(
+        title=printable(file.name),
+        subtitle=_subtitle(file),
+        note=levels.note,
+        columns=cells.columns,
+        parts=tuple(_joined(parts, file.pieces)),
+        surface=levels.surface,
+        towed_by=_towed_by(file, cells),
+        sea=sea if file.environment.fluid == "water" else None,
+        seabed=None if bottom is None else Row("seabed", "", cells.at(bottom)),
+    )
+
+
+def printable(text: str) -> str:
+    """A text in one line, what XML or a terminal cannot carry replaced by a mark."""
+    return _UNPRINTABLE.sub("\ufffd", " ".join(text.split()))
+
+
+class _Cells:
+    """Writes the figures of a row; heights only where the depth of the seabed [m] is known."""
+
+    def __init__(self, bottom: float | None) -> None:
+        self._bottom = bottom
+        self.columns = tuple(name for name in HEADINGS if name != "height" or bottom is not None)
+
+    def at(self, depth: float) -> tuple[str, ...]:
+        """Of a place that has no length."""
+        return ("", *self.of(math.nan, depth)[1:])
+
+    def of(self, length: float, depth: float) -> tuple[str, ...]:
+        """Of a piece."""
+        height = math.nan if self._bottom is None else self._bottom - depth
+        figures = {"cut_length": length, "depth": depth, "height": height}
+        return tuple(QUANTITIES[name].format(figures[name]) for name in self.columns)
+
+
+def _part(cells: _Cells, levels: Levels, piece: Piece, length: float, depth: float) -> Part:
+    sign = sign_of(piece.use, piece.label, piece.component)
+    if levels.surface and piece.index == 0 and sign.symbol is not Symbol.SPHERE:
+        sign = replace(sign, symbol=Symbol.BUOY)
+    clamps = tuple(
+        Clamped(
+            sign_of(clamp.use, clamp.label, clamp.component),
+            _row(clamp, cells.at(levels.clamps[clamp.label])),
+        )
+        for clamp in sorted(piece.clamps, key=lambda clamp: clamp.at)
+    )
+    row = _row(piece, cells.of(length, depth))
+    return Part(sign, (row.label,), (row,), clamps, length)
+
+
+def _row(of: Piece | Clamp, cells: tuple[str, ...]) -> Row:
+    name = printable(of.component.name or of.use)
+    return Row(printable(of.label), name, cells, strong=of.component.role == "instrument")
+
+
+def _joined(parts: list[Part], pieces: Sequence[Piece]) -> Iterator[Part]:
+    """The parts, those that are drawn as one made one."""
+    run: list[Part] = []
+    for part, piece in zip(parts, pieces, strict=True):
+        if run and not _goes_with(run, part, pieces[piece.index - 1], piece):
+            yield _as_one(run)
+            run = []
+        run.append(part)
+    yield _as_one(run)
+
+
+def _goes_with(run: list[Part], part: Part, above: Piece, piece: Piece) -> bool:
+    if part.clamps or run[-1].clamps or part.sign != run[-1].sign:
+        return False
+    if part.sign.symbol is Symbol.RELEASE:
+        return len(run) == 1
+    same = above.use == piece.use and above.component == piece.component
+    return part.sign.symbol in _JOINED and same and alike(run[-1].labels[0], part.labels[0])
+
+
+def _as_one(run: list[Part]) -> Part:
+    first = run[0]
+    if len(run) == 1:
+        return first
+    labels = tuple(label for part in run for label in part.labels)
+    if first.sign.symbol is Symbol.RELEASE:
+        pair = replace(first.sign, symbol=Symbol.RELEASE_PAIR)
+        return replace(first, sign=pair, labels=labels, rows=tuple(part.rows[0] for part in run))
+    length, *others = first.rows[0].cells
+    row = replace(
+        first.rows[0], label=together(list(labels)), cells=(f"{len(run)} × {length}", *others)
+    )
+    sign = replace(first.sign, count=len(run) * first.sign.count)
+    return replace(first, sign=sign, labels=labels, rows=(row,))
+
+
+def _subtitle(file: MooringFile) -> str:
+    """Water and place of a mooring; speed of a tow."""
+    said = []
+    if file.tow is not None:
+        said.append(f"towed at {say('speed', file.tow.speed)} towards {file.tow.toward:.0f}°")
+    if file.environment.depth is not None:
+        said.append(f"{say('depth', file.environment.depth)} of water")
+    if file.position is not None:
+        latitude, longitude = file.position.latitude, file.position.longitude
+        said.append(f"{abs(latitude):.4f}° {'N' if latitude >= 0.0 else 'S'}")
+        said.append(f"{abs(longitude):.4f}° {'E' if longitude >= 0.0 else 'W'}")
+    return " · ".join(said)
+
+
+def _towed_by(file: MooringFile, cells: _Cells) -> Row | None:
+    if file.tow is None:
+        return None
+    name = "ship" if file.environment.fluid == "water" else "helicopter"
+    return Row(name, "", cells.at(-file.tow.height))

@@ -1,0 +1,94 @@
+"""Elements of an SVG picture; every text and attribute is escaped as the picture is written."""
+
+from __future__ import annotations
+
+from xml.etree import ElementTree
+
+from calm.report.schematic_widths import shortened
+
+INK, SOFT, FAINT = "#1b2733", "#5a6672", "#c3ccd4"
+"""Colours of what is to be read first, next, and last."""
+
+
+class Pen:
+    """Draws into an element of a picture.
+
+    Parameters
+    ----------
+    element : xml.etree.ElementTree.Element
+        What it draws is added to it.
+    """
+
+    def __init__(self, element: ElementTree.Element) -> None:
+        self.element = element
+
+    def draw(self, tag: str, **attributes: float | str) -> Pen:
+        """A new element; of an attribute's name ``_`` stands for ``-``. Gives a pen for it."""
+        written = {name.replace("_", "-"): _text(value) for name, value in attributes.items()}
+        return Pen(ElementTree.SubElement(self.element, tag, written))
+
+    def group(self, x: float, y: float, scale: float = 1.0, **attributes: float | str) -> Pen:
+        """A group with its own origin."""
+        transform = f"translate({_text(x)} {_text(y)})"
+        if scale != 1.0:
+            transform += f" scale({_text(scale)})"
+        return self.draw("g", transform=transform, **attributes)
+
+    def title(self, text: str) -> None:
+        """What a reader is told who points at the element."""
+        self.draw("title").element.text = text
+
+    def line(self, x1: float, y1: float, x2: float, y2: float, **attributes: float | str) -> None:
+        """A straight line."""
+        self.draw("line", x1=x1, y1=y1, x2=x2, y2=y2, **attributes)
+
+    def circle(self, x: float, y: float, radius: float, **attributes: float | str) -> None:
+        """A circle about a point."""
+        self.draw("circle", cx=x, cy=y, r=radius, **attributes)
+
+    def box(
+        self, x: float, y: float, width: float, height: float, **attributes: float | str
+    ) -> None:
+        """A rectangle centred at a point."""
+        left, top = x - width / 2, y - height / 2
+        self.draw("rect", x=left, y=top, width=width, height=height, **attributes)
+
+    def path(self, d: str, **attributes: float | str) -> None:
+        """A path."""
+        self.draw("path", d=d, **attributes)
+
+    def write(
+        self,
+        x: float,
+        y: float,
+        text: str,
+        width: float,
+        *,
+        size: float,
+        colour: str = INK,
+        bold: bool = False,
+        anchor: str = "start",
+    ) -> None:
+        """A text in a width, its middle at `y`; one that is cut has the whole for its title."""
+        if not text:
+            return
+        weight = {"font_weight": "bold"} if bold else {}
+        pen = self.draw(
+            "text",
+            x=x,
+            y=y + 0.35 * size,
+            font_size=size,
+            fill=colour,
+            text_anchor=anchor,
+            **weight,
+        )
+        shown = shortened(text, width, size, bold=bold)
+        if shown == text:
+            pen.element.text = text
+        else:
+            pen.title(text)
+            pen.element[-1].tail = shown
+
+
+def _text(value: float | str) -> str:
+    return value if isinstance(value, str) else f"{round(value, 2) + 0.0:g}"

@@ -1,0 +1,147 @@
+"""Terminal motion of a line without a fixed end: it falls behind its anchor, or rises without one.
+
+All of the line moves alike, at the velocity at which weight, buoyancy and drag cancel. It is taken
+to have reached that velocity, in the water at one place: where the anchor comes to the seabed, or
+where the rise begins.
+
+In still water, and in a current that is the same at all depths, the line drifts with the water and
+is plumb; only its vertical speed is unknown. Where the horizontal current changes with depth the
+drift is unknown too, and the line leans. It is then sought from the plumb line's motion, if need be
+by way of weaker shear.
+
+Where the force above a part points downward, that part overtakes what is above it and the line
+doubles back: the balance holds there as elsewhere, but the line may tangle.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import nan
+
+import numpy as np
+
+from calm.physics.line import Floats, Line, Water
+from calm.physics.march import Cuts
+from calm.physics.state import MarchError, Trace
+from calm.physics.track import head_count
+from calm.solve import audit
+from calm.solve.free_march import Falling, FallingAnchor, Moving, Rising
+from calm.solve.free_search import Place, terminal
+from calm.solve.solution import Settings, Solution, nodes_of
+from calm.solve.status import Status
+
+
+@dataclass(frozen=True)
+class FreeMotion:
+    """A line that moves steadily.
+
+    Attributes
+    ----------
+    velocity : (3,) over the ground, to the east, to the north, upward [m/s]
+    solution : its shape and forces in the water as it flows past the line; x and y from the lower
+        end. Its errors are not estimated, nan, and its marches not counted, 0.
+    tangles : the pieces that have, or part of which has, overtaken what was above
+    """
+
+    velocity: Floats
+    solution: Solution
+    tangles: tuple[int, ...]
+
+
+def solve_fall(
+    line: Line, water: Water, anchor: FallingAnchor, settings: Settings | None = None
+) -> FreeMotion:
+    """The motion of a line that its anchor pulls down, when the anchor comes to the seabed.
+
+    Parameters
+    ----------
+    line, water : see `calm.physics.line`; what of the line is above the surface counts as below it
+    settings : angle step; 1° where not given
+
+    Raises
+    ------
+    NoEquilibrium
+        ``anchor-lifts`` where the line is too buoyant to fall, ``no-equilibrium`` where no drag
+        limits its speed, ``not-converged`` where no motion passes the checks.
+    """
+    motion = _solve(Falling(line, water, anchor), settings or Settings())
+    if motion.velocity[2] >= 0.0:
+        raise Status.ANCHOR_LIFTS.because(
+            f"The anchor weighs {anchor.weight:.0f} N in water and does not pull the line down."
+        )
+    return motion
+
+
+def solve_rise(
+    line: Line, water: Water, depth: float, settings: Settings | None = None
+) -> FreeMotion:
+    """The motion of a line that nothing holds; one that is too heavy sinks.
+
+    Parameters
+    ----------
+    line, water : see `calm.physics.line`; the seabed stops nothing
+    depth : of the line's upper end [m]
+    settings : angle step; 1° where not given
+
+    Raises
+    ------
+    NoEquilibrium
+        ``no-equilibrium`` where no drag limits the speed, ``not-converged`` where no motion passes
+        the checks.
+    """
+    return _solve(Rising(line, water, depth), settings or Settings())
+
+
+def _solve(moving: Moving, settings: Settings) -> FreeMotion:
+    try:
+        place, cuts = terminal(moving, settings.angle_step)
+        return _recorded(moving, place, cuts, settings)
+    except MarchError as error:
+        raise Status.NOT_CONVERGED.because(f"The march stopped: {error}.") from error
+
+
+def _recorded(moving: Moving, place: Place, cuts: Cuts, settings: Settings) -> FreeMotion:
+    """The motion at a place, marched once more, audited."""
+    flow, trace = moving.flow(place.velocity), Trace()
+    meeting = moving.meet(flow, place.depth, settings.angle_step, cuts, trace)
+    position, force = nodes_of(trace)
+    solution = Solution(
+        line=moving.line,
+        water=flow,
+        settings=settings,
+        position=position,
+        force=force,
+        element_piece=np.array(trace.piece, dtype=np.int64),
+        element_clamp=np.array(trace.clamp, dtype=np.int64),
+        landed=False,
+        hanging=len(trace.piece),
+        grounded_length=0.0,
+        cut=np.array(trace.cut),
+        strain=np.array(trace.strain),
+        afloat=(),
+        buoyancy_used=1.0,
+        reserve=0.0,
+        carried=moving.line,
+        marches=0,
+        segments=sum(map(len, meeting.cuts)),
+        miss=meeting.gap,
+        depth_error=nan,
+        tension_error=nan,
+    )
+    left = audit.loads(solution).sum(axis=0) + moving.anchor_force(flow)
+    closure = float(np.linalg.norm(left)) / moving.weight
+    if not closure <= audit.LARGEST_CLOSURE:
+        raise Status.NOT_CONVERGED.because(
+            f"The loads on the moving line do not cancel: they are {closure:.1e} off."
+        )
+    return FreeMotion(place.velocity, replace(solution, closure=closure), _tangles(solution))
+
+
+def _tangles(solution: Solution) -> tuple[int, ...]:
+    """The pieces with a part whose lower end is up; without length, on which the line pushes."""
+    line, piece = solution.line, solution.element_piece
+    back = set(piece[np.diff(solution.position[:, 2]) > 0.0].tolist())
+    first, last = solution.piece_nodes.T
+    pushed = (solution.force[first] + solution.force[last])[:, 2] < 0.0
+    pushed[: head_count(line)] = False
+    return tuple(sorted(back | set(np.flatnonzero(pushed & (line.length == 0.0)).tolist())))

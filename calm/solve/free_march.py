@@ -1,0 +1,240 @@
+"""The marches of a line that no end holds, in the water as it flows past the line.
+
+A line that falls is marched from its upper end down to its anchor. A line that rises is marched
+from both its ends to where its tension should be greatest: a march that comes to a free end with
+the last of its tension swings wildly there, one that starts from it does not.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import degrees
+
+import numpy as np
+
+from calm.physics.line import REFERENCE_DENSITY, Floats, Line, Water
+from calm.physics.march import Cuts, End, march
+from calm.physics.profile import Profile
+from calm.physics.state import Trace
+from calm.physics.track import Cable, Rod, Track, head_count
+from calm.solve.closing import REACH
+
+
+@dataclass(frozen=True)
+class FallingAnchor:
+    """An anchor below a line that falls.
+
+    Attributes
+    ----------
+    weight : in the water at the seabed [N]
+    drag : K of its drag K|V|V in reference water [N/(m/s)²]; 0 where none is known
+    """
+
+    weight: float
+    drag: float = 0.0
+
+    def force(self, flow: Water) -> Floats:
+        """(3,) weight and drag [N] at the seabed of the water that flows past it."""
+        current, density = flow.at(np.array(flow.depth))
+        drag = self.drag * float(density) / REFERENCE_DENSITY * float(np.linalg.norm(current))
+        force: Floats = drag * current - [0.0, 0.0, self.weight]
+        return force
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """What is wrong where two marches meet, or a march meets its anchor.
+
+    Attributes
+    ----------
+    force : (3,) sum of all forces [N]
+    gap : by which the end in question should start deeper [m]
+    cuts : the segments used
+    """
+
+    force: Floats
+    gap: float
+    cuts: Cuts
+
+
+@dataclass(frozen=True)
+class Moving(ABC):
+    """A line that moves steadily, all of it alike, in water whose current is that over the ground.
+
+    One of its ends is at a depth that is unknown; it is the `depth` of the methods [m].
+    """
+
+    line: Line
+    water: Water
+
+    @property
+    @abstractmethod
+    def guessed_depth(self) -> float:
+        """About where the end of unknown depth is [m]."""
+
+    @abstractmethod
+    def meet(
+        self,
+        flow: Water,
+        depth: float,
+        angle_step: float,
+        cuts: Cuts | None = None,
+        trace: Trace | None = None,
+    ) -> Meeting:
+        """March in the water as it flows past the line.
+
+        `angle_step` [rad], `cuts` and `trace` are those of `calm.physics.march`.
+        """
+
+    def anchor_force(self, flow: Water) -> Floats:
+        """(3,) of an anchor below the line [N]."""
+        return np.zeros(3)
+
+    @property
+    def lifts(self) -> Floats:
+        """Net forces of the parts in reference water, + up [N]."""
+        return self.line.total_buoyancy
+
+    @cached_property
+    def weight(self) -> float:
+        """What forces are measured by [N]: all net forces together.
+
+        Or a thousandth of what they are without regard to sign, where that is more.
+        """
+        return max(abs(float(self.lifts.sum())), 1e-3 * float(np.abs(self.lifts).sum()), 1e-300)
+
+    @property
+    def plumb(self) -> bool:
+        """Whether the horizontal current is the same at all depths: the line drifts with it."""
+        return not (np.ptp(self.water.u) or np.ptp(self.water.v))
+
+    def flow(self, velocity: Floats) -> Water:
+        """The water as it flows past a line of a velocity (3,) over the ground [m/s]."""
+        east, north, up = velocity
+        water = self.water
+        return replace(water, u=water.u - east, v=water.v - north, w=water.w - up)
+
+    def _run(
+        self,
+        track: Track,
+        flow: Water,
+        depth: float,
+        angle_step: float,
+        cuts: Cuts | None,
+        trace: Trace | None,
+    ) -> End:
+        reach = REACH * degrees(angle_step) * self.water.depth
+        return march(
+            track, Profile(flow), depth, angle_step=angle_step, reach=reach, cuts=cuts, trace=trace
+        )
+
+
+@dataclass(frozen=True)
+class Falling(Moving):
+    """A line above its anchor, which is about to touch the seabed."""
+
+    anchor: FallingAnchor
+
+    @cached_property
+    def _track(self) -> Track:
+        return Track.of(self.line)
+
+    @property
+    def lifts(self) -> Floats:
+        return np.append(super().lifts, -self.anchor.weight)
+
+    def anchor_force(self, flow: Water) -> Floats:
+        return self.anchor.force(flow)
+
+    @property
+    def guessed_depth(self) -> float:
+        """Of the upper end."""
+        return self.water.depth - self.line.anchor_height - float(self.line.length.sum())
+
+    def meet(
+        self,
+        flow: Water,
+        depth: float,
+        angle_step: float,
+        cuts: Cuts | None = None,
+        trace: Trace | None = None,
+    ) -> Meeting:
+        end = self._run(self._track, flow, depth, angle_step, cuts, trace)
+        goal = self.line.anchor_height - self.water.depth
+        return Meeting(np.array(end.force) + self.anchor_force(flow), end.z - goal, end.cuts)
+
+
+@dataclass(frozen=True)
+class Rising(Moving):
+    """A line whose upper end is at a depth `top` [m]."""
+
+    top: float
+
+    @property
+    def guessed_depth(self) -> float:
+        """Of the lower end."""
+        return self.top + float(self.line.length.sum())
+
+    @cached_property
+    def _split(self) -> int:
+        """The first piece to be marched from below: the tension above it should be the greatest.
+
+        That of the line at rest, less the drag of every piece by its share.
+        """
+        line = self.line
+        along = np.where(line.directional, line.tangential_drag, line.normal_drag)
+        drag = along * np.where(line.flexible, line.length, 1.0)
+        np.add.at(drag, line.clamp_piece, line.clamp_drag)
+        pace = float(self.lifts.sum()) / max(float(drag.sum()), 1e-300)
+        carried = np.cumsum(self.lifts - pace * drag)
+        first = max(head_count(line), 1)
+        return first + int(np.argmax(carried[first - 1 :]))
+
+    @cached_property
+    def _tracks(self) -> tuple[Track, Track]:
+        """Those from the upper and from the lower end."""
+        below = replace(self.line.reversed(), towed=True)
+        return (
+            _first_pieces(Track.of(self.line), self._split),
+            _first_pieces(Track.of(below), len(self.line.length) - self._split),
+        )
+
+    def meet(
+        self,
+        flow: Water,
+        depth: float,
+        angle_step: float,
+        cuts: Cuts | None = None,
+        trace: Trace | None = None,
+    ) -> Meeting:
+        above, below = self._tracks
+        cables = sum(isinstance(stage, Cable) for stage in above.stages)
+        upper, lower = (None, None) if cuts is None else (cuts[:cables], cuts[cables:])
+        rest = None if trace is None else Trace()
+        down = self._run(above, flow, self.top, angle_step, upper, trace)
+        up = self._run(below, flow, depth, angle_step, lower, rest)
+        if trace is not None and rest is not None:
+            _join(trace, rest, len(self.line.length))
+        return Meeting(np.add(down.force, up.force), up.z - down.z, down.cuts + up.cuts)
+
+
+def _first_pieces(track: Track, count: int) -> Track:
+    """The track as far as the first pieces go."""
+    return Track(
+        tuple(
+            stage
+            for stage in track.stages
+            if (stage.pieces[-1] if isinstance(stage, Rod) else stage.piece) < count
+        )
+    )
+
+
+def _join(trace: Trace, rest: Trace, pieces: int) -> None:
+    """Add to a march from the upper end of a line that from its lower end, to where they meet."""
+    dx, dy, dz = trace.x[-1] - rest.x[-1], trace.y[-1] - rest.y[-1], trace.z[-1] - rest.z[-1]
+    for i in reversed(range(len(rest.piece))):
+        trace.element(pieces - 1 - rest.piece[i], rest.clamp[i], rest.cut[i], rest.strain[i])
+        fx, fy, fz = rest.force[i]
+        trace.node(rest.x[i] + dx, rest.y[i] + dy, rest.z[i] + dz, (-fx, -fy, -fz))

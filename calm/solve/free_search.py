@@ -1,0 +1,157 @@
+"""How the velocity of a line that moves freely is found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import copysign, sqrt
+
+import numpy as np
+
+from calm.physics.line import Floats
+from calm.physics.march import Cuts
+from calm.physics.state import MarchError, Trace
+from calm.solve.free_march import Moving
+from calm.solve.free_root import system_root
+from calm.solve.root import root_near
+from calm.solve.status import Status
+
+FASTEST = 100.0
+"""Speed that nothing with a drag reaches [m/s]."""
+SLOWEST = 0.01
+"""Speed by which velocities are measured where the line hardly moves [m/s]."""
+COARSE = 4.0
+"""Segments of the marches that look for the neighbourhood of a root, in those of the final ones."""
+NEAR, CLOSE = 1e-3, 1e-9
+"""Force without balance, as a share of the net weight, before and after the last choice of cuts."""
+WAYS = ((1.0,), (0.1, 0.25, 0.5, 0.75, 1.0))
+"""By way of which shares of a sheared current the motion in it is sought: at once, or in steps."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """Velocity over the ground (3,) [m/s], and the depth that a `Moving` leaves open [m]."""
+
+    velocity: Floats
+    depth: float
+
+
+def terminal(moving: Moving, angle_step: float) -> tuple[Place, Cuts]:
+    """How fast and where a line moves, and the segments on which it does so exactly.
+
+    Parameters
+    ----------
+    angle_step : of a segment [rad]
+
+    Raises
+    ------
+    NoEquilibrium
+        ``no-equilibrium`` where nothing limits the speed, ``not-converged`` where no root is found.
+    MarchError
+    """
+    plumb = _plumb(moving, angle_step)
+    for shares in WAYS:
+        found: tuple[Place, Cuts] | None = (plumb, [])
+        for share in shares:
+            if found is not None:
+                found = _closed(_sheared(moving, plumb.velocity, share), found[0], angle_step)
+        if found is not None:
+            return found
+    raise Status.NOT_CONVERGED.because("No steady motion of the line was found.")
+
+
+def _sheared(moving: Moving, velocity: Floats, share: float) -> Moving:
+    """The same line in a current that departs from a velocity (3,) [m/s] by a share only."""
+    (east, north, _), water = velocity, moving.water
+    u, v = east + share * (water.u - east), north + share * (water.v - north)
+    return replace(moving, water=replace(water, u=u, v=v))
+
+
+def _plumb(moving: Moving, angle_step: float) -> Place:
+    """The motion of the line if it were plumb, drifting with the mean current.
+
+    The drag goes with the square of the speed or nearly so: secants in that find it at once. Where
+    smooth pieces in the drag crisis allow several speeds, it is one of them.
+    """
+    none = np.zeros_like(moving.water.u)
+    upright = replace(moving, water=replace(moving.water, u=none, v=none))
+    place = Place(np.zeros(3), moving.guessed_depth)
+
+    def lifted(squared: float) -> float:
+        nonlocal place
+        velocity = np.array([0.0, 0.0, copysign(sqrt(abs(squared)), squared)])
+        meeting = upright.meet(upright.flow(velocity), place.depth, COARSE * angle_step)
+        place = Place(velocity, place.depth + meeting.gap)
+        return float(meeting.force[2])
+
+    resting = lifted(0.0)
+    slope = lifted(copysign(1.0, resting)) - resting
+    limit = FASTEST**2
+    found = root_near(
+        lifted, 0.0, -abs(slope), (-limit, limit), small=NEAR * abs(resting), narrow=1e-9
+    )
+    if found is None:
+        raise Status.NO_EQUILIBRIUM.because(
+            "Nothing limits the speed of the line: neither it nor its anchor has any drag.",
+            advice="Give its pieces, or the anchor (`kt`), their drag.",
+        )
+    lifted(found[0])
+    return replace(place, velocity=place.velocity + _mean_current(moving, place, angle_step))
+
+
+def _mean_current(moving: Moving, place: Place, angle_step: float) -> Floats:
+    """(3,) horizontal current where the line is, the mean by normal drag or nearly so [m/s]."""
+    water, line = moving.water, moving.line
+    if moving.plumb:
+        return np.array([water.u[0], water.v[0], 0.0])
+    trace, flow = Trace(), moving.flow(place.velocity)
+    moving.meet(flow, place.depth, COARSE * angle_step, trace=trace)
+    piece, clamp, height = np.array(trace.piece), np.array(trace.clamp), np.array(trace.z)
+    drag = line.normal_drag[piece] * np.where(line.flexible[piece], trace.cut, 1.0)
+    drag[clamp >= 0] = line.clamp_drag[clamp[clamp >= 0]]
+    current, _ = water.at(-0.5 * (height[1:] + height[:-1]))
+    total = float(drag.sum())
+    mean: Floats = drag @ current / total if total > 0.0 else np.zeros(3)
+    return mean * [1.0, 1.0, 0.0]
+
+
+def _closed(moving: Moving, place: Place, angle_step: float) -> tuple[Place, Cuts] | None:
+    """The motion near a place, on the segments that the march chooses there; None if there is none.
+
+    With its free choice of segments the march is not quite continuous, so it is closed on given
+    ones, and once more on those that it chooses at the first answer.
+    """
+    for small in (NEAR, CLOSE):
+        try:
+            cuts = moving.meet(moving.flow(place.velocity), place.depth, angle_step).cuts
+        except MarchError:
+            return None
+        found = _on_cuts(moving, place, cuts, angle_step, small)
+        if found is None:
+            return None
+        place = found
+    return place, cuts
+
+
+def _on_cuts(
+    moving: Moving, start: Place, cuts: Cuts, angle_step: float, small: float
+) -> Place | None:
+    """The motion near a place on given segments, forces closed to a share of the weight."""
+    unknown = np.array([not moving.plumb, not moving.plumb, True, True])
+    pace, span = max(float(np.linalg.norm(start.velocity)), SLOWEST), moving.water.depth
+    units = np.array([pace, pace, pace, span])[unknown]
+    origin = np.append(start.velocity, start.depth)
+
+    def place(x: Floats) -> Place:
+        values = origin.copy()
+        values[unknown] += x * units
+        return Place(values[:3], float(values[3]))
+
+    def system(x: Floats) -> Floats:
+        here = place(x)
+        flow = moving.flow(here.velocity)
+        meeting = moving.meet(flow, here.depth, angle_step, cuts)
+        values: Floats = np.append(meeting.force / moving.weight, meeting.gap / span)[unknown]
+        return values
+
+    root = system_root(system, np.zeros(len(units)), small)
+    return None if root is None else place(root)

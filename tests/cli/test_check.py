@@ -1,0 +1,160 @@
+import json
+
+import pytest
+
+STORM = """\
+name: storm
+environment:
+  current: {speed: 1.2 m/s, toward: 45 deg}
+"""
+
+
+@pytest.fixture
+def storm(folder):
+    (folder / "storm.yaml").write_text(STORM, encoding="utf-8")
+    return "storm.yaml"
+
+
+def findings(done, **wanted):
+    return [
+        finding
+        for finding in json.loads(done.out)["findings"]
+        if all(finding[name] == value for name, value in wanted.items())
+    ]
+
+
+def test_what_a_person_reads(calm, write_mooring):
+    done = calm("check", write_mooring())
+    assert done.code == 0
+    assert done.err == ""
+    lines = done.out.splitlines()
+    assert lines[0].split() == ["mooring", "own", "launch,", "recovery"]
+    assert lines[1].split()[:2] == ["Test", "pass,"]
+    assert "There is no release in the line" in done.out
+    assert "? strength unknown of top float, weight. Give its `working_load`" in done.out
+    assert "A static calculation does not see waves" in done.out
+    assert max(map(len, lines)) <= 80
+
+
+def test_json_is_what_programs_read(calm, write_mooring):
+    document = json.loads(calm("check", write_mooring(), "--json", "-").out)
+    assert set(document) >= {"findings", "launch", "recovery", "backup", "situations"}
+    for finding in document["findings"]:
+        assert set(finding) >= {
+            "mooring", "environment", "rule", "component", "value", "limit", "margin", "state",
+            "remedy", "source",
+        }  # fmt: skip
+        assert finding["state"] in ("pass", "warn", "fail", "unknown")
+    launch = document["launch"]["Test"]
+    slow, fast = launch["fall_speed_band"]
+    assert slow <= launch["fall_speed"] <= fast
+    assert [part["index"] for part in launch["components"]] == [0, 1]
+    assert launch["components"][1]["tension_bottom"] == pytest.approx(launch["anchor_tension"])
+    assert document["recovery"]["Test"]["rise_speed"] > 0.0
+    assert document["backup"]["Test"] == []
+
+
+def test_values_are_those_of_calm_run(calm, write_mooring):
+    file = write_mooring()
+    run = json.loads(calm("run", file, "--json", "-").out)
+    (anchor,) = findings(calm("check", file, "--json", "-"), rule="anchor-weight")
+    assert anchor["limit"] == pytest.approx(run["anchor"]["required_weight"], rel=1e-12)
+    strength = findings(calm("check", file, "--json", "-"), rule="strength", component="rope")
+    # the greatest tension of a rope that weighs is at its top; 20 kN over 3, of a rope of no fibre
+    assert strength[0]["value"] == pytest.approx(run["components"][1]["tension_top"], rel=1e-12)
+    assert strength[0]["limit"] == pytest.approx(20_000.0 / 3.0)
+    assert strength[0]["margin"] == pytest.approx(20_000.0 / 3.0 - strength[0]["value"])
+
+
+def test_several_moorings_in_several_environments(calm, write_mooring, storm):
+    calm_sea = "name: calm\nenvironment: {current: {speed: 0 m/s, toward: 0 deg}}\n"
+    with open("calm.yaml", "w", encoding="utf-8") as file:
+        file.write(calm_sea)
+    one, two = write_mooring("one.yaml", name="One"), write_mooring("two.yaml", name="Two")
+    words = ("check", one, two, "--environment", storm, "--environment", "calm.yaml")
+    done = calm(*words, "--json", "-")
+    places = {(f["mooring"], f["environment"]) for f in findings(done)}
+    assert places == {(m, e) for m in ("One", "Two") for e in ("storm", "calm")}
+    assert calm(*words, "--json", "-", "--workers", "2").out == done.out
+    matrix = calm(*words).out.splitlines()
+    assert matrix[0].split()[:3] == ["mooring", "storm", "calm"]
+
+
+def test_named_environments_are_all_checked(calm, write_mooring, folder):
+    file = folder / write_mooring()
+    text = file.read_text() + "environments: {spring: {current: {speed: 1 m/s, toward: 0 deg}}}\n"
+    file.write_text(text)
+    done = calm("check", "m.yaml", "--json", "-")
+    assert {f["environment"] for f in findings(done)} == {"own", "spring"}
+    only = calm("check", "m.yaml", "--environment", "spring", "--json", "-")
+    assert {f["environment"] for f in findings(only)} == {"spring"}
+
+
+def test_two_moorings_of_one_name_are_told_apart(calm, write_mooring):
+    done = calm("check", write_mooring("a.yaml"), write_mooring("b.yaml"), "--json", "-")
+    assert {f["mooring"] for f in findings(done)} == {"Test (a.yaml)", "Test (b.yaml)"}
+
+
+def test_one_that_does_not_stand_does_not_stop_the_rest(calm, write_mooring, heavy):
+    done = calm("check", heavy, write_mooring(), "--json", "-")
+    assert done.code == 3
+    (failed,) = findings(done, mooring="Heavy", rule="equilibrium")
+    assert failed["state"] == "fail" and failed["remedy"]
+    assert json.loads(done.out)["launch"]["Heavy"] is None
+    assert findings(done, mooring="Test", rule="anchor-weight")
+
+
+def test_a_sound_design_ends_with_0(calm, folder):
+    (folder / "sound.yaml").write_text(
+        """\
+name: Sound
+environment: {depth: 200 m, current: {speed: 0.3 m/s, toward: 90 deg}}
+line:
+  - {use: ball, label: top float}
+  - {use: rope, length: 100 m}
+  - {use: ball, label: back-up float}
+  - {use: hook}
+  - {use: weight}
+components:
+  ball: {kind: sphere, role: float, diameter: 0.8 m, buoyancy: 2000 N, depth_rating: 1000 m,
+         breaking_load: 100 kN}
+  rope: {kind: cable, diameter: 10 mm, weight: 0.2 N/m, breaking_load: 60 kN}
+  hook: {kind: cylinder, role: release, diameter: 0.1 m, length: 0.8 m, buoyancy: -200 N,
+         depth_rating: 1000 m, max_tilt: 45 deg, breaking_load: 60 kN}
+  weight: {kind: anchor, weight: 10000 N, kt: 900 N/(m/s)^2, breaking_load: 100 kN}
+"""
+    )
+    done = calm("check", "sound.yaml")
+    assert done.code == 0, done.out
+    assert "fail" not in done.out and "unknown" not in done.out.replace("unknown  where", "")
+
+
+def test_a_tow_is_refused(calm, folder):
+    text = "tow: {speed: 1 m/s, toward: 0 deg}\nline: [{use: fish}]\ncomponents:\n"
+    text += "  fish: {kind: body, length: 1 m, buoyancy: -10 N, kn: 1 N/(m/s)^2, inclination: insensitive}\n"
+    (folder / "tow.yaml").write_text(text)
+    done = calm("check", "tow.yaml")
+    assert (done.code, done.out) == (2, "")
+    assert "calm check is for moorings; tow.yaml is a tow" in done.err
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (("m.yaml", "m.yaml"), "given twice: m.yaml"),
+        (("m.yaml", "--workers", "0"), "--workers: 0 is not 1 or more"),
+        (("m.yaml", "--environment", "strom"), "no environment is called `strom`"),
+        (("m.yaml", "--environment", "storm.yaml", "--environment", "storm.yaml"), "called storm"),
+        (("m.yaml", "broken.yaml"), "broken.yaml:4:"),
+        (("m.yaml", "--report", "m.yaml"), "it is a file; a folder is needed"),
+        (("m.yaml", "--json", "none/x.json"), "there is no folder"),
+        (("missing.yaml",), "missing.yaml"),
+        ((), "FILES"),
+    ],
+)
+def test_bad_input_is_told_and_nothing_is_solved(calm, write_mooring, storm, broken, words, says):
+    write_mooring()
+    done = calm("check", *words)
+    assert (done.code, done.out) == (2, "")
+    assert says in done.err
+    assert "Traceback" not in done.err

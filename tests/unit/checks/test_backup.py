@@ -1,0 +1,71 @@
+"""Breaks at every connection above the release, by hand."""
+
+import pytest
+
+import calm
+from calm.checks.backup import breaks_of
+
+FILE = """
+name: By hand
+environment:
+  depth: 500 m
+line:
+  - {use: ball, label: top}
+  - {use: thin, label: wire, length: 200 m, clamps: [{use: logger, at: 10 m}]}
+  - {use: ball, label: back-up, buoyancy: 8 kN}
+  - {use: thin, label: tail, length: 100 m}
+  - {use: opener, label: release}
+  - {use: thin, length: 50 m}
+  - {use: block}
+checks: {backup_margin: 0.1}
+components:
+  ball: {kind: body, length: 0 m, buoyancy: 2000 N, kn: 200 N/(m/s)^2, inclination: insensitive}
+  opener: {kind: body, role: release, length: 0 m, buoyancy: -900 N, kn: 9 N/(m/s)^2, inclination: insensitive}
+  logger: {kind: cylinder, diameter: 50 mm, length: 0.3 m, buoyancy: -20 N}
+  thin: {kind: cable, diameter: 10 mm, weight: 15 N/m, ct: 0}
+  block: {kind: anchor, weight: 15 kN}
+"""  # noqa: E501
+
+
+@pytest.fixture
+def breaks(tmp_path):
+    def of(text=FILE):
+        path = tmp_path / "m.yaml"
+        path.write_text(text)
+        return breaks_of(calm.load(path))
+
+    return of
+
+
+def test_what_is_left_after_each_break(breaks):
+    found = breaks()
+    assert [each.break_after for each in found] == [0, 1, 2, 3]
+    assert [each.label for each in found] == ["top", "wire", "back-up", "tail"]
+    margins = [8000.0 - 3020.0 - 1500.0 - 900.0, 8000.0 - 2400.0, -2400.0, -900.0]
+    assert [each.margin for each in found] == pytest.approx(margins)
+    lifted = [3020.0 + 2400.0, 2400.0, 2400.0, 900.0]
+    assert [each.weight_lifted for each in found] == pytest.approx(lifted)
+    assert [each.floats_left for each in found] == [True, True, False, False]
+
+
+def test_a_share_of_the_weight_is_required_and_250_newtons_at_least(breaks):
+    assert [each.required for each in breaks()] == pytest.approx([542.0, 250.0, 250.0, 250.0])
+    more = breaks(FILE.replace("backup_margin: 0.1", "backup_margin: 0.2"))
+    assert [each.required for each in more] == pytest.approx([1084.0, 480.0, 480.0, 250.0])
+
+
+def test_buoyancy_is_that_where_the_line_stands(breaks):
+    """A float of 1 m³ at 400 m in water denser by 5 kg/m³ lifts 49 N more."""
+    dense = "depth: 500 m\n  density: 1030 kg/m^3"
+    text = FILE.replace("buoyancy: 8 kN", "buoyancy: 8 kN, volume: 1 m^3")
+    plain, lifted = breaks(text), breaks(text.replace("depth: 500 m", dense))
+    assert lifted[1].margin - plain[1].margin == pytest.approx(5.0 * 9.80665)
+
+
+def test_without_a_release_nothing_is_asked(breaks):
+    assert breaks(FILE.replace("role: release, ", "")) == ()
+
+
+def test_a_line_that_no_length_fits_tells_nothing(breaks):
+    fit = "label: wire, length: fit, top_depth: 499 m"
+    assert breaks(FILE.replace("label: wire, length: 200 m", fit)) == ()

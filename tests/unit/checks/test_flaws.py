@@ -1,0 +1,370 @@
+"""Sound lines, each with one deliberate flaw: which rule catches it, and what it says."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from calm.case import Mooring, load
+from calm.checks.assess import assessment_of, stand_of
+from calm.checks.assessment import Assessment
+from calm.checks.finding import Finding
+from calm.shipped import shipped_folder
+
+
+@dataclass(frozen=True)
+class Flaw:
+    """A line of `lines/`, what is written in it instead of what, and the finding it must lead to."""
+
+    name: str
+    line: str
+    changes: tuple[tuple[str, str], ...]
+    rule: str
+    component: str | None
+    state: str
+    says: str
+    situation: str = "as given"
+
+
+CDMS, SLOPE, NYLON = "cdms-1", "upward-adcp-300m", "taut-nylon-surface"
+
+FLAWS = (
+    Flaw(
+        "a wire too weak",
+        CDMS,
+        (("stiffness: 5311 kN", "stiffness: 5311 kN\n    working_load: 5 kN"),),
+        "strength",
+        "wire",
+        "fail",
+        "its working load is 5000 N",
+    ),
+    Flaw(
+        "a breaking load less than thrice the pull",
+        CDMS,
+        (("stiffness: 5311 kN", "stiffness: 5311 kN\n    breaking_load: 15 kN"),),
+        "strength",
+        "wire",
+        "fail",
+        "its breaking load of 15000 N over 3 allows 5000 N",
+    ),
+    Flaw(
+        "a rope that needs 5, not 3",
+        CDMS,
+        (("stiffness: 2655 kN", "stiffness: 2655 kN\n    breaking_load: 30 kN"),),
+        "strength",
+        "Kevlar 1",
+        "fail",
+        "over 5 allows 6000 N",
+    ),
+    Flaw(
+        "no load known",
+        CDMS,
+        (),
+        "strength",
+        "wire",
+        "unknown",
+        "neither its working nor its breaking",
+    ),
+    Flaw(
+        "one weak shackle in a strong line",
+        SLOPE,
+        (
+            (
+                "{use: shackle-19}\n  - {use: swivel",
+                "{use: shackle-19, working_load: 1 kN}\n  - {use: swivel",
+            ),
+        ),
+        "strength",
+        "shackle-19 1",
+        "fail",
+        "its working load is 1000 N",
+    ),
+    Flaw(
+        "a weak link between strong neighbours",
+        SLOPE,
+        (
+            (
+                "{use: shackle-13}\n  - {use: rcm11, label: meter 500 m}",
+                "{use: shackle-13, working_load: 1 kN}\n  - {use: rcm11, label: meter 500 m}",
+            ),
+        ),
+        "strength-steps",
+        "shackle-13 1",
+        "warn",
+        "may bear 1000 N",
+    ),
+    Flaw(
+        "an anchor lighter than the rule",
+        CDMS,
+        (),
+        "anchor-weight",
+        "deadweight",
+        "fail",
+        "are required",
+    ),
+    Flaw(
+        "an anchor that the line almost lifts",
+        CDMS,
+        (("weight: 1350 kgf", "weight: 1000 kgf"),),
+        "anchor-uplift",
+        "deadweight",
+        "fail",
+        "The line pulls up with",
+    ),
+    Flaw(
+        "a bed that does not hold",
+        CDMS,
+        (("weight: 1350 kgf", "weight: 1350 kgf\n    friction: 0.1"),),
+        "anchor-sliding",
+        "deadweight",
+        "fail",
+        "friction of 0.1 holds",
+    ),
+    Flaw(
+        "a rope almost slack",
+        CDMS,
+        (
+            ("buoyancy: 682 kgf", "buoyancy: 80 kgf"),
+            ("[0, 1.5, 90]", "[0, 0.1, 90]"),
+            ("[200, 0.6, 90]", "[200, 0.1, 90]"),
+        ),
+        "slack",
+        "Kevlar 3",
+        "fail",
+        "300 N keep a rope taut",
+    ),
+    Flaw(
+        "an instrument that leans too much",
+        SLOPE,
+        (
+            (
+                "{use: rcm11, label: meter 1500 m}",
+                "{use: rcm11, label: meter 1500 m, max_tilt: 1 deg}",
+            ),
+        ),
+        "tilt",
+        "meter 1500 m",
+        "fail",
+        "1.0° is its limit",
+    ),
+    Flaw(
+        "an instrument whose data become doubtful",
+        SLOPE,
+        (
+            (
+                "{use: rcm11, label: meter 1500 m}",
+                "{use: rcm11, label: meter 1500 m, warn_tilt: 1 deg}",
+            ),
+        ),
+        "tilt",
+        "meter 1500 m",
+        "warn",
+        "its data are doubtful",
+    ),
+    Flaw(
+        "a tilt that the design forbids",
+        SLOPE,
+        (("maximum_tilt: 15 deg", "maximum_tilt: 0.5 deg"),),
+        "tilt",
+        "meter 500 m",
+        "fail",
+        "0.5° is its limit",
+    ),
+    Flaw(
+        "a clamp below its depth",
+        SLOPE,
+        (("at: 399 m, label: CTD 900 m}", "at: 399 m, label: CTD 900 m, depth_rating: 950 m}"),),
+        "depth-rating",
+        "CTD 900 m",
+        "fail",
+        "it is rated to 950 m, less a margin of 100 m",
+    ),
+    Flaw(
+        "a float whose depth is not known",
+        CDMS,
+        (),
+        "depth-rating",
+        "sphere",
+        "unknown",
+        "what depth it stands is not known",
+    ),
+    Flaw(
+        "a knockdown that the design forbids",
+        SLOPE,
+        (("maximum_knockdown: 25 m", "maximum_knockdown: 2 m"),),
+        "knockdown",
+        "ADCP float",
+        "fail",
+        "2.0 m are allowed",
+    ),
+    Flaw(
+        "an excursion that the design forbids",
+        SLOPE,
+        (("maximum_knockdown: 25 m", "maximum_excursion: 20 m"),),
+        "excursion",
+        "ADCP float",
+        "fail",
+        "20.0 m are allowed",
+    ),
+    Flaw(
+        "a buoy with little in reserve",
+        NYLON,
+        (("line:\n", "checks: {minimum_reserve: 0.9}\nline:\n"),),
+        "reserve",
+        "buoy",
+        "fail",
+        "90 % should be",
+    ),
+    Flaw(
+        "a watch circle beyond the chart's",
+        "chain-and-rope-surface",
+        (("line:\n", "checks: {maximum_excursion: 5 m}\nline:\n"),),
+        "watch-circle",
+        None,
+        "fail",
+        "The watch circle has a radius of",
+    ),
+    Flaw(
+        "no back-up glass",
+        SLOPE,
+        (("  - {use: glass-cluster-4, count: 3, label: back-up glass}\n", ""),),
+        "backup",
+        None,
+        "fail",
+        "what holds the release has a buoyancy of",
+    ),
+    Flaw(
+        "a release that nothing is told of",
+        CDMS,
+        (("    role: release\n", ""),),
+        "backup",
+        None,
+        "unknown",
+        "There is no release",
+    ),
+    Flaw(
+        "a line that hardly rises",
+        CDMS,
+        (
+            ("buoyancy: 682 kgf", "buoyancy: 75 kgf"),
+            ("{use: glass, count: 10}", "{use: glass}"),
+            ("[0, 1.5, 90]", "[0, 0.05, 90]"),
+            ("[200, 0.6, 90]", "[200, 0.05, 90]"),
+            ("[525, 0.1, 90]", "[525, 0.05, 90]"),
+        ),
+        "recovery",
+        None,
+        "warn",
+        "the line rises with",
+    ),
+    Flaw(
+        "a parafil that breaks in the launch",
+        SLOPE,
+        (("label: parafil 1}", "label: parafil 1, breaking_load: 12 kN}"),),
+        "launch-strength",
+        "parafil 1",
+        "fail",
+        "in the fall; its breaking load over 2 is 6000 N",
+    ),
+    Flaw(
+        "an anchor that falls like a stone",
+        SLOPE,
+        (
+            (
+                "{use: anchor-wheels-4, label: four wheels}",
+                "{use: anchor-wheels-4, label: four wheels, weight: 60 kN, mass: 8000 kg, kt: 10 N/(m/s)^2}",
+            ),
+        ),
+        "launch-speed",
+        "four wheels",
+        "warn",
+        "2.5 m/s should not be passed",
+    ),
+    Flaw(
+        "a line too short at high water",
+        NYLON,
+        (("  depth: 2000 m\n", "  depth: 2000 m\n  depth_range: [1995 m, 2600 m]\n"),),
+        "equilibrium",
+        None,
+        "fail",
+        "",
+        "high water",
+    ),
+    Flaw(
+        "growth that takes the top down",
+        SLOPE,
+        (
+            (
+                "  depth: 1800 m\n",
+                "  depth: 1800 m\n  fouling: {depth: 1000 m, thickness: 30 mm}\n",
+            ),
+            ("maximum_knockdown: 25 m", "maximum_knockdown: 13 m"),
+        ),
+        "knockdown",
+        "ADCP float",
+        "fail",
+        "13.0 m are allowed",
+        "fouling",
+    ),
+    Flaw(
+        "cables that strum take the top down",
+        SLOPE,
+        (("maximum_knockdown: 25 m", "maximum_knockdown: 13 m"),),
+        "knockdown",
+        "ADCP float",
+        "warn",
+        "13.0 m are allowed",
+        "strumming",
+    ),
+    Flaw(
+        "a current that no line stands",
+        CDMS,
+        (("weight: 1350 kgf", "weight: 300 kgf"),),
+        "equilibrium",
+        None,
+        "fail",
+        "anchor-lifts",
+    ),
+)
+
+
+@pytest.mark.parametrize("flaw", FLAWS, ids=lambda flaw: flaw.name)
+def test_a_flaw_is_caught_by_its_rule(flaw: Flaw, tmp_path: Path) -> None:
+    found = [
+        finding
+        for finding in _assessed(flaw, tmp_path).all_findings()
+        if finding.rule == flaw.rule
+        and finding.situation == flaw.situation
+        and flaw.component in (None, finding.component)
+    ]
+    assert [finding.state for finding in found] == [flaw.state], found
+    (finding,) = found
+    assert flaw.says in finding.message
+    _says_what_it_means(finding)
+
+
+def _says_what_it_means(finding: Finding) -> None:
+    """The figures, the state and the advice of a finding fit each other."""
+    assert finding.source
+    if finding.state == "fail":
+        assert finding.remedy
+        assert finding.margin is None or finding.margin < 0.0
+    if finding.value is not None and finding.limit is not None:
+        assert finding.margin is not None
+        assert abs(finding.margin) == pytest.approx(abs(finding.limit - finding.value))
+    if finding.state == "unknown":
+        assert finding.limit is None and finding.margin is None
+
+
+def _assessed(flaw: Flaw, folder: Path) -> Assessment:
+    text = (shipped_folder("lines") / f"{flaw.line}.yaml").read_text(encoding="utf-8")
+    for old, new in flaw.changes:
+        assert text.count(old) >= 1, old
+        text = text.replace(old, new, 1)
+    path = folder / "flawed.yaml"
+    path.write_text(text, encoding="utf-8")
+    mooring = load(path)
+    assert isinstance(mooring, Mooring)
+    return assessment_of("flawed", [stand_of(mooring, "flawed")])

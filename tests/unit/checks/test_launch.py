@@ -1,0 +1,97 @@
+"""The launch of a line by hand: without friction along it, every drag is K V²."""
+
+from math import pi, sqrt
+
+import pytest
+
+import calm
+from calm.checks.launch import launch_of
+from calm.errors import NoEquilibrium
+from calm.shipped import shipped_folder
+
+FILE = """
+name: By hand
+environment:
+  depth: 500 m
+  current: {speed: 0.2 m/s, toward: 90 deg}
+line:
+  - {use: ball, label: top}
+  - {use: thin, length: 200 m, ct: CT}
+  - {use: meter}
+  - {use: thin, length: 100 m, ct: CT}
+  - {use: block}
+components:
+  ball: {kind: body, length: 1 m, buoyancy: 2000 N, kn: 200 N/(m/s)^2, inclination: insensitive}
+  meter: {kind: body, length: 1 m, buoyancy: -200 N, kn: 50 N/(m/s)^2, inclination: insensitive}
+  thin: {kind: cable, diameter: 10 mm, weight: 1 N/m}
+  block: {kind: anchor, weight: 5 kN, kt: 400 N/(m/s)^2}
+"""
+NET = 5000.0 - (2000.0 - 200.0 - 200.0 - 100.0)
+
+
+@pytest.fixture
+def launched(tmp_path):
+    def of(text=FILE, ct="0"):
+        path = tmp_path / "m.yaml"
+        path.write_text(text.replace("CT", ct))
+        mooring = calm.load(path)
+        return launch_of(mooring, mooring.solve())
+
+    return of
+
+
+def test_speed_and_tensions(launched):
+    launch = launched()
+    squared = NET / 650.0
+    assert launch.fall_speed == launch.touchdown_speed == pytest.approx(sqrt(squared), rel=1e-8)
+    assert launch.anchor_tension == pytest.approx(5000.0 - 400.0 * squared)
+    assert launch.drift == pytest.approx((0.2, 0.0))
+    below = 2000.0 + 200.0 * squared
+    lower = [below, below - 200.0, below - 400.0 + 50.0 * squared, below - 500.0 + 50.0 * squared]
+    assert launch.tension_top == pytest.approx([0.0, *lower[:-1]])
+    assert launch.tension_bottom == pytest.approx(lower)
+    assert launch.anchor_drag_known
+    assert launch.tangles == ()
+
+
+def test_the_band_of_the_drag_of_the_anchor(launched):
+    slow, fast = launched().fall_speed_band
+    assert (slow, fast) == pytest.approx((sqrt(NET / 1050.0), sqrt(NET / 450.0)), rel=1e-8)
+
+
+def test_the_band_of_the_friction_along_the_line(launched):
+    launch = launched(FILE.replace(", kt: 400 N/(m/s)^2", ""), ct="0.01")
+    friction = 512.5 * pi * 0.01 * 0.01 * 300.0
+    speeds = [sqrt(NET / (250.0 + times * friction)) for times in (1.0, 2.0, 0.5)]
+    assert [launch.fall_speed, *launch.fall_speed_band] == pytest.approx(speeds, rel=1e-8)
+
+
+def test_an_anchor_of_unknown_drag_has_none(launched):
+    launch = launched(FILE.replace(", kt: 400 N/(m/s)^2", ""))
+    assert not launch.anchor_drag_known
+    assert launch.fall_speed == pytest.approx(sqrt(NET / 250.0), rel=1e-8)
+    assert launch.anchor_tension == pytest.approx(5000.0)
+
+
+def test_components_are_named_figures(launched):
+    launch = launched()
+    rows = launch.components()
+    assert [row["index"] for row in rows] == [0, 1, 2, 3]
+    assert rows[2]["tension_top"] == launch.tension_top[2]
+    assert rows[2]["tension_bottom"] == launch.tension_bottom[2]
+
+
+def test_a_float_at_the_surface_stays_there():
+    mooring = calm.load(shipped_folder("lines") / "chain-and-rope-surface.yaml")
+    launch = launch_of(mooring, mooring.solve())
+    assert launch.tension_top[0] == launch.tension_bottom[0] == 0.0
+    assert launch.tension_top[1] == 0.0
+    drag = mooring.file.anchor.kt * launch.fall_speed**2
+    # but for the density there, 2 % above that of the coefficient, and a slow current
+    assert mooring.anchor_weight - launch.anchor_tension == pytest.approx(drag, rel=0.03)
+
+
+def test_a_fall_that_nothing_limits_has_no_speed(launched):
+    text = FILE.replace(", kt: 400 N/(m/s)^2", "").replace("kn: 200", "kn: 0")
+    with pytest.raises(NoEquilibrium, match="Nothing limits"):
+        launched(text.replace("kn: 50", "kn: 0"))

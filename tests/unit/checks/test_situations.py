@@ -1,0 +1,125 @@
+"""What is changed in each situation, against the same mooring written out by hand."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from calm.case import Mooring, Result, load
+from calm.checks.situations import situations_of
+
+LINE = """
+name: shelf
+environment:
+  depth: 100 m
+{environment}  current: {{speed: 0.6 m/s, toward: 90 deg}}
+line:
+  - {{use: sphere-steel-1250, label: top float}}
+{wire}  - {{use: release-ar861}}
+  - {{use: chain-buoy-13, length: 5 m}}
+  - {{use: anchor-wheels-4}}
+"""
+WIRE = "  - {use: wire-jacketed-8, length: 60 m, clamps: [{use: sbe37, at: 12 m}]}\n"
+
+
+def mooring(folder: Path, environment: str = "", wire: str = WIRE) -> Mooring:
+    path = folder / "mooring.yaml"
+    path.write_text(LINE.format(environment=environment, wire=wire), encoding="utf-8")
+    read = load(path)
+    assert isinstance(read, Mooring)
+    return read
+
+
+def results(one: Mooring) -> dict[str, Result | None]:
+    return {situation.name: situation.result for situation in situations_of(one)}
+
+
+def test_a_plain_mooring_is_solved_as_given_at_rest_and_with_strumming_cables(
+    tmp_path: Path,
+) -> None:
+    one = mooring(tmp_path)
+    found = results(one)
+    assert list(found) == ["as given", "still water", "strumming"]
+    given, still, strumming = found.values()
+    assert given and still and strumming
+    assert still.top.knockdown == 0.0 and still.top.x == 0.0
+    assert given.top.knockdown == pytest.approx(one.solve().top.knockdown, abs=0.0)
+    band = given.strumming_band
+    assert band is not None
+    # the same line, solved twice
+    assert strumming.top.knockdown == pytest.approx(band.knockdown, rel=1e-9)
+
+
+def test_a_line_in_still_water_is_not_solved_for_it_again(tmp_path: Path) -> None:
+    path = tmp_path / "still.yaml"
+    text = LINE.format(environment="", wire=WIRE).replace("0.6 m/s", "0 m/s")
+    path.write_text(text, encoding="utf-8")
+    read = load(path)
+    assert isinstance(read, Mooring)
+    assert "still water" not in results(read)
+
+
+def test_the_tide_moves_the_surface_and_the_current_with_it(tmp_path: Path) -> None:
+    found = results(mooring(tmp_path, "  depth_range: [97 m, 104 m]\n"))
+    for name, depth in (("low water", 97.0), ("high water", 104.0)):
+        result = found[name]
+        assert result is not None
+        text = LINE.format(environment="", wire=WIRE).replace("100 m", f"{depth} m")
+        path = tmp_path / "tide.yaml"
+        path.write_text(text, encoding="utf-8")
+        expected = load(path).solve()
+        assert isinstance(expected, Result)
+        assert result.top == expected.top
+
+
+def test_what_is_cut_to_fit_keeps_its_length_when_the_tide_comes(tmp_path: Path) -> None:
+    fit = "  - {use: wire-jacketed-8, length: fit, top_depth: 30 m}\n"
+    found = results(mooring(tmp_path, "  depth_range: [97 m, 104 m]\n", fit))
+    given, high, low = found["as given"], found["high water"], found["low water"]
+    assert given and high and low
+    lengths = [result.components.cut_length[1] for result in (given, high, low)]
+    assert lengths == [lengths[0]] * 3
+    still = [result.top.depth - (result.top.knockdown or 0.0) for result in (given, high, low)]
+    # a line of one length stands as high above the bed at any tide; closed to 1e-7 of the depth
+    assert still == pytest.approx([30.0, 34.0, 27.0], abs=1e-4)
+
+
+def test_growth_thickens_the_cable_down_to_its_depth(tmp_path: Path) -> None:
+    one = mooring(tmp_path, "  fouling: {depth: 50 m, thickness: 20 mm}\n")
+    found = results(one)
+    given, fouled = found["as given"], found["fouling"]
+    assert given and fouled and given.still_shape is not None
+    wire = given.file.pieces[1].component
+    # plumb in still water; the stretch of 60 m of wire, some centimetres, is the same in both parts
+    top = given.components.depth_top[1] - given.components.knockdown[1]
+    bottom = given.components.depth_bottom[1] - given.components.knockdown[2]
+    upper = float(60.0 * (50.0 - top) / (bottom - top))
+    by_hand = (
+        f"  - {{use: wire-jacketed-8, length: {upper!r} m, diameter: {wire.diameter + 0.04!r} m, "
+        f"label: grown, clamps: [{{use: sbe37, at: 12 m}}]}}\n"
+        f"  - {{use: wire-jacketed-8, length: {60.0 - upper!r} m, label: clean}}\n"
+    )
+    expected = mooring(tmp_path, wire=by_hand).solve()
+    assert expected.top.knockdown is not None and given.top.knockdown is not None
+    assert fouled.top.knockdown == pytest.approx(expected.top.knockdown, rel=1e-3)
+    assert fouled.top.knockdown > 1.5 * given.top.knockdown
+    assert fouled.components.label.count("wire-jacketed-8") == 2
+    assert len(fouled.clamps) == len(given.clamps)
+
+
+def test_growth_below_which_nothing_reaches_changes_nothing(tmp_path: Path) -> None:
+    found = results(mooring(tmp_path, "  fouling: {depth: 1 m, thickness: 20 mm}\n"))
+    given, fouled = found["as given"], found["fouling"]
+    assert given and fouled
+    assert fouled.top == given.top
+
+
+def test_a_slack_line_has_no_still_water(tmp_path: Path) -> None:
+    path = tmp_path / "slack.yaml"
+    text = LINE.format(environment="", wire=WIRE.replace("60 m", "110 m"))
+    path.write_text(text, encoding="utf-8")
+    read = load(path)
+    assert isinstance(read, Mooring)
+    assert "still water" not in results(read)
+    assert results(read)["as given"] is not None
