@@ -12,12 +12,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from calm.version import __version__ as __version__
+
 if TYPE_CHECKING:
     from calm.case import Mooring, Result, Tow, TowResult, load
     from calm.checks.assess import check
     from calm.errors import CalmError, InputError, NoEquilibrium, UsageError
-
-__version__ = "0.1.0"
 
 __all__ = [
     "CalmError",

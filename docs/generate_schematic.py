@@ -74,9 +74,9 @@ A float at the surface rides on it; a tow hangs from its ship, or from its helic
   where a float is at the surface.
 - **Lengths** are cut lengths, before any load.
 - **Symbols** follow the kind and the role of a component, then its id, name, note and label:
-  *sediment trap*, *ADCP*, *upward*, *rope*, *wheels*. A rope is known by the fibre in its `material`.
-- **Runs** of equal balls or connectors are drawn together (`back-up glass 1–10`, `10 × 0.51` m), two
-  releases in a row as a pair. Each has its own label in the picture's titles.
+  *sediment trap*, *ADCP*, *upward*, *rope*, *wheels*. A rope is known by its `material`.
+- **Runs** of equal balls or connectors are drawn together (`back-up glass 1–10`, `10 × 0.51` m),
+  two releases in a row as a pair. Each has its own label in the picture's titles.
 """
 
 

@@ -13,8 +13,8 @@ from calm.case.measure import clamps_of, components_of, shape_of
 from calm.case.result import Accuracy, AnchorLoad, Result, Top
 from calm.case.strumming import strumming_of
 from calm.case.warnings import warnings_of
-from calm.physics.anchor import required_weight
 from calm.files import Piece
+from calm.physics.anchor import required_weight
 from calm.solve import Solution, Status
 
 if TYPE_CHECKING:

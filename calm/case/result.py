@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 def document_of(result: Result | TowResult, ends: dict[str, Any]) -> dict[str, Any]:
     """The JSON object of a result, with what its kind tells of the line's ends."""
-    from calm import __version__
+    from calm.version import __version__
 
     components = result.components.to_dicts()
     for component in components:

@@ -87,7 +87,7 @@ class Sizing:
 
     def to_dict(self) -> dict[str, Any]:
         """A JSON object: SI and degrees, null where a figure is unknown."""
-        from calm import __version__
+        from calm.version import __version__
 
         document: dict[str, Any] = {
             "calm": __version__,

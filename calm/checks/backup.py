@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,8 @@ from calm.solve.standing import standing_lift
 
 if TYPE_CHECKING:
     from calm.case import Mooring
+    from calm.files import Piece
+    from calm.physics.line import Floats
 
 LEAST_MARGIN = 250.0
 """Net buoyancy that is asked for after any break, however little hangs on it [N]."""
@@ -26,7 +29,7 @@ class Break:
     margin : net buoyancy of the pieces from below the break down to the release [N]
     weight_lifted : weight in water of those of them that are heavy [N]
     required : what the margin should be [N]
-    floats_left : whether any of them is buoyant; below the lowest float nothing can come up
+    judged : whether the design can do anything about it: above the lowest cluster of floats
     """
 
     break_after: int
@@ -34,7 +37,7 @@ class Break:
     margin: float
     weight_lifted: float
     required: float
-    floats_left: bool
+    judged: bool
 
 
 def breaks_of(mooring: Mooring) -> tuple[Break, ...]:
@@ -43,6 +46,10 @@ def breaks_of(mooring: Mooring) -> tuple[Break, ...]:
     The net force of a piece is that with its clamps, in the water where it stands upright. After a
     break inside a cable what is left lies between the figures of the breaks at its two ends.
     Nothing is told of a line without a release, or one that no length fits.
+
+    Floats that follow one another, with at most connectors and chain between them, are a cluster,
+    whole or lost: what breaks inside or below the lowest one leaves the release on the seabed in
+    any design. Where all floats are in one at the top, the last break is judged.
     """
     release = release_of(mooring.file)
     if release is None:
@@ -52,6 +59,7 @@ def breaks_of(mooring: Mooring) -> tuple[Break, ...]:
     except NoEquilibrium:
         return ()
     share = mooring.file.checks.backup_margin
+    lowest = _lowest_cluster(mooring.file.pieces[:release], lift[:release])
     breaks = []
     for piece in mooring.file.pieces[:release]:
         left = lift[piece.index + 1 :]
@@ -63,7 +71,27 @@ def breaks_of(mooring: Mooring) -> tuple[Break, ...]:
                 margin=float(left.sum()),
                 weight_lifted=weight,
                 required=max(share * weight, LEAST_MARGIN),
-                floats_left=bool((left > 0.0).any()),
+                judged=piece.index < lowest if lowest else piece.index == release - 1,
             )
         )
     return tuple(breaks)
+
+
+def _lowest_cluster(above: Sequence[Piece], lift: Floats) -> int:
+    """Index of the first piece of the lowest floats of a line, with what links them to others.
+
+    0 where there are no floats but those at the top.
+    """
+    floats = [
+        force > 0.0 and not _is(piece, "cable") for piece, force in zip(above, lift, strict=True)
+    ]
+    first = len(above)
+    while first and not floats[first - 1]:
+        first -= 1
+    while first and (floats[first - 1] or _is(above[first - 1], "connector", "chain")):
+        first -= 1
+    return first
+
+
+def _is(piece: Piece, *what: str) -> bool:
+    return piece.component.kind in what or piece.component.role in what

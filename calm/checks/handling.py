@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from calm.checks.backup import Break
     from calm.checks.launch import Launch
     from calm.checks.recovery import Recovery
-    from calm.files import MooringFile, Piece
 
 GREATEST_TOUCHDOWN_SPEED = 2.5
 """Above it an anchor may bury itself or break what stands on it [m/s]."""
@@ -44,9 +43,7 @@ class Handling:
 def backup(handling: Handling) -> Iterator[Verdict]:
     """Net buoyancy of what holds the release after the worst break above the back-up floats.
 
-    It should be a tenth of the weight it lifts, and 250 N. Floats on one chain are one cluster,
-    whole or lost: a break inside or below the lowest cluster leaves the release on the seabed in
-    any design, and is judged only where there is no other, which means no back-up.
+    It should be a tenth of the weight it lifts, and 250 N.
     """
     if release_of(handling.mooring.file) is None:
         yield unknown(
@@ -57,8 +54,7 @@ def backup(handling: Handling) -> Iterator[Verdict]:
         return
     if not handling.backup:
         return
-    lowest = _lowest_cluster(handling.mooring.file)
-    judged = [one for one in handling.backup if one.break_after < lowest] or handling.backup[-1:]
+    judged = [one for one in handling.backup if one.judged]
     worst = min(judged, key=lambda one: one.margin - one.required)
     yield at_least(
         worst.label,
@@ -68,27 +64,6 @@ def backup(handling: Handling) -> Iterator[Verdict]:
         f"{say('tension', worst.margin)}; {say('tension', worst.required)} bring it up.",
         f"Add {say('tension', worst.required - worst.margin)} of buoyancy above the release.",
     )
-
-
-def _lowest_cluster(file: MooringFile) -> int:
-    """Index of the first piece of the lowest floats above the release, with what links them.
-
-    0 where there are no floats but those at the top.
-    """
-    pieces = list(file.pieces[: release_of(file)])
-    while pieces and not _is_float(pieces[-1]):
-        pieces.pop()
-    while pieces and (_is_float(pieces[-1]) or _links(pieces[-1])):
-        pieces.pop()
-    return len(pieces)
-
-
-def _is_float(piece: Piece) -> bool:
-    return "float" in (piece.component.role, *(clamp.component.role for clamp in piece.clamps))
-
-
-def _links(piece: Piece) -> bool:
-    return piece.component.role == "connector" or piece.component.kind == "chain"
 
 
 @rule(
@@ -171,6 +146,8 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
     else:
         message = f"Freed below {label}, the line does not rise"
     message += f"; {say('speed', limit)} are asked for."
+    if rise.in_still_water:
+        message += " That is in still water: in the current it finds no steady motion."
     remedy = "Add buoyancy above the release, or take weight off."
     verdict = at_least(label, rise.rise_speed, limit, message, remedy)
     if verdict.state is State.PASS and rise.rise_speed < USUAL_RISE_SPEED:
@@ -178,20 +155,28 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
     yield verdict
 
 
-@rule("tangling", "Tangling in the rise", "speed", "CALM: a part that overtakes what is above it")
+@rule("tangling", "Tangling", "speed", "CALM: a part that overtakes what is ahead of it")
 def tangling(handling: Handling) -> Iterator[Verdict]:
-    """Whether the line doubles back on itself as it rises."""
-    rise = handling.recovery
-    if rise is None or not rise.tangles:
-        return
-    labels = [handling.mooring.file.pieces[piece].label for piece in rise.tangles]
+    """Whether the line doubles back on itself as it falls or rises."""
+    launch, rise = handling.launch, handling.recovery
+    if launch is not None and launch.tangles:
+        yield _tangled(
+            handling,
+            launch.tangles,
+            "In the fall what is above overtakes",
+            "Pay the line out under tension, or lower the anchor.",
+        )
+    if rise is not None and rise.tangles:
+        yield _tangled(
+            handling,
+            rise.tangles,
+            "In the rise what is below overtakes",
+            "Put more of the buoyancy at the top.",
+        )
+
+
+def _tangled(handling: Handling, tangles: Sequence[int], what: str, remedy: str) -> Verdict:
+    labels = [handling.mooring.file.pieces[piece].label for piece in tangles]
     named = ", ".join(labels[:3]) + (f" and {len(labels) - 3} more" if len(labels) > 3 else "")
-    yield Verdict(
-        labels[0],
-        None,
-        None,
-        None,
-        State.WARN,
-        f"What is below overtakes {named} in the rise: the line doubles back and may tangle.",
-        "Put more of the buoyancy at the top.",
-    )
+    message = f"{what} {named}: the line doubles back and may tangle."
+    return Verdict(labels[0], None, None, None, State.WARN, message, remedy)

@@ -164,17 +164,17 @@ def _risers(
     """
     time, up, count = 0.0, 0, len(length)
     for piece in np.flatnonzero(lifts > 0.0).tolist():
-        if up > 0 and not lifts[up:].sum() > 0.0:
-            return
         # a rope is up when its lower end is, a rigid piece when its upper end is
         way = float(length[up : piece + bool(line.flexible[piece])].sum())
-        if up == 0 and piece < head_count(line):
-            way = 0.0
         if up == 0:
-            way += top
+            way = top if piece < head_count(line) else top + way
+        elif not lifts[up:].sum() > 0.0:
+            return
         elif way > 0.0:
             rest = solve_rise(part_of(line, up, count), water, 0.0, settings)
             speed = float(rest.velocity[2])
+            if not speed > 0.0:
+                return
         time += way / speed
         yield piece, time
         up = piece + 1

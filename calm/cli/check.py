@@ -12,13 +12,12 @@ from cyclopts import Parameter
 
 from calm.cli.exit_codes import ExitCode, gravest
 from calm.cli.outputs import OutputPath, Outputs
-from calm.cli.run import read_files
 from calm.cli.streams import narrate
 from calm.cli.workers import mapped
 from calm.errors import InputError, Problem, UsageError
 
 if TYPE_CHECKING:
-    from calm.case import Mooring
+    from calm.case import Mooring, Tow
     from calm.checks.assessment import Assessment, Stand
     from calm.report.section import Section
 
@@ -71,7 +70,7 @@ def check(
         from calm.report.folder import check_folder
 
         check_folder(report)
-    moorings = _read(files, environment, catalog or [])
+    moorings = _read(files, environment, catalog or [], workers)
     stands = mapped(_stand, _tasks(moorings), workers, "moorings solved")
     judged = _assessed(stands, workers, drawn=report is not None)
     assessments = [each.assessment for each in judged]
@@ -102,55 +101,72 @@ class _Judged:
 
 
 def _read(
-    files: Sequence[Path], environments: Sequence[str] | None, catalogs: Sequence[Path]
+    files: Sequence[Path],
+    environments: Sequence[str] | None,
+    catalogs: Sequence[Path],
+    workers: int | None,
 ) -> list[_Read]:
     """Every mooring in every environment, or an error with the mistakes of all of them."""
-    twice = [str(path) for path, count in Counter(files).items() if count > 1]
+    given = Counter([*map(str, files), *(environments or ())])
+    twice = [word for word, count in given.items() if count > 1]
     if twice:
         raise UsageError(f"given twice: {', '.join(twice)}")
-    read: list[tuple[Path, list[Mooring]]] = []
-    problems: dict[Problem, None] = {}
-    for file in files:
-        try:
-            read.append((file, _in_each(file, environments, catalogs)))
-        except InputError as error:
-            problems |= dict.fromkeys(error.problems)
-    if problems:
-        raise InputError(list(problems))
-    names = Counter(stands[0].file.name for _, stands in read)
+    names: Sequence[str | None] = environments or [None]
+    asked = [(file, name) for file in files for name in names]
+    read = _loaded(asked, catalogs, workers)
+    if environments is None:
+        others = [(file, name) for file in files for name in read[file, None].file.variants]
+        read |= _loaded(others, catalogs, workers)
+    stands = {file: [one for (path, _), one in read.items() if path == file] for file in files}
+    for its in stands.values():
+        _refuse_one_name(its)
+    called = Counter(its[0].file.name for its in stands.values())
     return [
-        _Read(path, name if names[name] == 1 else f"{name} ({path})", tuple(stands))
-        for path, stands in read
-        for name in [stands[0].file.name]
+        _Read(path, name if called[name] == 1 else f"{name} ({path})", tuple(its))
+        for path, its in stands.items()
+        for name in [its[0].file.name]
     ]
 
 
-def _in_each(
-    file: Path, environments: Sequence[str] | None, catalogs: Sequence[Path]
-) -> list[Mooring]:
+def _loaded(
+    asked: Sequence[tuple[Path, str | None]], catalogs: Sequence[Path], workers: int | None
+) -> dict[tuple[Path, str | None], Mooring]:
     from calm.case import Mooring
 
-    (first,) = read_files([file], environments[0] if environments else None, catalogs)
-    if not isinstance(first, Mooring):
-        raise UsageError(f"calm check is for moorings; {file} is a tow")
-    others = first.file.variants if environments is None else environments[1:]
-    moorings = [first]
+    tasks = [(file, name, catalogs) for file, name in asked]
     problems: dict[Problem, None] = {}
-    for name in others:
-        try:
-            (mooring,) = read_files([file], name, catalogs)
-        except InputError as error:
-            problems |= dict.fromkeys(error.problems)
+    moorings = {}
+    for (file, name), read in zip(asked, mapped(_load, tasks, workers, "files read"), strict=True):
+        if isinstance(read, tuple):
+            problems |= dict.fromkeys(read)  # what files share has its mistakes told once
+        elif isinstance(read, Mooring):
+            moorings[file, name] = read
         else:
-            assert isinstance(mooring, Mooring)
-            moorings.append(mooring)
+            raise UsageError(f"calm check is for moorings; {file} is a tow")
     if problems:
         raise InputError(list(problems))
+    return moorings
+
+
+def _load(
+    task: tuple[Path, str | None, Sequence[Path]],
+) -> Mooring | Tow | tuple[Problem, ...]:
+    """What was read, or what is wrong with it."""
+    import calm
+
+    file, environment, catalogs = task
+    try:
+        return calm.load(file, environment=environment, catalogs=catalogs)
+    except InputError as error:
+        return error.problems
+
+
+def _refuse_one_name(moorings: Sequence[Mooring]) -> None:
+    """Two environments of one name could not be told apart."""
     names = Counter(mooring.file.environment.name for mooring in moorings)
     for name, count in names.items():
         if count > 1:
             raise UsageError(f"{count} environments are called {name}; give them other names")
-    return moorings
 
 
 def _tasks(moorings: Sequence[_Read]) -> list[tuple[str, Mooring]]:
@@ -182,7 +198,7 @@ def _judged(task: tuple[str, tuple[Stand, ...]]) -> _Judged:
 
 
 def _drawn(task: tuple[str, tuple[Stand, ...]]) -> _Judged:
-    from calm.report.sections import mooring_section
+    from calm.report.check_section import mooring_section
 
     assessment = _judged(task).assessment
     return _Judged(assessment, mooring_section(assessment))
@@ -196,7 +212,24 @@ def _show(assessments: Sequence[Assessment], outputs: Outputs) -> None:
 
 
 def _write(folder: Path, judged: Sequence[_Judged]) -> None:
-    raise NotImplementedError
+    from calm.report.check_csv import checks_csv, inventory_csv
+    from calm.report.check_document import check_document
+    from calm.report.document import to_json
+    from calm.report.folder import write_report
+    from calm.report.html import report_html
+    from calm.report.pdf import report_pdf
+
+    assessments = [each.assessment for each in judged]
+    sections = [each.section for each in judged if each.section is not None]
+    texts = {
+        "report.html": report_html(sections),
+        "report.json": to_json([check_document(assessments)]),
+        "checks.csv": checks_csv(assessments),
+        "inventory.csv": inventory_csv(assessments),
+    }
+    files = {name: text.encode("utf-8", "replace") for name, text in texts.items()}
+    write_report(folder, files | {"report.pdf": report_pdf(sections)})
+    narrate(f"the report is in {folder}")
 
 
 def _codes(assessment: Assessment) -> list[ExitCode]:

@@ -33,7 +33,7 @@ Exit codes: 0 done, 1 a check found something, 2 bad input or usage,
 
 
 def _version() -> str:
-    from calm import __version__
+    from calm.version import __version__
 
     return __version__
 

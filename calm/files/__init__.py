@@ -3,7 +3,16 @@
 from calm.files.catalogue import Assembly, Catalogue
 from calm.files.components import Anchor, Body, Cable, Chain, Component, Cylinder, Sphere
 from calm.files.environment import Environment, Fouling, Wind
-from calm.files.mooring import Checks, Clamp, MooringFile, Piece, Position, Solver, TowKeys
+from calm.files.mooring import (
+    Checks,
+    Clamp,
+    MooringFile,
+    Piece,
+    Position,
+    SafetyFactors,
+    Solver,
+    TowKeys,
+)
 from calm.files.reader import read_mooring
 from calm.files.schema import mooring_schema
 from calm.files.strumming import (
@@ -36,6 +45,7 @@ __all__ = [
     "MooringFile",
     "Piece",
     "Position",
+    "SafetyFactors",
     "SeaWater",
     "Solver",
     "Sphere",

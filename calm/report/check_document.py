@@ -19,7 +19,7 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
         `findings`; of each mooring by its name `launch`, `recovery`, `backup`, `inventory`; and
         `situations`, what was solved of each mooring in each environment.
     """
-    from calm import __version__
+    from calm.version import __version__
 
     return {
         "calm": __version__,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import ceil
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 _WIDTH, _HEIGHT = 7.4, 8.0  # inches: an A4 page between its margins
 _LEGEND_ROW = 0.19  # inches
 _LEGEND_COLUMNS = 4
+_OTHER_ENTRIES = 6  # still water, limit, and the roles that are marked
 _LONGEST_NAME = 22  # signs in the legend
 _FONT_SIZE = 7.0  # points
 _LEAST_SPAN = 0.1  # of the depth: a line that hardly leans is not drawn as if it did
@@ -46,7 +48,7 @@ def check_figure(assessment: Assessment) -> str:
     from matplotlib.figure import Figure
 
     solved = [(stand.environment, stand.result) for stand in assessment.stands if stand.result]
-    rows = -(-(len(solved) + 4) // _LEGEND_COLUMNS)
+    rows = ceil((len(solved) + _OTHER_ENTRIES) / _LEGEND_COLUMNS)
     height = _HEIGHT + rows * _LEGEND_ROW
     figure = Figure(figsize=(_WIDTH, height))
 
@@ -69,8 +71,8 @@ def check_figure(assessment: Assessment) -> str:
     if assessment.backup:
         _draw_breaks(panel(4.0, 0.45, 3.3, 2.4), assessment.backup)
     for axes in figure.axes:
-        axes.xaxis.label.set_size(_FONT_SIZE)
-        axes.yaxis.label.set_size(_FONT_SIZE)
+        axes.xaxis.label.set_fontsize(_FONT_SIZE)
+        axes.yaxis.label.set_fontsize(_FONT_SIZE)
     _write_legend(figure, elevation, [name for name, _ in solved])
     return figure_svg(figure)
 
@@ -156,20 +158,23 @@ def _draw_plan(axes: Axes, solved: Solved) -> None:
 
 
 def _draw_breaks(axes: Axes, backup: Sequence[Break]) -> None:
-    """What is left to lift after each break, and what is required of it; grey below all floats."""
+    """What is left to lift after each break, and what is required of it; grey where it is not judged."""
     from matplotlib.ticker import MaxNLocator
 
     number = np.array([each.break_after for each in backup])
     required = np.array([each.required for each in backup])
-    for each in backup:
-        kept = "#8fb3cf" if each.margin >= each.required else "#d98880"
-        colour = kept if each.floats_left else "#b8bec4"
-        axes.bar(each.break_after, each.margin, width=0.8, color=colour)
+    axes.bar(number, [each.margin for each in backup], color=[_colour(each) for each in backup])
     axes.hlines(required, number - 0.5, number + 0.5, **_LIMIT)
     axes.axhline(0.0, color="black", linewidth=0.6)
     axes.xaxis.set_major_locator(MaxNLocator(8, integer=True))
     axes.set_xlabel("break below piece no.")
     axes.set_ylabel("back-up buoyancy left [N]")
+
+
+def _colour(one: Break) -> str:
+    if not one.judged:
+        return "#b8bec4"
+    return "#8fb3cf" if one.margin >= one.required else "#d98880"
 
 
 def _write_legend(figure: Figure, elevation: Axes, names: Sequence[str]) -> None:

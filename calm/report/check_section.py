@@ -14,15 +14,9 @@ from calm.report.check_summary import (
     worst_by_rule,
     worst_table,
 )
-from calm.report.check_tables import (
-    breaks_table,
-    checks_table,
-    deck_table,
-    handling_summary,
-    handling_table,
-    inventory_table,
-    results_table,
-)
+from calm.report.check_tables import checks_table, results_table
+from calm.report.handling_tables import breaks_table, handling_summary, handling_table
+from calm.report.inventory_tables import deck_table, inventory_table
 from calm.report.provenance import date
 from calm.report.result_tables import (
     UNSEEN,

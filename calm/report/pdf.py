@@ -39,12 +39,12 @@ def printed(report: Report) -> bytes:
     import typst
 
     text = json.dumps(report, default=_members, ensure_ascii=False)
-    fonts = Path(matplotlib.get_data_path(), "fonts", "ttf")
+    folder = Path(matplotlib.get_data_path(), "fonts", "ttf")
+    fonts = typst.Fonts(include_system_fonts=False, font_paths=[folder])
     when = moment()
     return typst.compile(
         (files("calm.report") / "report.typ").read_bytes(),
-        font_paths=[str(fonts)],
-        ignore_system_fonts=True,
+        font_paths=fonts,
         sys_inputs={"report": text.encode("utf-8", "replace").decode("utf-8")},
         pdf_tags=False,  # they make the file ten times as large; the page for a browser has its own
         timestamp=None if when is None else int(when.timestamp()),

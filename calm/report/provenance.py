@@ -23,7 +23,7 @@ _LIBRARIES = ("numpy", "pydantic", "matplotlib", "jinja2", "typst")
 
 def versions() -> tuple[tuple[str, str], ...]:
     """Name and version of CALM, of Python, and of the libraries that compute and draw."""
-    from calm import __version__
+    from calm.version import __version__
 
     libraries = tuple((name, version(name)) for name in _LIBRARIES)
     return (("calm", __version__), ("python", platform.python_version()), *libraries)

@@ -37,6 +37,11 @@ def quantity_column(name: str) -> Column:
     return Column(quantity.heading, quantity.display_unit, numeric=True)
 
 
+def figure_cell(name: str, value: float | None) -> Cell:
+    """A value of a quantity under its `quantity_column`."""
+    return Cell(QUANTITIES[name].format(value))
+
+
 def line_table(said: Sheet, title: str) -> Table:
     """The line from its first-listed end; a clamped instrument stands indented below its piece."""
     rows, index = [], -1

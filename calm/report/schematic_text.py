@@ -76,7 +76,7 @@ def schematic_text(
     result : Result or TowResult, optional
         Its solution, which tells depths under load and in the current; see `schematic_svg`.
     width : int
-        Of the terminal [cells]; labels and names are cut to fit, from some 50 cells on.
+        Of the terminal [cells]; labels and names are cut to fit, from some 55 cells on.
     ascii_only : bool
         Draw with plain signs; labels keep their letters.
     """
@@ -144,7 +144,7 @@ def _table(schematic: Schematic, width: int) -> Iterator[str]:
 def _shares(label: int, name: int, room: int) -> tuple[int, int]:
     """Widths of labels and names: what they need; labels first, which tell parts apart."""
     label = min(label, max(room - min(name, _LEAST_NAME), _LEAST_LABEL))
-    return label, max(min(name, room - label), _LEAST_NAME // 2)
+    return label, max(min(name, room - label), 0)
 
 
 def _drawn(schematic: Schematic) -> Iterator[tuple[str, Row | None]]:

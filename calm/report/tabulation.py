@@ -124,7 +124,7 @@ def to_document(tabulation: Tabulation) -> dict[str, Any]:
     A row has what was chosen, `status` and `FIGURES` (SI and degrees; `frequency` only where the
     cable strums), and its `warnings`, or, without an equilibrium, `message` and `advice`.
     """
-    from calm import __version__
+    from calm.version import __version__
 
     return {
         "calm": __version__,

@@ -34,7 +34,7 @@ def verification_document(findings: Findings) -> dict[str, Any]:
         `cases` has an object each: `source`, `name`, `expected`, `got`, `difference`, `tolerance`,
         `unit`, `why` (the reason for the tolerance), `within`, and `reason` where nothing was got.
     """
-    from calm import __version__
+    from calm.version import __version__
 
     cases = [_case(source, outcome) for source, outcomes in findings for outcome in outcomes]
     return {

@@ -7,6 +7,7 @@ forces and the height that must agree there, by scipy's hybrid method.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +16,9 @@ from scipy.optimize import root
 from calm.physics.line import Line, Water
 from tests.validation.continuous import March, Shape
 from tests.validation.loads import Vector
+
+Left = Callable[[Water, float], Vector]
+"""What is left of three forces and a height, in flowing water from a depth that is unknown [m]."""
 
 TOLERANCE = 1e-9
 """Relative error of a step along a cable."""
@@ -60,7 +64,7 @@ def _down(line: Line, flow: Water, depth: float) -> Shape:
     return March(line, flow, TOLERANCE).down(depth, np.ones(len(line.length)))
 
 
-def _root(left, water: Water, near: Vector, depth: float) -> Vector:
+def _root(left: Left, water: Water, near: Vector, depth: float) -> Vector:
     def system(x: Vector) -> Vector:
         return left(seen_from(water, x[:3]), float(x[3]) * water.depth)
 

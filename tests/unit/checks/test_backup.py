@@ -45,7 +45,7 @@ def test_what_is_left_after_each_break(breaks):
     assert [each.margin for each in found] == pytest.approx(margins)
     lifted = [3020.0 + 2400.0, 2400.0, 2400.0, 900.0]
     assert [each.weight_lifted for each in found] == pytest.approx(lifted)
-    assert [each.floats_left for each in found] == [True, True, False, False]
+    assert [each.judged for each in found] == [True, True, False, False]
 
 
 def test_a_share_of_the_weight_is_required_and_250_newtons_at_least(breaks):

@@ -8,6 +8,7 @@ import pytest
 import calm
 from calm.checks.recovery import recovery_of
 from calm.shipped import shipped_folder
+from calm.solve import Status, solve_rise
 
 FILE = """
 name: By hand
@@ -125,6 +126,20 @@ def test_a_line_that_is_too_heavy_stays(recovered):
     assert (recovery.rise_speed, recovery.time_to_surface, recovery.order) == (0.0, None, ())
     for figures in (recovery.arrival, recovery.hangs_at, recovery.tension_top):
         assert np.isnan(figures).all()
+
+
+def test_what_finds_no_motion_in_the_current_is_told_for_still_water(recovered, monkeypatch):
+    def only_in_still_water(line, water, depth, settings):
+        if water.moving:
+            raise Status.NOT_CONVERGED.because("It tumbles.")
+        return solve_rise(line, water, depth, settings)
+
+    monkeypatch.setattr("calm.checks.recovery.solve_rise", only_in_still_water)
+    moving = "depth: 500 m\n  current: {speed: 0.1 m/s, toward: 90 deg}"
+    recovery = recovered(FILE.replace("depth: 500 m", moving))
+    assert recovery.in_still_water
+    assert recovery.rise_speed == pytest.approx(sqrt(2200.0 / 350.0), rel=1e-8)
+    assert recovery.order == (0, 2)
 
 
 def test_components_are_plain_figures(recovered):

@@ -2,6 +2,7 @@
 
 import json
 import re
+import warnings
 from itertools import combinations
 from pathlib import Path
 from xml.etree import ElementTree
@@ -32,7 +33,9 @@ def texts_of(svg):
         font = FontProperties(
             family="DejaVu Sans", size=size, weight=element.get("font-weight", "normal")
         )
-        width = MEASURE.get_text_width_height_descent(shown, font, ismath=False)[0]
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message="Glyph")  # shown as a box, as wide
+            width = MEASURE.get_text_width_height_descent(shown, font, ismath=False)[0]
         left = x - width if element.get("text-anchor") == "end" else x
         # Ascent and descent of its glyphs, accents and brackets included.
         found.append((shown, whole, (left, y - 0.93 * size, left + width, y + 0.24 * size)))
@@ -68,7 +71,7 @@ def load(tmp_path):
 
 def item(use, label=None, **others):
     fields = {"use": use} | ({} if label is None else {"label": label}) | others
-    return json.dumps(fields, ensure_ascii=False)
+    return json.dumps(fields)
 
 
 ANCHOR = item("anchor-wheels-4")
@@ -158,7 +161,7 @@ def test_a_shipped_line_fits_a4(path):
 def cells(svg, label):
     """The figures right of a label, in the same line."""
     texts = texts_of(svg)
-    at = next(box for shown, _, box in texts if shown == label)
+    at = [box for shown, _, box in texts if shown == label][-1]  # the headings come first
     beside = sorted((box[0], shown) for shown, _, box in texts if abs(box[1] - at[1]) < 0.1)
     return [shown for _, shown in beside if re.fullmatch(r"-|-?[\d.]+|\d+ × [\d.]+", shown)]
 

@@ -21,7 +21,7 @@ line:
   - {use: block}
 components:
   adcp-float: {kind: sphere, role: float, diameter: 1 m, buoyancy: 9 kN, note: looking upward}
-  shackle: {kind: body, role: connector, length: 0.1 m, buoyancy: -5 N, kn: 0 kg/m, kt: 0 kg/m}
+  shackle: {kind: body, role: connector, length: 0.1 m, buoyancy: -5 N, kn: 0, kt: 0}
   wire: {kind: cable, diameter: 8 mm, weight: 1 N/m, material: steel}
   ctd: {kind: cylinder, diameter: 50 mm, length: 0.5 m, buoyancy: -10 N, name: Recorder}
   glass: {kind: sphere, role: float, diameter: 0.5 m, buoyancy: 200 N}
@@ -33,32 +33,31 @@ DRAWN = """\
 Small line
 100.0 m of water
 
-                                             cut          above
-                                          length  depth  seabed
-                                               m      m       m
-~~~~~~~~~~ sea surface                              0.0   100.0
+                                           cut          above
+                                        length  depth  seabed
+                                             m      m       m
+~~~~~~~~~~ sea surface                            0.0   100.0
 
- ( ^ )     ADCP float     adcp-float        1.00   24.8    75.2
-   U       shackle 1–2    shackle       2 × 0.10   25.8    74.2
-   │       wire           wire             50.00   26.0    74.0
-   ├─[#]     upper        Recorder                 36.0    64.0
-   ├─[#]     ctd          Recorder                 46.0    54.0
- (ooo)     glass 1–3      glass         3 × 0.50   76.0    24.0
- [R|R]     release A      release           1.00   77.5    22.5
-           release B      release           1.00   78.5    21.5
-   ┊       海洋观测系留线 rope             20.00   79.5    20.5
+ ( ^ )     ADCP float     adcp-float      1.00   24.8    75.2
+   U       shackle 1–2    shackle     2 × 0.10   25.8    74.2
+   │       wire           wire           50.00   26.0    74.0
+   ├─[#]     upper        Recorder               36.0    64.0
+   ├─[#]     ctd          Recorder               46.0    54.0
+ (ooo)     glass 1–3      glass       3 × 0.50   76.0    24.0
+ [R|R]     release A      release         1.00   77.5    22.5
+           release B      release         1.00   78.5    21.5
+   ┊       海洋观测系留线 rope           20.00   79.5    20.5
    ┊
- /###\\     block          block             0.50   99.5     0.5
-▒▒▒▒▒▒▒▒▒▒ seabed                                 100.0     0.0
+ /###\\     block          block           0.50   99.5     0.5
+▒▒▒▒▒▒▒▒▒▒ seabed                               100.0     0.0
 
-Not to scale. Depth and height: of the upper end, the line upright and
-unstretched."""
+Not to scale. Depth and height: of the upper end, upright and unstretched."""
 
 
 @pytest.fixture
 def small(tmp_path):
     path = tmp_path / "small.yaml"
-    path.write_text(MOORING.replace("0 kg/m", "0"), encoding="utf-8")
+    path.write_text(MOORING, encoding="utf-8")
     return calm.load(path).file
 
 

@@ -94,7 +94,7 @@ def test_a_rise_begins_where_it_is_told():
 def test_in_a_uniform_current_a_line_drifts_with_it(solve):
     still = solve(STILL)
     drifting = solve(water(1000.0, (0.0, 0.4, -0.3, 0.05), (700.0, 0.4, -0.3, 0.05)))
-    assert drifting.velocity == pytest.approx(still.velocity + [0.4, -0.3, 0.05], rel=CLOSED)
+    assert drifting.velocity == pytest.approx(np.add(still.velocity, [0.4, -0.3, 0.05]), rel=CLOSED)
     assert tensions(drifting) == pytest.approx(tensions(still), rel=1e-7, abs=1e-5)
     assert not drifting.solution.position[:, :2].any()
 
@@ -115,12 +115,12 @@ def test_the_motion_turns_with_the_current(solve):
 def test_a_faster_drift_makes_no_difference_to_the_shape():
     moved = replace(SHEARED, u=SHEARED.u + 1.5, v=SHEARED.v - 0.5)
     one, other = (solve_rise(MOORING, sea, 100.0) for sea in (SHEARED, moved))
-    assert other.velocity == pytest.approx(one.velocity + [1.5, -0.5, 0.0], abs=1e-6)
+    assert other.velocity == pytest.approx(np.add(one.velocity, [1.5, -0.5, 0.0]), abs=1e-6)
     assert tensions(other) == pytest.approx(tensions(one), rel=1e-5, abs=1e-3)
 
 
 def test_a_part_that_overtakes_what_is_above_it_doubles_the_line_back():
-    """1100 N on 500 N/(m/s)²; the upper float is dragged down by 880 N, 780 N more than it lifts."""
+    """1100 N on 500 N/(m/s)²; 880 N drag the upper float down, 780 N more than it lifts."""
     looped = line(rigid(0.0, 100.0, drag=400.0), rope(50.0), rigid(1.0, 1000.0, drag=100.0))
     motion = solve_rise(looped, STILL, 200.0)
     assert motion.velocity[2] == pytest.approx(sqrt(1100.0 / 500.0), rel=CLOSED)

@@ -1,0 +1,82 @@
+"""The tables of what is needed for a mooring, and of what comes to the deck."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from calm.quantities import QUANTITIES
+from calm.report.result_tables import figure_cell, quantity_column
+from calm.report.section import Cell, Column, Table
+
+if TYPE_CHECKING:
+    from calm.checks.inventory import Item
+
+
+def deck_table(items: Sequence[Item]) -> Table:
+    """Pieces in the order in which they come to the deck, with their weights and lifts."""
+    rows = tuple(
+        (
+            Cell("" if item.clamped_on else str(item.index)),
+            Cell(f"\u2003{item.label}" if item.clamped_on else item.label),
+            Cell(item.name or item.use),
+            figure_cell("cut_length", item.cut_length),
+            figure_cell("mass", item.dry_mass),
+            figure_cell("vertical", item.wet_weight),
+            figure_cell("mass", item.lift_mass),
+        )
+        for item in items
+    )
+    columns = (
+        Column("no.", numeric=True),
+        Column("piece"),
+        Column("component"),
+        quantity_column("cut_length"),
+        Column("mass in air", "kg", numeric=True),
+        Column("weight in water", "N", numeric=True),
+        Column("mass of the lift", "kg", numeric=True),
+    )
+    note = "Weight in water: + down. Mass of the lift: of the piece with what is clamped on it."
+    return Table("Pieces for the deck", columns, rows, note)
+
+
+def inventory_table(items: Sequence[Item]) -> Table:
+    """How many and how much of each component is needed, with room for the spares."""
+    groups: dict[str, list[Item]] = {}
+    for item in items:
+        groups.setdefault(item.use, []).append(item)
+    rows = [_stock(group[0].name or use, use, group) for use, group in groups.items()]
+    rows.append(_stock("Total", "", list(items)))
+    columns = (
+        Column("component"),
+        Column("id"),
+        Column("pieces", numeric=True),
+        Column("cut length", "m", numeric=True),
+        Column("mass in air", "kg", numeric=True),
+        Column("weight in water", "N", numeric=True),
+        Column("spares"),
+    )
+    note = "Cut length: of wires, ropes and chains. Spares: by hand."
+    return Table("Inventory", columns, tuple(rows), note, totals=1)
+
+
+def _stock(name: str, use: str, items: Sequence[Item]) -> tuple[Cell, ...]:
+    lines = [item for item in items if item.kind in ("cable", "chain")]
+    return (
+        Cell(name),
+        Cell(use),
+        Cell(str(sum(item.count for item in items))),
+        _sum("cut_length", [item.cut_length for item in lines]) if lines else Cell("-"),
+        _sum("mass", [item.dry_mass for item in items]),
+        _sum("vertical", [item.wet_weight for item in items]),
+        Cell(),
+    )
+
+
+def _sum(name: str, values: Sequence[float | None]) -> Cell:
+    """The sum of what is known, and how much is not."""
+    known = [value for value in values if value is not None]
+    missing = len(values) - len(known)
+    if not known:
+        return Cell("-")
+    return Cell(QUANTITIES[name].format(sum(known)), f"{missing} unknown" if missing else "")

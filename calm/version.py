@@ -1,0 +1,3 @@
+"""The version of CALM."""
+
+__version__ = "0.1.0"

@@ -1,0 +1,240 @@
+import hashlib
+import os
+import pickle
+import re
+import subprocess
+import sys
+from dataclasses import replace
+from html import unescape
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+import calm
+from calm.checks.finding import State
+from calm.errors import UsageError
+from calm.report.check_section import mooring_section
+from calm.report.html import report_html, result_html
+from calm.report.provenance import input_hash
+from calm.report.vector import set_apart
+from tests.judged import FORMULA, LINES, LONG, QUOTES, RIGHT_TO_LEFT, SCRIPT, judged, judged_hostile
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+@pytest.fixture(scope="module")
+def assessment():
+    return judged(LINES / "tidal-adcp.yaml", "ebb", "neaps")
+
+
+@pytest.fixture(scope="module")
+def section(assessment):
+    return mooring_section(assessment)
+
+
+@pytest.fixture(scope="module")
+def hostile(tmp_path_factory):
+    return judged_hostile(tmp_path_factory.mktemp("hostile"))
+
+
+class Page(HTMLParser):
+    """Elements, attributes, and the text by which elements it stands in."""
+
+    VOID = frozenset({"meta", "link", "br", "wbr"})
+
+    def __init__(self, html):
+        super().__init__()
+        self.open, self.elements, self.attributes, self.texts = [], [], [], []
+        self.feed(html)
+        assert self.open == []
+
+    def handle_starttag(self, tag, attributes):
+        self.elements.append(tag)
+        self.attributes += attributes
+        if tag not in self.VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_startendtag(self, tag, attributes):
+        self.elements.append(tag)
+        self.attributes += attributes
+
+    def handle_data(self, data):
+        if not {"style", "script"} & set(self.open):
+            self.texts.append(data)
+
+    @property
+    def text(self):
+        return "".join(self.texts)
+
+
+def test_every_part_of_the_report_is_there(section):
+    page = Page(report_html([section]))
+    for heading in (
+        "Moorings by environment", "Failures", "Worst finding of each rule", "What is not judged",
+        "Signatures", "Rules by environment", "Results by environment", "Schematic",
+        "Table of the line", "Elevation, current, tension, plan and breaks",
+        "Launch and recovery in short", "Tensions on the way down and up", "Back-up buoyancy",
+        "Inventory", "Pieces for the deck", "Environments", "Mooring file", "SHA-256 of the inputs",
+    ):  # fmt: skip
+        assert heading in page.text, heading
+    assert "snap loads" in page.text
+    assert page.elements.count("svg") == 2
+
+
+def test_the_figures_are_those_of_the_findings(assessment, section):
+    text = Page(report_html([section])).text
+    failed = next(each for each in assessment.all_findings() if each.state is State.FAIL)
+    assert failed.message in text
+    assert failed.remedy in text
+    assert failed.source in text
+    knockdown = assessment.stands[0].result.top.knockdown
+    assert f"{knockdown:.1f}" in text
+
+
+def test_states_are_told_in_words(section):
+    html = report_html([section])
+    shown = re.findall(r'<span class="state (\w+)">([^<]+)</span>', html)
+    words = {state.value for state in State}
+    assert {(state, text) for state, text in shown if text in words} <= {(w, w) for w in words}
+    assert ("fail", "fail") in shown
+
+
+def test_the_mooring_file_stands_in_it(section):
+    listing = re.search(r"<pre>(.*?)</pre>", report_html([section]), re.DOTALL)
+    source = (LINES / "tidal-adcp.yaml").read_text(encoding="utf-8")
+    assert unescape(listing[1]) == source.rstrip()
+
+
+def test_names_that_mean_harm_are_text(hostile):
+    html = report_html([mooring_section(hostile)])
+    page = Page(html)
+    for name in (SCRIPT, QUOTES, FORMULA, RIGHT_TO_LEFT, LONG, "_under"):
+        assert name in page.text, name
+    assert page.elements.count("script") == 1
+    assert "<script>alert" not in html
+    assert not [name for name, _ in page.attributes if name.startswith("on")]
+
+
+def test_nothing_is_fetched(section):
+    html = report_html([section])
+    links = [value for name, value in Page(html).attributes
+             if name in ("src", "href", "xlink:href", "data", "action")]  # fmt: skip
+    assert [link for link in links if not link.startswith("#")] == []
+    assert "@import" not in html
+    assert re.findall(r"url\((?!#)", html) == []
+    assert "default-src 'none'" in html
+
+
+def test_identifiers_are_unique_and_all_references_lead_somewhere(section):
+    html = report_html([section, replace(section, name="Another")])
+    attributes = Page(html).attributes
+    identifiers = [value for name, value in attributes if name == "id"]
+    assert len(identifiers) == len(set(identifiers))
+    wanted = {value[1:] for name, value in attributes if name in ("href", "xlink:href")}
+    wanted |= set(re.findall(r"url\(#([^)]+)\)", html))
+    assert wanted <= set(identifiers)
+
+
+def test_a_label_that_looks_like_an_identifier_is_left_alone():
+    svg = '<svg><g id="a"/><use href="#a"/><text>id="a" url(#a)</text></svg>'
+    apart = '<svg><g id="m-a"/><use href="#m-a"/><text>id="a" url(#a)</text></svg>'
+    assert set_apart(svg, "m") == apart
+
+
+def test_many_environments_are_told_in_tables_that_fit(assessment):
+    first = assessment.stands[0]
+    names = [f"environment {number}" for number in range(10)]
+    stands = tuple(replace(first, environment=name) for name in names)
+    section = mooring_section(replace(assessment, stands=stands))
+    heads = [re.findall(r"<th ", table) for table in re.findall(
+        r"<caption>Rules by environment</caption>.*?</thead>", report_html([section]), re.DOTALL
+    )]  # fmt: skip
+    assert [len(head) for head in heads] == [5, 5, 4]
+
+
+def test_a_mooring_without_equilibrium_is_reported(assessment):
+    stands = tuple(
+        replace(stand, situations=(replace(stand.situations[0], result=None),), findings=())
+        for stand in assessment.stands
+    )
+    failed = replace(assessment, stands=stands, launch=None, recovery=None, backup=(), findings=())
+    text = Page(report_html([mooring_section(failed)])).text
+    assert "no equilibrium in any environment" in text
+    assert "Neither the launch nor the recovery could be solved" in text
+
+
+def test_one_environment_without_equilibrium_leaves_the_others(assessment):
+    first, *others = assessment.stands
+    fallen = replace(first, situations=(replace(first.situations[0], result=None),))
+    text = Page(report_html([mooring_section(replace(assessment, stands=(fallen, *others)))])).text
+    assert "Schematic, environment: ebb" in text
+
+
+def test_a_section_passes_between_processes(section):
+    assert report_html([pickle.loads(pickle.dumps(section))]) == report_html([section])
+
+
+@pytest.mark.parametrize("name", ["taut-nylon-surface", "a-frame-sheared-tow"])
+def test_a_single_result_has_a_page(name):
+    result = calm.load(LINES / f"{name}.yaml").solve()
+    page = Page(result_html(result))
+    assert result.name in page.text
+    assert page.elements.count("svg") == 2
+    for part in ("Schematic", "Table of the line", "SHA-256 of the inputs", "snap loads"):
+        assert part in page.text
+    assert result.components.label[-1] in page.text
+
+
+PROGRAM = """
+import hashlib, sys
+from pathlib import Path
+from tests.judged import judged
+from calm.report.check_section import mooring_section
+from calm.report.html import report_html
+from calm.report.pdf import report_pdf
+sections = [mooring_section(judged(Path(sys.argv[1]), "ebb"))]
+for content in (report_html(sections).encode(), report_pdf(sections)):
+    print(hashlib.sha256(content).hexdigest())
+"""
+
+
+def test_the_same_input_gives_the_same_bytes():
+    def digests(seed):
+        environment = {**os.environ, "PYTHONHASHSEED": seed}
+        environment.pop("SOURCE_DATE_EPOCH", None)
+        command = [sys.executable, "-c", PROGRAM, "lines/tidal-adcp.yaml"]
+        finished = subprocess.run(
+            command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False
+        )
+        assert finished.returncode == 0, finished.stderr
+        return finished.stdout.split()
+
+    assert digests("1") == digests("2")
+
+
+def test_the_date_is_that_of_the_environment(section, monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    assert "2023-11-14" in report_html([section])
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "yesterday")
+    with pytest.raises(UsageError, match="SOURCE_DATE_EPOCH, `yesterday`"):
+        report_html([section])
+
+
+def test_the_hash_goes_with_every_input(tmp_path):
+    text = (LINES / "tidal-adcp.yaml").read_text(encoding="utf-8")
+
+    def hashed(content, environment=None):
+        path = tmp_path / "mooring.yaml"
+        path.write_text(content, encoding="utf-8")
+        return input_hash([calm.load(path, environment=environment).file])
+
+    first = hashed(text)
+    assert re.fullmatch("[0-9a-f]{64}", first)
+    assert hashed(text) == first
+    assert hashed(text + "# a comment\n") != first
+    assert hashed(text, "ebb") != first
+    assert first != hashlib.sha256(text.encode()).hexdigest()  # the catalogue counts, too
