@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Protocol
@@ -46,8 +46,8 @@ class Shown(Protocol):
     def tables(self) -> list[RenderableType]:
         """What a terminal shows; nothing where there is nothing to show."""
 
-    def picture(self, suffix: str) -> bytes | None:
-        """The drawing, in the format of a file's ending; None where there is nothing to draw."""
+    def rendered(self, suffix: str) -> bytes | None:
+        """A picture or a report, by a file's ending; None where there is nothing to show."""
 
 
 @dataclass(frozen=True)
@@ -98,11 +98,21 @@ class Outcome:
             tables.append(explanation_table(self.explanation))
         return tables
 
-    def picture(self, suffix: str) -> bytes | None:
-        """The line drawn."""
+    def rendered(self, suffix: str) -> bytes | None:
+        """The line drawn, or its report."""
+        if self.result is None:
+            return None
+        if suffix == ".html":
+            from calm.report.html import result_html
+
+            return result_html(self.result).encode("utf-8", "replace")
+        if suffix == ".pdf":
+            from calm.report.pdf import result_pdf
+
+            return result_pdf(self.result)
         from calm.report.plot import picture
 
-        return picture(self.result, suffix) if self.result else None
+        return picture(self.result, suffix)
 
 
 @dataclass(frozen=True)
@@ -113,24 +123,28 @@ class Outputs:
     ----------
     files : tuple of Path
         The files the outputs are made from; none where the question is in the options.
-    json, csv, plot : Path or None
-        One JSON document, one CSV table; a picture for each file.
+    json, csv : Path or None
+        One JSON document, one CSV table.
+    plot, html, pdf : Path or None
+        A picture, a page, a report for each file.
     """
 
     files: tuple[Path, ...] = ()
     json: Path | None = None
     csv: Path | None = None
     plot: Path | None = None
+    html: Path | None = None
+    pdf: Path | None = None
 
     @property
-    def plots(self) -> tuple[Path, ...]:
-        """The picture of each file; where there are several, with the file's name added."""
-        if self.plot is None:
-            return ()
-        if len(self.files) == 1:
-            return (self.plot,)
-        plot = self.plot
-        return tuple(plot.with_stem(f"{plot.stem}-{file.stem}") for file in self.files)
+    def rendered(self) -> tuple[tuple[Path, ...], ...]:
+        """Of each kind asked for, a path for each file; of several, with the file's name added."""
+        asked = [path for path in (self.plot, self.html, self.pdf) if path is not None]
+        return tuple(tuple(self._for_each(path)) for path in asked)
+
+    def _for_each(self, path: Path) -> Iterator[Path]:
+        for file in self.files:
+            yield path if len(self.files) == 1 else path.with_stem(f"{path.stem}-{file.stem}")
 
     def check(self) -> None:
         """Refuse outputs that could not be written, before anything is solved.
@@ -143,7 +157,8 @@ class Outputs:
         """
         from calm.report.write import check_destination
 
-        asked = [path for path in (self.json, self.csv, *self.plots) if path is not None]
+        asked = [path for path in (self.json, self.csv) if path is not None]
+        asked += [path for paths in self.rendered for path in paths]
         for path in asked:
             if str(path).startswith("-") and path != STDOUT:
                 raise UsageError(f"{path} stands where a path is needed; write ./{path} for a file")
@@ -151,6 +166,9 @@ class Outputs:
             from calm.report.picture import check_format
 
             check_format(self.plot)
+        for report, ending in ((self.html, ".html"), (self.pdf, ".pdf")):
+            if report is not None and report.suffix != ending:
+                raise UsageError(f"cannot write {report}: the name of this report ends in {ending}")
         mooring_files = set(map(os.path.realpath, self.files))
         for real, count in Counter(map(os.path.realpath, asked)).items():
             if count > 1:
@@ -207,10 +225,11 @@ class Outputs:
         for path, text in texts.items():
             if path != STDOUT:
                 write_file(path, text.encode("utf-8", "replace"))
-        for path, each in zip(self.plots, shown, strict=False):
-            content = each.picture(path.suffix)
-            if content is not None:
-                write_file(path, content)
+        for paths in self.rendered:
+            for path, each in zip(paths, shown, strict=False):
+                content = each.rendered(path.suffix)
+                if content is not None:
+                    write_file(path, content)
         if STDOUT in texts:
             show(texts[STDOUT])
         else:

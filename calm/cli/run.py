@@ -23,6 +23,7 @@ RUN_EXAMPLES = """Examples:
   calm run mooring.yaml --csv components.csv --json result.json
   calm run mooring.yaml --explain
   calm run mooring.yaml --schematic
+  calm run mooring.yaml --html mooring.html --pdf mooring.pdf
   calm run spring.yaml neap.yaml tow.yaml --json -"""
 
 
@@ -35,6 +36,8 @@ def run(
     json: OutputPath = None,
     csv: OutputPath = None,
     plot: Path | None = None,
+    html: Path | None = None,
+    pdf: Path | None = None,
     explain: bool = False,
     schematic: bool = False,
 ) -> ExitCode:
@@ -58,6 +61,11 @@ def run(
         Write the components as CSV, units in the header, - to print it.
     plot
         Draw it, as .png or .svg; for several files p.png becomes p-FILE.png for each.
+    html
+        Write a report of the line, its table, drawings and inputs, as one .html file
+        that needs no other; for several files one each, as with --plot.
+    pdf
+        Write the same report as .pdf.
     explain
         Tell how much of the knockdown each drag causes, and what more buoyancy, less
         drag or another current would change; in the JSON too. Moorings only.
@@ -65,7 +73,7 @@ def run(
         Draw the line, part by part and not to scale, above its table; where there is no
         equilibrium, in its place.
     """
-    outputs = Outputs(tuple(files), json, csv, plot)
+    outputs = Outputs(tuple(files), json, csv, plot, html, pdf)
     outputs.check()
     lines = read_files(files, environment, catalog or [])
     if explain:

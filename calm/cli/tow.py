@@ -113,7 +113,7 @@ class _Tabulated:
 
         return [tabulation_table(self.tabulation)]
 
-    def picture(self, suffix: str) -> bytes:
+    def rendered(self, suffix: str) -> bytes:
         from calm.report.picture import image
         from calm.report.plot_sweep import draw_sweep
 

@@ -158,7 +158,7 @@ def _draw_plan(axes: Axes, solved: Solved) -> None:
 
 
 def _draw_breaks(axes: Axes, backup: Sequence[Break]) -> None:
-    """What is left to lift after each break, and what is required of it; grey where it is not judged."""
+    """What is left to lift after each break, and what is required; grey where it is not judged."""
     from matplotlib.ticker import MaxNLocator
 
     number = np.array([each.break_after for each in backup])

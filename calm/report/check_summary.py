@@ -47,7 +47,7 @@ def worst_by_rule(assessment: Assessment) -> tuple[Worst, ...]:
     columns = [(stand.environment, stand.findings) for stand in assessment.stands]
     columns.append((ON_THE_WAY, assessment.findings))
     return tuple(
-        Worst(column, min(group, key=graveness))
+        Worst(column, min(group, key=graveness), _unknown(group))
         for column, findings in columns
         for group in _groups(findings, lambda each: each.rule)
     )
@@ -61,7 +61,7 @@ def worst_by_part(findings: Iterable[Finding]) -> list[Finding]:
 
 def rules_tables(columns: Sequence[str], found: Sequence[Worst]) -> Iterator[Table]:
     """Rules by environments: state, margin and component of the worst finding of each."""
-    cells = {(each.column, each.finding.rule): each.finding for each in found}
+    cells = {(each.column, each.finding.rule): each for each in found}
     for beside in abreast(columns):
         rules = [
             rule for rule in RULES.values() if any((one, rule.name) in cells for one in beside)
@@ -149,28 +149,41 @@ def failures(sections: Sequence[Section]) -> Table | Prose:
     return Table("Failures", columns, tuple(rows))
 
 
-_RULES_NOTE = "Under each state: the least margin, and the component that has it."
-_MATRIX_NOTE = "Under each state: the rule that makes it, with the least margin."
+_RULES_NOTE = "Under each state: the least margin, the component that has it, and what is unknown."
+_MATRIX_NOTE = (
+    "Under each state: the rule that makes it, its least margin, and how many are unknown."
+)
 
 
 def _headed(first: str, columns: Sequence[str]) -> tuple[Column, ...]:
     return (Column(first), *map(Column, columns))
 
 
-def _judged(finding: Finding | None) -> Cell:
-    if finding is None:
+def _judged(worst: Worst | None) -> Cell:
+    if worst is None:
         return Cell("–")
+    finding = worst.finding
     detail = " ".join(filter(None, (margin_of(finding), finding.component)))
-    return Cell(finding.state.value, detail, finding.state)
+    return Cell(finding.state.value, _with_unknown(detail, worst.unknown, finding), finding.state)
 
 
 def _of_column(section: Section, column: str) -> Cell:
-    here = [each.finding for each in section.worst if each.column == column]
+    here = [each for each in section.worst if each.column == column]
     if not here:
         return Cell("–")
-    finding = min(here, key=graveness)
-    title = RULES[finding.rule].title
-    return Cell(finding.state.value, f"{title} {margin_of(finding)}".rstrip(), finding.state)
+    finding = min((each.finding for each in here), key=graveness)
+    detail = f"{RULES[finding.rule].title} {margin_of(finding)}".rstrip()
+    missing = sum(each.unknown for each in here)
+    return Cell(finding.state.value, _with_unknown(detail, missing, finding), finding.state)
+
+
+def _with_unknown(detail: str, count: int, finding: Finding) -> str:
+    """The detail, and how many findings are unknown where the state does not tell."""
+    return f"{detail}; {count} unknown" if count and finding.state is not State.UNKNOWN else detail
+
+
+def _unknown(findings: Iterable[Finding]) -> int:
+    return sum(finding.state is State.UNKNOWN for finding in findings)
 
 
 def _moorings(found: Sequence[tuple[Section, Finding]], state: State) -> str:

@@ -102,11 +102,13 @@ class Part:
 class Worst:
     """The worst that a rule finds in one column of the summary.
 
-    `column` is an environment, or `ON_THE_WAY` for what is judged once for a mooring.
+    `column` is an environment, or `ON_THE_WAY` for what is judged once for a mooring; `unknown`
+    counts the findings that lack a figure, which a pass of others must not hide.
     """
 
     column: str
     finding: Finding
+    unknown: int
 
 
 @dataclass(frozen=True)

@@ -238,3 +238,11 @@ def test_the_hash_goes_with_every_input(tmp_path):
     assert hashed(text + "# a comment\n") != first
     assert hashed(text, "ebb") != first
     assert first != hashlib.sha256(text.encode()).hexdigest()  # the catalogue counts, too
+
+
+def test_a_pass_does_not_hide_what_is_unknown(assessment, section):
+    strength = [each for each in assessment.stands[0].findings if each.rule == "strength"]
+    missing = sum(each.state is State.UNKNOWN for each in strength)
+    assert 0 < missing < len(strength)
+    row = re.search(r"<tr>\s*<td>Strength</td>(.*?)</tr>", report_html([section]), re.DOTALL)
+    assert f"; {missing} unknown" in row[1]

@@ -1,0 +1,206 @@
+"""The report in a browser: silent, complete without network or script, legible, printable.
+
+The tests are skipped where there is no Chromium, unless CALM_BROWSER_TESTS is 1.
+"""
+
+import os
+import shutil
+from contextlib import contextmanager
+from dataclasses import replace
+from itertools import pairwise
+
+import pypdfium2
+import pytest
+
+import calm
+from calm.report.check_section import mooring_section
+from calm.report.html import report_html, result_html
+from tests.judged import FORMULA, LINES, LONG, QUOTES, RIGHT_TO_LEFT, SCRIPT, judged, judged_hostile
+
+CHROMIUM = next(
+    filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
+)
+
+OVERLAPS = """
+() => {
+  const found = [];
+  for (const svg of document.querySelectorAll("svg")) {
+    const texts = [...svg.querySelectorAll("text")].filter((one) => one.textContent.trim());
+    const boxes = texts.map((one) => one.getBoundingClientRect());
+    for (let i = 0; i < boxes.length; i++) {
+      for (let j = 0; j < i; j++) {
+        const [a, b] = [boxes[i], boxes[j]];
+        const wide = Math.min(a.right, b.right) - Math.max(a.left, b.left);
+        const tall = Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top);
+        // A box is as tall as the font: letters of lines that touch by a third of it are apart.
+        if (wide > 1 && tall > Math.min(a.height, b.height) / 3) {
+          found.push(`${texts[j].textContent} / ${texts[i].textContent}`);
+        }
+      }
+    }
+  }
+  return found;
+}
+"""
+
+OUTSIDE = """
+() => [...document.querySelectorAll("svg")].flatMap((svg) => {
+  const frame = svg.getBoundingClientRect();
+  return [...svg.querySelectorAll("text")].filter((one) => {
+    const box = one.getBoundingClientRect();
+    return box.left < frame.left - 1 || box.right > frame.right + 1;
+  }).map((one) => one.textContent);
+})
+"""
+
+
+@pytest.fixture(scope="module")
+def browser():
+    if CHROMIUM is None and os.environ.get("CALM_BROWSER_TESTS") != "1":
+        pytest.skip("there is no Chromium")
+    assert CHROMIUM is not None, "CALM_BROWSER_TESTS is 1, and there is no Chromium"
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def opened(browser, tmp_path):
+    """Opens a page from a file; when it is left, nothing was said and nothing else was fetched."""
+
+    @contextmanager
+    def opening(html, **settings):
+        path = tmp_path / "report.html"
+        path.write_text(html, encoding="utf-8")
+        said, fetched = [], []
+        context = browser.new_context(viewport={"width": 1280, "height": 900}, **settings)
+        page = context.new_page()
+        page.on("console", lambda message: said.append(message.text))
+        page.on("pageerror", lambda error: said.append(str(error)))
+        page.on("dialog", lambda dialog: said.append(dialog.message))
+        page.on("request", lambda request: fetched.append(request.url))
+        page.goto(path.as_uri())
+        yield page
+        context.close()
+        assert said == []
+        assert fetched == [path.as_uri()]
+
+    return opening
+
+
+@pytest.fixture(scope="module")
+def section():
+    return mooring_section(judged(LINES / "tidal-adcp.yaml", "ebb", "neaps"))
+
+
+def test_the_page_is_silent_and_alone(opened, section):
+    with opened(report_html([section])) as page:
+        assert page.title() == "Design check: Tidal strait ADCP, 3 environments"
+        assert page.locator("svg").count() == 2
+
+
+@pytest.mark.parametrize(
+    "name", ["tidal-adcp", "deep-current-meters", "taut-nylon-surface", "chain-and-rope-surface"]
+)
+def test_no_labels_overlap(opened, name):
+    with opened(report_html([mooring_section(judged(LINES / f"{name}.yaml"))])) as page:
+        assert page.evaluate(OVERLAPS) == []
+        assert page.evaluate(OUTSIDE) == []
+
+
+def test_no_labels_overlap_with_ten_environments(opened):
+    assessment = judged(LINES / "tidal-adcp.yaml", "ebb", "neaps")
+    stands = [
+        replace(assessment.stands[number % 3], environment=f"an environment, number {number}")
+        for number in range(10)
+    ]
+    section = mooring_section(replace(assessment, stands=tuple(stands)))
+    with opened(report_html([section])) as page:
+        assert page.evaluate(OVERLAPS) == []
+        assert page.evaluate(OUTSIDE) == []
+
+
+@pytest.mark.parametrize("name", ["sediment-trap-undercurrent", "depressor-fit-depth"])
+def test_a_single_result_is_silent_and_legible(opened, name):
+    with opened(result_html(calm.load(LINES / f"{name}.yaml").solve())) as page:
+        assert page.evaluate(OVERLAPS) == []
+
+
+def test_nothing_is_wider_than_the_page(opened, section):
+    with opened(report_html([section])) as page:
+        assert page.evaluate("document.documentElement.scrollWidth") <= 1280
+        page.set_viewport_size({"width": 800, "height": 900})
+        assert page.evaluate("document.documentElement.scrollWidth") <= 800
+
+
+def test_names_that_mean_harm_are_text(opened, tmp_path):
+    with opened(report_html([mooring_section(judged_hostile(tmp_path))])) as page:
+        text = page.evaluate("document.body.textContent")
+        for name in (SCRIPT, QUOTES, FORMULA, RIGHT_TO_LEFT, LONG):
+            assert name in text
+        assert page.locator("script").count() == 1
+        assert page.evaluate("document.documentElement.scrollWidth") <= 1280
+        assert page.evaluate(OVERLAPS) == []
+
+
+def test_everything_is_read_without_script(opened, section):
+    html = report_html([section])
+    with opened(html) as page:
+        rows = page.locator("td:visible").count()
+        assert page.locator(".controls").count() == 2
+    with opened(html, java_script_enabled=False) as page:
+        assert page.locator("td:visible").count() == rows
+        assert page.locator(".controls").count() == 0
+
+
+def test_the_checks_are_chosen_and_sorted(opened, section):
+    with opened(report_html([section])) as page:
+        table = page.locator("table.sortable").last
+        controls = page.locator(".controls").last
+        rows = table.locator("tbody tr")
+        controls.locator("select").select_option("fail")
+        shown = rows.locator("visible=true")
+        assert 0 < shown.count() < rows.count()
+        assert set(shown.locator(".state").all_inner_texts()) == {"fail"}
+        controls.locator("select").select_option("all states")
+        controls.locator("input").fill("anchor weight")
+        assert all("Anchor weight" in text for text in shown.all_inner_texts())
+        controls.locator("input").fill("")
+
+        heads = table.locator("thead th")
+        component = heads.all_inner_texts().index("component")
+        heads.nth(component).click()
+        names = [row.split("\t")[component].casefold() for row in rows.all_inner_texts()]
+        assert names[0] <= names[-1]
+        heads.nth(0).click()
+        states = rows.locator(".state").all_inner_texts()
+        order = ["unknown", "pass", "warn", "fail"]
+        ranks = [order.index(state) for state in states]
+        assert all(one <= other for one, other in pairwise(ranks))
+
+
+def test_it_prints_on_a4_without_controls(opened, section):
+    html = report_html([section, replace(section, name="Another mooring")])
+    with opened(html) as page:
+        content = page.pdf(prefer_css_page_size=True)
+        page.emulate_media(media="print")
+        assert page.locator(".controls:visible").count() == 0
+    with pypdfium2.PdfDocument(content) as document:
+        texts = [page.get_textpage().get_text_range() for page in document]
+        assert document[0].get_size() == pytest.approx((595, 842), abs=1.5)
+    starts = [number for number, text in enumerate(texts) if "Judgement" in text]
+    assert len(starts) == 2
+    assert starts[0] > 0
+    assert f"{len(texts)} / {len(texts)}" in texts[-1]
+
+
+def test_the_measure_sees_labels_that_overlap(opened):
+    svg = '<svg width="300" height="60"><text x="9" y="20">one</text><text x="20" y="22">two</text>'
+    with opened(
+        f"<!DOCTYPE html><title>labels</title>{svg}<text x='299' y='50'>far</text></svg>"
+    ) as page:
+        assert page.evaluate(OVERLAPS) == ["one / two"]
+        assert page.evaluate(OUTSIDE) == ["far"]
