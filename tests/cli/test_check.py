@@ -133,7 +133,7 @@ components:
 
 def test_a_tow_is_refused(calm, folder):
     text = "tow: {speed: 1 m/s, toward: 0 deg}\nline: [{use: fish}]\ncomponents:\n"
-    text += "  fish: {kind: body, length: 1 m, buoyancy: -10 N, kn: 1 N/(m/s)^2, inclination: insensitive}\n"
+    text += "  fish: {kind: sphere, diameter: 1 m, buoyancy: -10 N}\n"
     (folder / "tow.yaml").write_text(text)
     done = calm("check", "tow.yaml")
     assert (done.code, done.out) == (2, "")
