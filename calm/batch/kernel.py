@@ -1,0 +1,422 @@
+"""The march for many current profiles of one mooring, sixteen cases at a time.
+
+Every case has its lane. A lane's state lies in one flat scratch array, a row of sixteen numbers
+for each quantity, so that the compiler sees that the rows do not overlap and computes all lanes
+at once. What a lane yields depends on its own case alone: once settled it is frozen.
+
+The balance of an element is that of `calm.physics.element`, whose functions are compiled in here.
+"""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+
+from calm.batch.compiled import compilable, compiled
+from calm.physics.element import axis_along, drag_force, drag_share, share_step
+from calm.physics.line import REFERENCE_DENSITY
+
+LANES = 16
+
+for formula in (share_step, axis_along, drag_force, drag_share):
+    compilable(formula)
+
+# rows of the scratch array
+X, Y, Z = 0 * LANES, 1 * LANES, 2 * LANES
+FX, FY, FZ = 3 * LANES, 4 * LANES, 5 * LANES
+TX, TY, TZ = 6 * LANES, 7 * LANES, 8 * LANES
+QX, QY, QZ = 9 * LANES, 10 * LANES, 11 * LANES
+PULL, DEPTH = 12 * LANES, 13 * LANES
+U, V, W, DENSITY = 14 * LANES, 15 * LANES, 16 * LANES, 17 * LANES
+AX, AY, AZ = 18 * LANES, 19 * LANES, 20 * LANES
+K, GX, GY, GZ = 21 * LANES, 22 * LANES, 23 * LANES, 24 * LANES
+C, DOUBT = 25 * LANES, 26 * LANES
+LOWEST, HIGHEST, LIGHTEST, LEAST_PULL = 27 * LANES, 28 * LANES, 29 * LANES, 30 * LANES
+FREE_END, SHARE, OUT, WET, HELD, WIND_EAST, WIND_NORTH = 31 * LANES, 32 * LANES, 33 * LANES, 34 * LANES, 35 * LANES, 36 * LANES, 37 * LANES
+EVEN_U, EVEN_V, EVEN_W = 38 * LANES, 39 * LANES, 40 * LANES
+NX, NY, NZ, CHANGE = 41 * LANES, 42 * LANES, 43 * LANES, 44 * LANES
+L_BUOYANCY, L_VOLUME, L_NORMAL, L_TANGENTIAL, L_LIFT, L_EAST, L_NORTH = 45 * LANES, 46 * LANES, 47 * LANES, 48 * LANES, 49 * LANES, 50 * LANES, 51 * LANES
+SX, SY, SZ = 52 * LANES, 53 * LANES, 54 * LANES
+MX, MY, MZ = 55 * LANES, 56 * LANES, 57 * LANES
+TOTAL = 58 * LANES
+SCRATCH = 59 * LANES
+
+ROD, CABLE, CLAMP = 0, 1, 2
+AT, LEVER, BUOYANCY, VOLUME, NORMAL, TANGENTIAL, LIFT, DIRECTIONAL, AFLOAT = range(9)
+C_BUOYANCY, C_VOLUME, C_NORMAL, C_TANGENTIAL, C_COMPLIANCE, C_THINNING = range(6)
+STATE = 9  # numbers of a recorded node: place, force, axis
+PER_DENSITY = 1.0 / REFERENCE_DENSITY
+FAR = 1e8
+CLOSE = 1e-6
+MOST_PASSES = 30
+ITSELF, ABOVE_IT = 1.0, 2.0
+
+
+@compiled
+def look_up(s, level, bounds, rows, even):
+    """Current and density of every lane at its depth; with `even`, one current at all depths."""
+    for i in range(LANES):
+        depth = s[DEPTH + i]
+        if not abs(depth) < FAR:
+            depth = 0.0
+        j = level[i]
+        while depth >= bounds[i, j + 1]:
+            j += 1
+        while depth < bounds[i, j]:
+            j -= 1
+        level[i] = j
+        below = depth - rows[i, j, 0]
+        s[U + i] = rows[i, j, 1] + rows[i, j, 2] * below
+        s[V + i] = rows[i, j, 3] + rows[i, j, 4] * below
+        s[W + i] = rows[i, j, 5] + rows[i, j, 6] * below
+        s[DENSITY + i] = rows[i, j, 7] + rows[i, j, 8] * below
+    if even:
+        for i in range(LANES):
+            s[U + i] = s[EVEN_U + i]
+            s[V + i] = s[EVEN_V + i]
+            s[W + i] = s[EVEN_W + i]
+
+
+@compiled
+def exact_shares(s):
+    """Solve the share of every lane whose Newton steps have not settled."""
+    for i in range(LANES):
+        if not s[DOUBT + i] < CLOSE:
+            s[C + i] = drag_share(
+                s[AX + i], s[AY + i], s[AZ + i], s[K + i], s[GX + i], s[GY + i], s[GZ + i]
+            )
+
+
+@compiled
+def pass_segments(s, level, bounds, rows, cable, cuts, halvings, gravity, even):
+    """Take all lanes down a stretch of cable; each cut is halved so many times."""
+    buoyancy, volume, kn, kt = cable[C_BUOYANCY], cable[C_VOLUME], cable[C_NORMAL], cable[C_TANGENTIAL]
+    compliance, thinning = cable[C_COMPLIANCE], cable[C_THINNING]
+    parts = 1 << halvings
+    for j in range(cuts.size):
+        cut = cuts[j] / parts
+        half = 0.5 * cut
+        for _ in range(parts):
+            for i in range(LANES):
+                gx, gy, gz = s[FX + i] + half * s[QX + i], s[FY + i] + half * s[QY + i], s[FZ + i] + half * s[QZ + i]
+                pull = sqrt(gx * gx + gy * gy + gz * gz)
+                s[PULL + i] = pull
+                s[DEPTH + i] = -s[Z + i] + half * (1.0 + compliance * pull) * gz / pull
+            look_up(s, level, bounds, rows, even)
+            for i in range(LANES):
+                u, v, w, density = s[U + i], s[V + i], s[W + i], s[DENSITY + i]
+                pull = s[PULL + i]
+                area = cut * density * PER_DENSITY
+                area *= 1.0 + thinning * (sqrt(1.0 + compliance * pull) - 1.0)
+                lift = cut * (buoyancy + (density - REFERENCE_DENSITY) * gravity * volume)
+                ax, ay, az = s[FX + i], s[FY + i], s[FZ + i] + 0.5 * lift
+                k = 0.5 * kn * area
+                aa = ax * ax + ay * ay + az * az
+                av = ax * u + ay * v + az * w
+                vv = u * u + v * v + w * w
+                cx, cy, cz = ay * w - az * v, az * u - ax * w, ax * v - ay * u
+                target = k * sqrt(cx * cx + cy * cy + cz * cz)
+                first = target / pull
+                _, c = share_step(aa, av, vv, target, first)
+                step = c - first
+                doubt = step * step * vv / aa
+                s[AX + i], s[AY + i], s[AZ + i] = ax, ay, az
+                s[K + i], s[C + i], s[DOUBT + i] = k, c, doubt
+                s[GX + i], s[GY + i], s[GZ + i] = u, v, w
+            exact_shares(s)
+            for i in range(LANES):
+                u, v, w = s[GX + i], s[GY + i], s[GZ + i]
+                k = 2.0 * s[K + i]
+                tx, ty, tz = axis_along(s[AX + i], s[AY + i], s[AZ + i], s[C + i], u, v, w)
+                qx, qy, qz = drag_force(k, kt / kn * k, u, v, w, tx, ty, tz)
+                qz += 2.0 * (s[AZ + i] - s[FZ + i])
+                fx, fy, fz = s[FX + i], s[FY + i], s[FZ + i]
+                pull = -((fx + 0.5 * qx) * tx + (fy + 0.5 * qy) * ty + (fz + 0.5 * qz) * tz)
+                stretched = cut * (1.0 + compliance * pull)
+                s[LEAST_PULL + i] = pull if pull < s[LEAST_PULL + i] else s[LEAST_PULL + i]
+                s[X + i] += stretched * tx
+                s[Y + i] += stretched * ty
+                z = s[Z + i] + stretched * tz
+                s[Z + i] = z
+                s[LOWEST + i] = z if z < s[LOWEST + i] else s[LOWEST + i]
+                s[HIGHEST + i] = z if z > s[HIGHEST + i] else s[HIGHEST + i]
+                s[FX + i], s[FY + i], s[FZ + i] = fx + qx, fy + qy, fz + qz
+                s[TX + i], s[TY + i], s[TZ + i] = tx, ty, tz
+                s[QX + i], s[QY + i], s[QZ + i] = qx / cut, qy / cut, qz / cut
+
+
+@compiled
+def load_of_every_lane(s, load, gravity):
+    """Lay out a load in the lanes; what is at the surface, by how much of it is in use."""
+    for i in range(LANES):
+        s[L_BUOYANCY + i] = load[BUOYANCY]
+        s[L_VOLUME + i] = load[VOLUME]
+        s[L_NORMAL + i] = load[NORMAL]
+        s[L_TANGENTIAL + i] = load[TANGENTIAL]
+        s[L_LIFT + i] = load[LIFT]
+        s[L_EAST + i] = 0.0
+        s[L_NORTH + i] = 0.0
+    if load[AFLOAT] == ITSELF:
+        for i in range(LANES):
+            s[L_BUOYANCY + i] *= s[SHARE + i]
+            s[L_VOLUME + i] *= s[SHARE + i]
+            s[L_NORMAL + i] *= s[HELD + i]
+            s[L_TANGENTIAL + i] *= s[HELD + i]
+            s[L_EAST + i] = s[WIND_EAST + i]
+            s[L_NORTH + i] = s[WIND_NORTH + i]
+    elif load[AFLOAT] == ABOVE_IT:
+        for i in range(LANES):
+            wet = s[WET + i]
+            s[L_BUOYANCY + i] -= (1.0 - wet) * REFERENCE_DENSITY * gravity * load[VOLUME]
+            s[L_VOLUME + i] *= wet
+            s[L_NORMAL + i] *= wet
+            s[L_TANGENTIAL + i] *= wet
+            s[L_LIFT + i] *= wet
+
+
+@compiled
+def gather_load(s, load, gravity, several):
+    """Add a load's part in the moments: what turns the rod by itself, and its normal drag."""
+    lever, directional = load[LEVER], load[DIRECTIONAL]
+    for i in range(LANES):
+        u, v, w, density = s[U + i], s[V + i], s[W + i], s[DENSITY + i]
+        scale = lever * density * PER_DENSITY
+        vv = u * u + v * v + w * w
+        kn = scale * s[L_NORMAL + i]
+        drag = (1.0 - directional) * kn * sqrt(vv)
+        excess = (density - REFERENCE_DENSITY) * gravity
+        s[AX + i] += lever * s[L_EAST + i] + drag * u
+        s[AY + i] += lever * s[L_NORTH + i] + drag * v
+        s[AZ + i] += (
+            lever * (s[L_BUOYANCY + i] + excess * s[L_VOLUME + i])
+            + scale * s[L_LIFT + i] * vv
+            + drag * w
+        )
+        share = directional * kn
+        if several:
+            cx = v * s[NZ + i] - w * s[NY + i]
+            cy = w * s[NX + i] - u * s[NZ + i]
+            cz = u * s[NY + i] - v * s[NX + i]
+            share *= sqrt(cx * cx + cy * cy + cz * cz)
+        s[K + i] += share
+        weight = share if several else directional
+        s[GX + i] += weight * u
+        s[GY + i] += weight * v
+        s[GZ + i] += weight * w
+
+
+@compiled
+def mean_current(s):
+    """One current and coefficient that reproduce the sum of several normal drags."""
+    for i in range(LANES):
+        total = s[K + i]
+        divisor = total if total > 0.0 else 1.0
+        gx, gy, gz = s[GX + i] / divisor, s[GY + i] / divisor, s[GZ + i] / divisor
+        cx = gy * s[NZ + i] - gz * s[NY + i]
+        cy = gz * s[NX + i] - gx * s[NZ + i]
+        cz = gx * s[NY + i] - gy * s[NX + i]
+        across = sqrt(cx * cx + cy * cy + cz * cz)
+        s[K + i] = total / across if across > 0.0 else 0.0
+        s[GX + i], s[GY + i], s[GZ + i] = gx, gy, gz
+
+
+@compiled
+def turn_rod(s):
+    """Newton steps for the share of the gathered drag."""
+    for i in range(LANES):
+        ax, ay, az, k = s[AX + i], s[AY + i], s[AZ + i], s[K + i]
+        u, v, w = s[GX + i], s[GY + i], s[GZ + i]
+        aa = ax * ax + ay * ay + az * az
+        av = ax * u + ay * v + az * w
+        vv = u * u + v * v + w * w
+        cx, cy, cz = ay * w - az * v, az * u - ax * w, ax * v - ay * u
+        target = k * sqrt(cx * cx + cy * cy + cz * cz)
+        # the share is less than of the current across, and less than if it did not turn the rod
+        first, most = target / sqrt(aa), k * sqrt(vv)
+        _, first = share_step(aa, av, vv, target, first if first < most else most)
+        _, c = share_step(aa, av, vv, target, first)
+        step = c - first
+        s[C + i] = c
+        s[DOUBT + i] = step * step * vv / aa
+
+
+@compiled
+def pass_rod(s, level, bounds, rows, loads, length, gravity, limit, even, heads, record):
+    """Take all lanes down a rod; `heads`: it is the first one, which hangs on nothing."""
+    count = loads.shape[0]
+    several = 0.0
+    for j in range(count):
+        several += loads[j, DIRECTIONAL]
+    many = several > 1.0
+    for i in range(LANES):
+        s[NX + i], s[NY + i], s[NZ + i] = s[TX + i], s[TY + i], s[TZ + i]
+        s[CHANGE + i] = inf
+    for turn in range(MOST_PASSES):
+        if heads:
+            for i in range(LANES):
+                tz = s[NZ + i]
+                s[Z + i] = -s[FREE_END + i] - (s[OUT + i] * tz if tz < 0.0 else 0.0)
+        for i in range(LANES):
+            s[AX + i], s[AY + i], s[AZ + i] = s[FX + i], s[FY + i], s[FZ + i]
+            s[K + i] = 0.0
+            s[GX + i], s[GY + i], s[GZ + i] = 0.0, 0.0, 0.0
+        for j in range(count):
+            at = loads[j, AT]
+            for i in range(LANES):
+                s[DEPTH + i] = -s[Z + i] - at * s[NZ + i]
+            look_up(s, level, bounds, rows, even)
+            load_of_every_lane(s, loads[j], gravity)
+            gather_load(s, loads[j], gravity, many)
+        if many:
+            mean_current(s)
+        turn_rod(s)
+        exact_shares(s)
+        for i in range(LANES):
+            nx, ny, nz = s[NX + i], s[NY + i], s[NZ + i]
+            tx, ty, tz = axis_along(
+                s[AX + i], s[AY + i], s[AZ + i], s[C + i], s[GX + i], s[GY + i], s[GZ + i]
+            )
+            settled = s[CHANGE + i] <= limit
+            sideways = abs(tx - nx) + abs(ty - ny)
+            change = (length + (s[OUT + i] if heads else 0.0)) * (
+                abs(tz - nz) + (sideways if many else 0.0)
+            )
+            s[NX + i] = nx if settled else tx
+            s[NY + i] = ny if settled else ty
+            s[NZ + i] = nz if settled else tz
+            s[CHANGE + i] = s[CHANGE + i] if settled else change
+        worst = 0.0
+        for i in range(LANES):
+            if not s[CHANGE + i] <= worst:
+                worst = s[CHANGE + i]
+        if worst <= limit:
+            break
+    for i in range(LANES):
+        s[SX + i], s[SY + i], s[SZ + i] = 0.0, 0.0, 0.0
+        s[MX + i], s[MY + i], s[MZ + i] = s[FX + i], s[FY + i], s[FZ + i]
+        if not s[CHANGE + i] <= limit:
+            s[LEAST_PULL + i] = -1.0
+    for j in range(count):
+        if count > 1:
+            at = loads[j, AT]
+            for i in range(LANES):
+                s[DEPTH + i] = -s[Z + i] - at * s[NZ + i]
+            look_up(s, level, bounds, rows, even)
+            load_of_every_lane(s, loads[j], gravity)
+        add_load(s, loads[j], gravity)
+        for i in range(LANES):
+            record[(3 * j) * LANES + i] = s[QX + i]
+            record[(3 * j + 1) * LANES + i] = s[QY + i]
+            record[(3 * j + 2) * LANES + i] = s[QZ + i]
+    if length > 0.0:
+        for i in range(LANES):
+            s[TX + i], s[TY + i], s[TZ + i] = s[NX + i], s[NY + i], s[NZ + i]
+    for i in range(LANES):
+        tx, ty, tz = s[NX + i], s[NY + i], s[NZ + i]
+        s[X + i] += length * tx
+        s[Y + i] += length * ty
+        s[Z + i] += length * tz
+        s[FX + i] += s[SX + i]
+        s[FY + i] += s[SY + i]
+        s[FZ + i] += s[SZ + i]
+        turning = s[MX + i] * tx + s[MY + i] * ty + s[MZ + i] * tz
+        s[LEAST_PULL + i] = -turning if -turning < s[LEAST_PULL + i] else s[LEAST_PULL + i]
+        s[QX + i], s[QY + i], s[QZ + i] = 0.0, 0.0, 0.0
+
+
+@compiled
+def add_load(s, load, gravity):
+    """Force of a load in the current looked up: in QX, QY, QZ, added to the sums."""
+    lever, directional = load[LEVER], load[DIRECTIONAL]
+    for i in range(LANES):
+        u, v, w, density = s[U + i], s[V + i], s[W + i], s[DENSITY + i]
+        scale = density * PER_DENSITY
+        vv = u * u + v * v + w * w
+        kn = scale * s[L_NORMAL + i]
+        drag = (1.0 - directional) * kn * sqrt(vv)
+        qx, qy, qz = drag_force(
+            directional * kn, directional * scale * s[L_TANGENTIAL + i],
+            u, v, w, s[NX + i], s[NY + i], s[NZ + i],
+        )  # fmt: skip
+        excess = (density - REFERENCE_DENSITY) * gravity
+        qx += drag * u + s[L_EAST + i]
+        qy += drag * v + s[L_NORTH + i]
+        qz += drag * w + s[L_BUOYANCY + i] + excess * s[L_VOLUME + i] + scale * s[L_LIFT + i] * vv
+        s[QX + i], s[QY + i], s[QZ + i] = qx, qy, qz
+        s[SX + i] += qx
+        s[SY + i] += qy
+        s[SZ + i] += qz
+        s[MX + i] += lever * qx
+        s[MY + i] += lever * qy
+        s[MZ + i] += lever * qz
+
+
+@compiled
+def pass_clamp(s, level, bounds, rows, loads, gravity, even, record):
+    """Add an instrument clamped on a cable."""
+    for i in range(LANES):
+        s[DEPTH + i] = -s[Z + i]
+        s[SX + i], s[SY + i], s[SZ + i] = 0.0, 0.0, 0.0
+    look_up(s, level, bounds, rows, even)
+    load_of_every_lane(s, loads[0], gravity)
+    for i in range(LANES):
+        s[AX + i], s[AY + i], s[AZ + i] = s[QX + i], s[QY + i], s[QZ + i]
+    add_load(s, loads[0], gravity)
+    for i in range(LANES):
+        s[FX + i] += s[SX + i]
+        s[FY + i] += s[SY + i]
+        s[FZ + i] += s[SZ + i]
+        s[QX + i], s[QY + i], s[QZ + i] = s[AX + i], s[AY + i], s[AZ + i]
+
+
+@compiled
+def march(s, level, bounds, rows, plan, halvings, even, nodes, forces):
+    """March all lanes from their free ends; their states at every joint go to `nodes`."""
+    kinds, firsts, counts, lengths, cables, cuts, loads, gravity, limit, landing = plan
+    for i in range(LANES):
+        s[X + i], s[Y + i], s[Z + i] = 0.0, 0.0, -s[FREE_END + i]
+        s[FX + i], s[FY + i], s[FZ + i] = 0.0, 0.0, 0.0
+        s[TX + i], s[TY + i], s[TZ + i] = 0.0, 0.0, -1.0
+        s[QX + i], s[QY + i], s[QZ + i] = 0.0, 0.0, 0.0
+        s[LOWEST + i], s[HIGHEST + i] = inf, -inf
+        s[LIGHTEST + i], s[LEAST_PULL + i] = inf, inf
+    cable = 0
+    for n in range(kinds.size):
+        first, count = firsts[n], counts[n]
+        if kinds[n] == CABLE:
+            pass_segments(
+                s, level, bounds, rows, cables[cable], cuts[first : first + count],
+                halvings, gravity, even,
+            )  # fmt: skip
+            cable += 1
+        else:
+            mine, written = loads[first : first + count], forces[3 * LANES * first :]
+            if kinds[n] == ROD:
+                pass_rod(
+                    s, level, bounds, rows, mine, lengths[n], gravity, limit, even, n == 0, written
+                )
+            else:
+                pass_clamp(s, level, bounds, rows, mine, gravity, even, written)
+        if n >= landing:
+            for i in range(LANES):
+                fz = s[FZ + i]
+                s[LIGHTEST + i] = fz if fz < s[LIGHTEST + i] else s[LIGHTEST + i]
+        if n == 0:
+            note(s, nodes, 0)
+            for i in range(LANES):
+                nodes[X + i] = 0.0
+                nodes[Y + i] = 0.0
+                nodes[Z + i] = s[Z + i] - lengths[0] * s[TZ + i]
+                nodes[FX + i], nodes[FY + i], nodes[FZ + i] = 0.0, 0.0, 0.0
+        note(s, nodes, n + 1)
+
+
+@compiled
+def note(s, nodes, n):
+    """Record the state of all lanes."""
+    base = n * STATE * LANES
+    for i in range(STATE * LANES):
+        nodes[base + i] = s[i]
+    for i in range(LANES):
+        z = s[Z + i]
+        s[LOWEST + i] = z if z < s[LOWEST + i] else s[LOWEST + i]
+        s[HIGHEST + i] = z if z > s[HIGHEST + i] else s[HIGHEST + i]
