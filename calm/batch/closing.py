@@ -38,7 +38,7 @@ from calm.batch.kernel import (
     FZ,
     march,
 )
-from calm.batch.outcome import write_case
+from calm.batch.outcome import blend, write_case
 from calm.batch.profile import growth_below, lay_profile, read_profile
 
 # how a case ended
@@ -90,6 +90,8 @@ def solve_block(plan, parts, mooring, riding, rigid, shares, fixed, depth, u, v,
     nodes, forces = np.zeros(nodes_size), np.zeros(forces_size)
     old_nodes, old_forces = np.zeros(nodes_size), np.zeros(forces_size)
     new_nodes, new_forces = np.zeros(nodes_size), np.zeros(forces_size)
+    joints, axes = np.zeros(nodes_size), np.zeros(nodes_size)
+    blended, scratch = np.zeros(forces_size), np.zeros(3)
     task = np.full(LANES, DONE)
     reason = np.zeros(LANES, np.int64)
     growth = np.zeros(LANES)
@@ -328,16 +330,19 @@ def solve_block(plan, parts, mooring, riding, rigid, shares, fixed, depth, u, v,
                 if not settled[i] and turn[i] == MOST_CORRECTIONS:
                     settled[i] = finished[i] = True
                     reason[i] = UNCLOSED
+        if grid >= first_grid:
+            blend(plan, old_nodes, new_nodes, old_forces, new_forces, joints, axes, blended)
         for i in range(LANES):
             if finished[i]:
                 continue
             if grid >= first_grid:
                 error = worst_error(old_nodes, new_nodes, i, kinds.size, span)
                 if error <= 1.0:
+                    used = 1.0 + min((4.0 * newer_root[i] - older_root[i]) / 3.0, 0.0)
                     write_case(
-                        plan, parts, old_nodes, new_nodes, old_forces, new_forces, i,
-                        1.0 + min((4.0 * newer_root[i] - older_root[i]) / 3.0, 0.0), error, results, cases[i],
-                    )
+                        plan, parts, joints, axes, blended, i, used, error, results, cases[i],
+                        scratch,
+                    )  # fmt: skip
                     if s[LEAST_PULL + i] < 0.0:
                         reason[i] = COMPRESSED
                     elif s[LOWEST + i] < goal - 1e-5 * span - lies[0]:

@@ -38,7 +38,8 @@ L_BUOYANCY, L_VOLUME, L_NORMAL, L_TANGENTIAL, L_LIFT, L_EAST, L_NORTH = 45 * LAN
 SX, SY, SZ = 52 * LANES, 53 * LANES, 54 * LANES
 MX, MY, MZ = 55 * LANES, 56 * LANES, 57 * LANES
 TOTAL = 58 * LANES
-SCRATCH = 59 * LANES
+TRIED = 59 * LANES  # rise of the axis at which the loads of a rod are looked up
+SCRATCH = 60 * LANES
 
 ROD, CABLE, CLAMP = 0, 1, 2
 AT, LEVER, BUOYANCY, VOLUME, NORMAL, TANGENTIAL, LIFT, DIRECTIONAL, AFLOAT = range(9)
@@ -250,10 +251,12 @@ def pass_rod(s, level, bounds, rows, loads, length, gravity, limit, even, heads,
     for i in range(LANES):
         s[NX + i], s[NY + i], s[NZ + i] = s[TX + i], s[TY + i], s[TZ + i]
         s[CHANGE + i] = inf
-    for turn in range(MOST_PASSES):
+    for _ in range(MOST_PASSES):
+        for i in range(LANES):
+            s[TRIED + i] = s[TRIED + i] if s[CHANGE + i] <= limit else s[NZ + i]
         if heads:
             for i in range(LANES):
-                tz = s[NZ + i]
+                tz = s[TRIED + i]
                 s[Z + i] = -s[FREE_END + i] - (s[OUT + i] * tz if tz < 0.0 else 0.0)
         for i in range(LANES):
             s[AX + i], s[AY + i], s[AZ + i] = s[FX + i], s[FY + i], s[FZ + i]
@@ -262,7 +265,7 @@ def pass_rod(s, level, bounds, rows, loads, length, gravity, limit, even, heads,
         for j in range(count):
             at = loads[j, AT]
             for i in range(LANES):
-                s[DEPTH + i] = -s[Z + i] - at * s[NZ + i]
+                s[DEPTH + i] = -s[Z + i] - at * s[TRIED + i]
             look_up(s, level, bounds, rows, even)
             load_of_every_lane(s, loads[j], gravity)
             gather_load(s, loads[j], gravity, many)
@@ -351,6 +354,85 @@ def add_load(s, load, gravity):
 
 
 @compiled
+def pass_piece(s, level, bounds, rows, loads, j, length, gravity, limit, even):
+    """Take all lanes down a rod of one load: as `pass_rod`, in fewer steps."""
+    at, lever, directional = loads[j, AT], loads[j, LEVER], loads[j, DIRECTIONAL]
+    buoyancy, volume, lifting = loads[j, BUOYANCY], loads[j, VOLUME], loads[j, LIFT]
+    normal, tangential = loads[j, NORMAL], loads[j, TANGENTIAL]
+    against = (1.0 - directional) * normal
+    normal *= directional
+    tangential *= directional
+    for i in range(LANES):
+        s[NX + i], s[NY + i], s[NZ + i] = s[TX + i], s[TY + i], s[TZ + i]
+        s[TRIED + i] = s[TZ + i]
+        s[CHANGE + i] = inf
+    for _ in range(MOST_PASSES):
+        for i in range(LANES):
+            s[DEPTH + i] = -s[Z + i] - at * s[TRIED + i]
+        look_up(s, level, bounds, rows, even)
+        for i in range(LANES):
+            u, v, w, density = s[U + i], s[V + i], s[W + i], s[DENSITY + i]
+            scale = density * PER_DENSITY
+            vv = u * u + v * v + w * w
+            drag = scale * against * sqrt(vv)
+            lift = buoyancy + (density - REFERENCE_DENSITY) * gravity * volume
+            lift += scale * lifting * vv
+            ax, ay = s[FX + i] + lever * drag * u, s[FY + i] + lever * drag * v
+            az = s[FZ + i] + lever * (lift + drag * w)
+            k = lever * scale * normal
+            aa = ax * ax + ay * ay + az * az
+            av = ax * u + ay * v + az * w
+            cx, cy, cz = ay * w - az * v, az * u - ax * w, ax * v - ay * u
+            target = k * sqrt(cx * cx + cy * cy + cz * cz)
+            # the share is less than if it did not turn the rod
+            first = target / sqrt(aa)
+            _, c = share_step(aa, av, vv, target, first)
+            step = c - first
+            s[AX + i], s[AY + i], s[AZ + i] = ax, ay, az
+            s[K + i], s[C + i], s[DOUBT + i] = k, c, step * step * vv / aa
+            s[GX + i], s[GY + i], s[GZ + i] = u, v, w
+            s[SX + i], s[SY + i], s[SZ + i] = drag * u, drag * v, lift + drag * w
+            s[PULL + i] = scale
+        exact_shares(s)
+        for i in range(LANES):
+            tx, ty, tz = axis_along(
+                s[AX + i], s[AY + i], s[AZ + i], s[C + i], s[GX + i], s[GY + i], s[GZ + i]
+            )
+            settled = s[CHANGE + i] <= limit
+            nx, ny, nz = s[NX + i], s[NY + i], s[NZ + i]
+            change = length * abs(tz - nz)
+            tx, ty, tz = nx if settled else tx, ny if settled else ty, nz if settled else tz
+            change = s[CHANGE + i] if settled else change
+            s[NX + i], s[NY + i], s[NZ + i], s[CHANGE + i] = tx, ty, tz, change
+            s[TRIED + i] = s[TRIED + i] if change <= limit else tz
+        settling = False
+        for i in range(LANES):
+            settling |= not s[CHANGE + i] <= limit
+        if not settling:
+            break
+    for i in range(LANES):
+        tx, ty, tz = s[NX + i], s[NY + i], s[NZ + i]
+        scale = s[PULL + i]
+        qx, qy, qz = drag_force(
+            scale * normal, scale * tangential, s[GX + i], s[GY + i], s[GZ + i], tx, ty, tz
+        )
+        qx, qy, qz = qx + s[SX + i], qy + s[SY + i], qz + s[SZ + i]
+        fx, fy, fz = s[FX + i], s[FY + i], s[FZ + i]
+        pull = -((fx + lever * qx) * tx + (fy + lever * qy) * ty + (fz + lever * qz) * tz)
+        least = s[LEAST_PULL + i]
+        pull = pull if s[CHANGE + i] <= limit else -1.0
+        s[LEAST_PULL + i] = pull if pull < least else least
+        s[X + i] += length * tx
+        s[Y + i] += length * ty
+        s[Z + i] += length * tz
+        s[FX + i], s[FY + i], s[FZ + i] = fx + qx, fy + qy, fz + qz
+        s[NX + i], s[NY + i], s[NZ + i] = tx, ty, tz
+    if length > 0.0:
+        for i in range(LANES):
+            s[TX + i], s[TY + i], s[TZ + i] = s[NX + i], s[NY + i], s[NZ + i]
+
+
+@compiled
 def pass_clamp(s, level, bounds, rows, loads, gravity, even, record):
     """Add an instrument clamped on a cable."""
     for i in range(LANES):
@@ -390,7 +472,11 @@ def march(s, level, bounds, rows, plan, halvings, even, nodes, forces):
             cable += 1
         else:
             mine, written = loads[first : first + count], forces[3 * LANES * first :]
-            if kinds[n] == ROD:
+            if kinds[n] == ROD and count == 1 and n > 0:
+                pass_piece(
+                    s, level, bounds, rows, loads, first, lengths[n], gravity, limit, even
+                )
+            elif kinds[n] == ROD:
                 pass_rod(
                     s, level, bounds, rows, mine, lengths[n], gravity, limit, even, n == 0, written
                 )
