@@ -21,25 +21,27 @@ for formula in (share_step, axis_along, drag_force, drag_share):
     compilable(formula)
 
 # rows of the scratch array
-X, Y, Z = 0 * LANES, 1 * LANES, 2 * LANES
-FX, FY, FZ = 3 * LANES, 4 * LANES, 5 * LANES
-TX, TY, TZ = 6 * LANES, 7 * LANES, 8 * LANES
-QX, QY, QZ = 9 * LANES, 10 * LANES, 11 * LANES
-PULL, DEPTH = 12 * LANES, 13 * LANES
-U, V, W, DENSITY = 14 * LANES, 15 * LANES, 16 * LANES, 17 * LANES
-AX, AY, AZ = 18 * LANES, 19 * LANES, 20 * LANES
-K, GX, GY, GZ = 21 * LANES, 22 * LANES, 23 * LANES, 24 * LANES
-C, DOUBT = 25 * LANES, 26 * LANES
-LOWEST, HIGHEST, LIGHTEST, LEAST_PULL = 27 * LANES, 28 * LANES, 29 * LANES, 30 * LANES
-FREE_END, SHARE, OUT, WET, HELD, WIND_EAST, WIND_NORTH = 31 * LANES, 32 * LANES, 33 * LANES, 34 * LANES, 35 * LANES, 36 * LANES, 37 * LANES
-EVEN_U, EVEN_V, EVEN_W = 38 * LANES, 39 * LANES, 40 * LANES
-NX, NY, NZ, CHANGE = 41 * LANES, 42 * LANES, 43 * LANES, 44 * LANES
-L_BUOYANCY, L_VOLUME, L_NORMAL, L_TANGENTIAL, L_LIFT, L_EAST, L_NORTH = 45 * LANES, 46 * LANES, 47 * LANES, 48 * LANES, 49 * LANES, 50 * LANES, 51 * LANES
-SX, SY, SZ = 52 * LANES, 53 * LANES, 54 * LANES
-MX, MY, MZ = 55 * LANES, 56 * LANES, 57 * LANES
-TOTAL = 58 * LANES
-TRIED = 59 * LANES  # rise of the axis at which the loads of a rod are looked up
-SCRATCH = 60 * LANES
+(
+    # place, force above, axis: these are recorded
+    X, Y, Z, FX, FY, FZ, TX, TY, TZ,
+    # load per metre of the last segment; pull at its middle; where to look up
+    QX, QY, QZ, PULL, DEPTH,
+    # current and density there
+    U, V, W, DENSITY,
+    # what turns an element and its drag, see `calm.physics.element`
+    AX, AY, AZ, K, GX, GY, GZ, C, DOUBT,
+    # extremes of heights, of the vertical force low down, of the pull
+    LOWEST, HIGHEST, LIGHTEST, LEAST_PULL,
+    # how the free end is placed
+    FREE_END, SHARE, OUT, WET, HELD, WIND_EAST, WIND_NORTH,
+    # axis of a rod, its rise where its loads are looked up, its last change
+    NX, NY, NZ, TRIED, CHANGE,
+    # a load as it is in each lane
+    L_BUOYANCY, L_VOLUME, L_NORMAL, L_TANGENTIAL, L_LIFT, L_EAST, L_NORTH,
+    # sums of loads, and of what turns a rod
+    SX, SY, SZ, MX, MY, MZ,
+) = (row * LANES for row in range(56))  # fmt: skip
+SCRATCH = 56 * LANES
 
 ROD, CABLE, CLAMP = 0, 1, 2
 AT, LEVER, BUOYANCY, VOLUME, NORMAL, TANGENTIAL, LIFT, DIRECTIONAL, AFLOAT = range(9)
@@ -53,28 +55,24 @@ ITSELF, ABOVE_IT = 1.0, 2.0
 
 
 @compiled
-def look_up(s, level, bounds, rows, even):
-    """Current and density of every lane at its depth; with `even`, one current at all depths."""
+def look_up(s, water):
+    """Current and density of every lane at its depth, in the profile of its slot."""
+    slots, level, bounds, rows = water
     for i in range(LANES):
         depth = s[DEPTH + i]
         if not abs(depth) < FAR:
             depth = 0.0
-        j = level[i]
-        while depth >= bounds[i, j + 1]:
+        slot, j = slots[i], level[i]
+        while depth >= bounds[slot, j + 1]:
             j += 1
-        while depth < bounds[i, j]:
+        while depth < bounds[slot, j]:
             j -= 1
         level[i] = j
-        below = depth - rows[i, j, 0]
-        s[U + i] = rows[i, j, 1] + rows[i, j, 2] * below
-        s[V + i] = rows[i, j, 3] + rows[i, j, 4] * below
-        s[W + i] = rows[i, j, 5] + rows[i, j, 6] * below
-        s[DENSITY + i] = rows[i, j, 7] + rows[i, j, 8] * below
-    if even:
-        for i in range(LANES):
-            s[U + i] = s[EVEN_U + i]
-            s[V + i] = s[EVEN_V + i]
-            s[W + i] = s[EVEN_W + i]
+        below = depth - rows[slot, j, 0]
+        s[U + i] = rows[slot, j, 1] + rows[slot, j, 2] * below
+        s[V + i] = rows[slot, j, 3] + rows[slot, j, 4] * below
+        s[W + i] = rows[slot, j, 5] + rows[slot, j, 6] * below
+        s[DENSITY + i] = rows[slot, j, 7] + rows[slot, j, 8] * below
 
 
 @compiled
@@ -88,7 +86,7 @@ def exact_shares(s):
 
 
 @compiled
-def pass_segments(s, level, bounds, rows, cable, cuts, halvings, gravity, even):
+def pass_segments(s, water, cable, cuts, halvings, gravity):
     """Take all lanes down a stretch of cable; each cut is halved so many times."""
     buoyancy, volume, kn, kt = cable[C_BUOYANCY], cable[C_VOLUME], cable[C_NORMAL], cable[C_TANGENTIAL]
     compliance, thinning = cable[C_COMPLIANCE], cable[C_THINNING]
@@ -102,7 +100,7 @@ def pass_segments(s, level, bounds, rows, cable, cuts, halvings, gravity, even):
                 pull = sqrt(gx * gx + gy * gy + gz * gz)
                 s[PULL + i] = pull
                 s[DEPTH + i] = -s[Z + i] + half * (1.0 + compliance * pull) * gz / pull
-            look_up(s, level, bounds, rows, even)
+            look_up(s, water)
             for i in range(LANES):
                 u, v, w, density = s[U + i], s[V + i], s[W + i], s[DENSITY + i]
                 pull = s[PULL + i]
@@ -241,7 +239,7 @@ def turn_rod(s):
 
 
 @compiled
-def pass_rod(s, level, bounds, rows, loads, length, gravity, limit, even, heads, record):
+def pass_rod(s, water, loads, length, gravity, limit, heads, record):
     """Take all lanes down a rod; `heads`: it is the first one, which hangs on nothing."""
     count = loads.shape[0]
     several = 0.0
@@ -266,7 +264,7 @@ def pass_rod(s, level, bounds, rows, loads, length, gravity, limit, even, heads,
             at = loads[j, AT]
             for i in range(LANES):
                 s[DEPTH + i] = -s[Z + i] - at * s[TRIED + i]
-            look_up(s, level, bounds, rows, even)
+            look_up(s, water)
             load_of_every_lane(s, loads[j], gravity)
             gather_load(s, loads[j], gravity, many)
         if many:
@@ -303,7 +301,7 @@ def pass_rod(s, level, bounds, rows, loads, length, gravity, limit, even, heads,
             at = loads[j, AT]
             for i in range(LANES):
                 s[DEPTH + i] = -s[Z + i] - at * s[NZ + i]
-            look_up(s, level, bounds, rows, even)
+            look_up(s, water)
             load_of_every_lane(s, loads[j], gravity)
         add_load(s, loads[j], gravity)
         for i in range(LANES):
@@ -354,7 +352,7 @@ def add_load(s, load, gravity):
 
 
 @compiled
-def pass_piece(s, level, bounds, rows, loads, j, length, gravity, limit, even):
+def pass_piece(s, water, loads, j, length, gravity, limit):
     """Take all lanes down a rod of one load: as `pass_rod`, in fewer steps."""
     at, lever, directional = loads[j, AT], loads[j, LEVER], loads[j, DIRECTIONAL]
     buoyancy, volume, lifting = loads[j, BUOYANCY], loads[j, VOLUME], loads[j, LIFT]
@@ -369,7 +367,7 @@ def pass_piece(s, level, bounds, rows, loads, j, length, gravity, limit, even):
     for _ in range(MOST_PASSES):
         for i in range(LANES):
             s[DEPTH + i] = -s[Z + i] - at * s[TRIED + i]
-        look_up(s, level, bounds, rows, even)
+        look_up(s, water)
         for i in range(LANES):
             u, v, w, density = s[U + i], s[V + i], s[W + i], s[DENSITY + i]
             scale = density * PER_DENSITY
@@ -433,12 +431,12 @@ def pass_piece(s, level, bounds, rows, loads, j, length, gravity, limit, even):
 
 
 @compiled
-def pass_clamp(s, level, bounds, rows, loads, gravity, even, record):
+def pass_clamp(s, water, loads, gravity, record):
     """Add an instrument clamped on a cable."""
     for i in range(LANES):
         s[DEPTH + i] = -s[Z + i]
         s[SX + i], s[SY + i], s[SZ + i] = 0.0, 0.0, 0.0
-    look_up(s, level, bounds, rows, even)
+    look_up(s, water)
     load_of_every_lane(s, loads[0], gravity)
     for i in range(LANES):
         s[AX + i], s[AY + i], s[AZ + i] = s[QX + i], s[QY + i], s[QZ + i]
@@ -451,7 +449,7 @@ def pass_clamp(s, level, bounds, rows, loads, gravity, even, record):
 
 
 @compiled
-def march(s, level, bounds, rows, plan, halvings, even, nodes, forces):
+def march(s, water, plan, halvings, nodes, forces):
     """March all lanes from their free ends; their states at every joint go to `nodes`."""
     kinds, firsts, counts, lengths, cables, cuts, loads, gravity, limit, landing = plan
     for i in range(LANES):
@@ -466,22 +464,22 @@ def march(s, level, bounds, rows, plan, halvings, even, nodes, forces):
         first, count = firsts[n], counts[n]
         if kinds[n] == CABLE:
             pass_segments(
-                s, level, bounds, rows, cables[cable], cuts[first : first + count],
-                halvings, gravity, even,
+                s, water, cables[cable], cuts[first : first + count],
+                halvings, gravity,
             )  # fmt: skip
             cable += 1
         else:
             mine, written = loads[first : first + count], forces[3 * LANES * first :]
             if kinds[n] == ROD and count == 1 and n > 0:
                 pass_piece(
-                    s, level, bounds, rows, loads, first, lengths[n], gravity, limit, even
+                    s, water, loads, first, lengths[n], gravity, limit
                 )
             elif kinds[n] == ROD:
                 pass_rod(
-                    s, level, bounds, rows, mine, lengths[n], gravity, limit, even, n == 0, written
+                    s, water, mine, lengths[n], gravity, limit, n == 0, written
                 )
             else:
-                pass_clamp(s, level, bounds, rows, mine, gravity, even, written)
+                pass_clamp(s, water, mine, gravity, written)
         if n >= landing:
             for i in range(LANES):
                 fz = s[FZ + i]

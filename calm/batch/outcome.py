@@ -5,7 +5,8 @@ from __future__ import annotations
 from math import atan2, pi, sqrt
 
 from calm.batch.compiled import compiled
-from calm.batch.kernel import AT, CLAMP, LANES, ROD, STATE, TX as FX_END
+from calm.batch.kernel import AT, CLAMP, ROD, STATE
+from calm.solve.refine import DEPTH_TARGET, TENSION_TARGET
 
 DEPTH, EAST, NORTH, TENSION_TOP, TENSION_BOTTOM, TILT = range(6)
 OF_PIECE = ("depth_top", "x_top", "y_top", "tension_top", "tension_bottom", "tilt")
@@ -26,109 +27,124 @@ def size_of(x, y, z):
 
 
 @compiled
-def blend(plan, old, new, old_forces, new_forces, joints, axes, forces):
-    """What the shapes on cuts and on halved cuts lead to, in all lanes.
+def blend(plan, old, new, blended):
+    """What the shapes on cuts and on halved cuts lead to.
 
     Places and forces are of second order in the cuts, the axis of what ends at a joint of first.
     """
-    kinds, loads = plan[0], plan[6]
-    end = kinds.size * STATE * LANES
-    for n in range(kinds.size + 1):
-        base = n * STATE * LANES
-        to = 6 * n * LANES
-        for c in (0, LANES):
-            for i in range(LANES):
-                here = new[base + c + i] - new[end + c + i]
-                before = old[base + c + i] - old[end + c + i]
-                joints[to + c + i] = here + (here - before) / 3.0
-        for k in range(2 * LANES, 6 * LANES):
-            joints[to + k] = new[base + k] + (new[base + k] - old[base + k]) / 3.0
-        for k in range(3 * LANES):
-            axes[3 * n * LANES + k] = 2.0 * new[base + FX_END + k] - old[base + FX_END + k]
-    for k in range(3 * loads.shape[0] * LANES):
-        forces[k] = new_forces[k] + (new_forces[k] - old_forces[k]) / 3.0
+    stages = plan[0].size
+    end = stages * STATE
+    for n in range(stages + 1):
+        base = n * STATE
+        for c in range(2):
+            here, before = new[base + c] - new[end + c], old[base + c] - old[end + c]
+            blended[base + c] = here + (here - before) / 3.0
+        for c in range(2, 6):
+            blended[base + c] = new[base + c] + (new[base + c] - old[base + c]) / 3.0
+        for c in range(6, 9):
+            blended[base + c] = 2.0 * new[base + c] - old[base + c]
+    for k in range(end + STATE, new.size):
+        blended[k] = new[k] + (new[k] - old[k]) / 3.0
+    blended[end], blended[end + 1] = 0.0, 0.0
 
 
 @compiled
-def write_case(plan, parts, joints, axes, forces, i, used, error, results, case, scratch):
-    """Write a lane's case to its row."""
+def worst_error(old, new, stages, span):
+    """What halving the cuts changed, over what it may change: a third of it is the error."""
+    end = stages * STATE
+    place = tension = greatest = 0.0
+    for n in range(stages + 1):
+        at = n * STATE
+        greatest = max(greatest, new[at + 3] ** 2 + new[at + 4] ** 2 + new[at + 5] ** 2)
+    floor = max(1e-3 * sqrt(greatest), 1e-300)
+    for n in range(stages + 1):
+        at = n * STATE
+        for c in range(2):
+            place = max(place, abs(new[at + c] - new[end + c] - old[at + c] + old[end + c]))
+        place = max(place, abs(new[at + 2] - old[at + 2]))
+        pull = size_of(new[at + 3], new[at + 4], new[at + 5])
+        before = size_of(old[at + 3], old[at + 4], old[at + 5])
+        tension = max(tension, abs(pull - before) / max(pull, floor))
+    return max(place / (3.0 * DEPTH_TARGET * span), tension / (3.0 * TENSION_TARGET))
+
+
+@compiled
+def write_case(plan, parts, shape, used, error, results, case):
+    """Write a case's shape to its row of the results."""
     kinds, firsts, counts, lengths = plan[0], plan[1], plan[2], plan[3]
-    piece_of_stage, piece_of_load, clamp_of_load, piece_length, head = parts
+    piece_of_stage, _, clamp_of_load, piece_length, head = parts
     pieces, clamps, ends = results
     stages = kinds.size
     written = -1
+    ox = oy = oz = 0.0
     for n in range(stages):
-        a, b = 6 * n * LANES + i, 6 * (n + 1) * LANES + i
+        a, b = n * STATE, (n + 1) * STATE
         if kinds[n] == ROD and counts[n] > 1:
-            written = walk_rod(plan, parts, joints, forces, i, n, pieces, clamps, case, scratch)
+            written = walk_rod(plan, parts, shape, n, pieces, clamps, case)
             continue
         p = piece_of_stage[n]
-        fx, fy, fz = joints[a + 3 * LANES], joints[a + 4 * LANES], joints[a + 5 * LANES]
-        gx, gy, gz = joints[b + 3 * LANES], joints[b + 4 * LANES], joints[b + 5 * LANES]
+        fx, fy, fz = shape[a + 3], shape[a + 4], shape[a + 5]
+        gx, gy, gz = shape[b + 3], shape[b + 4], shape[b + 5]
         upper, lower = size_of(fx, fy, fz), size_of(gx, gy, gz)
         if p > written:
             written = p
-            scratch[0], scratch[1], scratch[2] = fx, fy, fz
-            pieces[case, EAST, p], pieces[case, NORTH, p] = joints[a], joints[a + LANES]
-            pieces[case, DEPTH, p] = -joints[a + 2 * LANES]
+            ox, oy, oz = fx, fy, fz
+            pieces[case, DEPTH, p] = -shape[a + 2]
+            pieces[case, EAST, p], pieces[case, NORTH, p] = shape[a], shape[a + 1]
             pieces[case, TENSION_TOP, p] = upper
         pieces[case, TENSION_BOTTOM, p] = lower
         if kinds[n] == CLAMP:
             m = clamp_of_load[firsts[n]]
-            clamps[case, 0, m] = -joints[a + 2 * LANES]
-            clamps[case, 1, m], clamps[case, 2, m] = joints[a], joints[a + LANES]
+            clamps[case, 0, m] = -shape[a + 2]
+            clamps[case, 1, m], clamps[case, 2, m] = shape[a], shape[a + 1]
             clamps[case, 3, m] = max(upper, lower)
-            k = 3 * n * LANES + i
-            clamps[case, 4, m] = tilt_of(axes[k], axes[k + LANES], -axes[k + 2 * LANES])
+            clamps[case, 4, m] = tilt_of(shape[a + 6], shape[a + 7], -shape[a + 8])
         if n + 1 == stages or piece_of_stage[n + 1] != p:
             if piece_length[p] > 0.0:
                 pieces[case, TILT, p] = tilt_of(
-                    pieces[case, EAST, p] - joints[b],
-                    pieces[case, NORTH, p] - joints[b + LANES],
-                    -pieces[case, DEPTH, p] - joints[b + 2 * LANES],
+                    pieces[case, EAST, p] - shape[b],
+                    pieces[case, NORTH, p] - shape[b + 1],
+                    -pieces[case, DEPTH, p] - shape[b + 2],
                 )
             else:
-                pieces[case, TILT, p] = tilt_of(scratch[0] + gx, scratch[1] + gy, scratch[2] + gz)
-    a, b = i, 6 * LANES + i
+                pieces[case, TILT, p] = tilt_of(ox + gx, oy + gy, oz + gz)
     if lengths[0] > 0.0:
         lean = tilt_of(
-            joints[a] - joints[b],
-            joints[a + LANES] - joints[b + LANES],
-            joints[a + 2 * LANES] - joints[b + 2 * LANES],
+            shape[0] - shape[STATE], shape[1] - shape[STATE + 1], shape[2] - shape[STATE + 2]
         )
         for p in range(head):
             pieces[case, TILT, p] = lean
-    b = 6 * stages * LANES + i
-    fx, fy = joints[b + 3 * LANES], joints[b + 4 * LANES]
-    ends[case, 0] = -joints[i + 2 * LANES]
-    ends[case, 1] = joints[b + 5 * LANES]
-    ends[case, 2] = sqrt(fx * fx + fy * fy)
+    b = stages * STATE
+    ends[case, 0] = -shape[2]
+    ends[case, 1] = shape[b + 5]
+    ends[case, 2] = sqrt(shape[b + 3] ** 2 + shape[b + 4] ** 2)
     ends[case, 3] = used
     ends[case, 4] = error
 
 
 @compiled
-def walk_rod(plan, parts, joints, forces, i, n, pieces, clamps, case, scratch):
+def walk_rod(plan, parts, shape, n, pieces, clamps, case):
     """Down a rod of several pieces or with clamps; returns its last piece.
 
     A piece's own load counts as spread along it, a clamp's not.
     """
     first, count, length, loads = plan[1][n], plan[2][n], plan[3][n], plan[6]
     _, piece_of_load, clamp_of_load, piece_length, _ = parts
-    a, b = 6 * n * LANES + i, 6 * (n + 1) * LANES + i
-    x, y, z = joints[a], joints[a + LANES], joints[a + 2 * LANES]
-    fx, fy, fz = joints[a + 3 * LANES], joints[a + 4 * LANES], joints[a + 5 * LANES]
+    a, b = n * STATE, (n + 1) * STATE
+    forces = (plan[0].size + 1) * STATE
+    x, y, z = shape[a], shape[a + 1], shape[a + 2]
+    fx, fy, fz = shape[a + 3], shape[a + 4], shape[a + 5]
     tx = ty = tz = 0.0
     if length > 0.0:
-        tx = (joints[b] - x) / length
-        ty = (joints[b + LANES] - y) / length
-        tz = (joints[b + 2 * LANES] - z) / length
+        tx = (shape[b] - x) / length
+        ty = (shape[b + 1] - y) / length
+        tz = (shape[b + 2] - z) / length
     lean = tilt_of(-tx, -ty, -tz)
     start = 0.0
     p = 0
     j = first
     while j < first + count:
-        p, own = piece_of_load[j], 3 * j * LANES + i
+        p, own = piece_of_load[j], forces + 3 * j
         pieces[case, DEPTH, p], pieces[case, EAST, p], pieces[case, NORTH, p] = -z, x, y
         pieces[case, TENSION_TOP, p] = size_of(fx, fy, fz)
         gx, gy, gz = fx, fy, fz
@@ -140,14 +156,14 @@ def walk_rod(plan, parts, joints, forces, i, n, pieces, clamps, case, scratch):
             step = at - reached
             share = step / piece_length[p] if piece_length[p] > 0.0 else (0.0 if clamp else 1.0)
             x, y, z = x + step * tx, y + step * ty, z + step * tz
-            fx += share * forces[own]
-            fy += share * forces[own + LANES]
-            fz += share * forces[own + 2 * LANES]
+            fx += share * shape[own]
+            fy += share * shape[own + 1]
+            fz += share * shape[own + 2]
             if not clamp:
                 break
             before = size_of(fx, fy, fz)
-            k, m = 3 * j * LANES + i, clamp_of_load[j]
-            fx, fy, fz = fx + forces[k], fy + forces[k + LANES], fz + forces[k + 2 * LANES]
+            k, m = forces + 3 * j, clamp_of_load[j]
+            fx, fy, fz = fx + shape[k], fy + shape[k + 1], fz + shape[k + 2]
             clamps[case, 0, m], clamps[case, 1, m], clamps[case, 2, m] = -z, x, y
             clamps[case, 3, m] = max(before, size_of(fx, fy, fz))
             clamps[case, 4, m] = lean

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from calm.case.mooring import Mooring
 from calm.physics.friction import Friction
 from calm.physics.profile import Profile
+from calm.physics.state import MarchError
 from calm.physics.track import Cable, Load, Rod, Track, head_count
 from calm.solve.closing import Closing
 from calm.solve.locate import SHARES, _upright
@@ -17,11 +18,29 @@ from calm.solve.locate import SHARES, _upright
 SEGMENTS = 50
 
 
+SOFT = 0.3
+
 def cuts_of(track: Track, depth: float, count: int) -> list[np.ndarray]:
-    cables = [s for s in track.stages if isinstance(s, Cable)]
-    total = sum(c.length for c in cables)
-    reach = total / count
-    return [np.full(max(round(c.length / reach), 1), c.length / max(round(c.length / reach), 1)) for c in cables]
+    """Base cuts: short where the line stands near the surface, where currents shear."""
+    import os
+    soft = float(os.environ.get("SOFT", SOFT)) * depth
+    below = sum(s.length for s in track.stages if not isinstance(s, Load))
+    spans = []
+    for s in track.stages:
+        if isinstance(s, Load):
+            continue
+        top = max(depth - below, 0.0)
+        below -= s.length
+        if isinstance(s, Cable):
+            spans.append((np.log(top + soft), np.log(top + s.length + soft), s.length, top))
+    total = sum(b - a for a, b, *_ in spans)
+    cuts = []
+    for a, b, length, top in spans:
+        n = max(round(count * (b - a) / total), 1)
+        edges = np.exp(np.linspace(a, b, n + 1)) - soft - top
+        edges[0], edges[-1] = 0.0, length
+        cuts.append(np.diff(edges))
+    return cuts
 
 
 class Plan:
@@ -77,8 +96,24 @@ class Plan:
                 rows.append([r.standing, r.above, r.drag, *r.push])
             self.riding = np.array(rows)
         H = water.depth
-        self.mooring = (H, line.anchor_height - H, self.upright, in_head, line.floating is not None, (line.anchor_height, float(line.length.sum() > H)), first_grid)
-        self.shares = np.array(SHARES)
+        self.mooring = (H, line.anchor_height - H, self.upright, in_head, line.floating is not None, line.anchor_height, bool(line.length.sum() > H), first_grid)
+        self.floating = (self.riding, self.rigid)
+        self.chances = (np.array(SHARES), falls_of(closing, unknown, self.upright))
         lev = water.level
         self.fixed = np.column_stack([lev, 0*lev, 0*lev, water.density])
         self.pieces = len(line.length)
+
+
+def falls_of(closing, unknown, top):
+    """Knockdown in even currents, every 0.05 m/s up to 4 m/s."""
+    step, falls = 0.05, []
+    water = closing.water
+    for n in range(81):
+        zero = np.zeros_like(water.u)
+        even = Profile(replace(water, u=zero + step * n, v=zero, w=zero))
+        try:
+            z = closing.run(unknown, top, closing.coarse_step, profile=even).z
+        except MarchError:
+            z = 0.0
+        falls.append(max(z - unknown.goal, closing.allowed))
+    return np.array([*falls, step])

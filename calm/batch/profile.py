@@ -104,14 +104,13 @@ def _value(table, count, k, depth, c):
 def growth_below(joined, total, top):
     """Largest growth of the current with depth below `top`, relative to the top speed [1/m].
 
-    As `calm.solve.locate` has it; with the greatest current.
+    As `calm.solve.locate` has it; and that speed [m/s].
     """
     greatest = rise = 0.0
-    which = 0
     for k in range(total):
         size = joined[k, 1] ** 2 + joined[k, 2] ** 2 + joined[k, 3] ** 2
         if size > greatest:
-            greatest, which = size, k
+            greatest = size
         if k + 1 < total and joined[k + 1, 0] > top:
             product = square = 0.0
             for c in range(1, 4):
@@ -122,4 +121,4 @@ def growth_below(joined, total, top):
             for c in range(1, 4):
                 new += (joined[k + 1, c] - left * joined[k, c]) ** 2
             rise = max(rise, sqrt(new) / (joined[k + 1, 0] - joined[k, 0]))
-    return rise / max(sqrt(greatest), 1e-300), which, greatest > 0.0
+    return rise / max(sqrt(greatest), 1e-300), sqrt(greatest)
