@@ -12,7 +12,7 @@ from math import isfinite, sqrt
 
 import numpy as np
 
-from calm.batch.compiled import compiled
+from calm.batch.compiled import compiled, entry
 from calm.batch.kernel import (
     FREE_END, HELD, HIGHEST, LANES, LEAST_PULL, LIGHTEST, LOWEST, OUT, SCRATCH, SHARE, STATE, WET,
     WIND_EAST, WIND_NORTH, Z, march,
@@ -155,7 +155,7 @@ def refused(s, i, mooring):
     return OUT_OF_WATER if s[HIGHEST + i] > 1e-6 * span else SOLVED
 
 
-@compiled
+@entry
 def solve_cases(plan, parts, mooring, floating, chances, fixed, depth, u, v, w, results, reasons):
     """Solve cases; what they lead to goes to their rows of the results, how they ended to reasons.
 
@@ -215,7 +215,7 @@ def solve_cases(plan, parts, mooring, floating, chances, fixed, depth, u, v, w, 
                     continue
                 blend(plan, older[c], newer[c], joints)
                 used = 1.0 + min((4.0 * seek[c, Y] - earlier[c]) / 3.0, 0.0)
-                write_case(plan, parts, joints, used, error, results, start + c)
+                write_case(plan, parts, joints, used, results, start + c)
                 mine[c] = WRITTEN if refusals[c] == SOLVED else refusals[c]
         for c in range(count):
             reasons[start + c] = SOLVED if mine[c] == WRITTEN else mine[c]

@@ -11,7 +11,7 @@ from calm.solve.refine import DEPTH_TARGET, TENSION_TARGET
 DEPTH, EAST, NORTH, TENSION_TOP, TENSION_BOTTOM, TILT = range(6)
 OF_PIECE = ("depth_top", "x_top", "y_top", "tension_top", "tension_bottom", "tilt")
 OF_CLAMP = ("depth", "x", "y", "tension", "tilt")
-OF_ENDS = ("top_depth", "anchor_vertical", "anchor_horizontal", "used_buoyancy", "error")
+OF_ENDS = ("top_depth", "anchor_vertical", "anchor_horizontal", "used_buoyancy")
 
 
 @compiled
@@ -69,7 +69,7 @@ def worst_error(old, new, stages, span):
 
 
 @compiled
-def write_case(plan, parts, shape, used, error, results, case):
+def write_case(plan, parts, shape, used, results, case):
     """Write a case's shape to its row of the results."""
     kinds, firsts, counts, lengths = plan[0], plan[1], plan[2], plan[3]
     piece_of_stage, _, clamp_of_load, piece_length, head = parts
@@ -119,7 +119,6 @@ def write_case(plan, parts, shape, used, error, results, case):
     ends[case, 1] = shape[b + 5]
     ends[case, 2] = sqrt(shape[b + 3] ** 2 + shape[b + 4] ** 2)
     ends[case, 3] = used
-    ends[case, 4] = error
 
 
 @compiled
