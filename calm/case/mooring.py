@@ -103,11 +103,22 @@ class Mooring:
         NoEquilibrium
             With status, message and advice, where there is none that passes every check.
         """
+        solution = self.equilibrium(self.water)
+        return result_of(self, solution, self._still(solution))
+
+    def equilibrium(self, water: Water) -> Solution:
+        """The line solved in some water, and accepted for what it is and how it is held.
+
+        Raises
+        ------
+        NoEquilibrium
+            As `solve` does.
+        """
         with naming_the_piece(self.file.pieces):
-            solution = solve_mooring(self.line, self.water, self.settings)
+            solution = solve_mooring(self.line, water, self.settings)
         self._refuse_a_lifted_anchor(solution)
         self._refuse_a_heap(solution)
-        return result_of(self, solution, self._still(solution))
+        return solution
 
     def _refuse_a_lifted_anchor(self, solution: Solution) -> None:
         pull, weight = float(solution.force[-1, 2]), self.anchor_weight
@@ -127,9 +138,12 @@ class Mooring:
         """The same line without current; None where it has no unique shape."""
         floating = self.line.floating
         blown = solution.riding is not None and floating is not None and floating.blown
-        if not (self.water.moving or blown):
-            return solution
-        line = self.line
+        return self.at_rest if self.water.moving or blown else solution
+
+    @cached_property
+    def at_rest(self) -> Solution | None:
+        """The line without current and wind; None where it has no unique shape."""
+        line, floating = self.line, self.line.floating
         if floating is not None:
             line = replace(line, floating=replace(floating, wind=(0.0, 0.0)))
         # a plumb line is exact with long segments

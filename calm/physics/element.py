@@ -56,20 +56,28 @@ def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, 
             low = min(trough, high)
     c = min(max(target / sqrt(aa), low), high)
     for _ in range(100):
-        root = sqrt(aa + c * (2.0 * av + c * vv))
-        excess = c * root - target
+        excess, following = share_step(aa, av, vv, target, c)
         if excess > 0.0:
             high = c
         else:
             low = c
-        slope = root + c * (av + c * vv) / root if root > 0.0 else 0.0
-        following = c - excess / slope if slope > 0.0 else high
         if not low <= following <= high:
             following = 0.5 * (low + high)
         if abs(following - c) <= 1e-14 * following:
             return following
         c = following
     return c
+
+
+def share_step(aa: float, av: float, vv: float, target: float, c: float) -> tuple[float, float]:
+    """How far c |A + c V| is above a target, and the next c by Newton; inf where it has no slope.
+
+    `aa`, `av` and `vv` are the products A·A, A·V and V·V.
+    """
+    root = sqrt(aa + c * (2.0 * av + c * vv))
+    excess = c * root - target
+    slope = root + c * (av + c * vv) / root if root > 0.0 else 0.0
+    return excess, (c - excess / slope if slope > 0.0 else inf)
 
 
 def amplified_share(

@@ -44,7 +44,7 @@ def locate(closing: Closing, lands: bool) -> tuple[Root, Root | None]:
     """
     unknown = closing.whole(lands)
     miss = closing.coarse_miss(unknown)
-    upright = _upright(closing, unknown)
+    upright = upright_depth(closing, unknown)
     samples = [(upright, miss(upright))]
     if samples[0][1] < 0.0 < upright:
         # the current's pull stretches the line further
@@ -62,7 +62,7 @@ def locate(closing: Closing, lands: bool) -> tuple[Root, Root | None]:
     return roots[0], roots[-1] if len(roots) > 1 else None
 
 
-def _upright(closing: Closing, unknown: Unknown) -> float:
+def upright_depth(closing: Closing, unknown: Unknown) -> float:
     """Depth of the free end of the line standing in still water, with its stretch [m]."""
     still = Profile(closing.water.still())
     reach = closing.run(unknown, 0.0, closing.coarse_step, profile=still).z

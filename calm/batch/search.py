@@ -1,0 +1,159 @@
+"""What a lane does next: one step of the search for the root of one case.
+
+Above and below are the ends of its bracket, above where the miss is not negative. `calm.solve.locate`
+has the reasons of each step.
+"""
+
+from __future__ import annotations
+
+from math import isfinite, nan
+
+from calm.batch.compiled import compiled
+
+(
+    Y, ABOVE, ABOVE_MISS, BELOW, BELOW_MISS, LAST, LAST_MISS, OLDER_MISS, SLOPE, FALL, STEP, TURN, STUCK,
+) = range(13)  # fmt: skip
+COLUMNS = 13
+
+# what a lane is about to learn from its next march
+DONE, FIRST, UNLOADED, TOP, AWASH, SCAN, ROOT = range(7)
+
+# how a search ends
+SOLVED, AT_SURFACE, LOST, TURNS_BACK, UNCLOSED = 0, 4, 5, 6, 7
+
+SCANNED = 16
+
+
+@compiled
+def begin(seek, c, growth, speed, upright, falls):
+    """Set out on a case: from the depth of the line standing in still water.
+
+    `falls` are the knockdowns in even currents of growing speed, the last the speed's step.
+    """
+    for column in range(COLUMNS):
+        seek[c, column] = nan
+    seek[c, Y], seek[c, SLOPE], seek[c, TURN], seek[c, STUCK] = upright, -1.0, 0.0, 0.0
+    # where the miss may rise with depth, depths are scanned
+    last = falls.size - 2
+    at = min(speed / falls[last + 1], last - 1e-9)
+    j = int(at)
+    fall = falls[j] + (at - j) * (falls[j + 1] - falls[j])
+    seek[c, FALL] = fall if fall * growth > 0.25 else 0.0
+
+
+@compiled
+def advance(seek, c, task, m, mooring, shares):
+    """The next task of a case whose unknown leads to the miss m, and how its search ended."""
+    span, _, upright, floats, rides = mooring[0], mooring[1], mooring[2], mooring[3], mooring[4]
+    y = seek[c, Y]
+    if not isfinite(m):
+        return DONE, UNCLOSED
+    if task == FIRST:
+        if m >= 0.0:
+            seek[c, ABOVE], seek[c, ABOVE_MISS] = y, m
+            if upright == 0.0 and rides:
+                seek[c, Y] = shares[0] - 1.0
+                return AWASH, SOLVED
+            return go_down(seek, c, span), SOLVED
+        seek[c, BELOW], seek[c, BELOW_MISS] = y, m
+        if upright > 0.0:
+            seek[c, Y] = 0.0
+            return TOP, SOLVED
+        seek[c, Y] = -1.0
+        return (UNLOADED, SOLVED) if floats else (DONE, AT_SURFACE)
+    if task == TOP or task == UNLOADED:
+        if m <= 0.0:
+            return DONE, AT_SURFACE
+        seek[c, ABOVE], seek[c, ABOVE_MISS] = y, m
+        return bracket(seek, c), SOLVED
+    if task == AWASH:
+        if seek[c, LAST_MISS] > 0.0 and m <= 0.0:
+            seek[c, ABOVE], seek[c, ABOVE_MISS] = seek[c, LAST], seek[c, LAST_MISS]
+            seek[c, BELOW], seek[c, BELOW_MISS] = y, m
+            return bracket(seek, c), SOLVED
+        seek[c, TURN] += 1.0
+        seek[c, LAST], seek[c, LAST_MISS] = y, m
+        if seek[c, TURN] < shares.size:
+            seek[c, Y] = shares[int(seek[c, TURN])] - 1.0
+            return AWASH, SOLVED
+        if m <= 0.0:
+            return DONE, TURNS_BACK
+        seek[c, Y] = 0.0
+        return go_down(seek, c, span), SOLVED
+    if task == SCAN:
+        return scan(seek, c, m, span)
+    return narrow(seek, c, m, span)
+
+
+@compiled
+def go_down(seek, c, span):
+    """Begin the search below the surface, from above."""
+    y, m = seek[c, ABOVE], seek[c, ABOVE_MISS]
+    seek[c, LAST], seek[c, LAST_MISS], seek[c, OLDER_MISS] = y, m, nan
+    if m > 1e-7 * span and seek[c, FALL] > 0.0:
+        seek[c, STEP], seek[c, TURN] = (min(y + 1.02 * seek[c, FALL], span) - y) / SCANNED, 1.0
+        seek[c, Y] = y + seek[c, STEP]
+        return SCAN
+    seek[c, Y] = min(y + max(m, 1e-7 * span), span)
+    return ROOT
+
+
+@compiled
+def bracket(seek, c):
+    """Go on between the ends of a bracket, where their chord crosses nothing."""
+    a, fa, b, fb = seek[c, ABOVE], seek[c, ABOVE_MISS], seek[c, BELOW], seek[c, BELOW_MISS]
+    seek[c, SLOPE] = (fb - fa) / (b - a)
+    seek[c, LAST], seek[c, LAST_MISS] = (a, fa) if fa < -fb else (b, fb)
+    seek[c, Y] = a - fa / seek[c, SLOPE]
+    return ROOT
+
+
+@compiled
+def scan(seek, c, m, span):
+    """Go down until the miss is negative."""
+    y, before = seek[c, Y], seek[c, LAST_MISS]
+    if m < 0.0:
+        seek[c, ABOVE], seek[c, ABOVE_MISS] = seek[c, LAST], before
+        seek[c, BELOW], seek[c, BELOW_MISS] = y, m
+        return bracket(seek, c), SOLVED
+    if seek[c, OLDER_MISS] > before and m > before > 0.0:
+        return DONE, TURNS_BACK
+    if y >= span:
+        return DONE, LOST
+    seek[c, OLDER_MISS], seek[c, LAST_MISS], seek[c, LAST] = before, m, y
+    seek[c, TURN] += 1.0
+    seek[c, Y] = min(y + seek[c, STEP], span) if seek[c, TURN] <= SCANNED else span
+    return SCAN, SOLVED
+
+
+@compiled
+def narrow(seek, c, m, span):
+    """One secant step, or one that halves the bracket."""
+    y, last, before = seek[c, Y], seek[c, LAST], seek[c, LAST_MISS]
+    if m >= 0.0:
+        seek[c, ABOVE], seek[c, ABOVE_MISS] = y, m
+    else:
+        seek[c, BELOW], seek[c, BELOW_MISS] = y, m
+    if y != last:
+        seek[c, SLOPE] = (m - before) / (y - last)
+    a, b, slope = seek[c, ABOVE], seek[c, BELOW], seek[c, SLOPE]
+    following = y - m / slope if slope < 0.0 else nan
+    if abs(m) <= 1e-5 * span or abs(b - a) <= 1e-9 * span:
+        if slope < 0.0:
+            seek[c, Y] = following
+        else:
+            seek[c, SLOPE] = -1.0
+        return DONE, SOLVED
+    seek[c, STUCK] = seek[c, STUCK] + 1.0 if abs(m) > 0.5 * abs(before) else 0.0
+    if isfinite(a) and isfinite(b):
+        if not a < following < b or seek[c, STUCK] > 2.0:
+            following = 0.5 * (a + b)
+            seek[c, STUCK] = 0.0
+    elif y >= span:
+        return DONE, LOST
+    else:
+        furthest = y + 4.0 * max(m, y - last)
+        following = min(following if following > y else furthest, furthest, span)
+    seek[c, LAST], seek[c, LAST_MISS] = y, m
+    seek[c, Y] = following
+    return ROOT, SOLVED
