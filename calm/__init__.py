@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from calm.version import __version__ as __version__
 
 if TYPE_CHECKING:
+    from calm.batch.profiles import solve_profiles
     from calm.case import Mooring, Result, Tow, TowResult, load
     from calm.checks.assess import check
     from calm.errors import CalmError, InputError, NoEquilibrium, UsageError
@@ -31,11 +32,13 @@ __all__ = [
     "__version__",
     "check",
     "load",
+    "solve_profiles",
 ]
 
 _HOMES = {
     "load": "calm.case",
     "check": "calm.checks.assess",
+    "solve_profiles": "calm.batch.profiles",
     "Mooring": "calm.case",
     "Result": "calm.case",
     "Tow": "calm.case",

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 from cyclopts import App, CycloptsError, Parameter, UnusedCliTokensError
 
+from calm.cli.batch import BATCH_EXAMPLES, batch
 from calm.cli.catalog import catalog
 from calm.cli.chart import chart
 from calm.cli.check import CHECK_EXAMPLES, check
@@ -29,7 +30,8 @@ _EPILOGUE = """Examples:
   calm run --help
 
 Exit codes: 0 done, 1 a check found something, 2 bad input or usage,
-3 no equilibrium, 70 internal error, 130 interrupted."""
+3 no equilibrium, 70 internal error, 75 a batch incomplete that the same command
+finishes, 130 interrupted."""
 
 
 def _version() -> str:
@@ -50,6 +52,7 @@ app = App(
 )
 app.command(run, usage="Usage: calm run [OPTIONS] FILE...", help_epilogue=RUN_EXAMPLES)
 app.command(check, usage="Usage: calm check [OPTIONS] FILE...", help_epilogue=CHECK_EXAMPLES)
+app.command(batch, help_epilogue=BATCH_EXAMPLES)
 app.command(tow, usage="Usage: calm tow [OPTIONS] FILE...", help_epilogue=TOW_EXAMPLES)
 app.command(size, help_epilogue=SIZE_EXAMPLES)
 app.command(strumming, help_epilogue=STRUMMING_EXAMPLES)

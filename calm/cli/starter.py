@@ -16,7 +16,8 @@ from calm.errors import UsageError
 NEW_EXAMPLES = """Examples:
 
   calm new
-  calm new -o mooring.yaml"""
+  calm new -o mooring.yaml
+  calm new --record -o record.nc"""
 
 SCHEMA_EXAMPLES = """Examples:
 
@@ -24,29 +25,51 @@ SCHEMA_EXAMPLES = """Examples:
 
 
 def new(
-    *, output: Annotated[Path | None, Parameter(alias="-o")] = None, force: bool = False
+    *,
+    record: bool = False,
+    output: Annotated[Path | None, Parameter(alias="-o")] = None,
+    force: bool = False,
 ) -> ExitCode:
-    """Write a commented mooring file to start from.
+    """Write a commented mooring file to start from, or a record of currents for it.
 
     Parameters
     ----------
+    record
+        Write a small made record, NetCDF, for `calm batch`; it needs --output.
     output
         The file to write; the standard output when not given.
     force
         Overwrite the file if there is one.
     """
-    from calm.report.write import check_destination, write_file
-
+    if record:
+        return _new_record(output, force)
     text = (files("calm.cli") / "starter.yaml").read_text(encoding="utf-8")
     if output is None:
         show(text)
         return ExitCode.DONE
+    _write(output, text.encode(), force)
+    narrate(f"{output} written; solve it with: calm run {output}")
+    return ExitCode.DONE
+
+
+def _new_record(output: Path | None, force: bool) -> ExitCode:
+    from calm.batch.record_made import made_record
+
+    if output is None:
+        raise UsageError("a record is no text: give the file to write, --output record.nc")
+    _write(output, made_record(), force)
+    result = output.with_name(f"{output.stem}-result.nc")
+    narrate(f"{output} written; solve it with: calm batch FILE --currents {output} -o {result}")
+    return ExitCode.DONE
+
+
+def _write(output: Path, content: bytes, force: bool) -> None:
+    from calm.report.write import check_destination, write_file
+
     if output.exists() and not force:
         raise UsageError(f"{output} exists already; --force overwrites it")
     check_destination(output)
-    write_file(output, text.encode())
-    narrate(f"{output} written; solve it with: calm run {output}")
-    return ExitCode.DONE
+    write_file(output, content)
 
 
 def schema() -> ExitCode:

@@ -1,6 +1,7 @@
 """A current from a CSV file: `depth[m],u[m/s],v[m/s]` or `depth[m],speed[m/s],toward[deg]`.
 
-A record has the column `time` first and a row for every time and depth.
+A record has the column `time` first and a row for every time and depth. Of a record a level may
+have no value, its cell blank or `nan`: it is left out.
 """
 
 from __future__ import annotations
@@ -15,14 +16,14 @@ from calm.files.tables import CurrentTable, read_current
 from calm.files.times import TimeChoiceError, choose_time, parse_time
 
 LARGEST_CSV = 50_000_000
-"""Bytes; a larger file is not read."""
+"""Bytes; a larger file is not read for a single profile."""
 
 MOST_PROBLEMS = 20
 """Mistakes shown of one file; a wrong separator makes thousands of the same."""
 
 
 @dataclass(frozen=True)
-class _Row:
+class CsvRow:
     """A line of the file: its number and its cells, each as far as the next comma."""
 
     number: int
@@ -32,6 +33,48 @@ class _Row:
         """Where a cell begins in the line, counted from 1."""
         before = sum(len(text) + 1 for text in self.cells[:cell])
         return before + 1 + len(self.cells[cell]) - len(self.cells[cell].lstrip())
+
+
+@dataclass(frozen=True)
+class CsvHeader:
+    """The first line: names and units of the columns behind the time, if there is one."""
+
+    path: Path
+    row: CsvRow
+
+    @property
+    def timed(self) -> bool:
+        """Whether the file is a record."""
+        return self.row.cells[0].strip().partition("[")[0] == "time"
+
+    @property
+    def columns(self) -> list[str]:
+        """Names with units, without that of the time."""
+        return [cell.strip() for cell in self.row.cells[int(self.timed) :]]
+
+    def profile(self, rows: Sequence[CsvRow], problems: list[Problem]) -> CurrentTable | None:
+        """The current of the rows of one time; None, with mistakes added, when it has any."""
+        first = int(self.timed)
+
+        def report(location: Sequence[str | int], message: str) -> Problem:
+            place = [int(part) for part in location[1:]]
+            row = rows[place.pop(0)] if location[0] == "rows" and place else self.row
+            column = row.column(place[0] + first if place else 0)
+            return Problem(str(self.path), row.number, column, message)
+
+        values = [[cell.strip() or None for cell in row.cells[first:]] for row in rows]
+        return read_current(self.columns, values, report, problems)
+
+    def without_gaps(self, rows: Sequence[CsvRow]) -> list[CsvRow]:
+        """The rows of a record that give a current."""
+        names = [cell.replace("[", " ").split()[:1] for cell in self.row.cells]
+        current = [j for j, name in enumerate(names) if name not in (["time"], ["depth"])]
+        return [
+            row
+            for row in rows
+            if len(row.cells) != len(names)
+            or not any(row.cells[j].strip().lower() in ("", "nan") for j in current)
+        ]
 
 
 def read_current_csv(path: Path, time: str | None) -> tuple[CurrentTable, list[str]]:
@@ -44,45 +87,66 @@ def read_current_csv(path: Path, time: str | None) -> tuple[CurrentTable, list[s
     TimeChoiceError
         The time is not in the file.
     """
-    header, *rows = _read_rows(path)
+    header, rows = _read_rows(path)
     notices: list[str] = []
-    first = 0
-    if header.cells[0].strip().partition("[")[0] == "time":
+    if header.timed:
         rows, notices = _rows_of(rows, time, path)
-        first = 1
+        known = header.without_gaps(rows)
+        if rows and not known:
+            raise InputError([Problem(str(path), rows[0].number, 1, "no level has a value")])
+        if left_out := len(rows) - len(known):
+            levels = f"{left_out} level{'s' * (left_out > 1)}"
+            notices.append(f"{levels} without a value left out of the current")
+        rows = known
     elif time is not None:
         raise TimeChoiceError("the file has no column `time`")
-
-    def report(location: Sequence[str | int], message: str) -> Problem:
-        place = [int(part) for part in location[1:]]
-        row = rows[place.pop(0)] if location[0] == "rows" and place else header
-        return Problem(str(path), row.number, row.column(place[0] + first if place else 0), message)
-
     problems: list[Problem] = []
-    columns = [cell.strip() for cell in header.cells[first:]]
-    values = [[cell.strip() or None for cell in row.cells[first:]] for row in rows]
-    table = read_current(columns, values, report, problems)
+    table = header.profile(rows, problems)
     if table is None:
-        raise InputError(_abridged(problems))
+        raise InputError(abridged(problems))
     return table, notices
 
 
-def _read_rows(path: Path) -> list[_Row]:
-    """The lines of the file that are neither blank nor a comment, the header first."""
-    rows = [
-        _Row(number, line.split(","))
-        for number, line in enumerate(read_text(path, largest=LARGEST_CSV).splitlines(), 1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
-    if not rows:
+def read_csv_header(path: Path, number: int, line: str) -> CsvHeader:
+    """The header of a file.
+
+    Raises
+    ------
+    InputError
+        The line is none.
+    """
+    cells = line.split(",")
+    if len(cells) < 2:
+        message = f"`{cells[0][:40]}` is no header such as `depth[m],u[m/s],v[m/s]`"
+        raise InputError([Problem(str(path), number, 1, message)])
+    return CsvHeader(path, CsvRow(number, cells))
+
+
+def is_content(line: str) -> bool:
+    """Whether a line is neither blank nor a comment."""
+    return bool(line.strip()) and not line.lstrip().startswith("#")
+
+
+def abridged(problems: list[Problem]) -> list[Problem]:
+    """The first mistakes, and how many more there are."""
+    hidden = len(problems) - MOST_PROBLEMS
+    if hidden <= 0:
+        return problems
+    more = Problem(problems[0].path, 0, 0, f"and {hidden} more mistakes")
+    return [*problems[:MOST_PROBLEMS], more]
+
+
+def _read_rows(path: Path) -> tuple[CsvHeader, list[CsvRow]]:
+    """The header, and the lines of the file that are neither blank nor a comment."""
+    text = read_text(path, largest=LARGEST_CSV)
+    lines = [(i, line) for i, line in enumerate(text.splitlines(), 1) if is_content(line)]
+    if not lines:
         raise InputError([Problem(str(path), 0, 0, "is empty")])
-    if len(rows[0].cells) < 2:
-        message = f"`{rows[0].cells[0][:40]}` is no header such as `depth[m],u[m/s],v[m/s]`"
-        raise InputError([Problem(str(path), rows[0].number, 1, message)])
-    return rows
+    header = read_csv_header(path, *lines[0])
+    return header, [CsvRow(number, line.split(",")) for number, line in lines[1:]]
 
 
-def _rows_of(rows: list[_Row], time: str | None, path: Path) -> tuple[list[_Row], list[str]]:
+def _rows_of(rows: list[CsvRow], time: str | None, path: Path) -> tuple[list[CsvRow], list[str]]:
     """The rows of the time nearest to the one wanted, and the notice that says so."""
     problems = []
     moments = []
@@ -92,16 +156,8 @@ def _rows_of(rows: list[_Row], time: str | None, path: Path) -> tuple[list[_Row]
         except TimeChoiceError as error:
             problems.append(Problem(str(path), row.number, 1, str(error)))
     if problems:
-        raise InputError(_abridged(problems))
+        raise InputError(abridged(problems))
     times = sorted(set(moments))
     index, notice = choose_time(times, time)
     chosen = [row for row, moment in zip(rows, moments, strict=True) if moment == times[index]]
     return chosen, [notice] if notice else []
-
-
-def _abridged(problems: list[Problem]) -> list[Problem]:
-    hidden = len(problems) - MOST_PROBLEMS
-    if hidden <= 0:
-        return problems
-    more = Problem(problems[0].path, 0, 0, f"and {hidden} more mistakes")
-    return [*problems[:MOST_PROBLEMS], more]

@@ -1,17 +1,22 @@
-"""A current from a file of measurements or of a model: NetCDF by its first bytes, else CSV."""
+"""A current from a file of measurements or of a model: NetCDF by its first bytes, zarr, or CSV."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
+from calm.errors import InputError, Problem
 from calm.files.current_csv import read_current_csv
+from calm.files.current_netcdf import is_netcdf, is_zarr, read_current_netcdf
+from calm.files.current_place import Place
 from calm.files.tables import CurrentTable
 
 
 def read_current_file(
-    path: Path, time: str | None, water_depth: float
+    path: Path, time: str | None, water_depth: float, place: Place | None = None
 ) -> tuple[CurrentTable, list[str]]:
     """The profile of a file at a time, and what to tell about it.
+
+    `place` [degrees north, degrees east] chooses a column where the file holds several.
 
     Raises
     ------
@@ -20,10 +25,22 @@ def read_current_file(
     TimeChoiceError
         The time is not in the file, or is needed to choose one of several.
     """
-    with path.open("rb") as file:
-        signature = file.read(4)
-    if signature == b"\x89HDF" or signature[:3] == b"CDF":
-        from calm.files.current_netcdf import read_current_netcdf
-
-        return read_current_netcdf(path, time, water_depth)
+    if holds_arrays(path):
+        return read_current_netcdf(path, time, water_depth, place)
     return read_current_csv(path, time)
+
+
+def holds_arrays(path: Path) -> bool:
+    """Whether a file is NetCDF or a folder zarr; any other file is taken as CSV.
+
+    Raises
+    ------
+    InputError
+        It is a folder of something else.
+    """
+    if not path.is_dir():
+        return is_netcdf(path)
+    if not is_zarr(path):
+        message = "is a folder, and no zarr store; join its files into one first"
+        raise InputError([Problem(str(path), 0, 0, message)])
+    return True

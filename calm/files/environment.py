@@ -169,8 +169,8 @@ def read_environment(
     """The environment of a section; its mistakes are added to `problems`, and None returned.
 
     A tow may be in air and need not give the water's depth. A current file is looked for beside
-    the file that names it. With `open_files` false it is not read, and the environment returned is
-    none.
+    the file that names it; `position` chooses a column of it. With `open_files` false it is not
+    read, and the environment returned is none.
     """
     keys = validate(TowEnvironmentKeys if towed else EnvironmentKeys, section, problems)
     if keys is None:
@@ -185,7 +185,7 @@ def read_environment(
     _check_wind(keys, section, problems)
     if open_files:  # otherwise the depth may be that of another section
         _check_depth_range(keys, section, problems)
-    current = _current(keys, section, problems, notices, open_files)
+    current = _current(keys, section, problems, notices, open_files, position)
     if density is None or current is None or len(problems) > before:
         return None
     if isinstance(density, SeaWater) and position is None:
@@ -239,6 +239,7 @@ def _current(
     problems: list[Problem],
     notices: list[str],
     open_files: bool,
+    position: Position | None,
 ) -> CurrentTable | None:
     current = keys.current
     report = report_at(section, "current")
@@ -248,14 +249,15 @@ def _current(
         u, v = components(current.speed, current.toward)
         return CurrentTable((0.0,), (u,), (v,), (current.w,))
     path = Path(section.home("current").document.path).parent / current.file
-    if not os.path.isfile(path):
+    if not (os.path.isfile(path) or os.path.isdir(path)):
         problems.append(report(("file",), f"`file: {shown(current.file)}`: no such file"))
         return None
     if not open_files:
         return None
     bottom = math.inf if keys.depth is None else keys.depth
+    place = None if position is None else (position.latitude, position.longitude)
     try:
-        table, told = read_current_file(path, current.time, bottom)
+        table, told = read_current_file(path, current.time, bottom, place)
     except TimeChoiceError as error:
         problems.append(report(("time",), str(error)))
     except InputError as error:

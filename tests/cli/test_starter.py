@@ -43,6 +43,30 @@ def test_new_overwrites_only_when_told(calm, folder):
     assert calm("new", "--output", "missing/m.yaml").code == 2
 
 
+def test_new_record_is_one_that_the_starter_stands_in(calm, folder):
+    calm("new", "-o", "m.yaml")
+    done = calm("new", "--record", "-o", "r.nc")
+    assert (done.code, done.out) == (0, "")
+    assert "calm batch FILE --currents r.nc -o r-result.nc" in done.err
+    text = (folder / "m.yaml").read_text()
+    start, end = text.index("  current:"), text.index("line:")
+    current = '  current: {file: r.nc, time: "2026-03-19T12:00"}\n\n'  # the height of the surge
+    (folder / "s.yaml").write_text(text[:start] + current + text[end:])
+    document = json.loads(calm("run", "s.yaml", "--json", "-").out)
+    assert document["status"] == "converged"
+    assert document["warnings"] == []
+    first = (folder / "r.nc").read_bytes()
+    assert calm("new", "--record", "-o", "r.nc").code == 2
+    assert calm("new", "--record", "-o", "r.nc", "--force").code == 0
+    assert (folder / "r.nc").read_bytes() == first
+
+
+def test_new_record_goes_to_a_file(calm):
+    done = calm("new", "--record")
+    assert (done.code, done.out) == (2, "")
+    assert "--output record.nc" in done.err
+
+
 def test_schema_accepts_the_starter(calm):
     schema = json.loads(calm("schema").out)
     Draft202012Validator.check_schema(schema)

@@ -58,6 +58,19 @@ def test_profile_of_a_time(csv: Path) -> None:
     assert notices == ["the current is that of 2026-03-01T12:00, nearest to 2026-03-01T10:00"]
 
 
+def test_levels_of_a_record_without_a_value_are_left_out(csv: Path) -> None:
+    text = RECORD.replace("50,0.3,0.0", "50,,0.0").replace("0,-0.5,0.1", "0,-0.5, NaN")
+    table, notices = profile(csv, text, "2026-03-01T06:00")
+    assert (table.depth, notices) == (
+        (0.0,),
+        ["1 level without a value left out of the current"],
+    )
+    assert profile(csv, text, "2026-03-01T12:00")[0].depth == (50.0,)
+    gap = text.replace("0,0.5,0.1", "0,,")
+    with pytest.raises(InputError, match=r"current.csv:3:1: no level has a value"):
+        profile(csv, gap, "2026-03-01T06:00")
+
+
 def test_record_of_one_time_needs_no_choice(csv: Path) -> None:
     table, _ = profile(csv, "".join(RECORD.splitlines(keepends=True)[:4]))
     assert table.u == (0.5, 0.3)

@@ -1,5 +1,6 @@
 """Currents from CF NetCDF files, by standard names and by the names models and archives use."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -8,9 +9,11 @@ import pytest
 import xarray as xr
 
 from calm.errors import InputError
-from calm.files import CurrentTable
+from calm.files import CurrentTable, MooringFile
 from calm.files.current_file import read_current_file
 from calm.files.times import TimeChoiceError
+
+from .conftest import GOOD
 
 DEPTH = ("depth", [5.0, 50.0, 200.0], {"units": "m", "positive": "down", "axis": "Z"})
 TIME = ("time", np.array(["2026-03-01T00", "2026-03-01T06"], dtype="datetime64[ns]"))
@@ -184,23 +187,27 @@ def test_no_current_in_the_file(tmp_path: Path) -> None:
     dataset = xr.Dataset({"temperature": ("depth", U)}, {"depth": DEPTH})
     assert problem(dataset, tmp_path) == (
         "holds no current: eastward and northward velocity, or speed and direction to or from, are "
-        "looked for by CF standard name; it holds temperature, depth"
+        "looked for by CF standard name, then by usual name; it holds temperature (depth 3); "
+        "depth (depth 3) [m]"
     )
 
 
 def test_files_that_cannot_be_understood(tmp_path: Path) -> None:
     attributes = {"units": "m", "positive": "down"}
-    wide = profile().expand_dims(lat=[48.0, 49.0])
-    assert problem(wide, tmp_path) == (
-        "`uo` is no single profile, but spreads over lat (2), depth (3)"
+    wide = profile().expand_dims(member=2)
+    assert problem(wide, tmp_path).startswith(
+        "`uo` is no single profile, but spreads over member (2), depth (3); it holds "
     )
     unit = profile()
     unit["uo"].attrs["units"] = "kg"
     assert problem(unit, tmp_path).startswith("`uo`: its unit, `kg`, is a mass; a speed")
-    assert problem(profile().drop_vars("depth"), tmp_path) == "its levels have no depth"
+    unplaced = problem(profile().drop_vars("depth"), tmp_path)
+    assert unplaced.startswith("its levels have no depth; it holds uo (depth 3) [m s-1] eastward")
     unclear = profile().rename(depth="z")
     unclear["z"].attrs = {"units": "m"}
-    assert problem(unclear, tmp_path) == "`z` does not say whether it is `positive` up or down"
+    assert problem(unclear, tmp_path).startswith(
+        "`z` does not say whether it is `positive` up or down; it holds "
+    )
     empty = profile() * np.nan
     for name, source in (("uo", EAST), ("vo", NORTH)):
         empty[name].attrs = source
@@ -208,7 +215,51 @@ def test_files_that_cannot_be_understood(tmp_path: Path) -> None:
     twice = profile().assign_coords(depth=("depth", [5.0, 5.0, 9.0], attributes))
     assert problem(twice, tmp_path) == "two levels have the same depth"
     both = profile(u2=("depth", U, EAST))
-    assert problem(both, tmp_path) == ("several variables are eastward_sea_water_velocity: u2, uo")
+    assert problem(both, tmp_path).startswith(
+        "several variables are eastward_sea_water_velocity: u2, uo; it holds "
+    )
+
+
+def grid() -> xr.Dataset:
+    return (
+        profile()
+        .expand_dims(lat=[48.2, 48.3], lon=[354.7, 354.8])
+        .assign(uo=lambda wide: wide["uo"] * (1 + wide["lat"] - 48.2) * (1 + wide["lon"] - 354.7))
+        .assign(uo=lambda wide: wide["uo"].assign_attrs(EAST))
+    )
+
+
+def test_column_of_a_place(tmp_path: Path) -> None:
+    path = tmp_path / "current.nc"
+    grid().to_netcdf(path, engine="h5netcdf")
+    table, notices = read_current_file(path, None, 1000.0, (48.28, -5.31))
+    assert table.u == pytest.approx([1.1 * u for u in U])
+    assert notices == [
+        "the column nearest to 48.28° N 5.31° W is that at 48.3° N 5.3° W, 2.3 km away"
+    ]
+    assert problem(grid(), tmp_path).startswith("it has 4 columns, 48.2° N 5.3° W to 48.3° N 5.2°")
+
+
+def test_a_grid_is_read_at_the_position_of_the_mooring(
+    read: Callable[..., MooringFile], tmp_path: Path
+) -> None:
+    grid().to_netcdf(tmp_path / "grid.nc", engine="h5netcdf")
+    start, end = GOOD.index("  current:"), GOOD.index("line:")
+    text = GOOD[:start] + "  current: {file: grid.nc}\n" + GOOD[end:]
+    place = "position: {latitude: 48.19 deg, longitude: -5.2 deg}\n"
+    assert read(place + text).environment.current.u == pytest.approx([1.1 * u for u in U])
+    with pytest.raises(InputError, match=r"it has 4 columns, .* by the `position` of the mooring"):
+        read(text)
+
+
+def test_a_zarr_folder_is_a_file_too(read: Callable[..., MooringFile], tmp_path: Path) -> None:
+    profile().to_zarr(tmp_path / "current.zarr", zarr_format=2, consolidated=False)
+    start, end = GOOD.index("  current:"), GOOD.index("line:")
+    text = GOOD[:start] + "  current: {file: current.zarr}\n" + GOOD[end:]
+    assert read(text).environment.current.u == tuple(U)
+    (tmp_path / "folder").mkdir()
+    with pytest.raises(InputError, match="folder: is a folder, and no zarr store"):
+        read(text.replace("current.zarr", "folder"))
 
 
 @pytest.mark.parametrize("signature", [b"\x89HDF\r\n\x1a\n", b"CDF\x01"])

@@ -1,0 +1,163 @@
+"""How fast `calm batch` is from NetCDF to NetCDF, against its solver alone; and its memory.
+
+    python benchmarks/batch.py                 # 100 000 and 262 980 profiles
+    python benchmarks/batch.py 1000000         # these many too
+
+A deep mooring of twelve components in made currents at twenty levels, hourly: eddies, a tide and
+noise. The command is timed whole, from its start to the page of its statistics, and without them;
+memory is the most that the process ever held. The last table is that of `docs/batch.md`.
+"""
+
+import os
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+from machine import describe
+
+import calm
+from calm.batch.record import open_record
+from calm.batch.run import run_batch
+
+COUNTS = (100_000, 262_980)
+SIZES, CORES = (10**7, 10**8, 10**9), (2, 16, 128, 1024)
+SAMPLE = 65_536  # profiles for the solver alone
+MOORING = """\
+name: Deep line of twelve
+environment: {depth: 5000 m, density: 1027 kg/m^3}
+line:
+  - {use: sphere, label: top float}
+  - {use: wire, length: 500 m, clamps: [{use: logger, at: 100 m}, {use: logger, at: 300 m}]}
+  - {use: meter}
+  - {use: wire, length: 1000 m}
+  - {use: meter}
+  - {use: rope, length: 1200 m}
+  - {use: meter}
+  - {use: glass}
+  - {use: rope, length: 1500 m}
+  - {use: release}
+  - {use: chain, length: 20 m}
+  - {use: anchor}
+components:
+  sphere: {kind: sphere, role: float, diameter: 1.5 m, buoyancy: 12 kN}
+  wire: {kind: cable, diameter: 8 mm, weight: 1.6 N/m, stiffness: 3000 kN}
+  rope: {kind: cable, diameter: 14 mm, weight: 0.4 N/m, stiffness: 500 kN}
+  chain: {kind: chain, diameter: 40 mm, weight: 60 N/m}
+  logger: {kind: cylinder, diameter: 50 mm, length: 0.4 m, buoyancy: -10 N}
+  meter: {kind: cylinder, diameter: 150 mm, length: 1 m, buoyancy: -200 N}
+  glass: {kind: cylinder, role: float, diameter: 0.43 m, length: 4 m, buoyancy: 2 kN}
+  release: {kind: cylinder, diameter: 0.2 m, length: 1 m, buoyancy: -300 N}
+  anchor: {kind: anchor, weight: 30 kN}
+"""
+
+
+def write_record(path: Path, count: int) -> None:
+    """A record of so many profiles, a part at a time."""
+    import h5netcdf
+
+    depth = np.linspace(0.0, 5000.0, 20)
+    decay = 0.3 * np.exp(-depth / 800.0)
+    random = np.random.default_rng(1)
+    with h5netcdf.File(path, "w") as file:
+        file.dimensions = {"time": count, "depth": len(depth)}
+        clock = file.create_variable("time", ("time",), "i4")
+        clock.attrs["units"] = "hours since 1993-01-01"
+        clock.attrs["standard_name"] = "time"
+        clock[...] = np.arange(count)
+        levels = file.create_variable("depth", ("depth",), "f4")
+        levels.attrs.update({"units": "m", "positive": "down", "standard_name": "depth"})
+        levels[...] = depth
+        for name, standard, phase in (("uo", "eastward", 0.0), ("vo", "northward", np.pi / 2)):
+            current = file.create_variable(
+                name, ("time", "depth"), "f4", chunks=(min(8192, count), len(depth))
+            )
+            current.attrs["units"] = "m/s"
+            current.attrs["standard_name"] = f"{standard}_sea_water_velocity"
+            for start in range(0, count, 65_536):
+                t = np.arange(start, min(start + 65_536, count))
+                turns = 2.0 * np.pi * t
+                eddies = sum(np.sin(turns / hours + phase + hours) for hours in (700, 2100, 5000))
+                tide = 0.5 * np.sin(turns / 12.42 + phase)
+                noise = 0.02 * random.normal(size=(len(t), len(depth)))
+                current[start : start + len(t)] = decay * (0.6 * eddies + tide)[:, None] + noise
+
+
+def solver_alone(mooring: calm.Mooring, path: Path, workers: int) -> float:
+    """Profiles a second of `solve_profiles`, arrays in and arrays out."""
+    with open_record(path, seabed=5000.0) as record:
+        depth, u, v, _ = record.profiles(0, min(SAMPLE, record.count))
+    calm.solve_profiles(mooring, u[:2048], v[:2048], depth, workers=workers)  # compiles, or fetches
+    start = time.perf_counter()
+    calm.solve_profiles(mooring, u, v, depth, workers=workers)
+    return len(u) / (time.perf_counter() - start)
+
+
+def without_statistics(
+    mooring: calm.Mooring, path: Path, output: Path, workers: int
+) -> tuple[float, float]:
+    """Profiles a second from record to result, in this process, and the bytes of each."""
+    start = time.perf_counter()
+    with open_record(path, seabed=5000.0) as record:
+        outcome = run_batch(mooring, record, output, workers=workers)
+        count = record.count
+    rate = count / (time.perf_counter() - start)
+    assert outcome.done
+    print(f"{'':12}{outcome.failed} without equilibrium, {output.stat().st_size / 1e6:.0f} MB")
+    return rate, output.stat().st_size / count
+
+
+def whole_command(file: Path, path: Path, output: Path, workers: int) -> tuple[float, float]:
+    """Seconds of the whole command, and the most memory it held [MB]."""
+    words = ["batch", str(file), "--currents", str(path), "-o", str(output)]
+    command = [sys.executable, "-m", "calm", *words, "--workers", str(workers)]
+    start = time.perf_counter()
+    with open(os.devnull, "w") as nowhere:
+        actions = [(os.POSIX_SPAWN_DUP2, nowhere.fileno(), 1)]
+        child = os.posix_spawn(sys.executable, command, os.environ, file_actions=actions)
+        _, status, used = os.wait4(child, 0)
+    assert os.waitstatus_to_exitcode(status) == 0
+    return time.perf_counter() - start, used.ru_maxrss / 1024.0
+
+
+def main() -> None:
+    """Print a table a count."""
+    print(describe("calm-mooring", "numpy", "numba", "h5py"))
+    counts = (*COUNTS, *map(int, sys.argv[1:]))
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        file = folder / "mooring.yaml"
+        file.write_text(MOORING)
+        mooring = calm.load(file)
+        assert isinstance(mooring, calm.Mooring)
+        for count in counts:
+            path = folder / f"{count}.nc"
+            write_record(path, count)
+            print(f"\n{count} profiles, record of {path.stat().st_size / 1e6:.0f} MB")
+            for workers in (1, 2):
+                alone = solver_alone(mooring, path, workers)
+                output = folder / f"{count}-{workers}.nc"
+                rate, size = without_statistics(mooring, path, output, workers)
+                output.unlink()
+                seconds, memory = whole_command(file, path, output, workers)
+                print(
+                    f"{workers} worker{'s' * (workers > 1):12}solver alone {alone:8.0f}/s; "
+                    f"NetCDF to NetCDF {rate:8.0f}/s, {rate / alone:.0%}; "
+                    f"whole command {seconds:6.1f} s, {count / seconds:8.0f}/s, {memory:.0f} MB"
+                )
+    print_sizes(rate / workers, size)
+
+
+def print_sizes(rate: float, size: float) -> None:
+    """Print the hours of large batches at so many profiles a second a core, and their bytes."""
+    print(f"\nAt {rate:.0f} profiles a second a core and {size:.0f} bytes a profile:\n")
+    print(f"| profiles | result | {' | '.join(f'{cores} cores' for cores in CORES)} |")
+    print(f"| --- | --- | {' | '.join('---' for _ in CORES)} |")
+    for count in SIZES:
+        hours = (f"{count / rate / cores / 3600.0:.2g} h" for cores in CORES)
+        print(f"| {count:.0e} | {count * size / 1e9:.3g} GB | {' | '.join(hours)} |")
+
+
+if __name__ == "__main__":
+    main()

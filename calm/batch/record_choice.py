@@ -1,0 +1,142 @@
+"""Which profiles of a record are taken: a period, every so many, in the order of time."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.errors import InputError, Problem, UsageError
+from calm.files.current_place import Place
+from calm.files.times import TimeChoiceError, parse_time
+
+Times = NDArray[np.datetime64]
+Index = slice | NDArray[np.intp]
+
+Period = tuple[np.datetime64 | None, np.datetime64 | None]
+"""First and last time, both included; None where it is open."""
+
+_PART_OF_A_DATE = re.compile(r"\d{4}(-\d\d(-\d\d)?)?")
+
+
+def parse_period(text: str) -> Period:
+    """A period ``A/B`` of ISO times; a year, a month or a day as B counts whole.
+
+    Either end may be left out, or be two points: ``2026-03/``, ``../2026-03-31``.
+
+    Raises
+    ------
+    UsageError
+        The text is none, or ends before it begins.
+    """
+    first, slash, last = text.partition("/")
+    if not slash:
+        raise UsageError(f"`{text[:40]}` is no period; write 2026-03-01/2026-03-31T12:00")
+    start, stop = _end(first, whole=False), _end(last, whole=True)
+    if start is not None and stop is not None and stop < start:
+        raise UsageError(f"the period `{text[:60]}` ends before it begins")
+    return start, stop
+
+
+def parse_place(text: str) -> Place:
+    """A place ``LAT,LON`` [degrees north, degrees east], longitudes from −180 or from 0.
+
+    Raises
+    ------
+    UsageError
+        The text is none, or no place on the earth.
+    """
+    parts = text.split(",")
+    try:
+        latitude, longitude = (float(part) for part in parts)
+    except ValueError:
+        raise UsageError(f"`{text[:40]}` is no place; write 48.3,-5.2") from None
+    if not (-90 <= latitude <= 90 and -360 <= longitude <= 360):
+        raise UsageError(f"`{text[:40]}` is no place; latitude comes first, then longitude")
+    return latitude, longitude
+
+
+def choose_profiles(
+    times: Times, period: Period | None, every: int, path: Path
+) -> tuple[Index, tuple[str, ...]]:
+    """The indices of the profiles wanted, in the order of time, and what to tell about it.
+
+    Raises
+    ------
+    InputError
+        The record has no times, or a time twice.
+    UsageError
+        No profile is in the period, or `every` is not positive.
+    """
+    if every < 1:
+        raise UsageError(f"every {every} profiles: one at least is needed")
+    if not len(times):
+        raise InputError([Problem(str(path), 0, 0, "has no times")])
+    notes = []
+    order: NDArray[np.intp] | None = None
+    if not _rises(times):
+        order = np.argsort(times, kind="stable")
+        notes.append("the profiles are not in the order of time, and were taken in it")
+        times = times[order]
+    _refuse_repeats(times, path)
+    first, last = 0, len(times)
+    if period is not None:
+        start, stop = period
+        first = 0 if start is None else int(np.searchsorted(times, start, "left"))
+        last = last if stop is None else int(np.searchsorted(times, stop, "right"))
+        if first >= last:
+            raise UsageError(
+                f"{path} has no profile in this period: it is from {shown(times[0])} to "
+                f"{shown(times[-1])}"
+            )
+        if last - first < len(times):
+            notes.append(f"{last - first} of the {len(times)} profiles are in the period asked for")
+    chosen = slice(first, last, every)
+    if every > 1:
+        notes.append(f"one profile in {every} is taken, from the first on")
+    return (chosen if order is None else order[chosen]), tuple(notes)
+
+
+def part(index: Index, start: int, stop: int) -> Index:
+    """The indices of some of the chosen profiles."""
+    if not isinstance(index, slice):
+        return index[start:stop]
+    return slice(index.start + start * index.step, index.start + stop * index.step, index.step)
+
+
+def shown(time: np.datetime64) -> str:
+    """A time as a person reads it."""
+    text: str = np.datetime_as_string(time.astype("datetime64[s]"))
+    return text.removesuffix(":00")
+
+
+def _end(text: str, *, whole: bool) -> np.datetime64 | None:
+    """One end of a period [ns]."""
+    text = text.strip()
+    if text in ("", ".."):
+        return None
+    try:
+        if _PART_OF_A_DATE.fullmatch(text):
+            date: Any = np.datetime64(text)  # of a year, a month or a day
+            last: Any = np.datetime64(date + 1, "ns") - np.timedelta64(1, "ns")
+            return last if whole else np.datetime64(date, "ns")
+        return np.datetime64(parse_time(text).replace(tzinfo=None), "ns")
+    except TimeChoiceError as error:
+        raise UsageError(str(error)) from None
+    except ValueError:
+        raise UsageError(f"`{text}` is no date") from None
+
+
+def _rises(times: Times) -> bool:
+    return bool(np.all(times[1:] >= times[:-1]))
+
+
+def _refuse_repeats(times: Times, path: Path) -> None:
+    again = np.flatnonzero(times[1:] == times[:-1])
+    if len(again):
+        more = f", and {len(again) - 1} more times" if len(again) > 1 else ""
+        message = f"has two profiles of {shown(times[again[0]])}{more}; leave one of them out"
+        raise InputError([Problem(str(path), 0, 0, message)])

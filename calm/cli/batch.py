@@ -1,0 +1,181 @@
+"""``calm batch``: a mooring in every current profile of a record."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from threading import current_thread, main_thread
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
+
+from calm.cli.batch_progress import Teller, grouped
+from calm.cli.exit_codes import ExitCode
+from calm.cli.streams import narrate, show_rich
+from calm.errors import UsageError
+
+if TYPE_CHECKING:
+    from calm.batch.run import Outcome
+    from calm.case import Mooring
+
+BATCH_EXAMPLES = """Examples:
+
+  calm batch mooring.yaml --currents adcp.nc -o moved.nc
+  calm batch mooring.yaml --currents glorys.nc --at 48.3,-5.2 -o hindcast.nc
+  calm batch mooring.yaml --currents adcp.nc --time 2024-03/2024-05 -o spring.nc
+  calm batch mooring.yaml --currents ensemble.zarr -o ensemble.zarr --workers 32"""
+
+
+def batch(
+    file: Path,
+    /,
+    *,
+    currents: Path,
+    output: Annotated[Path, Parameter(name=["--output", "-o"])],
+    time: str | None = None,
+    every: int = 1,
+    at: Annotated[str | None, Parameter(allow_leading_hyphen=True)] = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    shape: bool = False,
+    environment: str | None = None,
+    catalog: list[Path] | None = None,
+) -> ExitCode:
+    """Solve a mooring in every profile of a record or a hindcast.
+
+    Each profile takes the place of the file's current. The result has every
+    component and every clamped instrument at every time; a profile without
+    equilibrium is NaN with its status, and does not stop the others. What it says
+    on the whole is printed, and written as RESULT.summary.json and .html.
+
+    The work is kept in RESULT.part as it is done. After an interruption, whatever
+    it was, the same command solves what is missing; the exit code is 75 as long as
+    there is something.
+
+    Parameters
+    ----------
+    file
+        Mooring file.
+    currents
+        The record: NetCDF, zarr or CSV.
+    output
+        The result: a .nc file or a .zarr folder.
+    time
+        Only profiles from A to B, both included, as A/B, such as 2024-03/2024-05.
+    every
+        Only every so many-th profile.
+    at
+        Latitude and longitude [degrees] of the column to take from a grid, as LAT,LON.
+    workers
+        How many threads; one for each processor unless given.
+    scheduler
+        Address of a dask scheduler whose workers solve the profiles.
+    shape
+        Store the shape of the line too.
+    environment
+        An environment named in the file, or an environment file, in place of its own.
+    catalog
+        A catalogue of your own; its components hide others of the same id. Repeatable.
+    """
+    if every < 1:
+        raise UsageError(f"--every: {every} is not 1 or more")
+    if workers is not None and workers < 1:
+        raise UsageError(f"--workers: {workers} is not 1 or more")
+    from calm.batch.record import RULES, open_record
+    from calm.batch.record_choice import parse_period, parse_place
+    from calm.batch.run import run_batch
+
+    period = None if time is None else parse_period(time)
+    place = None if at is None else parse_place(at)
+    _check_output(output, file, currents)
+    mooring = _mooring(file, environment, catalog or [])
+    seabed = float(mooring.water.depth)
+    teller = Teller()
+    with open_record(currents, seabed=seabed, at=place, time=period, every=every) as record:
+        for notice in (*mooring.file.notices, *record.notes):
+            if notice not in RULES:
+                narrate(f"{currents}: {notice}")
+        with _stopped_by_a_signal():
+            outcome = run_batch(
+                mooring, record, output,
+                workers=workers, shape=shape, scheduler=scheduler,
+                progress=teller, tell=teller.note,
+            )  # fmt: skip
+        teller.clear()
+    code = _ended(outcome, output, record.count)
+    if outcome.done:
+        _summarize(output, mooring)
+    return code
+
+
+def _summarize(output: Path, mooring: Mooring) -> None:
+    """Show what the result says, and write it beside the result."""
+    from calm.report.batch_files import write_summary
+    from calm.report.batch_table import summary_table
+
+    show_rich(summary_table(write_summary(output, mooring)))
+
+
+def _ended(outcome: Outcome, output: Path, total: int) -> ExitCode:
+    solved = outcome.converged + outcome.failed
+    if not outcome.done:
+        narrate(
+            f"{output}: {outcome.reason}; {grouped(solved)} of {grouped(total)} profiles are done "
+            f"and kept in {output}.part; the same command solves the rest"
+        )
+        return ExitCode.INCOMPLETE
+    if outcome.failed:
+        kinds = ", ".join(
+            f"{grouped(count)} {status}"
+            for status, count in outcome.counts.items()
+            if status != "converged"
+        )
+        narrate(
+            f"{output}: {grouped(outcome.failed)} of {grouped(solved)} profiles have no "
+            f"equilibrium and are NaN: {kinds}"
+        )
+    return ExitCode.DONE if outcome.converged else ExitCode.NO_EQUILIBRIUM
+
+
+def _mooring(file: Path, environment: str | None, catalogs: list[Path]) -> Mooring:
+    import calm
+    from calm.case import Tow
+
+    read = calm.load(file, environment=environment, catalogs=catalogs)
+    if isinstance(read, Tow):
+        raise UsageError(f"{file} is a tow; calm batch is for moorings")
+    return read
+
+
+def _check_output(output: Path, *inputs: Path) -> None:
+    """Refuse a result that could not be written, or would take the place of what it is made from.
+
+    Raises
+    ------
+    UsageError
+        See above.
+    """
+    folder = output.resolve().parent
+    if not folder.is_dir():
+        raise UsageError(f"cannot write {output}: there is no folder {folder}")
+    if not os.access(folder, os.W_OK):
+        raise UsageError(f"cannot write {output}: permission denied")
+    for path in inputs:
+        if output.resolve() == path.resolve():
+            raise UsageError(f"{output} is an input; it is kept")
+
+
+@contextmanager
+def _stopped_by_a_signal() -> Iterator[None]:
+    """Let a batch system's request to stop be what Ctrl-C is."""
+    if current_thread() is not main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)

@@ -1,0 +1,194 @@
+"""A dataset of currents as arrays of depth, u, v and w: one profile or many, read as asked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from calm.files.current_levels import Levels, find_levels
+from calm.files.current_place import Place, choose_column, is_regular
+from calm.files.current_times import find_times, read_times
+from calm.files.current_variables import (
+    UnreadableError,
+    Velocity,
+    factor_of,
+    find_velocity,
+    holdings,
+)
+
+if TYPE_CHECKING:
+    import numpy as np
+    import xarray as xr
+    from numpy.typing import NDArray
+
+FLAGS = "the current's quality flags are not looked at"
+
+
+@dataclass(frozen=True)
+class CurrentArrays:
+    """Currents of n profiles as they stand in a file, gaps as NaN, levels in the file's order.
+
+    Attributes
+    ----------
+    depth : (k,), or (n, k) where levels move [m], positive down
+    u, v : (n, k) to the east and to the north [m/s]
+    w : (n, k) upwards [m/s], None where the file has none
+    """
+
+    depth: NDArray[np.float64]
+    u: NDArray[np.float64]
+    v: NDArray[np.float64]
+    w: NDArray[np.float64] | None
+
+
+@dataclass(frozen=True)
+class CurrentDataset:
+    """A dataset of which is known what its current, levels, times and place are.
+
+    Attributes
+    ----------
+    times : (n,) in the order of the file; None for a profile without a time
+    notices : what a person should know before trusting it
+    rules : what was understood without a doubt, and how
+    source : names of the variables, and the place
+    """
+
+    times: NDArray[np.datetime64] | None
+    notices: tuple[str, ...]
+    rules: tuple[str, ...]
+    source: dict[str, str]
+    _parts: tuple[tuple[xr.DataArray, float], ...]
+    _turn: float | None
+    _levels: Levels
+    _time: str | None
+
+    @property
+    def moves(self) -> bool:
+        """Whether the levels move with time."""
+        return self._levels.vary_in(self._time)
+
+    @property
+    def chunk(self) -> int:
+        """How many times the file decompresses together; 1 where it does not compress."""
+        variable = self._parts[0][0]
+        chunks: dict[str | None, int] = variable.encoding.get("preferred_chunks", {})
+        return chunks.get(self._time, 1)
+
+    @property
+    def size(self) -> int:
+        """Bytes of one profile as it is read."""
+        variable = self._parts[0][0]
+        levels: int = variable.size // max(variable.sizes.get(self._time, 1), 1)
+        return 8 * levels * (len(self._parts) + self.moves)
+
+    def read(self, index: slice | NDArray[np.intp]) -> CurrentArrays:
+        """The profiles of some times, by their index; all there are where there is no time."""
+        import numpy as np
+
+        first, second, *up = (
+            self._values(variable, index) * factor for variable, factor in self._parts
+        )
+        if self._turn is not None:
+            angle = np.radians(second + self._turn)
+            first, second = first * np.sin(angle), first * np.cos(angle)
+        depth = self._levels.depths(self._time, index)
+        return CurrentArrays(depth, first, second, up[0] if up else None)
+
+    def _values(self, variable: xr.DataArray, index: Any) -> NDArray[np.float64]:
+        """Times by levels, contiguous, so that equal values give equal results in any company."""
+        import numpy as np
+
+        if self._time is None:
+            return np.array(variable.values, np.float64).reshape(1, -1)
+        chosen = variable.isel({self._time: index}).transpose(self._time, ...)
+        values = np.ascontiguousarray(chosen.values, np.float64)
+        return values.reshape(len(values), -1)
+
+
+def understand(dataset: xr.Dataset, water_depth: float, place: Place | None) -> CurrentDataset:
+    """What a dataset holds, without reading its currents.
+
+    Parameters
+    ----------
+    dataset : as it stands in the file, its times undecoded
+    water_depth : places heights above the seabed [m]
+    place : latitude and longitude at which a column is wanted, where there are several
+
+    Raises
+    ------
+    UnreadableError
+        It holds no current that can be understood: why, and what it holds.
+    """
+    try:
+        return _understood(dataset, water_depth, place)
+    except UnreadableError as error:
+        raise UnreadableError(f"{error}; it holds {holdings(dataset)}") from None
+
+
+def _understood(dataset: xr.Dataset, water_depth: float, place: Place | None) -> CurrentDataset:
+    velocity = find_velocity(dataset, regular=is_regular(dataset))
+    name_of_time = find_times(dataset, velocity.names[0])
+    times = None if name_of_time is None else read_times(dataset, name_of_time)
+    time = _dimension(dataset, name_of_time)
+    column = choose_column(dataset, velocity.names, time, place)
+    level, dataset = _single_levels(dataset.isel(column.index), velocity, time)
+    levels = find_levels(dataset, level, time, water_depth)
+    source = {"velocity": ", ".join(velocity.all_names), "levels": str(levels.variable.name)}
+    if name_of_time is not None:
+        source["time"] = name_of_time
+    if column.place is not None:
+        source |= zip(
+            ("latitude", "longitude"), (f"{degrees:.6g}" for degrees in column.place), strict=True
+        )
+    notices = [*column.notes]
+    if any(str(name).lower().endswith("_qc") for name in dataset.variables):
+        notices.append(FLAGS)
+    return CurrentDataset(
+        times=times,
+        notices=tuple(notices),
+        rules=(*velocity.notes, *levels.notes),
+        source=source,
+        _parts=tuple(_parts(dataset, velocity)),
+        _turn=velocity.turn,
+        _levels=levels,
+        _time=time,
+    )
+
+
+def _dimension(dataset: xr.Dataset, time: str | None) -> str | None:
+    """The dimension of the times, None where they have none."""
+    return None if time is None else next(map(str, dataset[time].dims), None)
+
+
+def _single_levels(
+    dataset: xr.Dataset, velocity: Velocity, time: str | None
+) -> tuple[str | None, xr.Dataset]:
+    """The dimension of the levels, and the dataset without dimensions of one value."""
+    name = velocity.names[0]
+    single = [dim for dim, size in dataset.sizes.items() if size == 1 and dim != time]
+    dataset = dataset.isel(dict.fromkeys(single, 0))
+    for other in velocity.all_names[1:]:
+        if set(dataset[other].dims) != set(dataset[name].dims):
+            raise UnreadableError(
+                f"`{name}` and `{other}` have different dimensions: "
+                f"{_spread(dataset[name])}; {_spread(dataset[other])}"
+            )
+    levels = [str(dim) for dim in dataset[name].dims if dim != time]
+    if len(levels) > 1:
+        raise UnreadableError(
+            f"`{name}` is no single profile, but spreads over {_spread(dataset[name])}"
+        )
+    return (levels[0] if levels else None), dataset
+
+
+def _parts(dataset: xr.Dataset, velocity: Velocity) -> list[tuple[xr.DataArray, float]]:
+    """The variables of the current, each with its factor to SI (angles: degrees)."""
+    dimensions = ("speed", "speed" if velocity.turn is None else "angle", "speed")
+    return [
+        (dataset[name], factor_of(dataset[name], dimension))
+        for name, dimension in zip(velocity.all_names, dimensions, strict=False)
+    ]
+
+
+def _spread(variable: xr.DataArray) -> str:
+    return ", ".join(f"{name} ({size})" for name, size in variable.sizes.items())

@@ -1,0 +1,77 @@
+"""The times of a dataset of currents, in the calendar of real dates."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from calm.files.current_variables import UnreadableError, first_present
+
+if TYPE_CHECKING:
+    import numpy as np
+    import xarray as xr
+    from numpy.typing import NDArray
+
+_NAMES = ("time", "TIME", "Time", "time_counter", "ocean_time", "MT")
+_CALENDARS = ("standard", "gregorian", "proleptic_gregorian")
+_FIRST, _LAST = "1678-01-01", "2262-01-01"
+_AT_ONCE = 50_000
+
+
+def find_times(dataset: xr.Dataset, velocity: str) -> str | None:
+    """The name of the variable with the times of a velocity; None where it has none.
+
+    Its dimension, if it has one, is one of the velocity's.
+    """
+    axes, coordinates = dataset.cf.axes, dataset.cf.coordinates
+    units = {name: str(one.attrs.get("units", "")) for name, one in dataset.variables.items()}
+    since = [name for name, unit in units.items() if " since " in unit]
+    names = [*axes.get("T", []), *coordinates.get("time", []), *_NAMES, *map(str, since)]
+    dims = set(dataset[velocity].dims)
+    fitting = [name for name in first_present(dataset, names) if set(dataset[name].dims) <= dims]
+    # a dimension of times before a single date, such as that of a forecast
+    return min(fitting, key=lambda name: not dataset[name].dims, default=None)
+
+
+def read_times(dataset: xr.Dataset, name: str) -> NDArray[np.datetime64]:
+    """Its times to the nanosecond, one-dimensional, in the order of the file.
+
+    Raises
+    ------
+    UnreadableError
+        They are none, are missing, or follow a calendar that has other days than the real one.
+    """
+    import numpy as np
+
+    times = dataset[name]
+    calendar = str(times.attrs.get("calendar", "standard")).lower()
+    if calendar not in _CALENDARS:
+        raise UnreadableError(
+            f"the times in `{name}` follow the calendar `{calendar}`, whose days are not those of "
+            f"real dates; {', '.join(_CALENDARS)} can be read"
+        )
+    if times.ndim > 1:
+        raise UnreadableError(f"the times in `{name}` have {times.ndim} dimensions")
+    read = np.empty(times.size, "datetime64[ns]")
+    for start in range(0, times.size, _AT_ONCE):
+        piece = slice(start, start + _AT_ONCE)
+        read[piece] = _decoded(times[piece] if times.ndim else times)
+    missing = int(np.isnat(read).sum())
+    if missing:
+        raise UnreadableError(f"{missing} of the {read.size} times in `{name}` have no value")
+    return read
+
+
+def _decoded(times: xr.DataArray) -> NDArray[Any]:
+    import numpy as np
+    import xarray as xr
+
+    if times.dtype.kind == "f" and not times.notnull().any():
+        return np.array("NaT", "datetime64[ns]")  # to xarray, no numbers at all are no times
+    decoded: NDArray[Any] = xr.decode_cf(times.to_dataset(name="times"))["times"].values.ravel()
+    if decoded.dtype.kind != "M":
+        raise UnreadableError(f"the times in `{times.name}` cannot be read")
+    known = decoded[~np.isnat(decoded)]
+    first, last = np.datetime64(_FIRST), np.datetime64(_LAST)
+    if known.size and not first <= known.min() <= known.max() < last:
+        raise UnreadableError(f"the times in `{times.name}` are not all between {first} and {last}")
+    return decoded

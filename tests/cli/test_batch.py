@@ -1,0 +1,191 @@
+"""`calm batch` as a user runs it."""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+import xarray
+
+from calm.batch import run as batch_run
+from calm.batch.run import Progress
+from calm.cli.batch_progress import Teller, bar, duration, state
+
+HEADER = "time,depth[m],u[m/s],v[m/s]\n"
+
+
+@pytest.fixture
+def record(folder):
+    """Thirty hourly profiles as CSV."""
+    lines = [
+        f"2024-01-{1 + hour // 24:02d}T{hour % 24:02d}:00,{depth},{0.02 * hour},0.1\n"
+        for hour in range(30)
+        for depth in (0, 100)
+    ]
+    (folder / "record.csv").write_text(HEADER + "".join(lines))
+    return "record.csv"
+
+
+def test_record_in_result_out(calm, write_mooring, record, folder):
+    done = calm("batch", write_mooring(), "--currents", record, "-o", "r.nc", "--workers", 1)
+    assert done.code == 0, done.err
+    assert "30 profiles" in done.out
+    with xarray.open_dataset(folder / "r.nc", engine="h5netcdf") as result:
+        assert result.sizes["time"] == 30
+        assert (result["status"] == 0).all()
+        assert (np.diff(result["knockdown"].values[:, 0]) > 0).all()
+    assert json.loads((folder / "r.summary.json").read_text())
+    assert (folder / "r.summary.html").exists()
+    again = calm("batch", "m.yaml", "--currents", record, "-o", "r.nc")
+    assert (again.code, again.out) == (0, done.out)
+
+
+def test_a_period_and_every_other(calm, write_mooring, record, folder):
+    done = calm("batch", write_mooring(), "--currents", record, "-o", "r.zarr",
+                "--time", "2024-01-01T06:00/2024-01-01T12:00", "--every", 2, "--shape")  # fmt: skip
+    assert done.code == 0, done.err
+    with xarray.open_zarr(folder / "r.zarr", chunks=None) as result:
+        hours = result["time"].dt.hour.values
+        assert hours.tolist() == [6, 8, 10, 12]
+        assert "shape_depth" in result
+
+
+def test_none_converged_is_3_and_some_are_counted(calm, write_mooring, heavy, record, folder):
+    done = calm("batch", heavy, "--currents", record, "-o", "heavy.nc")
+    assert done.code == 3
+    assert "30 of 30 profiles have no equilibrium and are NaN" in done.err
+    text = (folder / record).read_text().replace(",0.2,0.1\n", ",,\n")
+    (folder / "gap.csv").write_text(text)
+    done = calm("batch", write_mooring(), "--currents", "gap.csv", "-o", "r.nc")
+    assert done.code == 0
+    assert "1 of 30 profiles have no equilibrium and are NaN: 1 no-current" in done.err
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["-o", "r.txt"], "ends in .nc or .zarr"),
+        (["-o", "nowhere/r.nc"], "no folder"),
+        (["-o", "r.nc", "--time", "2024"], "2024"),
+        (["-o", "r.nc", "--at", "48"], "48"),
+        (["-o", "r.nc", "--every", "0"], "--every"),
+        (["-o", "r.nc", "--workers", "0"], "--workers"),
+        (["-o", "r.nc", "--time", "2030-01-01/2030-02-01"], "2024-01-01"),
+        (["-o", "r.nc", "--currents", "m.yaml"], "m.yaml"),
+        (["-o", "r.nc", "--currents", "absent.nc"], "absent.nc"),
+    ],
+)
+def test_bad_input_is_2_and_nothing_is_left(calm, write_mooring, record, folder, options, words):
+    given = options if "--currents" in options else ["--currents", record, *options]
+    done = calm("batch", write_mooring(), *given)
+    assert done.code == 2
+    assert words in done.err
+    assert sorted(path.name for path in folder.iterdir()) == ["m.yaml", record]
+
+
+def test_a_tow_and_an_input_as_output_are_refused(calm, write_mooring, record, folder):
+    (folder / "t.yaml").write_text(
+        "name: T\ntow: {speed: 1 m/s, toward: 0 deg}\nenvironment: {density: 1025 kg/m^3}\n"
+        "line: [{use: w, length: 10 m}, {use: b}]\ncomponents:\n"
+        "  w: {kind: cable, diameter: 10 mm, weight: 2 N/m}\n"
+        "  b: {kind: body, length: 1 m, buoyancy: -100 N, drag_area: 0.1 m^2, cd: 1}\n"
+    )
+    done = calm("batch", "t.yaml", "--currents", record, "-o", "r.nc")
+    assert (done.code, "is a tow" in done.err) == (2, True)
+    done = calm("batch", write_mooring(), "--currents", record, "-o", record)
+    assert done.code == 2
+    assert "it is kept" in done.err
+
+
+def test_stopped_and_taken_up_again(calm, write_mooring, record, folder, monkeypatch):
+    monkeypatch.setitem(batch_run.run_batch.__kwdefaults__, "block", 8)
+
+    def stopped(self, number, profiles):
+        if number == 1:
+            raise KeyboardInterrupt
+        kept(self, number, profiles)
+
+    kept = batch_run._Work._keep
+    with monkeypatch.context() as patched:
+        patched.setattr(batch_run._Work, "_keep", stopped)
+        done = calm("batch", write_mooring(), "--currents", record, "-o", "r.nc")
+    assert done.code == 75
+    assert done.out == ""
+    assert "interrupted" in done.err and "r.nc.part" in done.err
+    assert not (folder / "r.nc").exists()
+    assert calm("batch", "m.yaml", "--currents", record, "-o", "r.nc").code == 0
+    other = write_mooring(buoyancy="2100 N")
+    done = calm("batch", other, "--currents", record, "-o", "r.nc")
+    assert done.code == 2
+    assert "component.buoyancy was 2000.0, is now 2100.0" in done.err
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="sends signals as POSIX has them")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_signals_leave_what_can_be_resumed(write_mooring, folder, number):
+    hours = np.datetime64("2024-01-01T00") + np.arange(6000)
+    rows = (f"{hour},0,{0.3 + 1e-5 * i},0.1\n{hour},100,0.1,0\n" for i, hour in enumerate(hours))
+    (folder / "long.csv").write_text(HEADER + "".join(rows))
+    # the lanes do not know this friction: one by one it is slow enough to be caught at it
+    file = write_mooring()
+    text = (folder / file).read_text() + "solver: {friction: hoerner}\n"
+    (folder / file).write_text(text)
+    command = [sys.executable, "-m", "calm", "batch", file, "--currents", "long.csv",
+               "-o", "r.nc", "--workers", "1"]  # fmt: skip
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    part = folder / "r.nc.part" / ".batch" / "identity"
+    while not part.exists():
+        assert process.poll() is None
+        time.sleep(0.05)
+    time.sleep(0.5)
+    os.kill(process.pid, number)
+    told = process.communicate(timeout=60)[1]
+    assert process.returncode == 75, told
+    assert re.search(r"interrupted; [\d ]+ of 6 000 profiles are done", told)
+
+
+def test_without_a_folder_to_write_it_works_and_says_so(
+    calm_process, write_mooring, record, folder
+):
+    environment = {**os.environ, "NUMBA_CACHE_DIR": "/proc/none"}
+    done = calm_process(
+        "batch", write_mooring(), "--currents", record, "-o", "r.nc",
+        env=environment, timeout=300,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert "compiling the solver" in done.stderr
+    assert "no folder can be written" in done.stderr
+    assert "compiled in " in done.stderr
+
+
+def test_progress_has_rate_remaining_time_and_failures():
+    halfway = Progress(done=60_000, total=120_000, found=20_000, failed=12)
+    assert state(halfway, 2.0) == (
+        "60 000 of 120 000 profiles, 20 000 a second, 3 s left, 12 without equilibrium"
+    )
+    assert bar(halfway) == f"[{'#' * 12}{'.' * 12}]"
+    assert state(Progress(0, 10, 0, 0), 0.0) == "0 of 10 profiles"
+    assert [duration(seconds) for seconds in (5, 600, 7230)] == ["5 s", "10 min", "2 h 00 min"]
+
+
+def test_a_terminal_has_a_bar_and_others_a_line_now_and_then(monkeypatch, capsys):
+    clock = [0.0]
+    monkeypatch.setattr("calm.cli.batch_progress.monotonic", lambda: clock[0])
+    for terminal in (True, False):
+        monkeypatch.setattr(sys.stderr, "isatty", lambda terminal=terminal: terminal)
+        teller = Teller()
+        for second in range(100):
+            clock[0] = float(second)
+            teller(Progress(second, 100, 0, 0))
+        teller.clear()
+        told = capsys.readouterr().err
+        if terminal:
+            assert told.count("\r\x1b[K[") == 100
+            assert told.endswith("\r\x1b[K")
+        else:
+            assert [line.split()[0] for line in told.splitlines()] == ["10", "70"]

@@ -1,0 +1,140 @@
+"""What is judged profile by profile is what the design check judges of one."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import calm
+from calm.batch.limits import NOT_JUDGED, limits_of, meant_for_the_surface
+from calm.batch.series import Series
+from calm.case import Mooring
+from calm.checks.finding import State
+from calm.checks.rules import RULES, STANDING
+from calm.files.mooring import Checks, MinimumTensions
+from calm.shipped import shipped_folder
+from tests.unit.batch.made_result import make_result, one_profile
+
+LINES = sorted(shipped_folder("lines").glob("*.yaml"))
+MOORINGS = [path for path in LINES if "\ntow:" not in path.read_text(encoding="utf-8")]
+STRICT = Checks.model_construct(
+    anchor_factor=60.0,
+    minimum_tension=MinimumTensions.model_construct(wire=1e6, rope=1e6),
+    minimum_reserve=0.99,
+    rating_margin=1e5,
+    maximum_knockdown=1e-3,
+    maximum_excursion=1e-3,
+    maximum_tilt=1e-2,
+)
+
+
+def judged_here(mooring, result):
+    """By rule and component: the gravest state, its value and its limit."""
+    found = {}
+    with Series(one_profile(result)) as series:
+        for limit in limits_of(mooring):
+            key = (limit.rule.name, limit.component)
+            if limit.limit is None:
+                found[key] = State.UNKNOWN, None, None
+                continue
+            value = limit.values(series)
+            if np.isnan(value).any():
+                if limit.rule.name == "knockdown":  # a line without a shape in still water
+                    found[key] = State.UNKNOWN, None, None
+                continue
+            state = limit.beyond if limit.broken(value)[0] else State.PASS
+            if key not in found or state.gravity > found[key][0].gravity:
+                found[key] = state, float(value[0]), limit.limit
+    return found
+
+
+def judged_there(result):
+    return {
+        (rule.name, verdict.component): (verdict.state, verdict.value, verdict.limit)
+        for rule in STANDING
+        if rule.name not in NOT_JUDGED
+        for verdict in rule.judge(result)
+    }
+
+
+@pytest.mark.parametrize("path", MOORINGS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("checks", [None, STRICT], ids=["own limits", "limits beyond reach"])
+def test_one_profile_is_judged_as_by_the_design_check(path: Path, checks):
+    mooring = calm.load(path)
+    if checks is not None:
+        mooring = Mooring(replace(mooring.file, checks=checks))
+    result = mooring.solve()
+    here, there = judged_here(mooring, result), judged_there(result)
+    # the rating of a float at the surface is asked for here, as another current may take it under
+    more = {key for key, (state, *_) in here.items() if state is State.UNKNOWN and key not in there}
+    assert here.keys() - more == there.keys()
+    assert len(more) <= meant_for_the_surface(mooring)
+    for key, (state, value, limit) in there.items():
+        assert here[key][0] is state, key
+        # the anchor's rules are stated another way round: see below
+        if state is not State.UNKNOWN and key[0] not in ("anchor-weight", "anchor-sliding"):
+            # a result holds 32-bit numbers
+            assert here[key][1:] == pytest.approx((value, limit), rel=1e-6, abs=1e-6), key
+
+
+def test_the_anchor_is_judged_by_what_it_needs():
+    mooring = calm.load(shipped_folder("lines") / "s1000.yaml")
+    result = mooring.solve()
+    load, checks = result.anchor, mooring.file.checks
+    friction = mooring.file.anchor.friction or checks.anchor_friction
+    here = judged_here(mooring, result)
+    label = mooring.file.pieces[-1].label
+    needs = pytest.approx((load.required_weight, load.weight), rel=1e-6)
+    assert here["anchor-weight", label][1:] == needs
+    slides = (
+        load.horizontal + friction * load.vertical,
+        friction * load.weight / checks.anchor_factor,
+    )
+    assert here["anchor-sliding", label][1:] == pytest.approx(slides, rel=1e-6)
+
+
+def test_every_rule_is_judged_or_said_not_to_be():
+    every = {
+        limit.rule.name
+        for path in MOORINGS
+        for limit in limits_of(Mooring(replace(calm.load(path).file, checks=STRICT)))
+    }
+    assert every | NOT_JUDGED.keys() | {"equilibrium"} == RULES.keys()
+    assert not every & NOT_JUDGED.keys()
+
+
+def test_a_value_at_its_limit_is_within_it():
+    mooring = calm.load(shipped_folder("lines") / "s1000.yaml")
+    for limit in limits_of(mooring):
+        if limit.limit is not None:
+            beyond = limit.limit - 1.0 if limit.least else limit.limit + 1.0
+            values = np.array([limit.limit, beyond, np.nan])
+            assert limit.broken(values).tolist() == [False, True, False]
+
+
+def test_a_clamp_bears_on_the_strength_of_its_piece():
+    mooring = calm.load(shipped_folder("lines") / "deep-current-meters.yaml")
+    piece = next(piece for piece in mooring.file.pieces if piece.clamps)
+    labels = tuple(one.label for one in mooring.file.pieces)
+    clamps = tuple(clamp.label for one in mooring.file.pieces for clamp in one.clamps)
+    tensions = np.where(np.array(clamps) == piece.clamps[0].label, 9000.0, 1.0)
+    made = make_result(1, labels=labels, clamps=clamps, clamp_tension=tensions[None])
+    greatest = {}
+    with Series(made) as series:
+        for limit in limits_of(mooring):
+            if limit.rule.name == "strength":
+                greatest[limit.component] = float(limit.values(series)[0])
+    assert greatest.pop(piece.label) == 9000.0
+    assert set(greatest.values()) == {1.0}
+
+
+def test_what_lies_on_the_seabed_is_not_slack():
+    mooring = calm.load(shipped_folder("lines") / "s1000.yaml")
+    labels = tuple(piece.label for piece in mooring.file.pieces)
+    slack = next(limit for limit in limits_of(mooring) if limit.rule.name == "slack")
+    depth = np.array([[500.0], [mooring.water.depth]]) * np.ones(len(labels))
+    with Series(make_result(2, labels=labels, clamps=(), depth_top=depth)) as series:
+        values = slack.values(series)
+    assert values[0] == 1.0
+    assert np.isnan(values[1])

@@ -1,0 +1,244 @@
+"""Records are read as `calm run` reads one time of them, whatever their layout."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from calm.batch.record import Record, open_record
+from calm.batch.record_choice import parse_period, shown
+from calm.errors import InputError, UsageError
+from calm.files import CurrentTable
+from calm.files.current_file import read_current_file
+from tests.unit.batch.records import ARRAYS, COUNT, HERE, SEABED, adcp, glorys, hycom, write
+
+LAYOUTS = [
+    *((name, "nc") for name in ARRAYS),
+    ("glorys", "zarr"),
+    ("adcp", "zarr"),
+    ("hycom", "cdf"),
+    ("csv", "csv"),
+    ("csv-speed", "csv"),
+]
+
+
+def opened(path: Path, **choice) -> Record:
+    return open_record(path, seabed=SEABED, at=HERE, **choice)
+
+
+def table(record: Record, i: int) -> CurrentTable:
+    """A profile of a record by the rules of its notes."""
+    depth, u, v, w = record.profiles(i, i + 1)
+    w = np.zeros_like(u) if w is None else w
+    levels = np.stack([depth.reshape(-1, u.shape[1])[0], u[0], v[0], w[0]])
+    levels = levels[:, np.isfinite(levels).all(axis=0) & (levels[0] >= 0)]
+    return CurrentTable(*(tuple(row) for row in levels[:, np.argsort(levels[0])].tolist()))
+
+
+@pytest.mark.parametrize(("name", "ending"), LAYOUTS)
+def test_every_profile_is_that_of_calm_run(tmp_path: Path, name: str, ending: str) -> None:
+    path = write(name, tmp_path, ending)
+    with opened(path) as record:
+        assert record.count == COUNT
+        for i, time in enumerate(record.time):
+            alone, _ = read_current_file(path, str(time.astype("datetime64[us]")), SEABED, HERE)
+            # sines and cosines may differ in their last digit between one and many
+            found = vars(table(record, i))
+            assert len(alone.depth) > 0
+            for name_of_part, expected in vars(alone).items():
+                assert found[name_of_part] == pytest.approx(expected, rel=1e-14, abs=1e-15)
+
+
+@pytest.mark.parametrize(("name", "ending"), LAYOUTS)
+def test_blocks_are_bit_for_bit_parts_of_the_whole(tmp_path: Path, name: str, ending: str) -> None:
+    path = write(name, tmp_path, ending)
+    with opened(path) as record:
+        whole = record.profiles(0, COUNT)
+        for start, stop in ((0, 1), (1, 3), (3, COUNT)):
+            for part, all_of_it in zip(record.profiles(start, stop), whole, strict=True):
+                if all_of_it is None or all_of_it.ndim == 1:
+                    assert np.array_equal(part, all_of_it) or part is all_of_it
+                else:
+                    assert np.array_equal(part, all_of_it[start:stop], equal_nan=True)
+
+
+def test_the_nearest_column_with_water_is_taken(tmp_path: Path) -> None:
+    with opened(write("glorys", tmp_path)) as record:
+        depth, u, v, w = record.profiles(0, COUNT)
+        assert (record.source["latitude"], record.source["longitude"]) == ("48.3", "-5.12")
+        assert record.notes[0] == (
+            "the column nearest to 48.3° N 5.2° W that has a current is that at 48.3° N 5.12° W, "
+            "5.9 km away"
+        )
+    column = glorys().isel(latitude=1, longitude=2)
+    # half a step of the packed integers
+    assert u == pytest.approx(column["uo"].values, abs=0.00031, nan_ok=True)
+    assert v == pytest.approx(column["vo"].values, abs=0.00031, nan_ok=True)
+    assert depth == pytest.approx(column["depth"].values)
+    assert w is None
+    assert shown(record.time[0]) == "2026-02-02T16:00"
+
+
+@pytest.mark.parametrize("longitude", [-5.2, 354.8])
+def test_longitudes_begin_where_they_like(tmp_path: Path, longitude: float) -> None:
+    path = write("hycom", tmp_path)
+    with open_record(path, seabed=SEABED, at=(48.29, longitude)) as record:
+        assert (record.source["latitude"], record.source["longitude"]) == ("48.28", "-5.2")
+        u = record.profiles(0, COUNT)[1]
+    assert u == pytest.approx(hycom()["water_u"].isel(lat=1, lon=1).values, abs=1e-9)
+
+
+def test_the_nearest_column_of_a_turned_grid(tmp_path: Path) -> None:
+    path = write("curvilinear", tmp_path)
+    dataset = ARRAYS["curvilinear"]()
+    away = np.hypot(
+        dataset.nav_lat - HERE[0], (dataset.nav_lon - HERE[1]) * np.cos(np.radians(HERE[0]))
+    )
+    y, x = np.unravel_index(np.argmin(away.values), away.shape)
+    with opened(path) as record:
+        depth, u, *_ = record.profiles(0, COUNT)
+    assert u == pytest.approx(dataset["a"].isel(y=y, x=x).values, abs=1e-12)
+    assert depth.tolist() == [200.0, 100.0, 5.0]
+
+
+def test_bins_move_with_the_instrument(tmp_path: Path) -> None:
+    with opened(write("adcp", tmp_path)) as record:
+        depth, _, _, w = record.profiles(0, COUNT)
+    assert depth == pytest.approx(adcp()["bin_depths"].values, rel=1e-14)
+    assert depth.min() < 0  # out of the water: the rules leave it out
+    assert w == pytest.approx(adcp()["w"].values / 1e3)
+    with opened(write("adcp-by-distance", tmp_path)) as record:
+        assert record.profiles(0, COUNT)[0] == pytest.approx(depth, rel=1e-14)
+        assert (
+            "`HEIGHT_ABOVE_SENSOR` counts from the instrument, whose depth is `DEPTH`"
+            in record.notes
+        )
+
+
+def test_heights_above_the_seabed(tmp_path: Path) -> None:
+    with opened(write("adcp-on-the-seabed", tmp_path)) as record:
+        assert record.profiles(0, 2)[0].tolist() == [296.0, 246.0, 196.0, 146.0]
+        assert "`level` is the height above the seabed, at 300 m" in record.notes
+
+
+def test_directions_say_their_way(tmp_path: Path) -> None:
+    with opened(write("speed-and-direction", tmp_path)) as record:
+        depth, u, _, _ = record.profiles(0, COUNT)
+        assert "`cdir` is the direction the current comes from" in record.notes
+    dataset = ARRAYS["speed-and-direction"]()
+    expected = -dataset["cspd"] * np.sin(np.radians(dataset["cdir"]))
+    assert u[:, 0] == pytest.approx(expected.values, abs=1e-14)
+    assert depth.tolist() == [80.0]
+
+
+def test_notes_tell_the_rules(tmp_path: Path) -> None:
+    with opened(write("oceansites", tmp_path)) as record:
+        assert record.notes == (
+            "the current's quality flags are not looked at",
+            "levels where the current or their depth has no value are left out of their profile",
+            "levels above the surface are left out",
+            "levels below the seabed count where they have a value: the current at the seabed "
+            "lies between",
+            "between levels the current is linear in depth, beyond the first and the last it is "
+            "constant",
+        )
+        assert record.source == {
+            "file": "oceansites.nc",
+            "velocity": "UCUR, VCUR",
+            "levels": "DEPTH",
+            "time": "TIME",
+            "latitude": "48.3",
+            "longitude": "-5.2",
+        }
+
+
+def test_digest_is_that_of_what_is_read(tmp_path: Path) -> None:
+    def digest(path: Path, **choice) -> str:
+        with opened(path, **choice) as record:
+            return record.digest()
+
+    path = write("glorys", tmp_path)
+    first = digest(path)
+    assert first == digest(write("glorys", tmp_path, "zarr"))
+    assert first == digest(path.rename(tmp_path / "other.nc"))
+    assert first == digest(tmp_path / "other.nc", every=1, time=parse_period("2026/2027"))
+    assert first != digest(tmp_path / "other.nc", every=2)
+    backwards = tmp_path / "backwards.nc"
+    written = xr.open_dataset(tmp_path / "other.nc").load()
+    written.close()
+    written.isel(time=slice(None, None, -1)).to_netcdf(backwards, engine="h5netcdf")
+    assert first == digest(backwards)
+
+
+def test_period_and_every(tmp_path: Path) -> None:
+    path = write("adcp", tmp_path)
+    with opened(path) as record:
+        whole = record.profiles(0, COUNT)[1]
+    with opened(path, time=parse_period("2026-03-01T00:10/2026-03-01T00:50"), every=2) as record:
+        assert [shown(time)[-5:] for time in record.time] == ["00:10", "00:30", "00:50"]
+        assert np.array_equal(record.profiles(0, 3)[1], whole[1:6:2])
+        assert np.array_equal(record.profiles(2, 3)[1], whole[5:6])
+        assert record.notes[:2] == (
+            "5 of the 7 profiles are in the period asked for",
+            "one profile in 2 is taken, from the first on",
+        )
+    with pytest.raises(UsageError, match=r"in this period: it is from 2026-03-01T00:00 to 2026-"):
+        opened(path, time=parse_period("2027/"))
+    with pytest.raises(UsageError, match="one at least"):
+        opened(path, every=0)
+
+
+def test_profiles_out_of_order_are_put_in_it(tmp_path: Path) -> None:
+    order = [3, 0, 1, 6, 2, 5, 4]
+    path = tmp_path / "mixed.nc"
+    adcp().isel(time=order).to_netcdf(path, engine="h5netcdf")
+    with opened(path) as mixed, opened(write("adcp", tmp_path)) as record:
+        assert np.array_equal(mixed.time, record.time)
+        for start, stop in ((0, 4), (4, COUNT)):
+            for got, expected in zip(
+                mixed.profiles(start, stop), record.profiles(start, stop), strict=True
+            ):
+                assert np.array_equal(got, expected)
+        assert mixed.notes[0] == "the profiles are not in the order of time, and were taken in it"
+
+
+def test_what_is_compressed_together_is_read_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from calm.files.current_dataset import CurrentDataset
+
+    path = tmp_path / "packed.nc"
+    packing = {"zlib": True, "chunksizes": (4, 5)}
+    adcp().to_netcdf(path, engine="h5netcdf", encoding={"u": packing, "v": packing})
+    reads = []
+    read = CurrentDataset.read
+    monkeypatch.setattr(
+        CurrentDataset, "read", lambda self, index: reads.append(index) or read(self, index)
+    )
+    with opened(path) as record, opened(write("adcp", tmp_path)) as plain:
+        for start in range(COUNT):
+            for got, expected in zip(
+                record.profiles(start, start + 1), plain.profiles(start, start + 1), strict=True
+            ):
+                assert np.array_equal(got, expected)
+    assert [index for index in reads if index.stop - index.start > 1] == [
+        slice(0, 4, 1),
+        slice(4, 7, 1),
+    ]
+
+
+def test_a_block_that_is_damaged_names_the_file(tmp_path: Path) -> None:
+    path = write("glorys", tmp_path, "zarr")
+    with opened(path) as record:
+        for chunk in (path / "uo").glob("[0-9]*"):
+            chunk.write_bytes(b"nothing that makes sense")
+        with pytest.raises(InputError, match=r"glorys.zarr: cannot be read as zarr: "):
+            record.profiles(0, 2)
+
+
+@pytest.mark.parametrize("name", ["nowhere.nc", "folder"])
+def test_no_record_at_all(tmp_path: Path, name: str) -> None:
+    (tmp_path / "folder").mkdir()
+    with pytest.raises(InputError, match=r"no such file|is a folder, and no zarr store"):
+        opened(tmp_path / name)
