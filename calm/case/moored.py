@@ -103,5 +103,6 @@ def _anchor_load(mooring: Mooring, solution: Solution) -> AnchorLoad:
         angle=float(np.degrees(np.arctan2(horizontal, vertical))),
         required_weight=required_weight(vertical, horizontal, checks.anchor_factor, friction),
         weight=mooring.anchor_weight,
+        friction=friction,
         grounded_length=solution.grounded_length,
     )

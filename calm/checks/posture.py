@@ -15,8 +15,8 @@ from calm.quantities import say
 if TYPE_CHECKING:
     from calm.case import Result
 
-AT_SURFACE = 1e-3
-"""Depth, as a share of the water depth, at which a piece is at the surface."""
+AT_SURFACE = 0.1
+"""What comes so near to the surface is at it [m]."""
 
 JUDGED_ROLES = ("float", "instrument", "release")
 """What is made for a depth; of line and connectors only those that give a rating are judged."""
@@ -150,9 +150,9 @@ def _tilted(result: Result) -> Iterator[tuple[str, float, Component]]:
 
 def _at_depth(result: Result) -> Iterator[tuple[str, float, Component]]:
     """Label, greatest depth [m] and component of what is under water above the anchor."""
-    pieces, afloat = result.file.pieces[:-1], AT_SURFACE * result.mooring.water.depth
+    pieces = result.file.pieces[:-1]
     for row, piece in zip(result.components, pieces, strict=False):
-        if result.type == "surface" and row.depth_top <= afloat:
+        if result.type == "surface" and row.depth_top <= AT_SURFACE:
             continue
         yield row.label, max(row.depth_top, row.depth_bottom), piece.component
     for clamp_row, clamp in zip(result.clamps, clamps_in(pieces), strict=True):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from math import isnan
 
 from calm.case import Mooring, Result
 from calm.case.band import FACTOR
@@ -87,7 +88,7 @@ def _grown(pieces: tuple[Piece, ...], given: Result, fouling: Fouling) -> tuple[
     grown: list[Piece] = []
     sunk = given.components.knockdown
     for row, piece in zip(given.components, pieces, strict=True):
-        rise = 0.0 if sunk[0] != sunk[0] else row.knockdown
+        rise = 0.0 if isnan(sunk[0]) else row.knockdown
         top, bottom = row.depth_top - rise, row.depth_bottom - rise
         if not isinstance(piece.component, Cable) or top >= fouling.depth:
             grown.append(piece)

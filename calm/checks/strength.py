@@ -80,7 +80,7 @@ def strength(result: Result) -> Iterator[Verdict]:
     "strength-steps",
     "Strength steps",
     "tension",
-    "CALM: a piece with less than half the strength of the cables on both its sides",
+    "A default of this program: half the strength of the cables on both its sides",
 )
 def strength_steps(result: Result) -> Iterator[Verdict]:
     """Every weak link: a piece that bears less than half of what the cables on both its sides do.

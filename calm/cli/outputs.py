@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from calm.case import Result, TowResult
     from calm.case.explain import Explanation
-    from calm.report.schematic_text import TerminalSchematic
+    from calm.report.schematic.text import TerminalSchematic
 
 OutputPath = Annotated[Path | None, Parameter(allow_leading_hyphen=True)]
 """Type of an option that takes a path, or - for the standard output."""
@@ -137,7 +137,7 @@ class Outputs:
     pdf: Path | None = None
 
     @property
-    def rendered(self) -> tuple[tuple[Path, ...], ...]:
+    def drawn_paths(self) -> tuple[tuple[Path, ...], ...]:
         """Of each kind asked for, a path for each file; of several, with the file's name added."""
         asked = [path for path in (self.plot, self.html, self.pdf) if path is not None]
         return tuple(tuple(self._for_each(path)) for path in asked)
@@ -158,7 +158,7 @@ class Outputs:
         from calm.report.write import check_destination
 
         asked = [path for path in (self.json, self.csv) if path is not None]
-        asked += [path for paths in self.rendered for path in paths]
+        asked += [path for paths in self.drawn_paths for path in paths]
         for path in asked:
             if str(path).startswith("-") and path != STDOUT:
                 raise UsageError(f"{path} stands where a path is needed; write ./{path} for a file")
@@ -225,7 +225,7 @@ class Outputs:
         for path, text in texts.items():
             if path != STDOUT:
                 write_file(path, text.encode("utf-8", "replace"))
-        for paths in self.rendered:
+        for paths in self.drawn_paths:
             for path, each in zip(paths, shown, strict=False):
                 content = each.rendered(path.suffix)
                 if content is not None:

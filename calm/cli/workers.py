@@ -23,7 +23,7 @@ def mapped(
     Parameters
     ----------
     function : of a module, so that another process finds it
-    workers : how many processes; None for one on each core that this one may use
+    workers : how many processes; None for one on each core
     what : the tasks, in the plural
     """
     workers = min(workers or os.cpu_count() or 1, len(tasks))

@@ -9,6 +9,9 @@ from pathlib import Path
 
 from calm.errors import UsageError
 
+REPORT_JSON = "report.json"
+"""Name of the data in the folder."""
+
 
 def check_folder(folder: Path) -> None:
     """Refuse a folder in which nothing could be written, before the work for it is done.
@@ -44,7 +47,7 @@ def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
         The system refuses: which file, and why. No temporary file is left behind.
     """
     parts = {name: folder / f".{name}-{os.getpid()}.part" for name in files}
-    target = folder
+    target, made = folder, not folder.exists()
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name, content in files.items():
@@ -56,9 +59,11 @@ def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
             target = folder / name
             os.replace(parts[name], target)
     except OSError as error:
-        kept = "" if target == folder else "; the report that was there is kept"
-        raise UsageError(f"cannot write {target}: {error.strerror}{kept}") from None
+        raise UsageError(f"cannot write {target}: {error.strerror}") from None
     finally:
         for part in parts.values():
             with contextlib.suppress(OSError):
                 part.unlink()
+        if made:
+            with contextlib.suppress(OSError):
+                folder.rmdir()  # which the system does only where nothing was written

@@ -29,10 +29,10 @@ def test_what_a_person_reads(calm, write_mooring):
     assert done.code == 0
     assert done.err == ""
     lines = done.out.splitlines()
-    assert lines[0].split() == ["mooring", "own", "launch,", "recovery"]
+    assert lines[0].split() == ["mooring", "own", "launch,", "recovery,", "breaks"]
     assert lines[1].split()[:2] == ["Test", "pass,"]
     assert "There is no release in the line" in done.out
-    assert "? strength unknown of top float, weight. Give its `working_load`" in done.out
+    assert "? strength of top float, weight is unknown. Give its `working_load`" in done.out
     assert "A static calculation does not see waves" in done.out
     assert max(map(len, lines)) <= 80
 
@@ -137,7 +137,7 @@ def test_a_tow_is_refused(calm, folder):
     (folder / "tow.yaml").write_text(text)
     done = calm("check", "tow.yaml")
     assert (done.code, done.out) == (2, "")
-    assert "calm check is for moorings; tow.yaml is a tow" in done.err
+    assert "calm check is for moorings; towed: tow.yaml" in done.err
 
 
 @pytest.mark.parametrize(
@@ -161,3 +161,70 @@ def test_bad_input_is_told_and_nothing_is_solved(calm, write_mooring, storm, bro
     assert (done.code, done.out) == (2, "")
     assert says in done.err
     assert "Traceback" not in done.err
+
+
+def test_a_report_is_a_folder_of_five_files_the_same_every_time(calm, write_mooring, folder, storm):
+    words = ("check", write_mooring(), "--environment", storm)
+    first = calm(*words, "--report", "first")
+    assert first.code == 0
+    assert "the report is in first" in first.err
+    again = calm(*words, "--report", "deep/er", "--workers", "2", "--json", "-")
+    names = ["checks.csv", "inventory.csv", "report.html", "report.json", "report.pdf"]
+    for where in ("first", "deep/er"):
+        assert sorted(path.name for path in (folder / where).iterdir()) == names
+    for name in names:
+        content = (folder / "first" / name).read_bytes()
+        assert content == (folder / "deep/er" / name).read_bytes(), name
+    assert (folder / "first/report.json").read_text() == again.out
+    assert (folder / "first/report.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_a_report_that_cannot_be_written_loses_nothing_else(
+    calm, write_mooring, folder, monkeypatch
+):
+    import errno
+    from pathlib import Path
+
+    write = Path.write_bytes
+
+    def full(path, content):
+        if "report.pdf" in path.name:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return write(path, content)
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    done = calm("check", write_mooring(), "--report", "cruise", "--json", "all.json")
+    assert done.code == 2
+    assert "cannot write cruise/report.pdf: No space left on device" in done.err
+    assert done.out.startswith("mooring")
+    assert json.loads((folder / "all.json").read_text())["findings"]
+    assert not (folder / "cruise").exists()
+
+
+def test_a_failure_of_calm_itself_does_not_stop_the_rest(calm, write_mooring, monkeypatch):
+    import calm.checks.assess as assess
+
+    stand_of = assess.stand_of
+
+    def failing(mooring, name):
+        if name == "Two":
+            raise ValueError("a bug")
+        return stand_of(mooring, name)
+
+    monkeypatch.setattr(assess, "stand_of", failing)
+    files = write_mooring("one.yaml", name="One"), write_mooring("two.yaml", name="Two")
+    done = calm("check", *files, "--json", "-")
+    assert done.code == 3
+    (failed,) = findings(done, mooring="Two", rule="equilibrium")
+    assert failed["message"] == "internal-error: CALM failed (ValueError: a bug)."
+    assert findings(done, mooring="One", rule="anchor-weight")
+
+
+def test_one_line_as_a_page_and_as_pages(calm, write_mooring, folder):
+    done = calm("run", write_mooring(), "--html", "m.html", "--pdf", "m.pdf")
+    assert done.code == 0
+    assert "<svg" in (folder / "m.html").read_text()
+    assert (folder / "m.pdf").read_bytes().startswith(b"%PDF")
+    refused = calm("run", "m.yaml", "--html", "m.htm")
+    assert refused.code == 2
+    assert "the name of this report ends in .html" in refused.err

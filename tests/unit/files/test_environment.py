@@ -261,3 +261,9 @@ def test_a_tow_may_be_in_air(towed: Towed) -> None:
 )
 def test_mistakes_of_a_tow(towed: Towed, text: str, message: str) -> None:
     assert towed(text + "\n") == (None, [message])
+
+
+@pytest.mark.parametrize("text", ["104 m", "[98 m]", "[98 m, 99 m, 104 m]"])
+def test_a_depth_range_is_two_depths(read, problems_of, text):
+    file = GOOD.replace("depth: 100 m", f"depth: 100 m\n  depth_range: {text}")
+    assert "is two depths, of low and of high water: [98 m, 104 m]" in problems_of(file)

@@ -46,11 +46,8 @@ INVENTORY_HEADER = (
     "role",
     "kind",
     "clamped_on",
-    "count",
     QUANTITIES["cut_length"].header,
-    "dry_mass[kg]",
-    "wet_weight[N]",
-    "lift_mass[kg]",
+    *(QUANTITIES[name].header for name in ("dry_mass", "wet_weight", "lift_mass")),
 )
 """First row of `inventory_csv`; weights in water are positive downward."""
 
@@ -104,7 +101,6 @@ def _items(assessment: Assessment) -> Iterator[Sequence[object]]:
             item.role,
             item.kind,
             item.clamped_on,
-            item.count,
             item.cut_length,
             item.dry_mass,
             item.wet_weight,
