@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from math import isnan
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown
+from calm.checks.finding import State, Verdict, at_least, at_most, rule, told, unknown
 from calm.checks.launch import Launch
 from calm.checks.recovery import Recovery
 from calm.errors import NoEquilibrium
@@ -145,6 +146,9 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
         yield _unsolved("rise", rise)
         return
     label = handling.mooring.file.pieces[rise.released].label
+    if rise.time_to_surface == 0.0:
+        yield _hauled_in(label, float(rise.arrival[rise.released]), rise)
+        return
     if rise.rise_speed > 0.0:
         message = f"Freed below {label}, the line rises with {say('speed', rise.rise_speed)}"
     else:
@@ -177,6 +181,17 @@ def tangling(handling: Handling) -> Iterator[Verdict]:
             "In the rise what is below overtakes",
             "Put more of the buoyancy at the top.",
         )
+
+
+def _hauled_in(label: str, arrival: float, rise: Recovery) -> Verdict:
+    """Of a line whose float is at the surface: whether its lower end comes up by itself."""
+    if isnan(arrival):
+        depth = say("depth", float(rise.hangs_at[rise.released]))
+        message = f"Freed, {label} does not come up: it hangs from the float, down to {depth}."
+        remedy = "Haul it in; mind its weight."
+        return Verdict(label, None, None, None, State.WARN, message, remedy)
+    minutes = arrival / 60.0
+    return told(label, rise.rise_speed, f"Freed, {label} comes up after {minutes:.0f} minutes.")
 
 
 def _unsolved(motion: str, failure: NoEquilibrium) -> Verdict:

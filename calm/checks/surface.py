@@ -7,19 +7,11 @@ from math import sqrt
 from typing import TYPE_CHECKING
 
 from calm.checks.finding import Verdict, at_least, at_most, rule, told, unknown
-from calm.checks.posture import AT_SURFACE
+from calm.checks.posture import meant_for_the_surface
 from calm.quantities import say
 
 if TYPE_CHECKING:
     from calm.case import Result
-
-
-def meant_for_the_surface(result: Result) -> bool:
-    """Whether the line has a float at the surface, or had one before the current took it under."""
-    if result.type == "surface":
-        return True
-    still = result.still_shape
-    return still is not None and bool(still.depth[0] <= AT_SURFACE)
 
 
 @rule(
@@ -41,7 +33,7 @@ def reserve(result: Result) -> Iterator[Verdict]:
         message = f"{100 * left:.0f} % of the float's buoyancy is left"
     else:
         left = 0.0
-        message = f"The current takes the float {say('depth', result.top.depth)} under: 0 % is left"
+        message = f"The float is {say('depth', result.top.depth)} under water: 0 % is left"
     yield at_least(
         label,
         left,

@@ -64,7 +64,8 @@ def check(
     if workers is not None and workers < 1:
         raise UsageError(f"--workers: {workers} is not 1 or more")
     if report is not None:
-        _check_report(report, json)
+        given = [*files, *map(Path, environment or ()), *(catalog or ())]
+        _check_report(report, json, given)
     designs = read_designs(files, environment, catalog or [], workers)
     assessments = _assessed(designs, workers)
     for design in designs:
@@ -76,15 +77,20 @@ def check(
     return gravest(code for each in assessments for code in _codes(each))
 
 
-def _check_report(folder: Path, json: Path | None) -> None:
+def _check_report(folder: Path, json: Path | None, given: Sequence[Path]) -> None:
     """Refuse a report that could not be written, before anything is solved."""
-    from calm.report.folder import REPORT_JSON, check_folder
+    from calm.report.folder import REPORT_FILES, check_folder
     from calm.report.provenance import moment
 
     check_folder(folder)
     moment()
-    if json is not None and os.path.realpath(json) == os.path.realpath(folder / REPORT_JSON):
-        raise UsageError(f"two outputs would go to {json}")
+    for name in REPORT_FILES:
+        real = os.path.realpath(folder / name)
+        if json is not None and os.path.realpath(json) == real:
+            raise UsageError(f"two outputs would go to {json}")
+        for path in given:
+            if os.path.realpath(path) == real:
+                raise UsageError(f"{path} is read here; the report would take its place")
 
 
 def _assessed(designs: Sequence[Design], workers: int | None) -> list[Assessment]:
@@ -130,14 +136,14 @@ def _write(folder: Path, assessments: Sequence[Assessment], workers: int | None)
     from calm.report.check.document import check_document
     from calm.report.check.section import mooring_section
     from calm.report.document import to_json
-    from calm.report.folder import REPORT_JSON, write_report
+    from calm.report.folder import write_report
     from calm.report.html import report_html
     from calm.report.pdf import report_pdf
 
     sections = mapped(mooring_section, assessments, workers, "moorings drawn")
     texts = {
         "report.html": report_html(sections),
-        REPORT_JSON: to_json([check_document(assessments)]),
+        "report.json": to_json([check_document(assessments)]),
         "checks.csv": checks_csv(assessments),
         "inventory.csv": inventory_csv(assessments),
     }

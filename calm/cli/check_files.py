@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from calm.cli.workers import mapped
-from calm.errors import InputError, Problem, UsageError
+from calm.errors import InputError, NoEquilibrium, Problem, UsageError
 
 if TYPE_CHECKING:
     from calm.case import Mooring, Tow
@@ -57,12 +57,31 @@ def read_designs(
     stands = {file: [one for (path, _), one in read.items() if path == file] for file in files}
     for its in stands.values():
         _refuse_one_name(its)
-    called = Counter(its[0].file.name for its in stands.values())
-    return [
-        Design(path, name if called[name] == 1 else f"{name} ({path})", tuple(its))
-        for path, its in stands.items()
-        for name in [its[0].file.name]
-    ]
+    called = _told_apart({path: its[0].file.name for path, its in stands.items()})
+    return [Design(path, called[path], _cut_alike(its)) for path, its in stands.items()]
+
+
+def _told_apart(names: dict[Path, str]) -> dict[Path, str]:
+    """The names, each with its file's where several files have it."""
+    while True:
+        count = Counter(names.values())
+        if max(count.values()) == 1:
+            return names
+        names = {
+            path: name if count[name] == 1 else f"{name} ({path})" for path, name in names.items()
+        }
+
+
+def _cut_alike(moorings: Sequence[Mooring]) -> tuple[Mooring, ...]:
+    """The same mooring in every environment: what is cut to fit, is cut once, for the first."""
+    from calm.case import Mooring
+    from calm.checks.situations import cut_like
+
+    first, *others = moorings
+    try:
+        return first, *(Mooring(cut_like(each.file, first)) for each in others)
+    except NoEquilibrium:
+        return tuple(moorings)  # the first is told not to stand, and why
 
 
 def _loaded(
@@ -103,8 +122,10 @@ def _load(
 def _refuse_one_name(moorings: Sequence[Mooring]) -> None:
     """Two environments of one name could not be told apart."""
     from calm.checks.assess import OWN
+    from calm.report.section import ON_THE_WAY
 
     names = Counter(mooring.file.environment.name or OWN for mooring in moorings)
+    names[ON_THE_WAY] += 1  # a column of its own
     for name, count in names.items():
         if count > 1:
             raise UsageError(f"{count} environments are called {name}; give them other names")

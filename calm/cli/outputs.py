@@ -155,6 +155,7 @@ class Outputs:
             A path that cannot be written, that another output or a mooring file has already, or
             that looks like an option; a picture of an unknown format.
         """
+        from calm.report.provenance import moment
         from calm.report.write import check_destination
 
         asked = [path for path in (self.json, self.csv) if path is not None]
@@ -169,6 +170,8 @@ class Outputs:
         for report, ending in ((self.html, ".html"), (self.pdf, ".pdf")):
             if report is not None and report.suffix != ending:
                 raise UsageError(f"cannot write {report}: the name of this report ends in {ending}")
+        if self.drawn_paths:
+            moment()
         mooring_files = set(map(os.path.realpath, self.files))
         for real, count in Counter(map(os.path.realpath, asked)).items():
             if count > 1:
@@ -194,10 +197,10 @@ class Outputs:
         if self.json == STDOUT:
             show(text)
             return
-        if self.json is not None:
-            write_file(self.json, text.encode())
         if table is not None:
             show_rich(table)
+        if self.json is not None:
+            write_file(self.json, text.encode())
 
     def write(self, shown: Sequence[Shown], to_csv: Callable[[], str]) -> None:
         """Write the files, then the standard output: what was asked for there, or the tables.

@@ -6,6 +6,7 @@ aliases and tags have no use in these files and are refused, so that nothing can
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -22,6 +23,9 @@ LARGEST_FILE = 1_000_000
 
 Place = tuple[int, int]
 Location = tuple[str | int, ...]
+
+# They would move the cursor of a terminal, or turn the figures beside them round.
+_CONTROL_CHARACTER = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
 
 _NULL = "tag:yaml.org,2002:null"
 _PLAIN_TAGS = frozenset(
@@ -161,7 +165,9 @@ class _Composer:
             return self._mapping(node, location)
         if isinstance(node, SequenceNode):
             return [self.convert(child, (*location, i)) for i, child in enumerate(node.value)]
-        return None if str(node.tag) == _NULL else node.value
+        if str(node.tag) == _NULL:
+            return None
+        return _CONTROL_CHARACTER.sub("\N{REPLACEMENT CHARACTER}", node.value)
 
     def _mapping(self, node: MappingNode, location: Location) -> dict[str, Any]:
         data: dict[str, Any] = {}

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from calm.errors import UsageError
 
-REPORT_JSON = "report.json"
-"""Name of the data in the folder."""
+REPORT_FILES = ("report.html", "report.pdf", "report.json", "checks.csv", "inventory.csv")
+"""What a design check writes in the folder."""
 
 
 def check_folder(folder: Path) -> None:
@@ -19,15 +19,20 @@ def check_folder(folder: Path) -> None:
     Raises
     ------
     UsageError
-        It is a file, it or the nearest folder that exists may not be written.
+        It is no folder, or lies in none; it or the nearest one that exists may not be written.
     """
-    if folder.exists() and not folder.is_dir():
-        raise UsageError(f"cannot write {folder}: it is a file; a folder is needed")
-    nearest = Path(os.path.realpath(folder))
-    while not nearest.exists():
-        nearest = nearest.parent
-    if not nearest.is_dir() or not os.access(nearest, os.W_OK | os.X_OK):
-        raise UsageError(f"cannot write {folder}: permission denied in {nearest}")
+    try:
+        with contextlib.suppress(FileNotFoundError):
+            folder.lstat()  # refuses a name that no folder may have
+        nearest = folder.absolute()
+        while not os.path.lexists(nearest):
+            nearest = nearest.parent
+        if not nearest.is_dir():
+            raise UsageError(f"cannot write {folder}: {nearest} is no folder; a folder is needed")
+        if not os.access(nearest, os.W_OK | os.X_OK):
+            raise UsageError(f"cannot write {folder}: permission denied in {nearest}")
+    except OSError as error:
+        raise UsageError(f"cannot write {folder}: {error.strerror}") from None
 
 
 def write_report(folder: Path, files: Mapping[str, bytes]) -> None:

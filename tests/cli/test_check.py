@@ -149,7 +149,7 @@ def test_a_tow_is_refused(calm, folder):
         (("m.yaml", "--environment", "storm.yaml", "--environment", "storm.yaml"), "twice"),
         (("m.yaml", "--environment", "storm.yaml", "--environment", "2.yaml"), "called storm"),
         (("m.yaml", "broken.yaml"), "broken.yaml:4:"),
-        (("m.yaml", "--report", "m.yaml"), "it is a file; a folder is needed"),
+        (("m.yaml", "--report", "m.yaml"), "is no folder; a folder is needed"),
         (("m.yaml", "--json", "none/x.json"), "there is no folder"),
         (("missing.yaml",), "missing.yaml"),
         ((), "FILES"),
@@ -228,3 +228,46 @@ def test_one_line_as_a_page_and_as_pages(calm, write_mooring, folder):
     refused = calm("run", "m.yaml", "--html", "m.htm")
     assert refused.code == 2
     assert "the name of this report ends in .html" in refused.err
+
+
+def test_a_report_does_not_take_the_place_of_what_is_read(calm, write_mooring, folder):
+    write_mooring("report.json")
+    before = (folder / "report.json").read_bytes()
+    done = calm("check", "report.json", "--report", ".")
+    assert (done.code, done.out) == (2, "")
+    assert "report.json is read here; the report would take its place" in done.err
+    assert (folder / "report.json").read_bytes() == before
+    done = calm("check", write_mooring(), "--report", "r", "--json", "r/report.json")
+    assert done.code == 2
+
+
+def test_names_are_told_apart_whatever_they_are(calm, write_mooring):
+    files = [
+        write_mooring("a.yaml", name="M"),
+        write_mooring("b.yaml", name="M"),
+        write_mooring("c.yaml", name="M (a.yaml)"),
+    ]
+    found = findings(calm("check", *files, "--json", "-"), rule="anchor-weight")
+    assert len({finding["mooring"] for finding in found}) == 3
+
+
+def test_what_is_cut_to_fit_is_cut_once_for_all_environments(calm, write_mooring, folder):
+    file = folder / write_mooring()
+    text = file.read_text().replace("length: 60 m,", "length: fit, top_depth: 30 m,")
+    file.write_text(text + "environments: {deep: {depth: 120 m}}\n")
+    document = json.loads(calm("check", "m.yaml", "--json", "-").out)
+    top = {
+        (one["environment"], one["situation"]): one["top_depth"]
+        for one in document["situations"]["Test"]
+    }
+    # one rope in 20 m more of water: its top is 20 m deeper; depths are closed to 1e-7 of 120 m
+    assert top["deep", "still water"] == pytest.approx(top["own", "still water"] + 20.0, abs=1e-4)
+
+
+def test_names_move_no_cursor_and_are_no_formula(calm, write_mooring, folder):
+    file = folder / write_mooring()
+    file.write_text(file.read_text().replace("label: top float", r'label: "=cmd|\e[31m\u202e"'))
+    for words in (("check", "m.yaml"), ("run", "m.yaml"), ("run", "m.yaml", "--csv", "-")):
+        out = calm(*words).out
+        assert "\x1b" not in out and "\u202e" not in out
+    assert ",'=cmd|\ufffd[31m\ufffd," in out

@@ -14,11 +14,10 @@ from typing import TYPE_CHECKING
 from calm.checks.finding import Finding
 from calm.checks.rules import RULES
 from calm.quantities import QUANTITIES
+from calm.report.csv import as_text
 
 if TYPE_CHECKING:
     from calm.checks.assessment import Assessment
-
-_FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n")
 
 CHECKS_HEADER = (
     "mooring",
@@ -113,5 +112,5 @@ def _cell(value: object) -> str:
     if value is None or value != value:
         return ""
     if isinstance(value, str):
-        return f"'{value}" if value.startswith(_FORMULA) else value
+        return as_text(value)
     return repr(float(value)) if isinstance(value, float) else str(value)

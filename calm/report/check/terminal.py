@@ -123,7 +123,8 @@ def _where(finding: Finding, several: bool) -> str:
 
 def _told(assessment: Assessment) -> Iterator[RenderableType]:
     """What a mooring fails or is warned of, the gravest first with its remedy; what is missing."""
-    listed = [each for each in worst_by_part(assessment.all_findings()) if each.state in _SIGNS]
+    every = (*assessment.all_findings(), *assessment.tighter_findings())
+    listed = [each for each in worst_by_part(every) if each.state in _SIGNS]
     if not listed:
         return
     yield Text()

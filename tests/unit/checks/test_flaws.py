@@ -320,7 +320,7 @@ FLAWS = (
         "reserve",
         "buoy",
         "fail",
-        "under: 0 % is left",
+        "under water: 0 % is left",
     ),
     Flaw(
         "a buoy without freeboard",
