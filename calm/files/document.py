@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -71,8 +72,12 @@ def read_document(path: Path) -> Document:
     InputError
         The file cannot be read, is no text, no valid YAML, or holds duplicate keys.
     """
-    text = read_text(path)
-    name = str(path)
+    return _composed(str(path), read_text(path))
+
+
+@lru_cache(maxsize=32)
+def _composed(name: str, text: str) -> Document:
+    """The document of a text; a mooring that is read in many environments is composed once."""
     try:
         root = YAML(typ="safe", pure=True).compose(text)
     except MarkedYAMLError as error:
