@@ -95,7 +95,7 @@ def _anchor_load(mooring: Mooring, solution: Solution) -> AnchorLoad:
     anchor, checks = mooring.file.anchor, mooring.file.checks
     force = solution.force[-1]
     vertical, horizontal = float(force[2]), float(np.hypot(force[0], force[1]))
-    friction = anchor.friction or checks.anchor_friction
+    friction = checks.anchor_friction if anchor.friction is None else anchor.friction
     return AnchorLoad(
         tension=float(solution.tension[-1]),
         vertical=vertical,
@@ -103,5 +103,6 @@ def _anchor_load(mooring: Mooring, solution: Solution) -> AnchorLoad:
         angle=float(np.degrees(np.arctan2(horizontal, vertical))),
         required_weight=required_weight(vertical, horizontal, checks.anchor_factor, friction),
         weight=mooring.anchor_weight,
+        friction=friction,
         grounded_length=solution.grounded_length,
     )

@@ -46,13 +46,18 @@ def load(
 
 @dataclass(frozen=True)
 class Mooring:
-    """A mooring as read from its file; `line` and `water` are what the solver takes."""
+    """A mooring as read from its file; `line` and `water` are what the solver takes.
+
+    `for_surface` tells whether it is meant to reach the surface, where that is known beforehand: a
+    mooring that is judged with something changed is meant for what it was meant for.
+    """
 
     file: MooringFile
+    for_surface: bool | None = None
 
-    def __reduce__(self) -> tuple[type[Mooring], tuple[MooringFile]]:
-        """What another process needs: all else follows from the file."""
-        return Mooring, (self.file,)
+    def __reduce__(self) -> tuple[type[Mooring], tuple[MooringFile, bool | None]]:
+        """What another process needs: all else follows from these."""
+        return Mooring, (self.file, self.for_surface)
 
     @cached_property
     def water(self) -> Water:

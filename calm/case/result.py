@@ -78,8 +78,8 @@ class Top:
 class AnchorLoad:
     """What the line does to its anchor [N]; `angle` is from the vertical [degrees].
 
-    `required_weight` is the weight in water that holds it, `weight` what it has;
-    `grounded_length` is the unstretched length of line on the seabed [m].
+    `required_weight` is the weight in water that holds it, `weight` what it has, `friction` its
+    coefficient on the bed; `grounded_length` is the unstretched length of line on the seabed [m].
     """
 
     tension: float
@@ -88,6 +88,7 @@ class AnchorLoad:
     angle: float
     required_weight: float
     weight: float
+    friction: float
     grounded_length: float
 
 

@@ -29,7 +29,8 @@ def anchor_weight(result: Result) -> Iterator[Verdict]:
         load.weight,
         load.required_weight,
         f"The anchor weighs {say('tension', load.weight)} in water; "
-        f"{say('tension', load.required_weight)} are required.",
+        f"{say('tension', load.required_weight)} are required, "
+        f"{_in_air(result, load.required_weight)}.",
         _heavier(result, load.required_weight),
     )
 
@@ -63,7 +64,7 @@ def anchor_uplift(result: Result) -> Iterator[Verdict]:
 def anchor_sliding(result: Result) -> Iterator[Verdict]:
     """Horizontal pull H ≤ friction (weight in water / factor - V)."""
     load, factor = result.anchor, result.file.checks.anchor_factor
-    friction = result.file.anchor.friction or result.file.checks.anchor_friction
+    friction = load.friction
     limit = friction * (load.weight / factor - load.vertical)
     yield at_most(
         result.file.pieces[-1].label,
@@ -76,11 +77,12 @@ def anchor_sliding(result: Result) -> Iterator[Verdict]:
 
 
 def _heavier(result: Result, weight: float) -> str:
-    """Advice: the weight in water that is needed, and what weighs so much, in air."""
+    return f"Take one of {say('tension', weight)} in water: {_in_air(result, weight)}."
+
+
+def _in_air(result: Result, weight: float) -> str:
+    """What weighs so much in water [N]."""
     water = result.mooring.water
     _, density = water.at(np.array(water.depth))
     steel, concrete = anchor_dry_mass(weight, float(density), water.gravity)
-    return (
-        f"Take an anchor of {say('tension', weight)} in water: {steel:.0f} kg of steel or "
-        f"{concrete:.0f} kg of concrete in air."
-    )
+    return f"{steel:.0f} kg of steel or {concrete:.0f} kg of concrete in air"

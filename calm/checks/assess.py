@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from calm.case import Mooring, Result
+from calm.case import Mooring
 from calm.checks.assessment import Assessment, Situation, Stand
 from calm.checks.backup import breaks_of
-from calm.checks.finding import Finding, State
+from calm.checks.finding import AS_GIVEN, Finding, State
 from calm.checks.handling import Handling
 from calm.checks.inventory import inventory_of
 from calm.checks.launch import Launch, launch_of
@@ -21,14 +21,14 @@ OWN = "own"
 """Name of the environment that a mooring file gives itself."""
 
 
-def check(*moorings: Mooring) -> Assessment:
+def check(mooring: Mooring, /, *others: Mooring) -> Assessment:
     """Judge a mooring by every rule of the design check.
 
     Parameters
     ----------
-    moorings : one mooring, loaded in each of the environments it is judged in
+    mooring, others : the same one, loaded in each of the environments it is judged in
     """
-    name = moorings[0].file.name
+    name, moorings = mooring.file.name, (mooring, *others)
     return assessment_of(name, [stand_of(mooring, name) for mooring in moorings])
 
 
@@ -39,29 +39,33 @@ def stand_of(mooring: Mooring, name: str) -> Stand:
     ----------
     name : of the mooring in its findings
 
-    Findings as given are all there; those of another situation only where it is worse there, and
-    a mere warning where only strumming makes it so, which it may not do.
+    Findings as given are all there, of another situation those whose state is worse there. What
+    fails only as the cables strum is a warning: they may not.
     """
     environment = mooring.file.environment.name or OWN
     situations = situations_of(mooring)
-    given, *changed = (list(_judged(each, name, environment)) for each in situations)
-    findings, states = list(given), {_of(finding): finding.state for finding in given}
-    for finding in (finding for each in changed for finding in each):
-        if finding.situation == STRUMMING and finding.state is State.FAIL:
-            finding = replace(finding, state=State.WARN)
-        if finding.state.gravity > states.get(_of(finding), State.PASS).gravity:
-            findings.append(finding)
-    return Stand(environment, mooring, situations, tuple(findings))
+    given, *changed = ([*_judged(each, name, environment)] for each in situations)
+    states = {_of(finding): finding.state.severity for finding in given}
+    others = [_softened(finding) for findings in changed for finding in findings]
+    graver = [each for each in others if each.state.severity > states.get(_of(each), -1)]
+    listed = (*given, *graver)
+    worst = _worst_of_each_rule((*listed, *others))
+    tighter = tuple(finding for finding in worst if finding not in listed)
+    return Stand(environment, mooring, situations, listed, tighter)
+
+
+def failed_stand(mooring: Mooring, name: str, failure: NoEquilibrium) -> Stand:
+    """The stand of a mooring that could not be judged, for a reason of its own or of CALM's."""
+    environment = mooring.file.environment.name or OWN
+    situation = Situation(AS_GIVEN, None, failure)
+    findings = tuple(_judged(situation, name, environment))
+    return Stand(environment, mooring, (situation,), findings)
 
 
 def assessment_of(name: str, stands: Sequence[Stand]) -> Assessment:
     """Judge a mooring's launch, recovery and breaks too, in the first environment it stands in."""
     first = next((stand for stand in stands if stand.result is not None), stands[0])
-    mooring, result = first.mooring, first.result
-    launch = recovery = None
-    if result is not None:
-        launch, recovery = _launched(mooring, result), _risen(mooring, result)
-    handling = Handling(mooring, launch, recovery, breaks_of(mooring))
+    handling = _handled(first)
     findings = [
         rule.find(verdict, name, first.environment)
         for rule in ONCE
@@ -70,10 +74,10 @@ def assessment_of(name: str, stands: Sequence[Stand]) -> Assessment:
     return Assessment(
         name=name,
         stands=tuple(stands),
-        launch=launch,
-        recovery=recovery,
+        launch=None if isinstance(handling.launch, NoEquilibrium) else handling.launch,
+        recovery=None if isinstance(handling.recovery, NoEquilibrium) else handling.recovery,
         backup=handling.backup,
-        inventory=inventory_of(mooring),
+        inventory=inventory_of(first.mooring),
         findings=tuple(findings),
     )
 
@@ -92,15 +96,36 @@ def _of(finding: Finding) -> tuple[str, str | None]:
     return finding.rule, finding.component
 
 
-def _launched(mooring: Mooring, result: Result) -> Launch | None:
-    try:
-        return launch_of(mooring, result)
-    except NoEquilibrium:
-        return None
+def _softened(finding: Finding) -> Finding:
+    strums = finding.situation == STRUMMING
+    return replace(finding, state=State.WARN) if strums and finding.state is State.FAIL else finding
 
 
-def _risen(mooring: Mooring, result: Result) -> Recovery | None:
-    try:
-        return recovery_of(mooring, result)
-    except NoEquilibrium:
-        return None
+def _worst_of_each_rule(findings: Sequence[Finding]) -> list[Finding]:
+    """The first of those that are as bad as any of their rule."""
+    worst: dict[str, Finding] = {}
+    for finding in findings:
+        if finding.rule not in worst or finding.rank < worst[finding.rule].rank:
+            worst[finding.rule] = finding
+    return list(worst.values())
+
+
+def _handled(stand: Stand) -> Handling:
+    """Launch, recovery and breaks of a mooring, each of them or why there is none."""
+    mooring, result = stand.mooring, stand.result
+    launch: Launch | NoEquilibrium
+    recovery: Recovery | NoEquilibrium
+    if result is None:
+        failure = stand.situations[0].failure
+        assert failure is not None
+        launch = recovery = failure
+    else:
+        try:
+            launch = launch_of(mooring, result)
+        except NoEquilibrium as failure:
+            launch = failure
+        try:
+            recovery = recovery_of(mooring, result)
+        except NoEquilibrium as failure:
+            recovery = failure
+    return Handling(mooring, launch, recovery, breaks_of(mooring))

@@ -31,12 +31,22 @@ class Situation:
 
 @dataclass(frozen=True)
 class Stand:
-    """A mooring in one environment: its situations, the first as given, and what was found."""
+    """A mooring in one environment.
+
+    Attributes
+    ----------
+    environment : its name
+    mooring : in it
+    situations : what was solved, the first as given
+    findings : all as given, and of the other situations those whose state is worse
+    tighter : of each rule the finding of another situation that leaves less margin than all those
+    """
 
     environment: str
     mooring: Mooring
     situations: tuple[Situation, ...]
     findings: tuple[Finding, ...]
+    tighter: tuple[Finding, ...] = ()
 
     @property
     def result(self) -> Result | None:
@@ -76,3 +86,8 @@ class Assessment:
         for stand in self.stands:
             yield from stand.findings
         yield from self.findings
+
+    def tighter_findings(self) -> Iterator[Finding]:
+        """Of every environment, where another situation leaves less margin."""
+        for stand in self.stands:
+            yield from stand.tighter

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from calm.checks.slack import release_of
 from calm.errors import NoEquilibrium
 from calm.solve.standing import standing_lift
 
@@ -29,7 +28,7 @@ class Break:
     margin : net buoyancy of the pieces from below the break down to the release [N]
     weight_lifted : weight in water of those of them that are heavy [N]
     required : what the margin should be [N]
-    judged : whether the design can do anything about it: above the lowest cluster of floats
+    judged : whether the design can do anything about it
     """
 
     break_after: int
@@ -47,11 +46,12 @@ def breaks_of(mooring: Mooring) -> tuple[Break, ...]:
     break inside a cable what is left lies between the figures of the breaks at its two ends.
     Nothing is told of a line without a release, or one that no length fits.
 
-    Floats that follow one another, with at most connectors and chain between them, are a cluster,
-    whole or lost: what breaks inside or below the lowest one leaves the release on the seabed in
-    any design. Where all floats are in one at the top, the last break is judged.
+    Floats that follow one another, with at most connectors and chain between them, are a cluster.
+    What breaks inside the lowest one, or in the connectors and chain that lead from it to the
+    release, leaves the release on the seabed in any design, and is not judged. Where that is the
+    whole line, the last break is.
     """
-    release = release_of(mooring.file)
+    release = mooring.file.release
     if release is None:
         return ()
     try:
@@ -59,7 +59,8 @@ def breaks_of(mooring: Mooring) -> tuple[Break, ...]:
     except NoEquilibrium:
         return ()
     share = mooring.file.checks.backup_margin
-    lowest = _lowest_cluster(mooring.file.pieces[:release], lift[:release])
+    beyond_help = _beyond_help(mooring.file.pieces[:release], lift[:release])
+    judged = set(range(release)) - set(beyond_help) or {release - 1}
     breaks = []
     for piece in mooring.file.pieces[:release]:
         left = lift[piece.index + 1 :]
@@ -71,26 +72,30 @@ def breaks_of(mooring: Mooring) -> tuple[Break, ...]:
                 margin=float(left.sum()),
                 weight_lifted=weight,
                 required=max(share * weight, LEAST_MARGIN),
-                judged=piece.index < lowest if lowest else piece.index == release - 1,
+                judged=piece.index in judged,
             )
         )
     return tuple(breaks)
 
 
-def _lowest_cluster(above: Sequence[Piece], lift: Floats) -> int:
-    """Index of the first piece of the lowest floats of a line, with what links them to others.
+def _beyond_help(above: Sequence[Piece], lift: Floats) -> range:
+    """The breaks inside the lowest cluster of floats, and below it down to a cable or instrument.
 
-    0 where there are no floats but those at the top.
+    Parameters
+    ----------
+    above, lift : the pieces above the release, and their net forces [N]
     """
     floats = [
         force > 0.0 and not _is(piece, "cable") for piece, force in zip(above, lift, strict=True)
     ]
-    first = len(above)
-    while first and not floats[first - 1]:
-        first -= 1
+    end = len(above)
+    while end and not floats[end - 1]:
+        end -= 1
+    first = end
     while first and (floats[first - 1] or _is(above[first - 1], "connector", "chain")):
         first -= 1
-    return first
+    leads_to_the_release = all(_is(piece, "connector", "chain") for piece in above[end:])
+    return range(first, len(above) if leads_to_the_release else end - 1)
 
 
 def _is(piece: Piece, *what: str) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
 from enum import StrEnum
+from math import inf
 from typing import Any
 
 AS_GIVEN = "as given"
@@ -20,7 +21,7 @@ class State(StrEnum):
     FAIL = "fail"
 
     @property
-    def gravity(self) -> int:
+    def severity(self) -> int:
         """0 for what is unknown, more the graver."""
         return list(State).index(self)
 
@@ -54,6 +55,11 @@ class Verdict:
             return None
         return self.margin / abs(self.limit)
 
+    @property
+    def rank(self) -> tuple[int, float]:
+        """What sorts verdicts, the worst first: the state, then the margin as a share."""
+        return -self.state.severity, inf if self.share is None else self.share
+
 
 def at_most(
     component: str | None,
@@ -77,6 +83,11 @@ def at_least(
 ) -> Verdict:
     """The verdict on a value that may not fall short of a limit."""
     return _verdict(component, value, limit, value - limit, message, remedy, beyond)
+
+
+def told(component: str | None, value: float, message: str) -> Verdict:
+    """The verdict on a value that has no limit: it passes as nothing is asked of it."""
+    return Verdict(component, value, None, None, State.PASS, message)
 
 
 def unknown(

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from math import isnan
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown
-from calm.checks.slack import release_of
-from calm.quantities import say
+from calm.checks.finding import State, Verdict, at_least, at_most, rule, told, unknown
+from calm.checks.launch import Launch
+from calm.checks.recovery import Recovery
+from calm.errors import NoEquilibrium
+from calm.quantities import QUANTITIES, say
 
 if TYPE_CHECKING:
     from calm.case import Mooring
     from calm.checks.backup import Break
-    from calm.checks.launch import Launch
-    from calm.checks.recovery import Recovery
 
 GREATEST_TOUCHDOWN_SPEED = 2.5
 """Above it an anchor may bury itself or break what stands on it [m/s]."""
@@ -26,11 +27,11 @@ USUAL_RISE_SPEED = 0.7
 
 @dataclass(frozen=True)
 class Handling:
-    """What the rules of launch, recovery and breaks look at; None where it could not be solved."""
+    """What the rules of launch, recovery and breaks look at, or why it could not be solved."""
 
     mooring: Mooring
-    launch: Launch | None
-    recovery: Recovery | None
+    launch: Launch | NoEquilibrium
+    recovery: Recovery | NoEquilibrium
     backup: tuple[Break, ...]
 
 
@@ -45,7 +46,7 @@ def backup(handling: Handling) -> Iterator[Verdict]:
 
     It should be a tenth of the weight it lifts, and 250 N.
     """
-    if release_of(handling.mooring.file) is None:
+    if handling.mooring.file.release is None:
         yield unknown(
             None,
             "There is no release in the line: nothing is meant to come up after a break.",
@@ -53,6 +54,7 @@ def backup(handling: Handling) -> Iterator[Verdict]:
         )
         return
     if not handling.backup:
+        yield unknown(None, "What hangs on the release is not known.", "Let the line stand first.")
         return
     judged = [one for one in handling.backup if one.judged]
     worst = min(judged, key=lambda one: one.margin - one.required)
@@ -75,7 +77,8 @@ def backup(handling: Handling) -> Iterator[Verdict]:
 def launch_strength(handling: Handling) -> Iterator[Verdict]:
     """Tension of every piece as the line falls behind its anchor, against its breaking load."""
     launch, factor = handling.launch, handling.mooring.file.checks.launch_safety_factor
-    if launch is None:
+    if isinstance(launch, NoEquilibrium):
+        yield _unsolved("fall", launch)
         return
     greatest = np.maximum(launch.tension_top, launch.tension_bottom)
     for piece, tension in zip(handling.mooring.file.pieces, greatest.tolist(), strict=False):
@@ -89,32 +92,34 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
                 tension,
             )
             continue
-        yield at_most(
-            piece.label,
-            tension,
-            breaking / factor,
-            f"{bears}; its breaking load over {factor:g} is {say('tension', breaking / factor)}.",
-            "Take a stronger one, or lower the anchor on a parachute or a wire.",
-        )
+        limit = breaking / factor
+        message = f"{bears}; its breaking load over {factor:g} is {say('tension', limit)}."
+        if tension > limit and not launch.anchor_drag_known:
+            message += " The anchor's own drag is not known: this is the greatest."
+            yield unknown(piece.label, message, "Give the anchor's `kt`.", tension)
+            continue
+        remedy = "Take a stronger one, or lower the anchor on a parachute or a wire."
+        yield at_most(piece.label, tension, limit, message, remedy)
 
 
 @rule(
     "launch-speed",
     "Speed at touchdown",
     "speed",
-    "CALM: an anchor that lands faster than 2.5 m/s buries itself or breaks what stands on it",
+    "A default of this program: faster, an anchor may bury itself or break what stands on it",
 )
 def launch_speed(handling: Handling) -> Iterator[Verdict]:
     """Terminal speed of the anchor as it meets the seabed."""
     launch = handling.launch
-    if launch is None:
-        yield unknown(None, "The fall of the line could not be solved.", "Judge it by hand.")
+    if isinstance(launch, NoEquilibrium):
+        yield _unsolved("fall", launch)
         return
-    label, speed = handling.mooring.file.pieces[-1].label, launch.touchdown_speed
-    slow, fast = launch.fall_speed_band
+    label, speed = handling.mooring.file.pieces[-1].label, launch.fall_speed
+    slow, fast = (QUANTITIES["speed"].format(one) for one in launch.fall_speed_band)
     message = (
-        f"The anchor lands with {say('speed', speed)} ({slow:.2f} to {fast:.2f} with half and "
-        f"double the drag along the line); {GREATEST_TOUCHDOWN_SPEED:g} m/s should not be passed"
+        f"The anchor lands with {say('speed', speed)} ({slow} to {fast} with double and half the "
+        f"drag along the line and of the anchor); {GREATEST_TOUCHDOWN_SPEED:g} m/s should not be "
+        "passed"
     )
     remedy = "Lower it, or add drag: a parachute, a wider anchor."
     if launch.anchor_drag_known:
@@ -132,15 +137,18 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
     "recovery",
     "Rise",
     "speed",
-    "CALM: slower than 0.3 m/s a rise is in doubt, slower than 0.7 m/s it takes long",
+    "Defaults of this program: below 0.3 m/s a rise is in doubt, below 0.7 m/s it takes long",
 )
 def recovery(handling: Handling) -> Iterator[Verdict]:
     """Terminal speed of the line as it rises without its anchor."""
     rise, limit = handling.recovery, handling.mooring.file.checks.minimum_rise_speed
-    if rise is None:
-        yield unknown(None, "The rise of the line could not be solved.", "Judge it by hand.")
+    if isinstance(rise, NoEquilibrium):
+        yield _unsolved("rise", rise)
         return
     label = handling.mooring.file.pieces[rise.released].label
+    if rise.time_to_surface == 0.0:
+        yield _hauled_in(label, float(rise.arrival[rise.released]), rise)
+        return
     if rise.rise_speed > 0.0:
         message = f"Freed below {label}, the line rises with {say('speed', rise.rise_speed)}"
     else:
@@ -155,24 +163,40 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
     yield verdict
 
 
-@rule("tangling", "Tangling", "speed", "CALM: a part that overtakes what is ahead of it")
+@rule("tangling", "Tangling", "", "A default of this program: no part overtakes what is ahead")
 def tangling(handling: Handling) -> Iterator[Verdict]:
     """Whether the line doubles back on itself as it falls or rises."""
     launch, rise = handling.launch, handling.recovery
-    if launch is not None and launch.tangles:
+    if isinstance(launch, Launch) and launch.tangles:
         yield _tangled(
             handling,
             launch.tangles,
             "In the fall what is above overtakes",
             "Pay the line out under tension, or lower the anchor.",
         )
-    if rise is not None and rise.tangles:
+    if isinstance(rise, Recovery) and rise.tangles:
         yield _tangled(
             handling,
             rise.tangles,
             "In the rise what is below overtakes",
             "Put more of the buoyancy at the top.",
         )
+
+
+def _hauled_in(label: str, arrival: float, rise: Recovery) -> Verdict:
+    """Of a line whose float is at the surface: whether its lower end comes up by itself."""
+    if isnan(arrival):
+        depth = say("depth", float(rise.hangs_at[rise.released]))
+        message = f"Freed, {label} does not come up: it hangs from the float, down to {depth}."
+        remedy = "Haul it in; mind its weight."
+        return Verdict(label, None, None, None, State.WARN, message, remedy)
+    minutes = arrival / 60.0
+    return told(label, rise.rise_speed, f"Freed, {label} comes up after {minutes:.0f} minutes.")
+
+
+def _unsolved(motion: str, failure: NoEquilibrium) -> Verdict:
+    message = f"The {motion} of the line is not known ({failure.status}): {failure.message}"
+    return unknown(None, message, failure.advice)
 
 
 def _tangled(handling: Handling, tangles: Sequence[int], what: str, remedy: str) -> Verdict:

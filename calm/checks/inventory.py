@@ -33,7 +33,6 @@ class Item:
     wet_weight : in water of 1025 kg/m³ under the gravity of the file [N], + down; None where the
         length is not known
     lift_mass : of a piece with its clamps [kg]; None of a clamp, and where a mass is not known
-    count : of the component in this item
     """
 
     index: int
@@ -47,7 +46,6 @@ class Item:
     dry_mass: float | None
     wet_weight: float | None
     lift_mass: float | None
-    count: int = 1
 
 
 def inventory_of(mooring: Mooring) -> tuple[Item, ...]:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import nan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from calm.errors import NoEquilibrium
 from calm.physics.line import Floats, Line
 from calm.physics.track import head_count
 from calm.solve import FallingAnchor, FreeMotion, part_of, solve_fall
@@ -28,9 +30,9 @@ class Launch:
 
     Attributes
     ----------
-    fall_speed : [m/s], + down
+    fall_speed : that at which the anchor meets the seabed [m/s], + down
     fall_speed_band : with the drag along cables, chains and cylinders, and the drag of the anchor,
-        doubled and halved: the slow and the fast speed [m/s]
+        doubled and halved: the slow and the fast speed [m/s]; nan where such a fall is not solved
     anchor_tension : pull of the line on the anchor [N]
     drift : velocity to the east and to the north [m/s]
     tension_top, tension_bottom : (n,) of every piece above the anchor [N]; 0 of what stays at the
@@ -48,11 +50,6 @@ class Launch:
     tension_bottom: Floats
     anchor_drag_known: bool
     tangles: tuple[int, ...]
-
-    @property
-    def touchdown_speed(self) -> float:
-        """Speed at which the anchor meets the seabed [m/s]."""
-        return self.fall_speed
 
     def components(self) -> list[dict[str, Any]]:
         """The pieces above the anchor, by name of figure."""
@@ -82,19 +79,24 @@ def launch_of(mooring: Mooring, result: Result) -> Launch:
     anchor = FallingAnchor(mooring.anchor_weight, kt or 0.0)
 
     def fall(drag: float) -> FreeMotion:
-        lighter: Line = replace(line, tangential_drag=drag * line.tangential_drag)
+        changed: Line = replace(line, tangential_drag=drag * line.tangential_drag)
         return solve_fall(
-            lighter, mooring.water, replace(anchor, drag=drag * anchor.drag), mooring.settings
+            changed, mooring.water, replace(anchor, drag=drag * anchor.drag), mooring.settings
         )
 
+    def speed(drag: float) -> float:
+        try:
+            return -float(fall(drag).velocity[2])
+        except NoEquilibrium:
+            return nan
+
     motion = fall(1.0)
-    slow, fast = (-float(fall(drag).velocity[2]) for drag in (AXIAL_DRAG_BAND, 1 / AXIAL_DRAG_BAND))
     top, bottom = motion.solution.tension[motion.solution.piece_nodes.T]
     still = np.zeros(first)
     east, north, up = motion.velocity.tolist()
     return Launch(
         fall_speed=-up,
-        fall_speed_band=(slow, fast),
+        fall_speed_band=(speed(AXIAL_DRAG_BAND), speed(1.0 / AXIAL_DRAG_BAND)),
         anchor_tension=float(motion.solution.tension[-1]),
         drift=(east, north),
         tension_top=np.concatenate([still, top]),

@@ -15,11 +15,28 @@ from calm.quantities import say
 if TYPE_CHECKING:
     from calm.case import Result
 
-AT_SURFACE = 1e-3
-"""Depth, as a share of the water depth, at which a piece is at the surface."""
+AT_SURFACE = 0.1
+"""What comes so near to the surface is at it [m]."""
+
+MOST_OF_A_RATING = 0.5
+"""Share of a rating that the margin takes at most: what is made for shallow water may be used."""
 
 JUDGED_ROLES = ("float", "instrument", "release")
 """What is made for a depth; of line and connectors only those that give a rating are judged."""
+
+
+def meant_for_the_surface(result: Result) -> bool:
+    """Whether the float is at the surface, or would be but for the current, the wind or the tide.
+
+    A line that reaches it has no unique shape in still water where it is longer than that is deep.
+    """
+    known, still = result.mooring.for_surface, result.still_shape
+    if known is not None:
+        return known
+    if result.type == "surface" or still is None:
+        length = float(result.components.cut_length.sum())
+        return result.type == "surface" or length >= result.mooring.water.depth
+    return bool(still.depth[0] <= AT_SURFACE)
 
 
 @rule(
@@ -37,21 +54,19 @@ def tilt(result: Result) -> Iterator[Verdict]:
     """
     design = result.file.checks.maximum_tilt
     for label, leaning, component in _tilted(result):
-        own = component.max_tilt
-        if own is None and component.role not in ("instrument", "release"):
+        own, warned = component.max_tilt, component.warn_tilt
+        if own is warned is None and component.role not in ("instrument", "release"):
             continue
         limits = [limit for limit in (own, design) if limit is not None]
-        leans = f"{label} leans {say('tilt', leaning)}"
-        if not limits:
-            yield unknown(
-                label, f"{leans}; how far it may is not known.", "Give its `max_tilt`.", leaning
-            )
-            continue
-        limit, warned = min(limits), component.warn_tilt
-        message = f"{leans}; {say('tilt', limit)} is its limit."
         remedy = "Add buoyancy above it, or move it where the line stands straighter."
-        verdict = at_most(label, leaning, limit, message, remedy)
-        if verdict.state is State.PASS and warned is not None and leaning > warned:
+        leans = f"{label} leans {say('tilt', leaning)}"
+        if limits:
+            message = f"{leans}; {say('tilt', min(limits))} is its limit."
+            verdict = at_most(label, leaning, min(limits), message, remedy)
+        else:
+            message = f"{leans}; how far it may is not known."
+            verdict = unknown(label, message, "Give its `max_tilt`.", leaning)
+        if warned is not None and leaning > warned and verdict.state is not State.FAIL:
             message = f"{leans}; from {say('tilt', warned)} on its data are doubtful."
             verdict = replace(verdict, state=State.WARN, message=message, remedy=remedy)
         yield verdict
@@ -81,12 +96,13 @@ def depth_rating(result: Result) -> Iterator[Verdict]:
                     depth,
                 )
             continue
+        spare = min(margin, MOST_OF_A_RATING * rating)
         yield at_most(
             label,
             depth,
-            rating - margin,
+            rating - spare,
             f"{stands}; it is rated to {say('depth_rating', rating)}, less a margin of "
-            f"{say('depth_rating', margin)}.",
+            f"{say('depth_rating', spare)}.",
             "Take one that stands more depth, or add buoyancy against the knockdown.",
         )
 
@@ -150,9 +166,9 @@ def _tilted(result: Result) -> Iterator[tuple[str, float, Component]]:
 
 def _at_depth(result: Result) -> Iterator[tuple[str, float, Component]]:
     """Label, greatest depth [m] and component of what is under water above the anchor."""
-    pieces, afloat = result.file.pieces[:-1], AT_SURFACE * result.mooring.water.depth
+    pieces = result.file.pieces[:-1]
     for row, piece in zip(result.components, pieces, strict=False):
-        if result.type == "surface" and row.depth_top <= afloat:
+        if result.type == "surface" and row.depth_top <= AT_SURFACE:
             continue
         yield row.label, max(row.depth_top, row.depth_bottom), piece.component
     for clamp_row, clamp in zip(result.clamps, clamps_in(pieces), strict=True):

@@ -20,7 +20,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from calm.checks.slack import release_of
 from calm.errors import NoEquilibrium
 from calm.physics.line import REFERENCE_DENSITY, Booleans, Floats, Line, Water
 from calm.physics.track import head_count
@@ -88,7 +87,7 @@ def recovery_of(mooring: Mooring, result: Result) -> Recovery:
         As `solve_rise`, in still water too.
     """
     count, water = len(mooring.line.length), mooring.water
-    release = release_of(mooring.file)
+    release = mooring.file.release
     released = count - 1 if release is None else release
     line = part_of(mooring.line, 0, released + 1)
     lifts = _lifts(line, water, result)

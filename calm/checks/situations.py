@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from math import isnan
+from typing import Any
 
 from calm.case import Mooring, Result
 from calm.case.band import FACTOR
 from calm.checks.assessment import Situation
 from calm.checks.finding import AS_GIVEN
+from calm.checks.posture import meant_for_the_surface
 from calm.errors import NoEquilibrium
 from calm.files import Cable, CurrentTable, Fouling, MooringFile, Piece, StrummingFactor
 from calm.solve import Status
 
-STILL, HIGH, LOW = "still water", "high water", "low water"
+STILL, STILL_LOW = "still water", "still low water"
+HIGH, LOW = "high water", "low water"
 FOULED, STRUMMING = "fouling", "strumming"
 
 _NO_CURRENT = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
@@ -22,16 +26,18 @@ _NO_CURRENT = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
 def situations_of(mooring: Mooring) -> tuple[Situation, ...]:
     """The mooring solved as given, then in every situation that its file asks for.
 
-    Still water always, high and low water where the environment has a `depth_range`, growth where
-    it has `fouling`, and cables with Cn × 1.5 where no law of strumming is in use. Pieces that are
-    cut to fit keep the length that fits as given. Where still water has no unique shape, it is
+    Still water, high and low water, and still low water where the environment has a `depth_range`,
+    growth where it has `fouling`, and cables with Cn × 1.5 where no law of strumming is in use.
+    Pieces that are cut to fit keep the length that fits as given. Still water in which a line to
+    the surface is slack, since it is longer than the water is deep, has no unique shape and is
     left out.
     """
     given = solved(AS_GIVEN, mooring)
     if given.result is None:
         return (given,)
+    surface = meant_for_the_surface(given.result)
     changed = [solved(name, each) for name, each in _changed(mooring, given.result)]
-    return (given, *(each for each in changed if not _shapeless(each)))
+    return (given, *(each for each in changed if not (surface and _shapeless(each))))
 
 
 def solved(name: str, mooring: Mooring) -> Situation:
@@ -43,39 +49,51 @@ def solved(name: str, mooring: Mooring) -> Situation:
 
 
 def _changed(mooring: Mooring, given: Result) -> Iterator[tuple[str, Mooring]]:
-    file = _cut(mooring)
+    file, surface = cut_like(mooring.file, mooring), meant_for_the_surface(given)
     environment = file.environment
+
+    def changed(depth: float | None = None, **what: Any) -> Mooring:
+        there = replace(environment, depth=depth or environment.depth)
+        return Mooring(replace(file, **({"environment": there} | what)), surface)
+
     if mooring.water.moving or environment.wind is not None:
         still = replace(environment, current=_NO_CURRENT, wind=None)
-        yield STILL, Mooring(replace(file, environment=still))
+        yield STILL, changed(environment=still)
+        if environment.depth_range is not None:
+            yield STILL_LOW, changed(environment=replace(still, depth=environment.depth_range[0]))
     if environment.depth_range is not None:
         low, high = environment.depth_range
-        yield HIGH, Mooring(replace(file, environment=replace(environment, depth=high)))
-        yield LOW, Mooring(replace(file, environment=replace(environment, depth=low)))
+        yield HIGH, changed(high)
+        yield LOW, changed(low)
     if environment.fouling is not None:
-        pieces = _grown(file.pieces, given, environment.fouling)
-        yield FOULED, Mooring(replace(file, pieces=pieces))
+        yield FOULED, changed(pieces=_grown(file.pieces, given, environment.fouling))
     if file.solver.strumming is None and any(isinstance(p.component, Cable) for p in file.pieces):
         solver = file.solver.model_copy(update={"strumming": StrummingFactor(factor=FACTOR)})
-        yield STRUMMING, Mooring(replace(file, solver=solver))
+        yield STRUMMING, changed(solver=solver)
 
 
-def _cut(mooring: Mooring) -> MooringFile:
-    """The file with the piece that is cut to fit at its cut length."""
-    lengths = mooring.line.length.tolist()
+def cut_like(file: MooringFile, mooring: Mooring) -> MooringFile:
+    """A file with the piece that is cut to fit at the length that it has in a mooring.
+
+    Raises
+    ------
+    NoEquilibrium
+        No length fits there.
+    """
     pieces = tuple(
         piece
         if piece.fit_top_depth is None
-        else replace(piece, length=lengths[piece.index], fit_top_depth=None)
-        for piece in mooring.file.pieces
+        else replace(piece, length=float(mooring.line.length[piece.index]), fit_top_depth=None)
+        for piece in file.pieces
     )
-    return replace(mooring.file, pieces=pieces)
+    return replace(file, pieces=pieces)
 
 
 def _shapeless(situation: Situation) -> bool:
     """Whether it is still water in which a slack line has no shape of its own."""
     failure = situation.failure
-    return situation.name == STILL and failure is not None and failure.status == Status.SLACK.label
+    still = situation.name in (STILL, STILL_LOW)
+    return still and failure is not None and failure.status == Status.SLACK.label
 
 
 def _grown(pieces: tuple[Piece, ...], given: Result, fouling: Fouling) -> tuple[Piece, ...]:
@@ -87,7 +105,7 @@ def _grown(pieces: tuple[Piece, ...], given: Result, fouling: Fouling) -> tuple[
     grown: list[Piece] = []
     sunk = given.components.knockdown
     for row, piece in zip(given.components, pieces, strict=True):
-        rise = 0.0 if sunk[0] != sunk[0] else row.knockdown
+        rise = 0.0 if isnan(sunk[0]) else row.knockdown
         top, bottom = row.depth_top - rise, row.depth_bottom - rise
         if not isinstance(piece.component, Cable) or top >= fouling.depth:
             grown.append(piece)

@@ -8,17 +8,11 @@ from typing import TYPE_CHECKING
 
 from calm.case.warnings import is_synthetic
 from calm.checks.finding import Verdict, at_least, rule
-from calm.files import Cable, MooringFile
+from calm.files import Cable
 from calm.quantities import say
 
 if TYPE_CHECKING:
     from calm.case import Result
-
-
-def release_of(file: MooringFile) -> int | None:
-    """Index of the lowest release in line, None without one: what is above it comes up."""
-    releases = [piece.index for piece in file.pieces if piece.component.role == "release"]
-    return releases[-1] if releases else None
 
 
 @rule(
@@ -34,8 +28,8 @@ def slack(result: Result) -> Iterator[Verdict]:
     above the release at slack water; no rule is published, so 500 N of wire and 300 N of rope are
     the defaults. A piece with ``slack: allowed`` is not judged, nor what lies on the seabed.
     """
-    release, file = release_of(result.file), result.file
-    lowest = len(file.pieces) - 1 if release is None else release
+    file = result.file
+    lowest = len(file.pieces) - 1 if file.release is None else file.release
     limits = file.checks.minimum_tension
     for row, piece in zip(result.components, file.pieces[:lowest], strict=False):
         if not isinstance(piece.component, Cable) or piece.component.slack == "allowed":

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from calm.case.warnings import is_synthetic
 from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown
+from calm.checks.posture import meant_for_the_surface
 from calm.files import Cable, Component
 from calm.quantities import say
 
@@ -51,7 +52,7 @@ def strength(result: Result) -> Iterator[Verdict]:
     UFC 4-159-03 table 3-7 asks for 3 on new breaking strength of chain and wire; oceanographic
     practice for 3 to 5, synthetics and surface moorings at the upper end.
     """
-    factors, surface = result.file.checks.safety_factor, result.type == "surface"
+    factors, surface = result.file.checks.safety_factor, meant_for_the_surface(result)
     for row, piece in zip(result.components, result.file.pieces, strict=True):
         component = piece.component
         limit = allowable_load(component, factors, surface)
@@ -80,7 +81,7 @@ def strength(result: Result) -> Iterator[Verdict]:
     "strength-steps",
     "Strength steps",
     "tension",
-    "CALM: a piece with less than half the strength of the cables on both its sides",
+    "A default of this program: half the strength of the cables on both its sides",
 )
 def strength_steps(result: Result) -> Iterator[Verdict]:
     """Every weak link: a piece that bears less than half of what the cables on both its sides do.
@@ -89,7 +90,7 @@ def strength_steps(result: Result) -> Iterator[Verdict]:
     is none, the piece that comes nearest to one is told. Chain is left out of the comparison: it is
     heavier than its load asks for, against wear.
     """
-    factors, surface = result.file.checks.safety_factor, result.type == "surface"
+    factors, surface = result.file.checks.safety_factor, meant_for_the_surface(result)
     loads = [allowable_load(piece.component, factors, surface) for piece in result.file.pieces[:-1]]
     steps = sorted(_steps(result, loads))
     weak = [step for step in steps if step[0] < WEAK_LINK]

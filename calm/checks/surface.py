@@ -6,20 +6,12 @@ from collections.abc import Iterator
 from math import sqrt
 from typing import TYPE_CHECKING
 
-from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown
-from calm.checks.posture import AT_SURFACE
+from calm.checks.finding import Verdict, at_least, at_most, rule, told, unknown
+from calm.checks.posture import meant_for_the_surface
 from calm.quantities import say
 
 if TYPE_CHECKING:
     from calm.case import Result
-
-
-def meant_for_the_surface(result: Result) -> bool:
-    """Whether the line has a float at the surface, or had one before the current took it under."""
-    if result.type == "surface":
-        return True
-    still = result.still_shape
-    return still is not None and still.depth[0] <= AT_SURFACE * result.mooring.water.depth
 
 
 @rule(
@@ -29,10 +21,9 @@ def meant_for_the_surface(result: Result) -> bool:
     "Dewey: a float that uses all its buoyancy goes under; the share kept is for waves",
 )
 def reserve(result: Result) -> Iterator[Verdict]:
-    """Share of the surface float's buoyancy that is left.
+    """Share of the surface float's buoyancy that is left: what it could still take on.
 
-    Dewey's and CALM's reserve; the third that is asked for by default covers waves, which a
-    static solution does not see.
+    The 0.3 that are asked for by default cover waves, which a static solution does not see.
     """
     if not meant_for_the_surface(result):
         return
@@ -42,7 +33,7 @@ def reserve(result: Result) -> Iterator[Verdict]:
         message = f"{100 * left:.0f} % of the float's buoyancy is left"
     else:
         left = 0.0
-        message = f"The current takes the float {say('depth', result.top.depth)} under: 0 % is left"
+        message = f"The float is {say('depth', result.top.depth)} under water: 0 % is left"
     yield at_least(
         label,
         left,
@@ -59,10 +50,12 @@ def reserve(result: Result) -> Iterator[Verdict]:
     "A float at the surface stands out of it",
 )
 def freeboard(result: Result) -> Iterator[Verdict]:
-    """A float at the surface stands out of the water."""
-    if result.type != "surface":
+    """A float meant for the surface stands out of the water."""
+    if not meant_for_the_surface(result):
         return
     label, height = result.file.pieces[0].label, result.top.freeboard
+    if result.type != "surface":
+        height = -result.top.depth
     if height is None:
         yield unknown(
             label,
@@ -92,17 +85,17 @@ def watch_circle(result: Result) -> Iterator[Verdict]:
     `maximum_excursion`, where the design gives it.
     """
     limit = result.file.checks.maximum_excursion
-    if not meant_for_the_surface(result) or limit is None:
+    if not meant_for_the_surface(result):
         return
-    radius = watch_radius(result)
-    yield at_most(
-        result.file.pieces[0].label,
-        radius,
-        limit,
-        f"The watch circle has a radius of {say('offset', radius)}; "
-        f"{say('offset', limit)} are allowed.",
-        "Shorten the line.",
-    )
+    length, depth = float(result.components.length.sum()), result.mooring.water.depth
+    radius = sqrt(max(length**2 - depth**2, 0.0))
+    label = result.file.pieces[0].label
+    message = f"The watch circle has a radius of {say('offset', radius)}"
+    if limit is None:
+        yield told(label, radius, f"{message}.")
+        return
+    message += f"; {say('offset', limit)} are allowed."
+    yield at_most(label, radius, limit, message, "Shorten the line.")
 
 
 @rule(
@@ -112,19 +105,9 @@ def watch_circle(result: Result) -> Iterator[Verdict]:
     "Told, not judged",
 )
 def scope(result: Result) -> Iterator[Verdict]:
-    """Uncut length over water depth of a line to the surface; it is told, and has no limit."""
+    """Cut length over water depth of a line to the surface; it is told, and has no limit."""
     if not meant_for_the_surface(result):
         return
     depth = result.mooring.water.depth
     ratio = float(result.components.cut_length.sum()) / depth
-    message = (
-        f"The line is {ratio:.3f} times as long as the water is deep, its watch circle "
-        f"{say('offset', watch_radius(result))} in radius."
-    )
-    yield Verdict(None, ratio, None, None, State.PASS, message)
-
-
-def watch_radius(result: Result) -> float:
-    """Of the circle that the top of the line, as it is stretched, cannot leave [m]."""
-    length, depth = float(result.components.length.sum()), result.mooring.water.depth
-    return sqrt(max(length**2 - depth**2, 0.0))
+    yield told(None, ratio, f"The line is {ratio:.3f} times as long as the water is deep.")

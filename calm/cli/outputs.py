@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from calm.case import Result, TowResult
     from calm.case.explain import Explanation
-    from calm.report.schematic_text import TerminalSchematic
+    from calm.report.schematic.text import TerminalSchematic
 
 OutputPath = Annotated[Path | None, Parameter(allow_leading_hyphen=True)]
 """Type of an option that takes a path, or - for the standard output."""
@@ -137,7 +137,7 @@ class Outputs:
     pdf: Path | None = None
 
     @property
-    def rendered(self) -> tuple[tuple[Path, ...], ...]:
+    def drawn_paths(self) -> tuple[tuple[Path, ...], ...]:
         """Of each kind asked for, a path for each file; of several, with the file's name added."""
         asked = [path for path in (self.plot, self.html, self.pdf) if path is not None]
         return tuple(tuple(self._for_each(path)) for path in asked)
@@ -155,10 +155,11 @@ class Outputs:
             A path that cannot be written, that another output or a mooring file has already, or
             that looks like an option; a picture of an unknown format.
         """
+        from calm.report.provenance import moment
         from calm.report.write import check_destination
 
         asked = [path for path in (self.json, self.csv) if path is not None]
-        asked += [path for paths in self.rendered for path in paths]
+        asked += [path for paths in self.drawn_paths for path in paths]
         for path in asked:
             if str(path).startswith("-") and path != STDOUT:
                 raise UsageError(f"{path} stands where a path is needed; write ./{path} for a file")
@@ -169,6 +170,8 @@ class Outputs:
         for report, ending in ((self.html, ".html"), (self.pdf, ".pdf")):
             if report is not None and report.suffix != ending:
                 raise UsageError(f"cannot write {report}: the name of this report ends in {ending}")
+        if self.drawn_paths:
+            moment()
         mooring_files = set(map(os.path.realpath, self.files))
         for real, count in Counter(map(os.path.realpath, asked)).items():
             if count > 1:
@@ -194,10 +197,10 @@ class Outputs:
         if self.json == STDOUT:
             show(text)
             return
-        if self.json is not None:
-            write_file(self.json, text.encode())
         if table is not None:
             show_rich(table)
+        if self.json is not None:
+            write_file(self.json, text.encode())
 
     def write(self, shown: Sequence[Shown], to_csv: Callable[[], str]) -> None:
         """Write the files, then the standard output: what was asked for there, or the tables.
@@ -225,7 +228,7 @@ class Outputs:
         for path, text in texts.items():
             if path != STDOUT:
                 write_file(path, text.encode("utf-8", "replace"))
-        for paths in self.rendered:
+        for paths in self.drawn_paths:
             for path, each in zip(paths, shown, strict=False):
                 content = each.rendered(path.suffix)
                 if content is not None:

@@ -159,7 +159,7 @@ def _explained(outcome: Outcome) -> Outcome:
 
 def _drawn(outcome: Outcome, line: Mooring | Tow) -> Outcome:
     """The outcome with its line drawn in the signs that the standard output can carry."""
-    from calm.report.schematic_text import TerminalSchematic, can_carry
+    from calm.report.schematic.text import TerminalSchematic, can_carry
 
     plain = not can_carry(getattr(sys.stdout, "encoding", None))
     return replace(outcome, schematic=TerminalSchematic(line.file, outcome.result, plain))

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
 _Item = TypeVar("_Item")
+_NARROWEST = 40  # columns: figures are no longer cut, but wrapped by the terminal
 _PATIENCE = 1.0  # seconds before progress is told
 _PACE = 0.1  # seconds between two tellings
 
@@ -53,6 +54,7 @@ def show_rich(*renderables: RenderableType) -> None:
     text = io.StringIO()
     terminal = sys.stdout is not None and sys.stdout.isatty()
     console = Console(file=text, force_terminal=terminal or None, highlight=False)
+    console.width = max(console.width, _NARROWEST)
     for number, renderable in enumerate(renderables):
         if number:
             console.print()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
@@ -23,16 +24,26 @@ def mapped(
     Parameters
     ----------
     function : of a module, so that another process finds it
-    workers : how many processes; None for one on each core that this one may use
+    workers : how many processes; None for one on each core
     what : the tasks, in the plural
     """
     workers = min(workers or os.cpu_count() or 1, len(tasks))
     if workers < 2 or len(tasks) <= FEW:
         return [function(task) for task in progress(tasks, what)]
     from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import active_children
 
-    pool = ProcessPoolExecutor(workers)
+    pool = ProcessPoolExecutor(workers, initializer=_leave_interrupts_to_the_parent)
     try:
-        return list(progress(pool.map(function, tasks), what, len(tasks)))
-    finally:
-        pool.shutdown(cancel_futures=True)
+        done = list(progress(pool.map(function, tasks), what, len(tasks)))
+    except BaseException:
+        pool.shutdown(wait=False, cancel_futures=True)
+        for child in active_children():
+            child.kill()
+        raise
+    pool.shutdown()
+    return done
+
+
+def _leave_interrupts_to_the_parent() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -16,7 +16,7 @@ from calm.files.definition import (
     refuse_weight_above_mass,
     volume_from_weights,
 )
-from calm.files.fields import COEFFICIENT, DRAG, LENGTH, Quantity, Role
+from calm.files.fields import DRAG, LENGTH, Quantity, Role
 from calm.files.flexible import Cable, Chain
 from calm.files.rigid import Body, Cylinder, CylinderShape, Sphere, SphereShape
 
@@ -43,7 +43,7 @@ class Anchor(Definition):
     weight: Annotated[float | None, Quantity("force", at_least=0)] = None
     density: Annotated[float | None, DENSITY] = None
     length: Annotated[float, LENGTH] = 0.0
-    friction: Annotated[float | None, COEFFICIENT] = None
+    friction: Annotated[float | None, Quantity("number", above=0)] = None
     kt: Annotated[float | None, DRAG] = None
 
     @property

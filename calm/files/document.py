@@ -6,8 +6,10 @@ aliases and tags have no use in these files and are refused, so that nothing can
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +24,9 @@ LARGEST_FILE = 1_000_000
 
 Place = tuple[int, int]
 Location = tuple[str | int, ...]
+
+# They would move the cursor of a terminal, or turn the figures beside them round.
+_CONTROL_CHARACTER = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
 
 _NULL = "tag:yaml.org,2002:null"
 _PLAIN_TAGS = frozenset(
@@ -67,8 +72,12 @@ def read_document(path: Path) -> Document:
     InputError
         The file cannot be read, is no text, no valid YAML, or holds duplicate keys.
     """
-    text = read_text(path)
-    name = str(path)
+    return _composed(str(path), read_text(path))
+
+
+@lru_cache(maxsize=32)
+def _composed(name: str, text: str) -> Document:
+    """The document of a text; a mooring that is read in many environments is composed once."""
     try:
         root = YAML(typ="safe", pure=True).compose(text)
     except MarkedYAMLError as error:
@@ -161,7 +170,9 @@ class _Composer:
             return self._mapping(node, location)
         if isinstance(node, SequenceNode):
             return [self.convert(child, (*location, i)) for i, child in enumerate(node.value)]
-        return None if str(node.tag) == _NULL else node.value
+        if str(node.tag) == _NULL:
+            return None
+        return _CONTROL_CHARACTER.sub("\N{REPLACEMENT CHARACTER}", node.value)
 
     def _mapping(self, node: MappingNode, location: Location) -> dict[str, Any]:
         data: dict[str, Any] = {}

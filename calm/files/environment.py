@@ -129,6 +129,15 @@ def _water_only(value: object) -> object:
     return value
 
 
+_Levels = tuple[Annotated[float, POSITIVE_LENGTH], Annotated[float, POSITIVE_LENGTH]]
+
+
+def _two_depths(value: object) -> object:
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        raise QuantityError("is two depths, of low and of high water: [98 m, 104 m]")
+    return value
+
+
 class TowEnvironmentKeys(Model):
     """The keys of `environment:` as a person writes them for a tow."""
 
@@ -150,9 +159,7 @@ class EnvironmentKeys(TowEnvironmentKeys):
 
     fluid: Annotated[Literal["water"], BeforeValidator(_water_only)] = "water"
     depth: Annotated[float, POSITIVE_LENGTH]
-    depth_range: (
-        tuple[Annotated[float, POSITIVE_LENGTH], Annotated[float, POSITIVE_LENGTH]] | None
-    ) = None
+    depth_range: Annotated[_Levels | None, BeforeValidator(_two_depths)] = None
     fouling: Fouling | None = None
 
 

@@ -148,6 +148,12 @@ class MooringFile:
     variants: tuple[str, ...] = ()
 
     @property
+    def release(self) -> int | None:
+        """Index of the lowest release in line, None without one: what is above it comes up."""
+        releases = [piece.index for piece in self.pieces if piece.component.role == "release"]
+        return releases[-1] if releases else None
+
+    @property
     def anchor(self) -> Anchor:
         """The last piece of a mooring's line."""
         anchor = self.pieces[-1].component

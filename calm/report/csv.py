@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterator, Sequence
+from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 from calm.quantities import QUANTITIES
@@ -33,6 +34,14 @@ HEADER = (*_WORDS, *(QUANTITIES[name].header for name in _NUMBERS))
 """The first row: names, with the unit in brackets where there is one."""
 
 
+_FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n")
+
+
+def as_text(text: str) -> str:
+    """A text as a cell that no spreadsheet takes for a formula: with an apostrophe before it."""
+    return f"'{text}" if text.startswith(_FORMULA) else text
+
+
 def to_csv(results: Sequence[Result | TowResult]) -> str:
     """The components of one mooring or tow, or of several, as CSV text (UTF-8, comma, point, LF).
 
@@ -57,8 +66,8 @@ def _rows(result: Result | TowResult) -> Iterator[list[object]]:
                 yield [*_words(result, "clamp", clamp), *map(_number, numbers)]
 
 
-def _words(result: Result | TowResult, part: str, row: object) -> list[object]:
-    return [result.name, part, *(getattr(row, name) for name in ("index", "use", "label"))]
+def _words(result: Result | TowResult, part: str, row: SimpleNamespace) -> list[object]:
+    return [as_text(result.name), part, row.index, as_text(row.use), as_text(row.label)]
 
 
 def _at_a_point(name: str) -> str:

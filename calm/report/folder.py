@@ -9,6 +9,9 @@ from pathlib import Path
 
 from calm.errors import UsageError
 
+REPORT_FILES = ("report.html", "report.pdf", "report.json", "checks.csv", "inventory.csv")
+"""What a design check writes in the folder."""
+
 
 def check_folder(folder: Path) -> None:
     """Refuse a folder in which nothing could be written, before the work for it is done.
@@ -16,15 +19,20 @@ def check_folder(folder: Path) -> None:
     Raises
     ------
     UsageError
-        It is a file, it or the nearest folder that exists may not be written.
+        It is no folder, or lies in none; it or the nearest one that exists may not be written.
     """
-    if folder.exists() and not folder.is_dir():
-        raise UsageError(f"cannot write {folder}: it is a file; a folder is needed")
-    nearest = Path(os.path.realpath(folder))
-    while not nearest.exists():
-        nearest = nearest.parent
-    if not nearest.is_dir() or not os.access(nearest, os.W_OK | os.X_OK):
-        raise UsageError(f"cannot write {folder}: permission denied in {nearest}")
+    try:
+        with contextlib.suppress(FileNotFoundError):
+            folder.lstat()  # refuses a name that no folder may have
+        nearest = folder.absolute()
+        while not os.path.lexists(nearest):
+            nearest = nearest.parent
+        if not nearest.is_dir():
+            raise UsageError(f"cannot write {folder}: {nearest} is no folder; a folder is needed")
+        if not os.access(nearest, os.W_OK | os.X_OK):
+            raise UsageError(f"cannot write {folder}: permission denied in {nearest}")
+    except OSError as error:
+        raise UsageError(f"cannot write {folder}: {error.strerror}") from None
 
 
 def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
@@ -44,7 +52,7 @@ def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
         The system refuses: which file, and why. No temporary file is left behind.
     """
     parts = {name: folder / f".{name}-{os.getpid()}.part" for name in files}
-    target = folder
+    target, made = folder, not folder.exists()
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name, content in files.items():
@@ -56,9 +64,11 @@ def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
             target = folder / name
             os.replace(parts[name], target)
     except OSError as error:
-        kept = "" if target == folder else "; the report that was there is kept"
-        raise UsageError(f"cannot write {target}: {error.strerror}{kept}") from None
+        raise UsageError(f"cannot write {target}: {error.strerror}") from None
     finally:
         for part in parts.values():
             with contextlib.suppress(OSError):
                 part.unlink()
+        if made:
+            with contextlib.suppress(OSError):
+                folder.rmdir()  # which the system does only where nothing was written

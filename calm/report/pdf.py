@@ -21,7 +21,7 @@ def report_pdf(sections: Sequence[Section]) -> bytes:
     The same sections give the same bytes: the fonts are those that typst and matplotlib bring, and
     the only date is that of SOURCE_DATE_EPOCH. A sign that no font has shows as a box.
     """
-    from calm.report.check_section import check_report
+    from calm.report.check.section import check_report
 
     return printed(check_report(sections))
 

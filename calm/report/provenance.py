@@ -29,6 +29,9 @@ def versions() -> tuple[tuple[str, str], ...]:
     return (("calm", __version__), ("python", platform.python_version()), *libraries)
 
 
+_LATEST = 253_402_300_799  # the last second of the year 9999
+
+
 def moment() -> datetime | None:
     """The time that SOURCE_DATE_EPOCH gives, in UTC; None without it: a report has no other date.
 
@@ -40,10 +43,9 @@ def moment() -> datetime | None:
     text = os.environ.get("SOURCE_DATE_EPOCH")
     if not text:
         return None
-    try:
-        return datetime.fromtimestamp(int(text), UTC)
-    except (ValueError, OverflowError, OSError):
-        raise UsageError(f"SOURCE_DATE_EPOCH, `{text}`, is no number of seconds") from None
+    if not text.isascii() or not text.isdigit() or int(text) > _LATEST:
+        raise UsageError(f"SOURCE_DATE_EPOCH, `{text}`, is no number of seconds")
+    return datetime.fromtimestamp(int(text), UTC)
 
 
 def date() -> str | None:

@@ -148,8 +148,9 @@ def _recorded(moving: Moving, place: Place, cuts: Cuts, settings: Settings) -> F
 def _tangles(solution: Solution) -> tuple[int, ...]:
     """The pieces with a part whose lower end is up; without length, on which the line pushes."""
     line, piece = solution.line, solution.element_piece
-    back = set(piece[np.diff(solution.position[:, 2]) > 0.0].tolist())
     first, last = solution.piece_nodes.T
     pushed = (solution.force[first] + solution.force[last])[:, 2] < 0.0
-    pushed[: head_count(line)] = False
-    return tuple(sorted(back | set(np.flatnonzero(pushed & (line.length == 0.0)).tolist())))
+    back = pushed & (line.length == 0.0)
+    back[piece[np.diff(solution.position[:, 2]) > 0.0]] = True
+    back[: head_count(line)] = False  # nothing is ahead of the free end
+    return tuple(np.flatnonzero(back).tolist())

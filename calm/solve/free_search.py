@@ -74,14 +74,16 @@ def _plumb(moving: Moving, angle_step: float) -> Place:
     """
     none = np.zeros_like(moving.water.u)
     upright = replace(moving, water=replace(moving.water, u=none, v=none))
-    place = Place(np.zeros(3), moving.guessed_depth)
+    depth = moving.guessed_depth
+
+    def meeting(squared: float) -> tuple[Place, float]:
+        """Where the line is at the signed square of a speed, and what lifts it there [N]."""
+        velocity = np.array([0.0, 0.0, copysign(sqrt(abs(squared)), squared)])
+        met = upright.meet(upright.flow(velocity), depth, COARSE * angle_step)
+        return Place(velocity, depth + met.gap), float(met.force[2])
 
     def lifted(squared: float) -> float:
-        nonlocal place
-        velocity = np.array([0.0, 0.0, copysign(sqrt(abs(squared)), squared)])
-        meeting = upright.meet(upright.flow(velocity), place.depth, COARSE * angle_step)
-        place = Place(velocity, place.depth + meeting.gap)
-        return float(meeting.force[2])
+        return meeting(squared)[1]
 
     resting = lifted(0.0)
     slope = lifted(copysign(1.0, resting)) - resting
@@ -94,7 +96,7 @@ def _plumb(moving: Moving, angle_step: float) -> Place:
             "Nothing limits the speed of the line: neither it nor its anchor has any drag.",
             advice="Give its pieces, or the anchor (`kt`), their drag.",
         )
-    lifted(found[0])
+    place, _ = meeting(found[0])
     return replace(place, velocity=place.velocity + _mean_current(moving, place, angle_step))
 
 

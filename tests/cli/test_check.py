@@ -29,10 +29,10 @@ def test_what_a_person_reads(calm, write_mooring):
     assert done.code == 0
     assert done.err == ""
     lines = done.out.splitlines()
-    assert lines[0].split() == ["mooring", "own", "launch,", "recovery"]
+    assert lines[0].split() == ["mooring", "own", "launch,", "recovery,", "breaks"]
     assert lines[1].split()[:2] == ["Test", "pass,"]
     assert "There is no release in the line" in done.out
-    assert "? strength unknown of top float, weight. Give its `working_load`" in done.out
+    assert "? strength of top float, weight is unknown. Give its `working_load`" in done.out
     assert "A static calculation does not see waves" in done.out
     assert max(map(len, lines)) <= 80
 
@@ -137,7 +137,7 @@ def test_a_tow_is_refused(calm, folder):
     (folder / "tow.yaml").write_text(text)
     done = calm("check", "tow.yaml")
     assert (done.code, done.out) == (2, "")
-    assert "calm check is for moorings; tow.yaml is a tow" in done.err
+    assert "calm check is for moorings; towed: tow.yaml" in done.err
 
 
 @pytest.mark.parametrize(
@@ -149,7 +149,7 @@ def test_a_tow_is_refused(calm, folder):
         (("m.yaml", "--environment", "storm.yaml", "--environment", "storm.yaml"), "twice"),
         (("m.yaml", "--environment", "storm.yaml", "--environment", "2.yaml"), "called storm"),
         (("m.yaml", "broken.yaml"), "broken.yaml:4:"),
-        (("m.yaml", "--report", "m.yaml"), "it is a file; a folder is needed"),
+        (("m.yaml", "--report", "m.yaml"), "is no folder; a folder is needed"),
         (("m.yaml", "--json", "none/x.json"), "there is no folder"),
         (("missing.yaml",), "missing.yaml"),
         ((), "FILES"),
@@ -161,3 +161,113 @@ def test_bad_input_is_told_and_nothing_is_solved(calm, write_mooring, storm, bro
     assert (done.code, done.out) == (2, "")
     assert says in done.err
     assert "Traceback" not in done.err
+
+
+def test_a_report_is_a_folder_of_five_files_the_same_every_time(calm, write_mooring, folder, storm):
+    words = ("check", write_mooring(), "--environment", storm)
+    first = calm(*words, "--report", "first")
+    assert first.code == 0
+    assert "the report is in first" in first.err
+    again = calm(*words, "--report", "deep/er", "--workers", "2", "--json", "-")
+    names = ["checks.csv", "inventory.csv", "report.html", "report.json", "report.pdf"]
+    for where in ("first", "deep/er"):
+        assert sorted(path.name for path in (folder / where).iterdir()) == names
+    for name in names:
+        content = (folder / "first" / name).read_bytes()
+        assert content == (folder / "deep/er" / name).read_bytes(), name
+    assert (folder / "first/report.json").read_text() == again.out
+    assert (folder / "first/report.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_a_report_that_cannot_be_written_loses_nothing_else(
+    calm, write_mooring, folder, monkeypatch
+):
+    import errno
+    from pathlib import Path
+
+    write = Path.write_bytes
+
+    def full(path, content):
+        if "report.pdf" in path.name:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return write(path, content)
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    done = calm("check", write_mooring(), "--report", "cruise", "--json", "all.json")
+    assert done.code == 2
+    assert "cannot write cruise/report.pdf: No space left on device" in done.err
+    assert done.out.startswith("mooring")
+    assert json.loads((folder / "all.json").read_text())["findings"]
+    assert not (folder / "cruise").exists()
+
+
+def test_a_failure_of_calm_itself_does_not_stop_the_rest(calm, write_mooring, monkeypatch):
+    import calm.checks.assess as assess
+
+    stand_of = assess.stand_of
+
+    def failing(mooring, name):
+        if name == "Two":
+            raise ValueError("a bug")
+        return stand_of(mooring, name)
+
+    monkeypatch.setattr(assess, "stand_of", failing)
+    files = write_mooring("one.yaml", name="One"), write_mooring("two.yaml", name="Two")
+    done = calm("check", *files, "--json", "-")
+    assert done.code == 3
+    (failed,) = findings(done, mooring="Two", rule="equilibrium")
+    assert failed["message"] == "internal-error: CALM failed (ValueError: a bug)."
+    assert findings(done, mooring="One", rule="anchor-weight")
+
+
+def test_one_line_as_a_page_and_as_pages(calm, write_mooring, folder):
+    done = calm("run", write_mooring(), "--html", "m.html", "--pdf", "m.pdf")
+    assert done.code == 0
+    assert "<svg" in (folder / "m.html").read_text()
+    assert (folder / "m.pdf").read_bytes().startswith(b"%PDF")
+    refused = calm("run", "m.yaml", "--html", "m.htm")
+    assert refused.code == 2
+    assert "the name of this report ends in .html" in refused.err
+
+
+def test_a_report_does_not_take_the_place_of_what_is_read(calm, write_mooring, folder):
+    write_mooring("report.json")
+    before = (folder / "report.json").read_bytes()
+    done = calm("check", "report.json", "--report", ".")
+    assert (done.code, done.out) == (2, "")
+    assert "report.json is read here; the report would take its place" in done.err
+    assert (folder / "report.json").read_bytes() == before
+    done = calm("check", write_mooring(), "--report", "r", "--json", "r/report.json")
+    assert done.code == 2
+
+
+def test_names_are_told_apart_whatever_they_are(calm, write_mooring):
+    files = [
+        write_mooring("a.yaml", name="M"),
+        write_mooring("b.yaml", name="M"),
+        write_mooring("c.yaml", name="M (a.yaml)"),
+    ]
+    found = findings(calm("check", *files, "--json", "-"), rule="anchor-weight")
+    assert len({finding["mooring"] for finding in found}) == 3
+
+
+def test_what_is_cut_to_fit_is_cut_once_for_all_environments(calm, write_mooring, folder):
+    file = folder / write_mooring()
+    text = file.read_text().replace("length: 60 m,", "length: fit, top_depth: 30 m,")
+    file.write_text(text + "environments: {deep: {depth: 120 m}}\n")
+    document = json.loads(calm("check", "m.yaml", "--json", "-").out)
+    top = {
+        (one["environment"], one["situation"]): one["top_depth"]
+        for one in document["situations"]["Test"]
+    }
+    # one rope in 20 m more of water: its top is 20 m deeper; depths are closed to 1e-7 of 120 m
+    assert top["deep", "still water"] == pytest.approx(top["own", "still water"] + 20.0, abs=1e-4)
+
+
+def test_names_move_no_cursor_and_are_no_formula(calm, write_mooring, folder):
+    file = folder / write_mooring()
+    file.write_text(file.read_text().replace("label: top float", r'label: "=cmd|\e[31m\u202e"'))
+    for words in (("check", "m.yaml"), ("run", "m.yaml"), ("run", "m.yaml", "--csv", "-")):
+        out = calm(*words).out
+        assert "\x1b" not in out and "\u202e" not in out
+    assert ",'=cmd|\ufffd[31m\ufffd," in out

@@ -26,7 +26,7 @@ def report_html(sections: Sequence[Section]) -> str:
     Every text is escaped. The page asks for nothing: style, script and drawings stand in it. It is
     whole without its script, which sorts and chooses among the checks.
     """
-    from calm.report.check_section import check_report
+    from calm.report.check.section import check_report
 
     return page(check_report(sections))
 

@@ -11,6 +11,7 @@ from calm.case import Mooring, load
 from calm.checks.assess import assessment_of, stand_of
 from calm.checks.assessment import Assessment
 from calm.checks.finding import Finding
+from calm.checks.rules import RULES
 from calm.shipped import shipped_folder
 
 
@@ -27,6 +28,26 @@ class Flaw:
     says: str
     situation: str = "as given"
 
+
+AT_LEAST = (
+    "strength-steps",
+    "anchor-weight",
+    "slack",
+    "reserve",
+    "freeboard",
+    "backup",
+    "recovery",
+)
+"""Rules whose values may not fall short of their limits; those of the others may not pass them."""
+TOLD = ("scope",)
+"""Rules that judge nothing."""
+
+UNDER = (
+    ("[0, 0.70, 290]", "[0, 2.9, 290]"),
+    ("[80, 0.60, 285]", "[80, 2.5, 285]"),
+    ("label: four wheels}", "label: four wheels, weight: 60 kN}"),
+)
+"""A current that takes a buoy under whose anchor holds."""
 
 CDMS, SLOPE, NYLON = "cdms-1", "upward-adcp-300m", "taut-nylon-surface"
 
@@ -283,14 +304,64 @@ FLAWS = (
         "2.5 m/s should not be passed",
     ),
     Flaw(
-        "a line too short at high water",
+        "an anchor lifted at high water",
         NYLON,
         (("  depth: 2000 m\n", "  depth: 2000 m\n  depth_range: [1995 m, 2600 m]\n"),),
         "equilibrium",
         None,
         "fail",
-        "",
+        "anchor-lifts",
         "high water",
+    ),
+    Flaw(
+        "a current that takes the buoy under",
+        NYLON,
+        UNDER,
+        "reserve",
+        "buoy",
+        "fail",
+        "under water: 0 % is left",
+    ),
+    Flaw(
+        "a buoy without freeboard",
+        NYLON,
+        UNDER,
+        "freeboard",
+        "buoy",
+        "fail",
+        "out of the water",
+    ),
+    Flaw(
+        "a line that does not rise",
+        CDMS,
+        (
+            ("buoyancy: 682 kgf", "buoyancy: 75 kgf"),
+            ("{use: glass, count: 10}", "{use: glass}"),
+            ("{use: release}", "{use: release, buoyancy: -34 kgf}"),
+            ("{use: chain, length: 4.8 m}", "{use: chain, length: 0.01 m}"),
+            ("[0, 1.5, 90]", "[0, 0.05, 90]"),
+            ("[200, 0.6, 90]", "[200, 0.05, 90]"),
+            ("[525, 0.1, 90]", "[525, 0.05, 90]"),
+        ),
+        "recovery",
+        "release",
+        "fail",
+        "0.30 m/s are asked for",
+    ),
+    Flaw(
+        "back-up glass that overtakes the line",
+        SLOPE,
+        (
+            (
+                "{use: float-stablemoor-1000lb, label: ADCP float}",
+                "{use: float-stablemoor-1000lb, label: ADCP float, buoyancy: 2500 N}",
+            ),
+            ("count: 3, label: back-up glass", "count: 12, label: back-up glass"),
+        ),
+        "tangling",
+        None,
+        "warn",
+        "the line doubles back and may tangle",
     ),
     Flaw(
         "growth that takes the top down",
@@ -345,6 +416,10 @@ def test_a_flaw_is_caught_by_its_rule(flaw: Flaw, tmp_path: Path) -> None:
     _says_what_it_means(finding)
 
 
+def test_every_rule_has_its_flaw() -> None:
+    assert {flaw.rule for flaw in FLAWS} | set(TOLD) == set(RULES)
+
+
 def _says_what_it_means(finding: Finding) -> None:
     """The figures, the state and the advice of a finding fit each other."""
     assert finding.source
@@ -352,8 +427,9 @@ def _says_what_it_means(finding: Finding) -> None:
         assert finding.remedy
         assert finding.margin is None or finding.margin < 0.0
     if finding.value is not None and finding.limit is not None:
-        assert finding.margin is not None
-        assert abs(finding.margin) == pytest.approx(abs(finding.limit - finding.value))
+        room = finding.limit - finding.value
+        at_least = finding.rule in AT_LEAST
+        assert finding.margin == pytest.approx(-room if at_least else room)
     if finding.state == "unknown":
         assert finding.limit is None and finding.margin is None
 

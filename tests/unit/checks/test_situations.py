@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 
 from calm.case import Mooring, Result, load
+from calm.checks.assess import check
+from calm.checks.assessment import Assessment
 from calm.checks.situations import situations_of
 
 LINE = """
@@ -123,3 +125,116 @@ def test_a_slack_line_has_no_still_water(tmp_path: Path) -> None:
     assert isinstance(read, Mooring)
     assert "still water" not in results(read)
     assert results(read)["as given"] is not None
+
+
+BUOY = """
+name: buoy
+environment:
+  depth: 100 m
+  depth_range: [96 m, {high} m]
+  current: {{speed: {speed} m/s, toward: 90 deg}}
+line:
+  - {{use: ball}}
+  - {{use: rope, length: {length} m}}
+  - {{use: block}}
+components:
+  ball: {{kind: sphere, diameter: 1.2 m, mass: 150 kg, buoyancy: 6 kN}}
+  rope: {{kind: cable, diameter: 14 mm, weight: 0.1 N/m, material: polyester, stiffness: 60 kN,
+         breaking_load: 40 kN}}
+  block: {{kind: anchor, weight: 40 kN}}
+"""
+
+
+FOLD = """
+name: fold
+environment:
+  depth: 500 m
+  current: {speed: 1 m/s, toward: 90 deg}
+line:
+  - {use: ball}
+  - {use: wire, length: 100 m}
+  - {use: meter}
+  - {use: rope, length: 60 m}
+  - {use: glass}
+  - {use: rope, length: 250 m}
+  - {use: block}
+components:
+  ball: {kind: sphere, diameter: 1 m, buoyancy: 3000 N}
+  glass: {kind: cylinder, diameter: 0.43 m, length: 6 m, buoyancy: 3500 N}
+  wire: {kind: cable, diameter: 8 mm, weight: 2 N/m, material: steel}
+  rope: {kind: cable, diameter: 14 mm, weight: 0.3 N/m, stiffness: 400 kN, material: polyester}
+  meter: {kind: cylinder, diameter: 0.15 m, length: 0.6 m, buoyancy: -2900 N}
+  block: {kind: anchor, weight: 30 kN}
+"""
+
+
+def judged(folder: Path, **figures: float) -> Assessment:
+    path = folder / "buoy.yaml"
+    path.write_text(BUOY.format(**figures), encoding="utf-8")
+    read = load(path)
+    assert isinstance(read, Mooring)
+    return check(read)
+
+
+def found(assessment: Assessment, rule: str, situation: str) -> list[str]:
+    return [
+        finding.state.value
+        for finding in assessment.all_findings()
+        if (finding.rule, finding.situation) == (rule, situation)
+    ]
+
+
+def test_a_buoy_that_the_tide_drowns_fails(tmp_path: Path) -> None:
+    one = judged(tmp_path, high=112, speed=0.3, length=98)
+    high = next(each for each in one.stands[0].situations if each.name == "high water")
+    assert high.result is not None and high.result.type == "subsurface"
+    assert found(one, "reserve", "as given") == ["pass"]
+    assert found(one, "reserve", "high water") == ["fail"]
+    assert found(one, "freeboard", "high water") == ["fail"]
+
+
+def test_a_buoy_on_a_slack_line_that_the_current_takes_under_fails(tmp_path: Path) -> None:
+    """It has no shape in still water, and is a buoy all the same: with the factor of one."""
+    one = judged(tmp_path, high=101, speed=3.0, length=108)
+    assert one.stands[0].result is not None and one.stands[0].result.type == "subsurface"
+    assert found(one, "reserve", "as given") == ["fail"]
+    (rope,) = [
+        each
+        for each in one.stands[0].findings
+        if (each.rule, each.component, each.situation) == ("strength", "rope", "as given")
+    ]
+    assert rope.limit == pytest.approx(40_000.0 / 5.0)
+
+
+def test_a_taut_line_is_slackest_in_still_low_water(tmp_path: Path) -> None:
+    one = judged(tmp_path, high=101, speed=0.5, length=92)
+    least = {
+        each.name: each.result.components.least_tension[1]
+        for each in one.stands[0].situations
+        if each.result is not None
+    }
+    assert min(least, key=lambda name: float(least[name])) == "still low water"
+
+
+def test_the_least_margin_of_a_rule_is_told_whatever_the_state(tmp_path: Path) -> None:
+    one = check(mooring(tmp_path))
+    (given,) = [
+        each for each in one.stands[0].findings
+        if (each.rule, each.situation) == ("anchor-weight", "as given")
+    ]  # fmt: skip
+    (tighter,) = [each for each in one.stands[0].tighter if each.rule == "anchor-weight"]
+    assert tighter.situation == "strumming"
+    assert tighter.state is given.state
+    assert tighter.margin is not None and given.margin is not None
+    assert tighter.margin < given.margin
+
+
+def test_a_line_that_folds_in_still_water_fails(tmp_path: Path) -> None:
+    """The current holds up what its floats do not: at slack water part of it falls slack."""
+    path = tmp_path / "fold.yaml"
+    path.write_text(FOLD, encoding="utf-8")
+    read = load(path)
+    assert isinstance(read, Mooring)
+    one = check(read)
+    assert one.stands[0].result is not None
+    assert found(one, "equilibrium", "still water") == ["fail"]

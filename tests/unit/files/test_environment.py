@@ -261,3 +261,33 @@ def test_a_tow_may_be_in_air(towed: Towed) -> None:
 )
 def test_mistakes_of_a_tow(towed: Towed, text: str, message: str) -> None:
     assert towed(text + "\n") == (None, [message])
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("depth_range: 1104 m", "is two depths, of low and of high water: [98 m, 104 m]"),
+        ("depth_range: [1098 m, 1100 m, 1104 m]", "is two depths"),
+        (
+            "depth_range: [1098, 1104 m]",
+            "`depth_range: 1098` needs a unit; did you mean `depth_range: 1098 m`?",
+        ),
+        ("depth_range: [1104 m, 1098 m]", "with `depth`, 1100 m, between them"),
+        ("depth_range: [98 m, 104 m]", "with `depth`, 1100 m, between them"),
+        ("fouling: {depth: 50 m}", "`thickness` is missing"),
+        ("fouling: {depth: 50 m, thickness: 20}", "did you mean `thickness: 20 mm`?"),
+        ("fouling: {depth: 50 m, thickness: 0 mm}", "must be more than 0"),
+    ],
+)
+def test_mistakes_of_tide_and_growth(mistakes: Mistakes, line: str, message: str) -> None:
+    ((_, _, found),) = mistakes(with_keys(line))
+    assert message in found
+
+
+def test_tide_and_growth(read: Read) -> None:
+    file = read(
+        with_keys("depth_range: [1098 m, 1104 m]", "fouling: {depth: 50 m, thickness: 2 cm}")
+    )
+    assert file.environment.depth_range == (1098.0, 1104.0)
+    assert file.environment.fouling is not None
+    assert (file.environment.fouling.depth, file.environment.fouling.thickness) == (50.0, 0.02)

@@ -14,7 +14,7 @@ import pytest
 import calm
 from calm.checks.finding import State
 from calm.errors import UsageError
-from calm.report.check_section import mooring_section
+from calm.report.check.section import mooring_section
 from calm.report.html import report_html, result_html
 from calm.report.provenance import input_hash
 from calm.report.vector import set_apart
@@ -193,7 +193,7 @@ PROGRAM = """
 import hashlib, sys
 from pathlib import Path
 from tests.judged import judged
-from calm.report.check_section import mooring_section
+from calm.report.check.section import mooring_section
 from calm.report.html import report_html
 from calm.report.pdf import report_pdf
 sections = [mooring_section(judged(Path(sys.argv[1]), "ebb"))]

@@ -2,7 +2,7 @@ import pypdfium2
 import pytest
 
 import calm
-from calm.report.check_section import mooring_section
+from calm.report.check.section import mooring_section
 from calm.report.pdf import report_pdf, result_pdf
 from tests.judged import FORMULA, LINES, judged, judged_hostile
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from xml.etree import ElementTree
 
-from calm.report.schematic_widths import shortened
+from calm.report.schematic.widths import shortened
 
 INK, SOFT, FAINT = "#1b2733", "#5a6672", "#c3ccd4"
 """Colours of what is to be read first, next, and last."""

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 from calm.quantities import QUANTITIES, say
 from calm.report.labels import alike, together
-from calm.report.schematic_levels import Levels, levels_of
-from calm.report.schematic_sign import BALLS, Sign, Symbol, sign_of
+from calm.report.schematic.levels import Levels, levels_of
+from calm.report.schematic.sign import BALLS, Sign, Symbol, sign_of
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult

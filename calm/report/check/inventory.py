@@ -22,8 +22,8 @@ def deck_table(items: Sequence[Item]) -> Table:
             Cell(item.name or item.use),
             figure_cell("cut_length", item.cut_length),
             figure_cell("mass", item.dry_mass),
-            figure_cell("vertical", item.wet_weight),
-            figure_cell("mass", item.lift_mass),
+            figure_cell("wet_weight", item.wet_weight),
+            figure_cell("lift_mass", item.lift_mass),
         )
         for item in items
     )
@@ -32,9 +32,9 @@ def deck_table(items: Sequence[Item]) -> Table:
         Column("piece"),
         Column("component"),
         quantity_column("cut_length"),
-        Column("mass in air", "kg", numeric=True),
-        Column("weight in water", "N", numeric=True),
-        Column("mass of the lift", "kg", numeric=True),
+        quantity_column("dry_mass"),
+        quantity_column("wet_weight"),
+        quantity_column("lift_mass"),
     )
     note = "Weight in water: + down. Mass of the lift: of the piece with what is clamped on it."
     return Table("Pieces for the deck", columns, rows, note)
@@ -52,8 +52,8 @@ def inventory_table(items: Sequence[Item]) -> Table:
         Column("id"),
         Column("pieces", numeric=True),
         Column("cut length", "m", numeric=True),
-        Column("mass in air", "kg", numeric=True),
-        Column("weight in water", "N", numeric=True),
+        quantity_column("dry_mass"),
+        quantity_column("wet_weight"),
         Column("spares"),
     )
     note = "Cut length: of wires, ropes and chains. Spares: by hand."
@@ -65,10 +65,10 @@ def _stock(name: str, use: str, items: Sequence[Item]) -> tuple[Cell, ...]:
     return (
         Cell(name),
         Cell(use),
-        Cell(str(sum(item.count for item in items))),
+        Cell(str(len(items))),
         _sum("cut_length", [item.cut_length for item in lines]) if lines else Cell("-"),
-        _sum("mass", [item.dry_mass for item in items]),
-        _sum("vertical", [item.wet_weight for item in items]),
+        _sum("dry_mass", [item.dry_mass for item in items]),
+        _sum("wet_weight", [item.wet_weight for item in items]),
         Cell(),
     )
 

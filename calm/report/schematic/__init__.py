@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 from calm.quantities import QUANTITIES
-from calm.report.schematic_figures import figure_of
-from calm.report.schematic_layout import (
+from calm.report.schematic.figures import figure_of
+from calm.report.schematic.layout import (
     FONT,
     LINE,
     LINE_AT,
@@ -20,9 +20,9 @@ from calm.report.schematic_layout import (
     indented,
     layout_of,
 )
-from calm.report.schematic_parts import HEADINGS, Clamped, Row, Schematic, schematic_of
-from calm.report.schematic_pen import FAINT, INK, SOFT, Pen
-from calm.report.schematic_scenery import (
+from calm.report.schematic.parts import HEADINGS, Clamped, Row, Schematic, schematic_of
+from calm.report.schematic.pen import FAINT, INK, SOFT, Pen
+from calm.report.schematic.scenery import (
     draw_cable,
     draw_clamp,
     draw_helicopter,

@@ -6,17 +6,17 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
-from calm.report.check_figures import check_figure
-from calm.report.check_summary import (
+from calm.report.check.figures import check_figure
+from calm.report.check.findings import checks_table, results_table
+from calm.report.check.handling import breaks_table, handling_summary, handling_table
+from calm.report.check.inventory import deck_table, inventory_table
+from calm.report.check.summary import (
     failures,
     matrix_tables,
     rules_tables,
     worst_by_rule,
     worst_table,
 )
-from calm.report.check_tables import checks_table, results_table
-from calm.report.handling_tables import breaks_table, handling_summary, handling_table
-from calm.report.inventory_tables import deck_table, inventory_table
 from calm.report.provenance import date
 from calm.report.result_tables import (
     UNSEEN,
@@ -136,5 +136,6 @@ _FIGURE_NOTE = (
     "Elevations: each in the vertical plane of its own excursion; marks and the line in still "
     "water: of the first environment. Limit: over the tension, the load that a piece may bear "
     "(its working load, or its breaking load over the safety factor; what lies beyond four times "
-    "the tension is drawn at the edge); over the breaks, the buoyancy required."
+    "the tension is drawn at the edge); over the breaks, the buoyancy required. "
+    "Grey: breaks that are not judged."
 )

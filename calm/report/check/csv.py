@@ -14,11 +14,10 @@ from typing import TYPE_CHECKING
 from calm.checks.finding import Finding
 from calm.checks.rules import RULES
 from calm.quantities import QUANTITIES
+from calm.report.csv import as_text
 
 if TYPE_CHECKING:
     from calm.checks.assessment import Assessment
-
-_FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n")
 
 CHECKS_HEADER = (
     "mooring",
@@ -46,11 +45,8 @@ INVENTORY_HEADER = (
     "role",
     "kind",
     "clamped_on",
-    "count",
     QUANTITIES["cut_length"].header,
-    "dry_mass[kg]",
-    "wet_weight[N]",
-    "lift_mass[kg]",
+    *(QUANTITIES[name].header for name in ("dry_mass", "wet_weight", "lift_mass")),
 )
 """First row of `inventory_csv`; weights in water are positive downward."""
 
@@ -104,7 +100,6 @@ def _items(assessment: Assessment) -> Iterator[Sequence[object]]:
             item.role,
             item.kind,
             item.clamped_on,
-            item.count,
             item.cut_length,
             item.dry_mass,
             item.wet_weight,
@@ -117,5 +112,5 @@ def _cell(value: object) -> str:
     if value is None or value != value:
         return ""
     if isinstance(value, str):
-        return f"'{value}" if value.startswith(_FORMULA) else value
+        return as_text(value)
     return repr(float(value)) if isinstance(value, float) else str(value)

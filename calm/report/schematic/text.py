@@ -11,9 +11,9 @@ from rich.cells import cell_len, set_cell_size
 from rich.text import Text
 
 from calm.quantities import QUANTITIES
-from calm.report.schematic_parts import HEADINGS, Row, Schematic, schematic_of
-from calm.report.schematic_sign import BALLS, LINES, Sign, Symbol
-from calm.report.schematic_widths import ELLIPSIS
+from calm.report.schematic.parts import HEADINGS, Row, Schematic, schematic_of
+from calm.report.schematic.sign import BALLS, LINES, Sign, Symbol
+from calm.report.schematic.widths import ELLIPSIS
 
 if TYPE_CHECKING:
     from rich.console import Console, ConsoleOptions, RenderResult

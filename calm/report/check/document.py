@@ -16,14 +16,18 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
     Returns
     -------
     dict
-        `findings`; of each mooring by its name `launch`, `recovery`, `backup`, `inventory`; and
-        `situations`, what was solved of each mooring in each environment.
+        `findings`, and as `tighter` those of other situations that leave less margin; of each
+        mooring by its name `launch`, `recovery`, `backup`, `inventory`; and `situations`, what was
+        solved of each mooring in each environment.
     """
     from calm.version import __version__
 
     return {
         "calm": __version__,
         "findings": [finding.to_dict() for each in assessments for finding in each.all_findings()],
+        "tighter": [
+            finding.to_dict() for each in assessments for finding in each.tighter_findings()
+        ],
         "situations": {
             each.name: [
                 {"environment": stand.environment, **_situation(situation)}

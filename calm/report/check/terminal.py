@@ -13,15 +13,16 @@ from rich.text import Text
 from calm.checks.assess import OWN
 from calm.checks.finding import AS_GIVEN, Finding, State
 from calm.checks.rules import RULES
-from calm.report.check_summary import (
+from calm.report.check.summary import (
     abreast,
-    graveness,
     margin_of,
     place_of,
     say_in_unit,
+    unknown_count,
     worst_by_part,
 )
 from calm.report.result_tables import UNSEEN
+from calm.report.section import ON_THE_WAY
 from calm.report.terminal import WARNED, plain_table
 
 if TYPE_CHECKING:
@@ -43,7 +44,11 @@ def check_table(assessments: Sequence[Assessment]) -> RenderableType:
     Moorings by environments with the worst state in each; of each rule the finding with the worst
     margin; every failure and warning with its figures and remedy. No rule hangs on colour.
     """
-    every = [finding for each in assessments for finding in each.all_findings()]
+    every = [
+        finding
+        for each in assessments
+        for finding in (*each.all_findings(), *each.tighter_findings())
+    ]
     parts: list[RenderableType] = [*_matrix(assessments), _LEGEND, Text()]
     parts.append(_worst(assessments, every))
     for each in assessments:
@@ -59,10 +64,10 @@ def _matrix(assessments: Sequence[Assessment]) -> Iterator[RenderableType]:
     for beside in abreast(columns):
         table = plain_table()
         table.add_column("mooring", overflow="fold")
-        for column in (*beside, "launch, recovery"):
+        for column in (*beside, ON_THE_WAY):
             table.add_column(column, overflow="fold")
         for each in assessments:
-            found = {stand.environment: stand.findings for stand in each.stands}
+            found = {stand.environment: (*stand.findings, *stand.tighter) for stand in each.stands}
             cells = [found.get(column) for column in beside]
             table.add_row(each.name, *map(_state, (*cells, each.findings)))
         yield table
@@ -72,11 +77,11 @@ def _state(findings: Sequence[Finding] | None) -> Text:
     """The worst state, the rule that makes it, and how much is unknown besides."""
     if not findings:
         return Text("-")
-    worst = min(findings, key=graveness)
+    worst = min(findings, key=lambda finding: finding.rank)
     text = worst.state.value
     if worst.state in (State.FAIL, State.WARN):
         text += f" {worst.rule}"
-    missing = _unknown(findings)
+    missing = unknown_count(findings)
     if missing and worst.state is not State.UNKNOWN:
         text += f", {missing} ?"
     return Text(text, style=STYLES[worst.state])
@@ -95,7 +100,7 @@ def _worst(assessments: Sequence[Assessment], findings: Sequence[Finding]) -> Ta
         found = [finding for finding in findings if finding.rule == rule.name]
         if not found:
             continue
-        worst, missing = min(found, key=graveness), _unknown(found)
+        worst, missing = min(found, key=lambda finding: finding.rank), unknown_count(found)
         table.add_row(
             rule.name,
             Text(worst.state.value, style=STYLES[worst.state]),
@@ -116,13 +121,10 @@ def _where(finding: Finding, several: bool) -> str:
     return ", ".join(filter(None, places))
 
 
-def _unknown(findings: Sequence[Finding]) -> int:
-    return sum(finding.state is State.UNKNOWN for finding in findings)
-
-
 def _told(assessment: Assessment) -> Iterator[RenderableType]:
     """What a mooring fails or is warned of, the gravest first with its remedy; what is missing."""
-    listed = [each for each in worst_by_part(assessment.all_findings()) if each.state in _SIGNS]
+    every = (*assessment.all_findings(), *assessment.tighter_findings())
+    listed = [each for each in worst_by_part(every) if each.state in _SIGNS]
     if not listed:
         return
     yield Text()
@@ -149,10 +151,13 @@ def _missing(findings: Sequence[Finding]) -> Iterator[Text]:
     """One sentence for each figure that is missing, with the components that lack it."""
     groups: dict[tuple[str, str], dict[str, None]] = {}
     for finding in findings:
+        if finding.component is None:
+            yield Text(f"? {finding.rule}: {finding.message} {finding.remedy}", style="dim")
+            continue
         lacking = groups.setdefault((finding.rule, finding.remedy or ""), {})
-        lacking[finding.component or finding.message] = None
+        lacking[finding.component] = None
     for (rule, remedy), names in groups.items():
         named = ", ".join(list(names)[:_NAMED])
         if len(names) > _NAMED:
             named += f" and {len(names) - _NAMED} more"
-        yield Text(f"? {rule} unknown of {named}. {remedy}", style="dim")
+        yield Text(f"? {rule} of {named} is unknown. {remedy}", style="dim")

@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 from itertools import accumulate
 
-from calm.report.schematic_figures import Figure, figure_of
-from calm.report.schematic_parts import HEADINGS, Part, Row, Schematic
-from calm.report.schematic_sign import LINES
-from calm.report.schematic_widths import text_width
+from calm.report.schematic.figures import Figure, figure_of
+from calm.report.schematic.parts import HEADINGS, Part, Row, Schematic
+from calm.report.schematic.sign import LINES
+from calm.report.schematic.widths import text_width
 
 # The unit of the page is a quarter of a millimetre in print, less where a line is long.
 

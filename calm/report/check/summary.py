@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
@@ -18,10 +19,8 @@ _ABREAST = 5
 """Environments beside each other in a table; more of them take another table."""
 
 
-def graveness(finding: Finding) -> tuple[int, float]:
-    """What sorts findings, the worst first: the state, then the margin as a share of the limit."""
-    share = finding.share
-    return -finding.state.gravity, math.inf if share is None else share
+def _rank(finding: Finding) -> tuple[int, float]:
+    return finding.rank
 
 
 def say_in_unit(finding: Finding, value: float | None) -> str:
@@ -44,10 +43,12 @@ def place_of(finding: Finding) -> str:
 
 def worst_by_rule(assessment: Assessment) -> tuple[Worst, ...]:
     """The worst finding of each rule in each column of the summary."""
-    columns = [(stand.environment, stand.findings) for stand in assessment.stands]
+    columns = [
+        (stand.environment, (*stand.findings, *stand.tighter)) for stand in assessment.stands
+    ]
     columns.append((ON_THE_WAY, assessment.findings))
     return tuple(
-        Worst(column, min(group, key=graveness), _unknown(group))
+        Worst(column, min(group, key=_rank), unknown_count(group))
         for column, findings in columns
         for group in _groups(findings, lambda each: each.rule)
     )
@@ -56,7 +57,7 @@ def worst_by_rule(assessment: Assessment) -> tuple[Worst, ...]:
 def worst_by_part(findings: Iterable[Finding]) -> list[Finding]:
     """The worst finding of each rule on each component, the gravest first."""
     groups = _groups(findings, lambda each: (each.rule, each.component))
-    return sorted((min(group, key=graveness) for group in groups), key=graveness)
+    return sorted((min(group, key=_rank) for group in groups), key=_rank)
 
 
 def rules_tables(columns: Sequence[str], found: Sequence[Worst]) -> Iterator[Table]:
@@ -88,14 +89,16 @@ def matrix_tables(sections: Sequence[Section]) -> Iterator[Table]:
 def worst_table(sections: Sequence[Section]) -> Table:
     """Each rule with the worst of all its findings, and in how many moorings it fails or warns."""
     found: dict[str, list[tuple[Section, Finding]]] = {}
+    missing: Counter[str] = Counter()
     for section in sections:
         for each in section.worst:
             found.setdefault(each.finding.rule, []).append((section, each.finding))
+            missing[each.finding.rule] += each.unknown
     rows = []
     for rule in RULES.values():
         if rule.name not in found:
             continue
-        section, finding = min(found[rule.name], key=lambda pair: graveness(pair[1]))
+        section, finding = min(found[rule.name], key=lambda pair: pair[1].rank)
         rows.append(
             (
                 Cell(finding.state.value, state=finding.state),
@@ -107,6 +110,7 @@ def worst_table(sections: Sequence[Section]) -> Table:
                 Cell(place_of(finding)),
                 Cell(_moorings(found[rule.name], State.FAIL)),
                 Cell(_moorings(found[rule.name], State.WARN)),
+                Cell(str(missing[rule.name])),
             )
         )
     columns = (
@@ -119,6 +123,7 @@ def worst_table(sections: Sequence[Section]) -> Table:
         Column("environment"),
         Column("moorings that fail", numeric=True),
         Column("that warn", numeric=True),
+        Column("figures unknown", numeric=True),
     )
     return Table("Worst finding of each rule", columns, tuple(rows), sortable=True)
 
@@ -129,7 +134,7 @@ def failures(sections: Sequence[Section]) -> Table | Prose:
     for section in sections:
         failed = (each.finding for each in section.worst if each.finding.state is State.FAIL)
         for group in _groups(failed, lambda each: each.rule):
-            finding, others = min(group, key=graveness), len(group) - 1
+            finding, others = min(group, key=_rank), len(group) - 1
             rows.append(
                 (
                     Cell(section.name),
@@ -171,7 +176,7 @@ def _of_column(section: Section, column: str) -> Cell:
     here = [each for each in section.worst if each.column == column]
     if not here:
         return Cell("–")
-    finding = min((each.finding for each in here), key=graveness)
+    finding = min((each.finding for each in here), key=_rank)
     detail = f"{RULES[finding.rule].title} {margin_of(finding)}".rstrip()
     missing = sum(each.unknown for each in here)
     return Cell(finding.state.value, _with_unknown(detail, missing, finding), finding.state)
@@ -182,7 +187,8 @@ def _with_unknown(detail: str, count: int, finding: Finding) -> str:
     return f"{detail}; {count} unknown" if count and finding.state is not State.UNKNOWN else detail
 
 
-def _unknown(findings: Iterable[Finding]) -> int:
+def unknown_count(findings: Iterable[Finding]) -> int:
+    """How many of the findings are unknown."""
     return sum(finding.state is State.UNKNOWN for finding in findings)
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from calm.report.schematic_pen import FAINT, INK, Pen
-from calm.report.schematic_sign import Symbol
+from calm.report.schematic.pen import FAINT, INK, Pen
+from calm.report.schematic.sign import Symbol
 
 _WATER, _SURFACE, _SAND, _HULL = "#eff6fb", "#2f7fb5", "#e3d6b8", "#5b6b7a"
 _ROPE = "#f3e7c4"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import isnan
 from typing import TYPE_CHECKING
 
 from calm.quantities import QUANTITIES, say
@@ -21,9 +22,10 @@ def breaks_table(backup: Sequence[Break]) -> Table:
         (
             Cell(str(each.break_after)),
             Cell(each.label),
-            figure_cell("vertical", each.weight_lifted),
-            figure_cell("vertical", each.margin),
-            figure_cell("vertical", each.required),
+            figure_cell("wet_weight", each.weight_lifted),
+            figure_cell("net_buoyancy", each.margin),
+            figure_cell("net_buoyancy", each.required),
+            Cell("yes" if each.judged else "no"),
         )
         for each in backup
     )
@@ -33,8 +35,13 @@ def breaks_table(backup: Sequence[Break]) -> Table:
         Column("weight lifted", "N", numeric=True),
         Column("buoyancy left over", "N", numeric=True),
         Column("required", "N", numeric=True),
+        Column("judged"),
     )
-    return Table("Back-up buoyancy", columns, rows)
+    note = (
+        "Not judged: what breaks inside the lowest cluster of floats, or between it and the "
+        "release, in any design leaves the release on the seabed."
+    )
+    return Table("Back-up buoyancy", columns, rows, note)
 
 
 def handling_summary(assessment: Assessment) -> Table:
@@ -45,14 +52,14 @@ def handling_summary(assessment: Assessment) -> Table:
         launch = assessment.launch
         low, high = launch.fall_speed_band
         band = (
-            f"{speed.format(low)} to {speed.say(high)} with double and half the drag along the line"
+            f"{speed.format(low)} to {speed.say(high)} with double and half the drag along the "
+            "line and of the anchor"
         )
         rows += [
             (
-                Cell("Launch, anchor last: speed of the fall"),
+                Cell("Launch, anchor last: speed at touchdown"),
                 Cell(speed.say(launch.fall_speed), band),
             ),
-            (Cell("Speed at touchdown"), Cell(speed.say(launch.touchdown_speed))),
             (Cell("Pull of the falling anchor"), Cell(say("tension", launch.anchor_tension))),
         ]
         if not launch.anchor_drag_known:
@@ -83,7 +90,7 @@ def handling_table(assessment: Assessment) -> Table:
             row += _pair(recovery.tension_top, recovery.tension_bottom, piece.index)
             arrival = float(recovery.arrival[piece.index])
             row += [
-                Cell("-" if arrival != arrival else f"{arrival / 60:.1f}"),
+                Cell("-" if isnan(arrival) else f"{arrival / 60:.1f}"),
                 figure_cell("depth", float(recovery.hangs_at[piece.index])),
             ]
         rows.append(tuple(row))

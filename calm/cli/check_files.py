@@ -1,0 +1,131 @@
+"""Reading the moorings of a design check, each in all the environments it is judged in."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from calm.cli.workers import mapped
+from calm.errors import InputError, NoEquilibrium, Problem, UsageError
+
+if TYPE_CHECKING:
+    from calm.case import Mooring, Tow
+
+
+@dataclass(frozen=True)
+class Design:
+    """A mooring file, under a name that no other has, read in each of its environments."""
+
+    path: Path
+    name: str
+    moorings: tuple[Mooring, ...]
+
+
+def read_designs(
+    files: Sequence[Path],
+    environments: Sequence[str] | None,
+    catalogs: Sequence[Path],
+    workers: int | None,
+) -> list[Design]:
+    """Every mooring in every environment.
+
+    Parameters
+    ----------
+    environments : names or files of those to take; None for a file's own and all that it names
+    workers : how many processes share the work
+
+    Raises
+    ------
+    InputError
+        With the mistakes of all files.
+    UsageError
+        A tow; a file given twice; two environments of one name.
+    """
+    given = Counter([*map(str, files), *(environments or ())])
+    twice = [word for word, count in given.items() if count > 1]
+    if twice:
+        raise UsageError(f"given twice: {', '.join(twice)}")
+    names: Sequence[str | None] = environments or [None]
+    asked = [(file, name) for file in files for name in names]
+    read = _loaded(asked, catalogs, workers)
+    if environments is None:
+        others = [(file, name) for file in files for name in read[file, None].file.variants]
+        read |= _loaded(others, catalogs, workers)
+    stands = {file: [one for (path, _), one in read.items() if path == file] for file in files}
+    for its in stands.values():
+        _refuse_one_name(its)
+    called = _told_apart({path: its[0].file.name for path, its in stands.items()})
+    return [Design(path, called[path], _cut_alike(its)) for path, its in stands.items()]
+
+
+def _told_apart(names: dict[Path, str]) -> dict[Path, str]:
+    """The names, each with its file's where several files have it."""
+    while True:
+        count = Counter(names.values())
+        if max(count.values()) == 1:
+            return names
+        names = {
+            path: name if count[name] == 1 else f"{name} ({path})" for path, name in names.items()
+        }
+
+
+def _cut_alike(moorings: Sequence[Mooring]) -> tuple[Mooring, ...]:
+    """The same mooring in every environment: what is cut to fit, is cut once, for the first."""
+    from calm.case import Mooring
+    from calm.checks.situations import cut_like
+
+    first, *others = moorings
+    try:
+        return first, *(Mooring(cut_like(each.file, first)) for each in others)
+    except NoEquilibrium:
+        return tuple(moorings)  # the first is told not to stand, and why
+
+
+def _loaded(
+    asked: Sequence[tuple[Path, str | None]], catalogs: Sequence[Path], workers: int | None
+) -> dict[tuple[Path, str | None], Mooring]:
+    from calm.case import Mooring
+
+    tasks = [(file, name, catalogs) for file, name in asked]
+    problems: dict[Problem, None] = {}
+    moorings, tows = {}, []
+    for (file, name), read in zip(asked, mapped(_load, tasks, workers, "files read"), strict=True):
+        if isinstance(read, tuple):
+            problems |= dict.fromkeys(read)  # what files share has its mistakes told once
+        elif isinstance(read, Mooring):
+            moorings[file, name] = read
+        else:
+            tows.append(str(file))
+    if problems:
+        raise InputError(list(problems))
+    if tows:
+        raise UsageError(f"calm check is for moorings; towed: {', '.join(dict.fromkeys(tows))}")
+    return moorings
+
+
+def _load(
+    task: tuple[Path, str | None, Sequence[Path]],
+) -> Mooring | Tow | tuple[Problem, ...]:
+    """What was read, or what is wrong with it."""
+    import calm
+
+    file, environment, catalogs = task
+    try:
+        return calm.load(file, environment=environment, catalogs=catalogs)
+    except InputError as error:
+        return error.problems
+
+
+def _refuse_one_name(moorings: Sequence[Mooring]) -> None:
+    """Two environments of one name could not be told apart."""
+    from calm.checks.assess import OWN
+    from calm.report.section import ON_THE_WAY
+
+    names = Counter(mooring.file.environment.name or OWN for mooring in moorings)
+    names[ON_THE_WAY] += 1  # a column of its own
+    for name, count in names.items():
+        if count > 1:
+            raise UsageError(f"{count} environments are called {name}; give them other names")

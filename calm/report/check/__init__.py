@@ -1,0 +1,1 @@
+"""The design check as people and programs read it."""
