@@ -27,7 +27,7 @@ from calm.batch.search import (
 NO_DATA, LEVELS_COINCIDE, STILL = 1, 2, 3
 OUT_OF_WATER, ON_SEABED, COMPRESSED, TOO_COARSE, WRITTEN = range(8, 13)
 
-CHUNK = 128
+CHUNK = 256
 """Cases that are laid out at once: what fits a processor's cache."""
 FINEST = 6
 MOST_MARCHES = 60
@@ -172,7 +172,7 @@ def solve_cases(plan, parts, mooring, floating, chances, fixed, depth, u, v, w, 
     nodes = np.zeros(STATE * LANES * (kinds.size + 1))
     forces = np.zeros(3 * LANES * loads.shape[0])
     s = np.zeros(SCRATCH)
-    bounds, rows = np.zeros((CHUNK, levels + 2)), np.zeros((CHUNK, levels + 1, 9))
+    bounds, rows = np.zeros((CHUNK, levels + 2)), np.zeros((CHUNK, levels + 1, 8))
     water = (np.zeros(LANES, np.int64), np.zeros(LANES, np.int64), bounds, rows)
     read, joined = np.zeros((levels, 4)), np.zeros((levels, 5))
     seek = np.zeros((CHUNK, COLUMNS))

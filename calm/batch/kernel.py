@@ -68,11 +68,10 @@ def look_up(s, water):
         while depth < bounds[slot, j]:
             j -= 1
         level[i] = j
-        below = depth - rows[slot, j, 0]
-        s[U + i] = rows[slot, j, 1] + rows[slot, j, 2] * below
-        s[V + i] = rows[slot, j, 3] + rows[slot, j, 4] * below
-        s[W + i] = rows[slot, j, 5] + rows[slot, j, 6] * below
-        s[DENSITY + i] = rows[slot, j, 7] + rows[slot, j, 8] * below
+        s[U + i] = rows[slot, j, 0] + rows[slot, j, 1] * depth
+        s[V + i] = rows[slot, j, 2] + rows[slot, j, 3] * depth
+        s[W + i] = rows[slot, j, 4] + rows[slot, j, 5] * depth
+        s[DENSITY + i] = rows[slot, j, 6] + rows[slot, j, 7] * depth
 
 
 @compiled

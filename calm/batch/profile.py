@@ -75,20 +75,16 @@ def lay_profile(read, count, fixed, bounds, rows, joined):
         joined[total, 4] = _value(fixed, levels, f, depth, 3)
         total += 1
     bounds[0] = -inf
-    rows[0, 0] = joined[0, 0]
     for c in range(4):
-        rows[0, 1 + 2 * c] = joined[0, 1 + c]
-        rows[0, 2 + 2 * c] = 0.0
+        rows[0, 2 * c], rows[0, 2 * c + 1] = joined[0, 1 + c], 0.0
     for k in range(total):
-        bounds[k + 1] = joined[k, 0]
-        rows[k + 1, 0] = joined[k, 0]
+        depth = joined[k, 0]
+        bounds[k + 1] = depth
+        thickness = joined[k + 1, 0] - depth if k + 1 < total else inf
         for c in range(4):
-            rows[k + 1, 1 + 2 * c] = joined[k, 1 + c]
-            rows[k + 1, 2 + 2 * c] = 0.0
-            if k + 1 < total:
-                rows[k + 1, 2 + 2 * c] = (joined[k + 1, 1 + c] - joined[k, 1 + c]) / (
-                    joined[k + 1, 0] - joined[k, 0]
-                )
+            value = joined[k, 1 + c]
+            slope = (joined[k + 1, 1 + c] - value) / thickness if k + 1 < total else 0.0
+            rows[k + 1, 2 * c], rows[k + 1, 2 * c + 1] = value - slope * depth, slope
     bounds[total + 1] = inf
     return total
 
