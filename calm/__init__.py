@@ -13,6 +13,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from calm.batch.profiles import Profiles, solve_profiles
     from calm.case import Mooring, Result, Tow, TowResult, load
     from calm.errors import CalmError, InputError, NoEquilibrium, UsageError
 
@@ -23,16 +24,20 @@ __all__ = [
     "InputError",
     "Mooring",
     "NoEquilibrium",
+    "Profiles",
     "Result",
     "Tow",
     "TowResult",
     "UsageError",
     "__version__",
     "load",
+    "solve_profiles",
 ]
 
 _HOMES = {
     "load": "calm.case",
+    "Profiles": "calm.batch.profiles",
+    "solve_profiles": "calm.batch.profiles",
     "Mooring": "calm.case",
     "Result": "calm.case",
     "Tow": "calm.case",

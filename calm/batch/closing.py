@@ -9,36 +9,64 @@ the next case as soon as it is done with one.
 from __future__ import annotations
 
 from math import isfinite, sqrt
+from typing import Any
 
 import numpy as np
 
 from calm.batch.compiled import compiled, entry
 from calm.batch.kernel import (
-    FREE_END, HELD, HIGHEST, LANES, LEAST_PULL, LIGHTEST, LOWEST, OUT, SCRATCH, SHARE, STATE, WET,
-    WIND_EAST, WIND_NORTH, Z, march,
+    FREE_END,
+    HELD,
+    HIGHEST,
+    LANES,
+    LEAST_PULL,
+    LIGHTEST,
+    LOWEST,
+    OUT,
+    SCRATCH,
+    SHARE,
+    STATE,
+    WET,
+    WIND_EAST,
+    WIND_NORTH,
+    Tables,
+    Z,
+    march,
 )  # fmt: skip
-from calm.batch.outcome import blend, worst_error, write_case
+from calm.batch.outcome import blend, greatest_change, write_case
 from calm.batch.profile import growth_below, lay_profile, read_profile
 from calm.batch.search import (
-    COLUMNS, DONE, FIRST, LAST, LAST_MISS, SLOPE, SOLVED, TURN, UNCLOSED, Y, advance, begin,
+    COLUMNS,
+    DONE,
+    FIRST,
+    LAST,
+    LAST_MISS,
+    SLOPE,
+    SOLVED,
+    TURN,
+    UNCLOSED,
+    Y,
+    advance,
+    begin,
 )  # fmt: skip
+from calm.physics.line import Floats, Integers
 
 # how a case ended; those of the search are there
 NO_DATA, LEVELS_COINCIDE, STILL = 1, 2, 3
-OUT_OF_WATER, ON_SEABED, COMPRESSED, TOO_COARSE, WRITTEN = range(8, 13)
+OUT_OF_WATER, ON_SEABED, COMPRESSED, TOO_COARSE, WRITTEN, NOT_TRIED = range(8, 14)
 
 CHUNK = 256
 """Cases that are laid out at once: what fits a processor's cache."""
 FINEST = 6
 MOST_MARCHES = 60
 MOST_CORRECTIONS = 12
-WORST = 0.35
+PLACE_CHANGE, TENSION_CHANGE = 4e-5, 5e-5
 SMALL = 5e-7
-SMALL_SHARE = 1e-5
+SMALL_SHARE = 3e-6
 
 
 @compiled
-def place_free_end(s, i, y, riding, rigid):
+def place_free_end(s: Floats, i: int, y: float, riding: Floats, rigid: tuple[float, float]) -> None:
     """Put a lane's free end where its unknown has it."""
     s[FREE_END + i], s[SHARE + i], s[OUT + i] = y, 1.0, 0.0
     s[WET + i], s[HELD + i], s[WIND_EAST + i], s[WIND_NORTH + i] = 1.0, 1.0, 0.0, 0.0
@@ -58,7 +86,18 @@ def place_free_end(s, i, y, riding, rigid):
 
 
 @compiled
-def find_roots(s, water, plan, mooring, floating, chances, seek, reasons, nodes, forces):
+def find_roots(
+    s: Floats,
+    water: Tables,
+    plan: Any,
+    mooring: Any,
+    floating: Any,
+    chances: Any,
+    seek: Floats,
+    reasons: Integers,
+    nodes: Floats,
+    forces: Floats,
+) -> None:
     """Find the coarse root of every case whose reason is `SOLVED` so far: in its row of `seek`.
 
     Parameters
@@ -66,8 +105,7 @@ def find_roots(s, water, plan, mooring, floating, chances, seek, reasons, nodes,
     seek : (cases, COLUMNS) see `calm.batch.search`
     reasons : (cases,)
     """
-    span, goal = mooring[0], mooring[1]
-    slots, level, _, _ = water
+    goal, slots = mooring[1], water[0]
     task = np.full(LANES, DONE)
     marches = np.zeros(LANES, np.int64)
     upcoming = 0
@@ -95,10 +133,24 @@ def find_roots(s, water, plan, mooring, floating, chances, seek, reasons, nodes,
 
 
 @compiled
-def close_on(grid, s, water, plan, mooring, floating, seek, pending, reasons, misses, kept, nodes, forces):
+def close_on(
+    grid: int,
+    s: Floats,
+    water: Tables,
+    plan: Any,
+    mooring: Any,
+    floating: Any,
+    seek: Floats,
+    pending: Integers,
+    reasons: Integers,
+    misses: Integers,
+    kept: Floats,
+    nodes: Floats,
+    forces: Floats,
+) -> None:
     """Close pending cases on cuts halved `grid` times; their shapes go to their rows of `kept`."""
     span, goal, upright, floats = mooring[0], mooring[1], mooring[2], mooring[3]
-    slots, level, _, _ = water
+    slots = water[0]
     numbers, after = nodes.size // LANES, forces.size // LANES
     busy = np.zeros(LANES, np.bool_)
     upcoming = 0
@@ -145,7 +197,7 @@ def close_on(grid, s, water, plan, mooring, floating, seek, pending, reasons, mi
 
 
 @compiled
-def refused(s, i, mooring):
+def refused(s: Floats, i: int, mooring: Any) -> int:
     """Why the lane's shape is not to be had by this march alone; `SOLVED` where it is."""
     span, goal, anchor_height, lies = mooring[0], mooring[1], mooring[5], mooring[6]
     if s[LEAST_PULL + i] < 0.0:
@@ -156,7 +208,20 @@ def refused(s, i, mooring):
 
 
 @entry
-def solve_cases(plan, parts, mooring, floating, chances, fixed, depth, u, v, w, results, reasons):
+def solve_cases(
+    plan: Any,
+    parts: Any,
+    mooring: Any,
+    floating: Any,
+    chances: Any,
+    fixed: Floats,
+    depth: Floats,
+    u: Floats,
+    v: Floats,
+    w: Floats,
+    results: Any,
+    reasons: Integers,
+) -> None:
     """Solve cases; what they lead to goes to their rows of the results, how they ended to reasons.
 
     Parameters
@@ -185,7 +250,9 @@ def solve_cases(plan, parts, mooring, floating, chances, fixed, depth, u, v, w, 
         count = min(CHUNK, reasons.size - start)
         for c in range(count):
             case = start + c
-            found = read_profile(depth[case if depth.shape[0] > 1 else 0], u[case], v[case], w[case], read)
+            found = read_profile(
+                depth[case if depth.shape[0] > 1 else 0], u[case], v[case], w[case], read
+            )
             ends[c] = SOLVED
             if found <= 0:
                 ends[c] = NO_DATA if found == 0 else LEVELS_COINCIDE
@@ -203,13 +270,30 @@ def solve_cases(plan, parts, mooring, floating, chances, fixed, depth, u, v, w, 
                 break
             older, newer = newer, older
             for c in pending:
-                earlier[c], seek[c, Y] = seek[c, Y], seek[c, Y] + (0.25 * (seek[c, Y] - earlier[c]) if grid > 1 else 0.0)
-            close_on(grid, s, water, plan, mooring, floating, seek, pending, mine, refusals, newer, nodes, forces)
+                earlier[c], seek[c, Y] = (
+                    seek[c, Y],
+                    seek[c, Y] + (0.25 * (seek[c, Y] - earlier[c]) if grid > 1 else 0.0),
+                )
+            close_on(
+                grid,
+                s,
+                water,
+                plan,
+                mooring,
+                floating,
+                seek,
+                pending,
+                mine,
+                refusals,
+                newer,
+                nodes,
+                forces,
+            )
             for c in pending:
                 if mine[c] != SOLVED or grid < mooring[7]:
                     continue
-                error = worst_error(older[c], newer[c], kinds.size, mooring[0])
-                if error > WORST:
+                place, tension = greatest_change(older[c], newer[c], kinds.size, mooring[0])
+                if place > PLACE_CHANGE or tension > TENSION_CHANGE:
                     if grid == FINEST:
                         mine[c] = TOO_COARSE
                     continue

@@ -35,15 +35,16 @@ def compilable(formula: Callable[..., Any]) -> None:
 def entry(function: Callable[..., Any]) -> Any:
     """A function that is called from outside: compiled, and kept for the next process."""
     folder = cache_folder()
-    options = {"nogil": True, "error_model": "numpy", "fastmath": FLAGS}
+    options: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": FLAGS}
+    settings: Any = numba.config
     if folder is None:
         return numba.njit(function, **options)
-    chosen = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(folder)  # read as the function is decorated
+    chosen = settings.CACHE_DIR
+    settings.CACHE_DIR = str(folder)  # read as the function is decorated
     try:
         return numba.njit(function, cache=True, **options)
     finally:
-        numba.config.CACHE_DIR = chosen
+        settings.CACHE_DIR = chosen
 
 
 @cache

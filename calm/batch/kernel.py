@@ -10,12 +10,17 @@ The balance of an element is that of `calm.physics.element`, whose functions are
 from __future__ import annotations
 
 from math import inf, sqrt
+from typing import Any
 
 from calm.batch.compiled import compilable, compiled
 from calm.physics.element import axis_along, drag_force, drag_share, share_step
-from calm.physics.line import REFERENCE_DENSITY
+from calm.physics.line import REFERENCE_DENSITY, Floats, Integers
 
 LANES = 16
+
+Tables = tuple[Integers, Integers, Floats, Floats]
+"""For every lane the slot of its profile and the interval it is in; for every slot the bounds of
+the intervals, and value at no depth and slope of u, v, w and density in each."""
 
 for formula in (share_step, axis_along, drag_force, drag_share):
     compilable(formula)
@@ -55,7 +60,7 @@ ITSELF, ABOVE_IT = 1.0, 2.0
 
 
 @compiled
-def look_up(s, water):
+def look_up(s: Floats, water: Tables) -> None:
     """Current and density of every lane at its depth, in the profile of its slot."""
     slots, level, bounds, rows = water
     for i in range(LANES):
@@ -75,7 +80,7 @@ def look_up(s, water):
 
 
 @compiled
-def exact_shares(s):
+def exact_shares(s: Floats) -> None:
     """Solve the share of every lane whose Newton steps have not settled."""
     for i in range(LANES):
         if not s[DOUBT + i] < CLOSE:
@@ -85,9 +90,16 @@ def exact_shares(s):
 
 
 @compiled
-def pass_segments(s, water, cable, cuts, halvings, gravity):
+def pass_segments(
+    s: Floats, water: Tables, cable: Floats, cuts: Floats, halvings: int, gravity: float
+) -> None:
     """Take all lanes down a stretch of cable; each cut is halved so many times."""
-    buoyancy, volume, kn, kt = cable[C_BUOYANCY], cable[C_VOLUME], cable[C_NORMAL], cable[C_TANGENTIAL]
+    buoyancy, volume, kn, kt = (
+        cable[C_BUOYANCY],
+        cable[C_VOLUME],
+        cable[C_NORMAL],
+        cable[C_TANGENTIAL],
+    )
     compliance, thinning = cable[C_COMPLIANCE], cable[C_THINNING]
     parts = 1 << halvings
     for j in range(cuts.size):
@@ -95,7 +107,11 @@ def pass_segments(s, water, cable, cuts, halvings, gravity):
         half = 0.5 * cut
         for _ in range(parts):
             for i in range(LANES):
-                gx, gy, gz = s[FX + i] + half * s[QX + i], s[FY + i] + half * s[QY + i], s[FZ + i] + half * s[QZ + i]
+                gx, gy, gz = (
+                    s[FX + i] + half * s[QX + i],
+                    s[FY + i] + half * s[QY + i],
+                    s[FZ + i] + half * s[QZ + i],
+                )
                 pull = sqrt(gx * gx + gy * gy + gz * gz)
                 s[PULL + i] = pull
                 s[DEPTH + i] = -s[Z + i] + half * (1.0 + compliance * pull) * gz / pull
@@ -143,7 +159,7 @@ def pass_segments(s, water, cable, cuts, halvings, gravity):
 
 
 @compiled
-def load_of_every_lane(s, load, gravity):
+def load_of_every_lane(s: Floats, load: Floats, gravity: float) -> None:
     """Lay out a load in the lanes; what is at the surface, by how much of it is in use."""
     for i in range(LANES):
         s[L_BUOYANCY + i] = load[BUOYANCY]
@@ -172,7 +188,7 @@ def load_of_every_lane(s, load, gravity):
 
 
 @compiled
-def gather_load(s, load, gravity, several):
+def gather_load(s: Floats, load: Floats, gravity: float, several: bool) -> None:
     """Add a load's part in the moments: what turns the rod by itself, and its normal drag."""
     lever, directional = load[LEVER], load[DIRECTIONAL]
     for i in range(LANES):
@@ -203,7 +219,7 @@ def gather_load(s, load, gravity, several):
 
 
 @compiled
-def mean_current(s):
+def mean_current(s: Floats) -> None:
     """One current and coefficient that reproduce the sum of several normal drags."""
     for i in range(LANES):
         total = s[K + i]
@@ -218,7 +234,7 @@ def mean_current(s):
 
 
 @compiled
-def turn_rod(s):
+def turn_rod(s: Floats) -> None:
     """Newton steps for the share of the gathered drag."""
     for i in range(LANES):
         ax, ay, az, k = s[AX + i], s[AY + i], s[AZ + i], s[K + i]
@@ -238,7 +254,16 @@ def turn_rod(s):
 
 
 @compiled
-def pass_rod(s, water, loads, length, gravity, limit, heads, record):
+def pass_rod(
+    s: Floats,
+    water: Tables,
+    loads: Floats,
+    length: float,
+    gravity: float,
+    limit: float,
+    heads: bool,
+    record: Floats,
+) -> None:
     """Take all lanes down a rod; `heads`: it is the first one, which hangs on nothing."""
     count = loads.shape[0]
     several = 0.0
@@ -324,7 +349,7 @@ def pass_rod(s, water, loads, length, gravity, limit, heads, record):
 
 
 @compiled
-def add_load(s, load, gravity):
+def add_load(s: Floats, load: Floats, gravity: float) -> None:
     """Force of a load in the current looked up: in QX, QY, QZ, added to the sums."""
     lever, directional = load[LEVER], load[DIRECTIONAL]
     for i in range(LANES):
@@ -351,7 +376,9 @@ def add_load(s, load, gravity):
 
 
 @compiled
-def pass_piece(s, water, loads, j, length, gravity, limit):
+def pass_piece(
+    s: Floats, water: Tables, loads: Floats, j: int, length: float, gravity: float, limit: float
+) -> None:
     """Take all lanes down a rod of one load: as `pass_rod`, in fewer steps."""
     at, lever, directional = loads[j, AT], loads[j, LEVER], loads[j, DIRECTIONAL]
     buoyancy, volume, lifting = loads[j, BUOYANCY], loads[j, VOLUME], loads[j, LIFT]
@@ -430,7 +457,7 @@ def pass_piece(s, water, loads, j, length, gravity, limit):
 
 
 @compiled
-def pass_clamp(s, water, loads, gravity, record):
+def pass_clamp(s: Floats, water: Tables, loads: Floats, gravity: float, record: Floats) -> None:
     """Add an instrument clamped on a cable."""
     for i in range(LANES):
         s[DEPTH + i] = -s[Z + i]
@@ -448,7 +475,9 @@ def pass_clamp(s, water, loads, gravity, record):
 
 
 @compiled
-def march(s, water, plan, halvings, nodes, forces):
+def march(
+    s: Floats, water: Tables, plan: Any, halvings: int, nodes: Floats, forces: Floats
+) -> None:
     """March all lanes from their free ends; their states at every joint go to `nodes`."""
     kinds, firsts, counts, lengths, cables, cuts, loads, gravity, limit, landing = plan
     for i in range(LANES):
@@ -470,13 +499,9 @@ def march(s, water, plan, halvings, nodes, forces):
         else:
             mine, written = loads[first : first + count], forces[3 * LANES * first :]
             if kinds[n] == ROD and count == 1 and n > 0:
-                pass_piece(
-                    s, water, loads, first, lengths[n], gravity, limit
-                )
+                pass_piece(s, water, loads, first, lengths[n], gravity, limit)
             elif kinds[n] == ROD:
-                pass_rod(
-                    s, water, mine, lengths[n], gravity, limit, n == 0, written
-                )
+                pass_rod(s, water, mine, lengths[n], gravity, limit, n == 0, written)
             else:
                 pass_clamp(s, water, mine, gravity, written)
         if n >= landing:
@@ -494,7 +519,7 @@ def march(s, water, plan, halvings, nodes, forces):
 
 
 @compiled
-def note(s, nodes, n):
+def note(s: Floats, nodes: Floats, n: int) -> None:
     """Record the state of all lanes."""
     base = n * STATE * LANES
     for i in range(STATE * LANES):

@@ -1,4 +1,4 @@
-"""A mooring laid out for the kernel: its stages, loads and cuts as arrays, its limits as numbers."""
+"""A mooring laid out for the kernel: its stages, loads, cuts and limits."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ SOFTENING = 0.3
 """Cuts grow with the depth at which they stand upright, plus this share of the water depth."""
 NEAR = 2e-6
 """How far the loads of a rod may be from where they are looked up, as a share of the depth."""
-FASTEST, SPEEDS = 4.0, 81
+FASTEST, SPEEDS = 4.0, 41
 """Currents up to so many m/s, and how many of them, for which the fall of the line is known."""
 SHARES_KNOWN = 1025
 """Shares of its buoyancy in use for which it is known how a float rides."""
@@ -122,7 +122,9 @@ def _loads(stage: Stage) -> tuple[Load, ...]:
 def _stages(line: Line, water: Water, track: Track, afloat: int) -> tuple[Any, ...]:
     """Kind, first load or cut, count of them and length of every stage; cables, cuts, loads."""
     kinds, firsts, counts, lengths = [], [], [], []
-    cables, cuts, loads = [], [], []
+    cables: list[tuple[float, ...]] = []
+    cuts: list[float] = []
+    loads: list[tuple[float, ...]] = []
     given = iter(cuts_of(track, water.depth))
     for n, stage in enumerate(track.stages):
         if isinstance(stage, Cable):
@@ -234,9 +236,7 @@ def _riding(head: Rod, afloat: int, floating: Floating | None) -> tuple[Any, ...
     if floating is None:
         return np.tile([0.0, 0.0, 1.0, 0.0, 0.0], (2, 1)), (0.0, 0.0)
     *above, own = head.lengths[: head.pieces.index(afloat) + 1]
-    rides = [
-        floating.riding(1.0 - (1.0 - at) ** 2) for at in np.linspace(0.0, 1.0, SHARES_KNOWN)
-    ]
+    rides = [floating.riding(1.0 - (1.0 - at) ** 2) for at in np.linspace(0.0, 1.0, SHARES_KNOWN)]
     table = np.array([(r.standing, r.above, r.drag, *r.push) for r in rides])
     return table, (sum(above, 0.0), own)
 

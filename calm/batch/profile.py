@@ -5,10 +5,11 @@ from __future__ import annotations
 from math import inf, isfinite, sqrt
 
 from calm.batch.compiled import compiled
+from calm.physics.line import Floats
 
 
 @compiled
-def read_profile(depth, u, v, w, read):
+def read_profile(depth: Floats, u: Floats, v: Floats, w: Floats, read: Floats) -> int:
     """The levels at or below the surface that have a value, sorted; how many, -1 if two are one."""
     count = 0
     for j in range(depth.size):
@@ -30,7 +31,7 @@ def read_profile(depth, u, v, w, read):
 
 
 @compiled
-def between(table, count, k, depth, c):
+def between(table: Floats, count: int, k: int, depth: float, c: int) -> float:
     """Column of a table at a depth, of which the first level below it is the k-th."""
     if k == 0:
         return table[0, c]
@@ -41,7 +42,9 @@ def between(table, count, k, depth, c):
 
 
 @compiled
-def lay_profile(read, count, fixed, bounds, rows, joined):
+def lay_profile(
+    read: Floats, count: int, fixed: Floats, bounds: Floats, rows: Floats, joined: Floats
+) -> int:
     """Join a profile with the fixed levels, and lay out bounds and rows as the march reads them.
 
     Parameters
@@ -90,14 +93,14 @@ def lay_profile(read, count, fixed, bounds, rows, joined):
 
 
 @compiled
-def _value(table, count, k, depth, c):
+def _value(table: Floats, count: int, k: int, depth: float, c: int) -> float:
     if k < count and table[k, 0] == depth:
         return table[k, c]
     return between(table, count, k, depth, c)
 
 
 @compiled
-def growth_below(joined, total, top):
+def growth_below(joined: Floats, total: int, top: float) -> tuple[float, float]:
     """Largest growth of the current with depth below `top`, relative to the top speed [1/m].
 
     As `calm.solve.locate` has it; and that speed [m/s].

@@ -1,17 +1,20 @@
 """What a lane does next: one step of the search for the root of one case.
 
-Above and below are the ends of its bracket, above where the miss is not negative. `calm.solve.locate`
+Above and below are the ends of its bracket: above, the miss is not negative. `calm.solve.locate`
 has the reasons of each step.
 """
 
 from __future__ import annotations
 
 from math import isfinite, nan
+from typing import Any
 
 from calm.batch.compiled import compiled
+from calm.physics.line import Floats
 
 (
-    Y, ABOVE, ABOVE_MISS, BELOW, BELOW_MISS, LAST, LAST_MISS, OLDER_MISS, SLOPE, FALL, STEP, TURN, STUCK,
+    Y, ABOVE, ABOVE_MISS, BELOW, BELOW_MISS, LAST, LAST_MISS, OLDER_MISS, SLOPE, FALL, STEP, TURN,
+    STUCK,
 ) = range(13)  # fmt: skip
 COLUMNS = 13
 
@@ -25,7 +28,7 @@ SCANNED = 16
 
 
 @compiled
-def begin(seek, c, growth, speed, upright, falls):
+def begin(seek: Floats, c: int, growth: float, speed: float, upright: float, falls: Floats) -> None:
     """Set out on a case: from the depth of the line standing in still water.
 
     `falls` are the knockdowns in even currents of growing speed, the last the speed's step.
@@ -42,7 +45,9 @@ def begin(seek, c, growth, speed, upright, falls):
 
 
 @compiled
-def advance(seek, c, task, m, mooring, shares):
+def advance(
+    seek: Floats, c: int, task: int, m: float, mooring: Any, shares: Floats
+) -> tuple[int, int]:
     """The next task of a case whose unknown leads to the miss m, and how its search ended."""
     span, _, upright, floats, rides = mooring[0], mooring[1], mooring[2], mooring[3], mooring[4]
     y = seek[c, Y]
@@ -61,7 +66,7 @@ def advance(seek, c, task, m, mooring, shares):
             return TOP, SOLVED
         seek[c, Y] = -1.0
         return (UNLOADED, SOLVED) if floats else (DONE, AT_SURFACE)
-    if task == TOP or task == UNLOADED:
+    if task in (TOP, UNLOADED):
         if m <= 0.0:
             return DONE, AT_SURFACE
         seek[c, ABOVE], seek[c, ABOVE_MISS] = y, m
@@ -86,7 +91,7 @@ def advance(seek, c, task, m, mooring, shares):
 
 
 @compiled
-def go_down(seek, c, span):
+def go_down(seek: Floats, c: int, span: float) -> int:
     """Begin the search below the surface, from above."""
     y, m = seek[c, ABOVE], seek[c, ABOVE_MISS]
     seek[c, LAST], seek[c, LAST_MISS], seek[c, OLDER_MISS] = y, m, nan
@@ -99,7 +104,7 @@ def go_down(seek, c, span):
 
 
 @compiled
-def bracket(seek, c):
+def bracket(seek: Floats, c: int) -> int:
     """Go on between the ends of a bracket, where their chord crosses nothing."""
     a, fa, b, fb = seek[c, ABOVE], seek[c, ABOVE_MISS], seek[c, BELOW], seek[c, BELOW_MISS]
     seek[c, SLOPE] = (fb - fa) / (b - a)
@@ -109,7 +114,7 @@ def bracket(seek, c):
 
 
 @compiled
-def scan(seek, c, m, span):
+def scan(seek: Floats, c: int, m: float, span: float) -> tuple[int, int]:
     """Go down until the miss is negative."""
     y, before = seek[c, Y], seek[c, LAST_MISS]
     if m < 0.0:
@@ -127,7 +132,7 @@ def scan(seek, c, m, span):
 
 
 @compiled
-def narrow(seek, c, m, span):
+def narrow(seek: Floats, c: int, m: float, span: float) -> tuple[int, int]:
     """One secant step, or one that halves the bracket."""
     y, last, before = seek[c, Y], seek[c, LAST], seek[c, LAST_MISS]
     if m >= 0.0:

@@ -108,7 +108,7 @@ def test_the_lanes_solve_a_float_that_rides_or_is_pulled_under() -> None:
 def test_an_anchor_that_would_lift_is_a_status() -> None:
     mooring = shipped("s1000")
     pieces = mooring.file.pieces
-    light = pieces[-1].component.model_copy(update={"buoyancy": -1000.0})
+    light = pieces[-1].component.model_copy(update={"weight": 1000.0})
     file = replace(mooring.file, pieces=(*pieces[:-1], replace(pieces[-1], component=light)))
     depth, u, v, w = drawn(1, 1, mooring.water.depth)
     found = solve_profiles(Mooring(file), u, v, depth, w)
@@ -118,7 +118,7 @@ def test_an_anchor_that_would_lift_is_a_status() -> None:
 
 def test_what_the_lanes_do_not_know_is_solved_alone() -> None:
     mooring = shipped("s1000")
-    solver = replace(mooring.file.solver, friction="hoerner")
+    solver = mooring.file.solver.model_copy(update={"friction": "hoerner"})
     mooring = Mooring(replace(mooring.file, solver=solver))
     assert plan_of(mooring) is None
     depth, u, v, w = drawn(2, 2, mooring.water.depth)
