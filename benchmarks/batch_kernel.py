@@ -21,7 +21,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import s1000_by_hand as by_hand
 
-from calm.batch.closing import solve_cases
+from calm.batch.closing import FEWEST_HALVINGS, solve_cases
 from calm.batch.outcome import OF_CLAMP, OF_ENDS, OF_PIECE
 from calm.batch.plan import Plan
 from calm.batch.profiles import Batch, Profiles
@@ -59,22 +59,19 @@ def best(solve: Callable[[], object], runs: int = 5) -> float:
     return min(times)
 
 
-def kernel(plan: Plan, current: Arrays) -> Callable[[], np.ndarray]:
+def kernel(mooring: Mooring, plan: Plan, current: Arrays) -> Callable[[], np.ndarray]:
     """The kernel by itself, on one thread; what it returns is how the cases ended."""
     depth, u, v, w = current
-    count = len(u)
+    count, line = len(u), mooring.line
     rows = (
-        np.empty((count, len(OF_PIECE), plan.pieces)),
-        np.empty((count, len(OF_CLAMP), plan.clamps)),
+        np.empty((count, len(OF_PIECE), len(line.length))),
+        np.empty((count, len(OF_CLAMP), len(line.clamp_piece))),
         np.empty((count, len(OF_ENDS))),
     )
     ended = np.empty(count, np.int64)
 
     def solve() -> np.ndarray:
-        solve_cases(
-            plan.stages, plan.parts, plan.mooring, plan.floating, plan.chances, plan.fixed,
-            depth[None], u, v, w, rows, ended,
-        )  # fmt: skip
+        solve_cases(plan.arrays, depth[None], u, v, w, rows, ended)
         return ended
 
     return solve
@@ -131,21 +128,18 @@ def main(profiles: str = "8192", checked: str = "24") -> None:
         plan = batch.plan
         assert plan is not None
         current = currents(mooring, int(profiles))
-        solve = kernel(plan, current)
+        solve = kernel(mooring, plan, current)
         start = perf_counter()
         ended = solve()
         first = perf_counter() - start
         rate = len(ended) / best(solve)
-        print(
-            f"\n{name}: {len(mooring.line.length)} pieces, {4 * len(plan.stages[5])} segments, "
-            f"{LEVELS} levels; first run {first:.1f} s"
-        )
-        print(f"  kernel, one thread    {rate:9.0f} solves/s; left to be solved alone: "
-              f"{np.count_nonzero(ended)} of {len(ended)}")  # fmt: skip
+        segments = 2**FEWEST_HALVINGS * len(plan.stages[5])
+        print(f"\n{name}: {len(mooring.line.length)} pieces, {segments} segments, {LEVELS} levels")
+        print(f"  first run {first:.1f} s; left to be solved alone: {np.count_nonzero(ended)}")
+        print(f"  kernel, 1 thread      {rate:9.0f} solves/s")
         for workers in (1, 2):
-            print(
-                f"  arrays out, {workers} threads {arrays_rate(batch, current, workers):9.0f} solves/s"
-            )
+            rate = arrays_rate(batch, current, workers)
+            print(f"  arrays out, {workers} threads {rate:9.0f} solves/s")
         few = int(checked)
         depth, u, v, w = current
         found = batch.solve(u[:few], v[:few], depth, w[:few])

@@ -9,21 +9,21 @@ import tempfile
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numba
 
 from calm.physics import element
 
+Function = TypeVar("Function", bound=Callable[..., Any])
+
 FLAGS = {"contract", "reassoc", "nsz", "arcp"}
 """Liberties with the order of arithmetic; not with NaN, which tells a lane that has failed."""
 
 
-def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
+def compiled(function: Function) -> Function:
     """A function compiled into those that call it."""
-    jitted: Callable[..., Any] = numba.njit(
-        function, nogil=True, error_model="numpy", fastmath=FLAGS
-    )
+    jitted: Function = numba.njit(function, nogil=True, error_model="numpy", fastmath=FLAGS)
     return jitted
 
 

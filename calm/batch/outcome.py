@@ -6,7 +6,7 @@ from math import atan2, pi, sqrt
 from typing import Any
 
 from calm.batch.compiled import compiled
-from calm.batch.kernel import AT, CLAMP, ROD, STATE
+from calm.batch.lanes import AT, CLAMP, ROD, STATE
 from calm.physics.line import Floats
 
 DEPTH, EAST, NORTH, TENSION_TOP, TENSION_BOTTOM, TILT = range(6)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from calm.assemble import assemble_water
-from calm.batch.kernel import ABOVE_IT, CABLE, CLAMP, ITSELF, ROD
+from calm.batch.lanes import ABOVE_IT, CABLE, CLAMP, ITSELF, ROD
 from calm.case import Mooring
 from calm.files import CurrentTable
 from calm.physics.friction import Friction
@@ -23,8 +23,6 @@ from calm.solve.unknown import Unknown
 
 CUTS = 50
 """Of a line, about, for the first look; they are halved twice and more."""
-FIRST_GRID = 2
-"""How often they are halved at least."""
 SOFTENING = 0.3
 """Cuts grow with the depth at which they stand upright, plus this share of the water depth."""
 NEAR = 2e-6
@@ -51,8 +49,18 @@ class Plan:
     floating: tuple[Any, ...]
     chances: tuple[Any, ...]
     fixed: Floats
-    pieces: int
-    clamps: int
+
+    @property
+    def arrays(self) -> tuple[Any, ...]:
+        """All that the kernel takes."""
+        return (
+            self.stages,
+            self.parts,
+            self.mooring,
+            self.floating,
+            self.chances,
+            self.fixed,
+        )
 
 
 def base_water(mooring: Mooring) -> Water:
@@ -91,13 +99,10 @@ def plan_of(mooring: Mooring) -> Plan | None:
             line.floating is not None,
             line.anchor_height,
             bool(line.length.sum() > water.depth),
-            FIRST_GRID,
         ),
         floating=_riding(head, afloat, line.floating if floats else None),
         chances=(np.array(SHARES), _falls(closing, unknown, top)),
         fixed=np.column_stack([water.level, water.u, water.v, water.density]),
-        pieces=len(line.length),
-        clamps=len(line.clamp_piece),
     )
 
 

@@ -34,11 +34,11 @@ def read_profile(depth: Floats, u: Floats, v: Floats, w: Floats, read: Floats) -
 def between(table: Floats, count: int, k: int, depth: float, c: int) -> float:
     """Column of a table at a depth, of which the first level below it is the k-th."""
     if k == 0:
-        return table[0, c]
+        return float(table[0, c])
     if k == count:
-        return table[count - 1, c]
+        return float(table[count - 1, c])
     share = (depth - table[k - 1, 0]) / (table[k, 0] - table[k - 1, 0])
-    return table[k - 1, c] + share * (table[k, c] - table[k - 1, c])
+    return float(table[k - 1, c] + share * (table[k, c] - table[k - 1, c]))
 
 
 @compiled
@@ -95,7 +95,7 @@ def lay_profile(
 @compiled
 def _value(table: Floats, count: int, k: int, depth: float, c: int) -> float:
     if k < count and table[k, 0] == depth:
-        return table[k, c]
+        return float(table[k, c])
     return between(table, count, k, depth, c)
 
 

@@ -162,10 +162,8 @@ class Batch:
         ended = np.full(len(status), NOT_TRIED)
         plan = self.plan
         if plan is not None:
-            solve_cases(
-                plan.stages, plan.parts, plan.mooring, plan.floating, plan.chances, plan.fixed,
-                *(np.ascontiguousarray(array, np.float64) for array in current), rows, ended,
-            )  # fmt: skip
+            depth, u, v, w = (np.ascontiguousarray(array, np.float64) for array in current)
+            solve_cases(plan.arrays, depth, u, v, w, rows, ended)
         status[ended == NO_DATA] = _NO_CURRENT
         status[ended == LEVELS_COINCIDE] = _LEVELS_COINCIDE
         lifts = (ended == SOLVED) & (rows[2][:, 1] > self.mooring.anchor_weight)

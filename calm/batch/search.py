@@ -25,6 +25,12 @@ DONE, FIRST, UNLOADED, TOP, AWASH, SCAN, ROOT = range(7)
 SOLVED, AT_SURFACE, LOST, TURNS_BACK, UNCLOSED = 0, 4, 5, 6, 7
 
 SCANNED = 16
+MOST_CORRECTIONS = 12
+SMALL, SMALL_SHARE = 5e-7, 3e-6
+"""The miss of a closed line, as a share of the span; and how well a share in use is found."""
+
+THERE, AWAY, NOWHERE = range(3)
+"""Where a correction finds itself."""
 
 
 @compiled
@@ -162,3 +168,27 @@ def narrow(seek: Floats, c: int, m: float, span: float) -> tuple[int, int]:
     seek[c, LAST], seek[c, LAST_MISS] = y, m
     seek[c, Y] = following
     return ROOT, SOLVED
+
+
+@compiled
+def correct(seek: Floats, c: int, m: float, mooring: Any) -> int:
+    """A secant step near the root: whether the miss m is small enough, or a next one is to come."""
+    span, upright, floats = mooring[0], mooring[2], mooring[3]
+    y = seek[c, Y]
+    if not isfinite(m) or seek[c, TURN] == MOST_CORRECTIONS:
+        return NOWHERE
+    if seek[c, TURN] > 0.0 and y != seek[c, LAST]:
+        slope = (m - seek[c, LAST_MISS]) / (y - seek[c, LAST])
+        if slope < 0.0:
+            seek[c, SLOPE] = slope
+    small = SMALL * span
+    if y < 0.0:
+        small = min(small, -SMALL_SHARE * seek[c, SLOPE])
+    following = y - m / seek[c, SLOPE]
+    if abs(m) <= small:
+        seek[c, Y] = following
+        return THERE
+    seek[c, TURN] += 1.0
+    seek[c, LAST], seek[c, LAST_MISS] = y, m
+    seek[c, Y] = min(max(following, -1.0 if floats and upright == 0.0 else 0.0), span)
+    return AWAY

@@ -3,12 +3,13 @@
 import platform
 import re
 from pathlib import Path
+from typing import Any
 
 import numba
 import numpy as np
 import pytest
 
-from calm.batch import compiled, kernel
+from calm.batch import cable, compiled, kernel, lanes, rod
 from calm.batch.closing import place_free_end
 from calm.batch.plan import plan_of
 from calm.batch.profile import lay_profile, read_profile
@@ -25,9 +26,8 @@ AVX = platform.machine() in ("x86_64", "AMD64") and any(
 
 
 @pytest.mark.skipif(not AVX, reason="packed square roots are told by their names on x86-64")
-@pytest.mark.parametrize("name", ["pass_segments", "pass_piece"])
-def test_square_roots_are_packed(name: str) -> None:
-    function = getattr(kernel, name)
+@pytest.mark.parametrize("function", [cable.pass_segments, rod.pass_piece])
+def test_square_roots_are_packed(function: Any) -> None:
     marching()  # compiles
     for assembly in function.inspect_asm().values():
         # the tension, the thinning, |V × A|, |A + c V|, the axis, |Vn| in a segment; in a piece
@@ -43,19 +43,18 @@ def marching() -> tuple[Mooring, np.ndarray, np.ndarray]:
     assert plan is not None
     water = mooring.water
     levels = len(water.level) + len(plan.fixed)
-    lanes = kernel.LANES
     read, joined = np.zeros((levels, 4)), np.zeros((levels, 5))
     bounds, rows = np.zeros((1, levels + 2)), np.zeros((1, levels + 1, 8))
     count = read_profile(water.level, water.u, water.v, water.w, read)
     lay_profile(read, count, plan.fixed, bounds[0], rows[0], joined)
-    s = np.zeros(kernel.SCRATCH)
-    for lane in range(lanes):
+    s = np.zeros(lanes.SCRATCH)
+    for lane in range(lanes.LANES):
         place_free_end(s, lane, 80.0 + lane, *plan.floating)
-    nodes = np.zeros(kernel.STATE * lanes * (len(plan.stages[0]) + 1))
-    forces = np.zeros(3 * lanes * len(plan.stages[6]))
-    tables = np.zeros(lanes, np.int64), np.zeros(lanes, np.int64), bounds, rows
+    nodes = np.zeros(lanes.STATE * lanes.LANES * (len(plan.stages[0]) + 1))
+    forces = np.zeros(3 * lanes.LANES * len(plan.stages[6]))
+    tables = np.zeros(lanes.LANES, np.int64), np.zeros(lanes.LANES, np.int64), bounds, rows
     kernel.march(s, tables, plan.stages, 3, nodes, forces)
-    return mooring, s[kernel.Z : kernel.Z + lanes], s[kernel.FX : kernel.FX + 3 * lanes]
+    return mooring, s[lanes.Z : lanes.Z + lanes.LANES], s[lanes.FX : lanes.FX + 3 * lanes.LANES]
 
 
 def test_a_lane_ends_where_the_plain_march_does() -> None:
@@ -65,13 +64,13 @@ def test_a_lane_ends_where_the_plain_march_does() -> None:
     cuts = [
         np.repeat(stages[5][first : first + count] / 8.0, 8).tolist()
         for kind, first, count in zip(*stages[:3], strict=True)
-        if kind == kernel.CABLE
+        if kind == lanes.CABLE
     ]
-    for lane in range(kernel.LANES):
+    for lane in range(lanes.LANES):
         end = march(track, profile, 80.0 + lane, angle_step=1.0, reach=1.0, cuts=cuts)
         # the lanes look a segment's current up where its top has it, one order further down
         assert z[lane] == pytest.approx(end.z, abs=1e-6 * mooring.water.depth)
-        assert force[lane :: kernel.LANES] == pytest.approx(end.force, rel=1e-5, abs=1e-3)
+        assert force[lane :: lanes.LANES] == pytest.approx(end.force, rel=1e-5, abs=1e-3)
 
 
 def test_a_folder_that_cannot_be_written_is_done_without(
