@@ -10,13 +10,14 @@ from math import isfinite, nan
 from typing import Any
 
 from calm.batch.compiled import compiled
+from calm.physics.hull import AWASH as GOING_UNDER
 from calm.physics.line import Floats
 
 (
     Y, ABOVE, ABOVE_MISS, BELOW, BELOW_MISS, LAST, LAST_MISS, OLDER_MISS, SLOPE, FALL, STEP, TURN,
-    STUCK,
-) = range(13)  # fmt: skip
-COLUMNS = 13
+    STUCK, FOUND, UPPER, UPPER_MISS, LOWER, LOWER_MISS,
+) = range(18)  # fmt: skip
+COLUMNS = 18
 
 # what a lane is about to learn from its next march
 DONE, FIRST, UNLOADED, TOP, AWASH, SCAN, ROOT = range(7)
@@ -28,6 +29,12 @@ SCANNED = 16
 MOST_CORRECTIONS = 12
 SMALL, SMALL_SHARE = 5e-7, 3e-6
 """The miss of a closed line, as a share of the span; and how well a share in use is found."""
+
+FLAT = -0.25
+"""Slope of the miss; where the current is even, it is -1."""
+STRAYED, STRAYED_SHARE = 2e-3, 0.02
+"""How far a root may be from the coarse one, as a share of the span, and of the buoyancy: beyond,
+it may be another one."""
 
 THERE, AWAY, NOWHERE = range(3)
 """Where a correction finds itself."""
@@ -113,6 +120,7 @@ def go_down(seek: Floats, c: int, span: float) -> int:
 def bracket(seek: Floats, c: int) -> int:
     """Go on between the ends of a bracket, where their chord crosses nothing."""
     a, fa, b, fb = seek[c, ABOVE], seek[c, ABOVE_MISS], seek[c, BELOW], seek[c, BELOW_MISS]
+    seek[c, UPPER], seek[c, UPPER_MISS], seek[c, LOWER], seek[c, LOWER_MISS] = a, fa, b, fb
     seek[c, SLOPE] = (fb - fa) / (b - a)
     seek[c, LAST], seek[c, LAST_MISS] = (a, fa) if fa < -fb else (b, fb)
     seek[c, Y] = a - fa / seek[c, SLOPE]
@@ -154,7 +162,8 @@ def narrow(seek: Floats, c: int, m: float, span: float) -> tuple[int, int]:
             seek[c, Y] = following
         else:
             seek[c, SLOPE] = -1.0
-        return DONE, SOLVED
+        seek[c, FOUND] = seek[c, Y]
+        return DONE, TURNS_BACK if seek[c, FALL] > 0.0 and may_turn(seek, c) else SOLVED
     seek[c, STUCK] = seek[c, STUCK] + 1.0 if abs(m) > 0.5 * abs(before) else 0.0
     if isfinite(a) and isfinite(b):
         if not a < following < b or seek[c, STUCK] > 2.0:
@@ -168,6 +177,33 @@ def narrow(seek: Floats, c: int, m: float, span: float) -> tuple[int, int]:
     seek[c, LAST], seek[c, LAST_MISS] = y, m
     seek[c, Y] = following
     return ROOT, SOLVED
+
+
+@compiled
+def may_turn(seek: Floats, c: int) -> bool:
+    """Whether the miss is so flat by the root that finer cuts may find the highest one elsewhere.
+
+    There, or on the way from the depths of the scan on either side.
+    """
+    y = seek[c, Y]
+    above, below = y - seek[c, UPPER], seek[c, LOWER] - y
+    return bool(
+        y > 0.0
+        and (
+            seek[c, SLOPE] > FLAT
+            or -seek[c, UPPER_MISS] > FLAT * above
+            or seek[c, LOWER_MISS] > FLAT * below
+        )
+    )
+
+
+@compiled
+def is_another(found: float, y: float, mooring: Any) -> bool:
+    """Whether a root may not be the one found on coarse cuts, or is about to go under."""
+    under = -GOING_UNDER < y < STRAYED * mooring[0]
+    if (found < 0.0) != (y < 0.0) or (mooring[3] and mooring[2] == 0.0 and under):
+        return True
+    return abs(y - found) > (STRAYED_SHARE if y < 0.0 else STRAYED * mooring[0])
 
 
 @compiled
@@ -185,6 +221,8 @@ def correct(seek: Floats, c: int, m: float, mooring: Any) -> int:
     if y < 0.0:
         small = min(small, -SMALL_SHARE * seek[c, SLOPE])
     following = y - m / seek[c, SLOPE]
+    if is_another(seek[c, FOUND], following, mooring):
+        return NOWHERE
     if abs(m) <= small:
         seek[c, Y] = following
         return THERE

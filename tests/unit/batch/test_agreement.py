@@ -105,6 +105,15 @@ def test_the_lanes_solve_a_float_that_rides_or_is_pulled_under() -> None:
     assert (~riding & (found.top_depth > 0.0) & ~found.alone).any()
 
 
+def test_where_roots_are_near_each_other_the_run_decides() -> None:
+    # 476 m is a root, too, which the coarse cuts take for the highest
+    mooring = shipped("upward-adcp-300m")
+    depth, u, v, w = (a if a.ndim == 1 else a[46:47] for a in drawn(11, 47, mooring.water.depth))
+    found = solve_profiles(mooring, u, v, depth, w)
+    assert found.alone.all()
+    assert_alike(found, 0, in_profile(mooring, depth, u[0], v[0], w[0]).solve())
+
+
 def test_an_anchor_that_would_lift_is_a_status() -> None:
     mooring = shipped("s1000")
     pieces = mooring.file.pieces
