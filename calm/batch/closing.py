@@ -101,7 +101,7 @@ def find_roots(desk: Desk, plan: Any, seek: Floats, reasons: Integers) -> None:
     """
     s, water, nodes, forces = desk
     stages, _, mooring, floating, chances, _ = plan
-    slots = water[0]
+    slots, level = water[0], water[1]
     task = np.full(LANES, DONE)
     marches = np.zeros(LANES, np.int64)
     upcoming = 0
@@ -113,6 +113,7 @@ def find_roots(desk: Desk, plan: Any, seek: Floats, reasons: Integers) -> None:
                     upcoming += 1
                 if upcoming < reasons.size:
                     slots[i], task[i], marches[i] = upcoming, FIRST, 0
+                    level[i] = 0  # the last profile may have had more
                     upcoming += 1
             busy |= task[i] != DONE
             place_free_end(s, i, seek[slots[i], Y], floating[0], floating[1])
@@ -137,7 +138,7 @@ def close_on(
     """Close pending cases on cuts halved `grid` times; their shapes go to their rows of `kept`."""
     s, water, nodes, forces = desk
     stages, _, mooring, floating, _, _ = plan
-    slots = water[0]
+    slots, level = water[0], water[1]
     numbers, after = nodes.size // LANES, forces.size // LANES
     closing = np.zeros(LANES, np.bool_)
     upcoming = 0
@@ -145,7 +146,7 @@ def close_on(
         busy = False
         for i in range(LANES):
             if not closing[i] and upcoming < pending.size:
-                slots[i], closing[i] = pending[upcoming], True
+                slots[i], level[i], closing[i] = pending[upcoming], 0, True
                 seek[slots[i], TURN] = 0.0
                 upcoming += 1
             busy |= closing[i]

@@ -17,8 +17,9 @@ from calm.physics import element
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-FLAGS = {"contract", "reassoc", "nsz", "arcp"}
-"""Liberties with the order of arithmetic; not with NaN, which tells a lane that has failed."""
+FLAGS = {"contract", "nsz", "arcp"}
+"""Liberties with arithmetic. Not with NaN, which tells a lane that has failed, nor with the order of
+sums: it might be another in the first lanes than in the last, and their digits with it."""
 
 
 def compiled(function: Function) -> Function:

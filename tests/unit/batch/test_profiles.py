@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from calm.batch import profiles
+from calm.batch.lanes import LANES
 from calm.batch.profiles import STATUSES, Profiles, solve_profiles
 from calm.case import Mooring, load
 from calm.shipped import shipped_folder
@@ -49,6 +50,15 @@ def test_neither_order_nor_company_nor_workers_change_a_bit(
     assert_same(whole, solve_profiles(mooring, u, v, depth, w, workers=2))
 
 
+def test_every_lane_gives_the_same_digits(mooring: Mooring) -> None:
+    depth, u, v, w = drawn(3, 60, mooring.water.depth)
+    each = np.repeat(np.arange(60), LANES)
+    found = solve_profiles(mooring, u[each], v[each], depth, w[each])
+    for values in (found.depth_top, found.tension_top, found.tilt, found.clamp_tilt):
+        lanes = values.reshape(60, LANES, -1)
+        assert lanes.tobytes() == np.repeat(lanes[:, :1], LANES, axis=1).tobytes()
+
+
 def test_a_level_without_a_value_is_left_out(subsurface: Mooring) -> None:
     depth, u, v, _ = drawn(5, 12, subsurface.water.depth)
     gaps = [3, 4, 17, len(depth) - 1]
@@ -59,6 +69,18 @@ def test_a_level_without_a_value_is_left_out(subsurface: Mooring) -> None:
     assert_same(without, solve_profiles(subsurface, holed, v, depth))
     airy = np.where(np.isin(np.arange(len(depth)), gaps), -1.0 - np.arange(len(depth)), depth)
     assert_same(without, solve_profiles(subsurface, u, v, airy))
+
+
+def test_profiles_may_have_as_many_levels_as_they_like(subsurface: Mooring) -> None:
+    depth, u, v, w = drawn(5, 64, subsurface.water.depth)
+    holed = u.copy()
+    holed[::2, 1:-1] = np.nan
+    found = solve_profiles(subsurface, holed, v, depth, w)
+    few = solve_profiles(subsurface, holed[::2], v[::2], depth, w[::2])
+    assert_same(found, few, slice(None, None, 2))
+    assert_same(
+        found, solve_profiles(subsurface, u[1::2], v[1::2], depth, w[1::2]), slice(1, None, 2)
+    )
 
 
 def test_levels_may_vary_and_come_in_any_order(subsurface: Mooring) -> None:
