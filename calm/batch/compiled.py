@@ -18,8 +18,8 @@ from calm.physics import element
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 FLAGS = {"contract", "nsz", "arcp"}
-"""Liberties with arithmetic. Not with NaN, which tells a lane that has failed, nor with the order of
-sums: it might be another in the first lanes than in the last, and their digits with it."""
+"""Liberties with arithmetic. Not with NaN, which tells a lane that has failed, nor with the order
+of sums: it might be another in the first lanes than in the last, and their digits with it."""
 
 
 def compiled(function: Function) -> Function:
