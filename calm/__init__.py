@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from calm.version import __version__ as __version__
 
 if TYPE_CHECKING:
-    from calm.batch.profiles import solve_profiles
+    from calm.batch.profiles import Profiles, solve_profiles
     from calm.case import Mooring, Result, Tow, TowResult, load
     from calm.checks.assess import check
     from calm.errors import CalmError, InputError, NoEquilibrium, UsageError
@@ -25,6 +25,7 @@ __all__ = [
     "InputError",
     "Mooring",
     "NoEquilibrium",
+    "Profiles",
     "Result",
     "Tow",
     "TowResult",
@@ -38,6 +39,7 @@ __all__ = [
 _HOMES = {
     "load": "calm.case",
     "check": "calm.checks.assess",
+    "Profiles": "calm.batch.profiles",
     "solve_profiles": "calm.batch.profiles",
     "Mooring": "calm.case",
     "Result": "calm.case",

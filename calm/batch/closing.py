@@ -8,37 +8,70 @@ the next case as soon as it is done with one.
 
 from __future__ import annotations
 
-from math import isfinite, sqrt
+from math import sqrt
+from typing import Any
 
 import numpy as np
 
 from calm.batch.compiled import compiled, entry
-from calm.batch.kernel import (
-    FREE_END, HELD, HIGHEST, LANES, LEAST_PULL, LIGHTEST, LOWEST, OUT, SCRATCH, SHARE, STATE, WET,
-    WIND_EAST, WIND_NORTH, Z, march,
-)  # fmt: skip
-from calm.batch.outcome import blend, worst_error, write_case
+from calm.batch.kernel import march
+from calm.batch.lanes import (
+    FREE_END,
+    HELD,
+    HIGHEST,
+    LANES,
+    LEAST_PULL,
+    LIGHTEST,
+    LOWEST,
+    OUT,
+    SCRATCH,
+    SHARE,
+    STATE,
+    WET,
+    WIND_EAST,
+    WIND_NORTH,
+    Tables,
+    Z,
+)
+from calm.batch.outcome import blend, greatest_change, write_case
 from calm.batch.profile import growth_below, lay_profile, read_profile
 from calm.batch.search import (
-    COLUMNS, DONE, FIRST, LAST, LAST_MISS, SLOPE, SOLVED, TURN, UNCLOSED, Y, advance, begin,
+    AWAY,
+    COLUMNS,
+    DONE,
+    FIRST,
+    NOWHERE,
+    SOLVED,
+    THERE,
+    TURN,
+    UNCLOSED,
+    Y,
+    advance,
+    begin,
+    correct,
 )  # fmt: skip
+from calm.physics.line import Floats, Integers
 
 # how a case ended; those of the search are there
 NO_DATA, LEVELS_COINCIDE, STILL = 1, 2, 3
-OUT_OF_WATER, ON_SEABED, COMPRESSED, TOO_COARSE, WRITTEN = range(8, 13)
+OUT_OF_WATER, ON_SEABED, COMPRESSED, TOO_COARSE, WRITTEN, NOT_TRIED = range(8, 14)
 
-CHUNK = 128
-"""Cases that are laid out at once: what fits a processor's cache."""
-FINEST = 6
+CHUNK = 256
+"""Cases that are laid out at once: enough to keep the lanes busy, and to fit a cache."""
+FEWEST_HALVINGS, FINEST = 2, 6
+"""How often the cuts are halved at least, and at most."""
+PLACE_CHANGE, TENSION_CHANGE = 4e-5, 5e-5
+"""What the last halving may change, as shares of the water depth and of the tension. The shape is
+then blended from the last two, so that it is off by less; by about as much where currents are
+ragged."""
 MOST_MARCHES = 60
-MOST_CORRECTIONS = 12
-WORST = 0.5
-SMALL = 5e-7
-SMALL_SHARE = 1e-5
+
+Desk = tuple[Floats, Tables, Floats, Floats]
+"""What a march writes on: scratch, tables, recorded nodes and forces."""
 
 
 @compiled
-def place_free_end(s, i, y, riding, rigid):
+def place_free_end(s: Floats, i: int, y: float, riding: Floats, rigid: tuple[float, float]) -> None:
     """Put a lane's free end where its unknown has it."""
     s[FREE_END + i], s[SHARE + i], s[OUT + i] = y, 1.0, 0.0
     s[WET + i], s[HELD + i], s[WIND_EAST + i], s[WIND_NORTH + i] = 1.0, 1.0, 0.0, 0.0
@@ -58,7 +91,7 @@ def place_free_end(s, i, y, riding, rigid):
 
 
 @compiled
-def find_roots(s, water, plan, mooring, floating, chances, seek, reasons, nodes, forces):
+def find_roots(desk: Desk, plan: Any, seek: Floats, reasons: Integers) -> None:
     """Find the coarse root of every case whose reason is `SOLVED` so far: in its row of `seek`.
 
     Parameters
@@ -66,8 +99,9 @@ def find_roots(s, water, plan, mooring, floating, chances, seek, reasons, nodes,
     seek : (cases, COLUMNS) see `calm.batch.search`
     reasons : (cases,)
     """
-    span, goal = mooring[0], mooring[1]
-    slots, level, _, _ = water
+    s, water, nodes, forces = desk
+    stages, _, mooring, floating, chances, _ = plan
+    slots, level = water[0], water[1]
     task = np.full(LANES, DONE)
     marches = np.zeros(LANES, np.int64)
     upcoming = 0
@@ -79,73 +113,65 @@ def find_roots(s, water, plan, mooring, floating, chances, seek, reasons, nodes,
                     upcoming += 1
                 if upcoming < reasons.size:
                     slots[i], task[i], marches[i] = upcoming, FIRST, 0
+                    level[i] = 0  # the last profile may have had more
                     upcoming += 1
             busy |= task[i] != DONE
             place_free_end(s, i, seek[slots[i], Y], floating[0], floating[1])
         if not busy:
             return
-        march(s, water, plan, 0, nodes, forces)
+        march(s, water, stages, 0, nodes, forces)
         for i in range(LANES):
             if task[i] != DONE:
                 c = slots[i]
-                task[i], reasons[c] = advance(seek, c, task[i], s[Z + i] - goal, mooring, chances)
+                miss = s[Z + i] - mooring[1]
+                task[i], reasons[c] = advance(seek, c, task[i], miss, mooring, chances[0])
                 marches[i] += 1
                 if marches[i] == MOST_MARCHES and task[i] != DONE:
                     task[i], reasons[c] = DONE, UNCLOSED
 
 
 @compiled
-def close_on(grid, s, water, plan, mooring, floating, seek, pending, reasons, misses, kept, nodes, forces):
+def close_on(
+    grid: int, desk: Desk, plan: Any, seek: Floats, pending: Integers, reasons: Integers,
+    refusals: Integers, kept: Floats,
+) -> None:  # fmt: skip
     """Close pending cases on cuts halved `grid` times; their shapes go to their rows of `kept`."""
-    span, goal, upright, floats = mooring[0], mooring[1], mooring[2], mooring[3]
-    slots, level, _, _ = water
+    s, water, nodes, forces = desk
+    stages, _, mooring, floating, _, _ = plan
+    slots, level = water[0], water[1]
     numbers, after = nodes.size // LANES, forces.size // LANES
-    busy = np.zeros(LANES, np.bool_)
+    closing = np.zeros(LANES, np.bool_)
     upcoming = 0
     while True:
-        any_busy = False
+        busy = False
         for i in range(LANES):
-            if not busy[i] and upcoming < pending.size:
-                slots[i], busy[i] = pending[upcoming], True
+            if not closing[i] and upcoming < pending.size:
+                slots[i], level[i], closing[i] = pending[upcoming], 0, True
                 seek[slots[i], TURN] = 0.0
                 upcoming += 1
-            any_busy |= busy[i]
+            busy |= closing[i]
             place_free_end(s, i, seek[slots[i], Y], floating[0], floating[1])
-        if not any_busy:
+        if not busy:
             return
-        march(s, water, plan, grid, nodes, forces)
+        march(s, water, stages, grid, nodes, forces)
         for i in range(LANES):
-            if not busy[i]:
+            if not closing[i]:
                 continue
             c = slots[i]
-            y, m = seek[c, Y], s[Z + i] - goal
-            if not isfinite(m) or seek[c, TURN] == MOST_CORRECTIONS:
-                busy[i], reasons[c] = False, UNCLOSED
-                continue
-            if seek[c, TURN] > 0.0 and y != seek[c, LAST]:
-                slope = (m - seek[c, LAST_MISS]) / (y - seek[c, LAST])
-                if slope < 0.0:
-                    seek[c, SLOPE] = slope
-            small = SMALL * span
-            if y < 0.0:
-                small = min(small, -SMALL_SHARE * seek[c, SLOPE])
-            following = y - m / seek[c, SLOPE]
-            if abs(m) <= small:
-                busy[i] = False
-                seek[c, Y] = following
+            near = correct(seek, c, s[Z + i] - mooring[1], mooring)
+            closing[i] = near == AWAY
+            if near == NOWHERE:
+                reasons[c] = UNCLOSED
+            elif near == THERE:
+                refusals[c] = refused(s, i, mooring)
                 for k in range(numbers):
                     kept[c, k] = nodes[k * LANES + i]
                 for k in range(after):
                     kept[c, numbers + k] = forces[k * LANES + i]
-                misses[c] = refused(s, i, mooring)
-                continue
-            seek[c, TURN] += 1.0
-            seek[c, LAST], seek[c, LAST_MISS] = y, m
-            seek[c, Y] = min(max(following, -1.0 if floats and upright == 0.0 else 0.0), span)
 
 
 @compiled
-def refused(s, i, mooring):
+def refused(s: Floats, i: int, mooring: Any) -> int:
     """Why the lane's shape is not to be had by this march alone; `SOLVED` where it is."""
     span, goal, anchor_height, lies = mooring[0], mooring[1], mooring[5], mooring[6]
     if s[LEAST_PULL + i] < 0.0:
@@ -155,67 +181,79 @@ def refused(s, i, mooring):
     return OUT_OF_WATER if s[HIGHEST + i] > 1e-6 * span else SOLVED
 
 
+@compiled
+def read_case(
+    c: int, plan: Any, tables: Any, seek: Floats, depth: Floats, u: Floats, v: Floats, w: Floats
+) -> int:
+    """Lay a profile out in a slot and set out on its case; returns why it needs no search."""
+    bounds, rows, read, joined = tables
+    _, _, mooring, _, chances, fixed = plan
+    found = read_profile(depth, u, v, w, read)
+    if found <= 0:
+        return NO_DATA if found == 0 else LEVELS_COINCIDE
+    total = lay_profile(read, found, fixed, bounds[c], rows[c], joined)
+    growth, speed = growth_below(joined, total, mooring[2])
+    begin(seek, c, growth, speed, mooring[2], chances[1])
+    return SOLVED if speed > 0.0 else STILL
+
+
 @entry
-def solve_cases(plan, parts, mooring, floating, chances, fixed, depth, u, v, w, results, reasons):
+def solve_cases(
+    plan: Any, depth: Floats, u: Floats, v: Floats, w: Floats, results: Any, reasons: Integers
+) -> None:
     """Solve cases; what they lead to goes to their rows of the results, how they ended to reasons.
 
     Parameters
     ----------
-    plan, parts, mooring, floating, chances, fixed : see `calm.batch.plan`
+    plan : the arrays of `calm.batch.plan.Plan`
     depth : (1 or n, k) of the levels [m]
     u, v, w : (n, k) current [m/s]; NaN where there is none
     results : see `calm.batch.outcome`
     reasons : (n,)
     """
-    kinds, loads = plan[0], plan[6]
+    stages, parts, mooring, _, _, fixed = plan
+    kinds, loads = stages[0], stages[6]
     levels = depth.shape[1] + fixed.shape[0]
+    bounds, rows = np.zeros((CHUNK, levels + 2)), np.zeros((CHUNK, levels + 1, 8))
+    tables = (bounds, rows, np.zeros((levels, 4)), np.zeros((levels, 5)))
+    water = (np.zeros(LANES, np.int64), np.zeros(LANES, np.int64), bounds, rows)
     nodes = np.zeros(STATE * LANES * (kinds.size + 1))
     forces = np.zeros(3 * LANES * loads.shape[0])
-    s = np.zeros(SCRATCH)
-    bounds, rows = np.zeros((CHUNK, levels + 2)), np.zeros((CHUNK, levels + 1, 9))
-    water = (np.zeros(LANES, np.int64), np.zeros(LANES, np.int64), bounds, rows)
-    read, joined = np.zeros((levels, 4)), np.zeros((levels, 5))
-    seek = np.zeros((CHUNK, COLUMNS))
-    ends = np.zeros(CHUNK, np.int64)
-    refusals = np.zeros(CHUNK, np.int64)
+    desk = (np.zeros(SCRATCH), water, nodes, forces)
     size = (nodes.size + forces.size) // LANES
-    older, newer, joints = np.zeros((CHUNK, size)), np.zeros((CHUNK, size)), np.zeros(size)
-    earlier = np.zeros(CHUNK)
+    older, newer, shape = np.zeros((CHUNK, size)), np.zeros((CHUNK, size)), np.zeros(size)
+    seek, earlier = np.zeros((CHUNK, COLUMNS)), np.zeros(CHUNK)
+    refusals, all_ends = np.zeros(CHUNK, np.int64), np.zeros(CHUNK, np.int64)
     for start in range(0, reasons.size, CHUNK):
-        count = min(CHUNK, reasons.size - start)
-        for c in range(count):
+        ends = all_ends[: min(CHUNK, reasons.size - start)]
+        for c in range(ends.size):
             case = start + c
-            found = read_profile(depth[case if depth.shape[0] > 1 else 0], u[case], v[case], w[case], read)
-            ends[c] = SOLVED
-            if found <= 0:
-                ends[c] = NO_DATA if found == 0 else LEVELS_COINCIDE
-                continue
-            total = lay_profile(read, found, fixed, bounds[c], rows[c], joined)
-            growth, speed = growth_below(joined, total, mooring[2])
-            if speed == 0.0:
-                ends[c] = STILL
-            begin(seek, c, growth, speed, mooring[2], chances[1])
-        mine = ends[:count]
-        find_roots(s, water, plan, mooring, floating, chances[0], seek, mine, nodes, forces)
+            levels_at = depth[case if depth.shape[0] > 1 else 0]
+            ends[c] = read_case(c, plan, tables, seek, levels_at, u[case], v[case], w[case])
+        find_roots(desk, plan, seek, ends)
         for grid in range(1, FINEST + 1):
-            pending = np.flatnonzero(mine == SOLVED)
-            if pending.size == 0:
-                break
+            pending = np.flatnonzero(ends == SOLVED)
             older, newer = newer, older
-            for c in pending:
-                earlier[c], seek[c, Y] = seek[c, Y], seek[c, Y] + (0.25 * (seek[c, Y] - earlier[c]) if grid > 1 else 0.0)
-            close_on(grid, s, water, plan, mooring, floating, seek, pending, mine, refusals, newer, nodes, forces)
-            for c in pending:
-                if mine[c] != SOLVED or grid < mooring[7]:
+            for k in range(pending.size):
+                # where the root has gone by the last halving, it goes a quarter as far by this one
+                c = pending[k]
+                y = seek[c, Y]
+                seek[c, Y] = y + (0.25 * (y - earlier[c]) if grid > 1 else 0.0)
+                earlier[c] = y
+            close_on(grid, desk, plan, seek, pending, ends, refusals, newer)
+            if grid < FEWEST_HALVINGS:
+                continue
+            for k in range(pending.size):
+                c = pending[k]
+                if ends[c] != SOLVED:
                     continue
-                error = worst_error(older[c], newer[c], kinds.size, mooring[0])
-                if error > WORST:
-                    if grid == FINEST:
-                        mine[c] = TOO_COARSE
-                    continue
-                blend(plan, older[c], newer[c], joints)
-                used = 1.0 + min((4.0 * seek[c, Y] - earlier[c]) / 3.0, 0.0)
-                write_case(plan, parts, joints, used, results, start + c)
-                mine[c] = WRITTEN if refusals[c] == SOLVED else refusals[c]
-        for c in range(count):
-            reasons[start + c] = SOLVED if mine[c] == WRITTEN else mine[c]
+                place, tension = greatest_change(older[c], newer[c], kinds.size, mooring[0])
+                if place <= PLACE_CHANGE and tension <= TENSION_CHANGE:
+                    blend(stages, older[c], newer[c], shape)
+                    used = 1.0 + min((4.0 * seek[c, Y] - earlier[c]) / 3.0, 0.0)
+                    write_case(stages, parts, shape, used, results, start + c)
+                    ends[c] = WRITTEN if refusals[c] == SOLVED else refusals[c]
+                elif grid == FINEST:
+                    ends[c] = TOO_COARSE
+        for c in range(ends.size):
+            reasons[start + c] = SOLVED if ends[c] == WRITTEN else ends[c]

@@ -9,21 +9,22 @@ import tempfile
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numba
 
 from calm.physics import element
 
-FLAGS = {"contract", "reassoc", "nsz", "arcp"}
-"""Liberties with the order of arithmetic; not with NaN, which tells a lane that has failed."""
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+FLAGS = {"contract", "nsz", "arcp"}
+"""Liberties with arithmetic. Not with NaN, which tells a lane that has failed, nor with the order
+of sums: it might be another in the first lanes than in the last, and their digits with it."""
 
 
-def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
+def compiled(function: Function) -> Function:
     """A function compiled into those that call it."""
-    jitted: Callable[..., Any] = numba.njit(
-        function, nogil=True, error_model="numpy", fastmath=FLAGS
-    )
+    jitted: Function = numba.njit(function, nogil=True, error_model="numpy", fastmath=FLAGS)
     return jitted
 
 
@@ -35,15 +36,16 @@ def compilable(formula: Callable[..., Any]) -> None:
 def entry(function: Callable[..., Any]) -> Any:
     """A function that is called from outside: compiled, and kept for the next process."""
     folder = cache_folder()
-    options = {"nogil": True, "error_model": "numpy", "fastmath": FLAGS}
+    options: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": FLAGS}
+    settings: Any = numba.config
     if folder is None:
         return numba.njit(function, **options)
-    chosen = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(folder)  # read as the function is decorated
+    chosen = settings.CACHE_DIR
+    settings.CACHE_DIR = str(folder)  # read as the function is decorated
     try:
         return numba.njit(function, cache=True, **options)
     finally:
-        numba.config.CACHE_DIR = chosen
+        settings.CACHE_DIR = chosen
 
 
 @cache

@@ -3,31 +3,32 @@
 from __future__ import annotations
 
 from math import atan2, pi, sqrt
+from typing import Any
 
 from calm.batch.compiled import compiled
-from calm.batch.kernel import AT, CLAMP, ROD, STATE
-from calm.solve.refine import DEPTH_TARGET, TENSION_TARGET
+from calm.batch.lanes import AT, CLAMP, ROD, STATE
+from calm.physics.line import Floats
 
 DEPTH, EAST, NORTH, TENSION_TOP, TENSION_BOTTOM, TILT = range(6)
 OF_PIECE = ("depth_top", "x_top", "y_top", "tension_top", "tension_bottom", "tilt")
 OF_CLAMP = ("depth", "x", "y", "tension", "tilt")
-OF_ENDS = ("top_depth", "anchor_vertical", "anchor_horizontal", "used_buoyancy")
+OF_ENDS = ("top_depth", "anchor_vertical", "anchor_horizontal", "used_buoyancy", "end_depth")
 
 
 @compiled
-def tilt_of(x, y, z):
+def tilt_of(x: float, y: float, z: float) -> float:
     """Angle of a vector from the vertical [degrees]; 0 for none."""
     return atan2(sqrt(x * x + y * y), z) * 180.0 / pi
 
 
 @compiled
-def size_of(x, y, z):
+def size_of(x: float, y: float, z: float) -> float:
     """Size of a vector."""
     return sqrt(x * x + y * y + z * z)
 
 
 @compiled
-def blend(plan, old, new, blended):
+def blend(plan: Any, old: Floats, new: Floats, blended: Floats) -> None:
     """What the shapes on cuts and on halved cuts lead to.
 
     Places and forces are of second order in the cuts, the axis of what ends at a joint of first.
@@ -49,8 +50,8 @@ def blend(plan, old, new, blended):
 
 
 @compiled
-def worst_error(old, new, stages, span):
-    """What halving the cuts changed, over what it may change: a third of it is the error."""
+def greatest_change(old: Floats, new: Floats, stages: int, span: float) -> tuple[float, float]:
+    """What halving the cuts changed: of places, by the span, and of tensions, by themselves."""
     end = stages * STATE
     place = tension = greatest = 0.0
     for n in range(stages + 1):
@@ -65,11 +66,11 @@ def worst_error(old, new, stages, span):
         pull = size_of(new[at + 3], new[at + 4], new[at + 5])
         before = size_of(old[at + 3], old[at + 4], old[at + 5])
         tension = max(tension, abs(pull - before) / max(pull, floor))
-    return max(place / (3.0 * DEPTH_TARGET * span), tension / (3.0 * TENSION_TARGET))
+    return place / span, tension
 
 
 @compiled
-def write_case(plan, parts, shape, used, results, case):
+def write_case(plan: Any, parts: Any, shape: Floats, used: float, results: Any, case: int) -> None:
     """Write a case's shape to its row of the results."""
     kinds, firsts, counts, lengths = plan[0], plan[1], plan[2], plan[3]
     piece_of_stage, _, clamp_of_load, piece_length, head = parts
@@ -119,10 +120,13 @@ def write_case(plan, parts, shape, used, results, case):
     ends[case, 1] = shape[b + 5]
     ends[case, 2] = sqrt(shape[b + 3] ** 2 + shape[b + 4] ** 2)
     ends[case, 3] = used
+    ends[case, 4] = -shape[b + 2]
 
 
 @compiled
-def walk_rod(plan, parts, shape, n, pieces, clamps, case):
+def walk_rod(
+    plan: Any, parts: Any, shape: Floats, n: int, pieces: Floats, clamps: Floats, case: int
+) -> int:
     """Down a rod of several pieces or with clamps; returns its last piece.
 
     A piece's own load counts as spread along it, a clamp's not.

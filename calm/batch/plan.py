@@ -1,4 +1,4 @@
-"""A mooring laid out for the kernel: its stages, loads and cuts as arrays, its limits as numbers."""
+"""A mooring laid out for the kernel: its stages, loads, cuts and limits."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from calm.assemble import assemble_water
-from calm.batch.kernel import ABOVE_IT, CABLE, CLAMP, ITSELF, ROD
+from calm.batch.lanes import ABOVE_IT, CABLE, CLAMP, ITSELF, ROD
 from calm.case import Mooring
 from calm.files import CurrentTable
 from calm.physics.friction import Friction
@@ -23,13 +23,11 @@ from calm.solve.unknown import Unknown
 
 CUTS = 50
 """Of a line, about, for the first look; they are halved twice and more."""
-FIRST_GRID = 2
-"""How often they are halved at least."""
 SOFTENING = 0.3
 """Cuts grow with the depth at which they stand upright, plus this share of the water depth."""
 NEAR = 2e-6
 """How far the loads of a rod may be from where they are looked up, as a share of the depth."""
-FASTEST, SPEEDS = 4.0, 81
+FASTEST, SPEEDS = 4.0, 41
 """Currents up to so many m/s, and how many of them, for which the fall of the line is known."""
 SHARES_KNOWN = 1025
 """Shares of its buoyancy in use for which it is known how a float rides."""
@@ -51,8 +49,18 @@ class Plan:
     floating: tuple[Any, ...]
     chances: tuple[Any, ...]
     fixed: Floats
-    pieces: int
-    clamps: int
+
+    @property
+    def arrays(self) -> tuple[Any, ...]:
+        """All that the kernel takes."""
+        return (
+            self.stages,
+            self.parts,
+            self.mooring,
+            self.floating,
+            self.chances,
+            self.fixed,
+        )
 
 
 def base_water(mooring: Mooring) -> Water:
@@ -91,13 +99,10 @@ def plan_of(mooring: Mooring) -> Plan | None:
             line.floating is not None,
             line.anchor_height,
             bool(line.length.sum() > water.depth),
-            FIRST_GRID,
         ),
         floating=_riding(head, afloat, line.floating if floats else None),
         chances=(np.array(SHARES), _falls(closing, unknown, top)),
         fixed=np.column_stack([water.level, water.u, water.v, water.density]),
-        pieces=len(line.length),
-        clamps=len(line.clamp_piece),
     )
 
 
@@ -122,7 +127,9 @@ def _loads(stage: Stage) -> tuple[Load, ...]:
 def _stages(line: Line, water: Water, track: Track, afloat: int) -> tuple[Any, ...]:
     """Kind, first load or cut, count of them and length of every stage; cables, cuts, loads."""
     kinds, firsts, counts, lengths = [], [], [], []
-    cables, cuts, loads = [], [], []
+    cables: list[tuple[float, ...]] = []
+    cuts: list[float] = []
+    loads: list[tuple[float, ...]] = []
     given = iter(cuts_of(track, water.depth))
     for n, stage in enumerate(track.stages):
         if isinstance(stage, Cable):
@@ -234,9 +241,7 @@ def _riding(head: Rod, afloat: int, floating: Floating | None) -> tuple[Any, ...
     if floating is None:
         return np.tile([0.0, 0.0, 1.0, 0.0, 0.0], (2, 1)), (0.0, 0.0)
     *above, own = head.lengths[: head.pieces.index(afloat) + 1]
-    rides = [
-        floating.riding(1.0 - (1.0 - at) ** 2) for at in np.linspace(0.0, 1.0, SHARES_KNOWN)
-    ]
+    rides = [floating.riding(1.0 - (1.0 - at) ** 2) for at in np.linspace(0.0, 1.0, SHARES_KNOWN)]
     table = np.array([(r.standing, r.above, r.drag, *r.push) for r in rides])
     return table, (sum(above, 0.0), own)
 

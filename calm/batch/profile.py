@@ -5,10 +5,11 @@ from __future__ import annotations
 from math import inf, isfinite, sqrt
 
 from calm.batch.compiled import compiled
+from calm.physics.line import Floats
 
 
 @compiled
-def read_profile(depth, u, v, w, read):
+def read_profile(depth: Floats, u: Floats, v: Floats, w: Floats, read: Floats) -> int:
     """The levels at or below the surface that have a value, sorted; how many, -1 if two are one."""
     count = 0
     for j in range(depth.size):
@@ -30,18 +31,20 @@ def read_profile(depth, u, v, w, read):
 
 
 @compiled
-def between(table, count, k, depth, c):
+def between(table: Floats, count: int, k: int, depth: float, c: int) -> float:
     """Column of a table at a depth, of which the first level below it is the k-th."""
     if k == 0:
-        return table[0, c]
+        return float(table[0, c])
     if k == count:
-        return table[count - 1, c]
+        return float(table[count - 1, c])
     share = (depth - table[k - 1, 0]) / (table[k, 0] - table[k - 1, 0])
-    return table[k - 1, c] + share * (table[k, c] - table[k - 1, c])
+    return float(table[k - 1, c] + share * (table[k, c] - table[k - 1, c]))
 
 
 @compiled
-def lay_profile(read, count, fixed, bounds, rows, joined):
+def lay_profile(
+    read: Floats, count: int, fixed: Floats, bounds: Floats, rows: Floats, joined: Floats
+) -> int:
     """Join a profile with the fixed levels, and lay out bounds and rows as the march reads them.
 
     Parameters
@@ -75,33 +78,29 @@ def lay_profile(read, count, fixed, bounds, rows, joined):
         joined[total, 4] = _value(fixed, levels, f, depth, 3)
         total += 1
     bounds[0] = -inf
-    rows[0, 0] = joined[0, 0]
     for c in range(4):
-        rows[0, 1 + 2 * c] = joined[0, 1 + c]
-        rows[0, 2 + 2 * c] = 0.0
+        rows[0, 2 * c], rows[0, 2 * c + 1] = joined[0, 1 + c], 0.0
     for k in range(total):
-        bounds[k + 1] = joined[k, 0]
-        rows[k + 1, 0] = joined[k, 0]
+        depth = joined[k, 0]
+        bounds[k + 1] = depth
+        thickness = joined[k + 1, 0] - depth if k + 1 < total else inf
         for c in range(4):
-            rows[k + 1, 1 + 2 * c] = joined[k, 1 + c]
-            rows[k + 1, 2 + 2 * c] = 0.0
-            if k + 1 < total:
-                rows[k + 1, 2 + 2 * c] = (joined[k + 1, 1 + c] - joined[k, 1 + c]) / (
-                    joined[k + 1, 0] - joined[k, 0]
-                )
+            value = joined[k, 1 + c]
+            slope = (joined[k + 1, 1 + c] - value) / thickness if k + 1 < total else 0.0
+            rows[k + 1, 2 * c], rows[k + 1, 2 * c + 1] = value - slope * depth, slope
     bounds[total + 1] = inf
     return total
 
 
 @compiled
-def _value(table, count, k, depth, c):
+def _value(table: Floats, count: int, k: int, depth: float, c: int) -> float:
     if k < count and table[k, 0] == depth:
-        return table[k, c]
+        return float(table[k, c])
     return between(table, count, k, depth, c)
 
 
 @compiled
-def growth_below(joined, total, top):
+def growth_below(joined: Floats, total: int, top: float) -> tuple[float, float]:
     """Largest growth of the current with depth below `top`, relative to the top speed [1/m].
 
     As `calm.solve.locate` has it; and that speed [m/s].

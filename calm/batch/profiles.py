@@ -5,13 +5,16 @@ from __future__ import annotations
 import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from calm.batch.closing import LEVELS_COINCIDE, NO_DATA, NOT_TRIED, solve_cases
 from calm.batch.outcome import OF_CLAMP, OF_ENDS, OF_PIECE
 from calm.batch.plan import Plan, base_water, plan_of
+from calm.batch.search import SOLVED
 from calm.batch.stragglers import Rows, solve_one, water_of
 from calm.case import Mooring
 from calm.case.measure import clamps_of, components_of
@@ -99,35 +102,84 @@ def solve_profiles(
     NoEquilibrium
         Where a piece is to be cut to fit, and no length does.
     """
-    current = _checked(u, v, depth, w)
-    plan = plan_of(mooring)
-    count = len(current[1])
-    pieces, clamps = len(mooring.line.length), len(mooring.line.clamp_piece)
-    rows = (
-        np.full((count, len(OF_PIECE), pieces), np.nan),
-        np.full((count, len(OF_CLAMP), clamps), np.nan),
-        np.full((count, len(OF_ENDS)), np.nan),
-    )
-    status = np.zeros(count, np.int8)
-    alone = np.zeros(count, np.bool_)
-    base = base_water(mooring) if plan is None else plan.water
-    blocks = [slice(start, start + BLOCK) for start in range(0, count, BLOCK)]
-
-    def solve(block: slice) -> None:
-        mine = tuple(array if len(array) == 1 else array[block] for array in current)
-        columns: Rows = rows[0][block], rows[1][block], rows[2][block]
-        _solve_block(mooring, plan, base, mine, columns, status[block], alone[block])
-
-    if plan is not None:
-        _lanes(plan, tuple(array[:0] for array in current), _none(rows), status[:0])  # compiles
-    with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
-        for _ in pool.map(solve, blocks):
-            pass
-    return _measured(mooring, rows, status, alone)
+    return Batch(mooring).solve(u, v, depth, w, workers=workers)
 
 
-def _none(rows: Rows) -> Rows:
-    return rows[0][:0], rows[1][:0], rows[2][:0]
+@dataclass(frozen=True)
+class Batch:
+    """A mooring made ready for many profiles, which may come in several goes."""
+
+    mooring: Mooring
+
+    @cached_property
+    def plan(self) -> Plan | None:
+        """The mooring as the lanes take it; None where they do not."""
+        return plan_of(self.mooring)
+
+    @cached_property
+    def water(self) -> Water:
+        """The water without the current of the file."""
+        return base_water(self.mooring) if self.plan is None else self.plan.water
+
+    def solve(
+        self,
+        u: ArrayLike,
+        v: ArrayLike,
+        depth: ArrayLike,
+        w: ArrayLike | None = None,
+        *,
+        workers: int | None = None,
+    ) -> Profiles:
+        """As `solve_profiles`."""
+        current = _checked(u, v, depth, w)
+        line, count = self.mooring.line, len(current[1])
+        rows = (
+            np.full((count, len(OF_PIECE), len(line.length)), np.nan),
+            np.full((count, len(OF_CLAMP), len(line.clamp_piece)), np.nan),
+            np.full((count, len(OF_ENDS)), np.nan),
+        )
+        status = np.zeros(count, np.int8)
+        alone = np.zeros(count, np.bool_)
+
+        def solve(block: slice) -> None:
+            mine = tuple(array if len(array) == 1 else array[block] for array in current)
+            columns: Rows = rows[0][block], rows[1][block], rows[2][block]
+            self._solve_block(mine, columns, status[block], alone[block])
+
+        solve(slice(0, 0))  # compiles where need be
+        with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
+            for _ in pool.map(solve, [slice(at, at + BLOCK) for at in range(0, count, BLOCK)]):
+                pass
+        return _measured(self.mooring, rows, status, alone)
+
+    def _solve_block(
+        self,
+        current: tuple[Floats, ...],
+        rows: Rows,
+        status: NDArray[np.int8],
+        alone: NDArray[np.bool_],
+    ) -> None:
+        ended = np.full(len(status), NOT_TRIED)
+        plan = self.plan
+        if plan is not None:
+            depth, u, v, w = (np.ascontiguousarray(array, np.float64) for array in current)
+            solve_cases(plan.arrays, depth, u, v, w, rows, ended)
+        status[ended == NO_DATA] = _NO_CURRENT
+        status[ended == LEVELS_COINCIDE] = _LEVELS_COINCIDE
+        lifts = (ended == SOLVED) & (rows[2][:, 1] > self.mooring.anchor_weight)
+        status[lifts] = _ANCHOR_LIFTS
+        alone[:] = (ended != SOLVED) & (status == 0)
+        for case in np.flatnonzero(alone):
+            profile = (
+                np.asarray(array[0 if len(array) == 1 else case], np.float64) for array in current
+            )
+            own = rows[0][case], rows[1][case], rows[2][case]
+            try:
+                solve_one(self.mooring, water_of(self.water, *profile), own)
+            except NoEquilibrium as refusal:
+                status[case] = STATUSES.index(refusal.status)
+        for array in rows:
+            array[status != 0] = np.nan
 
 
 def _checked(
@@ -145,62 +197,12 @@ def _checked(
     return down, east, north, up
 
 
-def _lanes(
-    plan: Plan, current: tuple[Floats, ...], rows: Rows, status: NDArray[np.int8]
-) -> NDArray[np.int64]:
-    """Solve a block in lanes; returns how each case ended, see `calm.batch.closing`."""
-    from calm.batch.closing import solve_cases
-
-    ended = np.zeros(len(status), np.int64)
-    depth, u, v, w = (np.ascontiguousarray(array, np.float64) for array in current)
-    if not len(depth):
-        depth = np.zeros((1, u.shape[1]))
-    solve_cases(
-        plan.stages, plan.parts, plan.mooring, plan.floating, plan.chances, plan.fixed,
-        depth, u, v, w, rows, ended,
-    )  # fmt: skip
-    return ended
-
-
-def _solve_block(
-    mooring: Mooring,
-    plan: Plan | None,
-    base: Water,
-    current: tuple[Floats, ...],
-    rows: Rows,
-    status: NDArray[np.int8],
-    alone: NDArray[np.bool_],
-) -> None:
-    from calm.batch.closing import LEVELS_COINCIDE, NO_DATA
-
-    ended = np.full(len(status), -1)
-    if plan is not None:
-        ended = _lanes(plan, current, rows, status)
-    status[ended == NO_DATA] = _NO_CURRENT
-    status[ended == LEVELS_COINCIDE] = _LEVELS_COINCIDE
-    status[(ended == 0) & (rows[2][:, 1] > mooring.anchor_weight)] = _ANCHOR_LIFTS
-    alone[:] = (ended != 0) & (status == 0)
-    for case in np.flatnonzero(alone):
-        depth, u, v, w = (
-            np.asarray(array[0 if len(array) == 1 else case], np.float64) for array in current
-        )
-        try:
-            water = water_of(base, depth, u, v, w)
-            solve_one(mooring, water, (rows[0][case], rows[1][case], rows[2][case]))
-        except NoEquilibrium as refusal:
-            status[case] = STATUSES.index(refusal.status)
-    for array in rows:
-        array[status != 0] = np.nan
-
-
 def _measured(
     mooring: Mooring, rows: Rows, status: NDArray[np.int8], alone: NDArray[np.bool_]
 ) -> Profiles:
     """The results with the anchor, and with the knockdown from the shape in still water."""
     pieces, clamps, ends = rows
     above = mooring.file.pieces[:-1]
-    count = len(status)
-    height = mooring.file.anchor.length or 0.0
     depth_top = np.full(pieces.shape[-1], np.nan)
     clamp_depth, labels = np.full(clamps.shape[-1], np.nan), _clamp_labels(mooring)
     still = mooring.at_rest
@@ -210,7 +212,7 @@ def _measured(
     pull = pieces[:, OF_PIECE.index("tension_bottom"), -1:]
     nothing = np.where(status[:, None] == 0, 0.0, np.nan)
     ends_at = {
-        "depth_top": np.where(status[:, None] == 0, mooring.water.depth - height, np.nan),
+        "depth_top": ends[:, OF_ENDS.index("end_depth"), None],
         "tension_top": pull,
         "tension_bottom": pull,
     }
@@ -219,7 +221,7 @@ def _measured(
         for i, name in enumerate(OF_PIECE)
     }
     columns |= {f"clamp_{name}": clamps[:, i] for i, name in enumerate(OF_CLAMP)}
-    columns |= {name: ends[:, i] for i, name in enumerate(OF_ENDS)}
+    columns |= {name: ends[:, i] for i, name in enumerate(OF_ENDS) if name != "end_depth"}
     return Profiles(
         component_label=tuple(piece.label for piece in mooring.file.pieces),
         clamp_label=labels,

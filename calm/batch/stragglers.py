@@ -49,4 +49,10 @@ def solve_one(mooring: Mooring, water: Water, rows: Rows) -> None:
     for row, name in zip(clamps, OF_CLAMP, strict=True):
         row[:] = getattr(clamped, name)
     east, north, up = solution.force[-1]
-    ends[:] = components.depth_top[0], up, np.hypot(east, north), solution.buoyancy_used
+    ends[:] = (
+        components.depth_top[0],
+        up,
+        np.hypot(east, north),
+        solution.buoyancy_used,
+        components.depth_bottom[-1],
+    )

@@ -1,0 +1,152 @@
+"""Many current profiles of one mooring: solves a second, accuracy, and scipy by hand.
+
+    python benchmarks/batch_kernel.py [PROFILES] [CHECKED]
+
+PROFILES of every mooring (8192), of which CHECKED (24) are solved again at a tenth of the angle
+step. The currents are sheared and turn with depth; the best of five runs counts, after one that
+compiles. Prints the kernel alone on one thread, then all of a batch on one and on two.
+"""
+
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from math import radians
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+from machine import describe
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+import s1000_by_hand as by_hand
+
+from calm.batch.closing import FEWEST_HALVINGS, solve_cases
+from calm.batch.outcome import OF_CLAMP, OF_ENDS, OF_PIECE
+from calm.batch.plan import Plan
+from calm.batch.profiles import Batch, Profiles
+from calm.batch.stragglers import water_of
+from calm.case import Mooring, load
+from calm.case.measure import components_of
+from calm.shipped import shipped_folder
+from calm.solve import solve_mooring
+
+LEVELS = 50
+MOORINGS = "deep-current-meters", "s1000", "upward-adcp-300m", "taut-nylon-surface"
+Arrays = tuple[np.ndarray, ...]
+
+
+def currents(mooring: Mooring, count: int, seed: int = 1) -> Arrays:
+    """Depths and u, v, w: the file's current, 0.3 to 1.5 times, turned by depth and ragged."""
+    rng = np.random.default_rng(seed)
+    water = mooring.water
+    depth = np.linspace(0.0, water.depth, LEVELS)
+    u, v = (np.interp(depth, water.level, part) for part in (water.u, water.v))
+    size = rng.uniform(0.3, 1.5, (count, 1)) * (1.0 + 0.03 * rng.normal(size=(count, LEVELS)))
+    angle = rng.uniform(0.0, 2.0 * np.pi, (count, 1))
+    angle = angle + rng.uniform(-0.6, 0.6, (count, 1)) * depth / water.depth
+    sine, cosine = np.sin(angle), np.cos(angle)
+    return depth, size * (u * cosine - v * sine), size * (u * sine + v * cosine), 0.0 * size
+
+
+def best(solve: Callable[[], object], runs: int = 5) -> float:
+    """Seconds of the fastest run."""
+    times = []
+    for _ in range(runs):
+        start = perf_counter()
+        solve()
+        times.append(perf_counter() - start)
+    return min(times)
+
+
+def kernel(mooring: Mooring, plan: Plan, current: Arrays) -> Callable[[], np.ndarray]:
+    """The kernel by itself, on one thread; what it returns is how the cases ended."""
+    depth, u, v, w = current
+    count, line = len(u), mooring.line
+    rows = (
+        np.empty((count, len(OF_PIECE), len(line.length))),
+        np.empty((count, len(OF_CLAMP), len(line.clamp_piece))),
+        np.empty((count, len(OF_ENDS))),
+    )
+    ended = np.empty(count, np.int64)
+
+    def solve() -> np.ndarray:
+        solve_cases(plan.arrays, depth[None], u, v, w, rows, ended)
+        return ended
+
+    return solve
+
+
+def arrays_rate(batch: Batch, current: Arrays, workers: int) -> float:
+    """Solves a second of all that a batch does."""
+    depth, u, v, w = current
+    return len(u) / best(lambda: batch.solve(u, v, depth, w, workers=workers), 3)
+
+
+def errors(mooring: Mooring, plan: Plan, current: Arrays, found: Profiles, count: int) -> list[str]:
+    """Worst differences from `calm run` at its usual angle step and at a tenth of it."""
+    depth, u, v, w = current
+    lines = []
+    for degrees in (1.0, 0.1):
+        place = tension = 0.0
+        for case in range(count):
+            water = water_of(plan.water, depth, u[case], v[case], w[case])
+            settings = replace(mooring.settings, angle_step=radians(degrees))
+            exact = components_of(
+                mooring.file.pieces[:-1],
+                solve_mooring(mooring.line, water, settings)
+                if degrees < 1.0
+                else mooring.equilibrium(water),
+            )
+            for name in ("depth_top", "x_top", "y_top"):
+                off = getattr(found, name)[case, :-1] - getattr(exact, name)
+                place = max(place, float(np.abs(off).max()) / water.depth)
+            off = found.tension_bottom[case, :-1] / exact.tension_bottom - 1.0
+            tension = max(tension, float(np.abs(off).max()))
+        lines.append(f"{place:8.1e} of the depth, {tension:8.1e} of the tension at {degrees:g}°")
+    return lines
+
+
+def by_scipy(count: int = 20) -> float:
+    """Solves a second of S1000 by scipy alone, at 1e-6, in currents of growing speed."""
+    speeds = by_hand.CURRENT_SPEED
+    start = perf_counter()
+    for factor in np.linspace(0.3, 1.2, count):
+        by_hand.CURRENT_SPEED = factor * speeds
+        by_hand.solve(1e-6)
+    by_hand.CURRENT_SPEED = speeds
+    return count / (perf_counter() - start)
+
+
+def main(profiles: str = "8192", checked: str = "24") -> None:
+    """Measure some moorings."""
+    print(describe("calm-mooring", "numba", "numpy", "scipy"))
+    for name in MOORINGS:
+        mooring = load(shipped_folder("lines") / f"{name}.yaml")
+        assert isinstance(mooring, Mooring)
+        batch = Batch(mooring)
+        plan = batch.plan
+        assert plan is not None
+        current = currents(mooring, int(profiles))
+        solve = kernel(mooring, plan, current)
+        start = perf_counter()
+        ended = solve()
+        first = perf_counter() - start
+        rate = len(ended) / best(solve)
+        segments = 2**FEWEST_HALVINGS * len(plan.stages[5])
+        print(f"\n{name}: {len(mooring.line.length)} pieces, {segments} segments, {LEVELS} levels")
+        print(f"  first run {first:.1f} s; left to be solved alone: {np.count_nonzero(ended)}")
+        print(f"  kernel, 1 thread      {rate:9.0f} solves/s")
+        for workers in (1, 2):
+            rate = arrays_rate(batch, current, workers)
+            print(f"  arrays out, {workers} threads {rate:9.0f} solves/s")
+        few = int(checked)
+        depth, u, v, w = current
+        found = batch.solve(u[:few], v[:few], depth, w[:few])
+        for line in errors(mooring, plan, current, found, few):
+            print(f"  off by {line}")
+    print(f"\nS1000 by scipy alone at 1e-6: {by_scipy():.0f} solves/s")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,137 @@
+"""Many profiles: order, company and workers change nothing; gaps, shapes, statuses."""
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from calm.batch import profiles
+from calm.batch.lanes import LANES
+from calm.batch.profiles import STATUSES, Profiles, solve_profiles
+from calm.case import Mooring, load
+from calm.shipped import shipped_folder
+from tests.unit.batch.drawn_profiles import CHARACTERS, drawn
+
+COUNT = 25 * CHARACTERS
+
+
+@pytest.fixture(scope="module", params=["veering-current", "taut-nylon-surface"])
+def mooring(request: pytest.FixtureRequest) -> Mooring:
+    found = load(shipped_folder("lines") / f"{request.param}.yaml")
+    assert isinstance(found, Mooring)
+    return found
+
+
+@pytest.fixture(scope="module")
+def subsurface() -> Mooring:
+    found = load(shipped_folder("lines") / "thermistor-string.yaml")
+    assert isinstance(found, Mooring)
+    return found
+
+
+def assert_same(one: Profiles, other: Profiles, order: np.ndarray | slice = slice(None)) -> None:
+    """Bit for bit."""
+    for column in fields(Profiles):
+        a, b = getattr(one, column.name), getattr(other, column.name)
+        if isinstance(a, np.ndarray):
+            assert a[order].tobytes() == b.tobytes(), column.name
+
+
+def test_neither_order_nor_company_nor_workers_change_a_bit(
+    mooring: Mooring, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    depth, u, v, w = drawn(3, COUNT, mooring.water.depth)
+    whole = solve_profiles(mooring, u, v, depth, w, workers=1)
+    order = np.random.default_rng(4).permutation(COUNT)
+    assert_same(whole, solve_profiles(mooring, u[order], v[order], depth, w[order]), order)
+    part = slice(17, 30)
+    assert_same(whole, solve_profiles(mooring, u[part], v[part], depth, w[part]), part)
+    monkeypatch.setattr(profiles, "BLOCK", 37)
+    assert_same(whole, solve_profiles(mooring, u, v, depth, w, workers=2))
+
+
+def test_every_lane_gives_the_same_digits(mooring: Mooring) -> None:
+    depth, u, v, w = drawn(3, 60, mooring.water.depth)
+    each = np.repeat(np.arange(60), LANES)
+    found = solve_profiles(mooring, u[each], v[each], depth, w[each])
+    for values in (found.depth_top, found.tension_top, found.tilt, found.clamp_tilt):
+        lanes = values.reshape(60, LANES, -1)
+        assert lanes.tobytes() == np.repeat(lanes[:, :1], LANES, axis=1).tobytes()
+
+
+def test_a_level_without_a_value_is_left_out(subsurface: Mooring) -> None:
+    depth, u, v, _ = drawn(5, 12, subsurface.water.depth)
+    gaps = [3, 4, 17, len(depth) - 1]
+    kept = np.delete(np.arange(len(depth)), gaps)
+    without = solve_profiles(subsurface, u[:, kept], v[:, kept], depth[kept])
+    holed = u.copy()
+    holed[:, gaps] = np.nan
+    assert_same(without, solve_profiles(subsurface, holed, v, depth))
+    airy = np.where(np.isin(np.arange(len(depth)), gaps), -1.0 - np.arange(len(depth)), depth)
+    assert_same(without, solve_profiles(subsurface, u, v, airy))
+
+
+def test_profiles_may_have_as_many_levels_as_they_like(subsurface: Mooring) -> None:
+    depth, u, v, w = drawn(5, 64, subsurface.water.depth)
+    holed = u.copy()
+    holed[::2, 1:-1] = np.nan
+    found = solve_profiles(subsurface, holed, v, depth, w)
+    few = solve_profiles(subsurface, holed[::2], v[::2], depth, w[::2])
+    assert_same(found, few, slice(None, None, 2))
+    assert_same(
+        found, solve_profiles(subsurface, u[1::2], v[1::2], depth, w[1::2]), slice(1, None, 2)
+    )
+
+
+def test_levels_may_vary_and_come_in_any_order(subsurface: Mooring) -> None:
+    depth, u, v, w = drawn(6, 12, subsurface.water.depth)
+    each = np.tile(depth, (12, 1))
+    each[6:], flipped = each[6:, ::-1], [np.vstack([a[:6], a[6:, ::-1]]) for a in (u, v, w)]
+    assert_same(
+        solve_profiles(subsurface, u, v, depth, w),
+        solve_profiles(subsurface, flipped[0], flipped[1], each, flipped[2]),
+    )
+
+
+def test_profiles_that_cannot_be_solved_have_a_status(subsurface: Mooring) -> None:
+    depth, u, v, _ = drawn(7, 3, subsurface.water.depth)
+    each = np.tile(depth, (3, 1))
+    u[0] = np.nan
+    each[1, 4] = each[1, 5]
+    found = solve_profiles(subsurface, u, v, each)
+    assert [STATUSES[s] for s in found.status] == ["no-current", "levels-coincide", "converged"]
+    assert np.isnan(found.depth_top[:2]).all()
+    assert np.isfinite(found.depth_top[2]).all()
+
+
+def test_still_water_leaves_the_line_upright(subsurface: Mooring) -> None:
+    depth, u, v, _ = drawn(8, 1, subsurface.water.depth)
+    found = solve_profiles(subsurface, 0.0 * u, 0.0 * v, depth)
+    assert STATUSES[found.status[0]] == "converged"
+    np.testing.assert_allclose(found.knockdown, 0.0, atol=1e-6 * subsurface.water.depth)
+
+
+def test_single_precision_does(subsurface: Mooring) -> None:
+    depth, u, v, _ = drawn(9, 6, subsurface.water.depth)
+    u, v = u.astype(np.float32), v.astype(np.float32)
+    assert_same(
+        solve_profiles(subsurface, u, v, depth),
+        solve_profiles(subsurface, u.astype(float), v.astype(float), depth),
+    )
+
+
+@pytest.mark.parametrize(
+    ("shapes", "message"),
+    [
+        (((3, 5), (3, 4), (5,)), "must be alike"),
+        (((5,), (5,), (5,)), "must be alike"),
+        (((3, 5), (3, 5), (4,)), "depth must be"),
+        (((3, 5), (3, 5), (2, 5)), "depth must be"),
+    ],
+)
+def test_shapes_that_do_not_fit_are_refused(
+    subsurface: Mooring, shapes: tuple[tuple[int, ...], ...], message: str
+) -> None:
+    u, v, depth = (np.ones(shape) for shape in shapes)
+    with pytest.raises(ValueError, match=message):
+        solve_profiles(subsurface, u, v, depth)
