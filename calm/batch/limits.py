@@ -16,12 +16,13 @@ from calm.checks.finding import Rule, State
 from calm.checks.posture import (
     AT_SURFACE,
     JUDGED_ROLES,
+    MOST_OF_A_RATING,
     depth_rating,
     excursion,
     knockdown,
     tilt,
 )
-from calm.checks.slack import release_of, slack
+from calm.checks.slack import slack
 from calm.checks.strength import allowable_load, strength
 from calm.checks.surface import reserve
 from calm.files import Cable, Component
@@ -98,8 +99,8 @@ def meant_for_the_surface(mooring: Mooring) -> bool:
     """
     still, depth = mooring.at_rest, mooring.water.depth
     if still is None:
-        return float(mooring.line.length.sum()) > depth
-    return -float(still.position[0, 2]) <= AT_SURFACE * depth
+        return float(mooring.line.length.sum()) >= depth
+    return -float(still.position[0, 2]) <= AT_SURFACE
 
 
 def _strength(mooring: Mooring, surface: bool) -> Iterator[Limit]:
@@ -115,27 +116,26 @@ def _strength(mooring: Mooring, surface: bool) -> Iterator[Limit]:
 def _tilt(mooring: Mooring) -> Iterator[Limit]:
     design = mooring.file.checks.maximum_tilt
     for label, component in _parts(mooring):
-        own = component.max_tilt
-        if own is None and component.role not in ("instrument", "release"):
+        own, warned = component.max_tilt, component.warn_tilt
+        if own is warned is None and component.role not in ("instrument", "release"):
             continue
         known = [limit for limit in (own, design) if limit is not None]
         limit, values = min(known, default=None), _tilt_of(label)
         yield Limit(tilt, label, "tilt", limit, False, State.FAIL, values)
-        warned = component.warn_tilt
-        if warned is not None and limit is not None and warned < limit:
+        if warned is not None and (limit is None or warned < limit):
             yield Limit(tilt, label, "tilt", warned, False, State.WARN, values)
 
 
 def _depth_rating(mooring: Mooring, surface: bool) -> Iterator[Limit]:
     margin = mooring.file.checks.rating_margin
-    afloat = AT_SURFACE * mooring.water.depth if surface else -np.inf
+    afloat = AT_SURFACE if surface else -np.inf
     pieces = mooring.file.pieces
     lower = {piece.label: below.label for piece, below in pairwise(pieces)}
     for label, component in _parts(mooring):
         rating = component.depth_rating
         if rating is None and component.role not in JUDGED_ROLES:
             continue
-        limit = None if rating is None else rating - margin
+        limit = None if rating is None else rating - min(margin, MOST_OF_A_RATING * rating)
         values = _greatest_depth(label, lower.get(label), afloat)
         yield Limit(depth_rating, label, "depth", limit, False, State.FAIL, values)
 
@@ -178,9 +178,9 @@ def _anchor(mooring: Mooring) -> Iterator[Limit]:
 
 
 def _slack(mooring: Mooring) -> Iterator[Limit]:
-    pieces, limits = mooring.file.pieces, mooring.file.checks.minimum_tension
-    release = release_of(mooring.file)
-    for piece in pieces[: len(pieces) - 1 if release is None else release]:
+    file, limits = mooring.file, mooring.file.checks.minimum_tension
+    lowest = len(file.pieces) - 1 if file.release is None else file.release
+    for piece in file.pieces[:lowest]:
         if isinstance(piece.component, Cable) and piece.component.slack != "allowed":
             limit = limits.rope if is_synthetic(piece.component) else limits.wire
             values = _least_tension(piece.label, mooring.water.depth)

@@ -44,7 +44,7 @@ def judged_here(mooring, result):
                     found[key] = State.UNKNOWN, None, None
                 continue
             state = limit.beyond if limit.broken(value)[0] else State.PASS
-            if key not in found or state.gravity > found[key][0].gravity:
+            if key not in found or state.severity > found[key][0].severity:
                 found[key] = state, float(value[0]), limit.limit
     return found
 
