@@ -18,7 +18,7 @@ import numpy as np
 from machine import describe
 
 import calm
-from calm.batch.record import open_record
+from calm.batch.records.record import open_record
 from calm.batch.run import run_batch
 
 COUNTS = (100_000, 262_980)

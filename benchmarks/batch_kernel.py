@@ -21,11 +21,11 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import s1000_by_hand as by_hand
 
-from calm.batch.closing import FEWEST_HALVINGS, solve_cases
-from calm.batch.outcome import OF_CLAMP, OF_ENDS, OF_PIECE
-from calm.batch.plan import Plan
+from calm.batch.kernel.closing import FEWEST_HALVINGS, solve_cases
+from calm.batch.kernel.outcome import OF_CLAMP, OF_ENDS, OF_PIECE
+from calm.batch.kernel.plan import Plan
+from calm.batch.kernel.stragglers import water_of
 from calm.batch.profiles import Batch, Profiles
-from calm.batch.stragglers import water_of
 from calm.case import Mooring, load
 from calm.case.measure import components_of
 from calm.shipped import shipped_folder

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
-from calm.batch.series import place_of
+from calm.batch.statistics.series import place_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -67,7 +67,7 @@ class BatchAccessor:
             The profile has no equilibrium.
         """
         # the report room stands above this one, so it is asked for by name at run time
-        drawn: Figure = import_module("calm.report.batch_shape").draw_shape(self._dataset, time)
+        drawn: Figure = import_module("calm.report.batch.shape").draw_shape(self._dataset, time)
         return drawn
 
     def _named(

@@ -12,7 +12,7 @@ from calm.case import Mooring
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
-    from calm.batch.record import Levels
+    from calm.batch.records.record import Levels
 
 AHEAD = 2
 """Blocks that are under way for each thread of the workers."""

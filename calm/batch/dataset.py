@@ -18,7 +18,7 @@ from calm.case import Mooring
 from calm.version import __version__
 
 if TYPE_CHECKING:
-    from calm.batch.record import Record
+    from calm.batch.records.record import Record
 
 Attributes = dict[str, Any]
 

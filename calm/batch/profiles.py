@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from calm.batch.closing import LEVELS_COINCIDE, NO_DATA, NOT_TRIED, solve_cases
-from calm.batch.outcome import OF_CLAMP, OF_ENDS, OF_PIECE
-from calm.batch.plan import Plan, base_water, plan_of
-from calm.batch.search import SOLVED
-from calm.batch.stragglers import Rows, solve_one, water_of
+from calm.batch.kernel.closing import LEVELS_COINCIDE, NO_DATA, NOT_TRIED, solve_cases
+from calm.batch.kernel.outcome import OF_CLAMP, OF_ENDS, OF_PIECE
+from calm.batch.kernel.plan import Plan, base_water, plan_of
+from calm.batch.kernel.search import SOLVED
+from calm.batch.kernel.stragglers import Rows, solve_one, water_of
 from calm.case import Mooring
 from calm.case.measure import clamps_of, components_of
 from calm.errors import NoEquilibrium

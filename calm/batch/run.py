@@ -14,20 +14,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.compiled import cache_folder
 from calm.batch.dataset import layout_of
-from calm.batch.plan import plan_of
+from calm.batch.kernel.compiled import cache_folder
+from calm.batch.kernel.plan import plan_of
 from calm.batch.profiles import STATUSES, Profiles, solve_profiles
 from calm.batch.shape import Shape, shape_of
-from calm.batch.store import Store, open_store
-from calm.batch.store_chunks import packed
-from calm.batch.store_identity import identity_of, to_text
-from calm.batch.store_result import ENDINGS, finish, is_finished, store_folder
+from calm.batch.store.chunks import packed
+from calm.batch.store.identity import identity_of, to_text
+from calm.batch.store.result import ENDINGS, finish, is_finished, store_folder
+from calm.batch.store.store import Store, open_store
 from calm.case import Mooring
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
-    from calm.batch.record import Levels, Record
+    from calm.batch.records.record import Levels, Record
 
 BLOCK, BLOCK_ALONE = 8192, 256
 """Profiles to a block: what is solved, written and, after an interruption, lost at once. The

@@ -84,8 +84,8 @@ def batch(
         raise UsageError(f"--every: {every} is not 1 or more")
     if workers is not None and workers < 1:
         raise UsageError(f"--workers: {workers} is not 1 or more")
-    from calm.batch.record import RULES, open_record
-    from calm.batch.record_choice import parse_period, parse_place
+    from calm.batch.records.choice import parse_period, parse_place
+    from calm.batch.records.record import RULES, open_record
     from calm.batch.run import run_batch
 
     period = None if time is None else parse_period(time)
@@ -113,8 +113,8 @@ def batch(
 
 def _summarize(output: Path, mooring: Mooring) -> None:
     """Show what the result says, and write it beside the result."""
-    from calm.report.batch_files import write_summary
-    from calm.report.batch_table import summary_table
+    from calm.report.batch.files import write_summary
+    from calm.report.batch.table import summary_table
 
     show_rich(summary_table(write_summary(output, mooring)))
 

@@ -53,7 +53,7 @@ def new(
 
 
 def _new_record(output: Path | None, force: bool) -> ExitCode:
-    from calm.batch.record_made import made_record
+    from calm.batch.records.made import made_record
 
     if output is None:
         raise UsageError("a record is no text: give the file to write, --output record.nc")

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from calm.batch.plan import plan_of
+from calm.batch.kernel.plan import plan_of
 from calm.batch.profiles import STATUSES, Profiles, solve_profiles
 from calm.case import Mooring, Result, load
 from calm.errors import NoEquilibrium

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import optimize, stats
 
-from calm.batch.extremes import (
+from calm.batch.statistics.extremes import (
     LEAST_PEAKS,
     Fit,
     Refusal,
@@ -14,7 +14,7 @@ from calm.batch.extremes import (
     peaks_over,
     return_levels,
 )
-from calm.batch.tails import CHI_SQUARE, CONFIDENCE, fit_excesses, fit_maxima
+from calm.batch.statistics.tails import CHI_SQUARE, CONFIDENCE, fit_excesses, fit_maxima
 
 HOUR, DAY = np.timedelta64(3600, "s"), np.timedelta64(86400, "s")
 

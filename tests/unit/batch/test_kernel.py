@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from calm.batch import cable, compiled, kernel, lanes, rod
-from calm.batch.closing import place_free_end
-from calm.batch.plan import plan_of
-from calm.batch.profile import lay_profile, read_profile
+from calm.batch.kernel.closing import place_free_end
+from calm.batch.kernel.plan import plan_of
+from calm.batch.kernel.profile import lay_profile, read_profile
 from calm.case import Mooring, load
 from calm.physics.march import march
 from calm.physics.profile import Profile

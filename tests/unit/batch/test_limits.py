@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import calm
-from calm.batch.limits import NOT_JUDGED, limits_of, meant_for_the_surface
-from calm.batch.series import Series
+from calm.batch.statistics.limits import NOT_JUDGED, limits_of, meant_for_the_surface
+from calm.batch.statistics.series import Series
 from calm.case import Mooring
 from calm.checks.finding import State
 from calm.checks.rules import RULES, STANDING

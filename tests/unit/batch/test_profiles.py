@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from calm.batch import profiles
-from calm.batch.lanes import LANES
+from calm.batch.kernel.lanes import LANES
 from calm.batch.profiles import STATUSES, Profiles, solve_profiles
 from calm.case import Mooring, load
 from calm.shipped import shipped_folder

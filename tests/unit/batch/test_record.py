@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from calm.batch.record import Record, open_record
-from calm.batch.record_choice import parse_period, shown
+from calm.batch.records.choice import parse_period, shown
+from calm.batch.records.record import Record, open_record
 from calm.errors import InputError, UsageError
 from calm.files import CurrentTable
 from calm.files.current_file import read_current_file

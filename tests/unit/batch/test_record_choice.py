@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from calm.batch.record_choice import parse_period, parse_place
+from calm.batch.records.choice import parse_period, parse_place
 from calm.errors import UsageError
 
 

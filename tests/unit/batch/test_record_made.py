@@ -3,8 +3,8 @@ from pathlib import Path
 
 import numpy as np
 
-from calm.batch.record import open_record
-from calm.batch.record_made import DEPTHS, LATITUDE, LONGITUDE, made_record
+from calm.batch.records.made import DEPTHS, LATITUDE, LONGITUDE, made_record
+from calm.batch.records.record import open_record
 
 
 def test_made_record_is_the_same_everywhere() -> None:

@@ -8,11 +8,11 @@ import pytest
 import calm
 from calm.batch import series
 from calm.batch.accessor import open_result
-from calm.batch.distribution import MOST_INTERVALS, SHARES, distribution_of, envelope_of
-from calm.batch.extremes import Refusal
-from calm.batch.statistics import WORST, summarize
+from calm.batch.statistics.distribution import MOST_INTERVALS, SHARES, distribution_of, envelope_of
+from calm.batch.statistics.extremes import Refusal
+from calm.batch.statistics.summary import WORST, summarize
 from calm.errors import UsageError
-from calm.report.batch_document import summary_document
+from calm.report.batch.document import summary_document
 from tests.unit.batch.made_result import make_result, stormy
 
 HOUR = np.timedelta64(1, "h")

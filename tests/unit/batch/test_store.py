@@ -7,9 +7,9 @@ import zarr
 
 from calm.batch.dataset import layout_of
 from calm.batch.profiles import STATUSES, solve_profiles
-from calm.batch.store import WORK, open_store
-from calm.batch.store_chunks import packed, unpacked
-from calm.batch.store_identity import differences, identity_of, to_text
+from calm.batch.store.chunks import packed, unpacked
+from calm.batch.store.identity import differences, identity_of, to_text
+from calm.batch.store.store import WORK, open_store
 from tests.unit.batch.made import MadeRecord, made_mooring
 
 

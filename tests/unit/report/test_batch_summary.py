@@ -10,15 +10,15 @@ import pytest
 from rich.console import Console
 
 import calm
-from calm.batch.statistics import RANKED, RESPONSES, summarize
+from calm.batch.statistics.summary import RANKED, RESPONSES, summarize
 from calm.case import Mooring
 from calm.errors import UsageError
 from calm.report import write
-from calm.report.batch_document import summary_document
-from calm.report.batch_files import summary_paths, write_summary
-from calm.report.batch_labels import percent
-from calm.report.batch_page import summary_html
-from calm.report.batch_table import summary_table
+from calm.report.batch.document import summary_document
+from calm.report.batch.files import summary_paths, write_summary
+from calm.report.batch.labels import percent
+from calm.report.batch.page import summary_html
+from calm.report.batch.table import summary_table
 from calm.report.document import to_json
 from calm.shipped import shipped_folder
 from tests.judged import hostile_file

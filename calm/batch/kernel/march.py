@@ -1,0 +1,92 @@
+"""The march of all lanes from their free ends to the anchor."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import Any
+
+from calm.batch.kernel.cable import pass_segments
+from calm.batch.kernel.compiled import compiled
+from calm.batch.kernel.lanes import (
+    CABLE,
+    FREE_END,
+    FX,
+    FY,
+    FZ,
+    HIGHEST,
+    LANES,
+    LEAST_PULL,
+    LIGHTEST,
+    LOWEST,
+    QX,
+    QY,
+    QZ,
+    ROD,
+    STATE,
+    TX,
+    TY,
+    TZ,
+    Tables,
+    X,
+    Y,
+    Z,
+)
+from calm.batch.kernel.loads import pass_clamp
+from calm.batch.kernel.rod import pass_piece, pass_rod
+from calm.physics.line import Floats
+
+
+@compiled
+def march(
+    s: Floats, water: Tables, plan: Any, halvings: int, nodes: Floats, forces: Floats
+) -> None:
+    """March all lanes from their free ends; their states at every joint go to `nodes`."""
+    kinds, firsts, counts, lengths, cables, cuts, loads, gravity, limit, landing = plan
+    for i in range(LANES):
+        s[X + i], s[Y + i], s[Z + i] = 0.0, 0.0, -s[FREE_END + i]
+        s[FX + i], s[FY + i], s[FZ + i] = 0.0, 0.0, 0.0
+        s[TX + i], s[TY + i], s[TZ + i] = 0.0, 0.0, -1.0
+        s[QX + i], s[QY + i], s[QZ + i] = 0.0, 0.0, 0.0
+        s[LOWEST + i], s[HIGHEST + i] = inf, -inf
+        s[LIGHTEST + i], s[LEAST_PULL + i] = inf, inf
+    cable = 0
+    for n in range(kinds.size):
+        first, count = firsts[n], counts[n]
+        if kinds[n] == CABLE:
+            pass_segments(
+                s, water, cables[cable], cuts[first : first + count],
+                halvings, gravity,
+            )  # fmt: skip
+            cable += 1
+        else:
+            mine, written = loads[first : first + count], forces[3 * LANES * first :]
+            if kinds[n] == ROD and count == 1 and n > 0:
+                pass_piece(s, water, loads, first, lengths[n], gravity, limit)
+            elif kinds[n] == ROD:
+                pass_rod(s, water, mine, lengths[n], gravity, limit, n == 0, written)
+            else:
+                pass_clamp(s, water, mine, gravity, written)
+        if n >= landing:
+            for i in range(LANES):
+                fz = s[FZ + i]
+                s[LIGHTEST + i] = fz if fz < s[LIGHTEST + i] else s[LIGHTEST + i]
+        if n == 0:
+            note(s, nodes, 0)
+            for i in range(LANES):
+                nodes[X + i] = 0.0
+                nodes[Y + i] = 0.0
+                nodes[Z + i] = s[Z + i] - lengths[0] * s[TZ + i]
+                nodes[FX + i], nodes[FY + i], nodes[FZ + i] = 0.0, 0.0, 0.0
+        note(s, nodes, n + 1)
+
+
+@compiled
+def note(s: Floats, nodes: Floats, n: int) -> None:
+    """Record the state of all lanes."""
+    base = n * STATE * LANES
+    for i in range(STATE * LANES):
+        nodes[base + i] = s[i]
+    for i in range(LANES):
+        z = s[Z + i]
+        s[LOWEST + i] = z if z < s[LOWEST + i] else s[LOWEST + i]
+        s[HIGHEST + i] = z if z > s[HIGHEST + i] else s[HIGHEST + i]

@@ -1,0 +1,123 @@
+"""The current profiles of a block, laid out in its lanes."""
+
+from __future__ import annotations
+
+from math import inf, isfinite, sqrt
+
+from calm.batch.kernel.compiled import compiled
+from calm.physics.line import Floats
+
+
+@compiled
+def read_profile(depth: Floats, u: Floats, v: Floats, w: Floats, read: Floats) -> int:
+    """The levels at or below the surface that have a value, sorted; how many, -1 if two are one."""
+    count = 0
+    for j in range(depth.size):
+        if not (isfinite(u[j]) and isfinite(v[j]) and isfinite(w[j]) and depth[j] >= 0.0):
+            continue
+        if not isfinite(depth[j]):
+            continue
+        k = count
+        while k > 0 and read[k - 1, 0] > depth[j]:
+            for c in range(4):
+                read[k, c] = read[k - 1, c]
+            k -= 1
+        read[k, 0], read[k, 1], read[k, 2], read[k, 3] = depth[j], u[j], v[j], w[j]
+        count += 1
+    for j in range(1, count):
+        if read[j, 0] == read[j - 1, 0]:
+            return -1
+    return count
+
+
+@compiled
+def between(table: Floats, count: int, k: int, depth: float, c: int) -> float:
+    """Column of a table at a depth, of which the first level below it is the k-th."""
+    if k == 0:
+        return float(table[0, c])
+    if k == count:
+        return float(table[count - 1, c])
+    share = (depth - table[k - 1, 0]) / (table[k, 0] - table[k - 1, 0])
+    return float(table[k - 1, c] + share * (table[k, c] - table[k - 1, c]))
+
+
+@compiled
+def lay_profile(
+    read: Floats, count: int, fixed: Floats, bounds: Floats, rows: Floats, joined: Floats
+) -> int:
+    """Join a profile with the fixed levels, and lay out bounds and rows as the march reads them.
+
+    Parameters
+    ----------
+    read : depth, u, v, w of its levels
+    fixed : (f, 4) depth, what is added to u and to v, density
+    joined : filled with depth, u, v, w, density of the levels of both
+
+    Returns
+    -------
+    How many levels both have.
+    """
+    total = i = j = 0
+    levels = fixed.shape[0]
+    while i < count or j < levels:
+        if j == levels or (i < count and read[i, 0] <= fixed[j, 0]):
+            depth = read[i, 0]
+        else:
+            depth = fixed[j, 0]
+        if i < count and read[i, 0] == depth:
+            i += 1
+        if j < levels and fixed[j, 0] == depth:
+            j += 1
+        # at a level itself the upper of its intervals holds it to rounding
+        k = i - 1 if i > 0 and read[i - 1, 0] == depth else i
+        f = j - 1 if j > 0 and fixed[j - 1, 0] == depth else j
+        joined[total, 0] = depth
+        joined[total, 1] = _value(read, count, k, depth, 1) + _value(fixed, levels, f, depth, 1)
+        joined[total, 2] = _value(read, count, k, depth, 2) + _value(fixed, levels, f, depth, 2)
+        joined[total, 3] = _value(read, count, k, depth, 3)
+        joined[total, 4] = _value(fixed, levels, f, depth, 3)
+        total += 1
+    bounds[0] = -inf
+    for c in range(4):
+        rows[0, 2 * c], rows[0, 2 * c + 1] = joined[0, 1 + c], 0.0
+    for k in range(total):
+        depth = joined[k, 0]
+        bounds[k + 1] = depth
+        thickness = joined[k + 1, 0] - depth if k + 1 < total else inf
+        for c in range(4):
+            value = joined[k, 1 + c]
+            slope = (joined[k + 1, 1 + c] - value) / thickness if k + 1 < total else 0.0
+            rows[k + 1, 2 * c], rows[k + 1, 2 * c + 1] = value - slope * depth, slope
+    bounds[total + 1] = inf
+    return total
+
+
+@compiled
+def _value(table: Floats, count: int, k: int, depth: float, c: int) -> float:
+    if k < count and table[k, 0] == depth:
+        return float(table[k, c])
+    return between(table, count, k, depth, c)
+
+
+@compiled
+def growth_below(joined: Floats, total: int, top: float) -> tuple[float, float]:
+    """Largest growth of the current with depth below `top`, relative to the top speed [1/m].
+
+    As `calm.solve.locate` has it; and that speed [m/s].
+    """
+    greatest = rise = 0.0
+    for k in range(total):
+        size = joined[k, 1] ** 2 + joined[k, 2] ** 2 + joined[k, 3] ** 2
+        if size > greatest:
+            greatest = size
+        if k + 1 < total and joined[k + 1, 0] > top:
+            product = square = 0.0
+            for c in range(1, 4):
+                square += joined[k, c] ** 2
+                product += joined[k, c] * joined[k + 1, c]
+            left = min(max(product / max(square, 1e-300), 0.0), 1.0)
+            new = 0.0
+            for c in range(1, 4):
+                new += (joined[k + 1, c] - left * joined[k, c]) ** 2
+            rise = max(rise, sqrt(new) / (joined[k + 1, 0] - joined[k, 0]))
+    return rise / max(sqrt(greatest), 1e-300), sqrt(greatest)

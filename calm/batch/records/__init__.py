@@ -1,0 +1,1 @@
+"""Records of current: NetCDF, zarr and CSV as profiles over time."""

@@ -1,0 +1,1 @@
+"""What a finished result says: distributions, limits, extremes."""

@@ -1,0 +1,1 @@
+"""The work on a result, kept on disk block by block until it is whole."""

@@ -1,0 +1,45 @@
+"""The files that stand beside the result of a batch."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from calm.batch.statistics.summary import summarize
+from calm.report.batch.document import summary_document
+from calm.report.batch.page import summary_html
+from calm.report.document import to_json
+from calm.report.write import write_file
+
+if TYPE_CHECKING:
+    from calm.batch.statistics.summary import Summary
+    from calm.case import Mooring
+
+
+def write_summary(result: Path, mooring: Mooring) -> Summary:
+    """Gather what a finished result says, and write it beside it, as JSON and as a page.
+
+    Parameters
+    ----------
+    result : the .nc file or .zarr folder; RESULT.nc has RESULT.summary.json, RESULT.summary.html
+    mooring : that it was solved for
+
+    Raises
+    ------
+    UsageError
+        A file cannot be written, or there is no room for a temporary one of the size of the result
+        without compression.
+    """
+    from calm.batch.accessor import open_result
+
+    with open_result(result) as dataset:
+        summary = summarize(dataset, mooring, result.parent)
+    document, page = summary_paths(result)
+    write_file(document, to_json([summary_document(summary)]).encode())
+    write_file(page, summary_html(summary).encode())
+    return summary
+
+
+def summary_paths(result: Path) -> tuple[Path, Path]:
+    """Where the summary of a result stands: its JSON and its page."""
+    return result.with_suffix(".summary.json"), result.with_suffix(".summary.html")

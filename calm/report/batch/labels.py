@@ -1,0 +1,66 @@
+"""How the reports of a batch say its names, its times and its shares."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.batch.statistics.summary import Summary
+
+TITLES = {
+    "knockdown": "knockdown of the top",
+    "anchor_tension": "tension at the anchor",
+    "tilt": "greatest tilt",
+    "offset": "offset of the top",
+}
+"""Of the responses, by their names."""
+
+QUANTITY = {
+    "knockdown": "knockdown",
+    "anchor_tension": "tension",
+    "tilt": "tilt",
+    "offset": "offset",
+}
+"""Of a response, in `calm.quantities`."""
+
+DEFINITIONS = (
+    "Every profile counts alike: a share of the profiles is a share of the time where the record "
+    "is even. What has no equilibrium is left out of all figures but the first.",
+    "Percentiles: linear between the order statistics; the value of rank 1 + (n - 1) p of n is "
+    "the p quantile. Tension of a component: the greater of those at its ends. Knockdown and "
+    "depth of a component: of its upper end.",
+)
+"""What must be known to read the figures."""
+
+
+def when(time: np.datetime64 | NDArray[np.datetime64] | None) -> str:
+    """A time to the minute, in words; a dash where there is none."""
+    return "-" if time is None else str(np.datetime_as_string(time, unit="m")).replace("T", " ")
+
+
+def percent(share: float | None) -> str:
+    """A share in percent; what is rare is never said not to be."""
+    if share is None:
+        return "-"
+    if 0.0 < share < 5e-5:
+        return "<0.01"
+    return f"{100.0 * share:.2f}"
+
+
+def grouped(count: int) -> str:
+    """A number of profiles, its thousands apart."""
+    return f"{count:,}".replace(",", "\u00a0")
+
+
+def extent(summary: Summary) -> str:
+    """How many profiles there are, and from when to when."""
+    return (
+        f"{grouped(summary.count)} profiles, {when(summary.begin)} to {when(summary.end)}, "
+        f"{summary.years:.2f} years solved"
+    )
+
+
+def standing(summary: Summary) -> str:
+    """How the profiles ended, by their status."""
+    ended = (f"{grouped(count)} {status}" for status, count in summary.statuses.items())
+    return ", ".join(ended)

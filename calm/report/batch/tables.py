@@ -1,0 +1,169 @@
+"""The tables of a batch on a page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from calm.batch.statistics.distribution import PERCENTILES
+from calm.batch.statistics.extremes import METHODS, Fit, Level, Refusal
+from calm.batch.statistics.summary import WORST
+from calm.checks.finding import State
+from calm.quantities import QUANTITIES
+from calm.report.batch.labels import QUANTITY, TITLES, percent, when
+from calm.report.result_tables import figure_cell, quantity_column
+from calm.report.section import Cell, Column, Prose, Table
+
+if TYPE_CHECKING:
+    from calm.batch.statistics.distribution import Distribution
+    from calm.batch.statistics.judgement import Exceedance, RuleShare
+    from calm.batch.statistics.summary import Summary
+
+
+def rules_table(summary: Summary) -> Table:
+    """How often each rule fails or warns anywhere on the line."""
+    rows = []
+    if summary.without_equilibrium:
+        share = summary.without_equilibrium / summary.count
+        rows.append((Cell("Equilibrium"), _share(share, State.FAIL), Cell("-"), Cell(""), Cell("")))
+    rows += [
+        (
+            Cell(rule.title),
+            _share(rule.fails, State.FAIL),
+            _share(rule.warns, State.WARN),
+            Cell(str(len(rule.exceedances))),
+            Cell(str(rule.unknown), state=State.UNKNOWN if rule.unknown else None),
+        )
+        for rule in summary.rules
+    ]
+    columns = (
+        Column("rule"),
+        Column("fails", "% of profiles", numeric=True),
+        Column("warns", "% of profiles", numeric=True),
+        Column("limits", numeric=True),
+        Column("of them unknown", numeric=True),
+    )
+    note = "Equilibrium: of all profiles, as profiles without one; other rules: of those solved."
+    return Table("How often a rule fails", columns, tuple(rows), note)
+
+
+def limits_table(summary: Summary) -> Table:
+    """How often every limit is broken, and the worst of it."""
+    rows = [_limit(rule, one) for rule in summary.rules for one in rule.exceedances]
+    columns = (
+        Column("state", share=0.0),
+        Column("rule"),
+        Column("component"),
+        Column("limit", numeric=True),
+        Column("broken in", "% of profiles", numeric=True),
+        Column("worst value", numeric=True),
+        Column("when", share=0.0),
+    )
+    note = (
+        "Strength and least tension: at the ends of a piece and at the clamps on it. Anchor "
+        "sliding: H + friction × V against friction × weight in water / factor."
+    )
+    return Table("Limits", columns, tuple(rows), note, sortable=True)
+
+
+def statistics_tables(summary: Summary) -> Iterator[Table]:
+    """Of each quantity the mean, the percentiles and the maximum of every part."""
+    for name in ("knockdown", "tilt", "tension"):
+        figures = ("mean", *(f"{percentile:g} %" for percentile in PERCENTILES), "maximum")
+        numbers = (Column(figure, numeric=True) for figure in figures)
+        columns = (Column("component"), *numbers, Column("maximum reached", share=0.0))
+        rows = tuple(
+            (
+                Cell(f"\u2003{part.label}" if part.clamped else part.label),
+                *_figures(name, getattr(part, name)),
+            )
+            for part in summary.parts
+        )
+        quantity = QUANTITIES[name]
+        yield Table(quantity.label.capitalize(), columns, rows)
+
+
+def worst_tables(summary: Summary) -> Iterator[Table | Prose]:
+    """The worst profiles by each response, with the others beside it."""
+    for name, profiles in summary.worst.items():
+        if not profiles:
+            yield Prose((f"The {TITLES[name]} is not known in any profile.",), State.UNKNOWN)
+            continue
+        heads = (replace(quantity_column(QUANTITY[one]), heading=TITLES[one]) for one in TITLES)
+        columns = (Column("time", share=0.0), *heads, Column("tilts most"))
+        rows = tuple(
+            (
+                Cell(when(profile.time)),
+                *(figure_cell(QUANTITY[one], getattr(profile, one)) for one in TITLES),
+                Cell(profile.leaning),
+            )
+            for profile in profiles
+        )
+        count = f"{len(profiles)} profiles" if len(profiles) < WORST else f"{WORST} worst profiles"
+        yield Table(f"The {count} by {TITLES[name]}", columns, rows)
+
+
+def levels_tables(summary: Summary) -> Iterator[Table | Prose]:
+    """Return levels with their intervals, and why others are not told."""
+    for response in summary.responses:
+        name = QUANTITY[response.name]
+        title = TITLES[response.name].capitalize()
+        told = [fit for fit in response.return_levels if isinstance(fit, Fit)]
+        if told:
+            columns = (
+                Column("method"),
+                Column("return period", "years", numeric=True),
+                replace(quantity_column(name), heading="level"),
+                replace(quantity_column(name), heading="95 % interval"),
+            )
+            rows = tuple(_level(name, fit, level) for fit in told for level in fit.levels)
+            yield Table(title, columns, rows, " ".join(f"{_rules(fit)}." for fit in told))
+        for fit in response.return_levels:
+            if isinstance(fit, Refusal):
+                yield Prose((f"{title}, {METHODS[fit.method]}: {fit.reason}.",), State.UNKNOWN)
+
+
+def _share(share: float, state: State) -> Cell:
+    return Cell(percent(share), state=state if share else None)
+
+
+def _limit(rule: RuleShare, one: Exceedance) -> tuple[Cell, ...]:
+    limit, quantity = one.limit, QUANTITIES[one.limit.quantity]
+    state = State.UNKNOWN if one.share is None else limit.beyond if one.share else State.PASS
+    bound = "≥" if limit.least else "≤"
+    return (
+        Cell(state.value, state=state),
+        Cell(rule.title),
+        Cell(limit.component),
+        Cell("-" if limit.limit is None else f"{bound} {quantity.say(limit.limit)}"),
+        Cell(percent(one.share)),
+        Cell("-" if one.worst is None else quantity.say(one.worst)),
+        Cell(when(one.time)),
+    )
+
+
+def _figures(name: str, one: Distribution | None) -> Iterator[Cell]:
+    if one is None:
+        yield from (Cell("-") for _ in range(len(PERCENTILES) + 3))
+        return
+    yield from (figure_cell(name, value) for value in (one.mean, *one.percentiles, one.maximum))
+    yield Cell(when(one.time))
+
+
+def _level(name: str, fit: Fit, level: Level) -> tuple[Cell, ...]:
+    ends = (
+        "not set" if end is None else QUANTITIES[name].format(end)
+        for end in (level.low, level.high)
+    )
+    return (
+        Cell(METHODS[fit.method]),
+        Cell(str(level.period)),
+        figure_cell(name, level.level),
+        Cell(" – ".join(ends)),
+    )
+
+
+def _rules(fit: Fit) -> str:
+    fitted = f"location {fit.location:.4g}, scale {fit.scale:.4g}, shape {fit.shape:.3f}"
+    return f"{METHODS[fit.method]}: {fitted}; {fit.rules}"
