@@ -9,8 +9,9 @@ import numba
 import numpy as np
 import pytest
 
-from calm.batch import cable, compiled, kernel, lanes, rod
+from calm.batch.kernel import cable, compiled, lanes, rod
 from calm.batch.kernel.closing import place_free_end
+from calm.batch.kernel.march import march as march_lanes
 from calm.batch.kernel.plan import plan_of
 from calm.batch.kernel.profile import lay_profile, read_profile
 from calm.case import Mooring, load
@@ -53,7 +54,7 @@ def marching() -> tuple[Mooring, np.ndarray, np.ndarray]:
     nodes = np.zeros(lanes.STATE * lanes.LANES * (len(plan.stages[0]) + 1))
     forces = np.zeros(3 * lanes.LANES * len(plan.stages[6]))
     tables = np.zeros(lanes.LANES, np.int64), np.zeros(lanes.LANES, np.int64), bounds, rows
-    kernel.march(s, tables, plan.stages, 3, nodes, forces)
+    march_lanes(s, tables, plan.stages, 3, nodes, forces)
     return mooring, s[lanes.Z : lanes.Z + lanes.LANES], s[lanes.FX : lanes.FX + 3 * lanes.LANES]
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from calm.batch import record_csv
+from calm.batch.records import csv as record_csv
 from calm.batch.records.record import open_record
 from calm.errors import InputError
 from calm.files.current_csv import MOST_PROBLEMS

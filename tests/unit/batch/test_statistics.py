@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import calm
-from calm.batch import series
 from calm.batch.accessor import open_result
+from calm.batch.statistics import series
 from calm.batch.statistics.distribution import MOST_INTERVALS, SHARES, distribution_of, envelope_of
 from calm.batch.statistics.extremes import Refusal
 from calm.batch.statistics.summary import WORST, summarize
