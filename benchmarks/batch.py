@@ -8,7 +8,7 @@ noise. The command is timed whole, from its start to the page of its statistics,
 memory is the most that the process ever held. The last table is that of `docs/batch.md`.
 """
 
-import os
+import subprocess
 import sys
 import tempfile
 import time
@@ -108,17 +108,22 @@ def without_statistics(
     return rate, output.stat().st_size / count
 
 
+MEASURE = """\
+import resource, subprocess, sys, time
+start = time.perf_counter()
+subprocess.run([sys.executable, "-m", "calm", *sys.argv[1:]], stdout=subprocess.DEVNULL, check=True)
+print(time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)
+"""
+"""Run by a small process: one that is large hands its own size on to those that it starts."""
+
+
 def whole_command(file: Path, path: Path, output: Path, workers: int) -> tuple[float, float]:
     """Seconds of the whole command, and the most memory it held [MB]."""
     words = ["batch", str(file), "--currents", str(path), "-o", str(output)]
-    command = [sys.executable, "-m", "calm", *words, "--workers", str(workers)]
-    start = time.perf_counter()
-    with open(os.devnull, "w") as nowhere:
-        actions = [(os.POSIX_SPAWN_DUP2, nowhere.fileno(), 1)]
-        child = os.posix_spawn(sys.executable, command, os.environ, file_actions=actions)
-        _, status, used = os.wait4(child, 0)
-    assert os.waitstatus_to_exitcode(status) == 0
-    return time.perf_counter() - start, used.ru_maxrss / 1024.0
+    command = [sys.executable, "-c", MEASURE, *words, "--workers", str(workers)]
+    told = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout
+    seconds, memory = map(float, told.split())
+    return seconds, memory
 
 
 def main() -> None:

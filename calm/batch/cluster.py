@@ -7,7 +7,7 @@ from functools import lru_cache
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
-from calm.batch.profiles import Profiles, solve_profiles
+from calm.batch.profiles import Batch, Profiles
 from calm.case import Mooring
 from calm.errors import UsageError
 
@@ -76,10 +76,10 @@ def solved_on(
 def solve_there(mooring: Mooring, levels: Levels) -> Profiles:
     """What a worker does with a block."""
     depth, u, v, w = levels
-    return solve_profiles(_kept(mooring), u, v, depth, w, workers=1)
+    return _ready(mooring).solve(u, v, depth, w, workers=1)
 
 
 @lru_cache(maxsize=2)
-def _kept(mooring: Mooring) -> Mooring:
-    """The same mooring for every block, as it comes anew with each and remembers what it is at."""
-    return mooring
+def _ready(mooring: Mooring) -> Batch:
+    """The same for every block, as the mooring comes anew with each and is long in the making."""
+    return Batch(mooring)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from calm.batch.dataset import layout_of
 from calm.batch.kernel.compiled import cache_folder
 from calm.batch.kernel.plan import plan_of
-from calm.batch.profiles import STATUSES, Profiles, solve_profiles
+from calm.batch.profiles import STATUSES, Batch, Profiles
 from calm.batch.shape import Shape, shape_of
 from calm.batch.store.chunks import packed
 from calm.batch.store.identity import identity_of, to_text
@@ -150,6 +150,7 @@ class _Work:
         progress: Callable[[Progress], None] | None,
     ) -> None:
         self.mooring, self.record, self.store, self.shape = mooring, record, store, shape
+        self.batch = Batch(mooring)
         self.progress = progress
         self.reading, self.counting = Lock(), Lock()
         self.missing = store.missing()
@@ -160,7 +161,7 @@ class _Work:
     def here(self, workers: int, tell: Callable[[str], None]) -> None:
         """Solve them in threads of this process."""
         if self.missing:
-            compile_kernel(self.mooring, tell)
+            compile_kernel(self.batch, tell)
         self._tell()
         in_threads(self._solve, self.missing, min(workers, len(self.missing)))
 
@@ -175,7 +176,8 @@ class _Work:
                 self._keep(number, profiles)
 
     def _solve(self, number: int) -> None:
-        self._keep(number, solved(self.mooring, self._levels(number)))
+        depth, u, v, w = self._levels(number)
+        self._keep(number, self.batch.solve(u, v, depth, w, workers=1))
 
     def _levels(self, number: int) -> Levels:
         with self.reading:  # libraries that read files take one thread at a time
@@ -201,13 +203,7 @@ class _Work:
             self.progress(Progress(self.done, total, self.found, self.failed))
 
 
-def solved(mooring: Mooring, levels: Levels) -> Profiles:
-    """A block of profiles, in this thread."""
-    depth, u, v, w = levels
-    return solve_profiles(mooring, u, v, depth, w, workers=1)
-
-
-def compile_kernel(mooring: Mooring, tell: Callable[[str], None]) -> None:
+def compile_kernel(batch: Batch, tell: Callable[[str], None]) -> None:
     """Let the kernel be compiled, or fetched, and tell when that takes long."""
     folder = cache_folder()
     new = folder is None or not any(folder.rglob("*.nbi"))
@@ -219,7 +215,7 @@ def compile_kernel(mooring: Mooring, tell: Callable[[str], None]) -> None:
             "NUMBA_CACHE_DIR names one"
         )
     started = perf_counter()
-    solve_profiles(mooring, np.zeros((0, 1)), np.zeros((0, 1)), np.zeros(1), workers=1)
+    batch.solve(np.zeros((0, 1)), np.zeros((0, 1)), np.zeros(1), workers=1)
     if new:
         tell(f"compiled in {perf_counter() - started:.0f} s")
 

@@ -14,6 +14,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
 
+from calm.batch.profiles import Batch
 from calm.batch.run import compile_kernel, run_batch
 from tests.unit.batch.made import MadeRecord, content, made_mooring
 
@@ -92,7 +93,7 @@ def finished(mooring, record, output):
 if __name__ == "__main__":
     folder, ending, how = Path(sys.argv[1]), sys.argv[2], sys.argv[3]
     mooring, record = made_mooring(folder), MadeRecord(100 if how == "moments" else 40)
-    compile_kernel(mooring, print)
+    compile_kernel(Batch(mooring), print)
     import h5netcdf  # noqa: F401 — so that every process has it, and is killed at its work
 
     began = time.perf_counter()
