@@ -21,7 +21,7 @@ from calm.batch.profiles import STATUSES, Batch, Profiles
 from calm.batch.shape import Shape, shape_of
 from calm.batch.store.chunks import packed
 from calm.batch.store.identity import identity_of, to_text
-from calm.batch.store.result import ENDINGS, finish, is_finished, store_folder
+from calm.batch.store.result import ENDINGS, finish, is_finished, remove, store_folder
 from calm.batch.store.store import Store, open_store
 from calm.case import Mooring
 from calm.errors import UsageError
@@ -130,6 +130,10 @@ def run_batch(
                 work.here(workers or _processors(), tell or (lambda _: None))
             counts = _named(store.statuses())
             finish(store, output)
+        except UsageError:
+            if not work.done:
+                remove(store.folder)
+            raise
         except KeyboardInterrupt:
             return Outcome(_named(store.statuses()), False, "interrupted")
         except OSError as error:

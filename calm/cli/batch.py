@@ -26,7 +26,7 @@ BATCH_EXAMPLES = """Examples:
   calm batch mooring.yaml --currents adcp.nc -o moved.nc
   calm batch mooring.yaml --currents glorys.nc --at 48.3,-5.2 -o hindcast.nc
   calm batch mooring.yaml --currents adcp.nc --time 2024-03/2024-05 -o spring.nc
-  calm batch mooring.yaml --currents ensemble.zarr -o ensemble.zarr --workers 32"""
+  calm batch mooring.yaml --currents ensemble.zarr -o moved.zarr --workers 32"""
 
 
 def batch(

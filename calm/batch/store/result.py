@@ -44,7 +44,7 @@ def is_finished(output: Path, identity: str) -> bool:
     shutil.rmtree(output / WORK, ignore_errors=True)
     left = store_folder(output)
     if (left / WORK).is_dir():
-        _remove(left)
+        remove(left)
     return True
 
 
@@ -61,10 +61,10 @@ def finish(store: Store, output: Path) -> None:
     temporary = store.folder / WORK / output.name
     _write_netcdf(store, temporary)
     os.replace(temporary, output)
-    _remove(store.folder)
+    remove(store.folder)
 
 
-def _remove(folder: Path) -> None:
+def remove(folder: Path) -> None:
     """Remove a store; what tells that it is one goes last."""
     for path in folder.iterdir():
         if path.name != WORK:

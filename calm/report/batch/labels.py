@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
+from calm.batch.statistics.extremes import Refusal
 from calm.batch.statistics.summary import Summary
 
 TITLES = {
@@ -22,6 +25,8 @@ QUANTITY = {
     "offset": "offset",
 }
 """Of a response, in `calm.quantities`."""
+
+METHODS_IN_SHORT = {"gev": "GEV", "pot": "POT"}
 
 DEFINITIONS = (
     "Every profile counts alike: a share of the profiles is a share of the time where the record "
@@ -64,3 +69,15 @@ def standing(summary: Summary) -> str:
     """How the profiles ended, by their status."""
     ended = (f"{grouped(count)} {status}" for status, count in summary.statuses.items())
     return ", ".join(ended)
+
+
+def refusals(summary: Summary) -> Iterator[str]:
+    """Why return levels are not told: each reason once, with what it is the reason for."""
+    reasons: dict[str, list[str]] = {}
+    for response in summary.responses:
+        for fit in response.return_levels:
+            if isinstance(fit, Refusal):
+                said = f"no return levels by {METHODS_IN_SHORT[fit.method]}: {fit.reason}"
+                reasons.setdefault(said, []).append(TITLES[response.name])
+    for said, of in reasons.items():
+        yield said if len(of) == len(summary.responses) else f"{', '.join(of)}: {said}"

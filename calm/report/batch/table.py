@@ -9,9 +9,18 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from calm.batch.statistics.extremes import Fit, Level, Refusal
+from calm.batch.statistics.extremes import Fit, Level
 from calm.quantities import QUANTITIES
-from calm.report.batch.labels import QUANTITY, TITLES, extent, percent, standing, when
+from calm.report.batch.labels import (
+    METHODS_IN_SHORT,
+    QUANTITY,
+    TITLES,
+    extent,
+    percent,
+    refusals,
+    standing,
+    when,
+)
 from calm.report.terminal import WARNED, plain_table, warning
 
 if TYPE_CHECKING:
@@ -20,7 +29,6 @@ if TYPE_CHECKING:
     from calm.batch.statistics.summary import Summary
 
 _QUANTITIES = ("knockdown", "tilt", "tension")
-_METHODS = {"gev": "GEV", "pot": "POT"}
 _PERIODS = (10, 50, 100)
 _ALL = "All percentiles, limits and profiles are in the JSON and on the page."
 
@@ -43,8 +51,8 @@ def summary_table(summary: Summary) -> RenderableType:
         Text(),
         _worst(summary),
         Text(),
-        _levels(summary),
-        *map(warning, _refusals(summary)),
+        *_levels(summary),
+        *map(warning, refusals(summary)),
         Text(_ALL, style="dim"),
     )
 
@@ -110,7 +118,8 @@ def _worst(summary: Summary) -> Table:
     return table
 
 
-def _levels(summary: Summary) -> Table:
+def _levels(summary: Summary) -> Iterator[Table]:
+    """Return levels, where there are any."""
     table = plain_table()
     table.add_column("return level, and 95 % interval")
     for period in _PERIODS:
@@ -121,9 +130,10 @@ def _levels(summary: Summary) -> Table:
             if isinstance(fit, Fit):
                 levels = {level.period: level for level in fit.levels}
                 said = (_level(response.name, levels.get(period)) for period in _PERIODS)
-                title = f"{TITLES[response.name]} [{quantity.display_unit}], {_METHODS[fit.method]}"
-                table.add_row(Text(title), *said)
-    return table
+                of = f"{TITLES[response.name]} [{quantity.display_unit}]"
+                table.add_row(Text(f"{of}, {METHODS_IN_SHORT[fit.method]}"), *said)
+    if table.row_count:
+        yield table
 
 
 def _level(name: str, level: Level | None) -> str:
@@ -132,15 +142,3 @@ def _level(name: str, level: Level | None) -> str:
     quantity = QUANTITIES[QUANTITY[name]]
     low, high = ("?" if end is None else quantity.format(end) for end in (level.low, level.high))
     return f"{quantity.format(level.level)}\n{low}–{high}"
-
-
-def _refusals(summary: Summary) -> Iterator[str]:
-    """Each reason once, with what it is the reason for."""
-    reasons: dict[str, list[str]] = {}
-    for response in summary.responses:
-        for fit in response.return_levels:
-            if isinstance(fit, Refusal):
-                said = f"no return levels by {_METHODS[fit.method]}: {fit.reason}"
-                reasons.setdefault(said, []).append(TITLES[response.name])
-    for said, of in reasons.items():
-        yield said if len(of) == len(summary.responses) else f"{', '.join(of)}: {said}"

@@ -7,11 +7,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from calm.batch.statistics.distribution import PERCENTILES
-from calm.batch.statistics.extremes import METHODS, Fit, Level, Refusal
+from calm.batch.statistics.extremes import METHODS, Fit, Level
 from calm.batch.statistics.summary import WORST
 from calm.checks.finding import State
 from calm.quantities import QUANTITIES
-from calm.report.batch.labels import QUANTITY, TITLES, percent, when
+from calm.report.batch.labels import QUANTITY, TITLES, percent, refusals, when
 from calm.report.result_tables import figure_cell, quantity_column
 from calm.report.section import Cell, Column, Prose, Table
 
@@ -119,9 +119,8 @@ def levels_tables(summary: Summary) -> Iterator[Table | Prose]:
             )
             rows = tuple(_level(name, fit, level) for fit in told for level in fit.levels)
             yield Table(title, columns, rows, " ".join(f"{_rules(fit)}." for fit in told))
-        for fit in response.return_levels:
-            if isinstance(fit, Refusal):
-                yield Prose((f"{title}, {METHODS[fit.method]}: {fit.reason}.",), State.UNKNOWN)
+    for reason in refusals(summary):
+        yield Prose((f"{reason[0].upper()}{reason[1:]}.",), State.UNKNOWN)
 
 
 def _share(share: float, state: State) -> Cell:

@@ -51,6 +51,7 @@ def test_nobody_at_the_address(tmp_path, monkeypatch):
     for address in ("tcp://127.0.0.1:9", "nonsense"):
         with pytest.raises(UsageError, match="no scheduler answers"):
             run_batch(mooring, record, tmp_path / "r.nc", scheduler=address)
+        assert not (tmp_path / "r.nc.part").exists()
 
 
 def test_without_dask_it_says_what_to_install(tmp_path):
