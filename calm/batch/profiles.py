@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from math import prod
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from calm.batch.kernel.closing import LEVELS_COINCIDE, NO_DATA, NOT_TRIED, solve
 from calm.batch.kernel.outcome import OF_CLAMP, OF_ENDS, OF_PIECE
 from calm.batch.kernel.plan import Plan, base_water, plan_of
 from calm.batch.kernel.search import SOLVED
-from calm.batch.kernel.stragglers import Rows, solve_one, water_of
+from calm.batch.kernel.stragglers import Rows, known_levels, solve_one, water_of
 from calm.case import Mooring
 from calm.case.measure import clamps_of, components_of
 from calm.errors import NoEquilibrium
@@ -36,7 +37,8 @@ _ANCHOR_LIFTS = STATUSES.index(Status.ANCHOR_LIFTS.label)
 class Profiles:
     """A mooring in n profiles: NaN where `status` is not 0.
 
-    Depths, offsets and knockdown [m], tensions and forces [N], tilt [degrees]; the p components
+    Where the profiles came in an array of more dimensions, n stands for all of these. Depths,
+    offsets and knockdown [m], tensions and forces [N], tilt [degrees]; the p components
     are in the order of the file, the anchor last, the m clamps down the line.
 
     Attributes
@@ -89,10 +91,10 @@ def solve_profiles(
 
     Parameters
     ----------
-    u, v, w : (n, k) current to the east, to the north, upward [m/s]; w is 0 where not given. A
+    u, v, w : (..., k) current to the east, to the north, upward [m/s]; w is 0 where not given. A
         level where any is NaN is left out, as is one above the water; between levels everything
         is linear in depth, beyond them constant.
-    depth : (k,) or (n, k) of the levels, in any order [m]
+    depth : (k,), or shaped as u, of the levels, in any order [m]
     workers : threads; as many as there are processors where not given
 
     Raises
@@ -131,7 +133,7 @@ class Batch:
         workers: int | None = None,
     ) -> Profiles:
         """As `solve_profiles`."""
-        current = _checked(u, v, depth, w)
+        shape, current = _checked(u, v, depth, w)
         line, count = self.mooring.line, len(current[1])
         rows = (
             np.full((count, len(OF_PIECE), len(line.length)), np.nan),
@@ -150,7 +152,8 @@ class Batch:
         with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
             for _ in pool.map(solve, [slice(at, at + BLOCK) for at in range(0, count, BLOCK)]):
                 pass
-        return _measured(self.mooring, rows, status, alone)
+        measured = _measured(self.mooring, rows, status, alone)
+        return measured if shape == (count,) else _shaped(measured, shape)
 
     def _solve_block(
         self,
@@ -162,7 +165,8 @@ class Batch:
         ended = np.full(len(status), NOT_TRIED)
         plan = self.plan
         if plan is not None:
-            depth, u, v, w = (np.ascontiguousarray(array, np.float64) for array in current)
+            # always copies: what is read-only would be compiled for once more
+            depth, u, v, w = (np.array(array, np.float64, order="C") for array in current)
             solve_cases(plan.arrays, depth, u, v, w, rows, ended)
         status[ended == NO_DATA] = _NO_CURRENT
         status[ended == LEVELS_COINCIDE] = _LEVELS_COINCIDE
@@ -170,9 +174,14 @@ class Batch:
         status[lifts] = _ANCHOR_LIFTS
         alone[:] = (ended != SOLVED) & (status == 0)
         for case in np.flatnonzero(alone):
-            profile = (
+            profile = [
                 np.asarray(array[0 if len(array) == 1 else case], np.float64) for array in current
-            )
+            ]
+            levels = profile[0][known_levels(*profile)]
+            if not len(levels) or (np.diff(levels) == 0.0).any():
+                status[case] = _LEVELS_COINCIDE if len(levels) else _NO_CURRENT
+                alone[case] = False
+                continue
             own = rows[0][case], rows[1][case], rows[2][case]
             try:
                 solve_one(self.mooring, water_of(self.water, *profile), own)
@@ -184,17 +193,35 @@ class Batch:
 
 def _checked(
     u: ArrayLike, v: ArrayLike, depth: ArrayLike, w: ArrayLike | None
-) -> tuple[Floats, Floats, Floats, Floats]:
-    """Depth, u, v, w, all of two dimensions."""
-    east, north, down = np.asarray(u), np.asarray(v), np.atleast_2d(np.asarray(depth))
+) -> tuple[tuple[int, ...], tuple[Floats, Floats, Floats, Floats]]:
+    """The shape of the profiles, and depth, u, v, w, all of two dimensions."""
+    east, north, down = np.asarray(u), np.asarray(v), np.asarray(depth)
     up = np.broadcast_to(np.zeros(()), east.shape) if w is None else np.asarray(w)
-    if east.ndim != 2 or not east.shape == north.shape == up.shape:
+    if not east.ndim or not east.shape == north.shape == up.shape:
         raise ValueError(
-            f"u, v and w must be alike, profiles by levels: {east.shape}, {north.shape}, {up.shape}"
+            "u, v and w must be profiles by levels, and of one shape: they are of "
+            f"{east.shape}, {north.shape}, {up.shape}"
         )
-    if down.ndim != 2 or down.shape not in {(1, east.shape[1]), east.shape}:
-        raise ValueError(f"depth must be (levels,) or as u, {east.shape}: it is {down.shape}")
-    return down, east, north, up
+    levels = east.shape[-1]
+    if down.shape not in {(levels,), (1, levels), east.shape}:
+        raise ValueError(
+            f"depth must be of shape {(levels,)}, or as u, {east.shape}: it is of {down.shape}"
+        )
+    shape = east.shape[:-1]
+    count = prod(shape)
+    flat = [array.reshape(count, levels) for array in (east, north, up)]
+    rows = count if down.shape == east.shape else 1  # one for all of them
+    return shape, (down.reshape(rows, levels), flat[0], flat[1], flat[2])
+
+
+def _shaped(profiles: Profiles, shape: tuple[int, ...]) -> Profiles:
+    """The profiles in the dimensions that they came in."""
+    columns: dict[str, Any] = {
+        name: array.reshape(shape + array.shape[1:])
+        for name, array in vars(profiles).items()
+        if isinstance(array, np.ndarray)
+    }
+    return replace(profiles, **columns)
 
 
 def _measured(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from calm.batch.kernel.outcome import OF_CLAMP, OF_PIECE
 from calm.case import Mooring
@@ -15,6 +16,12 @@ Rows = tuple[Floats, Floats, Floats]
 """Of pieces, clamps and ends, as in `calm.batch.kernel.outcome`."""
 
 
+def known_levels(depth: Floats, u: Floats, v: Floats, w: Floats) -> NDArray[np.intp]:
+    """Indices of the levels with a value, at or below the surface, from it down."""
+    known = np.isfinite(u) & np.isfinite(v) & np.isfinite(w) & np.isfinite(depth) & (depth >= 0.0)
+    return np.flatnonzero(known)[np.argsort(depth[known])]
+
+
 def water_of(base: Water, depth: Floats, u: Floats, v: Floats, w: Floats) -> Water:
     """The water with a profile's current; levels without a value, or above the water, left out.
 
@@ -23,8 +30,7 @@ def water_of(base: Water, depth: Floats, u: Floats, v: Floats, w: Floats) -> Wat
     base : see `Plan`
     depth, u, v, w : (k,) [m], [m/s]
     """
-    known = np.isfinite(u) & np.isfinite(v) & np.isfinite(w) & np.isfinite(depth) & (depth >= 0.0)
-    order = np.flatnonzero(known)[np.argsort(depth[known])]
+    order = known_levels(depth, u, v, w)
     levels = np.union1d(base.level, depth[order])
     added = [np.interp(levels, depth[order], part[order]) for part in (u, v, w)]
     current, density = base.at(levels)

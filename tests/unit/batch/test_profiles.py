@@ -1,6 +1,6 @@
 """Many profiles: order, company and workers change nothing; gaps, shapes, statuses."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -93,7 +93,10 @@ def test_levels_may_vary_and_come_in_any_order(subsurface: Mooring) -> None:
     )
 
 
-def test_profiles_that_cannot_be_solved_have_a_status(subsurface: Mooring) -> None:
+@pytest.mark.parametrize("friction", ["berteaux", "hoerner"])  # in the lanes; one at a time
+def test_profiles_that_cannot_be_solved_have_a_status(subsurface: Mooring, friction: str) -> None:
+    solver = subsurface.file.solver.model_copy(update={"friction": friction})
+    subsurface = Mooring(replace(subsurface.file, solver=solver))
     depth, u, v, _ = drawn(7, 3, subsurface.water.depth)
     each = np.tile(depth, (3, 1))
     u[0] = np.nan
@@ -102,6 +105,7 @@ def test_profiles_that_cannot_be_solved_have_a_status(subsurface: Mooring) -> No
     assert [STATUSES[s] for s in found.status] == ["no-current", "levels-coincide", "converged"]
     assert np.isnan(found.depth_top[:2]).all()
     assert np.isfinite(found.depth_top[2]).all()
+    assert found.alone.tolist() == [False, False, friction == "hoerner"]
 
 
 def test_still_water_leaves_the_line_upright(subsurface: Mooring) -> None:
@@ -120,11 +124,32 @@ def test_single_precision_does(subsurface: Mooring) -> None:
     )
 
 
+def test_profiles_come_in_any_dimensions(subsurface: Mooring) -> None:
+    depth, u, v, w = drawn(10, 6, subsurface.water.depth)
+    flat = solve_profiles(subsurface, u, v, depth, w)
+    grid = solve_profiles(subsurface, *(a.reshape(2, 3, -1) for a in (u, v)), depth,
+                          w.reshape(2, 3, -1))  # fmt: skip
+    assert grid.tilt.shape == (2, 3, *flat.tilt.shape[1:])
+    assert grid.status.shape == grid.top_depth.shape == (2, 3)
+    assert grid.tilt.tobytes() == flat.tilt.tobytes()
+    one = solve_profiles(subsurface, u[4], v[4], depth, w[4])
+    assert one.knockdown.tobytes() == flat.knockdown[4].tobytes()
+    assert one.status.shape == ()
+
+
+def test_it_is_compiled_for_one_kind_of_arrays(subsurface: Mooring) -> None:
+    depth, u, v, w = drawn(11, 4, subsurface.water.depth)
+    u.setflags(write=False)
+    solve_profiles(subsurface, u, v, depth)
+    solve_profiles(subsurface, np.asfortranarray(u), v.astype(np.float32), depth, w)
+    assert len(profiles.solve_cases.signatures) == 1
+
+
 @pytest.mark.parametrize(
     ("shapes", "message"),
     [
-        (((3, 5), (3, 4), (5,)), "must be alike"),
-        (((5,), (5,), (5,)), "must be alike"),
+        (((3, 5), (3, 4), (5,)), "of one shape: they are of .3, 5., .3, 4."),
+        (((), (), (5,)), "must be profiles by levels"),
         (((3, 5), (3, 5), (4,)), "depth must be"),
         (((3, 5), (3, 5), (2, 5)), "depth must be"),
     ],
