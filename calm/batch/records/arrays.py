@@ -56,14 +56,23 @@ class ArrayRecord(Record):
         if self._ahead is not None and self._ahead[0] <= start and stop <= self._ahead[1]:
             return self._ahead
         self._ahead = None
-        together = min(self._current.chunk, AHEAD // max(self._current.size, 1))
-        behind = min(max(stop, start + together), self.count)
+        behind = min(max(stop, self._behind(start)), self.count)
         with reading(self._path):
             arrays = self._current.read(part(self._index, start, behind))
         window = start, behind, arrays
         if behind > stop:
             self._ahead = window
         return window
+
+    def _behind(self, start: int) -> int:
+        """The profile behind those that a file has compressed together with one."""
+        chunk = self._current.chunk
+        if isinstance(self._index, slice):
+            position = self._index.start + start * self._index.step
+            together = -(-(chunk - position % chunk) // self._index.step)
+        else:
+            together = chunk
+        return start + min(together, AHEAD // max(self._current.size, 1))
 
     def close(self) -> None:
         """See `Record`."""

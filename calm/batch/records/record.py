@@ -69,7 +69,7 @@ class Record(ABC):
         """Leave the file."""
 
     def digest(self) -> str:
-        """SHA-256 of the times and the currents: the same wherever and in whatever they stand."""
+        """SHA-256 of the times, depths and currents as they are read; the name does not count."""
         digest = hashlib.sha256()
         digest.update(np.ascontiguousarray(self.time, "<M8[ns]").view("<i8").data)
         for start in range(0, self.count, DIGEST_BLOCK):

@@ -203,8 +203,17 @@ def test_profiles_out_of_order_are_put_in_it(tmp_path: Path) -> None:
         assert mixed.notes[0] == "the profiles are not in the order of time, and were taken in it"
 
 
+@pytest.mark.parametrize(
+    ("choice", "windows"),
+    [
+        ({}, [slice(0, 4, 1), slice(4, 7, 1)]),
+        # 00:00 to 01:00 by ten minutes, four to a chunk of the file
+        ({"time": parse_period("2026-03-01T00:10/")}, [slice(1, 4, 1), slice(4, 7, 1)]),
+        ({"every": 2}, [slice(0, 4, 2), slice(4, 8, 2)]),
+    ],
+)
 def test_what_is_compressed_together_is_read_once(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, choice: dict, windows: list[slice]
 ) -> None:
     from calm.files.current_dataset import CurrentDataset
 
@@ -216,16 +225,13 @@ def test_what_is_compressed_together_is_read_once(
     monkeypatch.setattr(
         CurrentDataset, "read", lambda self, index: reads.append(index) or read(self, index)
     )
-    with opened(path) as record, opened(write("adcp", tmp_path)) as plain:
-        for start in range(COUNT):
+    with opened(path, **choice) as record, opened(write("adcp", tmp_path), **choice) as plain:
+        for start in range(record.count):
             for got, expected in zip(
                 record.profiles(start, start + 1), plain.profiles(start, start + 1), strict=True
             ):
                 assert np.array_equal(got, expected)
-    assert [index for index in reads if index.stop - index.start > 1] == [
-        slice(0, 4, 1),
-        slice(4, 7, 1),
-    ]
+    assert [index for index in reads if index.stop - index.start > index.step] == windows
 
 
 def test_a_block_that_is_damaged_names_the_file(tmp_path: Path) -> None:
