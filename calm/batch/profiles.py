@@ -99,8 +99,10 @@ def solve_profiles(
 
     Raises
     ------
+    TypeError
+        The mooring is none, such as a tow, or the current is no numbers.
     ValueError
-        Arrays whose shapes do not fit together.
+        Arrays whose shapes do not fit together; less than one worker.
     NoEquilibrium
         Where a piece is to be cut to fit, and no length does.
     """
@@ -133,6 +135,11 @@ class Batch:
         workers: int | None = None,
     ) -> Profiles:
         """As `solve_profiles`."""
+        if not isinstance(self.mooring, Mooring):
+            kind = type(self.mooring).__name__
+            raise TypeError(f"a Mooring is needed, as calm.load gives it, not a {kind}")
+        if workers is not None and workers < 1:
+            raise ValueError(f"{workers} workers: one at least is needed")
         shape, current = _checked(u, v, depth, w)
         line, count = self.mooring.line, len(current[1])
         rows = (
@@ -195,8 +202,8 @@ def _checked(
     u: ArrayLike, v: ArrayLike, depth: ArrayLike, w: ArrayLike | None
 ) -> tuple[tuple[int, ...], tuple[Floats, Floats, Floats, Floats]]:
     """The shape of the profiles, and depth, u, v, w, all of two dimensions."""
-    east, north, down = np.asarray(u), np.asarray(v), np.asarray(depth)
-    up = np.broadcast_to(np.zeros(()), east.shape) if w is None else np.asarray(w)
+    east, north, down = _numbers(u), _numbers(v), _numbers(depth)
+    up = np.broadcast_to(np.zeros(()), east.shape) if w is None else _numbers(w)
     if not east.ndim or not east.shape == north.shape == up.shape:
         raise ValueError(
             "u, v and w must be profiles by levels, and of one shape: they are of "
@@ -212,6 +219,14 @@ def _checked(
     flat = [array.reshape(count, levels) for array in (east, north, up)]
     rows = count if down.shape == east.shape else 1  # one for all of them
     return shape, (down.reshape(rows, levels), flat[0], flat[1], flat[2])
+
+
+def _numbers(values: ArrayLike) -> NDArray[Any]:
+    """As an array; what is masked is a gap."""
+    array: NDArray[Any] = np.ma.filled(values, np.nan) if np.ma.isMA(values) else np.asarray(values)
+    if array.dtype.kind not in "iuf":
+        raise TypeError(f"a current is numbers, not {array.dtype}")
+    return array
 
 
 def _shaped(profiles: Profiles, shape: tuple[int, ...]) -> Profiles:

@@ -133,11 +133,23 @@ def _placed(
     if positive not in ("up", "down"):
         raise UnreadableError(f"`{levels.name}` does not say whether it is `positive` up or down")
     factor = factor if positive == "down" else -factor
+    if not from_instrument and time not in levels.dims and _all_in_air(levels, factor):
+        raise UnreadableError(
+            f"`{levels.name}` is positive {positive}, and no level of it is below the surface: "
+            "its sign or its `positive` is wrong"
+        )
     if not from_instrument:
         return Levels(levels, factor, 0.0, None, ())
     instrument = _instrument(dataset, levels, time)
     note = f"`{levels.name}` counts from the instrument, whose depth is `{instrument[0].name}`"
     return Levels(levels, factor, 0.0, instrument, (note,))
+
+
+def _all_in_air(levels: xr.DataArray, factor: float) -> bool:
+    import numpy as np
+
+    depth = np.asarray(levels.values, np.float64) * factor
+    return bool((depth < 0).any() and not (depth > 0).any())
 
 
 def _instrument(

@@ -72,7 +72,7 @@ def choose_column(
     dims = dataset[velocity[0]].dims
     pair = _positions(dataset, set(dims) - {time})
     if pair is None:
-        return Column({}, None)
+        return Column({}, None, _drift(dataset, time, wanted))
     latitude, longitude = pair
     horizontal = [str(dim) for dim in dims if dim in latitude.dims or dim in longitude.dims]
     if not all(set(horizontal) <= set(dataset[name].dims) for name in velocity):
@@ -108,7 +108,7 @@ def choose_column(
         )
     chosen = np.unravel_index(np.nanargmin(np.where(wet, distance, np.inf)), distance.shape)
     place = float(lat[chosen]), _signed(float(lon[chosen]))
-    index = {dim: box[dim].start + int(i) for dim, i in zip(horizontal, chosen, strict=True)}
+    index = {dim: int(box[dim][i]) for dim, i in zip(horizontal, chosen, strict=True)}
     dry = "" if chosen == nearest else " that has a current"
     note = (
         f"the column nearest to {written(wanted)}{dry} is that at {written(place)}, "
@@ -149,12 +149,12 @@ def _positions(dataset: xr.Dataset, dims: set[Any]) -> tuple[xr.DataArray, xr.Da
 
 def _box(
     latitude: xr.DataArray, longitude: xr.DataArray, horizontal: list[str], wanted: Place
-) -> dict[str, slice]:
-    """The part of the grid around the place, by dimension."""
+) -> dict[str, NDArray[Any]]:
+    """The part of the grid around the place: indices by dimension."""
     import numpy as np
 
     if len(horizontal) == 1:  # a list of places, in any order
-        return {horizontal[0]: slice(0, latitude.sizes.get(horizontal[0]))}
+        return {horizontal[0]: np.arange(latitude.sizes[horizontal[0]])}
     north = np.abs(latitude.values - wanted[0])
     east = np.abs(_turned(longitude.values - wanted[1]))
     centre: dict[str, int] = {}
@@ -165,7 +165,24 @@ def _box(
     else:
         for one, away in ((latitude, north), (longitude, east)):
             centre |= {str(dim): int(np.nanargmin(away)) for dim in one.dims}
-    return {dim: slice(max(i - REACH, 0), i + REACH + 1) for dim, i in centre.items()}
+    sizes = {**latitude.sizes, **longitude.sizes}
+    box = {dim: np.arange(max(i - REACH, 0), min(i + REACH + 1, sizes[dim]))
+           for dim, i in centre.items()}  # fmt: skip
+    if _goes_round(longitude):
+        dim = str(longitude.dims[0])
+        box[dim] = np.arange(centre[dim] - REACH, centre[dim] + REACH + 1) % sizes[dim]
+    return box
+
+
+def _goes_round(longitude: xr.DataArray) -> bool:
+    """Whether an axis of longitudes, in even steps, goes all round the earth."""
+    import numpy as np
+
+    if longitude.ndim != 1 or longitude.size <= 2 * REACH:
+        return False
+    steps = np.diff(longitude.values.astype(np.float64))
+    even = bool(np.allclose(steps, steps[0], rtol=1e-3))
+    return even and abs(abs(steps[0]) * longitude.size - 360.0) < 0.5 * abs(steps[0])
 
 
 def _spread(values: xr.DataArray, horizontal: list[str]) -> NDArray[Any]:
@@ -213,6 +230,30 @@ def _spacing(latitude: NDArray[Any], longitude: NDArray[Any], at: tuple[Any, ...
     around = tuple(slice(max(i - 1, 0), i + 2) for i in at)
     place = float(latitude[at]), float(longitude[at])
     return float(np.nanmax(_distance(latitude[around], longitude[around], place)))
+
+
+def _drift(dataset: xr.Dataset, time: str | None, wanted: Place | None) -> tuple[str, ...]:
+    """What to tell of a record whose place changes with time, such as that of a drifter."""
+    import numpy as np
+
+    found = []
+    for which in (("latitude", _LATITUDES), ("longitude", _LONGITUDES)):
+        moving = [name for name in _named(dataset, *which) if dataset[name].dims == (time,)]
+        if not moving:
+            return ()
+        found.append(np.asarray(dataset[moving[0]].values, np.float64))
+    known = np.isfinite(found[0]) & np.isfinite(found[1])
+    if not known.any():
+        return ()
+    latitude, longitude = (values[known] for values in found)
+    first = float(latitude[0]), float(longitude[0])
+    away = float(_distance(latitude, longitude, first).max())
+    moved = (
+        (f"its place changes with time, by up to {away:.0f} km; all profiles are taken",)
+        if away > FAR
+        else ()
+    )
+    return (*moved, *_far(first, wanted))
 
 
 def _far(place: Place, wanted: Place | None) -> tuple[str, ...]:

@@ -62,14 +62,27 @@ def read_times(dataset: xr.Dataset, name: str) -> NDArray[np.datetime64]:
 
 
 def _decoded(times: xr.DataArray) -> NDArray[Any]:
+    import warnings
+
     import numpy as np
     import xarray as xr
 
     if times.dtype.kind == "f" and not times.notnull().any():
         return np.array("NaT", "datetime64[ns]")  # to xarray, no numbers at all are no times
-    decoded: NDArray[Any] = xr.decode_cf(times.to_dataset(name="times"))["times"].values.ravel()
+    unit = str(times.attrs.get("units", ""))
+    refusal = UnreadableError(
+        f"the times in `{times.name}` cannot be read: their unit, `{unit}`, is none of seconds, "
+        "minutes, hours or days since a date"
+    )
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of years without their zeros, `1-1-1`
+            whole = xr.decode_cf(times.to_dataset(name="times"))["times"]
+            decoded: NDArray[Any] = whole.values.ravel()
+    except (ValueError, OverflowError):
+        raise refusal from None
     if decoded.dtype.kind != "M":
-        raise UnreadableError(f"the times in `{times.name}` cannot be read")
+        raise refusal
     known = decoded[~np.isnat(decoded)]
     first, last = np.datetime64(_FIRST), np.datetime64(_LAST)
     if known.size and not first <= known.min() <= known.max() < last:

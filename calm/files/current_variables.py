@@ -163,6 +163,9 @@ def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str])
     if name is None:
         return None
     own = str(dataset[name].attrs.get("standard_name", ""))
+    told = str(dataset[name].attrs.get("long_name", ""))
+    if not own and re.search(r"(?i)\bwind\b", told):
+        raise UnreadableError(f"`{name}` is `{told}`, which is no current")
     if regular and own and own == _ALONG_THE_GRID.get(sought.sense):
         notes.append(f"`{name}`, {own}, is {sought.sense}ward: the grid runs along latitudes")
     elif own and not (sought.sense in own and ("water" in own or "current" in own)):

@@ -69,10 +69,8 @@ class ArrayRecord(Record):
         chunk = self._current.chunk
         if isinstance(self._index, slice):
             position = self._index.start + start * self._index.step
-            together = -(-(chunk - position % chunk) // self._index.step)
-        else:
-            together = chunk
-        return start + min(together, AHEAD // max(self._current.size, 1))
+            chunk = -(-(chunk - position % chunk) // int(self._index.step))
+        return start + min(chunk, AHEAD // max(self._current.size, 1))
 
     def close(self) -> None:
         """See `Record`."""

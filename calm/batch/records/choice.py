@@ -19,6 +19,9 @@ Index = slice | NDArray[np.intp]
 Period = tuple[np.datetime64 | None, np.datetime64 | None]
 """First and last time, both included; None where it is open."""
 
+REACH = "1678-01-01", "2261-12-31T23:59:59.999999"
+"""The times that a record can have."""
+
 _PART_OF_A_DATE = re.compile(r"\d{4}(-\d\d(-\d\d)?)?")
 
 
@@ -121,13 +124,21 @@ def _end(text: str, *, whole: bool) -> np.datetime64 | None:
     try:
         if _PART_OF_A_DATE.fullmatch(text):
             date: Any = np.datetime64(text)  # of a year, a month or a day
-            last: Any = np.datetime64(date + 1, "ns") - np.timedelta64(1, "ns")
-            return last if whole else np.datetime64(date, "ns")
-        return np.datetime64(parse_time(text).replace(tzinfo=None), "ns")
+            if whole:
+                return _in_reach((date + 1).astype("M8[us]")) - np.timedelta64(1, "ns")
+            return _in_reach(date.astype("M8[us]"))
+        return _in_reach(np.datetime64(parse_time(text).replace(tzinfo=None), "us"))
     except TimeChoiceError as error:
         raise UsageError(str(error)) from None
     except ValueError:
         raise UsageError(f"`{text}` is no date") from None
+
+
+def _in_reach(moment: np.datetime64) -> np.datetime64:
+    """A time to the nanosecond; one before or after those of any record as the first or last."""
+    first, last = (np.datetime64(end, "us") for end in REACH)
+    near: Any = min(max(moment, first), last)
+    return np.datetime64(near, "ns")
 
 
 def _rises(times: Times) -> bool:

@@ -11,7 +11,7 @@ import numpy as np
 from calm.batch.records.choice import Period, choose_profiles, part
 from calm.batch.records.record import RULES, Levels, Record
 from calm.batch.records.rows import COLUMNS, Lines, RowReader
-from calm.errors import InputError, Problem
+from calm.errors import InputError, Problem, UsageError
 from calm.files.current_csv import (
     MOST_PROBLEMS,
     CsvHeader,
@@ -20,6 +20,7 @@ from calm.files.current_csv import (
     read_csv_header,
 )
 from calm.files.times import TimeChoiceError, parse_time
+from calm.physics.line import Floats
 
 AT_ONCE = 50_000
 """Lines that are read together."""
@@ -80,7 +81,7 @@ class CsvRecord(Record):
                 else:
                     times.append(np.datetime64(moment.replace(tzinfo=None)))
             rows, sizes = reader.read(profiles, problems)
-            rows.tofile(self._kept)
+            self._put_by(rows)
             counts += sizes
             _refuse(problems, header, at_least=MOST_PROBLEMS)
         _refuse(problems, header)
@@ -92,6 +93,13 @@ class CsvRecord(Record):
             self._rows = np.memmap(self._kept, np.float64, "r", shape=(self._first[-1], COLUMNS))
         self._has_w = reader.has_w
         return header
+
+    def _put_by(self, rows: Floats) -> None:
+        try:
+            rows.tofile(self._kept)
+        except OSError:
+            place = tempfile.gettempdir()
+            raise UsageError(f"no room for the numbers of the record in {place}") from None
 
     def profiles(self, start: int, stop: int) -> Levels:
         """See `Record`."""

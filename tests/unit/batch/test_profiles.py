@@ -137,6 +137,30 @@ def test_profiles_come_in_any_dimensions(subsurface: Mooring) -> None:
     assert one.status.shape == ()
 
 
+def test_what_is_masked_is_a_gap(subsurface: Mooring) -> None:
+    depth, u, v, _ = drawn(12, 3, subsurface.water.depth)
+    gaps = np.zeros(u.shape, bool)
+    gaps[:, 2] = True
+    filled = np.where(gaps, 1e20, u)
+    assert_same(
+        solve_profiles(subsurface, np.where(gaps, np.nan, u), v, depth),
+        solve_profiles(subsurface, np.ma.masked_array(filled, gaps), v, depth),
+    )
+
+
+def test_what_is_no_mooring_and_no_current_is_refused(subsurface: Mooring) -> None:
+    depth, u, v, _ = drawn(13, 1, subsurface.water.depth)
+    tow = load(shipped_folder("lines") / "helicopter-bird.yaml")
+    with pytest.raises(TypeError, match=r"a Mooring is needed, .* not a Tow"):
+        solve_profiles(tow, u, v, depth)  # type: ignore[arg-type]
+    for wrong in (u.astype(complex), u > 0.0, u.astype(str)):
+        with pytest.raises(TypeError, match="a current is numbers, not "):
+            solve_profiles(subsurface, wrong, v, depth)
+    for workers in (0, -1):
+        with pytest.raises(ValueError, match="one at least is needed"):
+            solve_profiles(subsurface, u, v, depth, workers=workers)
+
+
 def test_it_is_compiled_for_one_kind_of_arrays(subsurface: Mooring) -> None:
     depth, u, v, w = drawn(11, 4, subsurface.water.depth)
     u.setflags(write=False)

@@ -89,6 +89,48 @@ def test_longitudes_begin_where_they_like(tmp_path: Path, longitude: float) -> N
     assert u == pytest.approx(hycom()["water_u"].isel(lat=1, lon=1).values, abs=1e-9)
 
 
+def test_a_grid_round_the_earth_has_no_seam(tmp_path: Path) -> None:
+    longitude = np.arange(0.0, 360.0, 0.5)
+    u = np.full((1, 1, 1, 720), np.nan)
+    u[..., [3, 717]] = 0.1, 0.2  # 1.5° E and 1.5° W have water
+    shape = ("time", "depth", "lat", "lon")
+    path = tmp_path / "earth.nc"
+    xr.Dataset(
+        {name: (shape, u, {"units": "m/s"}) for name in ("uo", "vo")},
+        {"time": ("time", [0], {"units": "days since 2020-01-01"}), "lat": [0.0],
+         "lon": longitude, "depth": ("depth", [10.0], {"units": "m", "positive": "down"})},
+    ).to_netcdf(path, engine="h5netcdf")  # fmt: skip
+    for wanted, found, east in ((359.9, "-1.5", 0.2), (0.1, "1.5", 0.1), (-0.1, "-1.5", 0.2)):
+        with open_record(path, seabed=SEABED, at=(0.0, wanted)) as record:
+            assert record.source["longitude"] == found
+            assert record.profiles(0, 1)[1].item() == east
+
+
+def test_a_place_that_drifts_is_told(tmp_path: Path) -> None:
+    dataset = adcp().assign_coords(
+        lat=("time", 48.0 + 0.1 * np.arange(COUNT)), lon=("time", np.full(COUNT, -5.0))
+    )
+    path = tmp_path / "ship.nc"
+    dataset.to_netcdf(path, engine="h5netcdf")
+    with opened(path) as record:
+        # 0.6 degrees of latitude are 66.7 km
+        assert record.notes[0] == (
+            "its place changes with time, by up to 67 km; all profiles are taken"
+        )
+
+
+def test_times_that_count_from_long_ago(tmp_path: Path) -> None:
+    path = tmp_path / "old.nc"
+    dataset = adcp()
+    for units in ("days since 0001-01-01", "days since 1-1-1 00:00"):
+        # 737791 days after the first of year 1 of the mixed calendar is 2020-12-31
+        dataset["time"] = ("time", 737_791.0 + np.arange(COUNT), {"units": units})
+        dataset.to_netcdf(path, engine="h5netcdf")
+        with opened(path) as record:
+            assert shown(record.time[0]) == "2020-12-31T00:00"
+            assert (np.diff(record.time) == np.timedelta64(1, "D")).all()
+
+
 def test_the_nearest_column_of_a_turned_grid(tmp_path: Path) -> None:
     path = write("curvilinear", tmp_path)
     dataset = ARRAYS["curvilinear"]()

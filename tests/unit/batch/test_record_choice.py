@@ -14,6 +14,9 @@ from calm.errors import UsageError
         ("2026-02/2026-02", "2026-02-01", "2026-02-28T23:59:59.999999999"),
         ("2025/2026", "2025-01-01", "2026-12-31T23:59:59.999999999"),
         ("/", None, None),
+        # beyond the times of any record, and of numbers of nanoseconds
+        ("9999/", "2261-12-31T23:59:59.999999", None),
+        ("1500/2500", "1678-01-01", "2261-12-31T23:59:59.999998999"),
     ],
 )
 def test_periods(text: str, first: str | None, last: str | None) -> None:

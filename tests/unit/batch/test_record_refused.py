@@ -60,6 +60,13 @@ def with_attributes(dataset: xr.Dataset, name: str, **attributes: str) -> xr.Dat
     return dataset
 
 
+def without_standard_names(long_name: str) -> xr.Dataset:
+    dataset = adcp()
+    for name in ("u", "v"):
+        del dataset[name].attrs["standard_name"]
+    return with_attributes(dataset, "u", long_name=long_name)
+
+
 @pytest.mark.parametrize(
     ("make", "reason"),
     [
@@ -74,6 +81,19 @@ def with_attributes(dataset: xr.Dataset, name: str, **attributes: str) -> xr.Dat
         (
             lambda: with_attributes(adcp(), "u", standard_name="eastward_wind"),
             "`u` is eastward_wind, which is not eastward_sea_water_velocity",
+        ),
+        (
+            lambda: without_standard_names("10 metre U wind component"),
+            "`u` is `10 metre U wind component`, which is no current",
+        ),
+        (
+            lambda: with_attributes(adcp(), "time", units="months since 2026-03-01"),
+            "the times in `time` cannot be read: their unit, `months since 2026-03-01`, is none of "
+            "seconds, minutes, hours or days since a date",
+        ),
+        (
+            lambda: glorys().assign_coords(depth=-glorys()["depth"].assign_attrs(positive="down")),
+            "`depth` is positive down, and no level of it is below the surface: its sign or its",
         ),
         (lambda: with_attributes(adcp(), "u", units="kg"), "`u`: its unit, `kg`, is a mass; a spe"),
         (lambda: with_attributes(adcp(), "u", units=""), "`u` has no `units`"),
