@@ -13,7 +13,7 @@ from calm.files import Component
 from calm.quantities import say
 
 if TYPE_CHECKING:
-    from calm.case import Result
+    from calm.case import Mooring, Result
 
 AT_SURFACE = 0.1
 """What comes so near to the surface is at it [m]."""
@@ -26,17 +26,20 @@ JUDGED_ROLES = ("float", "instrument", "release")
 
 
 def meant_for_the_surface(result: Result) -> bool:
-    """Whether the float is at the surface, or would be but for the current, the wind or the tide.
+    """Whether the float is at the surface but for the current, the wind or the tide."""
+    return reaches_the_surface(result.mooring)
+
+
+def reaches_the_surface(mooring: Mooring) -> bool:
+    """Whether a line is meant to have its float at the surface: whether it has in still water.
 
     A line that reaches it has no unique shape in still water where it is longer than that is deep.
     """
-    known, still = result.mooring.for_surface, result.still_shape
-    if known is not None:
-        return known
-    if result.type == "surface" or still is None:
-        length = float(result.components.cut_length.sum())
-        return result.type == "surface" or length >= result.mooring.water.depth
-    return bool(still.depth[0] <= AT_SURFACE)
+    if mooring.for_surface is not None:
+        return mooring.for_surface
+    if mooring.at_rest is None:
+        return float(mooring.line.length.sum()) >= mooring.water.depth
+    return -float(mooring.at_rest.position[0, 2]) <= AT_SURFACE
 
 
 @rule(

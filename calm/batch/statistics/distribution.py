@@ -51,7 +51,7 @@ def distribution_of(values: Column, time: Times) -> Distribution | None:
     count = len(known)
     if not count:
         return None
-    greatest = int(np.nanargmax(values))
+    greatest = int(np.argmax(values == known[-1]))  # the first of its like
     share = np.append(SHARES[SHARES * count > 1.0], 1.0 / count)
     rank = (count - 1) * np.concatenate([np.array(PERCENTILES) / 100.0, 1.0 - share])
     rank[-1] = count - 1  # the rarest value is the maximum

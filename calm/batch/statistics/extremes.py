@@ -1,49 +1,61 @@
-"""How large a response grows in ten years or a hundred: return levels, or why there are none.
+"""Return levels: the value that a response exceeds once in so many years on average.
 
-Two ways, each with its own rules, which are told with the levels:
+Two ways to estimate them, each with its own rules, which are told with the levels:
 
 - GEV: the generalised extreme value distribution of the maxima of years (Coles 2001, chapter 3).
-- POT: the generalised Pareto distribution of independent peaks over a threshold (chapter 4), the
-  peaks told apart by the intervals between exceedances (Ferro, C. A. T., and Segers, J. (2003):
-  Inference for clusters of extreme values, J. R. Statist. Soc. B 65, 545-556,
-  doi:10.1111/1467-9868.00401).
+- POT: the generalised Pareto distribution of independent peaks over a threshold (chapter 4).
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import pairwise
-from math import ceil, log, log1p
+from math import log, log1p
 
 import numpy as np
 from numpy.typing import NDArray
 
+from calm.batch.statistics.samples import (
+    WHOLE,
+    annual_maxima,
+    median_step,
+    peaks_over,
+    years_of,
+)
 from calm.batch.statistics.series import Column, Times
-from calm.batch.statistics.tails import CONFIDENCE, LEAST_SHAPE, Tail, fit_excesses, fit_maxima
+from calm.batch.statistics.tails import (
+    CONFIDENCE,
+    LEAST_SHAPE,
+    NotFitted,
+    Tail,
+    fit_excesses,
+    fit_maxima,
+)
+from calm.batch.statuses import IN_WEAK_CURRENT, Ending, ending_of
 
 PERIODS = (2, 10, 50, 100)
 """Return periods [years]."""
 
 EXTRAPOLATION = 4.0
-"""Times the length of a record beyond which no return level is told."""
+"""Times the length of a record beyond which no return level is told. Our choice: thirty
+years give the level of a hundred, and a year none beyond two."""
 
 LEAST_MAXIMA = 10
-"""Whole years that a GEV asks for."""
-
-WHOLE = 0.9
-"""Share of its profiles that a whole year has at least."""
+"""Whole years that a GEV asks for. Our choice, because three parameters are fitted: ten
+values are few for that, as their wide intervals show."""
 
 LEAST_YEARS = 1.0
-"""Years of solved profiles that POT asks for."""
+"""Years of solved profiles that POT asks for. Our choice, because the year has a stormy season."""
 
 LEAST_PEAKS = 30
-"""Independent peaks that POT asks for."""
+"""Independent peaks that POT asks for. Our choice, because the intervals are those of many
+peaks, and with fewer they hold the true level less often than they say."""
 
 THRESHOLDS = (99.0, 98.0, 97.0, 96.0, 95.0, 94.0, 93.0, 92.0, 91.0, 90.0)
-"""Percentiles tried as the threshold of POT, the first that leaves enough peaks taken."""
+"""Percentiles tried as the threshold of POT, the first that leaves enough peaks taken. Our choice,
+because a generalised Pareto distribution holds for high thresholds only (Coles 2001, §4.3.1)."""
 
-YEAR = np.timedelta64(31_557_600, "s")
-"""365.25 days."""
+_FEW_GAPS = 1e-3  # our choice: a share of the record, nine hours a year, that is not worth a word
 
 METHODS = {"gev": "GEV of annual maxima", "pot": "POT, generalised Pareto"}
 """The two ways, by their name in files."""
@@ -51,9 +63,14 @@ METHODS = {"gev": "GEV of annual maxima", "pot": "POT, generalised Pareto"}
 
 @dataclass(frozen=True)
 class Level:
-    """A return level, and its interval of `CONFIDENCE`; None for an end that the data do not set.
+    """A return level and its interval of `CONFIDENCE`, in the unit of the values.
 
-    The period [years] is that of a GEV's year with such a maximum, or of a peak.
+    Attributes
+    ----------
+    period : T [years]; by GEV one year in T has a maximum above the level, by POT there is a peak
+        above it once in T years on average
+    level : the estimate
+    low, high : ends of its interval; None for one that the data do not set
     """
 
     period: int
@@ -64,16 +81,16 @@ class Level:
 
 @dataclass(frozen=True)
 class Fit:
-    """Return levels by one way.
+    """A fitted distribution and its return levels.
 
     Attributes
     ----------
-    method : of `METHODS`
+    method : a key of `METHODS`
     location, scale, shape : μ, σ, ξ; the location of POT is its threshold
-    count : maxima or peaks fitted
-    rate : of them in a year
-    rules : what was chosen, and how
-    levels : for those of `PERIODS` that the record allows
+    count : maxima or peaks that were fitted
+    rate : maxima or peaks a year
+    rules : how the maxima or peaks were chosen, in words
+    levels : for those of `PERIODS` that the record is long enough for
     """
 
     method: str
@@ -88,86 +105,69 @@ class Fit:
 
 @dataclass(frozen=True)
 class Refusal:
-    """Why one way has no return levels to tell."""
+    """Why there are no return levels by one of the `METHODS`."""
 
     method: str
     reason: str
 
 
-def return_levels(time: Times, values: Column) -> tuple[Fit | Refusal, Fit | Refusal]:
+def return_levels(
+    time: Times,
+    values: Column,
+    statuses: Mapping[str, int],
+    step: np.timedelta64 | None = None,
+) -> tuple[Fit | Refusal, Fit | Refusal]:
     """Return levels by GEV and by POT, each with 95 % intervals or refused with a reason.
+
+    They are refused, too, where profiles with a current were not solved: the line most often
+    fails to stand in the strongest currents, and levels from what is left would be too low.
 
     Parameters
     ----------
     time : (n,) ascending, as evenly as a record with gaps is
     values : (n,) NaN where there is none
+    statuses : profiles by their status, as `calm.batch.result.statuses_of` counts them; of those
+        that were not solved, only `calm.batch.statuses.IN_WEAK_CURRENT` and profiles without data
+        are passed over
+    step : `median_step` of the times, where it is known already
     """
-    refusal = _unfit(time, values)
+    refusal = _censored(statuses) or _unfit(time, values)
     if refusal:
         return Refusal("gev", refusal), Refusal("pot", refusal)
-    step, years = _step(time), years_of(time, int(np.isfinite(values).sum()))
-    return _by_maxima(time, values, step, years), _by_peaks(time, values, step, years)
+    step = median_step(time) if step is None else step
+    years = years_of(step, int(np.count_nonzero(np.isfinite(values))))
+    fits: list[Fit | Refusal] = []
+    for method, fit in (("gev", _by_maxima), ("pot", _by_peaks)):
+        try:
+            fits.append(fit(time, values, step, years))
+        except NotFitted as reason:
+            fits.append(Refusal(method, str(reason)))
+    return fits[0], fits[1]
 
 
-def years_of(time: Times, count: int) -> float:
-    """Years that some profiles of a record stand for, each as long as the median step."""
-    return count * float(_step(time) / YEAR) if len(time) > 1 else 0.0
-
-
-def annual_maxima(
-    time: Times, values: Column, step: np.timedelta64
-) -> tuple[NDArray[np.float64], int]:
-    """The greatest value of every whole year, and how many years there are, whole or not.
-
-    The years are of 365.25 days from the first profile on; one is whole if it has `WHOLE` of the
-    values that it has room for.
-    """
-    years = int((time[-1] - time[0]) // YEAR) + 1
-    starts = np.searchsorted(time, time[0] + np.arange(years + 1) * YEAR)
-    parts = [values[start:stop] for start, stop in pairwise(starts.tolist())]
-    room = WHOLE * float(YEAR / step)
-    whole = [part for part in parts if np.isfinite(part).sum() >= room]
-    return np.array([np.nanmax(part) for part in whole], np.float64), years
-
-
-def peaks_over(
-    time: Times, values: Column, threshold: float, step: np.timedelta64
-) -> NDArray[np.float64]:
-    """The greatest value of every cluster of exceedances of a threshold.
-
-    The extremal index θ comes from the intervals T between the N exceedances, in steps: with
-    every T ≤ 2, θ = 2 (ΣT)²/((N-1) ΣT²), else θ = 2 (Σ(T-1))²/((N-1) Σ(T-1)(T-2)), 1 at most. The
-    θN - 1 longest intervals part the clusters (Ferro and Segers 2003, eq. 6 and section 3), but
-    never exceedances that follow one another: of a single storm these intervals cannot tell.
-    """
-    over = np.flatnonzero(values > threshold)
-    if len(over) < 2:
-        return np.asarray(values[over], np.float64)
-    intervals = np.maximum(np.rint(np.diff(time[over]) / step), 1.0)
-    clusters = ceil(_extremal_index(intervals) * len(over))
-    longest = np.sort(intervals)[::-1]
-    apart = longest[clusters - 1] if clusters <= len(longest) else 1.0
-    starts = np.concatenate([[0], 1 + np.flatnonzero(intervals > apart)])
-    return np.maximum.reduceat(np.asarray(values[over], np.float64), starts)
+def _censored(statuses: Mapping[str, int]) -> str:
+    """Why the extremes may be among the profiles that were not solved, or nothing."""
+    ended = {ending: 0 for ending in (Ending.NO_EQUILIBRIUM, Ending.NOT_CONVERGED)}
+    for status, count in statuses.items():
+        if ending_of(status) in ended and status not in IN_WEAK_CURRENT:
+            ended[ending_of(status)] += count
+    said = " and ".join(f"{count} {ending.value}" for ending, count in ended.items() if count)
+    return said and (
+        f"of the profiles with a current {said}: the greatest values may be among them, and "
+        "levels from the others would be too low"
+    )
 
 
 def _unfit(time: Times, values: Column) -> str:
     """Why nothing can be fitted, or nothing."""
-    known = np.isfinite(values)
-    if known.sum() < 2:
-        return f"there are {int(known.sum())} values"
-    if np.diff(time).min() <= np.timedelta64(0, "ns"):
+    count = int(np.count_nonzero(np.isfinite(values)))
+    if count < 2:
+        return f"there are {count} values"
+    if not bool((time[1:] > time[:-1]).all()):
         return "the times do not ascend"
-    if np.nanmax(values) == np.nanmin(values):
+    if np.fmax.reduce(values) == np.fmin.reduce(values):
         return "the values are all alike"
     return ""
-
-
-def _step(time: Times) -> np.timedelta64:
-    """Median time between profiles, which gaps do not lengthen."""
-    steps, middle = np.diff(time).view(np.int64), (len(time) - 1) // 2
-    steps.partition(middle)  # in its place: a record may be long
-    return np.timedelta64(int(steps[middle]), "ns")
 
 
 def _by_maxima(time: Times, values: Column, step: np.timedelta64, years: float) -> Fit | Refusal:
@@ -184,7 +184,7 @@ def _by_maxima(time: Times, values: Column, step: np.timedelta64, years: float) 
     tail = fit_maxima(maxima)
     rules = (
         f"maxima of {len(maxima)} years of 365.25 days, counted from the first profile, that have "
-        f"{100 * WHOLE:.0f} % of their profiles"
+        f"{100 * WHOLE:.0f} % of their profiles{_gaps(time, values, step)}"
     )
     growths = {period: -log(-log1p(-1.0 / period)) for period in _periods(years)}
     return _told("gev", tail, 1.0, rules, growths)
@@ -196,13 +196,13 @@ def _by_peaks(time: Times, values: Column, step: np.timedelta64, years: float) -
             "pot",
             f"a year of solved profiles is needed; there are {365.25 * years:.0f} days of them",
         )
-    thresholds = np.nanpercentile(values, THRESHOLDS)
+    thresholds = np.percentile(values[np.isfinite(values)], THRESHOLDS, overwrite_input=True)
     most = 0
     for percentile, threshold in zip(THRESHOLDS, thresholds.tolist(), strict=True):
         peaks = peaks_over(time, values, threshold, step)
         most = max(most, len(peaks))
         if len(peaks) >= LEAST_PEAKS:
-            return _over(percentile, threshold, peaks, years)
+            return _over(percentile, threshold, peaks, years, _gaps(time, values, step))
     return Refusal(
         "pot",
         f"{LEAST_PEAKS} independent peaks are needed; no threshold from the {THRESHOLDS[0]:.0f} % "
@@ -211,7 +211,7 @@ def _by_peaks(time: Times, values: Column, step: np.timedelta64, years: float) -
 
 
 def _over(
-    percentile: float, threshold: float, peaks: NDArray[np.float64], years: float
+    percentile: float, threshold: float, peaks: NDArray[np.float64], years: float, gaps: str
 ) -> Fit | Refusal:
     if peaks.max() == peaks.min():
         return Refusal("pot", f"the {len(peaks)} peaks are all alike")
@@ -219,18 +219,22 @@ def _over(
     rules = (
         f"{len(peaks)} peaks over the {percentile:.0f} % percentile, the highest from "
         f"{THRESHOLDS[0]:.0f} % to {THRESHOLDS[-1]:.0f} % that leaves {LEAST_PEAKS} clusters; "
-        "clusters by the intervals between exceedances (Ferro and Segers 2003)"
+        f"clusters by the intervals between exceedances (Ferro and Segers 2003){gaps}"
     )
     growths = {period: log(rate * period) for period in _periods(years) if rate * period > 1.0}
     return _told("pot", tail, rate, rules, growths)
 
 
-def _extremal_index(intervals: NDArray[np.float64]) -> float:
-    """θ, the share of exceedances that are independent of those before them."""
-    one, two = (1.0, 2.0) if intervals.max() > 2.0 else (0.0, 0.0)
-    below = float(((intervals - one) * (intervals - two)).sum())
-    estimate = 2.0 * float((intervals - one).sum()) ** 2 / (len(intervals) * below)
-    return min(estimate, 1.0)
+def _gaps(time: Times, values: Column, step: np.timedelta64) -> str:
+    """What is told of the share of a record that is missing."""
+    room = 1.0 + float((time[-1] - time[0]) / step)
+    missing = 1.0 - int(np.count_nonzero(np.isfinite(values))) / room
+    if missing < _FEW_GAPS:
+        return ""
+    return (
+        f"; {100 * missing:.1f} % of the time from the first profile to the last is missing, and "
+        "the intervals make no allowance for what happened in it"
+    )
 
 
 def _periods(years: float) -> list[int]:

@@ -20,6 +20,7 @@ from calm.checks.posture import (
     depth_rating,
     excursion,
     knockdown,
+    reaches_the_surface,
     tilt,
 )
 from calm.checks.slack import slack
@@ -79,7 +80,7 @@ def limits_of(mooring: Mooring) -> tuple[Limit, ...]:
     greatest, or the least, of those at its ends and at the clamps on it. A line meant for the
     surface is judged as such wherever the current takes its float.
     """
-    surface = meant_for_the_surface(mooring)
+    surface = reaches_the_surface(mooring)
     rules = (
         _strength(mooring, surface),
         _tilt(mooring),
@@ -90,17 +91,6 @@ def limits_of(mooring: Mooring) -> tuple[Limit, ...]:
         _reserve(mooring, surface),
     )
     return tuple(limit for rule in rules for limit in rule)
-
-
-def meant_for_the_surface(mooring: Mooring) -> bool:
-    """Whether the line has a float at the surface in still water.
-
-    A line without a unique shape there has one if it is longer than the water is deep.
-    """
-    still, depth = mooring.at_rest, mooring.water.depth
-    if still is None:
-        return float(mooring.line.length.sum()) >= depth
-    return -float(still.position[0, 2]) <= AT_SURFACE
 
 
 def _strength(mooring: Mooring, surface: bool) -> Iterator[Limit]:
@@ -143,7 +133,7 @@ def _depth_rating(mooring: Mooring, surface: bool) -> Iterator[Limit]:
 def _top(mooring: Mooring) -> Iterator[Limit]:
     checks, label = mooring.file.checks, mooring.file.pieces[0].label
     for rule, quantity, limit, values in (
-        (knockdown, "knockdown", checks.maximum_knockdown, _top_knockdown),
+        (knockdown, "knockdown", checks.maximum_knockdown, top_knockdown),
         (excursion, "offset", checks.maximum_excursion, top_offset),
     ):
         if limit is not None:
@@ -155,15 +145,22 @@ def _anchor(mooring: Mooring) -> Iterator[Limit]:
     factor, friction = checks.anchor_factor, anchor.friction or checks.anchor_friction
 
     lifting, dragging = (  # the weight that each newton upward and sideways requires
-        required_weight(*pull, factor, friction) for pull in ((1.0, 0.0), (0.0, 1.0))
+        required_weight(*unit, factor, friction) for unit in ((1.0, 0.0), (0.0, 1.0))
     )
 
+    def pull(series: Series, upward: float, sideways: float) -> Column:
+        weighted = series.ends("anchor_vertical")
+        weighted *= upward
+        aside = series.ends("anchor_horizontal")
+        aside *= sideways
+        weighted += aside
+        return weighted
+
     def required(series: Series) -> Column:
-        up, aside = series.ends("anchor_vertical"), series.ends("anchor_horizontal")
-        return lifting * up + dragging * aside
+        return pull(series, lifting, dragging)
 
     def sliding(series: Series) -> Column:
-        return series.ends("anchor_horizontal") + friction * series.ends("anchor_vertical")
+        return pull(series, friction, 1.0)
 
     def uplift(series: Series) -> Column:
         return series.ends("anchor_vertical")
@@ -202,15 +199,20 @@ def _parts(mooring: Mooring) -> Iterator[tuple[str, Component]]:
 
 def top_offset(series: Series) -> Column:
     """(n,) horizontal distance of the top of the line from the anchor [m]."""
-    return np.hypot(series.column("x_top", 0), series.column("y_top", 0))
+    offset = series.column("x_top", 0)
+    np.hypot(offset, series.column("y_top", 0), out=offset)
+    return offset
 
 
-def _top_knockdown(series: Series) -> Column:
+def top_knockdown(series: Series) -> Column:
+    """(n,) how much deeper the top of the line is than in still water [m]."""
     return series.column("knockdown", 0)
 
 
 def _reserve_left(series: Series) -> Column:
-    return 1.0 - series.ends("used_buoyancy")
+    left = series.ends("used_buoyancy")
+    np.subtract(1.0, left, out=left)
+    return left
 
 
 def _tilt_of(label: str) -> Callable[[Series], Column]:
@@ -218,7 +220,7 @@ def _tilt_of(label: str) -> Callable[[Series], Column]:
 
 
 def _greatest_tension(labels: Sequence[str]) -> Callable[[Series], Column]:
-    return lambda series: np.maximum.reduce([series.tension(label) for label in labels])
+    return lambda series: series.greatest_tension(labels)
 
 
 def _least_tension(label: str, seabed: float) -> Callable[[Series], Column]:
@@ -226,7 +228,9 @@ def _least_tension(label: str, seabed: float) -> Callable[[Series], Column]:
 
     def values(series: Series) -> Column:
         lies = series.depth(label) >= seabed * (1.0 - _LYING)
-        return np.where(lies, np.nan, np.minimum(*series.tensions(label)))
+        least = series.least_tension(label)
+        least[lies] = np.nan
+        return least
 
     return values
 
@@ -236,8 +240,11 @@ def _greatest_depth(label: str, below: str | None, afloat: float) -> Callable[[S
 
     def values(series: Series) -> Column:
         depth = series.depth(label)
-        greatest = depth if below is None else np.maximum(depth, series.depth(below))
-        return np.where(depth <= afloat, np.nan, greatest)
+        floats = depth <= afloat
+        if below is not None:
+            np.maximum(depth, series.depth(below), out=depth)
+        depth[floats] = np.nan
+        return depth
 
     return values
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryFile
 from types import TracebackType
@@ -10,8 +11,8 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from calm.batch.result import labels_of, statuses_of
 from calm.errors import UsageError
-from calm.files.explain import unknown
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -19,12 +20,10 @@ if TYPE_CHECKING:
 Column = NDArray[np.floating[Any]]
 Times = NDArray[np.datetime64]
 
-TOP = "top"
-"""The free end of the line, whatever its label."""
-
 _COLUMNS = (
     "depth_top", "x_top", "y_top", "tension_top", "tension_bottom", "tilt", "knockdown",
     "clamp_depth", "clamp_tension", "clamp_tilt", "clamp_knockdown",
+    "anchor_vertical", "anchor_horizontal", "used_buoyancy",
 )  # fmt: skip
 _ROWS = 32768  # profiles turned at a time
 _FIGURE = np.dtype(np.float32)
@@ -35,7 +34,7 @@ class Series:
 
     A result lies on the disk by profiles; here it is turned once, into a temporary file by
     columns, so that each can be read by itself: memory does not grow with the components. The file
-    has the size of the result without compression, and goes with the `with` block.
+    takes 4 bytes a number, without compression, and goes with the `with` block.
 
     Parameters
     ----------
@@ -45,7 +44,7 @@ class Series:
     Attributes
     ----------
     time : (n,) of the profiles
-    status : (n,) 0 where solved
+    statuses : profiles by their status
     component_label, clamp_label : of the columns
 
     Raises
@@ -57,9 +56,9 @@ class Series:
     def __init__(self, dataset: Dataset, folder: Path | None = None) -> None:
         self.dataset = dataset
         self.time: Times = dataset["time"].values.astype("datetime64[ns]", copy=False)
-        self.status: NDArray[np.int8] = dataset["status"].values
-        self.component_label = _labels(dataset, "component_label")
-        self.clamp_label = _labels(dataset, "clamp_label")
+        self.statuses = statuses_of(dataset)
+        self.component_label = labels_of(dataset, "component_label")
+        self.clamp_label = labels_of(dataset, "clamp_label")
         self._columns: dict[str, range] = {}
         try:
             self._turned = TemporaryFile(dir=folder, prefix=".calm-", suffix=".part")  # noqa: SIM115
@@ -82,16 +81,18 @@ class Series:
     def __len__(self) -> int:
         return len(self.time)
 
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Of the components, then of the clamps."""
+        return (*self.component_label, *self.clamp_label)
+
     def ends(self, name: str) -> Column:
         """(n,) of a variable of the whole line, such as `anchor_vertical`."""
-        return np.asarray(self.dataset[name].values)
+        return self.column(name, 0)
 
     def column(self, name: str, index: int) -> Column:
         """(n,) of a component or a clamp, such as `tilt` or `clamp_tilt`."""
-        values = np.empty(len(self), _FIGURE)
-        self._turned.seek(self._columns[name][index] * values.nbytes)
-        self._turned.readinto(values.data)
-        return values
+        return self._read(self._columns[name][index])
 
     def at(self, name: str, time: int) -> Column:
         """(columns,) of all components or clamps in one profile, none where there are none."""
@@ -116,19 +117,42 @@ class Series:
         prefix, index = self._place(label)
         return self.column(f"{prefix}tilt", index)
 
-    def tensions(self, label: str) -> tuple[Column, Column]:
-        """(n,) at both ends of a component, the same twice at a clamp [N]."""
-        prefix, index = self._place(label)
-        names = ("clamp_tension",) * 2 if prefix else ("tension_top", "tension_bottom")
-        upper, lower = (self.column(name, index) for name in names)
-        return upper, lower
-
     def tension(self, label: str) -> Column:
         """(n,) the greater of those at both ends of a component, or at a clamp [N]."""
-        return np.maximum(*self.tensions(label))
+        return self.greatest_tension([label])
+
+    def greatest_tension(self, labels: Sequence[str]) -> Column:
+        """(n,) the greatest of those at the ends of components and at clamps [N]."""
+        return self._gathered(np.maximum, labels)
+
+    def least_tension(self, label: str) -> Column:
+        """(n,) the lesser of those at both ends of a component, or at a clamp [N]."""
+        return self._gathered(np.minimum, [label])
+
+    def _gathered(self, choose: np.ufunc, labels: Sequence[str]) -> Column:
+        first, *others = (column for label in labels for column in self._tensions(label))
+        chosen, tension = self._read(first), None
+        for other in others:
+            tension = self._read(other, tension)
+            choose(chosen, tension, out=chosen)
+        return chosen
+
+    def _tensions(self, label: str) -> tuple[int, ...]:
+        """The columns of the tensions of a part."""
+        prefix, index = self._place(label)
+        names = ("clamp_tension",) if prefix else ("tension_top", "tension_bottom")
+        return tuple(self._columns[name][index] for name in names)
+
+    def _read(self, column: int, into: Column | None = None) -> Column:
+        values = np.empty(len(self), _FIGURE) if into is None else into
+        self._turned.seek(column * values.nbytes)
+        self._turned.readinto(values.data)
+        return values
 
     def _place(self, label: str) -> tuple[str, int]:
-        return _placed(label, self.component_label, self.clamp_label)
+        if label in self.component_label:
+            return "", self.component_label.index(label)
+        return "clamp_", self.clamp_label.index(label)
 
     def _turn(self) -> None:
         first = 0
@@ -136,46 +160,13 @@ class Series:
             if name not in self.dataset:
                 continue
             variable = self.dataset[name]
-            columns = range(first, first + variable.shape[1])
+            columns = range(first, first + (variable.shape[1] if variable.ndim > 1 else 1))
             self._columns[name] = columns
             for begin in range(0, len(self), _ROWS):
                 block = variable[begin : begin + _ROWS].values.astype(_FIGURE, copy=False)
-                for column, values in zip(columns, np.ascontiguousarray(block.T), strict=True):
+                by_column = np.ascontiguousarray(block.T).reshape(len(columns), -1)
+                for column, values in zip(columns, by_column, strict=True):
                     self._turned.seek((column * len(self) + begin) * _FIGURE.itemsize)
                     self._turned.write(values.data)
             first = columns.stop
         self._turned.flush()
-
-
-def place_of(dataset: Dataset, label: str) -> tuple[str, int]:
-    """Prefix of the variables of a part of the line in a result, and its column.
-
-    Parameters
-    ----------
-    label : of a component or a clamp; ``top`` is the first component
-
-    Raises
-    ------
-    UsageError
-        No part is called so; the message offers the nearest that is.
-    """
-    return _placed(label, _labels(dataset, "component_label"), _labels(dataset, "clamp_label"))
-
-
-def _placed(label: str, components: tuple[str, ...], clamps: tuple[str, ...]) -> tuple[str, int]:
-    if label in components:
-        return "", components.index(label)
-    if label in clamps:
-        return "clamp_", clamps.index(label)
-    if label == TOP:
-        return "", 0
-    parts = [TOP, *components, *clamps]
-    raise UsageError(unknown(f"no part of the line is called `{label}`", label, parts))
-
-
-def _labels(dataset: Dataset, name: str) -> tuple[str, ...]:
-    if name not in dataset.variables:
-        return ()
-    return tuple(
-        label.decode() if isinstance(label, bytes) else str(label) for label in dataset[name].values
-    )

@@ -11,10 +11,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from calm.batch.statistics.distribution import Distribution, distribution_of, envelope_of
-from calm.batch.statistics.extremes import Fit, Refusal, return_levels, years_of
-from calm.batch.statistics.judgement import RuleShare, shares_of
-from calm.batch.statistics.limits import NOT_JUDGED, limits_of, top_offset
+from calm.batch.statistics.extremes import Fit, Refusal, return_levels
+from calm.batch.statistics.judgement import RuleShare, equilibrium_share, shares_of
+from calm.batch.statistics.limits import NOT_JUDGED, limits_of, top_knockdown, top_offset
+from calm.batch.statistics.samples import median_step, years_of
 from calm.batch.statistics.series import Column, Series, Times
+from calm.batch.statuses import Ending, endings
 from calm.case import Mooring
 
 if TYPE_CHECKING:
@@ -26,8 +28,6 @@ WORST = 20
 SOURCE = ("currents", "notes", "input_sha256")
 """Attributes of a result that a summary repeats: the record, the rules that were applied to it,
 and the hash of all that the result was computed from."""
-
-_GAPS = frozenset({"no-current", "levels-coincide"})
 
 
 @dataclass(frozen=True)
@@ -43,13 +43,13 @@ class Part:
 
 @dataclass(frozen=True)
 class Response:
-    """What is followed of the line as a whole, by its name in `RESPONSES`.
+    """One of the `RESPONSES`, figures of the line as a whole.
 
     Attributes
     ----------
-    distribution : None where nothing is known
-    begin, low, high : when each interval of time begins, its least and its greatest value, NaN
-        where all of it is unknown
+    distribution : over the profiles; None where it is known in none
+    begin, low, high : of the intervals of time in which it is drawn: when they begin, and their
+        least and greatest value, NaN where it is not known in an interval
     return_levels : by GEV and by POT
     """
 
@@ -63,7 +63,7 @@ class Response:
 
 @dataclass(frozen=True)
 class Profile:
-    """One profile and its responses; `leaning` is what tilts most."""
+    """One profile and its responses; `leaning` is the label of the part that tilts most."""
 
     time: np.datetime64
     knockdown: float
@@ -80,23 +80,22 @@ class Summary:
     Attributes
     ----------
     name : of the mooring
-    count, solved : profiles, and those with an equilibrium
-    without_equilibrium : profiles with a current in which the line does not stand
-    statuses : profiles by status
+    count : profiles
+    endings : profiles by how they ended
+    statuses : profiles by status, those that occur
     begin, end : times of the first and the last profile
     years : that the solved profiles stand for
     parts : the components in the order of the file, then the clamps
     responses : of `RESPONSES`
     worst : by the names in `RANKED`, the worst first
-    rules : that can be judged in every profile
+    rules : whether there is an equilibrium, and the rules that can be judged in every profile
     not_judged : why others are not, by their names
     source : what the result says of where it comes from, by the names in `SOURCE`
     """
 
     name: str
     count: int
-    solved: int
-    without_equilibrium: int
+    endings: Mapping[Ending, int]
     statuses: Mapping[str, int]
     begin: np.datetime64
     end: np.datetime64
@@ -108,6 +107,16 @@ class Summary:
     not_judged: Mapping[str, str]
     source: Mapping[str, str]
 
+    @property
+    def solved(self) -> int:
+        """Profiles that all figures are of."""
+        return self.endings[Ending.SOLVED]
+
+    @property
+    def unsolved(self) -> int:
+        """Profiles that have a current and no figures: without equilibrium, or not converged."""
+        return self.count - self.solved - self.endings[Ending.NO_DATA]
+
 
 def summarize(dataset: Dataset, mooring: Mooring, folder: Path | None = None) -> Summary:
     """Gather what a finished result says.
@@ -116,35 +125,36 @@ def summarize(dataset: Dataset, mooring: Mooring, folder: Path | None = None) ->
     ----------
     dataset : the result, opened without loading it
     mooring : that it was solved for: its limits are judged
-    folder : for a temporary file of the size of the result without compression; the system's
+    folder : for a temporary file, as large as the result is without compression; the system's
         unless given
 
     Profiles that were not solved are left out, and counted. All shares are of profiles: shares of
-    time where the record is even.
+    time where the record is even. It takes some 35 bytes of memory a profile, however many
+    components there are.
 
     Raises
     ------
     UsageError
-        There is no room for the temporary file.
+        There is no room for the temporary file, or the dataset is no result of `calm batch`.
     """
     with Series(dataset, folder) as series:
-        solved = int(np.count_nonzero(series.status == 0))
-        statuses = _statuses(series)
-        responses, worst = _responses(series)
-        without_current = sum(count for name, count in statuses.items() if name in _GAPS)
+        ended = endings(series.statuses)
+        equilibrium = equilibrium_share(ended)
+        unsolved = ended[Ending.NO_EQUILIBRIUM] + ended[Ending.NOT_CONVERGED]
+        step = median_step(series.time)
+        responses, worst = _responses(series, step)
         return Summary(
             name=mooring.file.name,
             count=len(series),
-            solved=solved,
-            without_equilibrium=len(series) - solved - without_current,
-            statuses=statuses,
+            endings=ended,
+            statuses=series.statuses,
             begin=series.time[0],
             end=series.time[-1],
-            years=years_of(series.time, solved),
+            years=years_of(step, ended[Ending.SOLVED]),
             parts=tuple(_parts(series)),
             responses=responses,
             worst=worst,
-            rules=tuple(shares_of(series, limits_of(mooring), solved)),
+            rules=(equilibrium, *shares_of(series, limits_of(mooring), unsolved)),
             not_judged=NOT_JUDGED,
             source={name: str(dataset.attrs[name]) for name in SOURCE if name in dataset.attrs},
         )
@@ -154,7 +164,7 @@ def _parts(series: Series) -> Iterator[Part]:
     def of(values: Column) -> Distribution | None:
         return distribution_of(values, series.time)
 
-    for label in (*series.component_label, *series.clamp_label):
+    for label in series.labels:
         yield Part(
             label,
             label in series.clamp_label,
@@ -164,23 +174,19 @@ def _parts(series: Series) -> Iterator[Part]:
         )
 
 
-def _top_knockdown(series: Series) -> Column:
-    return series.column("knockdown", 0)
-
-
 def _anchor_tension(series: Series) -> Column:
     return series.column("tension_top", -1)
 
 
 def _greatest_tilt(series: Series) -> Column:
     greatest = np.full(len(series), np.nan, np.float32)
-    for label in (*series.component_label, *series.clamp_label):
+    for label in series.labels:
         np.fmax(greatest, series.tilt(label), out=greatest)
     return greatest
 
 
 RESPONSES: Mapping[str, Callable[[Series], Column]] = {
-    "knockdown": _top_knockdown,
+    "knockdown": top_knockdown,
     "anchor_tension": _anchor_tension,
     "tilt": _greatest_tilt,
     "offset": top_offset,
@@ -192,7 +198,7 @@ RANKED = ("knockdown", "anchor_tension", "tilt")
 
 
 def _responses(
-    series: Series,
+    series: Series, step: np.timedelta64
 ) -> tuple[tuple[Response, ...], Mapping[str, tuple[Profile, ...]]]:
     """One response in memory at a time."""
     responses, worst = [], {}
@@ -203,7 +209,7 @@ def _responses(
                 name,
                 distribution_of(values, series.time),
                 *envelope_of(values, series.time),
-                return_levels(series.time, values),
+                return_levels(series.time, values, series.statuses, step),
             )
         )
         if name in RANKED:
@@ -214,13 +220,16 @@ def _responses(
 def _greatest(values: Column) -> list[int]:
     """Indices of the `WORST` greatest values, of like ones the first before the later."""
     known = values[np.isfinite(values)]
-    least = -np.inf
+    if not len(known):
+        return []
+    least = known.min()
     if len(known) > WORST:
         known.partition(len(known) - WORST)
         least = known[len(known) - WORST]
-    reached = np.flatnonzero(values >= least)
-    order = np.argsort(-values[reached], kind="stable")[:WORST]
-    return [int(index) for index in reached[order]]
+    above = np.flatnonzero(values > least)  # fewer than `WORST`, however many are alike
+    above = above[np.argsort(-values[above], kind="stable")]
+    alike = np.flatnonzero(values == least)[: WORST - len(above)]
+    return [int(index) for index in (*above, *alike)]
 
 
 def _profile(series: Series, index: int) -> Profile:
@@ -232,22 +241,5 @@ def _profile(series: Series, index: int) -> Profile:
         anchor_tension=float(series.at("tension_top", index)[-1]),
         tilt=float(tilts[most]),
         offset=hypot(series.at("x_top", index)[0], series.at("y_top", index)[0]),
-        leaning=(*series.component_label, *series.clamp_label)[most],
+        leaning=series.labels[most],
     )
-
-
-def _statuses(series: Series) -> Mapping[str, int]:
-    """Profiles by the meaning of their status, those that occur."""
-    attributes = series.dataset["status"].attrs
-    meanings = dict(
-        zip(
-            np.atleast_1d(attributes["flag_values"]).tolist(),
-            attributes["flag_meanings"].split(),
-            strict=True,
-        )
-    )
-    values, counts = np.unique(series.status, return_counts=True)
-    return {
-        meanings[value]: count
-        for value, count in zip(values.tolist(), counts.tolist(), strict=True)
-    }

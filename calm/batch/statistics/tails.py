@@ -1,4 +1,4 @@
-"""Distributions of extremes fitted by likelihood, and how sure what they extrapolate to is.
+"""Distributions of extremes, fitted by maximum likelihood, and the intervals of their levels.
 
 Coles, S. (2001): An Introduction to Statistical Modeling of Extreme Values, Springer,
 doi:10.1007/978-1-4471-3675-0.
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 CONFIDENCE = 0.95
-"""Of the intervals of `Tail.interval`."""
+"""Share of the intervals of `Tail.interval` that hold the true level, were all assumptions met."""
 
 CHI_SQUARE = 3.841458820694124
 """Quantile of the χ² distribution with one degree of freedom at `CONFIDENCE`."""
@@ -25,11 +25,19 @@ CHI_SQUARE = 3.841458820694124
 LEAST_SHAPE = -0.5
 """Shape from which on the theory of the likelihood holds (Coles 2001, §3.3.2)."""
 
-_SHAPES = (-1.0, 2.0)
+SHAPES = (-1.0, 2.0)
+"""Shapes that are searched. At -1 and below the likelihood has no maximum (Coles 2001, §3.3.2).
+The upper bound is our choice: from 1 on even the mean is infinite, as of no force or depth."""
+
+_AT_BOUND = 0.01  # our choice: a hundred times what the search for a shape is exact to
 _EULER = 0.5772156649015329
 _NO_SHAPE = 1e-8  # a shape nearer to nothing is the exponential or the Gumbel case to rounding
-_FURTHEST = 100.0  # spreads of the data that an interval is searched over
+_FURTHEST = 100.0  # our choice: standard deviations of the data that an interval may reach
 _MOST_DEVIANCE = 1e3  # keeps a search for a root away from infinities
+
+
+class NotFitted(Exception):
+    """A distribution could not be fitted; the message is the reason."""
 
 
 @dataclass(frozen=True)
@@ -38,9 +46,11 @@ class Tail:
 
     Attributes
     ----------
-    location, scale, shape : μ, σ, ξ; the location of a Pareto distribution is its threshold
-    maxima : whether it is of maxima (GEV), else of what is beyond a threshold (Pareto)
-    values : (n,) that it was fitted to
+    location, scale : μ, σ, in the unit of the values; the location of a Pareto distribution is
+        its threshold
+    shape : ξ; a tail with ξ < 0 ends at some value, one with ξ > 0 falls off slowly
+    maxima : whether it describes maxima (GEV), rather than peaks over a threshold (Pareto)
+    values : (n,) maxima or peaks that it was fitted to
     """
 
     location: float
@@ -50,19 +60,27 @@ class Tail:
     values: Floats
 
     def level(self, growth: float) -> float:
-        """The value exceeded with a probability that decides the `growth`: μ + σ (e^{ξ g} - 1)/ξ.
+        """The return level μ + σ (e^{ξ g} - 1)/ξ of a period of T years.
 
-        g = -log(-log(1 - 1/T)) for maxima of years and T years (Coles 2001, eq. 3.4), g = log(λ T)
-        for λ independent peaks a year (eq. 4.12 with λ in place of the rate of exceedances).
+        Parameters
+        ----------
+        growth : g, -log(-log(1 - 1/T)) for maxima of years (Coles 2001, eq. 3.4), log(λ T) for
+            λ independent peaks a year (eq. 4.12 with λ in place of the rate of exceedances)
         """
         return self.location + self.scale * _grown(self.shape, growth)
 
     def interval(self, growth: float) -> tuple[float | None, float | None]:
         """Both ends of the `CONFIDENCE` interval of a level, by its profile likelihood.
 
-        The values of the level at which twice the loss of log-likelihood, maximal over the other
-        parameters, stays within the quantile of χ² (Coles 2001, §2.6.6, §3.3.4, §4.3.3). None for
-        an end that the data do not set.
+        For each possible level the likelihood is maximised over the other parameters. The interval
+        holds the levels for which twice the logarithm of this is less than `CHI_SQUARE` below that
+        of the fit (Coles 2001, §2.6.6, §3.3.4, §4.3.3). An end is None where none is found within
+        100 standard deviations of the values: the data do not bound the level there.
+
+        Raises
+        ------
+        NotFitted
+            The search for a maximum failed.
         """
         best, estimate = self._loss(self.location, self.scale, self.shape), self.level(growth)
 
@@ -99,6 +117,11 @@ def fit_maxima(values: Floats) -> Tail:
     Parameters
     ----------
     values : (n,) independent maxima of blocks of equal length, not all alike
+
+    Raises
+    ------
+    NotFitted
+        The search failed, or ended at a bound of `SHAPES`.
     """
     middle, spread = float(values.mean()), float(values.std())
     scaled = (values - middle) / spread
@@ -109,7 +132,7 @@ def fit_maxima(values: Floats) -> Tail:
 
     found, _ = _least(loss, [-_EULER * scale, log(scale), 0.0])
     location, size = middle + spread * float(found[0]), spread * exp(found[1])
-    return Tail(location, size, float(found[2]), True, values)
+    return Tail(location, size, _inside(found[2]), True, values)
 
 
 def fit_excesses(values: Floats, threshold: float) -> Tail:
@@ -118,6 +141,11 @@ def fit_excesses(values: Floats, threshold: float) -> Tail:
     Parameters
     ----------
     values : (n,) independent peaks, all above the threshold
+
+    Raises
+    ------
+    NotFitted
+        The search failed, or ended at a bound of `SHAPES`.
     """
     size = float(values.mean()) - threshold
     scaled = (values - threshold) / size
@@ -126,7 +154,18 @@ def fit_excesses(values: Floats, threshold: float) -> Tail:
         return _loss(scaled, 0.0, exp(free[0]), free[1], False)
 
     found, _ = _least(loss, [0.0, 0.0])
-    return Tail(threshold, size * exp(found[0]), float(found[1]), False, values)
+    return Tail(threshold, size * exp(found[0]), _inside(found[1]), False, values)
+
+
+def _inside(shape: float) -> float:
+    """A shape that was found, refused where it is only as far as the search went."""
+    for bound in SHAPES:
+        if abs(shape - bound) <= _AT_BOUND:
+            raise NotFitted(
+                f"the fitted shape is {shape:.2f}, a bound of the search: the maximum of the "
+                "likelihood lies there or beyond"
+            )
+    return float(shape)
 
 
 def _grown(shape: float, growth: float) -> float:
@@ -140,7 +179,7 @@ def _loss(values: Floats, location: float, scale: float, shape: float, maxima: b
 
     With s = log(1 + ξ (x - μ)/σ)/ξ each value adds log σ + (1 + ξ) s, and e^{-s} as a maximum.
     """
-    if not (_SHAPES[0] < shape < _SHAPES[1] and scale > 0.0):
+    if not (SHAPES[0] < shape < SHAPES[1] and scale > 0.0):
         return inf
     shape = _apart(shape)
     reached = shape * (values - location) / scale
@@ -158,7 +197,13 @@ def _apart(shape: float) -> float:
 
 
 def _least(loss: Callable[[Any], float], *starts: list[float]) -> tuple[Floats, float]:
-    """Where a loss is least, and how much it is there, from the best of some starts."""
+    """Where a loss is least, and how much it is there, from the best of some starts.
+
+    Raises
+    ------
+    NotFitted
+        The search did not end.
+    """
     from scipy.optimize import minimize
 
     start = min(starts, key=lambda one: loss(np.array(one)))
@@ -166,6 +211,8 @@ def _least(loss: Callable[[Any], float], *starts: list[float]) -> tuple[Floats, 
         return np.array(start), inf
     options = {"xatol": 1e-4, "fatol": 1e-7, "maxiter": 2000}
     found = minimize(loss, start, method="Nelder-Mead", options=options)
+    if not found.success:
+        raise NotFitted(f"the likelihood could not be maximised: {str(found.message).lower()}")
     return found.x, float(found.fun)
 
 

@@ -35,8 +35,7 @@ def summary_document(summary: Summary) -> dict[str, Any]:
         **summary.source,
         "profiles": {
             "count": summary.count,
-            "solved": summary.solved,
-            "without_equilibrium": summary.without_equilibrium,
+            **{ending.name.lower(): count for ending, count in summary.endings.items()},
             "statuses": dict(summary.statuses),
             "begin": _time(summary.begin),
             "end": _time(summary.end),
@@ -97,7 +96,9 @@ def _fit(fit: Fit | Refusal) -> dict[str, Any]:
 def _rule(rule: RuleShare) -> dict[str, Any]:
     return {
         "rule": rule.name,
+        "judged": rule.judged,
         "fails": rule.fails,
+        "fails_at_most": rule.fails_at_most,
         "warns": rule.warns,
         "limits": len(rule.exceedances),
         "unknown": rule.unknown,

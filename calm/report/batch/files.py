@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from calm.batch.result import open_result
 from calm.batch.statistics.summary import summarize
 from calm.report.batch.document import summary_document
 from calm.report.batch.page import summary_html
@@ -19,19 +20,20 @@ if TYPE_CHECKING:
 def write_summary(result: Path, mooring: Mooring) -> Summary:
     """Gather what a finished result says, and write it beside it, as JSON and as a page.
 
+    The result is only read: this can be done, and done again, at any time after it is finished.
+
     Parameters
     ----------
-    result : the .nc file or .zarr folder; RESULT.nc has RESULT.summary.json, RESULT.summary.html
+    result : the .nc file or .zarr folder; RESULT.nc has RESULT.summary.json, RESULT.summary.html,
+        which would be those of a RESULT.zarr beside it too: the later summary takes their place
     mooring : that it was solved for
 
     Raises
     ------
     UsageError
-        A file cannot be written, or there is no room for a temporary one of the size of the result
-        without compression.
+        A file cannot be written, or there is no room for a temporary one as large as the result
+        is without compression.
     """
-    from calm.batch.accessor import open_result
-
     with open_result(result) as dataset:
         summary = summarize(dataset, mooring, result.parent)
     document, page = summary_paths(result)

@@ -30,7 +30,9 @@ METHODS_IN_SHORT = {"gev": "GEV", "pot": "POT"}
 
 DEFINITIONS = (
     "Every profile counts alike: a share of the profiles is a share of the time where the record "
-    "is even. What has no equilibrium is left out of all figures but the first.",
+    "is even. Means, percentiles, maxima and exceedance curves are of the profiles solved. A rule "
+    "fails in a share of the profiles in which it is judged; at most in that share which counts as "
+    "failing every profile with a current that was not solved.",
     "Percentiles: linear between the order statistics; the value of rank 1 + (n - 1) p of n is "
     "the p quantile. Tension of a component: the greater of those at its ends. Knockdown and "
     "depth of a component: of its upper end.",
@@ -44,7 +46,7 @@ def when(time: np.datetime64 | NDArray[np.datetime64] | None) -> str:
 
 
 def percent(share: float | None) -> str:
-    """A share in percent; what is rare is never said not to be."""
+    """A share in percent; one that is not nothing is not written as nothing."""
     if share is None:
         return "-"
     if 0.0 < share < 5e-5:
@@ -71,8 +73,21 @@ def standing(summary: Summary) -> str:
     return ", ".join(ended)
 
 
+def left_out(summary: Summary) -> str:
+    """That profiles with a current were not solved, and what that does to figures; or nothing."""
+    if not summary.unsolved:
+        return ""
+    with_current = summary.solved + summary.unsolved
+    return (
+        f"{grouped(summary.unsolved)} of {grouped(with_current)} profiles with a current "
+        f"({percent(summary.unsolved / with_current)} %) were not solved. They are in none of the "
+        "means, percentiles, maxima and curves; where they are the strongest currents, these are "
+        "too low."
+    )
+
+
 def refusals(summary: Summary) -> Iterator[str]:
-    """Why return levels are not told: each reason once, with what it is the reason for."""
+    """Why there are no return levels: each reason once, with the responses that it holds for."""
     reasons: dict[str, list[str]] = {}
     for response in summary.responses:
         for fit in response.return_levels:

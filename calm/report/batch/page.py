@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from calm.batch.statistics.extremes import EXTRAPOLATION
 from calm.checks.finding import State
 from calm.report.batch.figures import exceedance_figure, parts_figure, series_figure
-from calm.report.batch.labels import DEFINITIONS, extent, standing
+from calm.report.batch.labels import DEFINITIONS, extent, left_out, standing
 from calm.report.batch.tables import (
     levels_tables,
     limits_table,
@@ -43,12 +43,13 @@ def summary_report(summary: Summary) -> Report:
             (
                 Figure("Responses of the line", exceedance_figure(summary)),
                 Figure("Clamped instruments, or components", parts_figure(moving)),
+                *_left_out(summary),
             ),
         ),
         Part("Return levels", (*levels_tables(summary), Prose((_EXTRAPOLATED,)))),
         Part("Worst profiles", tuple(worst_tables(summary))),
         Part("Limits", (limits_table(summary), _not_judged(summary))),
-        Part("Distributions", tuple(statistics_tables(summary))),
+        Part("Distributions", (*_left_out(summary), *statistics_tables(summary))),
         Part("What is not judged", (Prose(UNSEEN, State.UNKNOWN),)),
         Part("Inputs", tuple(_inputs(summary))),
     )
@@ -60,7 +61,13 @@ def _result(summary: Summary) -> Iterator[Block]:
     lost = summary.count - summary.solved
     yield Prose((f"{standing(summary)}.",), State.WARN if lost else None)
     yield rules_table(summary)
+    yield from _left_out(summary)
     yield Prose(DEFINITIONS)
+
+
+def _left_out(summary: Summary) -> Iterator[Prose]:
+    if summary.unsolved:
+        yield Prose((left_out(summary),), State.WARN)
 
 
 def _not_judged(summary: Summary) -> Prose:
@@ -78,7 +85,7 @@ def _inputs(summary: Summary) -> Iterator[Block]:
 _EXTRAPOLATED = (
     f"No level is told for more than {EXTRAPOLATION:.0f} times the length of the record. A level "
     "says how the mooring would answer to currents like those of the record: not to what the "
-    "record is too short to hold, nor to a current field that changes. A fitted tail knows no "
-    "bounds: a tilt beyond 90° or a knockdown below the seabed says that the record does not reach "
-    "so far."
+    "record is too short to hold or lost in its gaps, nor to a current field that changes. A "
+    "fitted tail knows no bounds: a tilt beyond 90° or a knockdown below the seabed says that the "
+    "record does not reach so far."
 )

@@ -16,6 +16,7 @@ from calm.report.batch.labels import (
     QUANTITY,
     TITLES,
     extent,
+    left_out,
     percent,
     refusals,
     standing,
@@ -39,7 +40,7 @@ def summary_table(summary: Summary) -> RenderableType:
     Components and clamps with the 99 % percentile and the maximum of each quantity, how often
     each rule fails, the worst profile by each response, and return levels.
     """
-    lost = summary.count - summary.solved
+    lost, note = summary.count - summary.solved, left_out(summary)
     return Group(
         Text(summary.name, style="bold"),
         Text(extent(summary)),
@@ -49,6 +50,7 @@ def summary_table(summary: Summary) -> RenderableType:
         Text(),
         _rules(summary),
         Text(),
+        *([warning(note), Text()] if note else []),
         _worst(summary),
         Text(),
         *_levels(summary),
@@ -81,23 +83,21 @@ def _rules(summary: Summary) -> Table:
     table = plain_table()
     table.add_column("rule")
     table.add_column("fails\n% of profiles", justify="right", no_wrap=True)
+    table.add_column("at most\n%", justify="right", no_wrap=True)
     table.add_column("warns\n%", justify="right", no_wrap=True)
     table.add_column("most often broken by", overflow="fold")
-    if summary.without_equilibrium:
-        share = summary.without_equilibrium / summary.count
-        table.add_row("Equilibrium", Text(percent(share), style=WARNED), "-", "")
     for rule in summary.rules:
         style = WARNED if rule.fails else ""
-        told = Text(_broken(rule))
-        table.add_row(rule.title, Text(percent(rule.fails), style=style), percent(rule.warns), told)
+        shares = (percent(rule.fails_at_most), percent(rule.warns), Text(_broken(rule)))
+        table.add_row(rule.title, Text(percent(rule.fails), style=style), *shares)
     return table
 
 
 def _broken(rule: RuleShare) -> str:
     """The part that breaks a rule most often, and how many cannot be judged by it."""
     unknown = f"{rule.unknown} unknown" if rule.unknown else ""
-    most = max(rule.exceedances, key=lambda one: one.share or 0.0)
-    if not most.share:
+    most = max(rule.exceedances, key=lambda one: one.share or 0.0, default=None)
+    if most is None or not most.share:
         return unknown
     broken = f"{most.limit.component}, {percent(most.share)} %"
     return f"{broken}; {unknown}" if unknown else broken

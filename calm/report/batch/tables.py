@@ -11,7 +11,7 @@ from calm.batch.statistics.extremes import METHODS, Fit, Level
 from calm.batch.statistics.summary import WORST
 from calm.checks.finding import State
 from calm.quantities import QUANTITIES
-from calm.report.batch.labels import QUANTITY, TITLES, percent, refusals, when
+from calm.report.batch.labels import QUANTITY, TITLES, grouped, percent, refusals, when
 from calm.report.result_tables import figure_cell, quantity_column
 from calm.report.section import Cell, Column, Prose, Table
 
@@ -23,14 +23,12 @@ if TYPE_CHECKING:
 
 def rules_table(summary: Summary) -> Table:
     """How often each rule fails or warns anywhere on the line."""
-    rows = []
-    if summary.without_equilibrium:
-        share = summary.without_equilibrium / summary.count
-        rows.append((Cell("Equilibrium"), _share(share, State.FAIL), Cell("-"), Cell(""), Cell("")))
-    rows += [
+    rows = [
         (
             Cell(rule.title),
+            Cell(grouped(rule.judged)),
             _share(rule.fails, State.FAIL),
+            _share(rule.fails_at_most, State.FAIL),
             _share(rule.warns, State.WARN),
             Cell(str(len(rule.exceedances))),
             Cell(str(rule.unknown), state=State.UNKNOWN if rule.unknown else None),
@@ -39,12 +37,17 @@ def rules_table(summary: Summary) -> Table:
     ]
     columns = (
         Column("rule"),
-        Column("fails", "% of profiles", numeric=True),
-        Column("warns", "% of profiles", numeric=True),
+        Column("judged in", "profiles", numeric=True),
+        Column("fails", "% of them", numeric=True),
+        Column("at most", "%", numeric=True),
+        Column("warns", "% of them", numeric=True),
         Column("limits", numeric=True),
         Column("of them unknown", numeric=True),
     )
-    note = "Equilibrium: of all profiles, as profiles without one; other rules: of those solved."
+    note = (
+        "At most: if the rule fails, too, in every profile that has a current and was not solved. "
+        "A limit that is judged in no profile is unknown."
+    )
     return Table("How often a rule fails", columns, tuple(rows), note)
 
 
@@ -61,8 +64,8 @@ def limits_table(summary: Summary) -> Table:
         Column("when", share=0.0),
     )
     note = (
-        "Strength and least tension: at the ends of a piece and at the clamps on it. Anchor "
-        "sliding: H + friction × V against friction × weight in water / factor."
+        "Strength: at the ends of a piece and at the clamps on it. Least tension: at the ends of a "
+        "piece. Anchor sliding: H + friction × V against friction × weight in water / factor."
     )
     return Table("Limits", columns, tuple(rows), note, sortable=True)
 
@@ -123,7 +126,7 @@ def levels_tables(summary: Summary) -> Iterator[Table | Prose]:
         yield Prose((f"{reason[0].upper()}{reason[1:]}.",), State.UNKNOWN)
 
 
-def _share(share: float, state: State) -> Cell:
+def _share(share: float | None, state: State) -> Cell:
     return Cell(percent(share), state=state if share else None)
 
 

@@ -3,6 +3,8 @@
 import numpy as np
 import xarray as xr
 
+import calm
+
 COMPONENTS = ("sphere", "wire", "meter", "rope", "anchor")
 CLAMPS = ("sbe37 1", "sbe37 2")
 STATUSES = ("converged", "no-equilibrium", "slack", "no-current")
@@ -11,6 +13,34 @@ OF_COMPONENT = (
 )  # fmt: skip
 OF_CLAMP = ("clamp_depth", "clamp_x", "clamp_y", "clamp_tension", "clamp_tilt", "clamp_knockdown")
 OF_ENDS = ("top_depth", "anchor_vertical", "anchor_horizontal", "used_buoyancy")
+
+FILE = """
+name: Made
+environment: {depth: 300 m, current: {speed: 0.2 m/s, toward: 90 deg}}
+line:
+  - {use: steel, label: sphere}
+  - {use: rope, length: 100 m, label: wire, clamps: [{use: logger, at: 10 m, label: sbe37 1},
+      {use: logger, at: 20 m, label: sbe37 2}]}
+  - {use: current-meter, label: meter}
+  - {use: rope, length: 100 m}
+  - {use: block, label: anchor}
+components:
+  steel: {kind: sphere, diameter: 1 m, buoyancy: 4000 N, mass: 100 kg, role: float,
+    depth_rating: 150 m}
+  rope: {kind: cable, diameter: 10 mm, weight: 0.1 N/m, stiffness: 100 kN, working_load: 10 kN}
+  logger: {kind: body, length: 0 m, buoyancy: 0 N, drag_area: 0 m^2, cd: 0, role: instrument}
+  current-meter: {kind: body, length: 1 m, buoyancy: -10 N, drag_area: 0.1 m^2, cd: 1,
+    role: instrument, max_tilt: 20 deg, warn_tilt: 10 deg}
+  block: {kind: anchor, weight: 9 kN}
+checks: {maximum_knockdown: 30 m, rating_margin: 30 m}
+"""
+"""A mooring whose parts are `COMPONENTS` and `CLAMPS`."""
+
+
+def made_mooring(folder, text=FILE):
+    path = folder / "made.yaml"
+    path.write_text(text, encoding="utf-8")
+    return calm.load(path)
 
 
 def make_result(

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from calm.batch.accessor import open_result
+import calm.report.batch.accessor  # noqa: F401  every dataset has `.calm` from here on
+from calm.batch.result import open_result
 from calm.errors import UsageError
-from tests.unit.batch.made_result import make_result
+from tests.unit.batch.made_result import COMPONENTS, make_result
 
 
 @pytest.fixture
@@ -43,6 +44,13 @@ def test_the_top_is_the_first_component(dataset):
     xr.testing.assert_identical(
         dataset.calm.knockdown("top").drop_attrs(), dataset.calm.knockdown("sphere").drop_attrs()
     )
+
+
+@pytest.mark.parametrize("label", ["wire", "anchor"])
+def test_the_top_is_the_first_component_even_where_another_is_called_so(label):
+    labels = tuple("top" if one == label else one for one in COMPONENTS)
+    dataset = make_result(1, labels=labels, knockdown=np.arange(5.0)[None] + 1.0)
+    assert dataset.calm.knockdown("top").values.tolist() == [1.0]
 
 
 def test_what_is_told_carries_its_time_and_name(dataset):

@@ -1,6 +1,4 @@
-"""Return levels: published figures, distributions whose parameters are known, and refusals."""
-
-from math import exp, log, log1p
+"""Return levels: how maxima and peaks are chosen, what is told, and what is refused."""
 
 import numpy as np
 import pytest
@@ -10,26 +8,11 @@ from calm.batch.statistics.extremes import (
     LEAST_PEAKS,
     Fit,
     Refusal,
-    annual_maxima,
-    peaks_over,
     return_levels,
 )
-from calm.batch.statistics.tails import CHI_SQUARE, CONFIDENCE, fit_excesses, fit_maxima
+from calm.batch.statistics.samples import annual_maxima, median_step, peaks_over
 
 HOUR, DAY = np.timedelta64(3600, "s"), np.timedelta64(86400, "s")
-
-# Annual maxima of the sea level at Port Pirie, 1923 to 1987 [m]: Coles (2001), table 1.1
-PORT_PIRIE = np.array([
-    4.03, 3.83, 3.65, 3.88, 4.01, 4.08, 4.18, 3.80, 4.36, 3.96, 3.98, 4.69, 3.85, 3.96, 3.85, 3.93,
-    3.75, 3.63, 3.57, 4.25, 3.97, 4.05, 4.24, 4.22, 3.73, 4.37, 4.06, 3.71, 3.96, 4.06, 4.55, 3.79,
-    3.89, 4.11, 3.85, 3.86, 3.86, 4.21, 4.01, 4.11, 4.24, 3.96, 4.21, 3.74, 3.85, 3.88, 3.66, 4.11,
-    3.71, 4.18, 3.90, 3.78, 3.91, 3.72, 4.00, 3.66, 3.62, 4.33, 4.55, 3.75, 4.08, 3.90, 3.88, 3.94,
-    4.33,
-])  # fmt: skip
-
-
-def of_maxima(period):
-    return -log(-log1p(-1.0 / period))
 
 
 def times(count, step=HOUR):
@@ -44,83 +27,10 @@ def daily_peaks(years, shape, scale, seed):
     )
 
 
-def test_the_sea_level_at_port_pirie_as_published():
-    # Coles (2001), section 3.4.1: estimates to the digits printed there
-    tail = fit_maxima(PORT_PIRIE)
-    assert tail.location == pytest.approx(3.87, abs=0.005)
-    assert tail.scale == pytest.approx(0.198, abs=5e-4)
-    assert tail.shape == pytest.approx(-0.050, abs=5e-4)
-    assert tail.level(of_maxima(10)) == pytest.approx(4.30, abs=0.005)
-    assert tail.level(of_maxima(100)) == pytest.approx(4.69, abs=0.005)
-    # the interval of the 100-year level was read off a curve there: a hundredth of a metre or so
-    assert tail.interval(of_maxima(100)) == pytest.approx((4.50, 5.27), abs=0.015)
-
-
-def test_at_the_ends_of_an_interval_the_likelihood_has_fallen_by_half_of_chi_square():
-    # the profile computed another way: scipy's likelihood, maximized over scale and shape
-    tail, growth = fit_maxima(PORT_PIRIE), of_maxima(100)
-    best = stats.genextreme.logpdf(PORT_PIRIE, -tail.shape, tail.location, tail.scale).sum()
-    probability = exp(-exp(-growth))
-
-    def fall(level):
-        def loss(free):
-            scale, shape = exp(free[0]), free[1]
-            location = level - scale * stats.genextreme.ppf(probability, -shape)
-            with np.errstate(divide="ignore"):
-                return -stats.genextreme.logpdf(PORT_PIRIE, -shape, location, scale).sum()
-
-        found = optimize.minimize(loss, [log(tail.scale), 0.01], method="Nelder-Mead")
-        return best + found.fun
-
-    for end in tail.interval(growth):
-        assert 2.0 * fall(end) == pytest.approx(CHI_SQUARE, rel=2e-3)
-
-
-def test_the_quantile_is_that_of_the_confidence():
-    assert pytest.approx(stats.chi2.ppf(CONFIDENCE, 1), rel=1e-12) == CHI_SQUARE
-
-
-@pytest.mark.parametrize("shape", [-0.2, 0.0, 0.15])
-def test_a_known_distribution_of_maxima_is_found_again(shape):
-    values = stats.genextreme.rvs(
-        -shape, loc=20.0, scale=3.0, size=400, random_state=np.random.default_rng(1)
-    )
-    tail = fit_maxima(values)
-    by_scipy = stats.genextreme.fit(values, -tail.shape, loc=tail.location, scale=tail.scale)
-    assert (-tail.shape, tail.location, tail.scale) == pytest.approx(by_scipy, abs=2e-3)
-    for period in (10, 100):
-        low, high = tail.interval(of_maxima(period))
-        assert low < stats.genextreme.isf(1.0 / period, -shape, loc=20.0, scale=3.0) < high
-        fitted = stats.genextreme.isf(1.0 / period, -tail.shape, tail.location, tail.scale)
-        assert tail.level(of_maxima(period)) == pytest.approx(fitted, rel=1e-6)
-
-
-@pytest.mark.parametrize("shape", [-0.2, 0.0, 0.15])
-def test_a_known_distribution_of_peaks_is_found_again(shape):
-    values = 10.0 + stats.genpareto.rvs(
-        shape, scale=2.0, size=400, random_state=np.random.default_rng(2)
-    )
-    tail = fit_excesses(values, 10.0)
-    by_scipy = stats.genpareto.fit(values - 10.0, tail.shape, floc=0.0, scale=tail.scale)
-    assert (tail.shape, tail.scale) == pytest.approx((by_scipy[0], by_scipy[2]), abs=2e-3)
-    low, high = tail.interval(log(1000.0))
-    assert low < 10.0 + stats.genpareto.isf(1e-3, shape, scale=2.0) < high
-
-
-def test_most_intervals_hold_the_true_level():
-    # 95 % of the intervals should; of 60, fewer than 52 is rarer than one in a thousand
-    random, growth, held = np.random.default_rng(3), log(300.0), 0
-    for _ in range(60):
-        values = 10.0 + stats.genpareto.rvs(0.1, scale=2.0, size=100, random_state=random)
-        low, high = fit_excesses(values, 10.0).interval(growth)
-        held += low < 10.0 + stats.genpareto.isf(1.0 / 300.0, 0.1, scale=2.0) < (high or np.inf)
-    assert held >= 52
-
-
 def test_levels_go_with_the_unit():
     time, values = daily_peaks(20, 0.05, 2.0, 4)
     for here, there in zip(
-        return_levels(time, values), return_levels(time, 0.001 * values - 5.0), strict=True
+        return_levels(time, values, {}), return_levels(time, 0.001 * values - 5.0, {}), strict=True
     ):
         assert here.shape == pytest.approx(there.shape, abs=1e-4)
         for level, other in zip(here.levels, there.levels, strict=True):
@@ -131,7 +41,7 @@ def test_levels_go_with_the_unit():
 def test_both_ways_agree_with_the_truth():
     # a peak a day: the T-year level is exceeded once in 365.25 T days
     time, values = daily_peaks(40, 0.1, 2.0, 5)
-    gev, pot = return_levels(time, values)
+    gev, pot = return_levels(time, values, {})
     assert (gev.method, pot.method) == ("gev", "pot")
     assert gev.count in (39, 40)  # the last day of the record may fall short of the last year
     for fit in (gev, pot):
@@ -144,12 +54,12 @@ def test_both_ways_agree_with_the_truth():
 
 def test_the_same_record_gives_the_same_levels():
     time, values = daily_peaks(12, 0.1, 2.0, 6)
-    assert return_levels(time, values) == return_levels(time, values)
+    assert return_levels(time, values, {}) == return_levels(time, values, {})
 
 
 def test_no_level_beyond_four_times_the_record():
     time, values = daily_peaks(12, 0.1, 2.0, 7)
-    for fit in return_levels(time, values):
+    for fit in return_levels(time, values, {}):
         assert [level.period for level in fit.levels] == [2, 10]
 
 
@@ -201,7 +111,7 @@ def test_a_moving_maximum_of_two_has_half_as_many_clusters():
 
 def test_a_short_record_is_refused_with_its_length():
     time, values = daily_peaks(0.5, 0.1, 2.0, 10)
-    gev, pot = return_levels(time, values)
+    gev, pot = return_levels(time, values, {})
     assert isinstance(gev, Refusal) and isinstance(pot, Refusal)
     assert "10 whole years" in gev.reason and "of the 1 year begun, 0 have 90 %" in gev.reason
     assert "183 days" in pot.reason
@@ -209,7 +119,7 @@ def test_a_short_record_is_refused_with_its_length():
 
 def test_a_few_years_do_for_peaks_only():
     time, values = daily_peaks(9.5, 0.1, 2.0, 11)
-    gev, pot = return_levels(time, values)
+    gev, pot = return_levels(time, values, {})
     assert "of the 10 years begun, 9 have 90 %" in gev.reason
     assert isinstance(pot, Fit)
 
@@ -217,14 +127,14 @@ def test_a_few_years_do_for_peaks_only():
 def test_one_long_storm_has_too_few_peaks():
     time = times(2 * 8766)
     values = np.sin(np.linspace(0.0, np.pi, len(time)))
-    _, pot = return_levels(time, values)
+    _, pot = return_levels(time, values, {})
     assert f"{LEAST_PEAKS} independent peaks are needed" in pot.reason
 
 
 def test_gaps_do_not_count_as_record():
     time, values = daily_peaks(2.0, 0.1, 2.0, 12)
     values[: len(values) - 300] = np.nan
-    _, pot = return_levels(time, values)
+    _, pot = return_levels(time, values, {})
     assert "300 days" in pot.reason
 
 
@@ -237,16 +147,84 @@ def test_gaps_do_not_count_as_record():
     ],
 )
 def test_what_cannot_be_fitted_is_said(time, values, reason):
-    for refusal in return_levels(time, values):
+    for refusal in return_levels(time, values, {}):
         assert reason in refusal.reason
 
 
 def test_a_tail_that_ends_abruptly_has_levels_without_intervals():
-    # uniform: the generalised Pareto distribution of shape -1
     time = times(4 * 8766)
-    values = np.random.default_rng(13).uniform(size=len(time))
-    _, pot = return_levels(time, values)
-    assert pot.shape < -0.5
+    values = stats.genpareto.rvs(
+        -0.75, scale=0.75, size=len(time), random_state=np.random.default_rng(13)
+    )
+    _, pot = return_levels(time, values, {})
+    assert -0.9 < pot.shape < -0.6
     assert "no intervals" in pot.rules
     assert all((level.low, level.high) == (None, None) for level in pot.levels)
-    assert all(level.level == pytest.approx(1.0, abs=1e-3) for level in pot.levels)
+    assert all(level.level == pytest.approx(1.0, abs=2e-3) for level in pot.levels)
+
+
+def test_a_fit_at_the_bound_of_the_search_is_refused():
+    # uniform: the generalised Pareto distribution of shape -1, where the search ends
+    time = times(4 * 8766)
+    values = np.random.default_rng(13).uniform(size=len(time))
+    _, pot = return_levels(time, values, {})
+    assert isinstance(pot, Refusal)
+    assert "a bound of the search" in pot.reason
+
+
+@pytest.mark.parametrize("searches", [0, 1])
+def test_a_search_that_fails_is_refused(monkeypatch, searches):
+    # the first search is that of the fit, the next is one of an end of an interval
+    minimize, done = optimize.minimize, []
+
+    def failing(*given, **options):
+        found = minimize(*given, **options)
+        done.append(found)
+        if len(done) > searches:
+            found.success, found.message = False, "Maximum number of iterations exceeded."
+        return found
+
+    monkeypatch.setattr(optimize, "minimize", failing)
+    time, values = daily_peaks(12, 0.1, 2.0, 6)
+    gev, pot = return_levels(time, values, {})
+    for refusal in (gev, pot):
+        assert isinstance(refusal, Refusal)
+        assert "could not be maximised: maximum number of iterations" in refusal.reason
+
+
+def test_no_level_where_the_strongest_currents_have_no_solution():
+    time, values = daily_peaks(30, 0.1, 2.0, 25)
+    strongest = np.argsort(values)[-19:]
+    kept = values.copy()
+    kept[strongest] = np.nan
+    ended = {"converged": len(values) - 19, "no-equilibrium": 14, "anchor-lifts": 5}
+    # what would be told from the others: an interval that the true level is far beyond
+    true = 10.0 + stats.genpareto.isf(1.0 / 36525.0, 0.1, scale=2.0)
+    assert return_levels(time, kept, {})[0].levels[-1].high < 0.8 * true
+    for refusal in return_levels(time, kept, ended):
+        assert isinstance(refusal, Refusal)
+        assert "of the profiles with a current 19 without equilibrium" in refusal.reason
+
+
+def test_no_level_where_a_profile_did_not_converge():
+    time, values = daily_peaks(12, 0.1, 2.0, 15)
+    for refusal in return_levels(time, values, {"converged": len(time), "not-converged": 1}):
+        assert "1 not converged" in refusal.reason
+
+
+def test_gaps_and_weak_currents_leave_levels_and_gaps_are_told():
+    time, values = daily_peaks(12, 0.1, 2.0, 16)
+    values[100:120] = np.nan
+    values[3000:3030] = np.nan
+    ended = {"converged": len(time) - 50, "no-current": 20, "slack": 20, "above-surface": 10}
+    for fit in return_levels(time, values, ended):
+        assert isinstance(fit, Fit)
+        assert "1.1 % of the time from the first profile to the last is missing" in fit.rules
+    assert all(
+        "missing" not in fit.rules for fit in return_levels(*daily_peaks(12, 0.1, 2, 16), {})
+    )
+
+
+def test_the_median_step_is_that_of_the_times_in_any_unit():
+    for unit in ("s", "us", "ns"):
+        assert median_step(times(9).astype(f"datetime64[{unit}]")) == HOUR

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 import calm
-from calm.batch.statistics.limits import NOT_JUDGED, limits_of, meant_for_the_surface
+from calm.batch.statistics.limits import NOT_JUDGED, limits_of
 from calm.batch.statistics.series import Series
 from calm.case import Mooring
 from calm.checks.finding import State
+from calm.checks.posture import reaches_the_surface
 from calm.checks.rules import RULES, STANDING
 from calm.files.mooring import Checks, MinimumTensions
 from calm.shipped import shipped_folder
@@ -40,8 +41,7 @@ def judged_here(mooring, result):
                 continue
             value = limit.values(series)
             if np.isnan(value).any():
-                if limit.rule.name == "knockdown":  # a line without a shape in still water
-                    found[key] = State.UNKNOWN, None, None
+                found.setdefault(key, (State.UNKNOWN, None, None))
                 continue
             state = limit.beyond if limit.broken(value)[0] else State.PASS
             if key not in found or state.severity > found[key][0].severity:
@@ -69,7 +69,7 @@ def test_one_profile_is_judged_as_by_the_design_check(path: Path, checks):
     # the rating of a float at the surface is asked for here, as another current may take it under
     more = {key for key, (state, *_) in here.items() if state is State.UNKNOWN and key not in there}
     assert here.keys() - more == there.keys()
-    assert len(more) <= meant_for_the_surface(mooring)
+    assert len(more) <= reaches_the_surface(mooring)
     for key, (state, value, limit) in there.items():
         assert here[key][0] is state, key
         # the anchor's rules are stated another way round: see below
@@ -127,6 +127,14 @@ def test_a_clamp_bears_on_the_strength_of_its_piece():
                 greatest[limit.component] = float(limit.values(series)[0])
     assert greatest.pop(piece.label) == 9000.0
     assert set(greatest.values()) == {1.0}
+
+
+@pytest.mark.parametrize("name", ["s1000", "chain-and-rope-surface"])
+def test_what_a_line_is_known_to_be_meant_for_is_heeded(name):
+    mooring = calm.load(shipped_folder("lines") / f"{name}.yaml")
+    for meant in (True, False):
+        rules = {limit.rule.name for limit in limits_of(Mooring(mooring.file, meant))}
+        assert ("reserve" in rules) is meant
 
 
 def test_what_lies_on_the_seabed_is_not_slack():

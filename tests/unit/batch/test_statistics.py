@@ -1,49 +1,26 @@
 """What a batch result says, by hand and by numpy."""
 
 import errno
+import tracemalloc
 
 import numpy as np
 import pytest
 
-import calm
-from calm.batch.accessor import open_result
+from calm.batch.result import open_result
 from calm.batch.statistics import series
 from calm.batch.statistics.distribution import MOST_INTERVALS, SHARES, distribution_of, envelope_of
-from calm.batch.statistics.extremes import Refusal
+from calm.batch.statistics.extremes import Fit, Refusal
 from calm.batch.statistics.summary import WORST, summarize
 from calm.errors import UsageError
 from calm.report.batch.document import summary_document
-from tests.unit.batch.made_result import make_result, stormy
+from tests.unit.batch.made_result import FILE, made_mooring, make_result, stormy
 
 HOUR = np.timedelta64(1, "h")
-
-FILE = """
-name: Made
-environment: {depth: 300 m, current: {speed: 0.2 m/s, toward: 90 deg}}
-line:
-  - {use: steel, label: sphere}
-  - {use: rope, length: 100 m, label: wire, clamps: [{use: logger, at: 10 m, label: sbe37 1},
-      {use: logger, at: 20 m, label: sbe37 2}]}
-  - {use: current-meter, label: meter}
-  - {use: rope, length: 100 m}
-  - {use: block, label: anchor}
-components:
-  steel: {kind: sphere, diameter: 1 m, buoyancy: 4000 N, mass: 100 kg, role: float,
-    depth_rating: 150 m}
-  rope: {kind: cable, diameter: 10 mm, weight: 0.1 N/m, stiffness: 100 kN, working_load: 10 kN}
-  logger: {kind: body, length: 0 m, buoyancy: 0 N, drag_area: 0 m^2, cd: 0, role: instrument}
-  current-meter: {kind: body, length: 1 m, buoyancy: -10 N, drag_area: 0.1 m^2, cd: 1,
-    role: instrument, max_tilt: 20 deg, warn_tilt: 10 deg}
-  block: {kind: anchor, weight: 9 kN}
-checks: {maximum_knockdown: 30 m, rating_margin: 30 m}
-"""
 
 
 @pytest.fixture(scope="module")
 def mooring(tmp_path_factory):
-    path = tmp_path_factory.mktemp("made") / "made.yaml"
-    path.write_text(FILE, encoding="utf-8")
-    return calm.load(path)
+    return made_mooring(tmp_path_factory.mktemp("made"))
 
 
 def hours(count):
@@ -112,7 +89,10 @@ def test_profiles_are_counted_by_how_they_ended(mooring):
     assert summary.statuses == {
         "converged": 5, "no-equilibrium": 2, "slack": 1, "no-current": 2
     }  # fmt: skip
-    assert (summary.count, summary.solved, summary.without_equilibrium) == (10, 5, 3)
+    assert (summary.count, summary.solved, summary.unsolved) == (10, 5, 3)
+    assert {ending.value: count for ending, count in summary.endings.items()} == {
+        "solved": 5, "without equilibrium": 3, "not converged": 0, "without data": 2
+    }  # fmt: skip
     assert summary.years == pytest.approx(5.0 / 8766.0)
     assert all(part.tilt.count == 5 for part in summary.parts)
 
@@ -147,47 +127,14 @@ def test_every_component_and_clamp_has_its_own_figures(mooring):
     assert by_label["sbe37 1"].knockdown.maximum == 450.0
 
 
-def test_shares_of_limits_and_rules_by_hand(mooring):
-    # the meter leans 1 … 100 degrees (20 are allowed, 10 warn), the rope below it bears too much
-    # in the first 5 profiles, the top is knocked down by more than 30 m in the last 3
-    ramp = np.arange(1.0, 101.0)
-    tilt, tension = np.ones((100, 5)), np.full((100, 5), 5000.0)
-    tilt[:, 2] = ramp
-    tension[:5, 3] = 10001.0
-    summary = summarize(
-        make_result(
-            100, tilt=tilt, tension_top=tension, tension_bottom=tension,
-            knockdown=np.where(ramp > 97.0, 31.0, 30.0), depth_top=119.0 + 0.02 * ramp,
-            anchor_vertical=3000.0 + 0.0 * ramp, anchor_horizontal=ramp * 20.0,
-        ),
-        mooring,
-    )  # fmt: skip
-    rules = {rule.name: rule for rule in summary.rules}
-    assert (rules["tilt"].fails, rules["tilt"].warns) == (0.80, 0.10)
-    failing, warning = (one for one in rules["tilt"].exceedances if one.limit.component == "meter")
-    assert (failing.share, failing.worst) == (0.80, 100.0)
-    assert failing.time == np.datetime64("2001-01-05T03:00")
-    assert warning.share == 0.90
-    assert rules["strength"].fails == 0.05
-    assert rules["strength"].unknown == 3  # sphere, meter and anchor give no load
-    assert rules["knockdown"].fails == 0.03
-    # 119 + 0.02 k beyond 150 - 30 from the 51st on; of the loggers and the meter nothing is known
-    assert rules["depth-rating"].fails == 0.50
-    assert rules["depth-rating"].unknown == 3
-    # 9000 ≥ 1.5 (3000 + 20 k / 0.6) up to k = 90, and the slide is the same rule
-    assert rules["anchor-weight"].fails == rules["anchor-sliding"].fails == 0.10
-    assert rules["anchor-uplift"].fails == 0.0
-    assert rules["slack"].fails == 0.0
-    assert "reserve" not in rules
-
-
-def test_shares_are_of_the_profiles_solved(mooring):
-    summary = summarize(
-        make_result(10, status=[0, 1] * 5, knockdown=[40.0, 0.0, 0.0, 0.0, 0.0] * 2), mooring
-    )
-    knockdown = next(rule for rule in summary.rules if rule.name == "knockdown")
-    assert knockdown.exceedances[0].count == 5
-    assert knockdown.fails == pytest.approx(0.2)
+def test_levels_are_refused_where_profiles_were_not_solved(mooring):
+    count = 12 * 366
+    summary = summarize(stormy(mooring, count, "24h", status=np.arange(count) == 700), mooring)
+    for response in summary.responses:
+        for refusal in response.return_levels:
+            assert "1 without equilibrium" in refusal.reason
+    gaps = summarize(stormy(mooring, count, "24h", status=3 * (np.arange(count) == 700)), mooring)
+    assert isinstance(gaps.responses[0].return_levels[1], Fit)
 
 
 def test_the_worst_profiles_come_with_their_dates(mooring):
@@ -226,20 +173,13 @@ def test_a_short_record_says_why_it_has_no_return_levels(mooring):
         assert isinstance(pot, Refusal) and "21 days" in pot.reason
 
 
-def test_nothing_solved_is_said(mooring):
-    summary = summarize(make_result(5, status=[1] * 5), mooring)
-    assert summary.solved == 0
-    assert all(part.tension is None for part in summary.parts)
-    assert all(response.distribution is None for response in summary.responses)
-    assert summary.worst["knockdown"] == ()
-    assert {rule.fails for rule in summary.rules} == {0.0}
-
-
 def test_a_line_without_a_shape_in_still_water_has_no_knockdown(mooring):
     made = make_result(5, knockdown=np.full((5, 5), np.nan), tilt=np.ones((5, 5)))
     summary = summarize(made, mooring)
     assert summary.parts[0].knockdown is None
     assert summary.parts[0].tilt.count == 5
+    rule = next(rule for rule in summary.rules if rule.name == "knockdown")
+    assert (rule.judged, rule.fails, rule.unknown) == (0, None, 1)
     assert summary.worst["knockdown"] == ()
     assert len(summary.worst["tilt"]) == 5
     assert np.isnan(summary.worst["tilt"][0].knockdown)
@@ -249,6 +189,40 @@ def test_one_profile_will_do(mooring):
     summary = summarize(make_result(1), mooring)
     assert summary.parts[0].tilt.percentiles == (1.0,) * 4
     assert summary.years == 0.0
+
+
+def test_a_part_called_top_keeps_its_own_figures(tmp_path):
+    mooring = made_mooring(tmp_path, FILE.replace("label: anchor", "label: top"))
+    labels = ("sphere", "wire", "meter", "rope", "top")
+    tilt = np.arange(5.0) * np.ones((3, 1))
+    summary = summarize(make_result(3, labels=labels, tilt=tilt), mooring)
+    assert [part.tilt.maximum for part in summary.parts[:5]] == [0.0, 1.0, 2.0, 3.0, 4.0]
+
+
+def test_what_is_no_result_is_refused(mooring):
+    for other in (make_result(3).drop_vars("status"), make_result(3).drop_attrs(deep=True)):
+        with pytest.raises(UsageError, match="no result of calm batch"):
+            summarize(other, mooring)
+
+
+def test_memory_grows_by_a_few_columns_whatever_the_parts(mooring, tmp_path, monkeypatch):
+    # of 46 columns; what does not grow is taken away by the difference of two lengths
+    monkeypatch.setattr(series, "_ROWS", 1024)
+    peaks = []
+    for count in (40_000, 120_000):
+        path = tmp_path / f"{count}.nc"
+        made = make_result(count, knockdown=np.arange(count) % 1009)
+        sizes = {name: {"chunksizes": (4096, *made[name].shape[1:])} for name in made.data_vars}
+        made.to_netcdf(path, engine="h5netcdf", encoding=sizes)
+        del made
+        tracemalloc.start()
+        with open_result(path) as opened:
+            tracemalloc.reset_peak()  # opening is xarray's
+            summarize(opened, mooring, tmp_path)
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    # of each profile its time (8), two or three columns (4 each), and a few marks (1 each)
+    assert (peaks[1] - peaks[0]) / 80_000 < 24.0
 
 
 @pytest.mark.parametrize("suffix", ["nc", "zarr"])

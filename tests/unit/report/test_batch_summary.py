@@ -4,6 +4,7 @@ import io
 import json
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -34,12 +35,18 @@ def mooring():
 
 @pytest.fixture(scope="module")
 def made(mooring):
-    return stormy(mooring, DAYS, step="24h", status=np.arange(DAYS) % 101 == 3)
+    return stormy(mooring, DAYS, step="24h", status=3 * (np.arange(DAYS) % 101 == 3))
 
 
 @pytest.fixture(scope="module")
 def summary(mooring, made):
     return summarize(made, mooring)
+
+
+@pytest.fixture(scope="module")
+def fallen(mooring):
+    """One in ten profiles has no equilibrium."""
+    return summarize(stormy(mooring, 200, status=np.arange(200) % 10 == 3), mooring)
 
 
 @pytest.fixture(scope="module")
@@ -66,7 +73,9 @@ def test_the_document_is_strict_json_and_says_all(summary):
     assert said["calm"] == calm.__version__
     assert said["input_sha256"] == "0" * 64
     lost = sum(day % 101 == 3 for day in range(DAYS))
-    assert said["profiles"]["statuses"] == {"converged": DAYS - lost, "no-equilibrium": lost}
+    assert said["profiles"]["statuses"] == {"converged": DAYS - lost, "no-current": lost}
+    assert (said["profiles"]["solved"], said["profiles"]["no_data"]) == (DAYS - lost, lost)
+    assert said["profiles"]["no_equilibrium"] == said["profiles"]["not_converged"] == 0
     assert said["profiles"]["begin"] == "2001-01-01T00:00:00Z"
     first = said["components"][0]
     assert first["knockdown"].keys() == {
@@ -83,8 +92,23 @@ def test_the_document_is_strict_json_and_says_all(summary):
     curve = said["responses"]["tilt"]["exceedance"]
     assert len(curve["share"]) == len(curve["value"]) > 20
     assert {limit["bound"] for limit in said["limits"]} == {"at least", "at most"}
-    assert {limit["rule"] for limit in said["limits"]} == {rule["rule"] for rule in said["rules"]}
+    named = {rule["rule"] for rule in said["rules"]}
+    assert {limit["rule"] for limit in said["limits"]} | {"equilibrium"} == named
     assert "backup" in said["not_judged"]
+
+
+def test_the_document_is_that_of_the_docs(made, mooring):
+    page = Path(__file__).parents[3] / "docs" / "batch-statistics.md"
+    shown = json.loads(re.search(r"```json\n(.*?)```", page.read_text(encoding="utf-8"), re.S)[1])
+    said = summary_document(summarize(made.assign_attrs(currents="a record"), mooring))
+    assert said.keys() == shown.keys()
+    assert said["profiles"].keys() == shown["profiles"].keys()
+    for name in ("components", "rules", "limits"):
+        assert said[name][0].keys() == shown[name][0].keys()
+    levels, of = said["responses"]["knockdown"], shown["responses"]["knockdown"]
+    assert levels.keys() == of.keys()
+    assert levels["return_levels"]["gev"].keys() == of["return_levels"]["gev"].keys()
+    assert said["worst"]["knockdown"][0].keys() == shown["worst"]["knockdown"][0].keys()
 
 
 def test_a_refusal_is_said_in_place_of_levels(short):
@@ -94,20 +118,41 @@ def test_a_refusal_is_said_in_place_of_levels(short):
     assert "levels" not in levels["gev"]
 
 
-def test_the_table_fits_a_terminal(summary, short, nothing):
-    for one in (summary, short, nothing):
+def test_the_table_fits_a_terminal(summary, fallen, short, nothing):
+    for one in (summary, fallen, short, nothing):
         assert max(map(len, table(one).splitlines())) <= 80
 
 
 def test_the_table_says_what_matters(summary):
     text = table(summary)
-    assert "no-equilibrium" in text
+    assert "no-current" in text
+    assert "not solved" not in text
     row = next(line for line in text.splitlines() if line.startswith("ADCP float"))
     one = summary.parts[0].knockdown
     assert f"{one.percentiles[2]:.1f}" in row and f"{one.maximum:.1f}" in row
     assert "Equilibrium" in text and "Anchor weight" in text
     assert "knockdown of the top [m], GEV" in text
     assert "–" in text
+
+
+def test_what_is_left_out_is_said_beside_the_figures(fallen):
+    said = "20 of 200 profiles with a current (10.00 %) were not solved"
+    assert said in " ".join(table(fallen).split())
+    assert summary_html(fallen).count(said) == 3  # with the rules, the curves and the percentiles
+    rules = summary_document(fallen)["rules"]
+    assert rules[0] == {
+        "rule": "equilibrium", "judged": 200, "fails": 0.1, "fails_at_most": 0.1, "warns": 0.0,
+        "limits": 0, "unknown": 0,
+    }  # fmt: skip
+    strength = next(rule for rule in rules if rule["rule"] == "strength")
+    assert (strength["fails"], strength["fails_at_most"]) == (0.0, 0.1)
+    row = next(line for line in table(fallen).splitlines() if line.startswith("Strength"))
+    assert row.split()[1:4] == ["0.00", "10.00", "0.00"]
+
+
+def test_least_tension_is_not_said_to_include_the_clamps(summary):
+    said = " ".join(summary_html(summary).split())
+    assert "Least tension: at the ends of a piece." in said
 
 
 def test_the_table_gives_each_reason_once(short):
@@ -120,6 +165,8 @@ def test_nothing_solved_can_be_shown(nothing):
     text = table(nothing)
     assert "4 no-equilibrium" in text
     assert "100.00" in text
+    row = next(line for line in text.splitlines() if line.startswith("Strength"))
+    assert row.split()[1:4] == ["-", "-", "-"]
     assert "not known in any profile" in summary_html(nothing)
     json.loads(to_json([summary_document(nothing)]), parse_constant=pytest.fail)
 

@@ -1,0 +1,92 @@
+"""A result of `calm batch`, opened, and where its parts stand in it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from calm.errors import UsageError
+from calm.files.explain import unknown
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+TOP = "top"
+"""What the first component, the free end of the line, is always called besides its own label."""
+
+_ROWS = 65536  # profiles read at a time
+
+
+def open_result(path: Path) -> Dataset:
+    """A result of `calm batch`, a .nc file or a .zarr folder, of which nothing is loaded yet."""
+    import xarray as xr
+
+    if path.suffix == ".zarr":
+        stored: Dataset = xr.open_zarr(path, chunks=None)
+        return stored
+    return xr.open_dataset(path, engine="h5netcdf")
+
+
+def labels_of(dataset: Dataset, name: str) -> tuple[str, ...]:
+    """The labels of a result, such as `clamp_label`; none where it has no such parts."""
+    if name not in dataset.variables:
+        return ()
+    return tuple(
+        label.decode() if isinstance(label, bytes) else str(label) for label in dataset[name].values
+    )
+
+
+def place_of(dataset: Dataset, label: str) -> tuple[str, int]:
+    """Prefix of the variables of a part of the line in a result, and its column.
+
+    Parameters
+    ----------
+    label : of a component or a clamp; ``top`` is the first component, whatever else is called so
+
+    Raises
+    ------
+    UsageError
+        No part is called so; the message offers the nearest that is.
+    """
+    components, clamps = (labels_of(dataset, f"{kind}_label") for kind in ("component", "clamp"))
+    if label == TOP:
+        return "", 0
+    if label in components:
+        return "", components.index(label)
+    if label in clamps:
+        return "clamp_", clamps.index(label)
+    parts = [TOP, *components, *clamps]
+    raise UsageError(unknown(f"no part of the line is called `{label}`", label, parts))
+
+
+def status_names(dataset: Dataset) -> tuple[str, ...]:
+    """What the numbers of `status` in a result mean; the first is 0.
+
+    Raises
+    ------
+    UsageError
+        The dataset is no result of `calm batch`.
+    """
+    attributes = dataset["status"].attrs if "status" in dataset else {}
+    names = tuple(str(attributes.get("flag_meanings", "")).split())
+    numbers = np.atleast_1d(attributes.get("flag_values", ())).tolist()
+    if not names or numbers != list(range(len(names))):
+        raise UsageError("this is no result of calm batch: its `status` has no flag meanings")
+    return names
+
+
+def statuses_of(dataset: Dataset) -> dict[str, int]:
+    """How many profiles of a result ended with each status that occurs.
+
+    Raises
+    ------
+    UsageError
+        The dataset is no result of `calm batch`.
+    """
+    names, status = status_names(dataset), dataset["status"]
+    counts = np.zeros(len(names), np.int64)
+    for start in range(0, len(status), _ROWS):
+        counts += np.bincount(status[start : start + _ROWS].values, minlength=len(names))
+    return {name: count for name, count in zip(names, counts.tolist(), strict=True) if count}
