@@ -18,6 +18,11 @@ def clamps_in(pieces: Sequence[Piece]) -> list[Clamp]:
     return [clamp for piece in pieces for clamp in piece.clamps]
 
 
+def clamps_down(pieces: Sequence[Piece]) -> list[Clamp]:
+    """The clamps of a mooring's line from its top to its anchor, the order of its results."""
+    return [clamp for piece in pieces for clamp in sorted(piece.clamps, key=lambda clamp: clamp.at)]
+
+
 def components_of(
     pieces: Sequence[Piece], solution: Solution, still: Solution | None = None
 ) -> Components:

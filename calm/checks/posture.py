@@ -7,7 +7,7 @@ from dataclasses import replace
 from math import hypot
 from typing import TYPE_CHECKING
 
-from calm.case.measure import clamps_in
+from calm.case.measure import clamps_down
 from calm.checks.finding import State, Verdict, at_most, rule, unknown
 from calm.files import Component
 from calm.quantities import say
@@ -163,7 +163,7 @@ def _tilted(result: Result) -> Iterator[tuple[str, float, Component]]:
     pieces = result.file.pieces[:-1]
     for row, piece in zip(result.components, pieces, strict=False):
         yield row.label, row.tilt, piece.component
-    for clamp_row, clamp in zip(result.clamps, clamps_in(pieces), strict=True):
+    for clamp_row, clamp in zip(result.clamps, clamps_down(pieces), strict=True):
         yield clamp_row.label, clamp_row.tilt, clamp.component
 
 
@@ -174,5 +174,5 @@ def _at_depth(result: Result) -> Iterator[tuple[str, float, Component]]:
         if result.type == "surface" and row.depth_top <= AT_SURFACE:
             continue
         yield row.label, max(row.depth_top, row.depth_bottom), piece.component
-    for clamp_row, clamp in zip(result.clamps, clamps_in(pieces), strict=True):
+    for clamp_row, clamp in zip(result.clamps, clamps_down(pieces), strict=True):
         yield clamp_row.label, clamp_row.depth, clamp.component
