@@ -17,17 +17,15 @@ from calm.batch.kernel.outcome import OF_CLAMP, OF_ENDS, OF_PIECE
 from calm.batch.kernel.plan import Plan, base_water, plan_of
 from calm.batch.kernel.search import SOLVED
 from calm.batch.kernel.stragglers import Rows, known_levels, solve_one, water_of
+from calm.batch.statuses import STATUSES
 from calm.case import Mooring
-from calm.case.measure import clamps_of, components_of
+from calm.case.measure import clamps_down, clamps_of, components_of
 from calm.errors import NoEquilibrium
 from calm.physics.line import Floats, Water
 from calm.solve import Status
 
 BLOCK = 1024
 """Profiles that a worker takes at a time."""
-
-STATUSES = (*(status.label for status in Status), "no-current", "levels-coincide")
-"""What the numbers of `Profiles.status` mean; the first is 0."""
 
 _NO_CURRENT, _LEVELS_COINCIDE = STATUSES.index("no-current"), STATUSES.index("levels-coincide")
 _ANCHOR_LIFTS = STATUSES.index(Status.ANCHOR_LIFTS.label)
@@ -246,7 +244,7 @@ def _measured(
     pieces, clamps, ends = rows
     above = mooring.file.pieces[:-1]
     depth_top = np.full(pieces.shape[-1], np.nan)
-    clamp_depth, labels = np.full(clamps.shape[-1], np.nan), _clamp_labels(mooring)
+    clamp_depth = np.full(clamps.shape[-1], np.nan)
     still = mooring.at_rest
     if still is not None:
         depth_top = components_of(above, still).depth_top
@@ -266,18 +264,10 @@ def _measured(
     columns |= {name: ends[:, i] for i, name in enumerate(OF_ENDS) if name != "end_depth"}
     return Profiles(
         component_label=tuple(piece.label for piece in mooring.file.pieces),
-        clamp_label=labels,
+        clamp_label=tuple(clamp.label for clamp in clamps_down(above)),
         knockdown=np.hstack([columns["depth_top"][:, :-1] - depth_top, nothing]),
         clamp_knockdown=columns["clamp_depth"] - clamp_depth,
         status=status,
         alone=alone,
         **columns,
     )
-
-
-def _clamp_labels(mooring: Mooring) -> tuple[str, ...]:
-    """Down the line, as results list them."""
-    clamped = [
-        sorted(piece.clamps, key=lambda clamp: clamp.at) for piece in mooring.file.pieces[:-1]
-    ]
-    return tuple(clamp.label for clamps in clamped for clamp in clamps)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from calm.batch.profiles import Profiles
 from calm.case import Mooring
+from calm.case.measure import clamps_down
 from calm.files import Clamp
 from calm.files.rigid import Body
 from calm.physics.line import Floats
@@ -73,7 +74,6 @@ def shape_of(mooring: Mooring) -> Shape:
         {"kind": "body", "length": "0 m", "buoyancy": "0 N", "drag_area": "0 m^2", "cd": 0}
     )
     pieces = []
-    owned: list[bool] = []
     component, distance = list(range(len(tops))), tops.tolist()
     for piece in mooring.file.pieces:
         index = piece.index
@@ -86,13 +86,13 @@ def shape_of(mooring: Mooring) -> Shape:
             distance += (tops[index] + inner).tolist()
             piece = replace(piece, length=length, fit_top_depth=None, clamps=clamps)
         pieces.append(piece)
-        owned += [clamp.use == "" for clamp in sorted(clamps, key=lambda clamp: clamp.at)]
     order = np.lexsort((distance, component))
+    own = np.array([clamp.use == "" for clamp in clamps_down(pieces)], bool)
     return Shape(
         mooring=Mooring(replace(mooring.file, pieces=tuple(pieces))),
         component=np.array(component, np.int32)[order],
         distance=np.array(distance)[order],
-        clamps=tuple(np.flatnonzero(~np.array(owned, bool)).tolist()),
-        own=tuple(np.flatnonzero(owned).tolist()),
+        clamps=tuple(np.flatnonzero(~own).tolist()),
+        own=tuple(np.flatnonzero(own).tolist()),
         order=order,
     )

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from calm.batch.kernel.plan import plan_of
-from calm.batch.profiles import STATUSES, Profiles, solve_profiles
+from calm.batch.profiles import Profiles, solve_profiles
+from calm.batch.statuses import STATUSES
 from calm.case import Mooring, Result, load
 from calm.errors import NoEquilibrium
 from calm.files import CurrentTable

@@ -7,7 +7,8 @@ import pytest
 
 from calm.batch import profiles
 from calm.batch.kernel.lanes import LANES
-from calm.batch.profiles import STATUSES, Profiles, solve_profiles
+from calm.batch.profiles import Profiles, solve_profiles
+from calm.batch.statuses import STATUSES
 from calm.case import Mooring, load
 from calm.shipped import shipped_folder
 from tests.unit.batch.drawn_profiles import CHARACTERS, drawn

@@ -1,16 +1,17 @@
 import json
 import zlib
+from pathlib import Path
 
 import numpy as np
 import pytest
 import zarr
 
 from calm.batch.dataset import layout_of
-from calm.batch.profiles import STATUSES, solve_profiles
+from calm.batch.profiles import solve_profiles
 from calm.batch.store.chunks import packed, unpacked
 from calm.batch.store.identity import differences, identity_of, to_text
-from calm.batch.store.store import WORK, open_store
-from tests.unit.batch.made import MadeRecord, made_mooring
+from calm.batch.store.store import open_store
+from tests.unit.batch.made import MadeRecord, content, made_mooring
 
 
 @pytest.fixture
@@ -18,8 +19,14 @@ def store(tmp_path):
     mooring, record = made_mooring(tmp_path), MadeRecord(40)
     layout = layout_of(mooring, record, None)
     identity = to_text(identity_of(mooring, record, {}))
-    with open_store(tmp_path / "s.part", layout, 16, identity) as opened:
-        yield opened
+    return open_store(tmp_path / "s.part", layout, 16, identity)
+
+
+STATUS = (16, *[0] * 8)
+
+
+def missing(store):
+    return [number for number in range(store.count) if store.flag(number) is None]
 
 
 def chunks_of(store, number):
@@ -56,7 +63,7 @@ def test_chunks_are_one_stream_that_any_inflater_reads():
 
 
 def test_zarr_reads_what_is_done_and_nan_elsewhere(store):
-    store.write(1, chunks_of(store, 1))
+    store.write(1, chunks_of(store, 1), STATUS)
     group = zarr.open_group(store.folder, mode="r")
     depth = group["depth_top"][:]
     assert depth.shape == (40, 4)
@@ -65,25 +72,66 @@ def test_zarr_reads_what_is_done_and_nan_elsewhere(store):
     assert group["component_label"][:].tolist()[0] == "top float"
 
 
-def test_a_block_is_done_when_its_flag_tells_its_size(store):
-    assert store.missing() == [0, 1, 2]
-    store.write(1, chunks_of(store, 1))
-    assert store.missing() == [0, 2]
-    assert store.statuses().tolist() == [16, *[0] * (len(STATUSES) - 1)]
-    flag = store.folder / WORK / "1"
-    size = flag.read_text()
-    for torn in ("", size[:-1]):
-        flag.write_text(torn)
-        assert store.missing() == [0, 1, 2]
-    flag.write_text(size)
+def test_a_block_is_done_when_its_flag_tells_its_sizes(store):
+    assert missing(store) == [0, 1, 2]
+    flag = store.write(1, chunks_of(store, 1), STATUS)
+    assert missing(store) == [0, 2]
+    assert store.flag(1) == flag
+    assert flag.statuses == STATUS
+    file = store.work / "1"
+    told = file.read_text()
+    for torn in ("", told[:-1], "{}", "17", bytes(len(told)).decode()):
+        file.write_text(torn)
+        assert missing(store) == [0, 1, 2]
+    file.write_text(told)
     (store.folder / "tilt" / "1.0").write_bytes(b"")
-    assert store.missing() == [0, 1, 2]
+    assert missing(store) == [0, 1, 2]
 
 
-def test_the_last_block_counts_its_own_profiles_alone(store):
-    store.write(2, chunks_of(store, 2))
-    assert store.span(2) == (32, 40)
-    assert store.statuses().sum() == 8
+def test_a_chunk_that_has_changed_is_found_out(store):
+    flag = store.write(1, chunks_of(store, 1), STATUS)
+    tilt = next(variable for variable in store.in_blocks if variable.name == "tilt")
+    file = store.chunk_file(tilt, 1)
+    data = file.read_bytes()
+    assert store.chunk(tilt, 1, flag) == data
+    file.write_bytes(bytes(len(data)))  # as a power cut leaves it
+    assert missing(store) == [0, 2]
+    assert store.chunk(tilt, 1, flag) is None
+    file.unlink()
+    assert store.chunk(tilt, 1, flag) is None
+    store.forget(1)
+    store.forget(1)
+    assert missing(store) == [0, 1, 2]
+
+
+def test_a_file_being_written_is_never_seen_in_part(store, monkeypatch):
+    """Somebody who comes late writes the same file again: until it is whole the other one stays."""
+    store.write(1, chunks_of(store, 1), STATUS)
+    file = store.folder / "tilt" / "1.0"
+    data, seen = file.read_bytes(), []
+    written = Path.write_bytes
+
+    def slowly(path, content):
+        written(path, content[:5])
+        seen.append(file.read_bytes())
+        return written(path, content)
+
+    monkeypatch.setattr(Path, "write_bytes", slowly)
+    store.write(1, chunks_of(store, 1), STATUS)
+    assert len(seen) > 10
+    assert set(seen) == {data}
+    assert not list(store.folder.rglob("*.part"))
+
+
+def test_metadata_that_a_power_cut_took_comes_back(tmp_path, store):
+    mooring, record = made_mooring(tmp_path), MadeRecord(40)
+    before = content(store.folder)
+    for path in store.folder.rglob(".z*"):
+        path.write_bytes(b"\0\0")
+    (store.work / "0123.part").write_bytes(b"left by a killed process")
+    identity = to_text(identity_of(mooring, record, {}))
+    open_store(store.folder, layout_of(mooring, record, None), 16, identity)
+    assert content(store.folder) == before
 
 
 def test_differences_are_told_in_words_and_not_all_of_many():
