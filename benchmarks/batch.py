@@ -5,7 +5,9 @@
 
 A deep mooring of twelve components in made currents at twenty levels, hourly: eddies, a tide and
 noise. The command is timed whole, from its start to the page of its statistics, and without them;
-memory is the most that the process ever held. The last table is that of `docs/batch.md`.
+memory is the most that the process ever held. What one thread can read, hash, pack and write is
+timed with profiles that are solved already: that is all that a process has to do whose profiles are
+solved by others. The last table is that of `docs/batch.md`.
 """
 
 import subprocess
@@ -13,16 +15,20 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
 from machine import describe
 
 import calm
+from calm.batch.profiles import Batch, Profiles
 from calm.batch.records.record import open_record
-from calm.batch.run import run_batch
+from calm.batch.run import BLOCK, run_batch
+from calm.batch.statuses import Ending
 
 COUNTS = (100_000, 262_980)
-SIZES, CORES = (10**7, 10**8, 10**9), (2, 16, 128, 1024)
+SIZES = (10**7, 10**8, 10**9)
+PARTS = 16  # of a record, each with a process of its own
 SAMPLE = 65_536  # profiles for the solver alone
 MOORING = """\
 name: Deep line of twelve
@@ -104,8 +110,33 @@ def without_statistics(
         count = record.count
     rate = count / (time.perf_counter() - start)
     assert outcome.done
-    print(f"{'':12}{outcome.failed} without equilibrium, {output.stat().st_size / 1e6:.0f} MB")
+    unsolved = count - outcome.endings[Ending.SOLVED]
+    print(
+        f"{'':12}{unsolved} without equilibrium, {outcome.alone} solved one by one, "
+        f"{output.stat().st_size / 1e6:.0f} MB"
+    )
     return rate, output.stat().st_size / count
+
+
+def without_solving(mooring: calm.Mooring, path: Path, output: Path) -> float:
+    """Profiles a second that are read, hashed, packed and written: those of one block, again."""
+    with open_record(path, seabed=5000.0) as record:
+        depth, u, v, _ = record.profiles(0, min(BLOCK, record.count))
+    known = vars(calm.solve_profiles(mooring, u, v, depth))
+
+    def solved(batch: Batch, u: np.ndarray, *_: object, **__: object) -> Profiles:
+        columns = {
+            name: values[: len(u)] if isinstance(values, np.ndarray) else values
+            for name, values in known.items()
+        }
+        return Profiles(**columns)
+
+    start = time.perf_counter()
+    with patch.object(Batch, "solve", solved), open_record(path, seabed=5000.0) as record:
+        assert run_batch(mooring, record, output, workers=1).done
+        count = record.count
+    output.unlink()
+    return count / (time.perf_counter() - start)
 
 
 MEASURE = """\
@@ -140,10 +171,12 @@ def main() -> None:
             path = folder / f"{count}.nc"
             write_record(path, count)
             print(f"\n{count} profiles, record of {path.stat().st_size / 1e6:.0f} MB")
+            rates = {}
             for workers in (1, 2):
                 alone = solver_alone(mooring, path, workers)
                 output = folder / f"{count}-{workers}.nc"
                 rate, size = without_statistics(mooring, path, output, workers)
+                rates[workers] = rate
                 output.unlink()
                 seconds, memory = whole_command(file, path, output, workers)
                 print(
@@ -151,16 +184,27 @@ def main() -> None:
                     f"NetCDF to NetCDF {rate:8.0f}/s, {rate / alone:.0%}; "
                     f"whole command {seconds:6.1f} s, {count / seconds:8.0f}/s, {memory:.0f} MB"
                 )
-    print_sizes(rate / workers, size)
+            served = without_solving(mooring, path, folder / f"{count}.served.nc")
+            print(f"{'':12}without solving, by one thread: {served:8.0f}/s")
+    print_sizes(rates, served, size)
 
 
-def print_sizes(rate: float, size: float) -> None:
-    """Print the hours of large batches at so many profiles a second a core, and their bytes."""
-    print(f"\nAt {rate:.0f} profiles a second a core and {size:.0f} bytes a profile:\n")
-    print(f"| profiles | result | {' | '.join(f'{cores} cores' for cores in CORES)} |")
-    print(f"| --- | --- | {' | '.join('---' for _ in CORES)} |")
+def print_sizes(rates: dict[int, float], served: float, size: float) -> None:
+    """Print the hours of large batches.
+
+    Parameters
+    ----------
+    rates : profiles a second by workers, measured
+    served : what one thread reads and writes a second
+    size : bytes of a profile in the result
+    """
+    print(f"\nOne thread reads and writes {served:.0f} profiles a second, {size:.0f} bytes each.\n")
+    columns = {"1 core": rates[1], "2 cores": rates[2]}
+    columns[f"{PARTS} parts of 2 cores, computed"] = PARTS * rates[2]
+    print(f"| profiles | result | {' | '.join(columns)} |")
+    print(f"| --- | --- | {' | '.join('---' for _ in columns)} |")
     for count in SIZES:
-        hours = (f"{count / rate / cores / 3600.0:.2g} h" for cores in CORES)
+        hours = (f"{count / rate / 3600.0:.2g} h" for rate in columns.values())
         print(f"| {count:.0e} | {count * size / 1e9:.3g} GB | {' | '.join(hours)} |")
 
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator
 from functools import lru_cache
 from itertools import islice
+from time import monotonic, sleep
 from typing import TYPE_CHECKING, Any
 
 from calm.batch.profiles import Batch, Profiles
 from calm.case import Mooring
 from calm.errors import UsageError
+from calm.version import __version__
 
 if TYPE_CHECKING:
     from calm.batch.records.record import Levels
@@ -20,21 +22,30 @@ AHEAD = 2
 PATIENCE = "20s"
 """How long the scheduler may take to answer."""
 
+ASKED_ANEW = 1.0
+"""Seconds between two looks at how many workers there are."""
+
 
 def solved_on(
-    address: str, mooring: Mooring, blocks: Iterator[tuple[int, Levels]]
+    address: str,
+    mooring: Mooring,
+    blocks: Iterator[tuple[int, Levels]],
+    tell: Callable[[str], None],
 ) -> Generator[tuple[int, Profiles]]:
     """The blocks solved, as they are ready; those of a worker that is lost are solved by another.
+
+    Workers may come and go. Where there is none yet, the first is waited for.
 
     Parameters
     ----------
     address : of the scheduler, such as ``tcp://10.0.0.1:8786``
     blocks : numbers with their profiles; no more are taken than the workers have use for
+    tell : called when there is no worker
 
     Raises
     ------
     UsageError
-        `distributed` is not installed, or no scheduler answers.
+        `distributed` is not installed, no scheduler answers, or CALM is missing there.
     ConnectionError
         The scheduler is lost, or a block time and again with its worker.
     """
@@ -43,7 +54,8 @@ def solved_on(
         from distributed import CancelledError, Client, KilledWorker, as_completed
     except ImportError:
         raise UsageError(
-            "--scheduler needs dask: pip install 'calm-mooring[cluster]', here and on the workers"
+            "--scheduler needs dask: pip install 'calm-mooring[cluster]', here, for the scheduler "
+            "and on the workers"
         ) from None
     # a block goes with its task, so that it can be solved again wherever that is
     with dask.config.set({"distributed.admin.large-graph-warning-threshold": "1GB"}):
@@ -52,25 +64,55 @@ def solved_on(
         except (OSError, ValueError) as error:
             raise UsageError(f"no scheduler answers at {address}: {error}") from None
         with client:
+            workers = _Workers(client)
             numbers: dict[Any, int] = {}
 
-            def submitted() -> Iterator[Any]:
-                for number, levels in blocks:
+            def more() -> Iterator[Any]:
+                """Tasks for the workers there are, beside those under way."""
+                for number, levels in islice(blocks, max(AHEAD * workers.count - len(numbers), 0)):
                     task = client.submit(solve_there, mooring, levels, pure=False, retries=3)
                     numbers[task.key] = number
                     yield task
 
-            tasks = submitted()
-            window = AHEAD * max(sum(client.nthreads().values()), 1)
-            under_way = as_completed(islice(tasks, window), loop=client.loop)
+            if not workers.count:
+                tell(f"the scheduler at {address} has no worker yet: waiting for the first")
+                workers.wait()
+            under_way = as_completed(more(), loop=client.loop)
             for task in under_way:
                 try:
                     profiles = task.result()
                 except (CancelledError, KilledWorker) as error:
                     raise ConnectionError(f"the workers were lost: {error}") from None
-                yield numbers.pop(task.key), profiles
+                except (ImportError, AttributeError, RuntimeError) as error:
+                    # what dask makes of modules that are not there
+                    raise UsageError(
+                        f"the scheduler or a worker cannot take the work: {error}; "
+                        f"calm-mooring {__version__} is needed there too"
+                    ) from None
+                number = numbers.pop(task.key)
                 task.release()
-                under_way.update(islice(tasks, 1))
+                under_way.update(more())  # so that no worker waits for what is done with this one
+                yield number, profiles
+
+
+class _Workers:
+    """How many threads the workers of a scheduler have, asked for now and then."""
+
+    def __init__(self, client: Any) -> None:
+        self._client = client
+        self._known, self._due = 0, 0.0
+
+    @property
+    def count(self) -> int:
+        now = monotonic()
+        if now >= self._due:
+            self._known = sum(self._client.nthreads().values()) or min(self._known, 1)
+            self._due = now + ASKED_ANEW
+        return self._known
+
+    def wait(self) -> None:
+        while not self.count:
+            sleep(ASKED_ANEW / 4)
 
 
 def solve_there(mooring: Mooring, levels: Levels) -> Profiles:

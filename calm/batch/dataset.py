@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.profiles import STATUSES, Profiles
+from calm.batch.profiles import Profiles
 from calm.batch.shape import Shape
+from calm.batch.statuses import STATUSES
 from calm.case import Mooring
+from calm.case.measure import clamps_down
 from calm.version import __version__
 
 if TYPE_CHECKING:
@@ -57,6 +59,7 @@ _NODE: dict[str, tuple[str, str, Attributes]] = {
     "shape_tension": ("N", "tension of the line", {}),
 }
 _ALONG = {"component": _COMPONENT, "clamp": _CLAMP, "node": _NODE}
+_PLACE = {"latitude": "degrees_north", "longitude": "degrees_east"}
 _TIME_UNITS = (("seconds", 10**9), ("milliseconds", 10**6), ("nanoseconds", 1))
 
 
@@ -114,14 +117,10 @@ class Layout:
 def layout_of(mooring: Mooring, record: Record, shape: Shape | None) -> Layout:
     """Lay out the result of a mooring in the profiles of a record."""
     pieces = mooring.file.pieces
-    clamps = [
-        clamp.label
-        for piece in pieces[:-1]
-        for clamp in sorted(piece.clamps, key=lambda clamp: clamp.at)
-    ]
+    clamps = [clamp.label for clamp in clamps_down(pieces)]
     sizes = {"time": record.count, "component": len(pieces)}
     unit, nanoseconds = _time_unit(record.time)
-    place, where = _place(mooring)
+    place, where = _place(mooring, record)
     variables = [
         Variable("time", ("time",), "<i8", {
             "standard_name": "time", "long_name": "time of the profile", "axis": "T",
@@ -148,7 +147,10 @@ def layout_of(mooring: Mooring, record: Record, shape: Shape | None) -> Layout:
             "coordinates": where.strip(),
         })
     )  # fmt: skip
-    return Layout(sizes, tuple(variables), _attributes(mooring, record), nanoseconds)
+    attributes = _attributes(mooring, record)
+    if any(variable.name in _PLACE for variable in place):
+        attributes["featureType"] = "timeSeriesProfile"
+    return Layout(sizes, tuple(variables), attributes, nanoseconds)
 
 
 _LABELLED = {"component": "component_label", "clamp": "clamp_label", "node": "node_distance"}
@@ -185,28 +187,34 @@ def _nodes(shape: Shape) -> list[Variable]:
     ]
 
 
-def _place(mooring: Mooring) -> tuple[list[Variable], str]:
-    """The mooring as a station, and what variables say of it among their coordinates."""
+def _place(mooring: Mooring, record: Record) -> tuple[list[Variable], str]:
+    """The mooring as a station, and what variables say of it among their coordinates.
+
+    Where the mooring file has no position, that is the place of the currents. Without either there
+    is no feature in the sense of the conventions, which is at a place.
+    """
     name = np.array(mooring.file.name or "mooring", dtype=np.str_)
-    station = Variable(
-        "station", (), name.dtype.str,
-        {"cf_role": "timeseries_id", "long_name": "name of the mooring"}, name,
-    )  # fmt: skip
+    station: Attributes = {"long_name": "name of the mooring"}
     position = mooring.file.position
-    if position is None:
-        return [station], " station"
-    latitude, longitude = (
-        Variable(
-            name, (), "<f8",
-            {"standard_name": name, "long_name": f"{name} of the anchor", "units": unit},
-            np.array(value),
-        )
-        for name, unit, value in (
-            ("latitude", "degrees_north", position.latitude),
-            ("longitude", "degrees_east", position.longitude),
-        )
-    )  # fmt: skip
-    return [station, latitude, longitude], " latitude longitude station"
+    if position is not None:
+        degrees, what = [position.latitude, position.longitude], "the anchor"
+    else:
+        known = [record.source.get(name) for name in _PLACE]
+        degrees, what = [float(value) for value in known if value], "the currents"
+    if len(degrees) < len(_PLACE):
+        return [Variable("station", (), name.dtype.str, station, name)], " station"
+    station["cf_role"] = "timeseries_id"
+    return [
+        Variable("station", (), name.dtype.str, station, name),
+        *(
+            Variable(
+                name, (), "<f8",
+                {"standard_name": name, "long_name": f"{name} of {what}", "units": unit},
+                np.array(value),
+            )
+            for (name, unit), value in zip(_PLACE.items(), degrees, strict=True)
+        ),
+    ], f" {' '.join(_PLACE)} station"  # fmt: skip
 
 
 def _time_unit(time: NDArray[np.datetime64]) -> tuple[str, int]:
@@ -228,7 +236,6 @@ def _attributes(mooring: Mooring, record: Record) -> Attributes:
         made = f"{datetime.fromtimestamp(int(epoch), UTC):%Y-%m-%dT%H:%M:%SZ} {made}"
     attributes: Attributes = {
         "Conventions": "CF-1.11",
-        "featureType": "timeSeriesProfile",
         "title": f"{name}: the mooring in every current profile of a record",
         "summary": mooring.file.description,
         "source": f"static equilibrium by CALM {__version__}",

@@ -41,6 +41,7 @@ def batch(
     workers: int | None = None,
     scheduler: str | None = None,
     shape: bool = False,
+    no_statistics: bool = False,
     environment: str | None = None,
     catalog: list[Path] | None = None,
 ) -> ExitCode:
@@ -68,13 +69,16 @@ def batch(
     every
         Only every so many-th profile.
     at
-        Latitude and longitude [degrees] of the column to take from a grid, as LAT,LON.
+        Latitude and longitude [degrees] of the column to take from a grid, as LAT,LON;
+        the `position` of the mooring file unless given.
     workers
         How many threads; one for each processor unless given.
     scheduler
         Address of a dask scheduler whose workers solve the profiles.
     shape
         Store the shape of the line too.
+    no_statistics
+        Leave the statistics out, as of a part of a longer record.
     environment
         An environment named in the file, or an environment file, in place of its own.
     catalog
@@ -89,55 +93,87 @@ def batch(
     from calm.batch.run import run_batch
 
     period = None if time is None else parse_period(time)
-    place = None if at is None else parse_place(at)
     _check_output(output, file, currents)
     mooring = _mooring(file, environment, catalog or [])
+    position = mooring.file.position
+    own = None if position is None else (position.latitude, position.longitude)
+    place = own if at is None else parse_place(at)
     seabed = float(mooring.water.depth)
     teller = Teller()
     with open_record(currents, seabed=seabed, at=place, time=period, every=every) as record:
         for notice in (*mooring.file.notices, *record.notes):
             if notice not in RULES:
                 narrate(f"{currents}: {notice}")
-        with _stopped_by_a_signal():
-            outcome = run_batch(
-                mooring, record, output,
-                workers=workers, shape=shape, scheduler=scheduler,
-                progress=teller, tell=teller.note,
-            )  # fmt: skip
-        teller.clear()
+        try:
+            with _stopped_by_a_signal():
+                outcome = run_batch(
+                    mooring, record, output,
+                    workers=workers, shape=shape, scheduler=scheduler,
+                    progress=teller, tell=teller.note,
+                )  # fmt: skip
+        finally:
+            teller.clear()
     code = _ended(outcome, output, record.count)
-    if outcome.done:
-        _summarize(output, mooring)
+    if outcome.done and not no_statistics and not _summarized(output, mooring):
+        return ExitCode.INCOMPLETE
     return code
 
 
-def _summarize(output: Path, mooring: Mooring) -> None:
-    """Show what the result says, and write it beside the result."""
+def _summarized(output: Path, mooring: Mooring) -> bool:
+    """Show what the result says, and write it beside the result; whether that was possible."""
     from calm.report.batch.files import write_summary
     from calm.report.batch.table import summary_table
 
-    show_rich(summary_table(write_summary(output, mooring)))
+    try:
+        with _stopped_by_a_signal():
+            show_rich(summary_table(write_summary(output, mooring)))
+    except (UsageError, OSError, MemoryError, KeyboardInterrupt) as error:
+        reason = "interrupted" if isinstance(error, KeyboardInterrupt) else str(error)
+        narrate(
+            f"{output} is done; its statistics are not: {reason or 'not enough memory'}. "
+            "The same command gathers them"
+        )
+        return False
+    return True
 
 
 def _ended(outcome: Outcome, output: Path, total: int) -> ExitCode:
-    solved = outcome.converged + outcome.failed
+    """Tell how the batch ended."""
+    from calm.batch.statuses import Ending
+
+    done = sum(outcome.counts.values())
     if not outcome.done:
         narrate(
-            f"{output}: {outcome.reason}; {grouped(solved)} of {grouped(total)} profiles are done "
+            f"{output}: {outcome.reason}; {grouped(done)} of {grouped(total)} profiles are done "
             f"and kept in {output}.part; the same command solves the rest"
         )
         return ExitCode.INCOMPLETE
-    if outcome.failed:
-        kinds = ", ".join(
-            f"{grouped(count)} {status}"
-            for status, count in outcome.counts.items()
-            if status != "converged"
-        )
+    solved = outcome.endings[Ending.SOLVED]
+    if solved < done:
         narrate(
-            f"{output}: {grouped(outcome.failed)} of {grouped(solved)} profiles have no "
-            f"equilibrium and are NaN: {kinds}"
+            f"{output}: {grouped(done - solved)} of {grouped(done)} profiles are NaN: "
+            f"{', '.join(_kinds(outcome))}"
         )
-    return ExitCode.DONE if outcome.converged else ExitCode.NO_EQUILIBRIUM
+    if outcome.alone:
+        narrate(
+            f"{output}: {grouped(outcome.alone)} profiles were solved one by one, as `calm run` "
+            "does, each 500 to 3000 times as long as the others"
+        )
+    return ExitCode.DONE if solved else ExitCode.NO_EQUILIBRIUM
+
+
+def _kinds(outcome: Outcome) -> Iterator[str]:
+    """Profiles that are NaN, by what they come to, and by status where that says more."""
+    from calm.batch.statuses import Ending, ending_of
+
+    for ending, count in outcome.endings.items():
+        if count and ending is not Ending.SOLVED:
+            statuses = ", ".join(
+                f"{grouped(number)} {status}"
+                for status, number in outcome.counts.items()
+                if ending_of(status) is ending
+            )
+            yield f"{grouped(count)} {ending.value} ({statuses})"
 
 
 def _mooring(file: Path, environment: str | None, catalogs: list[Path]) -> Mooring:

@@ -7,7 +7,7 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from calm.batch.run import Progress
+    from calm.batch.work import Progress
 
 BAR = 24
 """Signs from nothing to all."""
@@ -60,15 +60,23 @@ def bar(progress: Progress) -> str:
 
 
 def state(progress: Progress, seconds: float) -> str:
-    """How many are done, the rate, the time that the rest takes at it, and the failures so far."""
+    """How many are done, the rate, the time that the rest takes at it, and the failures so far.
+
+    Those solved one by one are told as well, since they hold the others up.
+    """
+    from calm.batch.statuses import Ending
+
     text = f"{grouped(progress.done)} of {grouped(progress.total)} profiles"
     solved = progress.done - progress.found
     if solved and seconds > 0.0:
         rate = solved / seconds
         left = (progress.total - progress.done) / rate
         text += f", {grouped(round(rate))} a second, {duration(left)} left"
-    if progress.failed:
-        text += f", {grouped(progress.failed)} without equilibrium"
+    for ending, count in progress.endings.items():
+        if count and ending is not Ending.SOLVED:
+            text += f", {grouped(count)} {ending.value}"
+    if progress.alone:
+        text += f", {grouped(progress.alone)} one by one"
     return text
 
 

@@ -1,5 +1,6 @@
 """`calm batch` as a user runs it."""
 
+import io
 import json
 import os
 import re
@@ -7,15 +8,22 @@ import signal
 import subprocess
 import sys
 import time
+import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray
 
 from calm.batch import run as batch_run
-from calm.batch.run import Progress
+from calm.batch import work as batch_work
+from calm.batch.statuses import Ending
+from calm.batch.work import Progress
+from calm.cli import main
 from calm.cli.batch_progress import Teller, bar, duration, state
+from calm.errors import UsageError
 
+ROOT = Path(__file__).parents[2]
 HEADER = "time,depth[m],u[m/s],v[m/s]\n"
 
 
@@ -55,15 +63,42 @@ def test_a_period_and_every_other(calm, write_mooring, record, folder):
         assert "shape_depth" in result
 
 
+def test_the_column_is_that_of_the_mooring_unless_another_is_asked_for(calm, write_mooring, folder):
+    """Two columns: still water at 48° N 5° W, a current at 49° N."""
+    shape = ("time", "depth", "latitude", "longitude")
+    u = np.full((3, 2, 2, 1), 0.01)
+    u[:, :, 1] = 0.5
+    current = {"uo": (shape, u, {"units": "m s-1"}), "vo": (shape, 0.1 * u, {"units": "m s-1"})}
+    axes = {
+        "time": np.arange("2026-03-01", "2026-03-04", dtype="M8[D]").astype("M8[ns]"),
+        "depth": ("depth", [0.0, 100.0], {"units": "m", "positive": "down"}),
+        "latitude": ("latitude", [48.0, 49.0], {"units": "degrees_north"}),
+        "longitude": ("longitude", [-5.0], {"units": "degrees_east"}),
+    }
+    xarray.Dataset(current, axes).to_netcdf(folder / "grid.nc", engine="h5netcdf")
+    file = write_mooring()
+    with (folder / file).open("a", encoding="utf-8") as mooring:
+        mooring.write("position: {latitude: 48.2 deg, longitude: -5 deg}\n")
+    for name, more in (("own", ()), ("other", ("--at", "48.9,-5"))):
+        done = calm("batch", file, "--currents", "grid.nc", "-o", f"{name}.nc", *more)
+        assert done.code == 0, done.err
+    own, other = (
+        xarray.load_dataset(folder / f"{name}.nc", engine="h5netcdf")["x_top"].values[:, 0]
+        for name in ("own", "other")
+    )
+    assert (10.0 * own < other).all()
+
+
 def test_none_converged_is_3_and_some_are_counted(calm, write_mooring, heavy, record, folder):
     done = calm("batch", heavy, "--currents", record, "-o", "heavy.nc")
     assert done.code == 3
-    assert "30 of 30 profiles have no equilibrium and are NaN" in done.err
+    assert "30 of 30 profiles are NaN: 30 without equilibrium (30 no-equilibrium)" in done.err
     text = (folder / record).read_text().replace(",0.2,0.1\n", ",,\n")
     (folder / "gap.csv").write_text(text)
     done = calm("batch", write_mooring(), "--currents", "gap.csv", "-o", "r.nc")
     assert done.code == 0
-    assert "1 of 30 profiles have no equilibrium and are NaN: 1 no-current" in done.err
+    assert "1 of 30 profiles are NaN: 1 without data (1 no-current)" in done.err
+    assert "equilibrium" not in done.err
 
 
 @pytest.mark.parametrize(
@@ -105,14 +140,14 @@ def test_a_tow_and_an_input_as_output_are_refused(calm, write_mooring, record, f
 def test_stopped_and_taken_up_again(calm, write_mooring, record, folder, monkeypatch):
     monkeypatch.setitem(batch_run.run_batch.__kwdefaults__, "block", 8)
 
-    def stopped(self, number, profiles):
+    def stopped(self, number, parts):
         if number == 1:
             raise KeyboardInterrupt
-        kept(self, number, profiles)
+        kept(self, number, parts)
 
-    kept = batch_run._Work._keep
+    kept = batch_work.Work._keep
     with monkeypatch.context() as patched:
-        patched.setattr(batch_run._Work, "_keep", stopped)
+        patched.setattr(batch_work.Work, "_keep", stopped)
         done = calm("batch", write_mooring(), "--currents", record, "-o", "r.nc")
     assert done.code == 75
     assert done.out == ""
@@ -142,11 +177,12 @@ def test_signals_leave_what_can_be_resumed(write_mooring, folder, number):
     while not part.exists():
         assert process.poll() is None
         time.sleep(0.05)
-    time.sleep(0.5)
+    time.sleep(2.0)
     os.kill(process.pid, number)
     told = process.communicate(timeout=60)[1]
     assert process.returncode == 75, told
-    assert re.search(r"interrupted; [\d ]+ of 6 000 profiles are done", told)
+    # a block of these takes a while, and is kept as far as it came
+    assert re.search(r"interrupted; [1-9][\d ]* of 6 000 profiles are done", told)
 
 
 def test_without_a_folder_to_write_it_works_and_says_so(
@@ -163,13 +199,126 @@ def test_without_a_folder_to_write_it_works_and_says_so(
     assert "compiled in " in done.stderr
 
 
+def test_statistics_that_fail_leave_the_result_and_say_so(
+    calm, write_mooring, record, folder, monkeypatch
+):
+    for error, words in (
+        (UsageError("no room for them"), "no room for them"),
+        (MemoryError(), "not enough memory"),
+        (KeyboardInterrupt(), "interrupted"),
+    ):
+
+        def fail(*arguments, error=error):
+            raise error
+
+        with monkeypatch.context() as patched:
+            patched.setattr("calm.report.batch.files.write_summary", fail)
+            done = calm("batch", write_mooring(), "--currents", record, "-o", "r.nc")
+        assert done.code == 75
+        assert f"r.nc is done; its statistics are not: {words}. The same command" in done.err
+    assert (folder / "r.nc").exists()
+    done = calm("batch", "m.yaml", "--currents", record, "-o", "r.nc")
+    assert (done.code, done.err) == (0, "")
+    assert (folder / "r.summary.json").exists()
+
+
+def test_without_statistics_there_is_the_result_alone(calm, write_mooring, record, folder):
+    command = ("batch", write_mooring(), "--currents", record, "-o", "r.nc", "--no-statistics")
+    done = calm(*command)
+    assert (done.code, done.out) == (0, "")
+    assert sorted(path.name for path in folder.iterdir()) == ["m.yaml", "r.nc", record]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits files as POSIX has it")
+@pytest.mark.parametrize("largest", [0, 300, 3000, 30_000])
+@pytest.mark.parametrize("ending", [".nc", ".zarr"])
+def test_files_that_cannot_grow_are_what_a_full_disk_is(
+    calm, write_mooring, record, folder, largest, ending
+):
+    """Bytes to a file: none, some metadata, all chunks, and nearly all of a NetCDF result."""
+    assert calm("new", "--record", "-o", "record.nc").code == 0
+    words = ["batch", write_mooring(), "--currents", "record.nc", "-o", f"r{ending}",
+             "--no-statistics"]  # fmt: skip
+    program = (
+        "import resource, sys\n"
+        "from calm.cli import main\n"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[1]), resource.RLIM_INFINITY))\n"
+        "sys.exit(main(sys.argv[2:]))\n"
+    )
+    codes = []
+    for limit in (largest, 10**9):
+        done = subprocess.run(
+            [sys.executable, "-c", program, str(limit), *words],
+            env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True,
+            check=False,
+        )  # fmt: skip
+        codes.append((done.returncode, done.stderr))
+    if ending == ".zarr" and largest > 3000:
+        assert codes[0][0] == 0
+    else:
+        assert codes[0][0] == 75, codes
+        assert "File too large" in codes[0][1]
+    assert codes[1] == (0, "")
+    assert sorted(path.name for path in folder.iterdir()) == [
+        "m.yaml", f"r{ending}", record, "record.nc",
+    ]  # fmt: skip
+
+
+def test_profiles_that_go_alone_are_counted(calm, write_mooring, record, folder):
+    file = write_mooring()
+    with (folder / file).open("a", encoding="utf-8") as mooring:
+        mooring.write("solver: {friction: hoerner}\n")
+    done = calm("batch", file, "--currents", record, "-o", "r.nc")
+    assert done.code == 0
+    assert "30 profiles were solved one by one" in done.err
+
+
+def test_the_bar_goes_whatever_happens(calm, write_mooring, record, monkeypatch):
+    class Terminal(io.StringIO):
+        def isatty(self):
+            return True
+
+    def fail(self, number, parts):
+        raise ValueError("a bug")
+
+    written = Terminal()
+    monkeypatch.setattr(sys, "stderr", written)
+    monkeypatch.setattr(batch_work.Work, "_keep", fail)
+    assert main(["batch", write_mooring(), "--currents", record, "-o", "r.nc"]) == 70
+    shown = written.getvalue()
+    assert "[....." in shown
+    assert shown.rpartition("[.....")[2].partition("\r\x1b[K")[2].startswith("calm: internal error")
+
+
+def test_the_workers_of_a_scheduler(calm, write_mooring, record, folder):
+    distributed = pytest.importorskip("distributed")
+    with warnings.catch_warnings():  # dask leaves sockets to the collector
+        warnings.simplefilter("ignore")
+        with distributed.LocalCluster(
+            n_workers=1, threads_per_worker=1, processes=True, dashboard_address=None
+        ) as cluster:
+            done = calm("batch", write_mooring(), "--currents", record, "-o", "there.nc",
+                        "--scheduler", cluster.scheduler_address)  # fmt: skip
+    assert done.code == 0, done.err
+    assert calm("batch", "m.yaml", "--currents", record, "-o", "here.nc").code == 0
+    assert (folder / "there.nc").read_bytes() == (folder / "here.nc").read_bytes()
+
+
+def ended(**counts):
+    return {ending: counts.get(ending.name, 0) for ending in Ending}
+
+
 def test_progress_has_rate_remaining_time_and_failures():
-    halfway = Progress(done=60_000, total=120_000, found=20_000, failed=12)
+    halfway = Progress(60_000, 120_000, 20_000, ended(SOLVED=59_988, NO_EQUILIBRIUM=12), 0)
     assert state(halfway, 2.0) == (
         "60 000 of 120 000 profiles, 20 000 a second, 3 s left, 12 without equilibrium"
     )
     assert bar(halfway) == f"[{'#' * 12}{'.' * 12}]"
-    assert state(Progress(0, 10, 0, 0), 0.0) == "0 of 10 profiles"
+    many = Progress(10, 10, 10, ended(SOLVED=4, NO_EQUILIBRIUM=3, NOT_CONVERGED=2, NO_DATA=1), 5)
+    assert state(many, 1.0) == (
+        "10 of 10 profiles, 3 without equilibrium, 2 not converged, 1 without data, 5 one by one"
+    )
+    assert state(Progress(0, 10, 0, ended(), 0), 0.0) == "0 of 10 profiles"
     assert [duration(seconds) for seconds in (5, 600, 7230)] == ["5 s", "10 min", "2 h 00 min"]
 
 
@@ -181,7 +330,7 @@ def test_a_terminal_has_a_bar_and_others_a_line_now_and_then(monkeypatch, capsys
         teller = Teller()
         for second in range(100):
             clock[0] = float(second)
-            teller(Progress(second, 100, 0, 0))
+            teller(Progress(second, 100, 0, ended(), 0))
         teller.clear()
         told = capsys.readouterr().err
         if terminal:

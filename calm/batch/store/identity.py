@@ -19,8 +19,10 @@ if TYPE_CHECKING:
 MOST_TOLD = 5
 """So many differences are told, and how many more there are."""
 
-_NO_MATTER = frozenset({"path", "line", "column", "checks", "notices", "variants", "description"})
-"""What of a mooring file changes no figure of its results."""
+_NO_MATTER = frozenset(
+    {"path", "line", "column", "checks", "notices", "variants", "description", "current"}
+)
+"""What of a mooring file changes no figure of its results: every profile has its own current."""
 
 
 def identity_of(mooring: Mooring, record: Record, options: Mapping[str, Any]) -> dict[str, Any]:

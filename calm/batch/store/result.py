@@ -5,18 +5,19 @@ from __future__ import annotations
 import json
 import os
 import shutil
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from calm.batch.dataset import Variable
-from calm.batch.store.chunks import LEVEL
-from calm.batch.store.store import IDENTITY, WORK, Store, consolidated, refuse_another
+from calm.batch.store.chunks import to_json
+from calm.batch.store.disk import settle, write_whole
+from calm.batch.store.lock import lock_file
+from calm.batch.store.netcdf import write_netcdf
+from calm.batch.store.store import IDENTITY, WORK, Flag, Store, refuse_another
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
-    import h5netcdf
+    from collections.abc import Mapping
 
 ENDINGS = (".nc", ".zarr")
 """Of the results that can be written."""
@@ -28,7 +29,7 @@ def store_folder(output: Path) -> Path:
 
 
 def is_finished(output: Path, identity: str) -> bool:
-    """Whether a result is there already; what its work has left behind is then removed.
+    """Whether a result is there already.
 
     Raises
     ------
@@ -41,35 +42,68 @@ def is_finished(output: Path, identity: str) -> bool:
     if not isinstance(before, str):
         raise UsageError(f"{output} is there already, and no result of calm batch; it is kept")
     refuse_another(output, before, identity)
-    shutil.rmtree(output / WORK, ignore_errors=True)
-    left = store_folder(output)
-    if (left / WORK).is_dir():
-        remove(left)
     return True
 
 
-def finish(store: Store, output: Path) -> None:
-    """Make the result of a store, which is no more afterwards.
+def left_behind(output: Path) -> bool:
+    """Whether there is more of the work on a result than the result."""
+    folder = store_folder(output)
+    emptied = folder.is_dir() and not any(folder.iterdir())
+    parts = (folder / WORK, output / WORK, lock_file(folder))
+    return emptied or any(part.exists() for part in parts)
+
+
+def clear(output: Path) -> None:
+    """Remove the work on a result, as far as it can be; what tells that it is work goes last."""
+    folder = store_folder(output)
+    if (folder / WORK).is_dir():
+        with suppress(OSError):
+            for path in folder.iterdir():
+                if path.is_dir() and path.name != WORK:
+                    shutil.rmtree(path, ignore_errors=True)
+                elif path.name != WORK:
+                    path.unlink(missing_ok=True)
+        shutil.rmtree(folder / WORK, ignore_errors=True)
+    with suppress(OSError):
+        folder.rmdir()
+    if output.is_dir():
+        shutil.rmtree(output / WORK, ignore_errors=True)
+
+
+def finish(store: Store, flags: Mapping[int, Flag], output: Path) -> list[int]:
+    """Make the result of a store, on the disk itself.
 
     It has its name only once it is whole; the memory that it takes is that of one chunk.
+
+    Blocks that are not as they were written are returned: they are missing again, and there is no
+    result then.
+
+    Parameters
+    ----------
+    flags : of the blocks, by their numbers
+
+    Raises
+    ------
+    OSError
+        There is no room for it.
     """
     if output.suffix == ".zarr":
-        consolidated(store.folder)
-        os.replace(store.folder, output)
-        shutil.rmtree(output / WORK)
-        return
-    temporary = store.folder / WORK / output.name
-    _write_netcdf(store, temporary)
-    os.replace(temporary, output)
-    remove(store.folder)
-
-
-def remove(folder: Path) -> None:
-    """Remove a store; what tells that it is one goes last."""
-    for path in folder.iterdir():
-        if path.name != WORK:
-            shutil.rmtree(path) if path.is_dir() else path.unlink()
-    shutil.rmtree(folder)
+        damaged = sorted({number for _, number, data in store.chunks(flags) if data is None})
+        ready = store.folder
+    else:
+        ready = store.work / output.name
+        damaged = write_netcdf(store, flags, ready)
+    if damaged:
+        for number in damaged:
+            store.forget(number)
+        return damaged
+    if output.suffix == ".zarr":
+        _consolidate(store)
+        settle(path for path in store.folder.rglob("*") if WORK not in path.parts)
+    settle([ready])
+    os.replace(ready, output)
+    settle([output.parent])
+    return []
 
 
 def _attributes(output: Path) -> dict[str, Any]:
@@ -84,53 +118,25 @@ def _attributes(output: Path) -> dict[str, Any]:
 
     try:
         with h5py.File(output, "r") as file:
-            return dict(file.attrs)
+            return {
+                name: value.decode() if isinstance(value, bytes) else value
+                for name, value in file.attrs.items()
+            }
     except OSError:
         return {}
 
 
-def _write_netcdf(store: Store, path: Path) -> None:
-    """The metadata by way of h5netcdf; the chunks, which HDF5 knows, go in untouched."""
-    import h5netcdf
-    import h5py
-
-    attributes: dict[str, Any] = json.loads((store.folder / ".zattrs").read_bytes())
-    with h5netcdf.File(path, "w") as file:
-        file.dimensions = dict(store.layout.sizes)
-        for name, value in sorted(attributes.items()):
-            file.attrs[name] = value
-        for variable in store.layout.variables:
-            _define(file, store, variable)
-    with h5py.File(path, "r+") as file:
-        for variable in store.in_blocks:
-            across = (0,) * (len(variable.dimensions) - 1)
-            dataset = file[variable.name].id
-            for number in range(store.count):
-                data = store.chunk_file(variable, number).read_bytes()
-                dataset.write_direct_chunk((number * store.block, *across), data)
-
-
-def _define(file: h5netcdf.File, store: Store, variable: Variable) -> None:
-    import h5py
-
-    kind = np.dtype(variable.dtype)
-    settings: dict[str, Any] = {}
-    if variable.values is None:
-        settings = {
-            "chunks": store.chunk_shape(variable),
-            "compression": "gzip",
-            "compression_opts": LEVEL,
-            "shuffle": kind.itemsize > 1,
-        }
-    if kind.kind == "f" and variable.values is None:
-        settings["fillvalue"] = kind.type(np.nan)
-    defined = file.create_variable(
-        variable.name,
-        variable.dimensions,
-        h5py.string_dtype() if kind.kind == "U" else kind,
-        **settings,
-    )
-    for name, value in sorted(variable.attributes.items()):
-        defined.attrs[name] = np.array(value, kind) if isinstance(value, list) else value
-    if variable.values is not None:
-        defined[...] = variable.values.astype(object) if kind.kind == "U" else variable.values
+def _consolidate(store: Store) -> None:
+    """Write the metadata of all arrays into one file, which readers ask for first."""
+    folder = store.folder
+    files = [
+        folder / ".zgroup",
+        folder / ".zattrs",
+        *folder.glob("*/.zarray"),
+        *folder.glob("*/.zattrs"),
+    ]
+    metadata = {
+        file.relative_to(folder).as_posix(): json.loads(file.read_bytes()) for file in files
+    }
+    document: dict[str, Any] = {"zarr_consolidated_format": 1, "metadata": metadata}
+    write_whole(folder / ".zmetadata", to_json(document), store.work)

@@ -1,26 +1,28 @@
 """The work store of a batch: a zarr folder that grows block by block, and survives anything.
 
-Beside the arrays it has a folder of its own, `.batch`: the identity of what is solved, and a flag
-for every block that is done, written after the block's data and holding the size of them.
+Beside the arrays it has a folder of its own, `.batch`: the identity of what is solved; a flag for
+every block that is done, written after the block's data, with the size and the checksum of each
+chunk; and what is done of blocks that take long.
 """
 
 from __future__ import annotations
 
 import json
-import os
-import sys
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+import zlib
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
+from zipfile import BadZipFile
 
 import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.dataset import Layout, Variable
-from calm.batch.profiles import STATUSES
-from calm.batch.store.chunks import array_metadata, to_json, unpacked
+from calm.batch.store.chunks import array_metadata, to_json
+from calm.batch.store.disk import UNFINISHED, settle, write_whole
 from calm.batch.store.identity import differences, sha256_of
 from calm.errors import UsageError
 
@@ -29,6 +31,23 @@ WORK = ".batch"
 
 IDENTITY = "input_resolved"
 """The attribute of a result that tells, as JSON, what it was made from."""
+
+Arrays = Mapping[str, NDArray[Any]]
+"""Values of some profiles, by the names of the variables that go with time."""
+
+
+@dataclass(frozen=True)
+class Flag:
+    """What is known of a block that is done.
+
+    Attributes
+    ----------
+    chunks : size and CRC-32 of each, by the name of its variable
+    statuses : how many profiles there are of each of `calm.batch.statuses.STATUSES`
+    """
+
+    chunks: Mapping[str, tuple[int, int]]
+    statuses: tuple[int, ...]
 
 
 @dataclass(frozen=True)
@@ -45,6 +64,11 @@ class Store:
     folder: Path
     layout: Layout
     block: int
+
+    @property
+    def work(self) -> Path:
+        """The folder of all that is no part of the result."""
+        return self.folder / WORK
 
     @property
     def count(self) -> int:
@@ -71,47 +95,75 @@ class Store:
         place = ".".join([str(number), *("0" for _ in variable.dimensions[1:])])
         return self.folder / variable.name / place
 
-    def missing(self) -> list[int]:
-        """The blocks that are still to be solved."""
-        return [number for number in range(self.count) if not self._is_done(number)]
-
-    def write(self, number: int, chunks: Mapping[str, bytes]) -> None:
+    def write(self, number: int, chunks: Mapping[str, bytes], statuses: Iterable[int]) -> Flag:
         """Write a block: its chunks by the names of their variables, then its flag."""
-        size = 0
         for variable in self.in_blocks:
-            size += self.chunk_file(variable, number).write_bytes(chunks[variable.name])
-        self._flag(number).write_text(str(size), encoding="ascii")
+            write_whole(self.chunk_file(variable, number), chunks[variable.name], self.work)
+        told = {name: (len(data), zlib.crc32(data)) for name, data in chunks.items()}
+        flag = Flag(told, tuple(int(count) for count in statuses))
+        write_whole(self._flag(number), to_json(vars(flag)), self.work)
+        with suppress(FileNotFoundError):
+            self._begun(number).unlink()
+        return flag
 
-    def statuses(self) -> NDArray[np.int64]:
-        """How many profiles there are of each of `STATUSES`, among the blocks that are done."""
-        status = next(variable for variable in self.in_blocks if variable.name == "status")
-        counts = np.zeros(len(STATUSES), np.int64)
-        for number in range(self.count):
-            if self._is_done(number):
-                data = self.chunk_file(status, number).read_bytes()
-                values = unpacked(data, np.dtype(status.dtype), self.chunk_shape(status))
-                start, stop = self.span(number)
-                counts += np.bincount(values[: stop - start], minlength=len(STATUSES))
-        return counts
+    def flag(self, number: int) -> Flag | None:
+        """The flag of a block that is done; None where it is not, or not as its flag has it."""
+        try:
+            content = json.loads(self._flag(number).read_bytes())
+            chunks = {name: (size, crc) for name, (size, crc) in content["chunks"].items()}
+            sizes = {
+                variable.name: self.chunk_file(variable, number).stat().st_size
+                for variable in self.in_blocks
+            }
+        except (FileNotFoundError, ValueError, KeyError, TypeError):
+            return None
+        if sizes != {name: size for name, (size, _) in chunks.items()}:
+            return None
+        return Flag(chunks, tuple(content["statuses"]))
+
+    def chunks(self, flags: Mapping[int, Flag]) -> Iterator[tuple[Variable, int, bytes | None]]:
+        """Every chunk; None in place of one that is not there, or not as it was written."""
+        for variable in self.in_blocks:
+            for number in range(self.count):
+                flag = flags.get(number)
+                yield variable, number, None if flag is None else self.chunk(variable, number, flag)
+
+    def chunk(self, variable: Variable, number: int, flag: Flag) -> bytes | None:
+        """A chunk of a block that is done; None where it is not as it was written."""
+        try:
+            data = self.chunk_file(variable, number).read_bytes()
+        except FileNotFoundError:
+            return None
+        return data if flag.chunks[variable.name] == (len(data), zlib.crc32(data)) else None
+
+    def forget(self, number: int) -> None:
+        """Let a block be missing again."""
+        with suppress(FileNotFoundError):
+            self._flag(number).unlink()
+
+    def put_by(self, number: int, arrays: Arrays) -> None:
+        """Keep the first profiles of a block that is not done."""
+        content, save = BytesIO(), cast(Any, np.savez)  # whose types know of no names
+        save(content, **arrays)
+        write_whole(self._begun(number), content.getvalue(), self.work)
+
+    def begun(self, number: int) -> Arrays | None:
+        """What was kept of a block by `put_by`; None where there is nothing, or not all of it."""
+        try:
+            with np.load(BytesIO(self._begun(number).read_bytes()), allow_pickle=False) as kept:
+                return {variable.name: kept[variable.name] for variable in self.in_blocks}
+        except (FileNotFoundError, BadZipFile, ValueError, KeyError, EOFError, zlib.error):
+            return None
 
     def _flag(self, number: int) -> Path:
-        return self.folder / WORK / str(number)
+        return self.work / str(number)
 
-    def _is_done(self, number: int) -> bool:
-        """Whether a block has its flag, and as many bytes as that says."""
-        try:
-            flag = self._flag(number).read_text(encoding="ascii")
-            sizes = [
-                self.chunk_file(variable, number).stat().st_size for variable in self.in_blocks
-            ]
-        except FileNotFoundError:
-            return False
-        return flag == str(sum(sizes))
+    def _begun(self, number: int) -> Path:
+        return self.work / f"{number}.begun"
 
 
-@contextmanager
-def open_store(folder: Path, layout: Layout, block: int, identity: str) -> Iterator[Store]:
-    """A store to work on alone: begun where there is none, continued where there is one.
+def open_store(folder: Path, layout: Layout, block: int, identity: str) -> Store:
+    """A store: begun where there is none, continued where there is one; within `lock.locked`.
 
     Parameters
     ----------
@@ -121,20 +173,23 @@ def open_store(folder: Path, layout: Layout, block: int, identity: str) -> Itera
     Raises
     ------
     UsageError
-        The folder is no store, or that of another input; someone else is at work on it.
+        The folder is no store, or that of another input.
     """
-    work = folder / WORK
-    if folder.exists() and any(folder.iterdir()) and not work.is_dir():
+    store = Store(folder, layout, block)
+    if folder.exists() and any(folder.iterdir()) and not store.work.is_dir():
         raise UsageError(f"{folder} is in the way: the work would be kept there")
-    work.mkdir(parents=True, exist_ok=True)
-    with _alone(work / "lock", folder):
-        kept = work / "identity"
-        if kept.exists():
-            refuse_another(folder, kept.read_text(encoding="utf-8"), identity)
-        else:
-            _begin(folder, layout, block, identity)
-            _write_whole(kept, identity.encode())
-        yield Store(folder, layout, block)
+    store.work.mkdir(parents=True, exist_ok=True)
+    for path in store.work.glob(f"*{UNFINISHED}"):
+        path.unlink(missing_ok=True)
+    kept = store.work / "identity"
+    if kept.exists():
+        refuse_another(folder, kept.read_text(encoding="utf-8"), identity)
+    # anew each time: after a power cut it may be there in part
+    _lay_out(store, identity)
+    if not kept.exists():
+        write_whole(kept, identity.encode(), store.work)
+        settle([kept, store.work])
+    return store
 
 
 def refuse_another(path: Path, before: str, now: str) -> None:
@@ -153,9 +208,9 @@ def refuse_another(path: Path, before: str, now: str) -> None:
         )
 
 
-def _begin(folder: Path, layout: Layout, block: int, identity: str) -> None:
+def _lay_out(store: Store, identity: str) -> None:
     """Write all that does not go with time."""
-    store = Store(folder, layout, block)
+    folder, layout = store.folder, store.layout
     attributes = {**layout.attributes, IDENTITY: identity, "input_sha256": sha256_of(identity)}
     (folder / ".zgroup").write_bytes(to_json({"zarr_format": 2}))
     (folder / ".zattrs").write_bytes(to_json(attributes))
@@ -171,40 +226,3 @@ def _begin(folder: Path, layout: Layout, block: int, identity: str) -> None:
         if variable.values is not None:
             whole = np.ascontiguousarray(variable.values, variable.dtype).tobytes()
             (array / ".".join("0" * max(len(shape), 1))).write_bytes(whole)
-
-
-def consolidated(folder: Path) -> None:
-    """Write the metadata of all arrays into one file, which readers ask for first."""
-    files = [
-        folder / ".zgroup",
-        folder / ".zattrs",
-        *folder.glob("*/.zarray"),
-        *folder.glob("*/.zattrs"),
-    ]
-    metadata = {
-        file.relative_to(folder).as_posix(): json.loads(file.read_bytes()) for file in files
-    }
-    document: dict[str, Any] = {"zarr_consolidated_format": 1, "metadata": metadata}
-    _write_whole(folder / ".zmetadata", to_json(document))
-
-
-def _write_whole(path: Path, content: bytes) -> None:
-    temporary = path.with_name(f"{path.name}.part")
-    temporary.write_bytes(content)
-    os.replace(temporary, path)
-
-
-@contextmanager
-def _alone(lock: Path, folder: Path) -> Iterator[None]:
-    """Hold a lock that ends with the process, however that ends."""
-    with lock.open("w") as held:
-        if sys.platform != "win32":
-            import fcntl
-
-            try:
-                fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                raise UsageError(f"another calm batch is at work on {folder}") from None
-            except OSError:  # a file system without locks
-                pass
-        yield

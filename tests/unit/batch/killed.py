@@ -14,20 +14,24 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
 
+import h5netcdf
+import h5py
+
+from calm.batch.compiling import compile_kernel
 from calm.batch.profiles import Batch
-from calm.batch.run import compile_kernel, run_batch
-from tests.unit.batch.made import MadeRecord, content, made_mooring
+from calm.batch.run import run_batch
+from tests.unit.batch.made import PLAIN, MadeRecord, content, made_mooring
 
-KILLS = 12
-BLOCK = 16
+KILLS = 20
+TOUCHES = {"open", "os.rename", "os.remove", "os.rmdir", "os.mkdir", "os.truncate", "shutil.rmtree"}
 
 
-def start(mooring, record, output, before=lambda: None):
+def start(mooring, record, output, block, before=lambda: None):
     """A batch in a process of its own, whose end is not awaited."""
     child = os.fork()
     if not child:
         before()
-        outcome = run_batch(mooring, record, output, workers=1, block=BLOCK)
+        outcome = run_batch(mooring, record, output, workers=1, block=block)
         os._exit(0 if outcome.done else 75)
     return child
 
@@ -38,51 +42,76 @@ def ended(child):
 
 
 def at_moments(mooring, record, output, duration):
-    """Kill at moments that a seed chooses, until enough have hit."""
+    """Kill at moments that a seed chooses, until enough have left a block, or a result."""
     random = np.random.default_rng(20240229)
     results, hit, kept = [], 0, 0
-    while hit < KILLS:
-        child = start(mooring, record, output)
+    while kept < KILLS:
+        child = start(mooring, record, output, 16)
         time.sleep(random.uniform(0.0, duration))
         os.kill(child, signal.SIGKILL)
         if ended(child) == -signal.SIGKILL:
             hit += 1
-            kept += any(output.with_name(output.name + ".part").glob("time/*"))
+            kept += any(output.with_name(output.name + ".part").glob(".batch/[0-9]"))
         if output.exists():
-            results.append(finished(mooring, record, output))
-    results.append(finished(mooring, record, output))
+            results.append(finished(mooring, record, output, 16))
+    results.append(finished(mooring, record, output, 16))
     return {"hit": hit, "kept": kept, "results": results}
 
 
-def at_steps(mooring, record, output, stride=17):
-    """End the process without a word before it touches the n-th file, for every so many-th n."""
-    results, hit, step = [], 0, 1
-    while True:
-        if ended(start(mooring, record, output, lambda n=step: end_before(n, output))) == 0:
-            break
-        hit += 1
-        results.append(finished(mooring, record, output))
-        step += stride
-    return {"hit": hit, "results": results}
+def at_steps(mooring, record, output):
+    """End the process without a word before it touches the n-th file, for every n.
+
+    But for what makes one of them, NetCDF files and zarr folders come about alike: every fifth
+    is enough for the file.
+    """
+    results, kept, step = [], 0, 1
+    flags = output.with_name(output.name + ".part") / ".batch"
+    while ended(start(mooring, record, output, 4, lambda n=step: end_before(n, output))) != 0:
+        done = len([*flags.glob("[0-9]")])
+        kept += done > 0
+        writes_netcdf = done == 2 and not output.exists()
+        results.append(finished(mooring, record, output, 4))
+        step += 1 if writes_netcdf or output.suffix == ".zarr" else 5
+    finished(mooring, record, output, 4)
+    return {"hit": len(results), "kept": kept, "results": results}
 
 
 def end_before(step, output):
+    """Count what is done to files, whether by a path, in a folder that is open, or in HDF5."""
     left = [step]
+    folder = str(output.parent)
+
+    def count():
+        left[0] -= 1
+        if not left[0]:
+            os._exit(9)
 
     def watch(event, arguments):
-        touched = event in {"open", "os.rename", "os.remove", "os.rmdir", "os.mkdir"}
-        if touched and str(output) in str(arguments[0]):
-            left[0] -= 1
-            if not left[0]:
-                os._exit(9)
+        if event not in TOUCHES:
+            return
+        in_open_folder = event in {"os.remove", "os.rmdir"} and arguments[-1] not in (None, -1)
+        if in_open_folder or folder in str(arguments[0]):
+            count()
+
+    def counted(method):
+        def call(self, *arguments, **options):
+            if not arguments or not isinstance(arguments[0], h5py.h5f.FileID):  # open already
+                count()
+            return method(self, *arguments, **options)
+
+        return call
 
     sys.addaudithook(watch)
+    for kind in (h5py.File, h5netcdf.File):
+        kind.__init__ = counted(kind.__init__)
+        kind.close = counted(kind.close)
 
 
-def finished(mooring, record, output):
+def finished(mooring, record, output, block):
     """Run to the end, and take the result away."""
-    assert ended(start(mooring, record, output)) == 0
-    assert not output.with_name(output.name + ".part").exists()
+    assert ended(start(mooring, record, output, block)) == 0
+    left = [path.name for path in output.parent.iterdir() if path.name.startswith(output.name)]
+    assert left == [output.name], left
     found = content(output)
     for path in sorted(output.rglob("*"), reverse=True):
         path.rmdir() if path.is_dir() else path.unlink()
@@ -92,12 +121,14 @@ def finished(mooring, record, output):
 
 if __name__ == "__main__":
     folder, ending, how = Path(sys.argv[1]), sys.argv[2], sys.argv[3]
-    mooring, record = made_mooring(folder), MadeRecord(100 if how == "moments" else 40)
+    # few blocks of few variables where every step is tried
+    mooring = made_mooring(folder, *([PLAIN] if how == "steps" else []))
+    record, block = (MadeRecord(8), 4) if how == "steps" else (MadeRecord(100), 16)
     compile_kernel(Batch(mooring), print)
-    import h5netcdf  # noqa: F401 — so that every process has it, and is killed at its work
+    os.fsync = lambda handle: None  # the power stays on
 
     began = time.perf_counter()
-    wanted = finished(mooring, record, folder / f"undisturbed{ending}")
+    wanted = finished(mooring, record, folder / f"undisturbed{ending}", block)
     duration = time.perf_counter() - began
     output = folder / f"killed{ending}"
     if how == "moments":

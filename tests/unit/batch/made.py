@@ -25,6 +25,11 @@ components:
   weight: {kind: anchor, weight: 5000 N}
 """
 
+PLAIN = MOORING.replace("position: {latitude: 48.3 deg, longitude: -5.2 deg}\n", "").replace(
+    ", clamps: [{use: logger, label: Logger é, at: 10 m}]", ""
+)
+"""Without what a mooring may be without."""
+
 
 class MadeRecord:
     """Profiles in memory; where there are more than four, the fifth has no current."""

@@ -1,5 +1,7 @@
 import json
 import re
+import shutil
+import subprocess
 
 import h5netcdf
 import numpy as np
@@ -7,13 +9,9 @@ import pytest
 import xarray
 
 from calm.batch.dataset import layout_of
-from calm.batch.profiles import STATUSES
 from calm.batch.run import run_batch
-from tests.unit.batch.made import MOORING, MadeRecord, made_mooring
-
-PLAIN = MOORING.replace("position: {latitude: 48.3 deg, longitude: -5.2 deg}\n", "").replace(
-    ", clamps: [{use: logger, label: Logger é, at: 10 m}]", ""
-)
+from calm.batch.statuses import STATUSES
+from tests.unit.batch.made import MOORING, PLAIN, MadeRecord, made_mooring
 
 
 @pytest.fixture
@@ -76,12 +74,80 @@ def test_an_input_of_any_length_has_room(tmp_path):
         assert result.attrs["input"] == text
 
 
-def test_without_clamps_and_position_their_variables_are_left_out(tmp_path):
+APPENDIX_A = {
+    "_FillValue": "NCD", "axis": "SC", "calendar": "SC", "cf_role": "SC", "Conventions": "SG",
+    "coordinates": "SD", "featureType": "SG", "flag_meanings": "SD", "flag_values": "DD",
+    "history": "SG", "long_name": "SCD", "positive": "SCD", "source": "SGD",
+    "standard_name": "SCD", "title": "SG", "units": "SCD",
+}  # fmt: skip
+"""Attributes of the conventions, by their appendix A: S text, N a number, D of the type of the
+variable; then where they may stand, G globally, C with coordinates, D with other variables.
+Auxiliary coordinates, such as `depth_top`, are variables of both kinds."""
+
+OWN = {"summary", "calm", "input", "currents", "notes", "input_resolved", "input_sha256"}
+"""Attributes that the conventions leave to everybody."""
+
+
+def test_attributes_are_of_the_types_and_in_the_places_of_the_conventions(tmp_path):
+    run_batch(made_mooring(tmp_path), MadeRecord(8), tmp_path / "r.nc", shape=True)
+    with xarray.open_dataset(tmp_path / "r.nc", engine="h5netcdf", decode_cf=False) as result:
+        assert set(result.attrs) <= {*APPENDIX_A, *OWN}
+        for name, value in result.attrs.items():
+            assert isinstance(value, str)
+            assert name in OWN or "G" in APPENDIX_A[name][1:], name
+        for name, variable in result.variables.items():
+            coordinate = any(
+                name in (*other.dims, *other.attrs.get("coordinates", "").split())
+                for other in result.variables.values()
+            )
+            for key, value in variable.attrs.items():
+                kind, *uses = APPENDIX_A[key]
+                assert {"C", "D"} & set(uses), (name, key)
+                assert "D" in uses or coordinate, (name, key)
+                assert isinstance(value, str) == (kind == "S"), (name, key)
+                assert kind == "S" or np.asarray(value).dtype == variable.dtype, (name, key)
+            # one coordinate for each axis
+            beside = variable.attrs.get("coordinates", "").split()
+            axes = [result[other].attrs.get("axis") for other in beside]
+            known = [axis for axis in axes if axis]
+            assert len(known) == len(set(known)), name
+
+
+@pytest.mark.skipif(shutil.which("ncdump") is None, reason="ncdump is not installed")
+def test_ncdump_reads_it(tmp_path):
+    run_batch(made_mooring(tmp_path), MadeRecord(8), tmp_path / "r.nc", shape=True)
+    done = subprocess.run(
+        ["ncdump", "-t", tmp_path / "r.nc"], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    for words in (
+        ':featureType = "timeSeriesProfile" ;', "string station ;", "byte status(time) ;",
+        "float clamp_depth(time, clamp) ;", 'component_label = "top float", "rope',
+        'time = "2024-01-01", "2024-01-01 01"', "tilt =", "top_depth:_FillValue = NaNf ;",
+    ):  # fmt: skip
+        assert words in done.stdout, words
+
+
+def test_without_clamps_and_a_place_their_variables_are_left_out(tmp_path):
     run_batch(made_mooring(tmp_path, PLAIN), MadeRecord(8), tmp_path / "r.nc")
     with xarray.open_dataset(tmp_path / "r.nc", engine="h5netcdf") as result:
         assert set(result.sizes) == {"time", "component"}
         assert not {"latitude", "clamp_depth", "clamp_label"} & set(result.variables)
         assert result["tilt"].encoding["coordinates"] == "component_label depth_top station"
+        # a feature is at a place, by section 9.1 of the conventions
+        assert "featureType" not in result.attrs
+        assert "cf_role" not in result["station"].attrs
+
+
+def test_without_a_position_the_mooring_is_where_the_currents_are(tmp_path):
+    record = MadeRecord(8)
+    record.source = {"file": "made", "latitude": "48.25", "longitude": "0"}
+    run_batch(made_mooring(tmp_path, PLAIN), record, tmp_path / "r.nc")
+    with xarray.open_dataset(tmp_path / "r.nc", engine="h5netcdf") as result:
+        assert (float(result["latitude"]), float(result["longitude"])) == (48.25, 0.0)
+        assert result["latitude"].attrs["long_name"] == "latitude of the currents"
+        assert result.attrs["featureType"] == "timeSeriesProfile"
+        assert result["station"].attrs["cf_role"] == "timeseries_id"
 
 
 @pytest.mark.parametrize(

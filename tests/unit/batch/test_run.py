@@ -1,20 +1,24 @@
-import json
+import errno
+import os
 import subprocess
 import sys
+import tracemalloc
 from pathlib import Path
-from threading import get_ident
+from threading import Event, get_ident
 
 import numpy as np
 import pytest
 
 import calm
-from calm.batch.accessor import open_result
-from calm.batch.profiles import STATUSES
-from calm.batch.run import Progress, in_threads, run_batch
+from calm.batch import run as run_module
+from calm.batch.compiling import compile_kernel
+from calm.batch.profiles import Batch
+from calm.batch.result import open_result
+from calm.batch.run import LARGEST_BLOCK, run_batch
+from calm.batch.statuses import STATUSES, Ending
+from calm.batch.threads import in_threads
 from calm.errors import UsageError
 from tests.unit.batch.made import MOORING, MadeRecord, content, made_mooring
-
-KILLED = Path(__file__).with_name("killed.py")
 
 
 @pytest.fixture
@@ -34,7 +38,8 @@ def test_the_result_is_what_solve_profiles_gives(tmp_path, mooring, record, endi
     solved = calm.solve_profiles(mooring, record.u, record.v, record.depth)
     assert outcome.done
     assert int((solved.status == 0).sum()) == 39
-    assert (outcome.converged, outcome.failed) == (39, 1)
+    assert outcome.counts == {"converged": 39, "no-current": 1}
+    assert outcome.endings[Ending.NO_DATA] == 1
     with open_result(output) as result:
         assert (result["time"].values == record.time).all()
         assert result["component_label"].values.tolist() == list(solved.component_label)
@@ -78,65 +83,72 @@ def test_the_shape_passes_through_the_components(tmp_path, mooring, record):
         assert result["clamp_label"].values.tolist() == ["Logger é"]
 
 
-@pytest.mark.parametrize("ending", [".nc", ".zarr"])
-def test_what_is_done_is_not_done_again(tmp_path, mooring, record, ending):
-    output, undisturbed = tmp_path / f"r{ending}", tmp_path / f"undisturbed{ending}"
-    run_batch(mooring, record, undisturbed, block=8)
+def test_a_file_system_without_locks_is_told(tmp_path, mooring, record, monkeypatch):
+    fcntl, told = pytest.importorskip("fcntl"), []
 
-    def stop(progress):
-        if progress.done >= 24:
-            raise KeyboardInterrupt
+    def none(handle, how):
+        raise OSError(errno.ENOLCK, "no locks")
 
-    first = run_batch(mooring, record, output, workers=1, block=8, progress=stop)
-    assert (first.done, first.reason) == (False, "interrupted")
-    assert not output.exists()
-    asked, told = [], []
-    read = record.profiles
-    record.profiles = lambda start, stop: asked.append(start) or read(start, stop)
-    second = run_batch(mooring, record, output, workers=1, block=8, progress=told.append)
-    assert second.done
-    assert asked == [24, 32]
-    assert told[0] == Progress(done=24, total=40, found=24, failed=1)
-    assert content(output) == content(undisturbed)
-    third = run_batch(mooring, record, output, block=8)
-    assert asked == [24, 32]
-    assert third == second
+    monkeypatch.setattr(fcntl, "flock", none)
+    assert run_batch(mooring, record, tmp_path / "r.nc", tell=told.append).done
+    assert any("has no locks" in text for text in told)
 
 
-@pytest.mark.parametrize(("ending", "how"), [(".nc", "moments"), (".zarr", "moments"),
-                                             (".nc", "steps"), (".zarr", "steps")])  # fmt: skip
-@pytest.mark.skipif(sys.platform == "win32", reason="kills processes as POSIX has them")
-def test_killed_at_any_moment_it_finishes_to_the_same_bytes(tmp_path, ending, how):
-    command = [sys.executable, KILLED, tmp_path, ending, how]
-    finished = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert finished.returncode == 0, finished.stderr
-    told = json.loads(finished.stdout.splitlines()[-1])
-    assert told["same"], told
-    assert told["hit"] >= 10
-    assert told.get("kept", 1) > 0
+def test_a_long_reading_is_told(tmp_path, mooring, record, monkeypatch):
+    monkeypatch.setattr(run_module, "LONG", 0.0)
+    told, heard = [], Event()
+    digest = record.digest
+
+    def tell(text):
+        told.append(text)
+        heard.set()
+
+    record.digest = lambda: heard.wait(60) and digest()
+    assert run_batch(mooring, record, tmp_path / "r.nc", tell=tell).done
+    assert told == ["reading the record through, to know it again"]
 
 
-def test_a_full_disk_stops_it_and_keeps_what_is_done(tmp_path, mooring, record, monkeypatch):
-    output = tmp_path / "r.nc"
-    written = Path.write_bytes
-    left = [200]
+def test_compiling_is_told_when_it_takes_place(tmp_path, mooring):
+    """An index of the cache is there for every kind of processor, its code for this one may not."""
+    program = (
+        "import sys\n"
+        "from pathlib import Path\n"
+        "from calm.batch.compiling import compile_kernel\n"
+        "from calm.batch.kernel.closing import solve_cases\n"
+        "from calm.batch.profiles import Batch\n"
+        "from tests.unit.batch.made import made_mooring\n"
+        "solve_cases._compiler.compile = lambda *signature: sys.exit('compiles')\n"
+        "compile_kernel(Batch(made_mooring(Path(sys.argv[1]))), print)\n"
+    )
+    compile_kernel(Batch(mooring), print)
+    for cache, expected in (({}, ""), ({"NUMBA_CACHE_DIR": str(tmp_path / "cache")}, "compiling")):
+        finished = subprocess.run(
+            [sys.executable, "-c", program, tmp_path], cwd=Path(__file__).parents[3],
+            env={**os.environ, **cache}, capture_output=True, text=True, check=False,
+        )  # fmt: skip
+        assert finished.stdout.startswith(expected), finished.stderr
+        assert bool(finished.stdout) == bool(expected)
 
-    def full(path, data):
-        left[0] -= 1
-        if left[0] < 0:
-            written(path, data[:3])
-            raise OSError(28, "No space left on device")
-        return written(path, data)
 
-    with monkeypatch.context() as patched:
-        patched.setattr(Path, "write_bytes", full)
-        outcome = run_batch(mooring, record, output, workers=1, block=4)
-    assert not outcome.done
-    assert outcome.reason == "No space left on device"
-    assert 0 < outcome.converged < 39
-    assert run_batch(mooring, record, output, block=4).done
-    run_batch(mooring, record, tmp_path / "undisturbed.nc", block=4)
-    assert content(output) == content(tmp_path / "undisturbed.nc")
+def test_memory_does_not_grow_with_the_record(tmp_path, mooring):
+    """Ten times the profiles: what is known of the blocks, of a thousand each, is some 6 bytes
+    more of each; the results alone would be 300."""
+    peaks = []
+    for count in (4000, 40_000):
+        record = MadeRecord(count)
+        record.digest = lambda: "the same"
+        tracemalloc.start()
+        run_batch(mooring, record, tmp_path / f"{count}.nc", workers=1, block=1000)
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    assert peaks[1] < peaks[0] + 12 * 36_000
+
+
+def test_longer_records_have_larger_blocks():
+    assert [run_module._block_for(count) for count in (1, 262_980, 2**24, 2**24 + 1)] == [
+        8192, 8192, 8192, 16384,
+    ]  # fmt: skip
+    assert run_module._block_for(10**9) == LARGEST_BLOCK
 
 
 @pytest.mark.parametrize("finished", [False, True])
@@ -160,11 +172,20 @@ def test_another_input_is_refused_and_told(tmp_path, mooring, record, finished):
     assert after == before
 
 
-def test_limits_of_the_design_check_are_no_other_input(tmp_path, mooring, record):
+@pytest.mark.parametrize(
+    "other",
+    [
+        MOORING + "checks: {anchor_factor: 2}\n# a word more\n",
+        MOORING.replace("current: {speed: 0.5 m/s", "current: {speed: 0.7 m/s"),
+    ],
+    ids=["limits", "the file's own current"],
+)
+def test_what_changes_no_figure_is_no_other_input(tmp_path, mooring, record, other):
     output = tmp_path / "r.nc"
-    run_batch(mooring, record, output)
-    other = made_mooring(tmp_path, MOORING + "checks: {anchor_factor: 2}\n# a word more\n")
-    assert run_batch(other, record, output).done
+    first = run_batch(mooring, record, output)
+    before = content(output)
+    assert run_batch(made_mooring(tmp_path, other), record, output) == first
+    assert content(output) == before
 
 
 def test_what_is_no_result_is_left_alone(tmp_path, mooring, record):
@@ -203,5 +224,5 @@ def test_an_error_in_a_thread_stops_the_others_and_is_raised():
             raise ValueError("three")
 
     with pytest.raises(ValueError, match="three"):
-        in_threads(job, range(10**6), 2)
+        in_threads(job, range(10**6), 2, Event())
     assert len(seen) < 10**6

@@ -1,0 +1,44 @@
+"""The kernel made ready before the first block, and what a person is told meanwhile."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numba.core import event
+
+from calm.batch.kernel.compiled import cache_folder
+from calm.batch.profiles import Batch
+
+
+class _Notice(event.Listener):
+    """Tells when something is compiled that was not in the cache."""
+
+    def __init__(self, tell: Callable[[str], None]) -> None:
+        self.tell = tell
+        self.told = False
+
+    def on_start(self, event: Any) -> None:
+        if self.told:
+            return
+        self.told = True
+        self.tell("compiling the solver for this machine, once: this takes up to a minute")
+        if cache_folder() is None:
+            self.tell(
+                "no folder can be written to keep it in, so every run compiles anew; "
+                "NUMBA_CACHE_DIR names one"
+            )
+
+    def on_end(self, event: Any) -> None:
+        pass
+
+
+def compile_kernel(batch: Batch, tell: Callable[[str], None]) -> None:
+    """Let the kernel be compiled, or fetched, and tell when it has to be compiled."""
+    notice, started = _Notice(tell), perf_counter()
+    with event.install_listener("numba:compile", notice):
+        batch.solve(np.zeros((0, 1)), np.zeros((0, 1)), np.zeros(1), workers=1)
+    if notice.told:
+        tell(f"compiled in {perf_counter() - started:.0f} s")
