@@ -67,12 +67,17 @@ def solved_on(
             workers = _Workers(client)
             numbers: dict[Any, int] = {}
 
-            def more() -> Iterator[Any]:
-                """Tasks for the workers there are, beside those under way."""
+            def more() -> list[Any]:
+                """Tasks for the workers there are, beside those under way.
+
+                All at once: while `as_completed` takes them it holds up the loop that answers.
+                """
+                tasks = []
                 for number, levels in islice(blocks, max(AHEAD * workers.count - len(numbers), 0)):
                     task = client.submit(solve_there, mooring, levels, pure=False, retries=3)
                     numbers[task.key] = number
-                    yield task
+                    tasks.append(task)
+                return tasks
 
             if not workers.count:
                 tell(f"the scheduler at {address} has no worker yet: waiting for the first")
@@ -81,8 +86,9 @@ def solved_on(
             for task in under_way:
                 try:
                     profiles = task.result()
-                except (CancelledError, KilledWorker) as error:
-                    raise ConnectionError(f"the workers were lost: {error}") from None
+                except (CancelledError, KilledWorker, OSError) as error:
+                    message = f"the scheduler or its workers were lost: {error}"
+                    raise ConnectionError(message) from None
                 except (ImportError, AttributeError, RuntimeError) as error:
                     # what dask makes of modules that are not there
                     raise UsageError(
