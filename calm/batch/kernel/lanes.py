@@ -43,13 +43,17 @@ the intervals, and value at no depth and slope of u, v, w and density in each.""
     L_BUOYANCY, L_VOLUME, L_NORMAL, L_TANGENTIAL, L_LIFT, L_EAST, L_NORTH,
     # sums of loads, and of what turns a rod
     SX, SY, SZ, MX, MY, MZ,
-) = (row * LANES for row in range(56))  # fmt: skip
-SCRATCH = 56 * LANES
+    # the length on the seabed, below 0 where none is; how much hangs of the stage that came down,
+    # and which it is; vertical force and lowest height before a segment; what is kept of a stage
+    RESTING, HANGING, LANDED_AT, CARRIED, LOWEST_BEFORE, KEPT,
+) = (row * LANES for row in range(62))  # fmt: skip
+EXTREMES = 4
 
 ROD, CABLE, CLAMP = 0, 1, 2
 AT, LEVER, BUOYANCY, VOLUME, NORMAL, TANGENTIAL, LIFT, DIRECTIONAL, AFLOAT = range(9)
 C_BUOYANCY, C_VOLUME, C_NORMAL, C_TANGENTIAL, C_COMPLIANCE, C_THINNING = range(6)
 STATE = 9  # numbers of a recorded node: place, force, axis
+SCRATCH = KEPT + (STATE + EXTREMES) * LANES
 PER_DENSITY = 1.0 / REFERENCE_DENSITY
 FAR = 1e8
 CLOSE = 1e-6

@@ -13,16 +13,19 @@ from calm.case import Mooring
 from calm.files import CurrentTable
 from calm.physics.friction import Friction
 from calm.physics.hull import Floating
-from calm.physics.line import Floats, Line, Water
+from calm.physics.line import REFERENCE_DENSITY, Floats, Line, Water
 from calm.physics.profile import Profile
 from calm.physics.state import MarchError
-from calm.physics.track import Cable, Load, Rod, Stage, Track, head_count
+from calm.physics.track import Cable, Load, Rod, Stage, Track, head_count, loads_of
 from calm.solve.closing import Closing
 from calm.solve.locate import SHARES, upright_depth
+from calm.solve.standing import standing_lift
 from calm.solve.unknown import Unknown
 
 CUTS = 50
 """Of a line, about, for the first look; they are halved twice and more."""
+LANDING_CUTS = 32
+"""At least, of what may come down on the seabed."""
 SOFTENING = 0.3
 """Cuts grow with the depth at which they stand upright, plus this share of the water depth."""
 NEAR = 2e-6
@@ -32,7 +35,20 @@ FASTEST, SPEEDS = 4.0, 41
 SHARES_KNOWN = 1025
 """Shares of its buoyancy in use for which it is known how a float rides."""
 
+NEVER, IF_REFUSED, LIKELY = range(3)
+"""When a line is looked for on the seabed: never; where it cannot hang clear of it; where it would
+not carry its lower end."""
+
 _STILL = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
+
+
+@dataclass(frozen=True)
+class Way:
+    """What the kernel reads of a line that is looked for clear of the seabed, or lying on it."""
+
+    stages: tuple[Any, ...]
+    mooring: tuple[Any, ...]
+    chances: tuple[Any, ...]
 
 
 @dataclass(frozen=True)
@@ -43,24 +59,21 @@ class Plan:
     """
 
     water: Water
-    stages: tuple[Any, ...]
     parts: tuple[Any, ...]
-    mooring: tuple[Any, ...]
     floating: tuple[Any, ...]
-    chances: tuple[Any, ...]
+    clear: Way
+    lying: Way
     fixed: Floats
+    contact: int
 
     @property
     def arrays(self) -> tuple[Any, ...]:
         """All that the kernel takes."""
-        return (
-            self.stages,
-            self.parts,
-            self.mooring,
-            self.floating,
-            self.chances,
-            self.fixed,
+        clear, lying = (
+            (way.stages, self.parts, way.mooring, self.floating, way.chances, self.fixed)
+            for way in (self.clear, self.lying)
         )
+        return clear, lying, self.contact
 
 
 def base_water(mooring: Mooring) -> Water:
@@ -78,32 +91,87 @@ def plan_of(mooring: Mooring) -> Plan | None:
     if not _simple(line):
         return None
     closing = Closing(line, water, mooring.settings)
-    unknown = closing.whole(False)
-    track = unknown.track
+    track = Track.of(line)
     head = track.stages[0]
     if not isinstance(head, Rod):
         return None
     afloat = closing.floats[0] if closing.floats else -1
     floats = afloat in head.pieces
-    top = upright_depth(closing, unknown)
     load_of = [load for stage in track.stages for load in _loads(stage)]
+    first_chain = _first_chain(mooring, track)
+    clear, lying = (
+        _way(closing, track, afloat if floats else -1, first_chain, lands=lands)
+        for lands in (False, True)
+    )
     return Plan(
         water=water,
-        stages=_stages(line, water, track, afloat if floats else -1),
         parts=_parts(line, track, load_of),
+        floating=_riding(head, afloat, line.floating if floats else None),
+        clear=clear,
+        lying=lying,
+        fixed=np.column_stack([water.level, water.u, water.v, water.density]),
+        contact=_contact(line, water, track),
+    )
+
+
+def _way(closing: Closing, track: Track, afloat: int, first_chain: int, *, lands: bool) -> Way:
+    """The line clear of the seabed, or on it: how it is cut, where it ends, what it may miss by."""
+    unknown = closing.whole(lands)
+    top = upright_depth(closing, unknown)
+    line, water = closing.line, closing.water
+    return Way(
+        stages=(
+            *_stages(line, water, track, afloat, lands),
+            _grips(track, water, closing.settings.seabed_friction),
+            lands,
+        ),
         mooring=(
             water.depth,
             unknown.goal,
             top,
-            floats,
+            afloat >= 0,
             line.floating is not None,
             line.anchor_height,
-            bool(line.length.sum() > water.depth),
+            first_chain,
         ),
-        floating=_riding(head, afloat, line.floating if floats else None),
         chances=(np.array(SHARES), _falls(closing, unknown, top)),
-        fixed=np.column_stack([water.level, water.u, water.v, water.density]),
     )
+
+
+def _contact(line: Line, water: Water, track: Track) -> int:
+    """When the line is looked for on the seabed, as `calm.solve.mooring` has it."""
+    lift = standing_lift(line, water)
+    if track.landing == len(track.stages) or not (np.cumsum(lift) > 0.0).any():
+        return NEVER
+    longer, heavy = line.length.sum() > water.depth, lift.sum() <= 0.0
+    return LIKELY if longer or heavy else IF_REFUSED
+
+
+def _first_chain(mooring: Mooring, track: Track) -> int:
+    """The stage from which on there is nothing but chain."""
+    kinds = [piece.component.kind for piece in mooring.file.pieces]
+    others = [
+        n
+        for n, stage in enumerate(track.stages)
+        if kinds[stage.pieces[0] if isinstance(stage, Rod) else stage.piece] != "chain"
+    ]
+    return max(others, default=-1) + 1
+
+
+def _grips(track: Track, water: Water, friction: float) -> Floats:
+    """(stages, 2) friction on the seabed of a metre of cable, and of a whole rod or clamp [N].
+
+    NaN where a rod carries clamps, which hold it part by part.
+    """
+    _, density = water.at(np.array([water.depth]))
+    excess = (float(density[0]) - REFERENCE_DENSITY) * water.gravity
+    grips = np.zeros((len(track.stages), 2))
+    for n, stage in enumerate(track.stages):
+        weights = [-(load.buoyancy + excess * load.volume) for load in loads_of(stage)]
+        grips[n, 0 if isinstance(stage, Cable) else 1] = friction * weights[0]
+        if len(weights) > 1:
+            grips[n] = np.nan
+    return grips
 
 
 def _simple(line: Line) -> bool:
@@ -124,13 +192,15 @@ def _loads(stage: Stage) -> tuple[Load, ...]:
     return stage.loads if isinstance(stage, Rod) else (stage,)
 
 
-def _stages(line: Line, water: Water, track: Track, afloat: int) -> tuple[Any, ...]:
+def _stages(
+    line: Line, water: Water, track: Track, afloat: int, lands: bool
+) -> tuple[Any, ...]:
     """Kind, first load or cut, count of them and length of every stage; cables, cuts, loads."""
     kinds, firsts, counts, lengths = [], [], [], []
     cables: list[tuple[float, ...]] = []
     cuts: list[float] = []
     loads: list[tuple[float, ...]] = []
-    given = iter(cuts_of(track, water.depth))
+    given = iter(cuts_of(track, water.depth, lands))
     for n, stage in enumerate(track.stages):
         if isinstance(stage, Cable):
             mine = next(given).tolist()
@@ -197,24 +267,27 @@ def _place_afloat(line: Line, load: Load, afloat: int) -> float:
     return ABOVE_IT if load.piece < afloat and line.floating is not None else 0.0
 
 
-def cuts_of(track: Track, depth: float) -> list[Floats]:
+def cuts_of(track: Track, depth: float, lands: bool) -> list[Floats]:
     """For every cable, the lengths of its cuts [m], shorter towards the surface.
 
-    Currents shear where they are strong, and they are strong towards the surface.
+    Currents shear where they are strong, and they are strong towards the surface. But where a line
+    `lands` it may bend within a short length.
     """
     height = sum(stage.length for stage in track.stages if not isinstance(stage, Load))
+    landing = sum(s.length for s in track.stages[track.landing :] if isinstance(s, Cable))
     ends = []
-    for stage in track.stages:
+    for n, stage in enumerate(track.stages):
         if isinstance(stage, Load):
             continue
         upper = max(depth - height, 0.0) + SOFTENING * depth
         height -= stage.length
         if isinstance(stage, Cable):
-            ends.append((upper, upper + stage.length))
-    total = sum(np.log(lower / upper) for upper, lower in ends)
+            few = LANDING_CUTS * stage.length / landing if lands and n >= track.landing else 1.0
+            ends.append((upper, upper + stage.length, few))
+    total = sum(np.log(lower / upper) for upper, lower, _ in ends)
     cuts = []
-    for upper, lower in ends:
-        count = max(round(CUTS * np.log(lower / upper) / total), 1)
+    for upper, lower, few in ends:
+        count = max(round(CUTS * np.log(lower / upper) / total), round(few), 1)
         joints = np.geomspace(upper, lower, count + 1)
         cuts.append(np.diff(joints))
     return cuts
