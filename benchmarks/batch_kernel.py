@@ -33,7 +33,10 @@ from calm.shipped import shipped_folder
 from calm.solve import solve_mooring
 
 LEVELS = 50
-MOORINGS = "deep-current-meters", "s1000", "upward-adcp-300m", "taut-nylon-surface"
+MOORINGS = (
+    "deep-current-meters", "s1000", "upward-adcp-300m", "taut-nylon-surface",
+    "chain-and-rope-surface", "braconnot-buoy",
+)  # fmt: skip
 Arrays = tuple[np.ndarray, ...]
 
 

@@ -10,17 +10,35 @@ from typing import Any
 
 import numpy as np
 
+from calm.batch.kernel.bends import as_planned
 from calm.batch.kernel.closing import (
-    HEAP, ON_SEABED, WRITTEN, Desk, Shapes, close_all, find_roots,
-)  # fmt: skip
+    HEAP,
+    ON_SEABED,
+    WRITTEN,
+    Desk,
+    Shapes,
+    close_all,
+    find_roots,
+)
 from calm.batch.kernel.compiled import compiled, entry
+from calm.batch.kernel.contact import LIKELY, NEVER
 from calm.batch.kernel.lanes import LANES, SCRATCH, STATE
-from calm.batch.kernel.plan import LIKELY, NEVER
 from calm.batch.kernel.profile import growth_below, lay_profile, read_profile
 from calm.batch.kernel.search import (
-    COLUMNS, FALL, FOUND, GROWTH, LEAST_CARRIED, LOWER_MISS, LYING, SLOPE, SOLVED, SPEED,
-    TURNS_BACK, Y, begin,
-)  # fmt: skip
+    COLUMNS,
+    FALL,
+    FOUND,
+    GROWTH,
+    LEAST_CARRIED,
+    LOWER_MISS,
+    LYING,
+    SLOPE,
+    SOLVED,
+    SPEED,
+    TURNS_BACK,
+    Y,
+    begin,
+)
 from calm.physics.line import Floats, Integers
 from calm.solve.mooring import BARELY_LANDED
 
@@ -77,6 +95,7 @@ def look_on_seabed(
         if ends[c] == ON_SEABED or (contact == LIKELY and ends[c] > STILL and ends[c] != WRITTEN):
             there[c] = SOLVED
             begin(seek, c, seek[c, GROWTH], seek[c, SPEED], mooring[2], chances[1])
+            as_planned(desk[4], c, lying[0])
     find_roots(desk, lying, seek, there)
     for c in range(ends.size):
         if there[c] == SOLVED and seek[c, LYING] < 0.0:
@@ -89,9 +108,10 @@ def look_on_seabed(
         if not tried[c]:
             continue
         closed = there[c] == WRITTEN or there[c] == HEAP
-        if closed and seek[c, LYING] > limit + margin:
+        beyond = seek[c, LYING] - limit
+        if closed and beyond > margin:
             ends[c] = there[c]
-        elif closed and (seek[c, LYING] > limit - margin > -margin or there[c] == HEAP):
+        elif closed and (there[c] == HEAP or (limit > 0.0 and beyond > -margin)):
             ends[c] = LIFTED
         elif ends[c] == SAGS and (closed or there[c] == LIFTED):
             again[c] = SOLVED
@@ -123,7 +143,7 @@ def solve_cases(
     results : see `calm.batch.kernel.outcome`
     reasons : (n,)
     """
-    clear, _, contact = plans
+    clear, lying, contact = plans
     stages, fixed = clear[0], clear[5]
     kinds, loads = stages[0], stages[6]
     levels = depth.shape[1] + fixed.shape[0]
@@ -132,7 +152,8 @@ def solve_cases(
     water = (np.zeros(LANES, np.int64), np.zeros(LANES, np.int64), bounds, rows)
     nodes = np.zeros(STATE * LANES * (kinds.size + 1))
     forces = np.zeros(3 * LANES * loads.shape[0])
-    desk = (np.zeros(SCRATCH), water, nodes, forces)
+    own = np.zeros((3, CHUNK, lying[0][5].size))
+    desk = (np.zeros(SCRATCH), water, nodes, forces, own)
     size = (nodes.size + forces.size) // LANES
     shapes = (np.zeros((CHUNK, size)), np.zeros((CHUNK, size)), np.zeros(CHUNK), np.zeros(size))
     seek, all_ends = np.zeros((CHUNK, COLUMNS)), np.zeros(CHUNK, np.int64)

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from calm.batch.kernel.bends import LANDS, ROUNDS, recut
 from calm.batch.kernel.compiled import compiled
 from calm.batch.kernel.lanes import (
     FREE_END,
@@ -26,6 +27,7 @@ from calm.batch.kernel.lanes import (
     OUT,
     RESTING,
     SHARE,
+    SHARPEST,
     WET,
     WIND_EAST,
     WIND_NORTH,
@@ -36,8 +38,10 @@ from calm.batch.kernel.march import march
 from calm.batch.kernel.outcome import blend, greatest_change, write_case
 from calm.batch.kernel.search import (
     AWAY,
+    CORNERS,
     DONE,
     FIRST,
+    FOUND,
     LEAST_CARRIED,
     LOWEST_PLACE,
     LYING,
@@ -61,12 +65,18 @@ PLACE_CHANGE, TENSION_CHANGE = 4e-5, 5e-5
 """What the last halving may change, as shares of the water depth and of the tension. The shape is
 then blended from the last two, so that it is off by less; by about as much where currents are
 ragged."""
+PLACE_CHANGE_LYING = 2e-5
+"""The same of places where a line may land: its touchdown is not at a joint of the cuts. It is
+halved once more than another, too."""
+CORNER = 3e-6
+"""The worst corner of such a line, turn times length of the segment, as a share of the water depth:
+where it is more, a halving may change little and yet the bend not be known."""
 CERTAIN = 4.0
 """A shape below the seabed by so many times what the last halving changed is there for certain."""
 MOST_MARCHES = 60
 
-Desk = tuple[Floats, Tables, Floats, Floats]
-"""What a march writes on: scratch, tables, recorded nodes and forces."""
+Desk = tuple[Floats, Tables, Floats, Floats, Floats]
+"""What a march writes on: scratch, tables, recorded nodes and forces, the cuts of every case."""
 
 Shapes = tuple[Floats, Floats, Floats, Floats]
 """Of every case the two last shapes and where it closed the time before; one shape blended."""
@@ -101,7 +111,7 @@ def find_roots(desk: Desk, plan: Any, seek: Floats, reasons: Integers) -> None:
     seek : (cases, COLUMNS) see `calm.batch.kernel.search`
     reasons : (cases,)
     """
-    s, water, nodes, forces = desk
+    s, water, nodes, forces, own = desk
     stages, _, mooring, floating, chances, _ = plan
     slots, level = water[0], water[1]
     task = np.full(LANES, DONE)
@@ -121,7 +131,7 @@ def find_roots(desk: Desk, plan: Any, seek: Floats, reasons: Integers) -> None:
             place_free_end(s, i, seek[slots[i], Y], floating[0], floating[1])
         if not busy:
             return
-        march(s, water, stages, 0, nodes, forces)
+        march(s, water, stages, 0, nodes, forces, own)
         for i in range(LANES):
             if task[i] != DONE:
                 c = slots[i]
@@ -136,10 +146,13 @@ def find_roots(desk: Desk, plan: Any, seek: Floats, reasons: Integers) -> None:
 @compiled
 def close_on(
     grid: int, desk: Desk, plan: Any, seek: Floats, pending: Integers, reasons: Integers,
-    refusals: Integers, kept: Floats,
+    refusals: Integers, kept: Floats, follows: bool,
 ) -> None:  # fmt: skip
-    """Close pending cases on cuts halved `grid` times; their shapes go to their rows of `kept`."""
-    s, water, nodes, forces = desk
+    """Close pending cases on cuts halved `grid` times; their shapes go to their rows of `kept`.
+
+    `follows`: the cuts of each then follow the bends of its shape.
+    """
+    s, water, nodes, forces, own = desk
     stages, _, mooring, floating, _, _ = plan
     slots, level = water[0], water[1]
     numbers, after = nodes.size // LANES, forces.size // LANES
@@ -156,16 +169,22 @@ def close_on(
             place_free_end(s, i, seek[slots[i], Y], floating[0], floating[1])
         if not busy:
             return
-        march(s, water, stages, grid, nodes, forces)
+        march(s, water, stages, grid, nodes, forces, own)
         for i in range(LANES):
             if not closing[i]:
                 continue
             c = slots[i]
             near = correct(seek, c, s[Z + i] - mooring[1], mooring)
             closing[i] = near == AWAY
-            if near == NOWHERE:
+            if near == NOWHERE and follows:
+                seek[c, Y] = seek[c, FOUND]
+            elif near == NOWHERE:
                 reasons[c] = UNCLOSED
             elif near == THERE:
+                seek[c, CORNERS] = s[SHARPEST + i]
+                if follows:
+                    recut(own, c, stages)
+                    continue
                 refusals[c] = refused(s, i, mooring)
                 seek[c, LYING], seek[c, LOWEST_PLACE] = s[RESTING + i], s[LOWEST + i]
                 for k in range(numbers):
@@ -201,7 +220,12 @@ def close_all(
     older, newer, earlier, shape = shapes
     count = stages[0].size
     refusals = np.zeros(ends.size, np.int64)
-    for grid in range(1, FINEST + 1):
+    for _ in range(ROUNDS if stages[LANDS] else 0):
+        pending = np.flatnonzero(ends == SOLVED)
+        close_on(1, desk, plan, seek, pending, ends, refusals, newer, True)
+    finest = FINEST + 1 if stages[LANDS] else FINEST
+    allowed = PLACE_CHANGE_LYING if stages[LANDS] else PLACE_CHANGE
+    for grid in range(1, finest + 1):
         pending = np.flatnonzero(ends == SOLVED)
         older, newer = newer, older
         for k in range(pending.size):
@@ -210,7 +234,7 @@ def close_all(
             y = seek[c, Y]
             seek[c, Y] = y + (0.25 * (y - earlier[c]) if grid > 1 else 0.0)
             earlier[c] = y
-        close_on(grid, desk, plan, seek, pending, ends, refusals, newer)
+        close_on(grid, desk, plan, seek, pending, ends, refusals, newer, False)
         if grid < FEWEST_HALVINGS:
             continue
         for k in range(pending.size):
@@ -222,12 +246,13 @@ def close_all(
             if refusals[c] == ON_SEABED and below > CERTAIN * place * mooring[0]:
                 ends[c] = ON_SEABED
                 continue
-            if place <= PLACE_CHANGE and tension <= TENSION_CHANGE:
+            bends = stages[LANDS] and seek[c, CORNERS] > CORNER * mooring[0]
+            if place <= allowed and tension <= TENSION_CHANGE and not bends:
                 ends[c] = WRITTEN if refusals[c] == SOLVED else refusals[c]
                 if ends[c] != WRITTEN:
                     continue
                 blend(stages, older[c], newer[c], shape)
                 used = 1.0 + min((4.0 * seek[c, Y] - earlier[c]) / 3.0, 0.0)
                 write_case(stages, parts, shape, used, results, start + c)
-            elif grid == FINEST:
+            elif grid == finest:
                 ends[c] = TOO_COARSE if refusals[c] == SOLVED else refusals[c]

@@ -27,8 +27,8 @@ the intervals, and value at no depth and slope of u, v, w and density in each.""
 (
     # place, force above, axis: these are recorded
     X, Y, Z, FX, FY, FZ, TX, TY, TZ,
-    # load per metre of the last segment; pull at its middle; where to look up
-    QX, QY, QZ, PULL, DEPTH,
+    # load per metre of the last segment; pull at its middle; where to look up; length of the next
+    QX, QY, QZ, PULL, DEPTH, CUT,
     # current and density there
     U, V, W, DENSITY,
     # what turns an element and its drag, see `calm.physics.element`
@@ -44,9 +44,11 @@ the intervals, and value at no depth and slope of u, v, w and density in each.""
     # sums of loads, and of what turns a rod
     SX, SY, SZ, MX, MY, MZ,
     # the length on the seabed, below 0 where none is; how much hangs of the stage that came down,
-    # and which it is; vertical force and lowest height before a segment; what is kept of a stage
-    RESTING, HANGING, LANDED_AT, CARRIED, LOWEST_BEFORE, KEPT,
-) = (row * LANES for row in range(62))  # fmt: skip
+    # and which it is; before a segment the vertical force, the lowest height, and how much of the
+    # stage is above it; what a cut turned; turn times length of the worst corner;
+    # what is kept of a stage
+    RESTING, HANGING, LANDED_AT, CARRIED, LOWEST_BEFORE, DONE, TURNED, SHARPEST, KEPT,
+) = (row * LANES for row in range(66))  # fmt: skip
 EXTREMES = 4
 
 ROD, CABLE, CLAMP = 0, 1, 2

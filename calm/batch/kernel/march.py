@@ -25,6 +25,7 @@ from calm.batch.kernel.lanes import (
     QZ,
     RESTING,
     ROD,
+    SHARPEST,
     STATE,
     TX,
     TY,
@@ -36,16 +37,20 @@ from calm.batch.kernel.lanes import (
 )
 from calm.batch.kernel.loads import pass_clamp
 from calm.batch.kernel.rod import pass_piece, pass_rod
-from calm.batch.kernel.seabed import come_down, keep, lie_down, pass_to_seabed
+from calm.batch.kernel.seabed import come_down, keep, lie_down, lie_loads, pass_to_seabed
 from calm.physics.line import Floats
 
 
 @compiled
 def march(
-    s: Floats, water: Tables, plan: Any, halvings: int, nodes: Floats, forces: Floats
+    s: Floats, water: Tables, plan: Any, halvings: int, nodes: Floats, forces: Floats, own: Floats
 ) -> None:
-    """March all lanes from their free ends; their states at every joint go to `nodes`."""
-    kinds, firsts, counts, lengths, cables, cuts, loads, gravity, limit, landing, grips, lands = plan
+    """March all lanes from their free ends; their states at every joint go to `nodes`.
+
+    A line that may land is cut as its slot of `own` has it: see `calm.batch.kernel.bends`.
+    """
+    kinds, firsts, counts, lengths, cables, cuts, loads = plan[:7]
+    gravity, limit, landing, grips, holds, lands = plan[7:]
     for i in range(LANES):
         s[X + i], s[Y + i], s[Z + i] = 0.0, 0.0, -s[FREE_END + i]
         s[FX + i], s[FY + i], s[FZ + i] = 0.0, 0.0, 0.0
@@ -53,7 +58,7 @@ def march(
         s[QX + i], s[QY + i], s[QZ + i] = 0.0, 0.0, 0.0
         s[LOWEST + i], s[HIGHEST + i] = inf, -inf
         s[LIGHTEST + i], s[LEAST_PULL + i] = inf, inf
-        s[RESTING + i], s[HANGING + i] = -1.0, 0.0
+        s[RESTING + i], s[HANGING + i], s[SHARPEST + i] = -1.0, 0.0, 0.0
     cable = 0
     for n in range(kinds.size):
         first, count = firsts[n], counts[n]
@@ -62,12 +67,12 @@ def march(
         if to_seabed:
             keep(s)
         if kinds[n] == CABLE:
-            mine = cuts[first : first + count]
-            if to_seabed:
-                compliance = cables[cable, C_COMPLIANCE]
-                pass_to_seabed(s, water, cables[cable], mine, halvings, gravity, n)
+            mine = cables[cable]
+            if lands:
+                stretch, compliance = (n, first, count), mine[C_COMPLIANCE]
+                pass_to_seabed(s, water, mine, own, stretch, halvings, gravity, to_seabed)
             else:
-                pass_segments(s, water, cables[cable], mine, halvings, gravity)
+                pass_segments(s, water, mine, cuts[first : first + count], halvings, gravity)
             cable += 1
         else:
             hung, written = loads[first : first + count], forces[3 * LANES * first :]
@@ -81,6 +86,8 @@ def march(
                 come_down(s, kinds[n], n)
         if to_seabed:
             lie_down(s, lengths[n], grips[n], compliance)
+            if kinds[n] == ROD and count > 1:
+                lie_loads(s, holds[first : first + count], n, forces[3 * LANES * first :])
         if n >= landing:
             for i in range(LANES):
                 fz = s[FZ + i]

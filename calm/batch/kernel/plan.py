@@ -8,36 +8,34 @@ from typing import Any
 import numpy as np
 
 from calm.assemble import assemble_water
+from calm.batch.kernel.contact import first_chain_of, grips_on, when_looked_for
 from calm.batch.kernel.lanes import ABOVE_IT, CABLE, CLAMP, ITSELF, ROD
 from calm.case import Mooring
 from calm.files import CurrentTable
 from calm.physics.friction import Friction
 from calm.physics.hull import Floating
-from calm.physics.line import REFERENCE_DENSITY, Floats, Line, Water
+from calm.physics.line import Floats, Line, Water
 from calm.physics.profile import Profile
 from calm.physics.state import MarchError
-from calm.physics.track import Cable, Load, Rod, Stage, Track, head_count, loads_of
+from calm.physics.track import Cable, Load, Rod, Stage, Track, head_count
 from calm.solve.closing import Closing
 from calm.solve.locate import SHARES, upright_depth
-from calm.solve.standing import standing_lift
 from calm.solve.unknown import Unknown
 
 CUTS = 50
 """Of a line, about, for the first look; they are halved twice and more."""
-LANDING_CUTS = 32
-"""At least, of what may come down on the seabed."""
+LANDING_CUTS, LEAST_CUTS = 32, 8
+"""At least, of what may come down on the seabed, and of each part of it between clamps."""
 SOFTENING = 0.3
 """Cuts grow with the depth at which they stand upright, plus this share of the water depth."""
 NEAR = 2e-6
 """How far the loads of a rod may be from where they are looked up, as a share of the depth."""
+NEAR_ON_SEABED = 2e-7
+"""The same of a line on the seabed, which may lie far in the direction of its last pull."""
 FASTEST, SPEEDS = 4.0, 41
 """Currents up to so many m/s, and how many of them, for which the fall of the line is known."""
 SHARES_KNOWN = 1025
 """Shares of its buoyancy in use for which it is known how a float rides."""
-
-NEVER, IF_REFUSED, LIKELY = range(3)
-"""When a line is looked for on the seabed: never; where it cannot hang clear of it; where it would
-not carry its lower end."""
 
 _STILL = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
 
@@ -98,7 +96,7 @@ def plan_of(mooring: Mooring) -> Plan | None:
     afloat = closing.floats[0] if closing.floats else -1
     floats = afloat in head.pieces
     load_of = [load for stage in track.stages for load in _loads(stage)]
-    first_chain = _first_chain(mooring, track)
+    first_chain = first_chain_of(mooring, track)
     clear, lying = (
         _way(closing, track, afloat if floats else -1, first_chain, lands=lands)
         for lands in (False, True)
@@ -110,7 +108,7 @@ def plan_of(mooring: Mooring) -> Plan | None:
         clear=clear,
         lying=lying,
         fixed=np.column_stack([water.level, water.u, water.v, water.density]),
-        contact=_contact(line, water, track),
+        contact=when_looked_for(line, water, track),
     )
 
 
@@ -122,7 +120,7 @@ def _way(closing: Closing, track: Track, afloat: int, first_chain: int, *, lands
     return Way(
         stages=(
             *_stages(line, water, track, afloat, lands),
-            _grips(track, water, closing.settings.seabed_friction),
+            *grips_on(track, water, closing.settings.seabed_friction),
             lands,
         ),
         mooring=(
@@ -136,42 +134,6 @@ def _way(closing: Closing, track: Track, afloat: int, first_chain: int, *, lands
         ),
         chances=(np.array(SHARES), _falls(closing, unknown, top)),
     )
-
-
-def _contact(line: Line, water: Water, track: Track) -> int:
-    """When the line is looked for on the seabed, as `calm.solve.mooring` has it."""
-    lift = standing_lift(line, water)
-    if track.landing == len(track.stages) or not (np.cumsum(lift) > 0.0).any():
-        return NEVER
-    longer, heavy = line.length.sum() > water.depth, lift.sum() <= 0.0
-    return LIKELY if longer or heavy else IF_REFUSED
-
-
-def _first_chain(mooring: Mooring, track: Track) -> int:
-    """The stage from which on there is nothing but chain."""
-    kinds = [piece.component.kind for piece in mooring.file.pieces]
-    others = [
-        n
-        for n, stage in enumerate(track.stages)
-        if kinds[stage.pieces[0] if isinstance(stage, Rod) else stage.piece] != "chain"
-    ]
-    return max(others, default=-1) + 1
-
-
-def _grips(track: Track, water: Water, friction: float) -> Floats:
-    """(stages, 2) friction on the seabed of a metre of cable, and of a whole rod or clamp [N].
-
-    NaN where a rod carries clamps, which hold it part by part.
-    """
-    _, density = water.at(np.array([water.depth]))
-    excess = (float(density[0]) - REFERENCE_DENSITY) * water.gravity
-    grips = np.zeros((len(track.stages), 2))
-    for n, stage in enumerate(track.stages):
-        weights = [-(load.buoyancy + excess * load.volume) for load in loads_of(stage)]
-        grips[n, 0 if isinstance(stage, Cable) else 1] = friction * weights[0]
-        if len(weights) > 1:
-            grips[n] = np.nan
-    return grips
 
 
 def _simple(line: Line) -> bool:
@@ -192,9 +154,7 @@ def _loads(stage: Stage) -> tuple[Load, ...]:
     return stage.loads if isinstance(stage, Rod) else (stage,)
 
 
-def _stages(
-    line: Line, water: Water, track: Track, afloat: int, lands: bool
-) -> tuple[Any, ...]:
+def _stages(line: Line, water: Water, track: Track, afloat: int, lands: bool) -> tuple[Any, ...]:
     """Kind, first load or cut, count of them and length of every stage; cables, cuts, loads."""
     kinds, firsts, counts, lengths = [], [], [], []
     cables: list[tuple[float, ...]] = []
@@ -228,7 +188,7 @@ def _stages(
         np.array(cuts, np.float64),
         np.array(loads, np.float64),
         water.gravity,
-        NEAR * water.depth,
+        (NEAR_ON_SEABED if lands else NEAR) * water.depth,
         track.landing,
     )
 
@@ -282,7 +242,9 @@ def cuts_of(track: Track, depth: float, lands: bool) -> list[Floats]:
         upper = max(depth - height, 0.0) + SOFTENING * depth
         height -= stage.length
         if isinstance(stage, Cable):
-            few = LANDING_CUTS * stage.length / landing if lands and n >= track.landing else 1.0
+            few = 1.0
+            if lands and n >= track.landing:
+                few = max(LANDING_CUTS * stage.length / landing, LEAST_CUTS)
             ends.append((upper, upper + stage.length, few))
     total = sum(np.log(lower / upper) for upper, lower, _ in ends)
     cuts = []

@@ -6,15 +6,19 @@ back to where it was, and what of the stage lies is laid out from there.
 
 from __future__ import annotations
 
-from math import inf, isnan, sqrt
+from math import inf, sqrt
 
 import numpy as np
 
-from calm.batch.kernel.cable import pass_segments
+from calm.batch.kernel.bends import DOWN
+from calm.batch.kernel.cable import pass_own_segments
 from calm.batch.kernel.compiled import compiled
 from calm.batch.kernel.lanes import (
     C_COMPLIANCE,
     CARRIED,
+    CHANGE,
+    CUT,
+    DONE,
     EXTREMES,
     FX,
     FY,
@@ -26,13 +30,17 @@ from calm.batch.kernel.lanes import (
     LEAST_PULL,
     LOWEST,
     LOWEST_BEFORE,
+    NX,
+    NY,
     NZ,
     QX,
     QY,
     QZ,
     RESTING,
     ROD,
+    SHARPEST,
     STATE,
+    TURNED,
     TX,
     TY,
     TZ,
@@ -42,6 +50,12 @@ from calm.batch.kernel.lanes import (
     Z,
 )
 from calm.physics.line import Floats
+
+MOST_TURN = 0.2
+"""What a segment may turn, and its arc be told from it [rad]; beyond, it is a corner."""
+
+Stretch = tuple[int, int, int]
+"""Which stage a stretch of cable is, its first cut and how many it has."""
 
 
 @compiled
@@ -81,48 +95,74 @@ def land(s: Floats, i: int, hanging: float, stage: int) -> None:
 
 @compiled
 def pass_to_seabed(
-    s: Floats, water: Tables, cable: Floats, cuts: Floats, halvings: int, gravity: float, stage: int
-) -> None:
-    """Take all lanes down a stretch of cable, and see where they come down."""
-    down = True
-    for i in range(LANES):
-        down &= s[RESTING + i] >= 0.0
-    if down:
-        return
+    s: Floats, water: Tables, cable: Floats, own: Floats, stretch: Stretch, halvings: int,
+    gravity: float, may_land: bool,
+) -> None:  # fmt: skip
+    """Take all lanes down a stretch of cable by their own cuts, and see where they come down.
+
+    How much each cut turns is noted in `own`, see `calm.batch.kernel.bends`.
+    """
+    stage, first, count = stretch
+    slots = water[0]
     one = np.zeros(1)
     parts = 1 << halvings
-    done = 0.0
-    for j in range(cuts.size):
-        cut = cuts[j] / parts
-        one[0] = cut
+    for i in range(LANES):
+        s[DONE + i] = 0.0
+    for j in range(first, first + count):
+        hanging = False
+        for i in range(LANES):
+            s[CUT + i] = own[0, slots[i], j] / parts
+            s[TURNED + i] = DOWN if s[RESTING + i] >= 0.0 else 0.0
+            hanging |= s[RESTING + i] < 0.0
+        if not hanging:
+            for i in range(LANES):
+                own[2, slots[i], j] = DOWN
+            continue
         for _ in range(parts):
             for i in range(LANES):
                 s[CARRIED + i], s[LOWEST_BEFORE + i] = s[FZ + i], s[LOWEST + i]
-            pass_segments(s, water, cable, one, 0, gravity)
+                s[NX + i], s[NY + i], s[NZ + i] = s[TX + i], s[TY + i], s[TZ + i]
+                s[CHANGE + i] = s[RESTING + i]
+            pass_own_segments(s, water, cable, one, 0, gravity)
             landing = False
             for i in range(LANES):
                 landing |= s[CARRIED + i] > 0.0 and s[FZ + i] <= 0.0
-            if landing:
-                down = True
+            if landing and may_land:
                 for i in range(LANES):
-                    if s[RESTING + i] < 0.0:
-                        if s[CARRIED + i] > 0.0 and s[FZ + i] <= 0.0:
-                            touch_down(s, i, cut, done, cable[C_COMPLIANCE], stage)
-                        else:
-                            down = False
-                if down:
-                    return
-            done += cut
+                    if s[RESTING + i] < 0.0 and s[CARRIED + i] > 0.0 and s[FZ + i] <= 0.0:
+                        touch_down(s, i, cable[C_COMPLIANCE], stage)
+            add_turn(s)
+        for i in range(LANES):
+            own[2, slots[i], j] = s[TURNED + i]
 
 
 @compiled
-def touch_down(s: Floats, i: int, cut: float, done: float, compliance: float, stage: int) -> None:
+def add_turn(s: Floats) -> None:
+    """Add what the last segment turned, unless it is the first of its stretch, or lies."""
+    for i in range(LANES):
+        axis = KEPT + TX if s[RESTING + i] >= 0.0 else TX
+        x, y, z = (
+            s[axis + i] - s[NX + i],
+            s[axis + TY - TX + i] - s[NY + i],
+            s[axis + TZ - TX + i] - s[NZ + i],
+        )
+        turn = sqrt(x * x + y * y + z * z)
+        if not (s[DONE + i] > 0.0 and s[CHANGE + i] < 0.0):
+            turn = 0.0
+        s[TURNED + i] += turn
+        corner = turn * s[CUT + i] if turn > MOST_TURN else 0.0
+        s[SHARPEST + i] = corner if corner > s[SHARPEST + i] else s[SHARPEST + i]
+        s[DONE + i] += s[CUT + i]
+
+
+@compiled
+def touch_down(s: Floats, i: int, compliance: float, stage: int) -> None:
     """Take a lane back up its last segment, to where nothing was left to carry.
 
     The load of a metre there is that of the segment: the touchdown is off by a share of it that
     shrinks with the segment, where the line is level.
     """
-    qx, qy, qz = s[QX + i], s[QY + i], s[QZ + i]
+    qx, qy, qz, cut = s[QX + i], s[QY + i], s[QZ + i], s[CUT + i]
     half = 0.5 * cut
     gx, gy, gz = s[FX + i] - half * qx, s[FY + i] - half * qy, s[FZ + i] - half * qz
     stretched = cut * (1.0 + compliance * sqrt(gx * gx + gy * gy + gz * gz))
@@ -140,7 +180,7 @@ def touch_down(s: Floats, i: int, cut: float, done: float, compliance: float, st
     s[FX + i] -= (cut - hanging) * qx
     s[FY + i] -= (cut - hanging) * qy
     s[LOWEST + i] = s[LOWEST_BEFORE + i]
-    land(s, i, done + hanging, stage)
+    land(s, i, s[DONE + i] + hanging, stage)
 
 
 @compiled
@@ -179,10 +219,29 @@ def rest(s: Floats, i: int, length: float, hold: float, compliance: float) -> No
     left, pulled = tension - hold, 1.0
     if not hold <= tension:
         left, pulled = 0.0, tension / hold
-    if isnan(hold):
-        s[LEAST_PULL + i] = -1.0
     stretched = length * (1.0 + pulled * compliance * 0.5 * (tension + left))
     s[X + i] += stretched * s[TX + i]
     s[Y + i] += stretched * s[TY + i]
     s[FX + i], s[FY + i] = -left * s[TX + i], -left * s[TY + i]
     s[RESTING + i] += length
+
+
+@compiled
+def lie_loads(s: Floats, holds: Floats, stage: int, record: Floats) -> None:
+    """Record what every load of a rod that lies takes off the tension [N].
+
+    Where the line comes down on it, or the tension does not get past it, that is not to be had.
+    """
+    hold = holds.sum()
+    for i in range(LANES):
+        if s[RESTING + i] >= 0.0:
+            fx, fy = s[KEPT + FX + i] - s[FX + i], s[KEPT + FY + i] - s[FY + i]
+            taken = sqrt(fx * fx + fy * fy)
+            left = s[FX + i] != 0.0 or s[FY + i] != 0.0
+            if s[LANDED_AT + i] >= stage or (taken > 0.0 and not left):
+                s[LEAST_PULL + i] = -1.0
+            for j in range(holds.size):
+                share = taken / hold * holds[j] if hold > 0.0 else 0.0
+                record[(3 * j) * LANES + i] = share * s[TX + i]
+                record[(3 * j + 1) * LANES + i] = share * s[TY + i]
+                record[(3 * j + 2) * LANES + i] = 0.0
