@@ -21,7 +21,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import s1000_by_hand as by_hand
 
-from calm.batch.kernel.closing import FEWEST_HALVINGS, solve_cases
+from calm.batch.kernel.cases import solve_cases
+from calm.batch.kernel.closing import FEWEST_HALVINGS
 from calm.batch.kernel.outcome import OF_CLAMP, OF_ENDS, OF_PIECE
 from calm.batch.kernel.plan import Plan
 from calm.batch.kernel.stragglers import water_of
@@ -32,7 +33,10 @@ from calm.shipped import shipped_folder
 from calm.solve import solve_mooring
 
 LEVELS = 50
-MOORINGS = "deep-current-meters", "s1000", "upward-adcp-300m", "taut-nylon-surface"
+MOORINGS = (
+    "deep-current-meters", "s1000", "upward-adcp-300m", "taut-nylon-surface",
+    "chain-and-rope-surface", "braconnot-buoy",
+)  # fmt: skip
 Arrays = tuple[np.ndarray, ...]
 
 
@@ -133,7 +137,7 @@ def main(profiles: str = "8192", checked: str = "24") -> None:
         ended = solve()
         first = perf_counter() - start
         rate = len(ended) / best(solve)
-        segments = 2**FEWEST_HALVINGS * len(plan.stages[5])
+        segments = 2**FEWEST_HALVINGS * len(plan.clear.stages[5])
         print(f"\n{name}: {len(mooring.line.length)} pieces, {segments} segments, {LEVELS} levels")
         print(f"  first run {first:.1f} s; left to be solved alone: {np.count_nonzero(ended)}")
         print(f"  kernel, 1 thread      {rate:9.0f} solves/s")

@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from calm.batch.kernel.closing import LEVELS_COINCIDE, NO_DATA, NOT_TRIED, solve_cases
+from calm.batch.kernel.cases import LEVELS_COINCIDE, NO_DATA, NOT_TRIED, solve_cases
+from calm.batch.kernel.closing import HEAP
 from calm.batch.kernel.outcome import OF_CLAMP, OF_ENDS, OF_PIECE
 from calm.batch.kernel.plan import Plan, base_water, plan_of
 from calm.batch.kernel.search import SOLVED
@@ -28,6 +29,7 @@ BLOCK = 1024
 """Profiles that a worker takes at a time."""
 
 _NO_CURRENT, _LEVELS_COINCIDE = STATUSES.index("no-current"), STATUSES.index("levels-coincide")
+_NO_EQUILIBRIUM = STATUSES.index(Status.NO_EQUILIBRIUM.label)
 _ANCHOR_LIFTS = STATUSES.index(Status.ANCHOR_LIFTS.label)
 
 
@@ -175,6 +177,7 @@ class Batch:
             solve_cases(plan.arrays, depth, u, v, w, rows, ended)
         status[ended == NO_DATA] = _NO_CURRENT
         status[ended == LEVELS_COINCIDE] = _LEVELS_COINCIDE
+        status[ended == HEAP] = _NO_EQUILIBRIUM
         lifts = (ended == SOLVED) & (rows[2][:, 1] > self.mooring.anchor_weight)
         status[lifts] = _ANCHOR_LIFTS
         alone[:] = (ended != SOLVED) & (status == 0)

@@ -13,19 +13,21 @@ from typing import Any
 
 import numpy as np
 
-from calm.batch.kernel.compiled import compiled, entry
+from calm.batch.kernel.bends import LANDS, ROUNDS, recut
+from calm.batch.kernel.compiled import compiled
 from calm.batch.kernel.lanes import (
     FREE_END,
     HELD,
     HIGHEST,
+    LANDED_AT,
     LANES,
     LEAST_PULL,
     LIGHTEST,
     LOWEST,
     OUT,
-    SCRATCH,
+    RESTING,
     SHARE,
-    STATE,
+    SHARPEST,
     WET,
     WIND_EAST,
     WIND_NORTH,
@@ -34,12 +36,15 @@ from calm.batch.kernel.lanes import (
 )
 from calm.batch.kernel.march import march
 from calm.batch.kernel.outcome import blend, greatest_change, write_case
-from calm.batch.kernel.profile import growth_below, lay_profile, read_profile
 from calm.batch.kernel.search import (
     AWAY,
-    COLUMNS,
+    CORNERS,
     DONE,
     FIRST,
+    FOUND,
+    LEAST_CARRIED,
+    LOWEST_PLACE,
+    LYING,
     NOWHERE,
     SOLVED,
     THERE,
@@ -47,27 +52,34 @@ from calm.batch.kernel.search import (
     UNCLOSED,
     Y,
     advance,
-    begin,
     correct,
 )  # fmt: skip
 from calm.physics.line import Floats, Integers
 
 # how a case ended; those of the search are there
-NO_DATA, LEVELS_COINCIDE, STILL = 1, 2, 3
-OUT_OF_WATER, ON_SEABED, COMPRESSED, TOO_COARSE, WRITTEN, NOT_TRIED = range(8, 14)
+OUT_OF_WATER, ON_SEABED, COMPRESSED, TOO_COARSE, WRITTEN, HEAP = range(8, 14)
 
-CHUNK = 256
-"""Cases that are laid out at once: enough to keep the lanes busy, and to fit a cache."""
 FEWEST_HALVINGS, FINEST = 2, 6
 """How often the cuts are halved at least, and at most."""
 PLACE_CHANGE, TENSION_CHANGE = 4e-5, 5e-5
 """What the last halving may change, as shares of the water depth and of the tension. The shape is
 then blended from the last two, so that it is off by less; by about as much where currents are
 ragged."""
+PLACE_CHANGE_LYING = 2e-5
+"""The same of places where a line may land: its touchdown is not at a joint of the cuts. It is
+halved once more than another, too."""
+CORNER = 3e-6
+"""The worst corner of such a line, turn times length of the segment, as a share of the water depth:
+where it is more, a halving may change little and yet the bend not be known."""
+CERTAIN = 4.0
+"""A shape below the seabed by so many times what the last halving changed is there for certain."""
 MOST_MARCHES = 60
 
-Desk = tuple[Floats, Tables, Floats, Floats]
-"""What a march writes on: scratch, tables, recorded nodes and forces."""
+Desk = tuple[Floats, Tables, Floats, Floats, Floats]
+"""What a march writes on: scratch, tables, recorded nodes and forces, the cuts of every case."""
+
+Shapes = tuple[Floats, Floats, Floats, Floats]
+"""Of every case the two last shapes and where it closed the time before; one shape blended."""
 
 
 @compiled
@@ -99,7 +111,7 @@ def find_roots(desk: Desk, plan: Any, seek: Floats, reasons: Integers) -> None:
     seek : (cases, COLUMNS) see `calm.batch.kernel.search`
     reasons : (cases,)
     """
-    s, water, nodes, forces = desk
+    s, water, nodes, forces, own = desk
     stages, _, mooring, floating, chances, _ = plan
     slots, level = water[0], water[1]
     task = np.full(LANES, DONE)
@@ -119,12 +131,13 @@ def find_roots(desk: Desk, plan: Any, seek: Floats, reasons: Integers) -> None:
             place_free_end(s, i, seek[slots[i], Y], floating[0], floating[1])
         if not busy:
             return
-        march(s, water, stages, 0, nodes, forces)
+        march(s, water, stages, 0, nodes, forces, own)
         for i in range(LANES):
             if task[i] != DONE:
                 c = slots[i]
                 miss = s[Z + i] - mooring[1]
                 task[i], reasons[c] = advance(seek, c, task[i], miss, mooring, chances[0])
+                seek[c, LEAST_CARRIED], seek[c, LYING] = s[LIGHTEST + i], s[RESTING + i]
                 marches[i] += 1
                 if marches[i] == MOST_MARCHES and task[i] != DONE:
                     task[i], reasons[c] = DONE, UNCLOSED
@@ -133,10 +146,13 @@ def find_roots(desk: Desk, plan: Any, seek: Floats, reasons: Integers) -> None:
 @compiled
 def close_on(
     grid: int, desk: Desk, plan: Any, seek: Floats, pending: Integers, reasons: Integers,
-    refusals: Integers, kept: Floats,
+    refusals: Integers, kept: Floats, follows: bool,
 ) -> None:  # fmt: skip
-    """Close pending cases on cuts halved `grid` times; their shapes go to their rows of `kept`."""
-    s, water, nodes, forces = desk
+    """Close pending cases on cuts halved `grid` times; their shapes go to their rows of `kept`.
+
+    `follows`: the cuts of each then follow the bends of its shape.
+    """
+    s, water, nodes, forces, own = desk
     stages, _, mooring, floating, _, _ = plan
     slots, level = water[0], water[1]
     numbers, after = nodes.size // LANES, forces.size // LANES
@@ -153,17 +169,24 @@ def close_on(
             place_free_end(s, i, seek[slots[i], Y], floating[0], floating[1])
         if not busy:
             return
-        march(s, water, stages, grid, nodes, forces)
+        march(s, water, stages, grid, nodes, forces, own)
         for i in range(LANES):
             if not closing[i]:
                 continue
             c = slots[i]
             near = correct(seek, c, s[Z + i] - mooring[1], mooring)
             closing[i] = near == AWAY
-            if near == NOWHERE:
+            if near == NOWHERE and follows:
+                seek[c, Y] = seek[c, FOUND]
+            elif near == NOWHERE:
                 reasons[c] = UNCLOSED
             elif near == THERE:
+                seek[c, CORNERS] = s[SHARPEST + i]
+                if follows:
+                    recut(own, c, stages)
+                    continue
                 refusals[c] = refused(s, i, mooring)
+                seek[c, LYING], seek[c, LOWEST_PLACE] = s[RESTING + i], s[LOWEST + i]
                 for k in range(numbers):
                     kept[c, k] = nodes[k * LANES + i]
                 for k in range(after):
@@ -172,88 +195,64 @@ def close_on(
 
 @compiled
 def refused(s: Floats, i: int, mooring: Any) -> int:
-    """Why the lane's shape is not to be had by this march alone; `SOLVED` where it is."""
-    span, goal, anchor_height, lies = mooring[0], mooring[1], mooring[5], mooring[6]
+    """Why the lane's shape is not to be had, by this march alone; `SOLVED` where it is."""
+    span, first_chain = mooring[0], mooring[6]
     if s[LEAST_PULL + i] < 0.0:
         return COMPRESSED
-    if s[LOWEST + i] < goal - anchor_height - 1e-6 * span or (lies and s[LIGHTEST + i] <= 0.0):
+    if s[LOWEST + i] < -span - 1e-6 * span:
         return ON_SEABED
-    return OUT_OF_WATER if s[HIGHEST + i] > 1e-6 * span else SOLVED
+    if s[HIGHEST + i] > 1e-6 * span:
+        return OUT_OF_WATER
+    # a line below the surface is meant to stand: see `calm.case.Mooring`
+    sunk = s[RESTING + i] >= 0.0 and s[SHARE + i] == 1.0 and s[LANDED_AT + i] < first_chain
+    return HEAP if sunk else SOLVED
 
 
 @compiled
-def read_case(
-    c: int, plan: Any, tables: Any, seek: Floats, depth: Floats, u: Floats, v: Floats, w: Floats
-) -> int:
-    """Lay a profile out in a slot and set out on its case; returns why it needs no search."""
-    bounds, rows, read, joined = tables
-    _, _, mooring, _, chances, fixed = plan
-    found = read_profile(depth, u, v, w, read)
-    if found <= 0:
-        return NO_DATA if found == 0 else LEVELS_COINCIDE
-    total = lay_profile(read, found, fixed, bounds[c], rows[c], joined)
-    growth, speed = growth_below(joined, total, mooring[2])
-    begin(seek, c, growth, speed, mooring[2], chances[1])
-    return SOLVED if speed > 0.0 else STILL
-
-
-@entry
-def solve_cases(
-    plan: Any, depth: Floats, u: Floats, v: Floats, w: Floats, results: Any, reasons: Integers
+def close_all(
+    desk: Desk, plan: Any, seek: Floats, shapes: Shapes, ends: Integers, start: int, results: Any
 ) -> None:
-    """Solve cases; what they lead to goes to their rows of the results, how they ended to reasons.
+    """Close every case that ended `SOLVED` so far, from its coarse root, and write its results.
 
-    Parameters
-    ----------
-    plan : the arrays of `calm.batch.kernel.plan.Plan`
-    depth : (1 or n, k) of the levels [m]
-    u, v, w : (n, k) current [m/s]; NaN where there is none
-    results : see `calm.batch.kernel.outcome`
-    reasons : (n,)
+    The cuts are halved until that changes little. Those written end `WRITTEN`, or as refused.
     """
-    stages, parts, mooring, _, _, fixed = plan
-    kinds, loads = stages[0], stages[6]
-    levels = depth.shape[1] + fixed.shape[0]
-    bounds, rows = np.zeros((CHUNK, levels + 2)), np.zeros((CHUNK, levels + 1, 8))
-    tables = (bounds, rows, np.zeros((levels, 4)), np.zeros((levels, 5)))
-    water = (np.zeros(LANES, np.int64), np.zeros(LANES, np.int64), bounds, rows)
-    nodes = np.zeros(STATE * LANES * (kinds.size + 1))
-    forces = np.zeros(3 * LANES * loads.shape[0])
-    desk = (np.zeros(SCRATCH), water, nodes, forces)
-    size = (nodes.size + forces.size) // LANES
-    older, newer, shape = np.zeros((CHUNK, size)), np.zeros((CHUNK, size)), np.zeros(size)
-    seek, earlier = np.zeros((CHUNK, COLUMNS)), np.zeros(CHUNK)
-    refusals, all_ends = np.zeros(CHUNK, np.int64), np.zeros(CHUNK, np.int64)
-    for start in range(0, reasons.size, CHUNK):
-        ends = all_ends[: min(CHUNK, reasons.size - start)]
-        for c in range(ends.size):
-            case = start + c
-            levels_at = depth[case if depth.shape[0] > 1 else 0]
-            ends[c] = read_case(c, plan, tables, seek, levels_at, u[case], v[case], w[case])
-        find_roots(desk, plan, seek, ends)
-        for grid in range(1, FINEST + 1):
-            pending = np.flatnonzero(ends == SOLVED)
-            older, newer = newer, older
-            for k in range(pending.size):
-                # where the root has gone by the last halving, it goes a quarter as far by this one
-                c = pending[k]
-                y = seek[c, Y]
-                seek[c, Y] = y + (0.25 * (y - earlier[c]) if grid > 1 else 0.0)
-                earlier[c] = y
-            close_on(grid, desk, plan, seek, pending, ends, refusals, newer)
-            if grid < FEWEST_HALVINGS:
+    stages, parts, mooring = plan[0], plan[1], plan[2]
+    older, newer, earlier, shape = shapes
+    count = stages[0].size
+    refusals = np.zeros(ends.size, np.int64)
+    for _ in range(ROUNDS if stages[LANDS] else 0):
+        pending = np.flatnonzero(ends == SOLVED)
+        close_on(1, desk, plan, seek, pending, ends, refusals, newer, True)
+    finest = FINEST + 1 if stages[LANDS] else FINEST
+    allowed = PLACE_CHANGE_LYING if stages[LANDS] else PLACE_CHANGE
+    for grid in range(1, finest + 1):
+        pending = np.flatnonzero(ends == SOLVED)
+        older, newer = newer, older
+        for k in range(pending.size):
+            # where the root has gone by the last halving, it goes a quarter as far by this one
+            c = pending[k]
+            y = seek[c, Y]
+            seek[c, Y] = y + (0.25 * (y - earlier[c]) if grid > 1 else 0.0)
+            earlier[c] = y
+        close_on(grid, desk, plan, seek, pending, ends, refusals, newer, False)
+        if grid < FEWEST_HALVINGS:
+            continue
+        for k in range(pending.size):
+            c = pending[k]
+            if ends[c] != SOLVED:
                 continue
-            for k in range(pending.size):
-                c = pending[k]
-                if ends[c] != SOLVED:
+            place, tension = greatest_change(older[c], newer[c], count, mooring[0])
+            below = -mooring[0] - seek[c, LOWEST_PLACE]
+            if refusals[c] == ON_SEABED and below > CERTAIN * place * mooring[0]:
+                ends[c] = ON_SEABED
+                continue
+            bends = stages[LANDS] and seek[c, CORNERS] > CORNER * mooring[0]
+            if place <= allowed and tension <= TENSION_CHANGE and not bends:
+                ends[c] = WRITTEN if refusals[c] == SOLVED else refusals[c]
+                if ends[c] != WRITTEN:
                     continue
-                place, tension = greatest_change(older[c], newer[c], kinds.size, mooring[0])
-                if place <= PLACE_CHANGE and tension <= TENSION_CHANGE:
-                    blend(stages, older[c], newer[c], shape)
-                    used = 1.0 + min((4.0 * seek[c, Y] - earlier[c]) / 3.0, 0.0)
-                    write_case(stages, parts, shape, used, results, start + c)
-                    ends[c] = WRITTEN if refusals[c] == SOLVED else refusals[c]
-                elif grid == FINEST:
-                    ends[c] = TOO_COARSE
-        for c in range(ends.size):
-            reasons[start + c] = SOLVED if ends[c] == WRITTEN else ends[c]
+                blend(stages, older[c], newer[c], shape)
+                used = 1.0 + min((4.0 * seek[c, Y] - earlier[c]) / 3.0, 0.0)
+                write_case(stages, parts, shape, used, results, start + c)
+            elif grid == finest:
+                ends[c] = TOO_COARSE if refusals[c] == SOLVED else refusals[c]

@@ -27,8 +27,8 @@ the intervals, and value at no depth and slope of u, v, w and density in each.""
 (
     # place, force above, axis: these are recorded
     X, Y, Z, FX, FY, FZ, TX, TY, TZ,
-    # load per metre of the last segment; pull at its middle; where to look up
-    QX, QY, QZ, PULL, DEPTH,
+    # load per metre of the last segment; pull at its middle; where to look up; length of the next
+    QX, QY, QZ, PULL, DEPTH, CUT,
     # current and density there
     U, V, W, DENSITY,
     # what turns an element and its drag, see `calm.physics.element`
@@ -43,13 +43,19 @@ the intervals, and value at no depth and slope of u, v, w and density in each.""
     L_BUOYANCY, L_VOLUME, L_NORMAL, L_TANGENTIAL, L_LIFT, L_EAST, L_NORTH,
     # sums of loads, and of what turns a rod
     SX, SY, SZ, MX, MY, MZ,
-) = (row * LANES for row in range(56))  # fmt: skip
-SCRATCH = 56 * LANES
+    # the length on the seabed, below 0 where none is; how much hangs of the stage that came down,
+    # and which it is; before a segment the vertical force, the lowest height, and how much of the
+    # stage is above it; what a cut turned; turn times length of the worst corner;
+    # what is kept of a stage
+    RESTING, HANGING, LANDED_AT, CARRIED, LOWEST_BEFORE, DONE, TURNED, SHARPEST, KEPT,
+) = (row * LANES for row in range(66))  # fmt: skip
+EXTREMES = 4
 
 ROD, CABLE, CLAMP = 0, 1, 2
 AT, LEVER, BUOYANCY, VOLUME, NORMAL, TANGENTIAL, LIFT, DIRECTIONAL, AFLOAT = range(9)
 C_BUOYANCY, C_VOLUME, C_NORMAL, C_TANGENTIAL, C_COMPLIANCE, C_THINNING = range(6)
 STATE = 9  # numbers of a recorded node: place, force, axis
+SCRATCH = KEPT + (STATE + EXTREMES) * LANES
 PER_DENSITY = 1.0 / REFERENCE_DENSITY
 FAR = 1e8
 CLOSE = 1e-6

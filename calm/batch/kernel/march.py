@@ -8,11 +8,13 @@ from typing import Any
 from calm.batch.kernel.cable import pass_segments
 from calm.batch.kernel.compiled import compiled
 from calm.batch.kernel.lanes import (
+    C_COMPLIANCE,
     CABLE,
     FREE_END,
     FX,
     FY,
     FZ,
+    HANGING,
     HIGHEST,
     LANES,
     LEAST_PULL,
@@ -21,7 +23,9 @@ from calm.batch.kernel.lanes import (
     QX,
     QY,
     QZ,
+    RESTING,
     ROD,
+    SHARPEST,
     STATE,
     TX,
     TY,
@@ -33,15 +37,20 @@ from calm.batch.kernel.lanes import (
 )
 from calm.batch.kernel.loads import pass_clamp
 from calm.batch.kernel.rod import pass_piece, pass_rod
+from calm.batch.kernel.seabed import come_down, keep, lie_down, lie_loads, pass_to_seabed
 from calm.physics.line import Floats
 
 
 @compiled
 def march(
-    s: Floats, water: Tables, plan: Any, halvings: int, nodes: Floats, forces: Floats
+    s: Floats, water: Tables, plan: Any, halvings: int, nodes: Floats, forces: Floats, own: Floats
 ) -> None:
-    """March all lanes from their free ends; their states at every joint go to `nodes`."""
-    kinds, firsts, counts, lengths, cables, cuts, loads, gravity, limit, landing = plan
+    """March all lanes from their free ends; their states at every joint go to `nodes`.
+
+    A line that may land is cut as its slot of `own` has it: see `calm.batch.kernel.bends`.
+    """
+    kinds, firsts, counts, lengths, cables, cuts, loads = plan[:7]
+    gravity, limit, landing, grips, holds, lands = plan[7:]
     for i in range(LANES):
         s[X + i], s[Y + i], s[Z + i] = 0.0, 0.0, -s[FREE_END + i]
         s[FX + i], s[FY + i], s[FZ + i] = 0.0, 0.0, 0.0
@@ -49,23 +58,36 @@ def march(
         s[QX + i], s[QY + i], s[QZ + i] = 0.0, 0.0, 0.0
         s[LOWEST + i], s[HIGHEST + i] = inf, -inf
         s[LIGHTEST + i], s[LEAST_PULL + i] = inf, inf
+        s[RESTING + i], s[HANGING + i], s[SHARPEST + i] = -1.0, 0.0, 0.0
     cable = 0
     for n in range(kinds.size):
         first, count = firsts[n], counts[n]
+        to_seabed = lands and n >= landing
+        compliance = 0.0
+        if to_seabed:
+            keep(s)
         if kinds[n] == CABLE:
-            pass_segments(
-                s, water, cables[cable], cuts[first : first + count],
-                halvings, gravity,
-            )  # fmt: skip
+            mine = cables[cable]
+            if lands:
+                stretch, compliance = (n, first, count), mine[C_COMPLIANCE]
+                pass_to_seabed(s, water, mine, own, stretch, halvings, gravity, to_seabed)
+            else:
+                pass_segments(s, water, mine, cuts[first : first + count], halvings, gravity)
             cable += 1
         else:
-            mine, written = loads[first : first + count], forces[3 * LANES * first :]
+            hung, written = loads[first : first + count], forces[3 * LANES * first :]
             if kinds[n] == ROD and count == 1 and n > 0:
                 pass_piece(s, water, loads, first, lengths[n], gravity, limit)
             elif kinds[n] == ROD:
-                pass_rod(s, water, mine, lengths[n], gravity, limit, n == 0, written)
+                pass_rod(s, water, hung, lengths[n], gravity, limit, n == 0, written)
             else:
-                pass_clamp(s, water, mine, gravity, written)
+                pass_clamp(s, water, hung, gravity, written)
+            if to_seabed:
+                come_down(s, kinds[n], n)
+        if to_seabed:
+            lie_down(s, lengths[n], grips[n], compliance)
+            if kinds[n] == ROD and count > 1:
+                lie_loads(s, holds[first : first + count], n, forces[3 * LANES * first :])
         if n >= landing:
             for i in range(LANES):
                 fz = s[FZ + i]

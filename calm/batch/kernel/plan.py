@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from calm.assemble import assemble_water
+from calm.batch.kernel.contact import first_chain_of, grips_on, when_looked_for
 from calm.batch.kernel.lanes import ABOVE_IT, CABLE, CLAMP, ITSELF, ROD
 from calm.case import Mooring
 from calm.files import CurrentTable
@@ -23,16 +24,29 @@ from calm.solve.unknown import Unknown
 
 CUTS = 50
 """Of a line, about, for the first look; they are halved twice and more."""
+LANDING_CUTS, LEAST_CUTS = 32, 8
+"""At least, of what may come down on the seabed, and of each part of it between clamps."""
 SOFTENING = 0.3
 """Cuts grow with the depth at which they stand upright, plus this share of the water depth."""
 NEAR = 2e-6
 """How far the loads of a rod may be from where they are looked up, as a share of the depth."""
+NEAR_ON_SEABED = 2e-7
+"""The same of a line on the seabed, which may lie far in the direction of its last pull."""
 FASTEST, SPEEDS = 4.0, 41
 """Currents up to so many m/s, and how many of them, for which the fall of the line is known."""
 SHARES_KNOWN = 1025
 """Shares of its buoyancy in use for which it is known how a float rides."""
 
 _STILL = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
+
+
+@dataclass(frozen=True)
+class Way:
+    """What the kernel reads of a line that is looked for clear of the seabed, or lying on it."""
+
+    stages: tuple[Any, ...]
+    mooring: tuple[Any, ...]
+    chances: tuple[Any, ...]
 
 
 @dataclass(frozen=True)
@@ -43,24 +57,21 @@ class Plan:
     """
 
     water: Water
-    stages: tuple[Any, ...]
     parts: tuple[Any, ...]
-    mooring: tuple[Any, ...]
     floating: tuple[Any, ...]
-    chances: tuple[Any, ...]
+    clear: Way
+    lying: Way
     fixed: Floats
+    contact: int
 
     @property
     def arrays(self) -> tuple[Any, ...]:
         """All that the kernel takes."""
-        return (
-            self.stages,
-            self.parts,
-            self.mooring,
-            self.floating,
-            self.chances,
-            self.fixed,
+        clear, lying = (
+            (way.stages, self.parts, way.mooring, self.floating, way.chances, self.fixed)
+            for way in (self.clear, self.lying)
         )
+        return clear, lying, self.contact
 
 
 def base_water(mooring: Mooring) -> Water:
@@ -78,31 +89,50 @@ def plan_of(mooring: Mooring) -> Plan | None:
     if not _simple(line):
         return None
     closing = Closing(line, water, mooring.settings)
-    unknown = closing.whole(False)
-    track = unknown.track
+    track = Track.of(line)
     head = track.stages[0]
     if not isinstance(head, Rod):
         return None
     afloat = closing.floats[0] if closing.floats else -1
     floats = afloat in head.pieces
-    top = upright_depth(closing, unknown)
     load_of = [load for stage in track.stages for load in _loads(stage)]
+    first_chain = first_chain_of(mooring, track)
+    clear, lying = (
+        _way(closing, track, afloat if floats else -1, first_chain, lands=lands)
+        for lands in (False, True)
+    )
     return Plan(
         water=water,
-        stages=_stages(line, water, track, afloat if floats else -1),
         parts=_parts(line, track, load_of),
+        floating=_riding(head, afloat, line.floating if floats else None),
+        clear=clear,
+        lying=lying,
+        fixed=np.column_stack([water.level, water.u, water.v, water.density]),
+        contact=when_looked_for(line, water, track),
+    )
+
+
+def _way(closing: Closing, track: Track, afloat: int, first_chain: int, *, lands: bool) -> Way:
+    """The line clear of the seabed, or on it: how it is cut, where it ends, what it may miss by."""
+    unknown = closing.whole(lands)
+    top = upright_depth(closing, unknown)
+    line, water = closing.line, closing.water
+    return Way(
+        stages=(
+            *_stages(line, water, track, afloat, lands),
+            *grips_on(track, water, closing.settings.seabed_friction),
+            lands,
+        ),
         mooring=(
             water.depth,
             unknown.goal,
             top,
-            floats,
+            afloat >= 0,
             line.floating is not None,
             line.anchor_height,
-            bool(line.length.sum() > water.depth),
+            first_chain,
         ),
-        floating=_riding(head, afloat, line.floating if floats else None),
         chances=(np.array(SHARES), _falls(closing, unknown, top)),
-        fixed=np.column_stack([water.level, water.u, water.v, water.density]),
     )
 
 
@@ -124,13 +154,13 @@ def _loads(stage: Stage) -> tuple[Load, ...]:
     return stage.loads if isinstance(stage, Rod) else (stage,)
 
 
-def _stages(line: Line, water: Water, track: Track, afloat: int) -> tuple[Any, ...]:
+def _stages(line: Line, water: Water, track: Track, afloat: int, lands: bool) -> tuple[Any, ...]:
     """Kind, first load or cut, count of them and length of every stage; cables, cuts, loads."""
     kinds, firsts, counts, lengths = [], [], [], []
     cables: list[tuple[float, ...]] = []
     cuts: list[float] = []
     loads: list[tuple[float, ...]] = []
-    given = iter(cuts_of(track, water.depth))
+    given = iter(cuts_of(track, water.depth, lands))
     for n, stage in enumerate(track.stages):
         if isinstance(stage, Cable):
             mine = next(given).tolist()
@@ -158,7 +188,7 @@ def _stages(line: Line, water: Water, track: Track, afloat: int) -> tuple[Any, .
         np.array(cuts, np.float64),
         np.array(loads, np.float64),
         water.gravity,
-        NEAR * water.depth,
+        (NEAR_ON_SEABED if lands else NEAR) * water.depth,
         track.landing,
     )
 
@@ -197,24 +227,29 @@ def _place_afloat(line: Line, load: Load, afloat: int) -> float:
     return ABOVE_IT if load.piece < afloat and line.floating is not None else 0.0
 
 
-def cuts_of(track: Track, depth: float) -> list[Floats]:
+def cuts_of(track: Track, depth: float, lands: bool) -> list[Floats]:
     """For every cable, the lengths of its cuts [m], shorter towards the surface.
 
-    Currents shear where they are strong, and they are strong towards the surface.
+    Currents shear where they are strong, and they are strong towards the surface. But where a line
+    `lands` it may bend within a short length.
     """
     height = sum(stage.length for stage in track.stages if not isinstance(stage, Load))
+    landing = sum(s.length for s in track.stages[track.landing :] if isinstance(s, Cable))
     ends = []
-    for stage in track.stages:
+    for n, stage in enumerate(track.stages):
         if isinstance(stage, Load):
             continue
         upper = max(depth - height, 0.0) + SOFTENING * depth
         height -= stage.length
         if isinstance(stage, Cable):
-            ends.append((upper, upper + stage.length))
-    total = sum(np.log(lower / upper) for upper, lower in ends)
+            few = 1.0
+            if lands and n >= track.landing:
+                few = max(LANDING_CUTS * stage.length / landing, LEAST_CUTS)
+            ends.append((upper, upper + stage.length, few))
+    total = sum(np.log(lower / upper) for upper, lower, _ in ends)
     cuts = []
-    for upper, lower in ends:
-        count = max(round(CUTS * np.log(lower / upper) / total), 1)
+    for upper, lower, few in ends:
+        count = max(round(CUTS * np.log(lower / upper) / total), round(few), 1)
         joints = np.geomspace(upper, lower, count + 1)
         cuts.append(np.diff(joints))
     return cuts

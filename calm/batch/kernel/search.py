@@ -15,9 +15,10 @@ from calm.physics.line import Floats
 
 (
     Y, ABOVE, ABOVE_MISS, BELOW, BELOW_MISS, LAST, LAST_MISS, OLDER_MISS, SLOPE, FALL, STEP, TURN,
-    STUCK, FOUND, UPPER, UPPER_MISS, LOWER, LOWER_MISS,
-) = range(18)  # fmt: skip
-COLUMNS = 18
+    STUCK, FOUND, UPPER, UPPER_MISS, LOWER, LOWER_MISS, GROWTH, SPEED, LEAST_CARRIED, LYING,
+    LOWEST_PLACE, CORNERS,
+) = range(24)  # fmt: skip
+COLUMNS = 24
 
 # what a lane is about to learn from its next march
 DONE, FIRST, UNLOADED, TOP, AWASH, SCAN, ROOT = range(7)
@@ -48,6 +49,7 @@ def begin(seek: Floats, c: int, growth: float, speed: float, upright: float, fal
     """
     for column in range(COLUMNS):
         seek[c, column] = nan
+    seek[c, GROWTH], seek[c, SPEED] = growth, speed
     seek[c, Y], seek[c, SLOPE], seek[c, TURN], seek[c, STUCK] = upright, -1.0, 0.0, 0.0
     # where the miss may rise with depth, depths are scanned
     last = falls.size - 2
@@ -200,7 +202,7 @@ def may_turn(seek: Floats, c: int) -> bool:
 @compiled
 def is_another(found: float, y: float, mooring: Any) -> bool:
     """Whether a root may not be the one found on coarse cuts, or is about to go under."""
-    under = -GOING_UNDER < y < STRAYED * mooring[0]
+    under = mooring[4] and -GOING_UNDER < y < STRAYED * mooring[0]
     if (found < 0.0) != (y < 0.0) or (mooring[3] and mooring[2] == 0.0 and under):
         return True
     return abs(y - found) > (STRAYED_SHARE if y < 0.0 else STRAYED * mooring[0])

@@ -51,17 +51,19 @@ def marching() -> tuple[Mooring, np.ndarray, np.ndarray]:
     s = np.zeros(lanes.SCRATCH)
     for lane in range(lanes.LANES):
         place_free_end(s, lane, 80.0 + lane, *plan.floating)
-    nodes = np.zeros(lanes.STATE * lanes.LANES * (len(plan.stages[0]) + 1))
-    forces = np.zeros(3 * lanes.LANES * len(plan.stages[6]))
+    stages = plan.clear.stages
+    nodes = np.zeros(lanes.STATE * lanes.LANES * (len(stages[0]) + 1))
+    forces = np.zeros(3 * lanes.LANES * len(stages[6]))
+    own = np.zeros((3, 1, len(stages[5])))
     tables = np.zeros(lanes.LANES, np.int64), np.zeros(lanes.LANES, np.int64), bounds, rows
-    march_lanes(s, tables, plan.stages, 3, nodes, forces)
+    march_lanes(s, tables, stages, 3, nodes, forces, own)
     return mooring, s[lanes.Z : lanes.Z + lanes.LANES], s[lanes.FX : lanes.FX + 3 * lanes.LANES]
 
 
 def test_a_lane_ends_where_the_plain_march_does() -> None:
     mooring, z, force = marching()
     track, profile = Track.of(mooring.line), Profile(mooring.water)
-    stages = plan_of(mooring).stages
+    stages = plan_of(mooring).clear.stages
     cuts = [
         np.repeat(stages[5][first : first + count] / 8.0, 8).tolist()
         for kind, first, count in zip(*stages[:3], strict=True)
