@@ -40,7 +40,6 @@ from calm.batch.kernel.search import (
     begin,
 )
 from calm.physics.line import Floats, Integers
-from calm.solve.mooring import BARELY_LANDED
 
 # how a case ended, besides
 NO_DATA, LEVELS_COINCIDE, STILL = 1, 2, 3
@@ -49,7 +48,7 @@ SAGS, LIFTED, NOT_TRIED = 14, 15, 16
 CHUNK = 256
 """Cases that are laid out at once: enough to keep the lanes busy, and to fit a cache."""
 EITHER_WAY = 1e-4
-"""How near to `BARELY_LANDED` the length on the seabed may be either side of it, as a share of the
+"""How near to the longest length that has barely landed another is either way, as a share of the
 water depth."""
 
 
@@ -103,7 +102,7 @@ def look_on_seabed(
     tried = there != WRITTEN
     close_all(desk, lying, seek, shapes, there, start, results)
     again = np.full(ends.size, WRITTEN)
-    limit, margin = BARELY_LANDED * mooring[5], EITHER_WAY * mooring[0]
+    limit, margin = mooring[7], EITHER_WAY * mooring[0]
     for c in range(ends.size):
         if not tried[c]:
             continue

@@ -46,7 +46,9 @@ from calm.batch.kernel.search import (
     LOWEST_PLACE,
     LYING,
     NOWHERE,
+    PLACE_BEFORE,
     SOLVED,
+    TENSION_BEFORE,
     THERE,
     TURN,
     UNCLOSED,
@@ -68,6 +70,8 @@ ragged."""
 PLACE_CHANGE_LYING = 2e-5
 """The same of places where a line may land: its touchdown is not at a joint of the cuts. It is
 halved once more than another, too."""
+LUCK = 8.0
+"""By how many times a halving may lessen the change: four, where the line is smooth."""
 CORNER = 3e-6
 """The worst corner of such a line, turn times length of the segment, as a share of the water depth:
 where it is more, a halving may change little and yet the bend not be known."""
@@ -220,6 +224,8 @@ def close_all(
     older, newer, earlier, shape = shapes
     count = stages[0].size
     refusals = np.zeros(ends.size, np.int64)
+    for c in range(ends.size):
+        seek[c, PLACE_BEFORE] = seek[c, TENSION_BEFORE] = 0.0
     for _ in range(ROUNDS if stages[LANDS] else 0):
         pending = np.flatnonzero(ends == SOLVED)
         close_on(1, desk, plan, seek, pending, ends, refusals, newer, True)
@@ -246,6 +252,14 @@ def close_all(
             if refusals[c] == ON_SEABED and below > CERTAIN * place * mooring[0]:
                 ends[c] = ON_SEABED
                 continue
+            if stages[LANDS]:
+                # after a great change a small one is luck
+                place, tension, seek[c, PLACE_BEFORE], seek[c, TENSION_BEFORE] = (
+                    max(place, seek[c, PLACE_BEFORE] / LUCK),
+                    max(tension, seek[c, TENSION_BEFORE] / LUCK),
+                    place,
+                    tension,
+                )
             bends = stages[LANDS] and seek[c, CORNERS] > CORNER * mooring[0]
             if place <= allowed and tension <= TENSION_CHANGE and not bends:
                 ends[c] = WRITTEN if refusals[c] == SOLVED else refusals[c]

@@ -20,6 +20,7 @@ from calm.physics.state import MarchError
 from calm.physics.track import Cable, Load, Rod, Stage, Track, head_count
 from calm.solve.closing import Closing
 from calm.solve.locate import SHARES, upright_depth
+from calm.solve.mooring import BARELY_LANDED
 from calm.solve.unknown import Unknown
 
 CUTS = 50
@@ -131,6 +132,7 @@ def _way(closing: Closing, track: Track, afloat: int, first_chain: int, *, lands
             line.floating is not None,
             line.anchor_height,
             first_chain,
+            BARELY_LANDED * line.anchor_height,
         ),
         chances=(np.array(SHARES), _falls(closing, unknown, top)),
     )

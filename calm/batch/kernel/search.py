@@ -16,9 +16,9 @@ from calm.physics.line import Floats
 (
     Y, ABOVE, ABOVE_MISS, BELOW, BELOW_MISS, LAST, LAST_MISS, OLDER_MISS, SLOPE, FALL, STEP, TURN,
     STUCK, FOUND, UPPER, UPPER_MISS, LOWER, LOWER_MISS, GROWTH, SPEED, LEAST_CARRIED, LYING,
-    LOWEST_PLACE, CORNERS,
-) = range(24)  # fmt: skip
-COLUMNS = 24
+    LOWEST_PLACE, CORNERS, PLACE_BEFORE, TENSION_BEFORE,
+) = range(26)  # fmt: skip
+COLUMNS = 26
 
 # what a lane is about to learn from its next march
 DONE, FIRST, UNLOADED, TOP, AWASH, SCAN, ROOT = range(7)
