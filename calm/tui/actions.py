@@ -176,9 +176,9 @@ ACTIONS: tuple[Action, ...] = (
     Action("catalogue", "take", "enter", "insert", "Put it into the line.", 0, palette=False),
     Action("catalogue", "close", "escape", "close", "Back to the line.", 2, palette=False),
     # the water
-    Action("water", "next_environment", "ctrl+e", "environment", "The next environment.", 3),
-    Action("water", "new_environment", "ctrl+n", "new environment", "Add a named one.", 4),
-    Action("water", "drop_environment", "ctrl+k", "drop it", "Take the named environment out."),
+    Action("water", "next_environment", "f5", "environment", "The next environment.", 3),
+    Action("water", "new_environment", "f6,ctrl+n", "new environment", "Add a named one.", 4),
+    Action("water", "drop_environment", "f7", "drop it", "Take the named environment out."),
     Action("water", "preset", "ctrl+t", "presets", "Currents to begin with.", 2),
     Action("water", "load_current", "ctrl+o", "read a file", "A current from CSV or NetCDF.", 1),
     Action("water", "undo", "ctrl+z", "undo", "Undo the last change."),

@@ -19,7 +19,8 @@ from calm.tui.messages import CatalogueRead, Edited, Judged, JudgingFailed
 from calm.tui.palette import Actions
 from calm.tui.saving import Saving
 from calm.tui.session import Session
-from calm.tui.theme import choose_theme, themes
+from calm.tui.theme import PICTURE_DARK, PICTURE_LIGHT, choose_theme, themes
+from calm.tui.turns import InTurn
 
 if TYPE_CHECKING:
     from calm.tui.live import View
@@ -29,7 +30,7 @@ _AUTOSAVED_AFTER = 0.3  # seconds
 _LOOKED_AT_DISK = 2.0  # seconds between two looks
 
 
-class BuildApp(Saving, App[int]):
+class BuildApp(Saving, InTurn):
     """The line builder.
 
     Parameters
@@ -71,6 +72,7 @@ class BuildApp(Saving, App[int]):
         """Show the line; the first solution and the catalogue follow."""
         for theme in themes():
             self.register_theme(theme)
+        self.ansi_theme_dark, self.ansi_theme_light = PICTURE_DARK, PICTURE_LIGHT
         self.theme = choose_theme(self._environ)
         self.push_screen(self.builder)
         self.call_after_refresh(self._begin)
@@ -142,18 +144,24 @@ class BuildApp(Saving, App[int]):
     @on(Judged)
     def _take_view(self, event: Judged) -> None:
         self._busy = False
-        self._view = view = event.view
+        is_first, self._view = self._view is None, event.view
+        view = event.view
         if self._wanted:
             self._ask()
         elif not event.fully and not view.complete:
-            self._fully = self.set_timer(_FULLY_AFTER, self._ask_fully)
+            self._fully = self.set_timer(_FULLY_AFTER, self.ask_fully)
         for screen in self.screen_stack:
             show = getattr(screen, "show_view", None)
             if show is not None:
                 show(view)
+        if is_first and view.problems and isinstance(self.screen, BuilderScreen):
+            self.screen.action_text()  # a file with mistakes is mended as text
 
-    def _ask_fully(self) -> None:
-        self._fully = None
+    def ask_fully(self) -> None:
+        """Have the launch, the recovery and the breaks judged, too."""
+        if self._fully is not None:
+            self._fully.stop()
+            self._fully = None
         if not self._busy and self._view is not None:
             self._busy = True
             self._judge_fully(self._view)

@@ -94,7 +94,8 @@ class BuilderBase(Screen[None]):
         """Show the file as it is now, with the figures that are known of it."""
         self._refresh_index()
         fresh = self.view is not None and self.view.text == self.session.draft.text
-        figures = self.view if self.view is not None and self.view.rows else self.good
+        view = self.view
+        figures = view if view is not None and (view.rows or view.problems) else self.good
         rows = table_rows(self.session.draft, figures, self.index)
         self.table.show_rows(rows, old=not fresh)
         if fresh:

@@ -34,6 +34,7 @@ class CataloguePane(Vertical):
     """Search, list, card; the length of a cable and the place of a clamp are asked for before."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("catalogue")]
+    SCOPED_CSS = False  # the width of the screen counts
     DEFAULT_CSS = """
     CataloguePane {
         display: none; width: 1fr; height: 1fr; padding: 0 1; background: $background;

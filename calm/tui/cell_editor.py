@@ -53,15 +53,30 @@ class CellEditor(Input):
         """Whether a value is being edited."""
         return self.has_class("-open")
 
-    def open(self, text: str, check: Check, region: Region, *, least_width: int = 10) -> None:
-        """Begin to edit a text over a part of the screen [cells of the parent]."""
+    def open(
+        self,
+        text: str,
+        check: Check,
+        region: Region,
+        *,
+        least_width: int = 10,
+        begun: bool = False,
+    ) -> None:
+        """Begin to edit a text over a part of the screen [cells of the parent].
+
+        The first key takes the place of the text, or goes on with one that is `begun`.
+        """
         self._check = check
+        self.select_on_focus = not begun
         self.styles.offset = region.offset
         self.styles.width = max(region.width, least_width)
         self.add_class("-open")
         self.value = text
         self.focus()
-        self.action_select_all()
+        if begun:
+            self.cursor_position = len(text)
+        else:
+            self.action_select_all()
 
     def close(self) -> None:
         """Go away."""

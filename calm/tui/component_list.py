@@ -16,9 +16,6 @@ from textual.strip import Strip
 from calm.tui.catalogue_index import Listed
 from calm.tui.signs import CURSOR, ROLES
 
-_ID_SHARE = 0.46
-_LEAST_ID = 14
-
 
 class ComponentList(ScrollView, can_focus=False):
     """Components with a cursor, which the search moves."""
@@ -29,7 +26,7 @@ class ComponentList(ScrollView, can_focus=False):
         background: $background;
         & > .component-list--cursor { text-style: bold; background: $surface; }
         & > .component-list--id { color: $foreground; }
-        & > .component-list--name { color: $text-muted; }
+        & > .component-list--name { text-style: dim; }
         & > .component-list--own { color: $text-accent; }
     }
     """
@@ -51,6 +48,7 @@ class ComponentList(ScrollView, can_focus=False):
     def __init__(self) -> None:
         super().__init__()
         self.found: Sequence[Listed] = ()
+        self._longest = 0
 
     @property
     def chosen(self) -> Listed | None:
@@ -60,6 +58,7 @@ class ComponentList(ScrollView, can_focus=False):
     def show(self, found: Sequence[Listed]) -> None:
         """List other components, the cursor on the first."""
         self.found = found
+        self._longest = max((len(each.id) for each in found), default=0)
         self.virtual_size = Size(0, len(found))
         self.set_reactive(ComponentList.cursor, 0)
         self.scroll_to(y=0, animate=False)
@@ -104,8 +103,8 @@ class ComponentList(ScrollView, can_focus=False):
         look = "own" if each.own else "id"
         id_style = style + self.get_component_rich_style(f"component-list--{look}", partial=True)
         name_style = style + self.get_component_rich_style("component-list--name", partial=True)
-        id_width = max(int((width - 4) * _ID_SHARE), _LEAST_ID)
         lead = f"{CURSOR if here else ' '} {ROLES.get(each.role, ' ')} "
+        id_width = max(min(self._longest, width - len(lead)), 0)
         segments = [
             Segment(lead, style),
             Segment(set_cell_size(each.id, id_width), id_style),

@@ -101,7 +101,11 @@ class Sheet(ModalScreen[dict[str, str] | None]):
         Binding("down", "app.focus_next", show=False),
         Binding("up", "app.focus_previous", show=False),
     ]
-    DEFAULT_CSS = "Sheet {" + _FRAME + " & Field > Input { width: 40; } }"
+    DEFAULT_CSS = (
+        "Sheet {" + _FRAME + " & Field > Input { width: 1fr; } & .field-note { display: none; }"
+        "& #sheet-note { height: auto; min-height: 1; color: $text-muted; margin-top: 1; }"
+        "& #sheet-note.-wrong { color: $text-error; } }"
+    )
 
     def __init__(self, title: str, text: str, asked: Sequence[Asked]) -> None:
         super().__init__()
@@ -117,11 +121,18 @@ class Sheet(ModalScreen[dict[str, str] | None]):
                 yield Field(
                     each.key, each.title, each.check, text=each.text, placeholder=each.placeholder
                 )
+            yield Static(id="sheet-note", markup=False)
             yield Static("[b]Enter[/b] next, then done   [b]Esc[/b] go back", classes="keys")
 
     def on_mount(self) -> None:
         """Type at once."""
         self.query(Field).first().focus_input()
+
+    @on(Field.Judged)
+    def _tell(self, event: Field.Judged) -> None:
+        note = self.query_one("#sheet-note", Static)
+        note.update(event.field.note(event.reading))
+        note.set_class(not event.reading.is_good, "-wrong")
 
     @on(Field.Entered)
     def _onward(self, event: Field.Entered) -> None:

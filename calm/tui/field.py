@@ -20,6 +20,7 @@ class Field(Horizontal):
     the one it began with; a text that is not good stays, marked, and is not committed.
     """
 
+    SCOPED_CSS = False  # the width of the screen counts
     DEFAULT_CSS = """
     Field {
         height: 1; width: 1fr;
@@ -113,11 +114,16 @@ class Field(Horizontal):
         if not self.has_class("-wrong"):
             self.query_one(".field-note", Static).update(note, layout=False)
 
+    def note(self, reading: Reading) -> str:
+        """What a person who types is told: what is wrong, or what is added."""
+        if not reading.is_good:
+            return reading.note
+        completed = reading.text != " ".join(self.input.value.split())
+        return f"= {reading.text}" if completed else self._note
+
     def _tell(self, reading: Reading) -> None:
         self.set_class(not reading.is_good, "-wrong")
-        completed = reading.text if reading.text != " ".join(self.input.value.split()) else ""
-        note = reading.note or (f"= {completed}" if completed else self._note)
-        self.query_one(".field-note", Static).update(note, layout=False)
+        self.query_one(".field-note", Static).update(self.note(reading), layout=False)
 
     @on(Input.Changed)
     def _judge(self, event: Input.Changed) -> None:

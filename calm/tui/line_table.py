@@ -87,8 +87,12 @@ class LineTable(ScrollView, can_focus=True):
         """The columns as wide as they are now."""
         width = self.scrollable_content_region.width
         if self._arranged[0] != width:
-            self._arranged = (width, layout_for(width))
+            longest = (self._longest("component"), self._longest("label"))
+            self._arranged = (width, layout_for(width, *longest))
         return self._arranged[1]
+
+    def _longest(self, column: str) -> int:
+        return max((cell_len(row.texts.get(column, "")) for row in self.rows), default=0)
 
     @property
     def row(self) -> TableRow | None:
@@ -115,6 +119,7 @@ class LineTable(ScrollView, can_focus=True):
     def show_rows(self, rows: Sequence[TableRow], *, old: bool = False) -> None:
         """Other rows; `old` where their figures are those of an earlier line."""
         self.rows, self.old = tuple(rows), old
+        self._arranged = (-1, self._arranged[1])
         spots = {row.spot for row in self.rows}
         self.marked &= spots
         self.virtual_size = Size(0, len(self.rows) + 1)

@@ -26,7 +26,7 @@ TABS: tuple[Tab, ...] = ("elevation", "plan", "tension", "schematic")
 
 _LEAST_BESIDE = 52
 _BESIDE, _MOST_BESIDE = 3, 26
-_SCHEMATIC_WIDTH = 72
+_SCHEMATIC_WIDTH = 56
 
 
 class Tabs(Static):
@@ -66,7 +66,7 @@ class Picture(ScrollView, can_focus=True):
         self.ascii_only = ascii_only
         self._view: View | None = None
         self._old = False
-        self._drawn: tuple[object, ...] | None = None
+        self._drawn: Size | None = None  # the size that the rows are for
         self._rows: list[Text] = []
 
     def show(self, view: View | None, tab: Tab, *, old: bool) -> None:
@@ -91,10 +91,9 @@ class Picture(ScrollView, can_focus=True):
 
     def _draw(self) -> None:
         size = self.scrollable_content_region.size
-        drawn = (self._view, self.tab, self._old, size)
-        if drawn == self._drawn:
+        if size == self._drawn:
             return
-        self._drawn = drawn
+        self._drawn = size
         self._rows = self._picture(size)
         tall = len(self._rows) if self.tab == "schematic" else 0
         self.virtual_size = Size(0, tall)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rich.text import Text
+from textual.geometry import Size
 from textual.strip import Strip
 from textual.widget import Widget
 
@@ -24,20 +25,20 @@ class Profile(Widget):
     def __init__(self) -> None:
         super().__init__()
         self._view: View | None = None
-        self._drawn: tuple[object, ...] | None = None
+        self._drawn: Size | None = None  # the size that the rows are for
         self._rows: list[Text] = []
 
     def show(self, view: View | None) -> None:
         """Draw another one; one that cannot be read leaves the last."""
         if view is not None and view.file is not None:
-            self._view = view
+            self._view, self._drawn = view, None
             self.refresh()
 
     def render_line(self, y: int) -> Strip:
         """A row of the screen."""
         size = self.size
-        if self._drawn != (self._view, size):
-            self._drawn = (self._view, size)
+        if self._drawn != size:
+            self._drawn = size
             self._rows = self._draw(size.width, size.height)
         if y >= len(self._rows):
             return Strip.blank(size.width, self.rich_style)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from calm.checks.finding import State
 from calm.files.editing import Draft, Item
 from calm.quantities import QUANTITIES
 from calm.tui.catalogue_index import Index
@@ -25,13 +27,29 @@ def table_rows(draft: Draft, view: View | None, index: Index | None) -> list[Tab
     A view of an earlier text gives its figures to the rows that are called as its own are.
     """
     found = _figures(draft, view)
+    wrong = _wrong_items(draft, view)
     rows = []
     for number, item in enumerate(draft.items):
-        rows.append(_row(Spot(number), item, found.get(Spot(number), ()), index))
+        row = _row(Spot(number), item, found.get(Spot(number), ()), index)
+        rows.append(replace(row, state=State.FAIL) if number in wrong else row)
         for below, clamp in enumerate(item.clamps):
             spot = Spot(number, below)
             rows.append(_row(spot, clamp, found.get(spot, ()), index))
     return rows
+
+
+def _wrong_items(draft: Draft, view: View | None) -> set[int]:
+    """The items in whose lines there are mistakes."""
+    if view is None or view.text != draft.text or not view.problems:
+        return set()
+    lines = {problem.line for problem in view.problems if problem.path == str(view.path)}
+    starts = [(item.line, number) for number, item in enumerate(draft.items)]
+    ends = {number: line + draft.items[number].text.count("\n") for line, number in starts}
+    return {
+        number
+        for line, number in starts
+        if any(line <= wrong < max(ends[number], line + 1) for wrong in lines)
+    }
 
 
 def _figures(draft: Draft, view: View | None) -> dict[Spot, Sequence[Row]]:

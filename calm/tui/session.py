@@ -104,8 +104,10 @@ class Session:
         if draft.text != self.draft.text:
             self.history.do(draft, label)
 
-    def write(self, text: str, label: str = "edit the text") -> None:
-        """Take another text."""
+    def write(self, text: str, label: str = "edit the text", *, further: bool = False) -> None:
+        """Take another text; `further` where it goes on with the last step."""
+        if further:
+            self.history.undo()
         self.do(Draft(text), label)
 
     # the line

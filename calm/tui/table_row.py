@@ -26,7 +26,8 @@ HEADINGS = {
 RIGHT_ALIGNED = frozenset({"count", "length", *FIGURES})
 
 _WIDTHS = {"count": 3, "length": 9, "depth": 8, "tension": 9, "tilt": 6, "margin": 7}
-_LEAST_TEXT, _MOST_COMPONENT, _MOST_LABEL = 9, 30, 40
+_LEAST_TEXT, _WANTED_TEXT = 9, 12
+_MOST_COMPONENT, _MOST_LABEL = 30, 40
 LEAD = 4
 """Cells before the first column: cursor, mark or state, sign, a blank."""
 
@@ -67,15 +68,21 @@ class Layout:
         return found
 
 
-def layout_for(width: int) -> Layout:
-    """The columns of a table as wide as this, those least needed left out where it is narrow."""
+def layout_for(width: int, component: int = _MOST_COMPONENT, label: int = _MOST_LABEL) -> Layout:
+    """The columns of a table as wide as this, those least needed left out where it is narrow.
+
+    Parameters
+    ----------
+    component, label : cells of the longest text in these columns, which share what is left
+    """
     shown = [*EDITABLE, *FIGURES]
     for name in ("margin", "tilt", "count", "tension", "depth"):
-        if _text_room(shown, width) >= 2 * _LEAST_TEXT:
+        if _text_room(shown, width) >= 2 * _WANTED_TEXT:
             break
         shown.remove(name)
     room = max(_text_room(shown, width), 2 * _LEAST_TEXT)
-    component = min(max(room * 11 // 20, _LEAST_TEXT), _MOST_COMPONENT)
+    component = min(max(component, _LEAST_TEXT), _MOST_COMPONENT)
+    component = min(component, room - min(max(label, _LEAST_TEXT), room // 2))
     widths = _WIDTHS | {"component": component, "label": min(room - component, _MOST_LABEL)}
     columns, start = [], LEAD
     for name in shown:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import BindingType
+from textual.binding import Binding, BindingType
 from textual.containers import VerticalScroll
 from textual.screen import Screen
 from textual.widgets import Static, TextArea
@@ -19,6 +19,19 @@ from calm.tui.session import Session
 
 if TYPE_CHECKING:
     from calm.tui.live import View
+
+_INDENT = 2
+
+
+class YamlArea(TextArea):
+    """Text whose tabs are blanks, as YAML wants them."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("tab", "indent", show=False)]
+
+    def action_indent(self) -> None:
+        """Blanks up to the next column that is even."""
+        _, column = self.cursor_location
+        self.insert(" " * (_INDENT - column % _INDENT))
 
 
 class TextScreen(Screen[None]):
@@ -41,13 +54,13 @@ class TextScreen(Screen[None]):
         self._problems: tuple[Problem, ...] = ()
         self._view = view
         self._next = 0
+        self._begun = session.draft.text
+        self._edited = False
 
     def compose(self) -> ComposeResult:
         """Title, text, mistakes, keys."""
         yield TitleBar()
-        yield TextArea(
-            self.session.draft.text, show_line_numbers=True, tab_behavior="indent", compact=True
-        )
+        yield YamlArea(self.session.draft.text, show_line_numbers=True, compact=True)
         with VerticalScroll(id="mistakes", can_focus=False):
             yield Static(id="mistakes-text")
         yield KeyBar()
@@ -91,7 +104,8 @@ class TextScreen(Screen[None]):
     def _take(self) -> None:
         text = self.text_area.text
         if text != self.session.draft.text:
-            self.session.write(text)
+            self.session.write(text, further=self._edited)
+            self._edited = self.session.draft.text != self._begun
             self._next = 0
             self._show()
             self.post_message(Edited())

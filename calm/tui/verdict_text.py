@@ -98,7 +98,7 @@ def _say(name: str, value: float | None) -> str:
 
 
 def _figures(result: Result | TowResult | None) -> Iterator[Saying]:
-    """The ends of the line. What solves it is imported by whoever has a result, not by the start."""
+    """The ends of the line; whoever has a result has loaded what solves it, the start has not."""
     from calm.case import Result
 
     if isinstance(result, Result):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import on
@@ -11,27 +9,23 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical, VerticalScroll
 from textual.events import DescendantFocus
-from textual.screen import Screen
 from textual.widgets import Static
 
-from calm.errors import CalmError
 from calm.files.definition import DENSITY
-from calm.files.editing import Draft
 from calm.files.fields import POSITIVE_LENGTH, Quantity
 from calm.tui.actions import bindings, hints
 from calm.tui.bars import KeyBar, TitleBar
 from calm.tui.cell_editor import CellEditor
+from calm.tui.cells import Cells
 from calm.tui.checking import needed, quantity
 from calm.tui.cycle import Cycle
-from calm.tui.dialogs import Answer, Asked, Question, Sheet
 from calm.tui.field import Field
-from calm.tui.grid import Cells, Grid
+from calm.tui.grid import Grid
 from calm.tui.messages import Edited
-from calm.tui.presets import COLUMNS, PRESETS
 from calm.tui.profile import Profile
-from calm.tui.session import Session
 from calm.tui.verdict_pane import state_word
-from calm.tui.water_form import CURRENT_FORMS, DENSITY_FORMS, Water
+from calm.tui.water_form import CURRENT_FORMS, DENSITY_FORMS
+from calm.tui.water_verbs import WaterVerbs
 
 if TYPE_CHECKING:
     from calm.tui.live import View
@@ -42,7 +36,7 @@ _ANGLE = quantity(Quantity("angle"))
 _TOWARD = quantity(Quantity("angle"), optional=True)
 
 
-class WaterScreen(Screen[None]):
+class WaterScreen(WaterVerbs):
     """A form at the left, the profile of the current at the right."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("water")]
@@ -51,18 +45,12 @@ class WaterScreen(Screen[None]):
     WaterScreen {
         & #water-form { width: 3fr; padding: 1 1 0 1; scrollbar-size-vertical: 1; }
         & #water-profile { width: 2fr; border-left: vkey $panel; padding: 0 1; }
-        & .section { color: $text-muted; margin-top: 1; }
         & .gone { display: none; }
         & Grid { margin-left: 16; }
         & Field > Input { width: 20; }
     }
     WaterScreen.-narrow Grid { margin-left: 0; }
     """
-
-    def __init__(self, session: Session, view: View | None) -> None:
-        super().__init__()
-        self.session = session
-        self._view = view
 
     def compose(self) -> ComposeResult:
         """Title; form and profile; keys."""
@@ -104,24 +92,12 @@ class WaterScreen(Screen[None]):
         self.refresh_form()
         self.query_one("#depth", Field).focus_input()
 
-    @property
-    def water(self) -> Water:
-        """The environment that is shown, as the file has it now."""
-        draft = self.session.draft
-        named = draft.value(("environments",))
-        variant = self.session.environment
-        return Water(draft, variant if isinstance(named, dict) and variant in named else None)
-
     def show_view(self, view: View) -> None:
         """The profile and the verdict of a line as judged."""
-        self._view = view
+        self.view = view
         if self.is_mounted:
             self.query_one(Profile).show(view)
             self._show_title()
-
-    def tell(self, text: str, *, wrong: bool = False) -> None:
-        """Say something in the last line."""
-        self.query_one(KeyBar).tell(text, wrong=wrong)
 
     @on(DescendantFocus)
     def _show_keys(self) -> None:
@@ -139,14 +115,12 @@ class WaterScreen(Screen[None]):
         water = self.water
         unsaved = " (not saved)" if self.session.changed else ""
         left = f"The water of {self.session.name}{unsaved}"
-        self.query_one(TitleBar).show(left, state_word(self._view))
+        self.query_one(TitleBar).show(left, state_word(self.view))
         named = water.draft.value(("environments",))
         names = ["own", *(named if isinstance(named, dict) else ())]
         here = water.variant or "own"
         told = "   ".join(f"[{name}]" if name == here else name for name in names)
-        self.query_one("#environment-names", Static).update(
-            f"Environment     {told}", layout=False
-        )
+        self.query_one("#environment-names", Static).update(f"Environment     {told}", layout=False)
 
     def refresh_form(self) -> None:
         """Show what the file says now."""
@@ -169,7 +143,7 @@ class WaterScreen(Screen[None]):
         self._fill_table("current-table", "current", shown=form == "table")
         self._fill("wind-speed", water.text("wind", "speed"), "wind")
         self._fill("wind-toward", water.text("wind", "toward"), "wind")
-        self.query_one(Profile).show(self._view)
+        self.query_one(Profile).show(self.view)
 
     def _fill(self, id: str, text: str, key: str, *, shown: bool = True) -> None:
         field = self.query_one(f"#{id}", Field)
@@ -183,15 +157,6 @@ class WaterScreen(Screen[None]):
         grid.set_class(not shown, "gone")
         if shown:
             grid.show(*self.water.table(key))
-
-    def change(self, make: Callable[[Water], Draft], label: str) -> None:
-        """Change the file; what refuses is told."""
-        try:
-            self.session.do(make(self.water), label)
-        except CalmError as error:
-            self.tell(str(error), wrong=True)
-        self.refresh_form()
-        self.post_message(Edited())
 
     @on(Field.Committed)
     def _commit(self, event: Field.Committed) -> None:
@@ -225,96 +190,6 @@ class WaterScreen(Screen[None]):
             self.action_load_current()
         else:
             self.change(lambda water: water.put_current_form(form), f"current: {form}")
-
-    # environments
-
-    def action_next_environment(self) -> None:
-        """Show the next environment, and stand the line in it."""
-        named = self.session.draft.value(("environments",))
-        names = [None, *(named if isinstance(named, dict) else ())]
-        here = names.index(self.water.variant)
-        self._stand_in(names[(here + 1) % len(names)])
-
-    def _stand_in(self, name: str | None) -> None:
-        self.session.environment = name
-        for field in self.query(Field):
-            field.remove_class("-wrong")
-        self.refresh_form()
-        self.post_message(Edited())
-
-    def action_new_environment(self) -> None:
-        """A named environment with the current of the one that is shown."""
-
-        def take(texts: dict[str, str] | None) -> None:
-            if texts is None:
-                return
-            name, water = texts["name"], self.water
-            current = water.value("current") or {"speed": "0.5 m/s", "toward": "90 deg"}
-            place = ("environments", name, "current")
-            self.change(lambda _: water.draft.put_at(place, current), f"environment {name}")
-            self._stand_in(name)
-
-        asked = [Asked("name", "Name", check=needed("a name"), placeholder="storm")]
-        text = "It says only what differs from the file's own environment."
-        self.app.push_screen(Sheet("Another environment", text, asked), take)
-
-    def action_drop_environment(self) -> None:
-        """Take the named environment out of the file."""
-        name = self.water.variant
-        if name is None:
-            self.tell("The file's own environment stays; ctrl+e goes to a named one")
-            return
-        self.change(lambda water: water.draft.put_at(water.place, None), f"drop {name}")
-        self._stand_in(None)
-
-    # currents
-
-    def action_preset(self) -> None:
-        """A profile to begin with."""
-
-        def take(key: str | None) -> None:
-            chosen = next((preset for preset in PRESETS if preset.key == key), None)
-            if chosen is not None:
-                rows = chosen.rows(self.water.depth)
-                self.change(
-                    lambda water: water.put_rows("current", COLUMNS, rows), "a preset current"
-                )
-
-        answers = [Answer(preset.key, preset.name, preset.key) for preset in PRESETS]
-        text = (
-            f"As a table down to {self.water.depth:g} m, towards the east; then change its figures."
-        )
-        self.app.push_screen(Question("A current to begin with", text, answers), take)
-
-    def action_load_current(self) -> None:
-        """A current from CSV or NetCDF: referred to, or its profile copied."""
-        from calm.tui.current_import import ImportSheet, imported
-
-        def take(texts: dict[str, str] | None) -> None:
-            if texts is None:
-                self.refresh_form()
-                return
-            path, time = texts["file"], texts["time"]
-            if texts["how"] == "refer":
-                self.change(lambda water: water.put_file(path, time), f"current of {path}")
-                return
-            try:
-                columns, rows = imported(self._folder / path, time, self.water)
-            except CalmError as error:
-                self.tell(str(error).partition("\n")[0], wrong=True)
-                return
-            self.change(
-                lambda water: water.put_rows("current", columns, rows), f"current of {path}"
-            )
-
-        self.app.push_screen(ImportSheet(self._folder), take)
-
-    @property
-    def _folder(self) -> Path:
-        path = self.session.file.path
-        return Path.cwd() if path is None else path.absolute().parent
-
-    # the rest
 
     def action_undo(self) -> None:
         """Take the last change back."""
@@ -353,6 +228,9 @@ class WaterScreen(Screen[None]):
         )
         if field is not None and field.reading.is_good:
             field.settle()
-            self.call_after_refresh(self.dismiss)
+            self.call_after_refresh(self._leave)
         else:
-            self.dismiss()
+            self._leave()
+
+    def _leave(self) -> None:
+        self.dismiss()  # not waited for: it ends the very loop that would wait

@@ -38,8 +38,7 @@ components:
 TERMINAL = {"TERM": "xterm-256color"}
 
 NAMES = {
-    " ": "space", "-": "minus", ".": "full_stop", ":": "colon", "/": "slash", "^": "circumflex_accent",
-    ",": "comma", "_": "underscore", "(": "left_parenthesis", ")": "right_parenthesis",
+    " ": "space", "-": "minus", ".": "full_stop", ":": "colon", "/": "slash", ",": "comma",
 }  # fmt: skip
 
 
@@ -113,6 +112,8 @@ class Driver:
 
     async def settle(self):
         """Until all that was started is done and shown."""
+        for _ in range(3):
+            await self.pilot.pause()
         for _ in range(200):
             await self.app.workers.wait_for_complete()
             await self.pilot.pause()

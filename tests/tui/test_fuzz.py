@@ -4,7 +4,7 @@ import asyncio
 import random
 
 import pytest
-from textual.events import Paste
+from textual import events
 
 from calm.files.editing import Draft
 from tests.tui.conftest import driven
@@ -16,21 +16,31 @@ KEYS = [
     "ctrl+k", "ctrl+t", "ctrl+o", "f1", "f2", "question_mark", "slash",
     *"aAiduUrlnvVxcewmoz1234", *"0123456789", "full_stop", "minus", *"mkfis",
 ]  # fmt: skip
+CHARACTERS = {
+    "space": " ", "minus": "-", "full_stop": ".", "slash": "/", "question_mark": "?",
+    "colon": ":", "left_curly_bracket": "{", "number_sign": "#",
+}  # fmt: skip
+PARCEL = 20
 SIZES = [(120, 36), (80, 24), (40, 12), (20, 6), (200, 60)]
 
 
-
-
 async def press_at_random(driver, chance, keys, count, check):
-    for number in range(1, count + 1):
-        key = chance.choice(keys)
-        await driver.press(key)
-        if number % 97 == 0:
+    for number in range(count // PARCEL):
+        pressed = chance.choices(keys, k=PARCEL)
+        for key in pressed:
+            driver.app.post_message(events.Key(key, _character(key)))
+        if number % 7 == 0:
             await driver.pilot.resize_terminal(*chance.choice(SIZES))
-        if number % 61 == 0:
-            driver.app.screen.post_message(Paste("0\t0.5\t90\n50\t0.2\t80"))
-        assert driver.app.is_running, f"ended by {key}, the {number}th"
-        check(f"after {key}, the {number}th")
+        if number % 5 == 0:
+            driver.app.screen.post_message(events.Paste("0\t0.5\t90\n50\t0.2\t80"))
+        while driver.app.has_keys_waiting:
+            await driver.pilot.pause()
+        assert driver.app.is_running, f"ended after {pressed}"
+        check(f"after {pressed}, the {number}th")
+
+
+def _character(key):
+    return CHARACTERS.get(key, key if len(key) == 1 else None)
 
 
 @pytest.mark.parametrize("seed", [7, 2026])

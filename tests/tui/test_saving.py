@@ -187,6 +187,7 @@ def test_a_file_that_cannot_be_written_is_told(drive, small, monkeypatch):
 
     async def story(driver):
         await rename(driver)
+        await driver.pilot.pause(0.5)  # the change is kept meanwhile
         monkeypatch.setattr(os, "replace", refuse)
         await driver.press("ctrl+s")
         assert "No space left" in driver.screen
