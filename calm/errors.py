@@ -22,13 +22,15 @@ class CalmError(Exception):
 class Problem:
     """One mistake in one place of a file.
 
-    `line` and `column` count from 1; 0 means the file as a whole.
+    `line` and `column` count from 1; 0 means the file as a whole. `lacks` tells, where nothing is
+    wrong but something is not there yet, what that is: ``no length on wire 2``.
     """
 
     path: str
     line: int
     column: int
     message: str
+    lacks: str = ""
 
     def __str__(self) -> str:
         place = f":{self.line}:{self.column}" if self.line else ""
@@ -70,3 +72,12 @@ class NoEquilibrium(CalmError):
     def to_dict(self) -> dict[str, str]:
         """`status`, `message` and `advice`, as they stand in JSON in place of a result."""
         return {"status": self.status, "message": self.message, "advice": self.advice}
+
+
+def internal_failure(error: Exception) -> NoEquilibrium:
+    """CALM's own failure, told as a line that could not be solved: it does not stop the others."""
+    return NoEquilibrium(
+        "internal-error",
+        f"CALM failed ({type(error).__name__}: {error}).",
+        "Please report it, with the file.",
+    )

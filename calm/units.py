@@ -181,10 +181,15 @@ def parse_quantity(text: object, dimension: str, *, usual_unit: str | None = Non
     QuantityError
         The text is not a finite number with a unit of this dimension.
     """
-    wanted = DIMENSIONS[dimension]
     if isinstance(text, bool) or not isinstance(text, (str, int, float)):
-        raise QuantityError(f"is not {_described(wanted)}")
-    text = str(text).strip()
+        raise QuantityError(f"is not {_described(DIMENSIONS[dimension])}")
+    return _parsed(str(text).strip(), dimension, usual_unit)
+
+
+@functools.lru_cache(maxsize=4096)
+def _parsed(text: str, dimension: str, usual_unit: str | None) -> float:
+    """The value of a text without blanks around it."""
+    wanted = DIMENSIONS[dimension]
     number, unit = _split(text, wanted)
     if unit:
         try:
@@ -208,6 +213,7 @@ def with_unit(value: float, unit: str) -> str:
     return f"{value:.6g} {unit}".rstrip()
 
 
+@functools.lru_cache(maxsize=1024)
 def unit_factor(text: str, dimension: str) -> float:
     """What a number in this unit is multiplied by to be in SI (degrees, degC).
 

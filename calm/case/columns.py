@@ -30,7 +30,12 @@ class Columns:
         return SimpleNamespace(**{name: _plain(getattr(self, name)[row]) for name in self._names()})
 
     def __iter__(self) -> Iterator[SimpleNamespace]:
-        return (self[row] for row in range(len(self)))
+        names = self._names()
+        columns = [getattr(self, name) for name in names]
+        # whole columns become plain numbers faster than their numbers one by one
+        plain = [column if isinstance(column, list) else column.tolist() for column in columns]
+        for row in zip(*plain, strict=True):
+            yield SimpleNamespace(**dict(zip(names, row, strict=True)))
 
     def with_row(self, **row: Any) -> Self:
         """The same table with one more row, a value for every column."""

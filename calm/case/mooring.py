@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from calm.assemble import assemble_floating, assemble_line, assemble_water, net_buoyancy
 from calm.case.labels import naming_the_piece
+from calm.case.memory import Forgetful, Memory
 from calm.case.moored import result_of
 from calm.case.result import Result
 from calm.case.tow import Tow
@@ -26,6 +27,7 @@ def load(
     path: str | Path,
     environment: str | Path | None = None,
     catalogs: Sequence[str | Path] = (),
+    text: str | None = None,
 ) -> Mooring | Tow:
     """Read the file of a mooring or a tow.
 
@@ -34,13 +36,15 @@ def load(
     path : the YAML file
     environment : name of one of its `environments`, or an environment file
     catalogs : catalogue files of your own; the nearer definition wins
+    text : in place of the file's content; what it refers to is still looked for beside the file
 
     Raises
     ------
     InputError
         With every mistake of the file, each with its line and column.
     """
-    file = read_mooring(path, environment=environment, catalogs=[Path(c) for c in catalogs])
+    nearer = [Path(each) for each in catalogs]
+    file = read_mooring(path, environment=environment, catalogs=nearer, text=text)
     return Mooring(file) if file.tow is None else Tow(file)
 
 
@@ -49,11 +53,13 @@ class Mooring:
     """A mooring as read from its file; `line` and `water` are what the solver takes.
 
     `for_surface` tells whether it is meant to reach the surface, where that is known beforehand: a
-    mooring that is judged with something changed is meant for what it was meant for.
+    mooring that is judged with something changed is meant for what it was meant for. `memory`
+    keeps what was solved for other states of the same file.
     """
 
     file: MooringFile
     for_surface: bool | None = None
+    memory: Memory = field(default_factory=Forgetful, repr=False, compare=False)
 
     def __reduce__(self) -> tuple[type[Mooring], tuple[MooringFile, bool | None]]:
         """What another process needs: all else follows from these."""
@@ -86,9 +92,10 @@ class Mooring:
         for piece in self.file.pieces:
             if piece.fit_top_depth is not None:
                 with naming_the_piece(self.file.pieces):
-                    length = fit_length(
-                        line, self.water, piece.index, piece.fit_top_depth, self.settings
-                    )
+                    length = self.memory.of(
+                        fit_length, line, self.water, piece.index, piece.fit_top_depth,
+                        self.settings,
+                    )  # fmt: skip
                 return line.with_length(piece.index, length)
         return line
 
@@ -120,7 +127,7 @@ class Mooring:
             As `solve` does.
         """
         with naming_the_piece(self.file.pieces):
-            solution = solve_mooring(self.line, water, self.settings)
+            solution = self.memory.of(solve_mooring, self.line, water, self.settings)
         self._refuse_a_lifted_anchor(solution)
         self._refuse_a_heap(solution)
         return solution
@@ -154,6 +161,6 @@ class Mooring:
         # a plumb line is exact with long segments
         settings = replace(self.settings, angle_step=max(self.settings.angle_step, COARSE_STEP))
         try:
-            return solve_mooring(line, self.water.still(), settings)
+            return self.memory.of(solve_mooring, line, self.water.still(), settings)
         except NoEquilibrium:
             return None

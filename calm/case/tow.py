@@ -12,6 +12,7 @@ from calm.case.band import StrummingBand, tow_band
 from calm.case.columns import Clamps, Components, Shape
 from calm.case.labels import naming_the_piece
 from calm.case.measure import clamps_of, components_of, shape_of
+from calm.case.memory import Forgetful, Memory
 from calm.case.result import Accuracy, Solved, Strumming, document_of, known
 from calm.case.strumming import strumming_of
 from calm.case.warnings import tow_warnings_of
@@ -102,9 +103,17 @@ class TowResult(Solved):
 
 @dataclass(frozen=True)
 class Tow:
-    """A tow as read from its file; `line`, `water` and `towing` are what the solver takes."""
+    """A tow as read from its file; `line`, `water` and `towing` are what the solver takes.
+
+    `memory` keeps what was solved for other states of the same file.
+    """
 
     file: MooringFile
+    memory: Memory = field(default_factory=Forgetful, repr=False, compare=False)
+
+    def __reduce__(self) -> tuple[type[Tow], tuple[MooringFile]]:
+        """What another process needs: all else follows from it."""
+        return Tow, (self.file,)
 
     @property
     def keys(self) -> TowKeys:
@@ -146,9 +155,9 @@ class Tow:
         for piece in self.file.pieces:
             if piece.fit_body_depth is not None:
                 with naming_the_piece(self.file.pieces):
-                    length = fit_tow_length(
-                        line, self.water, self.towing, piece.index, piece.fit_body_depth,
-                        self.settings,
+                    length = self.memory.of(
+                        fit_tow_length, line, self.water, self.towing, piece.index,
+                        piece.fit_body_depth, self.settings,
                     )  # fmt: skip
                 return line.with_length(piece.index, length)
         return line
@@ -170,7 +179,7 @@ class Tow:
             With status, message and advice, where there is none that passes every check.
         """
         with naming_the_piece(self.file.pieces, towed=True):
-            solution = solve_tow(self.line, self.water, self.towing, self.settings)
+            solution = self.memory.of(solve_tow, self.line, self.water, self.towing, self.settings)
         return _result_of(self, solution)
 
 

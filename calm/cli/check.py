@@ -12,7 +12,7 @@ from calm.cli.exit_codes import ExitCode, gravest
 from calm.cli.outputs import OutputPath, Outputs
 from calm.cli.streams import narrate
 from calm.cli.workers import mapped
-from calm.errors import NoEquilibrium, UsageError
+from calm.errors import UsageError, internal_failure
 
 if TYPE_CHECKING:
     from calm.case import Mooring
@@ -110,12 +110,7 @@ def _stand(task: tuple[str, Mooring]) -> Stand:
     except Exception as error:
         if os.environ.get("CALM_DEBUG") == "1":
             raise
-        failure = NoEquilibrium(
-            "internal-error",
-            f"CALM failed ({type(error).__name__}: {error}).",
-            "Please report it, with the file.",
-        )
-        return failed_stand(mooring, name, failure)
+        return failed_stand(mooring, name, internal_failure(error))
 
 
 def _assess(task: tuple[str, tuple[Stand, ...]]) -> Assessment:

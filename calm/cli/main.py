@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from cyclopts import App, CycloptsError, Parameter, UnusedCliTokensError
 
 from calm.cli.batch import BATCH_EXAMPLES, batch
+from calm.cli.build import BUILD_EXAMPLES, build
 from calm.cli.catalog import catalog
 from calm.cli.chart import chart
 from calm.cli.check import CHECK_EXAMPLES, check
@@ -53,6 +54,7 @@ app = App(
 app.command(run, usage="Usage: calm run [OPTIONS] FILE...", help_epilogue=RUN_EXAMPLES)
 app.command(check, usage="Usage: calm check [OPTIONS] FILE...", help_epilogue=CHECK_EXAMPLES)
 app.command(batch, help_epilogue=BATCH_EXAMPLES)
+app.command(build, help_epilogue=BUILD_EXAMPLES)
 app.command(tow, usage="Usage: calm tow [OPTIONS] FILE...", help_epilogue=TOW_EXAMPLES)
 app.command(size, help_epilogue=SIZE_EXAMPLES)
 app.command(strumming, help_epilogue=STRUMMING_EXAMPLES)

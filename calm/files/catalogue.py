@@ -19,6 +19,7 @@ from calm.files.definition import Definition
 from calm.files.document import Document, read_document
 from calm.files.explain import nearest, shown, unknown, validate
 from calm.files.section import Section
+from calm.files.unchanged import Unchanged
 
 FAMILY_ROLES = {
     "floats": "float",
@@ -72,14 +73,22 @@ class Catalogue:
         InputError
             A catalogue of the user cannot be read.
         """
-        problems: list[Problem] = []
-        levels = [_read_level([Path(path)], problems) for path in reversed(files)]
+        from calm.files.compile_catalogue import shipped_files
+
         folder = user_folder()
-        if folder.is_dir():
-            levels.append(_read_level(sorted(folder.glob("*.yaml")), problems))
-        if problems:
-            raise InputError(problems)
-        return cls((*levels, *cls.shipped().levels))
+        own = sorted(folder.glob("*.yaml")) if folder.is_dir() else []
+        given = [Path(path) for path in files]
+
+        def read() -> Catalogue:
+            problems: list[Problem] = []
+            levels = [_read_level([path], problems) for path in reversed(given)]
+            if own:
+                levels.append(_read_level(own, problems))
+            if problems:
+                raise InputError(problems)
+            return cls((*levels, *cls.shipped().levels))
+
+        return _LOADED.of([*given, *own, *shipped_files()], read)
 
     @classmethod
     def shipped(cls) -> Catalogue:
@@ -163,6 +172,9 @@ class Catalogue:
             for id, entry in self._entries.items()
             if all(word in _searchable(entry) for word in wanted)
         ]
+
+
+_LOADED: Unchanged[Catalogue] = Unchanged()
 
 
 def user_folder() -> Path:

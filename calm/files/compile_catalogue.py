@@ -17,6 +17,11 @@ from calm.shipped import shipped_folder
 COMPILED = "compiled.json"
 
 
+def shipped_files() -> list[Path]:
+    """All that the shipped catalogue is read from."""
+    return sorted(shipped_folder("catalog").iterdir())
+
+
 def shipped_documents() -> list[Document]:
     """The shipped catalogue, one document a family; places are known only where it was parsed."""
     folder = shipped_folder("catalog")

@@ -18,6 +18,7 @@ from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
 from calm.errors import InputError, Problem
+from calm.files import composition, nodes
 
 LARGEST_FILE = 1_000_000
 """Bytes; a file of text larger than this is not read."""
@@ -54,14 +55,16 @@ class Document:
     values: dict[Location, Place] = field(default_factory=dict, repr=False)
     keys: dict[Location, Place] = field(default_factory=dict, repr=False)
 
-    def problem(self, location: Sequence[str | int], message: str, *, key: bool = False) -> Problem:
+    def problem(
+        self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""
+    ) -> Problem:
         """A problem at a value (or at its key), or at the nearest thing around it that exists."""
         location = tuple(location)
         places = self.keys if key else self.values
         while location and location not in places:
             location = location[:-1]
         line, column = places.get(location) or self.values.get(location, (0, 0))
-        return Problem(self.path, line, column, message)
+        return Problem(self.path, line, column, message, lacks)
 
 
 def read_document(path: Path) -> Document:
@@ -75,9 +78,18 @@ def read_document(path: Path) -> Document:
     return _composed(str(path), read_text(path))
 
 
-@lru_cache(maxsize=32)
-def _composed(name: str, text: str) -> Document:
-    """The document of a text; a mooring that is read in many environments is composed once."""
+def compose(name: str, text: str) -> Document:
+    """The document of a text.
+
+    Parameters
+    ----------
+    name : of the file, as messages show it
+
+    Raises
+    ------
+    InputError
+        It is no valid YAML, or holds duplicate keys.
+    """
     try:
         root = YAML(typ="safe", pure=True).compose(text)
     except MarkedYAMLError as error:
@@ -97,6 +109,45 @@ def _composed(name: str, text: str) -> Document:
     if reader.problems:
         raise InputError(reader.problems)
     return Document(name, data, reader.values, reader.keys)
+
+
+_composed = lru_cache(maxsize=32)(compose)
+"""A mooring that is read in many environments is composed once."""
+
+
+@lru_cache(maxsize=8)
+def document_of(name: str, text: str) -> Document:
+    """The document of a text that stands in place of a file's content.
+
+    It is read again and again as a person edits it, and only what changed is composed. What is
+    told of a text with mistakes is what `compose` tells.
+    """
+    text = text.removeprefix("\ufeff")
+    try:
+        composed = composition.compose(text)
+    except (YAMLError, ValueError, IndexError, RecursionError):
+        return compose(name, text)
+    root = composed.root
+    if root is None or composed.refusals or root.kind != "mapping":
+        return compose(name, text)
+    document = Document(name, root.data)
+    _note_places(document, root, ())
+    return document
+
+
+def _note_places(document: Document, node: nodes.Node, location: Location) -> None:
+    """Note where a value is, and all below it; one that is empty is where its key is."""
+    document.values[location] = node.line, node.column
+    if node.kind == "sequence":
+        for index, child in enumerate(node.children):
+            _note_places(document, child, (*location, index))
+        return
+    for key, child in zip(node.keys, node.children, strict=True):
+        below = (*location, key.data)
+        document.keys[below] = key.line, key.column
+        _note_places(document, child, below)
+        if child.data is None:
+            document.values[below] = key.line, key.column
 
 
 def read_text(path: Path, *, largest: int = LARGEST_FILE) -> str:

@@ -105,10 +105,12 @@ def _explain(
             found.append(section.problem(location, message, key=True))
         else:
             field = next((part for part in reversed(location) if isinstance(part, str)), "")
-            found.append(section.problem(location, _about_value(details, field, value)))
+            message = _about_value(details, field, value)
+            lacks = f"no {field}" if value in (None, [], {}) else ""
+            found.append(section.problem(location, message, lacks=lacks))
     # A required key that is there, misspelt, is one mistake and not two.
     found += [
-        section.problem(location, f"`{name}` is missing")
+        section.problem(location, f"`{name}` is missing", lacks=f"no {name}")
         for location, name in missing
         if (location, name) not in misspelt
     ]

@@ -24,6 +24,7 @@ _COUNT = Quantity("number", at_least=1, at_most=MOST_PIECES)
 _ITEM_KEYS = frozenset({"use", "label", "count", "length", "top_depth", "body_depth", "clamps"})
 _ASSEMBLY_KEYS = frozenset({"use", "label", "count"})
 _CLAMP_KEYS = frozenset({"use", "label", "at"})
+_WORDS = {"at": "place", "top_depth": "top depth", "body_depth": "body depth"}
 
 
 class LineReader:
@@ -194,7 +195,8 @@ class LineReader:
         use = item.data.get("use")
         if not isinstance(use, str):
             message = "`use` must be the id of a component" if "use" in item.data else None
-            self._refuse(item, ("use",), message or "`use` is missing")
+            lacks = "" if message else "no component chosen"
+            self._refuse(item, ("use",), message or "`use` is missing", lacks=lacks)
             return None
         entry = self._catalogue.entry(use)
         if entry is None:
@@ -263,8 +265,12 @@ class LineReader:
         return int(count)
 
     def _quantity(self, item: Section, key: str, kind: Quantity, need: str) -> float | None:
-        if key not in item.data:
-            self._refuse(item, (), f"`{key}` is missing: {need}")
+        if item.data.get(key) is None:
+            there = key in item.data
+            message = f"`{key}` has no value" if there else f"`{key}` is missing: {need}"
+            place = (key,) if there else ()
+            label = item.data.get("label") or item.data.get("use") or "a piece"
+            self._refuse(item, place, message, lacks=f"no {_WORDS.get(key, key)} on {shown(label)}")
             return None
         try:
             return kind.read(item.data[key])
@@ -279,6 +285,12 @@ class LineReader:
         return str(label)
 
     def _refuse(
-        self, section: Section, location: tuple[str | int, ...], message: str, *, key: bool = False
+        self,
+        section: Section,
+        location: tuple[str | int, ...],
+        message: str,
+        *,
+        key: bool = False,
+        lacks: str = "",
     ) -> None:
-        self._problems.append(section.problem(location, message, key=key))
+        self._problems.append(section.problem(location, message, key=key, lacks=lacks))

@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Field
 from calm.errors import InputError, Problem
 from calm.files.catalogue import Catalogue
 from calm.files.components import Anchor
-from calm.files.document import read_document
+from calm.files.document import document_of, read_document
 from calm.files.environment import read_environment
 from calm.files.explain import validate
 from calm.files.fields import Model, Text
@@ -21,6 +21,9 @@ from calm.files.mooring import Checks, MooringFile, Piece, Position, Solver, Tow
 from calm.files.section import Section
 from calm.files.variants import choose_environment
 from calm.units import QuantityError
+
+STAND_IN = ""
+"""Id of what holds a line whose anchor is yet to be chosen."""
 
 
 def _given(value: object) -> object:
@@ -49,6 +52,8 @@ def read_mooring(
     *,
     environment: str | Path | None = None,
     catalogs: Sequence[str | Path] = (),
+    text: str | None = None,
+    stand_in: bool = False,
 ) -> MooringFile:
     """Read a mooring file and all it refers to.
 
@@ -61,6 +66,11 @@ def read_mooring(
         file's own `environment`.
     catalogs : sequence of paths
         Catalogue files that come before the user's own and the shipped ones, the last first.
+    text : str, optional
+        In place of the file's content. The file need not exist; what the text refers to is looked
+        for beside it.
+    stand_in : bool
+        Let a line that has no anchor yet stand on one that holds anything, of the id `STAND_IN`.
 
     Raises
     ------
@@ -70,7 +80,7 @@ def read_mooring(
     problems: list[Problem] = []
     notices: list[str] = []
     catalogue = Catalogue.load(catalogs)
-    document = read_document(Path(path))
+    document = read_document(Path(path)) if text is None else document_of(str(path), text)
     top = Section.of(document, (), document.data)
     towed = "tow" in top.data
     keys = validate(MooringKeys, top, problems, context={"towed": towed})
@@ -83,6 +93,8 @@ def read_mooring(
     reader = LineReader(catalogue, problems, notices, towed=towed, in_air=in_air)
     reader.check(definitions.data if definitions is not None else ())
     pieces = reader.read(top, "line") if isinstance(top.data.get("line"), list) else ()
+    if stand_in and not towed and pieces and not _anchored(pieces):
+        pieces = (*pieces, _stand_in())
     (_check_tow if towed else _check_anchor)(pieces, top, problems)
     _check_one_fit(pieces, top, problems)
     surroundings = None
@@ -106,6 +118,12 @@ def read_mooring(
         notices=tuple(notices),
         variants=tuple(keys.environments or ()),
     )
+
+
+def _stand_in() -> Piece:
+    """An anchor without height that holds anything."""
+    component = Anchor.model_validate({"kind": "anchor", "weight": "1e6 kN"})
+    return Piece(0, STAND_IN, "anchor", component, 0.0, None, (), 0, 0)
 
 
 def _child(section: Section, key: str) -> Section | None:
@@ -137,12 +155,16 @@ def _check_anchor(pieces: Sequence[Piece], top: Section, problems: list[Problem]
             problems.append(_at(piece, top, message))
     last_item = top.problem(("line", len(top.data["line"]) - 1), "")
     last_is_known = (last_item.line, last_item.column) == (pieces[-1].line, pieces[-1].column)
-    anchored = any(isinstance(piece.component, Anchor) for piece in pieces)
-    if last_is_known and not anchored:
+    if last_is_known and not _anchored(pieces):
         message = "the line has no anchor; its last item must be one (`kind: anchor`)"
-        problems.append(top.problem(("line",), message, key=True))
-    if len(pieces) == 1 and anchored and len(top.data["line"]) == 1:
-        problems.append(_at(pieces[0], top, "nothing stands above the anchor"))
+        problems.append(top.problem(("line",), message, key=True, lacks="no anchor"))
+    if len(pieces) == 1 and _anchored(pieces) and len(top.data["line"]) == 1:
+        lacks = "nothing above the anchor"
+        problems.append(_at(pieces[0], top, "nothing stands above the anchor", lacks))
+
+
+def _anchored(pieces: Sequence[Piece]) -> bool:
+    return any(isinstance(piece.component, Anchor) for piece in pieces)
 
 
 def _check_one_fit(pieces: Sequence[Piece], top: Section, problems: list[Problem]) -> None:
@@ -170,5 +192,5 @@ def _check_fit(
             problems.append(_at(piece, top, message))
 
 
-def _at(piece: Piece, top: Section, message: str) -> Problem:
-    return Problem(top.document.path, piece.line, piece.column, message)
+def _at(piece: Piece, top: Section, message: str, lacks: str = "") -> Problem:
+    return Problem(top.document.path, piece.line, piece.column, message, lacks)

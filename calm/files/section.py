@@ -51,7 +51,10 @@ class Section:
             return self
         return self.base.home(key)
 
-    def problem(self, location: Sequence[str | int], message: str, *, key: bool = False) -> Problem:
+    def problem(
+        self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""
+    ) -> Problem:
         """A problem at a value below this mapping, or at its key."""
         home = self.home(location[0]) if location else self
-        return home.document.problem((*home.location, *location), message, key=key)
+        place = (*home.location, *location)
+        return home.document.problem(place, message, key=key, lacks=lacks)

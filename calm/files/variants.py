@@ -41,7 +41,8 @@ def choose_environment(
         if "environment" in top.data:
             return None
         if chosen is None and not towed:
-            problems.append(top.problem((), "`environment` is missing"))
+            message = "`environment` is missing"
+            problems.append(top.problem((), message, lacks="no environment"))
             return None
         own = Section.of(top.document, (), {})
     variants = top.child("environments") if _is_mapping(top, "environments") else None

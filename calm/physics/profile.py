@@ -48,7 +48,10 @@ class Profile:
 
     def at(self, depth: float, i: int) -> tuple[float, float, float, float]:
         """Current u, v, w [m/s] and density [kg/m³] at a depth, searched from interval `i`."""
-        origin, u, du, v, dv, w, dw, density, ddensity = self.rows[self.interval(depth, i)]
+        levels = self.levels
+        if not levels[i] < depth < levels[i + 1]:
+            i = self.interval(depth, i)
+        origin, u, du, v, dv, w, dw, density, ddensity = self.rows[i]
         below = depth - origin
         return (
             u + du * below,

@@ -106,7 +106,9 @@ def rod_axis(rod: Rod, profile: Profile, state: State) -> Vector:
     pace, earlier = 1.0, inf
     for _ in range(_PASSES):
         following = _next_axis(rod, profile, state, axis)
-        change = sum(abs(new - old) for new, old in zip(following, axis, strict=True))
+        change = (
+            abs(following[0] - axis[0]) + abs(following[1] - axis[1]) + abs(following[2] - axis[2])
+        )
         if change < 1e-12:
             return following
         if change > 0.7 * earlier:
@@ -186,6 +188,13 @@ def _record(rod: Rod, forces: list[Vector], trace: Trace, state: State, axis: Ve
     """Record a rod piece by piece; a piece's own load counts as spread along it, a clamp's not."""
     x, y, z = state.x, state.y, state.z
     fx, fy, fz = state.fx, state.fy, state.fz
+    if len(forces) == 1:
+        ((qx, qy, qz),) = forces
+        tx, ty, tz = axis
+        trace.element(rod.pieces[0], -1, rod.length, 0.0)
+        x, y, z = x + rod.length * tx, y + rod.length * ty, z + rod.length * tz
+        trace.node(x, y, z, (fx + qx, fy + qy, fz + qz))
+        return
     loads = list(zip(rod.loads, forces, strict=True))
     start = 0.0
     for piece, length in zip(rod.pieces, rod.lengths, strict=True):

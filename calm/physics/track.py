@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 
 from calm.physics.friction import Friction
 from calm.physics.line import Line
@@ -42,7 +43,7 @@ class Rod:
     lengths: tuple[float, ...]
     loads: tuple[Load, ...]
 
-    @property
+    @cached_property
     def length(self) -> float:
         return sum(self.lengths)
 

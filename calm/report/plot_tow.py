@@ -49,7 +49,7 @@ def draw_tow(result: TowResult) -> Figure:
 
     heading = np.radians(result.toward)
     behind = -np.array([np.sin(heading), np.cos(heading)])
-    top, bottom = _levels(result)
+    top, bottom = levels_of(result)
     written = texts(result, bottom - top)
     height = figure_height(written)
     figure = Figure(figsize=(WIDTH, height), layout="constrained")
@@ -74,7 +74,7 @@ def _leaves_plane(result: TowResult, behind: Floats) -> bool:
     return bool(np.abs(across).max() > _PLANE_WITHIN * distance)
 
 
-def _levels(result: TowResult) -> tuple[float, float]:
+def levels_of(result: TowResult) -> tuple[float, float]:
     """Depths at the upper and the lower edge of the elevation [m]."""
     depth = result.shape.depth
     top, bottom = min(float(depth.min()), 0.0), max(float(depth.max()), 0.0)

@@ -154,7 +154,8 @@ class Closing:
 
     def coarser(self, root: Root) -> Root:
         """The coarse root near another one; that one where there is none."""
-        found, *_ = self._near(root, self.coarse_step, None, 1e-4 * self.span, COARSEST_BRACKET)
+        small = 1e-4 * self.span
+        found, *_ = self._near(root, self.coarse_step, None, small, COARSEST_BRACKET, record=False)
         return found or root
 
     def planned(self, root: Root, step: float) -> tuple[Root, Cuts]:
@@ -163,7 +164,7 @@ class Closing:
         With its free choice of cuts the march is not quite continuous, so this is no solution yet.
         """
         small = 1e-6 * self.span
-        found, _, end, _ = self._near(root, step, None, small, COARSEST_BRACKET)
+        found, _, end, _ = self._near(root, step, None, small, COARSEST_BRACKET, record=False)
         return found or root, end.cuts
 
     def polish(self, root: Root, cuts: Cuts) -> Closed:
@@ -215,12 +216,19 @@ class Closing:
         return Closed(found, miss, end, trace, hanging, grounded)
 
     def _near(
-        self, root: Root, step: float, cuts: Cuts | None, small: float, narrow: float
+        self,
+        root: Root,
+        step: float,
+        cuts: Cuts | None,
+        small: float,
+        narrow: float,
+        *,
+        record: bool = True,
     ) -> tuple[Root | None, float, End, Trace]:
-        """Root near another one, across the surface if need be, its miss and its recorded march.
+        """Root near another one, across the surface if need be, its miss and its march.
 
         Where there is none, the miss and march are those of the last try. `narrow` is the width
-        of the last bracket as a share of the whole range.
+        of the last bracket as a share of the whole range; `record` keeps the trace of the march.
         """
         tried: dict[float, tuple[float, End, Trace]] = {}
         start: Root | None = root
@@ -228,7 +236,8 @@ class Closing:
         def miss(x: float) -> float:
             assert start is not None
             trace = Trace()
-            end = self.run(start.unknown, x, step, cuts=cuts, trace=trace)
+            kept = trace if record else None
+            end = self.run(start.unknown, x, step, cuts=cuts, trace=kept)
             tried.clear()
             tried[x] = end.z - start.unknown.goal, end, trace
             return tried[x][0]

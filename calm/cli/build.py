@@ -1,0 +1,90 @@
+"""``calm build``: the line builder, in the terminal or in a browser."""
+
+from __future__ import annotations
+
+import os
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+from calm.cli.exit_codes import ExitCode
+from calm.cli.streams import narrate
+from calm.errors import UsageError
+
+BUILD_EXAMPLES = """Examples:
+
+  calm build
+  calm build mooring.yaml
+  calm build mooring.yaml --environment storm
+  calm build mooring.yaml --serve"""
+
+PORT = 8000
+
+_NO_TERMINAL = (
+    "calm build needs a terminal to draw in, and keys; `calm build --serve` opens it in a "
+    "browser, `calm run FILE --schematic` prints the line"
+)
+_NO_BROWSER = "--serve needs textual-serve, which is not installed: pip install textual-serve"
+
+
+def build(
+    file: Path | None = None,
+    /,
+    *,
+    environment: str | None = None,
+    catalog: list[Path] | None = None,
+    serve: bool = False,
+    port: int = PORT,
+) -> ExitCode:
+    """Build or edit a mooring or a tow, and see it bend at every change.
+
+    The line is a table, its picture and the design check beside it. The file keeps its
+    comments, its order and its units: what is not changed stays as it was written. What
+    is not saved is kept beside the file, and offered when a terminal was closed or the
+    power went. Press ? for all keys.
+
+    Parameters
+    ----------
+    file
+        A mooring file; it may be a new one. Without it, one that gets its name when saved.
+    environment
+        An environment named in the file, or an environment file, to begin with.
+    catalog
+        A catalogue of your own; its components hide others of the same id. Repeatable.
+    serve
+        Open it in a browser of this machine; nothing else is listened to.
+    port
+        Where --serve is found: http://localhost:PORT, 8000 unless given.
+    """
+    if serve:
+        return _serve(file, environment, catalog or [], port)
+    if not _has_terminal():
+        raise UsageError(_NO_TERMINAL)
+    from calm.tui.launch import build
+
+    return ExitCode(build(file, environment, catalog or []))
+
+
+def _has_terminal() -> bool:
+    """Whether there is something to draw on, the standard error, or a browser that started this."""
+    if os.environ.get("TEXTUAL_DRIVER"):
+        return True
+    return all(stream is not None and stream.isatty() for stream in (sys.stdin, sys.stderr))
+
+
+def _serve(file: Path | None, environment: str | None, catalogs: list[Path], port: int) -> ExitCode:
+    if not 1 <= port <= 65535:
+        raise UsageError(f"--port: {port} is none; one from 1024 to 65535 is usual")
+    if find_spec("textual_serve") is None:
+        raise UsageError(_NO_BROWSER)
+    from calm.tui.launch import open_session
+    from calm.tui.serve import serve
+
+    open_session(file, environment, catalogs)  # what cannot be opened is told here
+    words = [] if file is None else [str(file.absolute())]
+    if environment is not None:
+        words += ["--environment", environment]
+    for path in catalogs:
+        words += ["--catalog", str(path.absolute())]
+    serve(words, port, narrate)
+    return ExitCode.DONE

@@ -1,0 +1,10 @@
+"""Mooring and tow files as text that is edited: text in, text out. Nothing is computed here."""
+
+from calm.files.editing.changes import EditError
+from calm.files.editing.draft import Draft
+from calm.files.editing.history import History
+from calm.files.editing.items import Item
+from calm.files.editing.layout import Value
+from calm.files.editing.working_file import NotWritten, WorkingFile
+
+__all__ = ["Draft", "EditError", "History", "Item", "NotWritten", "Value", "WorkingFile"]

@@ -1,0 +1,58 @@
+"""What a text says, and what it is to say after an edit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from calm.files.document import Location
+from calm.files.editing.layout import Value
+from calm.files.nodes import Node
+
+
+def child_of(node: Node, step: str | int) -> Node | None:
+    """What stands below a node under a key or number."""
+    if node.kind == "mapping":
+        named = zip(node.keys, node.children, strict=True)
+        return next((child for key, child in named if key.data == step), None)
+    if node.kind == "sequence" and isinstance(step, int) and 0 <= step < len(node.children):
+        return node.children[step]
+    return None
+
+
+def nested(location: Location, value: Value) -> dict[str, Value]:
+    """Mappings that lead to a value."""
+    for step in reversed(location):
+        value = {str(step): value}
+    assert isinstance(value, dict)
+    return value
+
+
+def data_of(value: Value) -> Any:
+    """What is read again of a value."""
+    if value is None or isinstance(value, str):
+        return value
+    if isinstance(value, Mapping):
+        return {key: data_of(one) for key, one in value.items()}
+    return [data_of(one) for one in value]
+
+
+def with_value(data: Any, location: Location, value: Value) -> Any:
+    """Data with another value at a location; mappings that lead to it are made."""
+    if not location:
+        return data_of(value)
+    step, below = location[0], location[1:]
+    if isinstance(data, list) and isinstance(step, int):
+        return [with_value(one, below, value) if i == step else one for i, one in enumerate(data)]
+    base = data if isinstance(data, dict) else {}
+    return {**base, step: with_value(base.get(step), below, value)}
+
+
+def without(data: Any, location: Location) -> Any:
+    """Data without a key."""
+    step, below = location[0], location[1:]
+    if isinstance(data, list):
+        return [without(one, below) if i == step else one for i, one in enumerate(data)]
+    if below:
+        return {**data, step: without(data[step], below)}
+    return {key: one for key, one in data.items() if key != step}

@@ -1,0 +1,297 @@
+"""A mooring or tow file as text that is edited: what is not touched stays byte for byte."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from ruamel.yaml.error import YAMLError
+
+from calm.errors import InputError, Problem
+from calm.files import document
+from calm.files.composition import compose
+from calm.files.document import Location
+from calm.files.editing.changes import NAMED, EditError, Page
+from calm.files.editing.data import data_of, with_value, without
+from calm.files.editing.items import Item, item_of, read_snippet, snippet_of
+from calm.files.editing.layout import Layout, Value, Worded
+from calm.files.editing.lists import items_of
+from calm.files.editing.spans import Patch, patched
+from calm.files.nodes import Node
+
+LINE = "line"
+CLAMPS = "clamps"
+KEPT = "environment"
+"""It is needed even where it says nothing."""
+
+_EMPTY = """\
+# Every figure carries its unit: 12 mm, 1.5 knot, 35 kgf, 0.22 kgf/m, 30 deg, 1/2 in.
+
+name: New mooring
+
+environment:
+  density: 1025 kg/m^3
+
+line: []                              # top to bottom
+"""
+
+
+@dataclass(frozen=True)
+class Draft:
+    """A mooring or tow file as text.
+
+    Every edit returns a new draft. Comments, order, quotes, brackets, indentation, line breaks
+    and a byte order mark stay as they are; what is new follows the manner of the file. A comment
+    directly above an item goes where the item goes. The result is read again, and nothing but
+    what was to change may have changed.
+
+    Parameters
+    ----------
+    text : str
+        With its own line breaks, and its byte order mark if it has one.
+
+    Raises
+    ------
+    EditError
+        By every edit that cannot be made: there is no such item, the text has `problems`, or it
+        is written in a way that cannot be taken apart.
+    """
+
+    text: str
+
+    @classmethod
+    def empty(cls) -> Draft:
+        """A line of no pieces yet."""
+        return cls(_EMPTY)
+
+    @cached_property
+    def _root(self) -> Node | None:
+        try:
+            composition = compose(self.text)
+        except (YAMLError, ValueError, IndexError, RecursionError):
+            return None
+        root = composition.root
+        return None if root is None or composition.refusals or root.kind != "mapping" else root
+
+    @cached_property
+    def problems(self) -> tuple[Problem, ...]:
+        """Why the text cannot be edited but as text; their `path` is empty."""
+        if self._root is not None:
+            return ()
+        try:
+            document.compose("", self.text.removeprefix("\ufeff"))
+        except InputError as error:
+            return error.problems
+        raise AssertionError("a text that can be read has nodes")
+
+    @cached_property
+    def items(self) -> tuple[Item, ...]:
+        """The items of `line` as written: not expanded, and whatever they say."""
+        node = self._line
+        if node is None or not node.children:
+            return ()
+        text = self._padded
+        taken = items_of(text, node)
+        lines = [slot.text for slot in taken.slots] if taken else [""] * len(node.children)
+        pairs = zip(node.children, lines, strict=True)
+        return tuple(item_of(child, text, lines=own) for child, own in pairs)
+
+    def value(self, location: Location) -> Any:
+        """What the file says at a location: text, a mapping, a list; None where nothing."""
+        node = self._page.node(location)
+        return node.data if node else None
+
+    def insert(
+        self, index: int, values: Mapping[str, Value], clamps: Sequence[Mapping[str, Value]] = ()
+    ) -> Draft:
+        """A new item above the one of an index, or below the last."""
+        return self._add((LINE,), index, [{**values, CLAMPS: clamps} if clamps else values])
+
+    def delete(self, indices: Iterable[int]) -> Draft:
+        """The line without some items."""
+        return self._drop((LINE,), self._known(indices))
+
+    def move(self, index: int, to: int) -> Draft:
+        """An item taken to another place, `to` being its index then."""
+        self._known([index, to])
+        return self._move((LINE,), index, to)
+
+    def duplicate(self, indices: Iterable[int]) -> Draft:
+        """The same items again, below the last of them."""
+        known = self._known(indices)
+        return self.paste(known[-1] + 1, self.copy(known)) if known else self
+
+    def copy(self, indices: Iterable[int]) -> tuple[str, ...]:
+        """The text of items by themselves, with their comments."""
+        known = self._known(indices)
+        items = self._page.items((LINE,)) if known else None
+        node = self._line
+        if items is None or node is None:
+            return ()
+        return tuple(snippet_of(items.slots[i], node.children[i], items) for i in known)
+
+    def paste(self, index: int, snippets: Iterable[str]) -> Draft:
+        """Items from their text above the one of an index, or below the last."""
+        read = [read_snippet(snippet) for snippet in snippets]
+        if None in read:
+            raise EditError("what is to be pasted is no list of items")
+        found = [one for one in read if one is not None]
+        values = [item for _, some in found for item in some]
+        worded = Worded(values, [lines for lines, _ in found])
+        return self._add((LINE,), index, worded) if values else self
+
+    def put(self, index: int, key: str, value: Value | None) -> Draft:
+        """A value of an item; None takes the key out."""
+        self._known([index])
+        return self.put_at((LINE, index, key), value)
+
+    def insert_clamp(self, item: int, index: int, values: Mapping[str, Value]) -> Draft:
+        """A new clamp on an item, above the one of an index, or below the last."""
+        self._known([item])
+        return self._add((LINE, item, CLAMPS), index, [values])
+
+    def delete_clamp(self, item: int, clamp: int) -> Draft:
+        """An item without one of its clamps."""
+        self._known_clamp(item, clamp)
+        return self._drop((LINE, item, CLAMPS), [clamp])
+
+    def move_clamp(self, item: int, clamp: int, to: int) -> Draft:
+        """A clamp taken to another place of its item, `to` being its index then."""
+        self._known_clamp(item, clamp)
+        self._known_clamp(item, to)
+        return self._move((LINE, item, CLAMPS), clamp, to)
+
+    def put_clamp(self, item: int, clamp: int, key: str, value: Value | None) -> Draft:
+        """A value of a clamp; None takes the key out."""
+        self._known_clamp(item, clamp)
+        return self.put_at((LINE, item, CLAMPS, clamp, key), value)
+
+    def put_at(self, location: Location, value: Value | None) -> Draft:
+        """A value anywhere in the file, with the mappings that lead to it.
+
+        None takes a key out, and a mapping that is empty then, but for `environment`.
+        """
+        page = self._page
+        if value is not None:
+            patches = page.put(location, value)
+            return self._changed(patches, with_value(self._data, location, value))
+        if page.node(location) is None:
+            return self
+        while len(location) > 1 and isinstance(location[-2], str) and location[-2] != KEPT:
+            outer = page.node(location[:-1])
+            if outer is None or len(outer.keys) > 1:
+                break
+            location = location[:-1]
+        return self._changed(page.remove(location), without(self._data, location))
+
+    def put_table(
+        self, location: Location, columns: Sequence[str], rows: Sequence[Sequence[str]]
+    ) -> Draft:
+        """A table; the rows that it has already stay as they are written."""
+        old = self.value(location)
+        if not isinstance(old, dict) or set(old) != {"columns", "rows"}:
+            return self.put_at(location, {"columns": columns, "rows": rows})
+        draft = self
+        if old["columns"] != list(columns):
+            draft = draft.put_at((*location, "columns"), columns)
+        place = (*location, "rows")
+        patches = draft._page.rows(place, rows)
+        return draft._changed(patches, with_value(draft._data, place, rows))
+
+    def put_component(self, id: str, values: Mapping[str, Value]) -> Draft:
+        """A definition of a component used only here, in place of one of that id."""
+        return self.put_at((NAMED[0], id), values)
+
+    def _add(self, location: Location, index: int, values: Sequence[Value]) -> Draft:
+        """New items in a list that may not exist yet."""
+        page = self._page
+        node = page.node(location)
+        if node is not None and node.kind != "sequence" and node.data is not None:
+            raise EditError(f"line {node.line}: `{location[-1]}` is not a list")
+        data = list(node.data or ()) if node else []
+        if not 0 <= index <= len(data):
+            raise EditError(f"there is no place {index} in a list of {len(data)}")
+        patches = page.add(location, index, values)
+        data[index:index] = data_of(values)
+        return self._changed(patches, with_value(self._data, location, data))
+
+    def _move(self, location: Location, index: int, to: int) -> Draft:
+        if index == to:
+            return self
+        items = self._page.items(location)
+        items.insert(to, items.remove(index))
+        data = list(self.value(location))
+        data.insert(to, data.pop(index))
+        return self._changed([items.patch()], with_value(self._data, location, data))
+
+    def _drop(self, location: Location, indices: Sequence[int]) -> Draft:
+        page = self._page
+        node = page.node(location)
+        if node is None or not indices:
+            return self
+        data = [one for i, one in enumerate(node.data) if i not in indices]
+        if not data and location[-1] == CLAMPS:
+            return self.put_at(location, None)
+        if not data:
+            return self._changed(page.put(location, []), with_value(self._data, location, data))
+        items = page.items(location)
+        for index in sorted(indices, reverse=True):
+            items.remove(index)
+        return self._changed([items.patch()], with_value(self._data, location, data))
+
+    def _changed(self, patches: Iterable[Patch], data: Any) -> Draft:
+        """The draft with its text patched, which then says `data` and nothing else."""
+        text = patched(self._padded, patches)
+        line_break = self._page.layout.line_break
+        if self._padded != self.text:
+            text = text.removesuffix(line_break)
+        draft = Draft(text)
+        if draft._root is None or draft._root.data != data:
+            raise EditError(
+                "this cannot be changed here: the file is written in a way that does not allow "
+                "it; change it in the text"
+            )
+        return draft
+
+    @cached_property
+    def _page(self) -> Page:
+        if self._root is None:
+            raise EditError("the text has mistakes; correct them first")
+        return Page(self._padded, self._root, Layout.of(self.text, self._root))
+
+    @cached_property
+    def _padded(self) -> str:
+        """The text with a last line break."""
+        ends = self.text.endswith("\n")
+        return self.text if ends else self.text + Layout.of(self.text, None).line_break
+
+    @property
+    def _data(self) -> Any:
+        return self._page.root.data
+
+    @property
+    def _line(self) -> Node | None:
+        node = self._page.node((LINE,)) if self._root is not None else None
+        return node if node is not None and node.kind == "sequence" else None
+
+    @property
+    def _line_data(self) -> list[Any]:
+        return list(self._line.data) if self._line is not None else []
+
+    def _known(self, indices: Iterable[int]) -> list[int]:
+        """Indices of items in the order of the line, each once."""
+        count = len(self._line_data)
+        known = sorted(set(indices))
+        for index in known:
+            if not 0 <= index < count:
+                raise EditError(f"there is no item {index} in a line of {count}")
+        return known
+
+    def _known_clamp(self, item: int, clamp: int) -> None:
+        self._known([item])
+        clamps = self.value((LINE, item, CLAMPS))
+        count = len(clamps) if isinstance(clamps, list) else 0
+        if not 0 <= clamp < count:
+            raise EditError(f"there is no clamp {clamp} among {count}")

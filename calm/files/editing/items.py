@@ -1,0 +1,89 @@
+"""The items of a line as they stand in a file, and pieces of text that hold such items."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Any
+
+from ruamel.yaml.error import YAMLError
+
+from calm.files.composition import compose
+from calm.files.editing.layout import Layout, Value, inline
+from calm.files.editing.lists import Items, Slot
+from calm.files.nodes import Node
+
+_LINE_BREAK = re.compile(r"\r\n|\n")
+
+
+@dataclass(frozen=True)
+class Item:
+    """An item of a line, or a clamp of one.
+
+    Attributes
+    ----------
+    line, column : int
+        Where it stands, counted from 1: those of the pieces that it is read as.
+    values : dict
+        Its keys with plain values, as written; empty text where there is no value.
+    clamps : tuple of Item
+    text : str
+        The lines it takes, with the comments that belong to it.
+    """
+
+    line: int
+    column: int
+    values: dict[str, str]
+    clamps: tuple[Item, ...]
+    text: str
+
+
+def item_of(node: Node, text: str, *, lines: str = "") -> Item:
+    """The item that a node of a text is; `lines` where it takes more of the text than its own."""
+    entries = list(zip(node.keys, node.children, strict=False))
+    values = {key.data: child.data or "" for key, child in entries if child.kind == "scalar"}
+    clamps = [child for key, child in entries if key.data == "clamps" and child.kind == "sequence"]
+    return Item(
+        line=node.line,
+        column=node.column,
+        values=values,
+        clamps=tuple(item_of(clamp, text) for found in clamps for clamp in found.children),
+        text=lines or text[node.start : node.end],
+    )
+
+
+def new_slot(value: Value, items: Items, layout: Layout, *, block: bool) -> Slot:
+    """A new item for a list, written after its form; `block`: a key a line where that can be."""
+    if items.form == "block":
+        return Slot(layout.item(value, items.column, block=block))
+    if items.form == "rows":
+        return Slot(" " * (items.column - 1) + inline(value), layout.line_break)
+    return Slot(inline(value))
+
+
+def snippet_of(slot: Slot, node: Node, items: Items) -> str:
+    """The text of an item by itself, as an item of a block list that begins in column 1."""
+    if items.form == "inline":
+        return _LINE_BREAK.sub("\n", f"- {slot.value}\n")
+    text = slot.text
+    if items.form == "rows":
+        own = len(slot.value) - (node.end - node.start)
+        comments = slot.value[:own].rstrip(" \t")
+        text = comments + " " * (items.column - 1) + "- " + slot.value[own:] + slot.behind
+    indent = re.compile(rf"^[ ]{{1,{items.column - 1}}}" if items.column > 1 else "(?!)", re.M)
+    return indent.sub("", _LINE_BREAK.sub("\n", text))
+
+
+def read_snippet(snippet: str) -> tuple[str, list[Any]] | None:
+    """A text of items, moved to column 1, and what it says; None where it is none."""
+    try:
+        composition = compose(snippet)
+    except (YAMLError, ValueError, IndexError, RecursionError):
+        return None
+    root = composition.root
+    if root is None or composition.refusals or (root.kind, root.style) != ("sequence", "block"):
+        return None
+    lines = _LINE_BREAK.sub("\n", snippet).rstrip() + "\n"
+    if root.column > 1:
+        lines = re.sub(rf"^[ ]{{1,{root.column - 1}}}", "", lines, flags=re.MULTILINE)
+    return lines, root.data

@@ -1,0 +1,74 @@
+"""The current by depth: how fast it flows, and where to."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from rich.text import Text
+
+from calm.report.sketch.canvas import ACROSS, DOWN, Canvas
+from calm.report.sketch.frame import AXIS, Frame, Scale, levels, number, ticks
+from calm.report.sketch.parts import SEABED, SURFACE, bearing, header_rows
+
+if TYPE_CHECKING:
+    from calm.physics.line import Water
+
+_STYLE = "bold blue"
+_ARROWS = "↑↗→↘↓↙←↖"
+_COLUMNS_PER_TICK = 7
+_DEGREES_FROM = 18
+_SAMPLES = 200
+
+
+def current_profile(
+    water: Water, width: int, height: int, *, dim: bool = False, ascii_only: bool = False
+) -> list[Text]:
+    """Speed by depth with the directions beside it, from 12 by 6 cells on.
+
+    Depths are on the rows where `elevation` of the same height has them.
+    """
+    canvas = Canvas(width, height, ascii_only=ascii_only)
+    head = header_rows(height)
+    rows = height - head - 2
+    values, foot = levels(0.0, water.depth, rows), number(water.depth)
+    gutter = max(map(len, [foot, *map(number, values)]))
+    beside = 6 if width >= _DEGREES_FROM else 2
+    if ascii_only and beside == 2:
+        beside = 0
+    columns = width - gutter - 1 - beside
+    depths = np.union1d(np.linspace(0.0, water.depth, _SAMPLES), water.level)
+    depths = depths[(depths >= 0.0) & (depths <= water.depth)]
+    velocity, _ = water.at(depths)
+    speeds = np.hypot(velocity[:, 0], velocity[:, 1])
+    fastest = float(speeds.max())
+    frame = Frame(
+        canvas,
+        column=gutter + 1,
+        row=head,
+        columns=columns,
+        rows=rows,
+        across=Scale(0.0, 1.08 * fastest if fastest > 0.0 else 1.0, columns * ACROSS),
+        down=Scale(0.0, water.depth, rows * DOWN),
+    )
+    if head:
+        canvas.text(0, 0, "current, m/s" if fastest > 0.0 else "still water", AXIS)
+    frame.line([(0.0, 0.0), (frame.across.high, 0.0)], SURFACE)
+    canvas.text(frame.column, height - 2, "▒" * columns, SEABED)
+    frame.scale_down(values, gutter, foot)
+    most = max(columns // _COLUMNS_PER_TICK, 2)
+    frame.scale_across(ticks(0.0, frame.across.high, most), "" if head else "m/s")
+    frame.line(zip(speeds.tolist(), depths.tolist(), strict=True), _STYLE)
+    if beside:
+        for value in values:
+            _, row = frame.cell(0.0, value)
+            (u, v, _), _ = (each[0] for each in water.at(np.array([value])))
+            if np.hypot(u, v) > 0.0:
+                canvas.text(width - beside + 1, row, _direction(u, v, beside, ascii_only), _STYLE)
+    return canvas.rows(dim=dim)
+
+
+def _direction(u: float, v: float, room: int, ascii_only: bool) -> str:
+    """Where it flows to: an arrow, and the degrees where there is room."""
+    arrow = "" if ascii_only else _ARROWS[round(np.degrees(np.arctan2(u, v)) / 45.0) % 8]
+    return arrow if room == 2 else f"{bearing(u, v)}{arrow}"

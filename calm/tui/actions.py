@@ -1,0 +1,247 @@
+"""Every verb of the application, once: keys, help and command palette are made of this list."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+from textual.binding import Binding
+
+Place = Literal["anywhere", "line", "catalogue", "cell", "water", "grid", "text", "form"]
+"""Where the keys of an action work: what has the focus, or the screen it is on."""
+
+PLACES: dict[Place, str] = {
+    "line": "The line",
+    "anywhere": "Anywhere on the first screen",
+    "cell": "While a value is edited in place",
+    "catalogue": "The catalogue",
+    "water": "The water",
+    "grid": "A table of the water",
+    "text": "The file as text",
+    "form": "A component of one's own",
+}
+"""The headings of the help, in its order."""
+
+
+@dataclass(frozen=True)
+class Action:
+    """A verb.
+
+    Attributes
+    ----------
+    place : where its keys work
+    name : of the method, without ``action_``, with its arguments
+    keys : as textual writes them, separated by commas; the first is the one that is shown
+    title : two or three words, for the palette and the line of keys
+    meaning : a sentence for the help
+    hint : its rank in the line of keys, 0 the first; None where it is not among them
+    palette : whether the command palette offers it
+    """
+
+    place: Place
+    name: str
+    keys: str
+    title: str
+    meaning: str
+    hint: int | None = None
+    palette: bool = True
+
+    @property
+    def shown_keys(self) -> str:
+        """The keys as people read them."""
+        return "  ".join(shown_key(key) for key in self.keys.split(","))
+
+
+_SIGNS = {
+    "up": "↑",
+    "down": "↓",
+    "left": "←",
+    "right": "→",
+    "enter": "Enter",
+    "escape": "Esc",
+    "delete": "Del",
+    "insert": "Ins",
+    "space": "Space",
+    "tab": "Tab",
+    "home": "Home",
+    "end": "End",
+    "pageup": "PgUp",
+    "pagedown": "PgDn",
+    "question_mark": "?",
+    "slash": "/",
+    "plus": "+",
+    "minus": "-",
+}
+
+
+def shown_key(key: str) -> str:
+    """A key as it is written on a keyboard: ``ctrl+s`` → ``Ctrl+S``, ``question_mark`` → ``?``."""
+    *held, last = key.split("+")
+    if len(last) == 1:
+        last = last.upper() if held else last
+    else:
+        last = _SIGNS.get(last, last.capitalize())
+    return "+".join([*(part.capitalize() for part in held), last])
+
+
+ACTIONS: tuple[Action, ...] = (
+    # the line
+    Action(
+        "line",
+        "edit",
+        "enter,f2",
+        "edit",
+        "Edit the value under the cursor in place; on the component, choose another one.",
+        1,
+    ),
+    Action("line", "add(1)", "a,insert", "add", "Add a piece below, from the catalogue.", 0),
+    Action("line", "add(0)", "A", "add above", "Add a piece above."),
+    Action("line", "clamp", "i", "clamp on", "Clamp an instrument on this piece.", 5),
+    Action("line", "duplicate", "d", "duplicate", "Repeat the piece, or those marked, below.", 6),
+    Action(
+        "line", "delete", "delete,backspace", "delete", "Take the piece, or those marked, out.", 7
+    ),
+    Action(
+        "line", "move_piece(-1)", "alt+up,ctrl+up,K", "move up", "Move the piece up the line.", 8
+    ),
+    Action("line", "move_piece(1)", "alt+down,ctrl+down,J", "move down", "Move it down the line."),
+    Action("line", "mark(0)", "space", "mark", "Mark the piece, or take its mark away."),
+    Action("line", "mark(-1)", "shift+up", "mark up", "Mark it and go up.", palette=False),
+    Action("line", "mark(1)", "shift+down", "mark down", "Mark it and go down.", palette=False),
+    Action("line", "mark_all", "ctrl+a", "mark all", "Mark every piece."),
+    Action("line", "cut", "x,ctrl+x", "cut", "Cut the piece, or those marked."),
+    Action("line", "copy", "c,ctrl+c", "copy", "Copy them."),
+    Action("line", "paste(1)", "v,ctrl+v", "paste", "Paste below the cursor."),
+    Action("line", "paste(0)", "V", "paste above", "Paste above the cursor."),
+    Action(
+        "line", "edit_column('length')", "l", "length", "Edit its length, or where it is clamped."
+    ),
+    Action("line", "edit_column('label')", "n", "label", "Edit its label."),
+    Action("line", "edit_column('count')", "equals_sign,asterisk", "count", "Edit its count."),
+    Action("line", "replace", "r", "replace", "Use another component in its place."),
+    Action("line", "move_cursor(-1)", "up", "up", "To the row above.", palette=False),
+    Action("line", "move_cursor(1)", "down", "down", "To the row below.", palette=False),
+    Action("line", "move_page(-1)", "pageup", "page up", "A page up.", palette=False),
+    Action("line", "move_page(1)", "pagedown", "page down", "A page down.", palette=False),
+    Action("line", "move_to_end(-1)", "home", "top", "To the top of the line.", palette=False),
+    Action("line", "move_to_end(1)", "end", "bottom", "To the bottom.", palette=False),
+    Action("line", "move_column(-1)", "left", "left", "To the column on the left.", palette=False),
+    Action("line", "move_column(1)", "right", "right", "To the one on the right.", palette=False),
+    # anywhere
+    Action(
+        "anywhere", "undo", "u,ctrl+z", "undo", "Undo the last change, as often as there is one.", 3
+    ),
+    Action("anywhere", "redo", "U,ctrl+y", "redo", "Do again what was undone."),
+    Action("anywhere", "water", "w", "water", "Depth, density, current, wind; environments.", 4),
+    Action(
+        "anywhere",
+        "next_environment",
+        "e",
+        "environment",
+        "Stand the line in the next environment.",
+    ),
+    Action("anywhere", "search", "slash", "catalogue", "Search the catalogue."),
+    Action("anywhere", "define", "o", "own component", "Define a component of one's own."),
+    Action("anywhere", "picture('elevation')", "1", "elevation", "The line seen from the side."),
+    Action("anywhere", "picture('plan')", "2", "plan", "The line seen from above."),
+    Action("anywhere", "picture('tension')", "3", "tension", "Tension along the line."),
+    Action("anywhere", "picture('schematic')", "4", "schematic", "The parts, not to scale."),
+    Action("anywhere", "zoom", "z", "zoom", "Give the picture the whole screen, or take it back."),
+    Action("anywhere", "mooring", "m", "name, place", "Name, description and position."),
+    Action("anywhere", "text", "t", "text", "The file as text, with its mistakes."),
+    Action("anywhere", "save", "ctrl+s,s", "save", "Save the file.", 9),
+    Action("anywhere", "save_as", "S", "save as", "Save it under another name."),
+    Action("anywhere", "help", "question_mark,f1", "help", "All keys.", 2),
+    Action(
+        "anywhere",
+        "app.command_palette",
+        "ctrl+p,colon",
+        "commands",
+        "Find any of these by its name.",
+        palette=False,
+    ),
+    Action("anywhere", "leave", "q,ctrl+q", "quit", "Leave; unsaved work is asked about.", 11),
+    # a value in place
+    Action("cell", "done", "enter", "done", "Take the value.", 0, palette=False),
+    Action(
+        "cell", "next_cell", "tab", "next", "Take it and edit the next value.", 1, palette=False
+    ),
+    Action("cell", "abandon", "escape", "leave it", "Leave the value as it was.", 2, palette=False),
+    # the catalogue
+    Action("catalogue", "choose(-1)", "up", "up", "To the one above.", palette=False),
+    Action("catalogue", "choose(1)", "down", "down", "To the one below.", palette=False),
+    Action("catalogue", "choose(-10)", "pageup", "page up", "Ten up.", palette=False),
+    Action("catalogue", "choose(10)", "pagedown", "page down", "Ten down.", palette=False),
+    Action("catalogue", "take", "enter", "insert", "Put it into the line.", 0, palette=False),
+    Action("catalogue", "close", "escape", "close", "Back to the line.", 2, palette=False),
+    # the water
+    Action("water", "next_environment", "f5", "environment", "The next environment.", 3),
+    Action("water", "new_environment", "f6,ctrl+n", "new environment", "Add a named one.", 4),
+    Action("water", "drop_environment", "f7", "drop it", "Take the named environment out."),
+    Action("water", "preset", "ctrl+t", "presets", "Currents to begin with.", 2),
+    Action("water", "load_current", "ctrl+o", "read a file", "A current from CSV or NetCDF.", 1),
+    Action("water", "undo", "ctrl+z", "undo", "Undo the last change."),
+    Action("water", "redo", "ctrl+y", "redo", "Do it again."),
+    Action("water", "save", "ctrl+s", "save", "Save the file."),
+    Action("water", "help", "f1", "help", "All keys.", 5),
+    Action("water", "back", "escape", "back", "Back to the line.", 0),
+    Action("grid", "move_row(-1)", "up", "up", "To the row above.", palette=False),
+    Action("grid", "move_row(1)", "down", "down", "To the row below.", palette=False),
+    Action("grid", "move_column(-1)", "left", "left", "To the left.", palette=False),
+    Action("grid", "move_column(1)", "right", "right", "To the right.", palette=False),
+    Action(
+        "grid",
+        "edit",
+        "enter,f2",
+        "edit",
+        "Edit the number; typing begins at once.",
+        0,
+        palette=False,
+    ),
+    Action("grid", "add_row(1)", "a,insert", "add row", "Add a row below.", 1, palette=False),
+    Action("grid", "add_row(0)", "A", "add above", "Add a row above.", palette=False),
+    Action(
+        "grid", "drop_row", "delete,backspace", "delete row", "Take the row out.", 2, palette=False
+    ),
+    # the text
+    Action("text", "save", "ctrl+s", "save", "Save the file as it stands.", 1),
+    Action("text", "next_problem", "f8", "next mistake", "To the next mistake.", 2),
+    Action("text", "back", "escape", "to the line", "To the line, once the text can be read.", 0),
+    Action("text", "help", "f1", "help", "All keys.", 3),
+    # a component of one's own
+    Action("form", "accept", "ctrl+s", "keep it", "Write the component into the file.", 0),
+    Action("form", "cancel", "escape", "leave", "Leave without it.", 1),
+    Action("form", "help", "f1", "help", "All keys.", 2),
+)
+
+
+def actions_in(place: Place) -> Iterator[Action]:
+    """The actions of one place, in order."""
+    return (action for action in ACTIONS if action.place == place)
+
+
+def bindings(place: Place, target: str = "") -> list[Binding]:
+    """The keys of a place for a widget or screen.
+
+    Parameters
+    ----------
+    target : the textual namespace that has the methods, such as ``screen.``; empty for its own
+    """
+    return [
+        Binding(
+            action.keys,
+            action.name if action.name.startswith("app.") else target + action.name,
+            action.title,
+            show=False,
+        )
+        for action in actions_in(place)
+    ]
+
+
+def hints(place: Place) -> list[Action]:
+    """The actions to remind of while a place has the focus, the most wanted first."""
+    own = [action for action in actions_in(place) if action.hint is not None]
+    if place == "line":
+        own += [action for action in actions_in("anywhere") if action.hint is not None]
+    return sorted(own, key=lambda action: action.hint or 0)

@@ -1,0 +1,110 @@
+"""The first line of the screen, what is open and how it stands; and the last, the keys of now."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from rich.cells import cell_len
+from rich.text import Text
+from textual.content import Content
+from textual.style import Style
+from textual.widget import Widget
+from textual.widgets import Static
+
+from calm.tui.actions import Action, shown_key
+
+_GAP = "  "
+
+
+class TitleBar(Widget):
+    """Name and file at the left, environment and verdict at the right."""
+
+    DEFAULT_CSS = """
+    TitleBar { height: 1; background: $panel; color: $foreground; padding: 0 1; text-style: bold; }
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._left, self._right = "", ""
+
+    def show(self, left: str, right: str) -> None:
+        """Say something else."""
+        if (left, right) != (self._left, self._right):
+            self._left, self._right = left, right
+            self.refresh()
+
+    def render(self) -> Text:
+        """Both ends; the left one gives way."""
+        width = self.content_size.width
+        right = Text(self._right, no_wrap=True)
+        right.truncate(max(width * 2 // 3, 1), overflow="ellipsis")
+        left = Text(self._left, no_wrap=True)
+        left.truncate(max(width - cell_len(right.plain) - 1, 0), overflow="ellipsis", pad=True)
+        return Text(" ").join([left, right])
+
+
+class KeyBar(Static):
+    """The keys that matter now; what was just done takes their place until the next key."""
+
+    DEFAULT_CSS = """
+    KeyBar {
+        height: 1; background: $panel; color: $text-muted; padding: 0 1;
+        link-style: none; link-color: $text-muted; link-color-hover: $foreground;
+        link-background-hover: $primary-muted; link-style-hover: bold;
+    }
+    KeyBar.-wrong { color: $text-error; }
+    KeyBar.-told { color: $foreground; }
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._actions: list[Action] = []
+        self._told = ""
+
+    @property
+    def told(self) -> str:
+        """What is told now, if anything."""
+        return self._told
+
+    def show_keys(self, actions: Iterable[Action]) -> None:
+        """Show other keys."""
+        chosen = list(actions)
+        if chosen != self._actions:
+            self._actions = chosen
+            self._show()
+
+    def tell(self, text: str, *, wrong: bool = False) -> None:
+        """Tell of something; nothing gives the keys back."""
+        if (text, wrong) == (self._told, self.has_class("-wrong")):
+            return
+        self._told = text
+        self.set_class(bool(text) and wrong, "-wrong")
+        self.set_class(bool(text) and not wrong, "-told")
+        self._show()
+
+    def on_resize(self) -> None:
+        """As many keys as there is room for."""
+        self._show()
+
+    def _show(self) -> None:
+        width = self.content_size.width or 78
+        if self._told:
+            text = Text(self._told)
+            text.truncate(width, overflow="ellipsis")
+            self.update(text, layout=False)
+            return
+        parts, used = [], 0
+        for action in self._actions:
+            key = shown_key(action.keys.split(",")[0])
+            wide = cell_len(f"{key} {action.title}")
+            if used + wide <= width:
+                used += wide + len(_GAP)
+                parts.append(_pressed(action, key))
+        self.update(Content(_GAP).join(parts), layout=False)
+
+
+def _pressed(action: Action, key: str) -> Content:
+    """A key and what it does, which the mouse does too."""
+    target = action.name if action.name.startswith("app.") else f"screen.{action.name}"
+    press = Style.from_meta({"@click": target})
+    return Content.assemble((key, press + Style(bold=True)), (f" {action.title}", press))

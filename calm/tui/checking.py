@@ -1,0 +1,154 @@
+"""What a person types, judged as it is typed: taken, completed by its unit, or refused."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from calm.files.fields import LENGTH, POSITIVE_LENGTH, Quantity
+from calm.units import QuantityError
+
+COUNT = Quantity("number", at_least=1, at_most=10_000)
+_FIT = re.compile(r"fit\b\s*(?:to\b)?\s*(.*)", re.IGNORECASE)
+_UNIT = re.compile(r"[\d.]\s*([^\d.\s].*)$")
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What became of a text.
+
+    Attributes
+    ----------
+    text : as it is to be written; with the unit that was left out
+    complaint : why it cannot be used; empty where it can
+    offer : the text corrected, where that is known
+    """
+
+    text: str
+    complaint: str = ""
+    offer: str | None = None
+
+    @property
+    def is_good(self) -> bool:
+        """Whether it can be used."""
+        return not self.complaint
+
+    @property
+    def note(self) -> str:
+        """For the person who types: what is wrong, and what would be right."""
+        if self.offer:
+            return f"{self.complaint}: {self.offer}?"
+        return self.complaint
+
+
+Check = Callable[[str], Reading]
+"""Judges a text."""
+
+
+def anything(text: str) -> Reading:
+    """Any text will do, without the blanks around it."""
+    return Reading(" ".join(text.split()))
+
+
+def needed(what: str) -> Check:
+    """Any text but none."""
+
+    def check(text: str) -> Reading:
+        reading = anything(text)
+        return reading if reading.text else Reading("", f"{what} is needed")
+
+    return check
+
+
+def quantity(kind: Quantity, *, optional: bool = False, usual_unit: str | None = None) -> Check:
+    """A number with a unit; a number alone is completed by `usual_unit`, the SI unit by default."""
+
+    def check(text: str) -> Reading:
+        tidy = " ".join(text.split())
+        if not tidy:
+            return Reading("") if optional else Reading("", "a value is needed")
+        try:
+            kind.read(tidy)
+        except QuantityError as error:
+            return _refused(tidy, error, kind, usual_unit)
+        return Reading(tidy)
+
+    return check
+
+
+def _refused(text: str, error: QuantityError, kind: Quantity, usual_unit: str | None) -> Reading:
+    offer = error.suggestion
+    if offer and error.complaint == "needs a unit":
+        if usual_unit:
+            offer = f"{text} {usual_unit}"
+        try:
+            kind.read(offer)
+        except QuantityError as other:
+            return Reading(offer, other.complaint, other.suggestion)
+        return Reading(offer)
+    return Reading(text, error.complaint, offer)
+
+
+def unit_of(text: str) -> str | None:
+    """The unit a value was written with."""
+    found = _UNIT.search(text)
+    return found[1].strip() if found else None
+
+
+def number(text: str) -> Reading:
+    """A plain number, of a table whose columns carry the units."""
+    return quantity(Quantity("number"))(text)
+
+
+def count(text: str) -> Reading:
+    """How often a piece comes, a whole number; nothing is once."""
+    tidy = text.strip().lstrip("x×* ")
+    if not tidy:
+        return Reading("1")
+    try:
+        value = COUNT.read(tidy)
+    except QuantityError as error:
+        return Reading(tidy, error.complaint, error.suggestion)
+    return Reading(str(int(value))) if value == int(value) else Reading(tidy, "must be whole")
+
+
+def distance(before: str = "") -> Check:
+    """How far down a piece something is clamped."""
+    return quantity(LENGTH, usual_unit=unit_of(before))
+
+
+def length(before: str = "", *, towed: bool = False) -> Check:
+    """A length, or ``fit`` with the depth to be reached."""
+    plain = quantity(POSITIVE_LENGTH, usual_unit=unit_of(before))
+    depth = quantity(Quantity("length") if towed else LENGTH, usual_unit=unit_of(before))
+    what = "the depth its lower end is to reach" if towed else "the depth the top is to reach"
+
+    def check(text: str) -> Reading:
+        fit = _FIT.fullmatch(text.strip())
+        if fit is None:
+            return plain(text)
+        if not fit[1]:
+            return Reading("fit", f"{what} is needed", "fit 105 m")
+        reading = depth(fit[1])
+        offer = None if reading.offer is None else f"fit {reading.offer}"
+        return Reading(f"fit {reading.text}", reading.complaint, offer)
+
+    return check
+
+
+def length_values(text: str, *, towed: bool = False) -> Mapping[str, str | None]:
+    """The keys of an item with this length, as `length` has read it."""
+    key, other = ("body_depth", "top_depth") if towed else ("top_depth", "body_depth")
+    fit = _FIT.fullmatch(text)
+    if fit is None:
+        return {"length": text, "top_depth": None, "body_depth": None}
+    return {"length": "fit", key: fit[1], other: None}
+
+
+def length_text(values: Mapping[str, str]) -> str:
+    """The length of an item as it is shown and typed."""
+    written = values.get("length", "")
+    if written != "fit":
+        return written
+    return f"fit {values.get('top_depth') or values.get('body_depth') or ''}".rstrip()

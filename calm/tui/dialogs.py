@@ -1,0 +1,157 @@
+"""Questions put over the screen: one of some answers, or some texts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+from textual import on
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Vertical
+from textual.events import Key
+from textual.screen import ModalScreen
+from textual.widgets import Static
+
+from calm.tui.checking import Check, anything
+from calm.tui.field import Field
+
+_FRAME = """
+    align: center middle;
+    & > Vertical {
+        width: 72; max-width: 100%; height: auto; max-height: 100%; padding: 1 2;
+        background: $panel; border-left: outer $primary;
+    }
+    & .title { text-style: bold; }
+    & .text { color: $text-muted; margin-bottom: 1; }
+    & Static { link-style: none; link-color: $foreground; link-background-hover: $primary-muted; }
+    & .keys { color: $text-muted; margin-top: 1; }
+"""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """An answer: the key that gives it, what it says, and what it means to the one who asked."""
+
+    key: str
+    title: str
+    value: str
+
+
+class Question(ModalScreen[str | None]):
+    """One of some answers, by its key or with the mouse; Esc is none, unless it `must` be given."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "answer('')", show=False)]
+    DEFAULT_CSS = "Question {" + _FRAME + "}"
+
+    def __init__(
+        self, title: str, text: str, answers: Sequence[Answer], *, must: bool = False
+    ) -> None:
+        super().__init__()
+        self._title, self._text, self._answers, self._must = title, text, answers, must
+
+    def compose(self) -> ComposeResult:
+        """What is asked, and the answers below each other."""
+        with Vertical():
+            yield Static(self._title, classes="title", markup=False)
+            yield Static(self._text, classes="text", markup=False)
+            for number, answer in enumerate(self._answers):
+                yield Static(
+                    f"[@click=screen.answer_number({number})][b]{answer.key}[/b]  {answer.title}[/]"
+                )
+            if not self._must:
+                yield Static("[@click=screen.answer('')][b]Esc[/b]  go back[/]")
+
+    def on_key(self, event: Key) -> None:
+        """The key of an answer gives it; every other key does nothing."""
+        for answer in self._answers:
+            if event.key in (answer.key, answer.key.lower()):
+                event.stop()
+                self.dismiss(answer.value)
+                return
+
+    def action_answer_number(self, number: int) -> None:
+        """Give an answer by its number."""
+        self.dismiss(self._answers[number].value)
+
+    def action_answer(self, value: str) -> None:
+        """Give an answer; none where it is empty."""
+        if value or not self._must:
+            self.dismiss(value or None)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A text that is asked for."""
+
+    key: str
+    title: str
+    text: str = ""
+    check: Check = anything
+    placeholder: str = ""
+
+
+class Sheet(ModalScreen[dict[str, str] | None]):
+    """Some texts, entered together; Esc leaves all as it was."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("escape", "leave", show=False),
+        Binding("ctrl+s", "take", show=False),
+        Binding("down", "app.focus_next", show=False),
+        Binding("up", "app.focus_previous", show=False),
+    ]
+    DEFAULT_CSS = (
+        "Sheet {" + _FRAME + " & Field > Input { width: 1fr; } & .field-note { display: none; }"
+        "& #sheet-note { height: auto; min-height: 1; color: $text-muted; margin-top: 1; }"
+        "& #sheet-note.-wrong { color: $text-error; } }"
+    )
+
+    def __init__(self, title: str, text: str, asked: Sequence[Asked]) -> None:
+        super().__init__()
+        self._title, self._text, self._asked = title, text, asked
+
+    def compose(self) -> ComposeResult:
+        """What is asked, and where it is typed."""
+        with Vertical():
+            yield Static(self._title, classes="title", markup=False)
+            if self._text:
+                yield Static(self._text, classes="text", markup=False)
+            for each in self._asked:
+                yield Field(
+                    each.key, each.title, each.check, text=each.text, placeholder=each.placeholder
+                )
+            yield Static(id="sheet-note", markup=False)
+            yield Static("[b]Enter[/b] next, then done   [b]Esc[/b] go back", classes="keys")
+
+    def on_mount(self) -> None:
+        """Type at once."""
+        self.query(Field).first().focus_input()
+
+    @on(Field.Judged)
+    def _tell(self, event: Field.Judged) -> None:
+        note = self.query_one("#sheet-note", Static)
+        note.update(event.field.note(event.reading))
+        note.set_class(not event.reading.is_good, "-wrong")
+
+    @on(Field.Entered)
+    def _onward(self, event: Field.Entered) -> None:
+        fields = list(self.query(Field))
+        number = fields.index(event.field)
+        if number + 1 < len(fields):
+            fields[number + 1].focus_input()
+        else:
+            self.action_take()
+
+    def action_take(self) -> None:
+        """Give the texts, if all are good."""
+        fields = list(self.query(Field))
+        wrong = [field for field in fields if not field.settle()]
+        if wrong:
+            wrong[0].focus_input()
+        else:
+            self.dismiss({field.key: field.text for field in fields})
+
+    def action_leave(self) -> None:
+        """Give nothing."""
+        self.dismiss(None)

@@ -1,0 +1,162 @@
+"""A value of a form: its name, the text, and at each key what is made of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from textual import events, on
+from textual.app import ComposeResult
+from textual.containers import Horizontal
+from textual.message import Message
+from textual.widgets import Input, Static
+
+from calm.tui.checking import Check, Reading, anything
+
+
+class Field(Horizontal):
+    """A name, an input, and a note beside it.
+
+    It is `Committed` when it is left, by Enter or by the focus, with a good text that differs from
+    the one it began with; a text that is not good stays, marked, and is not committed.
+    """
+
+    SCOPED_CSS = False  # the width of the screen counts
+    DEFAULT_CSS = """
+    Field {
+        height: 1; width: 1fr;
+        & > .field-title { width: 16; color: $text-muted; }
+        & > Input { width: 24; background: $surface; }
+        & > Input:focus { background: $surface; background-tint: $foreground 8%; }
+        & > .field-note { width: 1fr; padding-left: 1; color: $text-muted; }
+        &.-wrong > Input { text-style: underline; background: $error-muted; }
+        &.-wrong > .field-note { color: $text-error; }
+    }
+    .-narrow Field > .field-title { width: 13; }
+    """
+
+    @dataclass
+    class Committed(Message):
+        """A text is to be taken."""
+
+        field: Field
+        text: str
+
+    @dataclass
+    class Entered(Message):
+        """Enter was pressed in it."""
+
+        field: Field
+
+    @dataclass
+    class Judged(Message):
+        """What the text typed so far comes to."""
+
+        field: Field
+        reading: Reading
+
+    def __init__(
+        self,
+        key: str,
+        title: str,
+        check: Check = anything,
+        *,
+        text: str = "",
+        note: str = "",
+        placeholder: str = "",
+        id: str | None = None,
+    ) -> None:
+        super().__init__(id=id)
+        self.key, self.check, self.begun, self._note = key, check, text, note
+        self._title, self._placeholder = title, placeholder
+
+    def compose(self) -> ComposeResult:
+        """Name, input, note."""
+        yield Static(self._title, classes="field-title", markup=False)
+        yield Input(self.begun, placeholder=self._placeholder, compact=True)
+        yield Static(self._note, classes="field-note", markup=False)
+
+    @property
+    def input(self) -> Input:
+        """Where one types."""
+        return self.query_one(Input)
+
+    @property
+    def text(self) -> str:
+        """What was typed, as it is to be written."""
+        return self.check(self.input.value).text
+
+    @property
+    def reading(self) -> Reading:
+        """What the text comes to."""
+        return self.check(self.input.value)
+
+    def ask(self, key: str, title: str, check: Check, placeholder: str) -> None:
+        """Ask for something else."""
+        self.key, self.check = key, check
+        self.query_one(".field-title", Static).update(title, layout=False)
+        self.input.placeholder = placeholder
+        self.reset("")
+
+    def reset(self, text: str) -> None:
+        """Show another text as the one to begin with."""
+        self.begun = text
+        with self.prevent(Input.Changed):
+            self.input.value = text
+        self._tell(Reading(text))
+
+    def focus_input(self) -> None:
+        """Type here."""
+        self.input.focus()
+
+    def tell(self, note: str) -> None:
+        """Another note, for as long as nothing is wrong."""
+        self._note = note
+        if not self.has_class("-wrong"):
+            self.query_one(".field-note", Static).update(note, layout=False)
+
+    def note(self, reading: Reading) -> str:
+        """What a person who types is told: what is wrong, or what is added."""
+        if not reading.is_good:
+            return reading.note
+        completed = reading.text != " ".join(self.input.value.split())
+        return f"= {reading.text}" if completed else self._note
+
+    def _tell(self, reading: Reading) -> None:
+        self.set_class(not reading.is_good, "-wrong")
+        self.query_one(".field-note", Static).update(self.note(reading), layout=False)
+
+    @on(Input.Changed)
+    def _judge(self, event: Input.Changed) -> None:
+        event.stop()
+        reading = self.check(event.value)
+        self._tell(reading)
+        self.post_message(self.Judged(self, reading))
+
+    @on(Input.Submitted)
+    def _enter(self, event: Input.Submitted) -> None:
+        event.stop()
+        if self.settle():
+            self.post_message(self.Entered(self))
+
+    def on_descendant_blur(self, event: events.DescendantBlur) -> None:
+        """Take the text when the focus goes on, if it is good."""
+        if self.reading.is_good:
+            self.settle()
+
+    def settle(self) -> bool:
+        """Commit a good text, put in the correction of another one; whether it was good."""
+        reading = self.reading
+        if not reading.is_good:
+            self._tell(reading)
+            if reading.offer:
+                self.input.value = reading.offer
+                self.input.cursor_position = len(reading.offer)
+            return False
+        if self.input.value != reading.text:
+            with self.prevent(Input.Changed):
+                self.input.value = reading.text
+        self._tell(reading)
+        if reading.text != self.begun:
+            self.begun = reading.text
+            self.post_message(self.Committed(self, reading.text))
+        return True

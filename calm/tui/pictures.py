@@ -1,0 +1,208 @@
+"""The line in pictures: from the side, with the current; from above; its tension; its parts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Literal
+
+from rich.text import Text
+from textual import events
+from textual.app import ComposeResult
+from textual.containers import Vertical
+from textual.geometry import Size
+from textual.message import Message
+from textual.reactive import reactive
+from textual.scroll_view import ScrollView
+from textual.strip import Strip
+from textual.widgets import Static
+
+if TYPE_CHECKING:
+    from calm.case import Result, TowResult
+    from calm.physics.line import Water
+    from calm.tui.live import View
+
+Tab = Literal["elevation", "plan", "tension", "schematic"]
+TABS: tuple[Tab, ...] = ("elevation", "plan", "tension", "schematic")
+
+_LEAST_BESIDE = 52
+_BESIDE, _MOST_BESIDE = 3, 26
+_SCHEMATIC_WIDTH = 56
+
+
+class Tabs(Static):
+    """The names of the pictures, the one shown in reverse."""
+
+    DEFAULT_CSS = """
+    Tabs {
+        height: 1; color: $text-muted; padding: 0 1; link-style: none; link-color: $text-muted;
+        link-color-hover: $foreground; link-background-hover: $primary-muted;
+        link-style-hover: bold;
+    }
+    """
+
+    def show(self, chosen: Tab, note: str = "") -> None:
+        """Show which is chosen, and a note."""
+        parts = [
+            f"[@click=screen.picture('{tab}')]"
+            + (f"[reverse bold] {n} {tab} [/]" if tab == chosen else f" {n} {tab} ")
+            + "[/]"
+            for n, tab in enumerate(TABS, 1)
+        ]
+        self.update("".join(parts) + (f"  [italic]{note}[/]" if note else ""), layout=False)
+
+
+class Picture(ScrollView, can_focus=True):
+    """One picture, drawn for the cells it has."""
+
+    DEFAULT_CSS = """
+    Picture { height: 1fr; width: 1fr; background: $background; scrollbar-size: 1 1;
+              overflow-x: hidden; padding: 0 1; }
+    Picture:focus { background-tint: $foreground 3%; }
+    """
+
+    def __init__(self, *, ascii_only: bool = False, id: str | None = None) -> None:
+        super().__init__(id=id)
+        self.tab: Tab = "elevation"
+        self.ascii_only = ascii_only
+        self._view: View | None = None
+        self._old = False
+        self._drawn: Size | None = None  # the size that the rows are for
+        self._rows: list[Text] = []
+
+    def show(self, view: View | None, tab: Tab, *, old: bool) -> None:
+        """Draw a line as judged; dimmed where it is an earlier one."""
+        if tab != self.tab:
+            self.scroll_to(y=0, animate=False)
+        self._view, self.tab, self._old = view, tab, old
+        self._drawn = None
+        self.refresh()
+
+    def render_line(self, y: int) -> Strip:
+        """A row of the screen."""
+        self._draw()
+        width = self.scrollable_content_region.width
+        number = y + self.scroll_offset.y
+        if number >= len(self._rows):
+            return Strip.blank(width, self.rich_style)
+        segments = self._rows[number].render(self.app.console)
+        return (
+            Strip(segments).apply_style(self.rich_style).adjust_cell_length(width, self.rich_style)
+        )
+
+    def _draw(self) -> None:
+        size = self.scrollable_content_region.size
+        if size == self._drawn:
+            return
+        self._drawn = size
+        self._rows = self._picture(size)
+        tall = len(self._rows) if self.tab == "schematic" else 0
+        self.virtual_size = Size(0, tall)
+
+    def _picture(self, size: Size) -> list[Text]:
+        result = None if self._view is None else self._view.result
+        if result is None or size.width < 20 or size.height < 6:
+            return _words(self._view, size)
+        draw: Callable[[Result | TowResult, Size], list[Text]] = {
+            "elevation": self._elevation,
+            "plan": self._plan,
+            "tension": self._tension,
+            "schematic": self._schematic,
+        }[self.tab]
+        return draw(result, size)
+
+    def _elevation(self, result: Result | TowResult, size: Size) -> list[Text]:
+        from calm.report.sketch import current_profile, elevation
+
+        options = {"dim": self._old, "ascii_only": self.ascii_only}
+        if size.width < _LEAST_BESIDE or result.file.environment.depth is None:
+            return elevation(result, size.width, size.height, **options)
+        beside = min(size.width // _BESIDE, _MOST_BESIDE)
+        line = elevation(result, size.width - beside - 1, size.height, **options)
+        profile = current_profile(_water_of(result), beside, size.height, **options)
+        rows = []
+        for left, right in zip(line, profile, strict=True):
+            left.truncate(size.width - beside, pad=True)
+            rows.append(left.append_text(right))
+        return rows
+
+    def _plan(self, result: Result | TowResult, size: Size) -> list[Text]:
+        from calm.report.sketch import plan
+
+        return plan(result, size.width, size.height, dim=self._old, ascii_only=self.ascii_only)
+
+    def _tension(self, result: Result | TowResult, size: Size) -> list[Text]:
+        from calm.report.sketch import tension
+
+        return tension(result, size.width, size.height, dim=self._old, ascii_only=self.ascii_only)
+
+    def _schematic(self, result: Result | TowResult, size: Size) -> list[Text]:
+        from calm.report.schematic.text import schematic_text
+
+        width = max(size.width, _SCHEMATIC_WIDTH)
+        text = schematic_text(result.file, result, width, ascii_only=self.ascii_only)
+        return [Text(line, style="dim" if self._old else "") for line in text.splitlines()]
+
+
+def _water_of(result: Result | TowResult) -> Water:
+    from calm.case import Result
+
+    return result.mooring.water if isinstance(result, Result) else result.tow.water
+
+
+def _words(view: View | None, size: Size) -> list[Text]:
+    """What stands where there is no picture yet."""
+    if size.width < 20 or size.height < 6:
+        return [Text("(too small)", style="dim")]
+    text = "…" if view is None else "The picture comes with the first line that stands."
+    return [Text(""), *(Text(line, style="dim") for line in _wrapped(text, size.width))]
+
+
+def _wrapped(text: str, width: int) -> list[str]:
+    import textwrap
+
+    return textwrap.wrap(text, max(width, 10))
+
+
+class Pictures(Vertical):
+    """The pictures under their names."""
+
+    DEFAULT_CSS = """
+    Pictures { height: 1fr; width: 1fr; }
+    """
+
+    tab: reactive[Tab] = reactive("elevation", init=False)
+
+    class Chosen(Message):
+        """Another picture is shown."""
+
+    def __init__(self, *, ascii_only: bool = False, id: str | None = None) -> None:
+        super().__init__(id=id)
+        self._ascii_only = ascii_only
+        self._view: View | None = None
+        self._old = False
+
+    def compose(self) -> ComposeResult:
+        """The names, and the picture."""
+        yield Tabs()
+        yield Picture(ascii_only=self._ascii_only)
+
+    def on_mount(self) -> None:
+        """Nothing is solved yet."""
+        self._show()
+
+    def show(self, view: View | None, *, old: bool) -> None:
+        """Draw a line as judged; `old` where the line has changed since and does not stand."""
+        self._view, self._old = view, old
+        self._show()
+
+    def watch_tab(self) -> None:
+        """Draw the other picture."""
+        self._show()
+
+    def _show(self) -> None:
+        self.query_one(Tabs).show(self.tab, "as it last stood" if self._old else "")
+        self.query_one(Picture).show(self._view, self.tab, old=self._old)
+
+    def on_click(self, event: events.Click) -> None:
+        """Give the picture the focus."""
+        self.query_one(Picture).focus()

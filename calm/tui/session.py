@@ -1,0 +1,279 @@
+"""The file being built: its text, its history, what was copied, and every verb that changes it.
+
+Nothing here knows of the screen; nothing is computed here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from calm.files.editing import Draft, History, Item, WorkingFile
+
+Location = tuple[str | int, ...]
+
+
+@dataclass(frozen=True, order=True)
+class Spot:
+    """A row of the line: an item of the file or, where `clamp` is not -1, what is clamped on it."""
+
+    item: int
+    clamp: int = -1
+
+    @property
+    def is_clamp(self) -> bool:
+        """Whether it is an instrument clamped on the item."""
+        return self.clamp >= 0
+
+
+@dataclass(frozen=True)
+class Copied:
+    """What was copied: items of a line as text, or the values of clamped instruments."""
+
+    items: tuple[str, ...] = ()
+    clamps: tuple[Mapping[str, str], ...] = ()
+
+    def __len__(self) -> int:
+        return len(self.items) or len(self.clamps)
+
+
+class Session:
+    """A mooring or tow file on its way.
+
+    Parameters
+    ----------
+    file : where it is read from and saved to
+    text : what it holds now
+    saved : what the file on the disk holds; None where there is no file yet
+
+    Attributes
+    ----------
+    environment : the named environment the line is shown in; None for the file's own
+    catalogs : catalogue files given with the command
+    """
+
+    def __init__(
+        self,
+        file: WorkingFile,
+        text: str,
+        *,
+        saved: str | None = None,
+        environment: str | None = None,
+        catalogs: Sequence[Path] = (),
+    ) -> None:
+        self.file = file
+        self.environment = environment
+        self.catalogs = tuple(catalogs)
+        self.copied = Copied()
+        self.history = History(Draft(text if saved is None else saved))
+        if saved is not None and text != saved:
+            self.history.do(Draft(text), "recovered")
+
+    @property
+    def draft(self) -> Draft:
+        """The file as it is now."""
+        return self.history.draft
+
+    @property
+    def changed(self) -> bool:
+        """Whether something is not saved yet."""
+        return self.history.changed
+
+    @property
+    def name(self) -> str:
+        """The file's name, for people."""
+        path = self.file.path
+        return "unnamed" if path is None else path.name
+
+    def spots(self) -> list[Spot]:
+        """Every row of the line, clamps below their piece."""
+        return [
+            spot
+            for number, item in enumerate(self.draft.items)
+            for spot in (Spot(number), *(Spot(number, clamp) for clamp in range(len(item.clamps))))
+        ]
+
+    def item(self, spot: Spot) -> Item:
+        """The item, or clamp, of a row."""
+        item = self.draft.items[spot.item]
+        return item.clamps[spot.clamp] if spot.is_clamp else item
+
+    def do(self, draft: Draft, label: str) -> None:
+        """Take a draft as the next state; one that changes nothing is no step."""
+        if draft.text != self.draft.text:
+            self.history.do(draft, label)
+
+    def write(self, text: str, label: str = "edit the text", *, further: bool = False) -> None:
+        """Take another text; `further` where it goes on with the last step."""
+        if further:
+            self.history.undo()
+        self.do(Draft(text), label)
+
+    # the line
+
+    def insert(self, spot: Spot | None, values: Mapping[str, str], *, below: bool) -> Spot:
+        """A new piece beside a row; at the top of an empty line."""
+        index = 0 if spot is None else spot.item + below
+        self.do(self.draft.insert(index, dict(values)), f"add {values['use']}")
+        return Spot(index)
+
+    def clamp(self, spot: Spot, values: Mapping[str, str]) -> Spot:
+        """A new instrument on the piece of a row, below the other ones."""
+        index = spot.clamp + 1 if spot.is_clamp else len(self.draft.items[spot.item].clamps)
+        self.do(self.draft.insert_clamp(spot.item, index, dict(values)), f"clamp {values['use']}")
+        return Spot(spot.item, index)
+
+    def put(self, spot: Spot, values: Mapping[str, str | None], label: str) -> None:
+        """Set keys of a row; None takes one away."""
+        draft = self.draft
+        for key, value in values.items():
+            if spot.is_clamp:
+                draft = draft.put_clamp(spot.item, spot.clamp, key, value)
+            else:
+                draft = draft.put(spot.item, key, value)
+        self.do(draft, label)
+
+    def delete(self, spots: Iterable[Spot]) -> Spot | None:
+        """Take rows out, a piece with its clamps; the row to go to, None where none is left."""
+        chosen = _whole(spots)
+        if not chosen:
+            return None
+        rows = self.spots()
+        first = rows.index(chosen[0])
+        self.do(self._without(chosen), f"delete {self._called(chosen)}")
+        left = self.spots()
+        return left[min(first, len(left) - 1)] if left else None
+
+    def duplicate(self, spots: Iterable[Spot]) -> Spot | None:
+        """Repeat rows below the last of them; the first of the copies."""
+        chosen = _whole(spots)
+        if not chosen:
+            return None
+        items = [spot.item for spot in chosen if not spot.is_clamp]
+        label = f"duplicate {self._called(chosen)}"
+        if items:
+            self.do(self.draft.duplicate(items), label)
+            return Spot(items[-1] + 1)
+        last = chosen[-1]
+        draft = self.draft
+        for number, spot in enumerate(chosen):
+            values = self.item(spot).values
+            draft = draft.insert_clamp(last.item, last.clamp + 1 + number, dict(values))
+        self.do(draft, label)
+        return Spot(last.item, last.clamp + 1)
+
+    def move(self, spots: Iterable[Spot], by: int) -> tuple[Spot, ...]:
+        """Move rows up (-1) or down (1); where they are then. At the end of the line they stay."""
+        chosen = _whole(spots)
+        items = [spot.item for spot in chosen if not spot.is_clamp]
+        if items:
+            return self._move_items(items, by, f"move {self._called(chosen)}")
+        if len(chosen) == 1:
+            return self._move_clamp(chosen[0], by)
+        return tuple(chosen)
+
+    def _move_items(self, items: list[int], by: int, label: str) -> tuple[Spot, ...]:
+        limit = len(self.draft.items)
+        if items[0] + by < 0 or items[-1] + by >= limit:
+            return tuple(map(Spot, items))
+        draft = self.draft
+        for index in items if by < 0 else reversed(items):
+            draft = draft.move(index, index + by)
+        self.do(draft, label)
+        return tuple(Spot(index + by) for index in items)
+
+    def _move_clamp(self, spot: Spot, by: int) -> tuple[Spot, ...]:
+        to = spot.clamp + by
+        if not 0 <= to < len(self.draft.items[spot.item].clamps):
+            return (spot,)
+        item = self.item(spot)
+        draft = self.draft.delete_clamp(spot.item, spot.clamp)
+        self.do(draft.insert_clamp(spot.item, to, dict(item.values)), f"move {_label(item)}")
+        return (Spot(spot.item, to),)
+
+    def copy(self, spots: Iterable[Spot]) -> int:
+        """Keep rows for pasting; how many."""
+        chosen = _whole(spots)
+        items = [spot.item for spot in chosen if not spot.is_clamp]
+        if items:
+            self.copied = Copied(items=tuple(self.draft.copy(items)))
+        elif chosen:
+            self.copied = Copied(clamps=tuple(dict(self.item(spot).values) for spot in chosen))
+        return len(self.copied) if chosen else 0
+
+    def paste(self, spot: Spot | None, *, below: bool) -> Spot | None:
+        """Put what was copied beside a row; the first row of it, None where nothing was."""
+        count = len(self.copied)
+        label = f"paste {count} row{'s' * (count != 1)}"
+        if self.copied.items:
+            index = 0 if spot is None else spot.item + below
+            self.do(self.draft.paste(index, self.copied.items), label)
+            return Spot(index)
+        if not self.copied.clamps or spot is None:
+            return None
+        first = spot.clamp + below if spot.is_clamp else len(self.draft.items[spot.item].clamps)
+        draft = self.draft
+        for number, values in enumerate(self.copied.clamps):
+            draft = draft.insert_clamp(spot.item, first + number, dict(values))
+        self.do(draft, label)
+        return Spot(spot.item, first)
+
+    def _without(self, chosen: Sequence[Spot]) -> Draft:
+        draft = self.draft
+        for spot in reversed(chosen):
+            if spot.is_clamp:
+                draft = draft.delete_clamp(spot.item, spot.clamp)
+        items = [spot.item for spot in chosen if not spot.is_clamp]
+        return draft.delete(items) if items else draft
+
+    def _called(self, chosen: Sequence[Spot]) -> str:
+        return _label(self.item(chosen[0])) if len(chosen) == 1 else f"{len(chosen)} rows"
+
+    def put_all(self, changes: Mapping[Location, str | None], label: str) -> None:
+        """Set values around the line by their places; None takes one away."""
+        draft = self.draft
+        for location, value in changes.items():
+            draft = draft.put_at(location, value)
+        self.do(draft, label)
+
+    # saving
+
+    def take_saved(self, text: str) -> None:
+        """Go on with what the file on the disk holds now; undo leads back."""
+        self.write(text, "read the file again")
+        self.history.saved()
+
+    def save(self) -> None:
+        """Write the file whole, and forget what was kept in case of a crash."""
+        self.file.save(self.draft.text)
+        self.history.saved()
+        self.file.forget()
+
+    def save_as(self, path: Path, working: Callable[[Path], WorkingFile] = WorkingFile) -> None:
+        """Write another file and go on with that one."""
+        before, self.file = self.file, working(path)
+        try:
+            self.save()
+        except Exception:
+            self.file = before
+            raise
+        before.forget()
+
+    def autosave(self) -> None:
+        """Keep what is not saved beside the file; what is saved needs no keeping."""
+        if self.changed:
+            self.file.autosave(self.draft.text)
+        else:
+            self.file.forget()
+
+
+def _whole(spots: Iterable[Spot]) -> list[Spot]:
+    """The rows in order, without clamps whose piece is among them."""
+    chosen = sorted(set(spots))
+    pieces = {spot.item for spot in chosen if not spot.is_clamp}
+    return [spot for spot in chosen if not spot.is_clamp or spot.item not in pieces]
+
+
+def _label(item: Item) -> str:
+    return item.values.get("label") or item.values.get("use") or "a row"

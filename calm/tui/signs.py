@@ -1,0 +1,46 @@
+"""How a state looks: a sign and a word that tell it without colour, and a colour besides."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from calm.checks.finding import State
+
+
+@dataclass(frozen=True)
+class Look:
+    """The sign, the word and the CSS variable of the colour of a state."""
+
+    sign: str
+    word: str
+    colour: str
+
+
+LOOKS = {
+    State.FAIL: Look("!", "FAIL", "text-error"),
+    State.WARN: Look("~", "warning", "text-warning"),
+    State.UNKNOWN: Look("?", "unknown", "text-muted"),
+    State.PASS: Look("✓", "pass", "text-success"),
+}
+"""As in the reports of the design check."""
+
+ROLES = {
+    "float": "o",
+    "instrument": "▪",
+    "release": "R",
+    "connector": "·",
+    "line": "│",
+    "anchor": "█",
+}
+"""What stands for a component in front of its row."""
+
+UNKNOWN_ROLE = "?"
+CLAMP = "├"
+CURSOR = "▸"
+MARK = "*"
+ELLIPSIS = "…"
+
+
+def worst(states: list[State]) -> State | None:
+    """The gravest of some states; None of none."""
+    return max(states, key=lambda state: state.severity, default=None)

@@ -1,0 +1,171 @@
+"""What is said of the line as it stands: figures and findings, or what is missing."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from calm.checks.finding import Finding, State
+from calm.quantities import QUANTITIES
+from calm.tui.signs import LOOKS, worst
+
+if TYPE_CHECKING:
+    from calm.case import Result, TowResult
+    from calm.tui.live import View
+
+_MOST_PROBLEMS = 6
+_MOST_NAMED = 2
+
+
+@dataclass(frozen=True)
+class Saying:
+    """A line of the verdict: a sign in front, a heading, the text, and the state it tells of."""
+
+    text: str
+    heading: str = ""
+    state: State | None = None
+    faint: bool = False
+
+    @property
+    def sign(self) -> str:
+        """What stands in front."""
+        return " " if self.state is None else LOOKS[self.state].sign
+
+
+def headline(view: View | None) -> Saying:
+    """The whole verdict in some words."""
+    if view is None:
+        return Saying("…", faint=True)
+    if view.problems:
+        count = len(view.problems)
+        return Saying(f"{count} mistake{'s' * (count != 1)} in the file", state=State.FAIL)
+    if view.missing:
+        return Saying(f"incomplete: {view.missing[0]}", state=State.UNKNOWN)
+    if view.failure is not None:
+        return Saying(f"does not stand: {view.failure.status}", state=State.FAIL)
+    return _judged(view.findings)
+
+
+def _judged(findings: tuple[Finding, ...]) -> Saying:
+    counts = Counter(finding.state for finding in findings)
+    state = worst(list(counts))
+    if state is None:
+        return Saying("solved", state=State.PASS)
+    told = [
+        f"{counts[each]} {word}{'s' * (counts[each] != 1)}"
+        for each, word in ((State.FAIL, "failure"), (State.WARN, "warning"))
+        if counts[each]
+    ]
+    unknown = f", {counts[State.UNKNOWN]} figures unknown" if counts[State.UNKNOWN] else ""
+    if state in (State.UNKNOWN, State.PASS):
+        return Saying(f"passes{unknown or ' every check'}", state=State.PASS)
+    return Saying(", ".join(told) + unknown, state=state)
+
+
+def sayings(view: View | None) -> Iterator[Saying]:
+    """All of it, the gravest first."""
+    if view is None:
+        return
+    if view.problems:
+        yield from _mistakes(view)
+        return
+    for text in view.missing:
+        yield Saying(text, heading="Missing", state=State.UNKNOWN)
+    if view.failure is not None:
+        yield Saying(view.failure.message, state=State.FAIL)
+        yield Saying(view.failure.advice, faint=True)
+    yield from _figures(view.result)
+    yield from _found(view.findings)
+    if view.result is not None:
+        for text in view.result.warnings:
+            yield Saying(text, state=State.WARN)
+
+
+def _mistakes(view: View) -> Iterator[Saying]:
+    for problem in view.problems[:_MOST_PROBLEMS]:
+        place = f"line {problem.line}" if problem.line else ""
+        yield Saying(problem.message, heading=place, state=State.FAIL)
+    more = len(view.problems) - _MOST_PROBLEMS
+    if more > 0:
+        yield Saying(f"and {more} more", faint=True)
+    yield Saying("t shows the text with its mistakes", faint=True)
+
+
+def _say(name: str, value: float | None) -> str:
+    return QUANTITIES[name].say(value)
+
+
+def _figures(result: Result | TowResult | None) -> Iterator[Saying]:
+    """The ends of the line; whoever has a result has loaded what solves it, the start has not."""
+    from calm.case import Result
+
+    if isinstance(result, Result):
+        yield from _mooring(result)
+    elif result is not None:
+        yield from _tow(result)
+
+
+def _mooring(result: Result) -> Iterator[Saying]:
+    anchor, top = result.anchor, result.top
+    holds = anchor.weight >= anchor.required_weight
+    pull = f"{_say('tension', anchor.tension)}, {_say('angle', anchor.angle)} off the vertical"
+    yield Saying(pull, heading="Anchor")
+    weighs = f"{_say('required_weight', anchor.weight)} in water"
+    needs = f"needs {_say('required_weight', anchor.required_weight)}"
+    yield Saying(f"{needs}, has {weighs}", state=State.PASS if holds else State.FAIL)
+    if result.type == "surface":
+        used = f"{top.used_buoyancy:.0%} of the float's buoyancy in use"
+        yield Saying(f"{_say('reserve', top.reserve)}; {used}", heading="Reserve")
+    else:
+        depth = f"top at {_say('depth', top.depth)}"
+        yield Saying(f"{_say('knockdown', top.knockdown)}, {depth}", heading="Knockdown")
+    if anchor.grounded_length > 0.0:
+        yield Saying(f"{_say('grounded_length', anchor.grounded_length)} of line", heading="Lies")
+
+
+def _tow(result: TowResult) -> Iterator[Saying]:
+    point, body = result.tow_point, result.body
+    yield Saying(
+        f"{_say('tension', point.tension)}, {_say('angle', point.angle)} below the horizontal",
+        heading="Tow point",
+    )
+    yield Saying(
+        f"{_say('depth', body.depth)} deep, {_say('layback', body.layback)} behind", heading="Body"
+    )
+
+
+def _found(findings: tuple[Finding, ...]) -> Iterator[Saying]:
+    """Failures and warnings with reason and remedy; what passes and is unknown in short."""
+    for finding in sorted(findings, key=lambda each: each.rank):
+        if finding.state in (State.FAIL, State.WARN):
+            text = finding.message + (f" {finding.remedy}" if finding.remedy else "")
+            yield Saying(text, heading=_title(finding), state=finding.state)
+    yield from _unknown([each for each in findings if each.state is State.UNKNOWN])
+    passed = dict.fromkeys(_title(each) for each in findings if each.state is State.PASS)
+    kept = [each for each in passed if all(_title(f) != each for f in findings if _graver(f))]
+    if kept:
+        yield Saying(", ".join(kept), heading="Pass", state=State.PASS)
+
+
+def _graver(finding: Finding) -> bool:
+    return finding.state in (State.FAIL, State.WARN)
+
+
+def _unknown(findings: list[Finding]) -> Iterator[Saying]:
+    groups: dict[str, dict[str, None]] = {}
+    for finding in findings:
+        groups.setdefault(_title(finding), {})[finding.component or "the line"] = None
+    for title, names in groups.items():
+        named = ", ".join(list(names)[:_MOST_NAMED])
+        if len(names) > _MOST_NAMED:
+            named += f" and {len(names) - _MOST_NAMED} more"
+        yield Saying(f"figures missing of {named}", heading=title, state=State.UNKNOWN)
+
+
+def _title(finding: Finding) -> str:
+    from calm.checks.rules import RULES
+
+    rule = RULES.get(finding.rule)
+    return rule.title if rule else finding.rule

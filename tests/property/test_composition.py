@@ -1,0 +1,54 @@
+"""Composing a text in parts gives what composing it whole gives, or the same failure."""
+
+import random
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from ruamel.yaml import YAML
+
+from calm.files import composition
+from calm.files.composition import Composition, compose
+from calm.files.nodes import NodeReader
+from tests.property.test_editing import FILES
+
+SIGNS = (
+    *("\n", "  ", "- ", ":", ": ", "{", "}", "[", "]", ",", "'", '"', "#", " # x", "\t", "|", "> "),
+    *("&a", "*a", "!x", "---\n", "? ", "...", "\r\n", "\r", "\x85", "\u2028", "key: v\n", "- - "),
+)
+
+
+def whole(text: str) -> Composition:
+    root = YAML(typ="safe", pure=True).compose(text)
+    if root is None:
+        return Composition(None)
+    reader = NodeReader(text)
+    return Composition(reader.read(root), tuple(reader.refusals))
+
+
+def outcome(read: object, text: str) -> object:
+    try:
+        return read(text)
+    except Exception as error:
+        return type(error)
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_files(name: str) -> None:
+    assert compose(FILES[name]) == whole(FILES[name])
+
+
+@given(seed=st.integers(0, 2**32), worthwhile=st.sampled_from([0, 40, 150]))
+@settings(max_examples=400)
+def test_broken_files(seed: int, worthwhile: int) -> None:
+    """Signs of YAML thrown into parts of files, the parts cut at any size."""
+    choose = random.Random(seed)
+    text = FILES[choose.choice(sorted(FILES))]
+    start = choose.randrange(len(text))
+    text = text[start : start + choose.randrange(20, 900)]
+    for _ in range(choose.randrange(1, 5)):
+        place = choose.randrange(len(text) + 1)
+        text = text[:place] + choose.choice(SIGNS) + text[place + choose.choice([0, 1]) :]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(composition, "_WORTHWHILE", worthwhile)
+        assert outcome(compose, text) == outcome(whole, text)

@@ -1,0 +1,146 @@
+"""The line builder without a terminal: keys in, screens and files out."""
+
+import asyncio
+from contextlib import asynccontextmanager
+
+import pytest
+
+from calm.tui.app import BuildApp
+from calm.tui.launch import open_session
+from calm.tui.line_table import LineTable
+
+MOORING = """\
+# A mooring for tests: small, and nothing of it from the catalogue.
+name: Small
+environment:
+  depth: 100 m                        # at low water
+  current: {speed: 0.5 m/s, toward: 90 deg}
+
+line:
+  - {use: ball, label: top float}     # carries all
+  - use: rope
+    length: 60 m
+    clamps:
+      - {use: logger, at: 10 m}
+      - {use: logger, at: 20 m, label: deep logger}
+  # the release is ours
+  - {use: releaser}
+  - {use: weight}
+
+components:
+  ball: {kind: sphere, role: float, diameter: 1 m, buoyancy: 2000 N, depth_rating: 300 m}
+  rope: {kind: cable, diameter: 10 mm, weight: 0.2 N/m, breaking_load: 20 kN, stiffness: 200 kN}
+  logger: {kind: cylinder, diameter: 40 mm, length: 0.3 m, buoyancy: -5 N}
+  releaser: {kind: cylinder, role: release, diameter: 0.2 m, length: 1 m, buoyancy: -200 N}
+  weight: {kind: anchor, weight: 5000 N}
+"""
+
+TERMINAL = {"TERM": "xterm-256color"}
+
+NAMES = {
+    " ": "space", "-": "minus", ".": "full_stop", ":": "colon", "/": "slash", ",": "comma",
+}  # fmt: skip
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    """An empty working folder, and no settings of the person who runs the tests."""
+    for name in ("NO_COLOR", "TEXTUAL_DRIVER", "COLORTERM", "CALM_DEBUG"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "configuration"))
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    work = tmp_path / "work"
+    work.mkdir()
+    monkeypatch.chdir(work)
+    return work
+
+
+@pytest.fixture
+def small(folder):
+    path = folder / "small.yaml"
+    path.write_text(MOORING, encoding="utf-8")
+    return path
+
+
+class Driver:
+    """An application that is driven, as a test sees it."""
+
+    def __init__(self, app, pilot):
+        self.app, self.pilot = app, pilot
+
+    @property
+    def session(self):
+        return self.app.session
+
+    @property
+    def text(self):
+        return self.session.draft.text
+
+    @property
+    def builder(self):
+        return self.app.builder
+
+    @property
+    def table(self):
+        return self.builder.query_one(LineTable)
+
+    @property
+    def view(self):
+        return self.builder.view
+
+    @property
+    def screen(self):
+        """What the screen shows, as lines of text."""
+        size = self.app.size
+        strips = self.app.screen._compositor.render_strips(size)
+        return "\n".join(strip.text.rstrip() for strip in strips)
+
+    @property
+    def uses(self):
+        """The line, clamps indented."""
+        found = []
+        for item in self.session.draft.items:
+            found.append(item.values["use"])
+            found += ["  " + clamp.values["use"] for clamp in item.clamps]
+        return found
+
+    async def press(self, *keys):
+        await self.pilot.press(*keys)
+
+    async def type(self, text):
+        await self.pilot.press(*(NAMES.get(letter, letter) for letter in text))
+
+    async def settle(self):
+        """Until all that was started is done and shown."""
+        for _ in range(3):
+            await self.pilot.pause()
+        for _ in range(200):
+            await self.app.workers.wait_for_complete()
+            await self.pilot.pause()
+            if self.app.is_idle:
+                break
+        await self.pilot.pause()
+
+
+@asynccontextmanager
+async def driven(path=None, size=(120, 36), *, environ=TERMINAL, environment=None):
+    session, recovered = open_session(path, environment)
+    app = BuildApp(session, recovered=recovered, environ=environ)
+    async with app.run_test(size=size) as pilot:
+        driver = Driver(app, pilot)
+        await driver.settle()
+        yield driver
+
+
+@pytest.fixture
+def drive():
+    """Runs a story: a coroutine function that is given the driver of a file."""
+
+    def run(story, path=None, **options):
+        async def play():
+            async with driven(path, **options) as driver:
+                await story(driver)
+
+        asyncio.run(play())
+
+    return run

@@ -1,0 +1,247 @@
+"""Edits of a draft, each against the very text it has to give."""
+
+import pytest
+
+from calm.files.editing import Draft, EditError
+
+TEXT = """\
+name: Old   # of the line
+environment:
+  depth: 100 m
+
+line:   # top to bottom
+  # the float
+  - {use: ball, label: 'top'}   # borrowed
+
+  # the rope
+  - use: rope
+    length: 80 m   # cut
+    clamps:
+      - {use: meter, at: 5 m}   # upper
+      - {use: meter, at: 9 m}
+
+  - {use: dead}
+# the end
+solver: {drag: reynolds}
+"""
+
+NEW = {"use": "ring", "label": "a, b"}
+
+
+def edited(before: str, after: str, text: str = TEXT) -> str:
+    assert text.count(before) == 1
+    return text.replace(before, after)
+
+
+def test_items_are_as_written() -> None:
+    ball, rope, dead = Draft(TEXT).items
+    assert ball.values == {"use": "ball", "label": "top"}
+    assert (ball.line, ball.column) == (7, 5)
+    assert ball.text == "  # the float\n  - {use: ball, label: 'top'}   # borrowed\n"
+    assert rope.values == {"use": "rope", "length": "80 m"}
+    assert (rope.line, rope.column) == (10, 5)
+    assert [clamp.values["at"] for clamp in rope.clamps] == ["5 m", "9 m"]
+    assert rope.clamps[1].line == 14
+    assert dead.text == "  - {use: dead}\n"
+
+
+def test_a_text_with_mistakes_has_problems_and_no_items() -> None:
+    for text in ("line: [\n", "", "- a\n", "a: &b c\n", "a: 1\na: 2\n", "a: !x b\n", "? [a]\n"):
+        draft = Draft(text)
+        assert draft.problems and not draft.items
+        with pytest.raises(EditError, match="mistakes"):
+            draft.put_at(("name",), "x")
+    assert Draft("a: 1\na: 2\n").problems[0].line == 2
+
+
+def test_insert() -> None:
+    draft = Draft(TEXT)
+    new = '  - {use: ring, label: "a, b"}\n'
+    assert draft.insert(0, NEW).text == edited("  # the float\n", new + "  # the float\n")
+    assert draft.insert(1, NEW).text == edited("# borrowed\n", "# borrowed\n" + new)
+    assert draft.insert(3, NEW).text == edited("{use: dead}\n", "{use: dead}\n" + new)
+
+
+def test_insert_with_clamps_takes_a_line_a_key() -> None:
+    after = Draft(TEXT).insert(3, {"use": "rope", "length": "9 m"}, [{"use": "meter", "at": "1 m"}])
+    assert after.text == edited(
+        "{use: dead}\n",
+        "{use: dead}\n  - use: rope\n    length: 9 m\n    clamps:\n      - {use: meter, at: 1 m}\n",
+    )
+
+
+def test_delete_takes_the_comment_above() -> None:
+    draft = Draft(TEXT)
+    gone = "  # the float\n  - {use: ball, label: 'top'}   # borrowed\n"
+    assert draft.delete([0]).text == edited(gone, "")
+    assert draft.delete([]).text == TEXT
+    assert draft.delete([0, 2]).text == edited(gone, "").replace("  - {use: dead}\n", "")
+    emptied = draft.delete(range(3))
+    assert "line: []   # top to bottom\n" in emptied.text
+    assert "# the end\nsolver" in emptied.text
+    refilled = emptied.insert(0, {"use": "ball"})
+    assert "line:   # top to bottom\n  - {use: ball}\n# the end\n" in refilled.text
+
+
+def test_move() -> None:
+    draft = Draft(TEXT)
+    moved = draft.move(2, 0)
+    assert moved.text == edited("  - {use: dead}\n", "").replace(
+        "  # the float\n", "  - {use: dead}\n  # the float\n"
+    )
+    ball = "  # the float\n  - {use: ball, label: 'top'}   # borrowed\n"
+    assert draft.move(0, 2).text == edited(ball, "").replace(
+        "{use: dead}\n", "{use: dead}\n" + ball
+    )
+    assert draft.move(1, 1).text == TEXT
+
+
+def test_copy_and_paste_into_another_manner() -> None:
+    snippets = Draft(TEXT).copy([1, 0])
+    assert snippets[0] == "# the float\n- {use: ball, label: 'top'}   # borrowed\n"
+    assert snippets[1].startswith("# the rope\n- use: rope\n  length: 80 m   # cut\n")
+    windows = Draft("line:\r\n- {use: dead}\r\n").paste(0, snippets)
+    assert windows.text.startswith("line:\r\n# the float\r\n- {use: ball, label: 'top'}")
+    assert windows.text.count("\n") == windows.text.count("\r\n")
+    inline = Draft("line: [{use: dead}]\n").paste(1, snippets[1:])
+    assert inline.text == (
+        "line: [{use: dead}, {use: rope, length: 80 m, "
+        "clamps: [{use: meter, at: 5 m}, {use: meter, at: 9 m}]}]\n"
+    )
+    into_nothing = Draft("name: x\n").paste(0, snippets[:1])
+    assert into_nothing.text == "name: x\nline:\n  " + snippets[0].replace("\n-", "\n  -")
+    with pytest.raises(EditError, match="no list of items"):
+        Draft(TEXT).paste(0, ["hello"])
+
+
+def test_duplicate() -> None:
+    assert Draft(TEXT).duplicate([2]).text == edited("  - {use: dead}\n", "  - {use: dead}\n" * 2)
+
+
+def test_put() -> None:
+    draft = Draft(TEXT)
+    assert draft.put(0, "label", "it's").text == edited("'top'", "'it''s'")
+    assert draft.put(1, "length", "fit").text == edited("80 m", "fit")
+    assert draft.put(0, "count", "2").text == edited("'top'}", "'top', count: 2}")
+    assert draft.put(1, "label", "x: y").text == edited(
+        "- use: rope\n", '- use: rope\n    label: "x: y"\n'
+    )
+    assert draft.put(0, "label", None).text == edited(", label: 'top'", "")
+    assert draft.put(1, "use", None).text == edited("use: rope\n    length", "length")
+    assert draft.put(2, "label", None).text == TEXT
+    with pytest.raises(EditError, match="no item 3 in a line of 3"):
+        draft.put(3, "label", "x")
+
+
+def test_clamps() -> None:
+    draft = Draft(TEXT)
+    clamp = {"use": "meter", "at": "7 m"}
+    below = "# upper\n"
+    assert draft.insert_clamp(1, 1, clamp).text == edited(
+        below, below + "      - {use: meter, at: 7 m}\n"
+    )
+    assert draft.insert_clamp(2, 0, clamp).text == edited(
+        "{use: dead}", "{use: dead, clamps: [{use: meter, at: 7 m}]}"
+    )
+    assert draft.put_clamp(1, 0, "at", "6 m").text == edited("at: 5 m", "at: 6 m")
+    one = draft.delete_clamp(1, 1)
+    assert one.text == edited("      - {use: meter, at: 9 m}\n", "")
+    none = one.delete_clamp(1, 0)
+    assert "clamps" not in none.text and "length: 80 m   # cut\n\n  - {use: dead}" in none.text
+    with pytest.raises(EditError, match="no clamp 2 among 2"):
+        draft.delete_clamp(1, 2)
+
+
+def test_put_at_makes_the_mappings_that_lead_there() -> None:
+    draft = Draft(TEXT)
+    assert draft.put_at(("environment", "depth"), "90 m").text == edited("100 m", "90 m")
+    assert draft.put_at(("position", "latitude"), "48 deg").text == edited(
+        "# of the line\n", "# of the line\nposition: {latitude: 48 deg}\n"
+    )
+    assert draft.put_at(("environments", "winter storm", "depth"), "90 m").text == edited(
+        "# the end\n", "\nenvironments:\n  winter storm:\n    depth: 90 m\n# the end\n"
+    )
+    assert draft.put_at(("solver", "strumming", "factor"), "1.5").text == edited(
+        "{drag: reynolds}", "{drag: reynolds, strumming: {factor: 1.5}}"
+    )
+    current = {"speed": "0.5 m/s", "toward": "90 deg"}
+    assert draft.put_at(("environment", "current"), current).text == edited(
+        "depth: 100 m\n", "depth: 100 m\n  current: {speed: 0.5 m/s, toward: 90 deg}\n"
+    )
+    assert draft.put_at(("solver", "drag"), None).text == edited("solver: {drag: reynolds}\n", "")
+    assert draft.put_at(("wind", "speed"), None).text == TEXT
+
+
+TABLE = """\
+environment:
+  depth: 100 m
+  current:   # measured
+    columns: [depth m, speed m/s, toward deg]
+    rows:
+      - [0, 0.50, 90]   # surface
+      # mid-water
+      - [50, 0.3, 90]
+      - [100, 0.1, 90]
+line: []
+"""
+
+
+def test_put_table_leaves_the_rows_that_stay() -> None:
+    columns = ["depth m", "speed m/s", "toward deg"]
+    location = ("environment", "current")
+    rows = [["0", "0.50", "90"], ["20", "0.4", "90"], ["50", "0.3", "90"], ["90", "0.1", "90"]]
+    after = Draft(TABLE).put_table(location, columns, rows)
+    assert after.text == edited("# surface\n", "# surface\n      - [20, 0.4, 90]\n", TABLE).replace(
+        "[100,", "[90,"
+    )
+    other = Draft(TABLE).put_table(location, ["depth m", "u m/s", "v m/s"], rows[:1])
+    assert "columns: [depth m, u m/s, v m/s]\n" in other.text
+    fresh = Draft(TEXT).put_table(location, columns, rows[:2])
+    assert fresh.text == edited(
+        "depth: 100 m\n",
+        "depth: 100 m\n  current:\n    columns: [depth m, speed m/s, toward deg]\n    rows:\n"
+        "      - [0, 0.50, 90]\n      - [20, 0.4, 90]\n",
+    )
+
+
+def test_a_uniform_current_takes_the_place_of_a_table() -> None:
+    current = {"speed": "1 knot", "toward": "90 deg"}
+    after = Draft(TABLE).put_at(("environment", "current"), current)
+    assert "  current: {speed: 1 knot, toward: 90 deg}   # measured\nline" in after.text
+
+
+def test_put_component() -> None:
+    ball = {"kind": "sphere", "diameter": "1 m", "elongation": [["0.1", "0.03"]]}
+    after = Draft(TEXT).put_component("my-ball", ball)
+    assert "components:\n  my-ball:\n    kind: sphere\n    diameter: 1 m\n" in after.text
+    again = after.put_component("my-ball", {"kind": "sphere"})
+    assert "components:\n  my-ball:\n    kind: sphere\n# the end\n" in again.text
+    flow = Draft("line: []\ncomponents: {a: {kind: sphere}}\n").put_component("b", {"kind": "body"})
+    assert flow.text == "line: []\ncomponents: {a: {kind: sphere}, b: {kind: body}}\n"
+    empty = Draft("components: { }   # own\n").put_component("b", {"kind": "body"})
+    assert empty.text == "components:   # own\n  b:\n    kind: body\n"
+
+
+def test_what_cannot_be_taken_apart_is_refused_and_nothing_is_lost() -> None:
+    draft = Draft("line:\n  use: ball\n")
+    assert not draft.items and not draft.problems
+    with pytest.raises(EditError, match="line 2: `line` is not a list"):
+        draft.insert(0, {"use": "ball"})
+    with pytest.raises(EditError):
+        Draft(TEXT).put(0, "label", "\x07")
+
+
+def test_a_line_from_nothing() -> None:
+    draft = Draft.empty()
+    assert not draft.problems and not draft.items
+    draft = draft.put_at(("environment", "depth"), "300 m").insert(0, {"use": "ball"})
+    assert draft.value(("environment", "depth")) == "300 m"
+    assert draft.text.endswith(
+        "line:                              # top to bottom\n  - {use: ball}\n"
+    )
+
+
+def test_a_clamp_moves_with_what_is_said_of_it() -> None:
+    upper = "      - {use: meter, at: 5 m}   # upper\n"
+    lower = "      - {use: meter, at: 9 m}\n"
+    assert Draft(TEXT).move_clamp(1, 0, 1).text == edited(upper + lower, lower + upper)

@@ -1,0 +1,21 @@
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+import calm
+from calm.case import Result, TowResult
+
+LINES = Path(__file__).resolve().parents[4] / "lines"
+
+
+@cache
+def _solved(name: str) -> Result | TowResult:
+    return calm.load(LINES / f"{name}.yaml").solve()
+
+
+@pytest.fixture
+def solved() -> Callable[[str], Result | TowResult]:
+    """A shipped line by its name, solved once for all tests of a worker."""
+    return _solved

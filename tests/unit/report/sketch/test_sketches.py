@@ -1,0 +1,232 @@
+"""Every picture: what it shows stands where the figures are."""
+
+import re
+from dataclasses import replace
+
+import pytest
+
+from calm.report.sketch import current_profile, elevation, plan, tension
+from calm.report.sketch.parts import SIGNS
+
+ALL = (
+    "a-frame-sheared-tow",
+    "bourget-marichal-sphere",
+    "braconnot-buoy",
+    "cdms-1",
+    "deep-current-meters",
+    "helicopter-bird",
+    "receiver-line",
+    "taut-nylon-surface",
+    "tidal-adcp",
+)
+PICTURES = {"elevation": elevation, "plan": plan, "tension": tension}
+ANSI = {"black", "red", "green", "yellow", "blue", "magenta", "cyan", "white"}
+
+
+def rows(texts) -> list[str]:
+    return [text.plain for text in texts]
+
+
+def water_of(result):
+    return (result.mooring if hasattr(result, "mooring") else result.tow).water
+
+
+@pytest.mark.parametrize("name", ALL)
+@pytest.mark.parametrize("size", [(20, 6), (27, 9), (38, 18), (60, 30)])
+def test_pictures_fill_their_cells(solved, name, size):
+    result = solved(name)
+    drawn = [draw(result, *size) for draw in PICTURES.values()]
+    drawn.append(current_profile(water_of(result), *size))
+    for texts in drawn:
+        assert [text.cell_len for text in texts] == [size[0]] * size[1]
+
+
+@pytest.mark.parametrize("picture", PICTURES)
+def test_they_need_no_more_than_ascii_and_eight_colours(solved, picture):
+    result = solved("deep-current-meters")
+    for ascii_only in (True, False):
+        texts = PICTURES[picture](result, 38, 18, ascii_only=ascii_only)
+        assert ascii_only == all(text.plain.isascii() for text in texts)
+        styles = {word for text in texts for span in text.spans for word in str(span.style).split()}
+        assert styles <= ANSI | {"bold", "none"}
+
+
+@pytest.mark.parametrize("picture", PICTURES)
+def test_an_old_picture_is_the_same_but_dim(solved, picture):
+    result = solved("s1000")
+    now, before = (PICTURES[picture](result, 30, 12, dim=dim) for dim in (False, True))
+    assert rows(now) == rows(before)
+    assert all("dim" in str(span.style) for text in before for span in text.spans)
+
+
+def test_elevation_of_s1000(solved):
+    assert rows(elevation(solved("s1000"), 30, 12)) == [
+        "top 131.4 m, 237.3 m off to 09",
+        "   0┤⠉⡉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉",
+        "    │ ⠄                     ● ",
+        "    │ ⠂                   ⣠⠞  ",
+        "    │ ⡁                ⢀⡠⠚⠁   ",
+        " 500┤ ⠄              ⣠⠔⠋      ",
+        "    │ ⠂          ⢀⡠⠔⠋         ",
+        "    │ ⡁       ⣀⠤⠒⠉            ",
+        "    │ ⠄   ⣀⠤⠒⠉                ",
+        "1000┤ ▼⠤⠒⠉                    ",
+        "1100 ▒┴▒▒▒▒▒▒▒▒┴▒▒▒▒▒▒▒▒▒┴▒▒▒▒",
+        "      0       100       200 m ",
+    ]
+
+
+def test_plan_of_veering_current(solved):
+    assert rows(plan(solved("veering-current"), 24, 12)) == [
+        "top 51.9 m off to 176°  ",
+        "  0┤N ⠄ ⠄ ⠄ ⠄◆▼●⠄ ⠄ ⠄ ⠄ ",
+        "   │         ⢸⡀         ",
+        "   │         ●■         ",
+        "-20┤        ⢀⠇⡀         ",
+        "   │        ⢸ ⡀         ",
+        "   │        ⠸⡄⡀         ",
+        "-40┤         ■⡀         ",
+        "   │         ⠸■         ",
+        "   │          ■●        ",
+        "  m───┴───────┴──────┴──",
+        "     -25      0 m E     ",
+    ]
+
+
+def test_tension_of_veering_current(solved):
+    assert rows(tension(solved("veering-current"), 24, 12)) == [
+        "at most 2945 N          ",
+        "  0┤⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⠉⢉⣉⣹⠃ ",
+        "   │              ⢀⡞    ",
+        "   │            ⣀⣠⠏     ",
+        "   │            ⡇       ",
+        "   │            ⡇       ",
+        "500┤            ⡇       ",
+        "   │           ⠰⢧⠤⠄     ",
+        "   │            ⢸       ",
+        "   │            ⢸⣀⣀⣀⣀⣀  ",
+        "  m─┴───────────┴───────",
+        "    0         2000 N    ",
+    ]
+
+
+def cell_of(texts, sign):
+    """Row and column of the only such sign."""
+    ((row, column),) = [
+        (number, match.start())
+        for number, text in enumerate(rows(texts))
+        for match in re.finditer(re.escape(sign), text)
+    ]
+    return row, column
+
+
+@pytest.mark.parametrize("height", [12, 24, 40])
+def test_depth_and_offset_are_read_off_the_scales(solved, height):
+    result, width = solved("s1000"), 49
+    texts = elevation(result, width, height)
+    row, column = cell_of(texts, SIGNS["float"][0])
+    drawn = height - 3
+    # row 1 begins at the surface and the last ends at the seabed; a cell is known to half of it
+    assert (row - 0.5) / drawn * 1100.0 == pytest.approx(131.4, abs=0.6 * 1100.0 / drawn)
+    marks = [match.start() for match in re.finditer("┴", texts[-2].plain)]
+    labels = [int(text) for text in re.findall(r"\d+", texts[-1].plain)]
+    per_cell = (labels[-1] - labels[0]) / (marks[len(labels) - 1] - marks[0])
+    assert (column - marks[0]) * per_cell == pytest.approx(237.3, abs=1.1 * per_cell)
+
+
+def test_still_water_stands_beside_the_line_only_where_that_is_moved(solved):
+    bent = rows(elevation(solved("deep-current-meters"), 38, 18))
+    anchor = bent[-2].index("┴")
+    assert all(row[anchor] in "⡁⡀⠄⠂⠁" for row in bent[2:14])
+
+
+def test_a_tow_is_drawn_behind_its_ship_with_the_body_at_its_depth(solved):
+    texts = elevation(solved("depressor-fit-depth"), 38, 18)
+    assert texts[0].plain.rstrip() == "body 75.6 m, 101.8 m behind"
+    assert cell_of(texts, "▲") == (1, 4)
+    assert texts[-2].plain.startswith("95 ▒")
+
+
+def test_seabed_of_a_tow_far_below_is_not_drawn(solved):
+    texts = elevation(solved("a-frame-sheared-tow"), 38, 18)
+    assert "▒" not in texts[-2].plain
+    assert "0┤" in texts[2].plain
+
+
+def test_a_helicopter_tows_in_no_water(solved):
+    texts = elevation(solved("helicopter-bird"), 38, 18)
+    assert texts[0].plain.rstrip() == "body 29.6 m below, 4.8 m behind"
+    assert all("blue" not in str(span.style) for text in texts for span in text.spans)
+
+
+def test_names_stand_beside_their_parts(solved):
+    result = solved("taut-nylon-surface")
+    texts = rows(elevation(result, 60, 30))
+    named = {text[45:].strip(): row for row, text in enumerate(texts)}
+    for clamp in result.clamps:
+        if clamp.label in named:
+            # within the row of its part and one and a half more
+            row = clamp.depth / 2000.0 * 27
+            assert named[clamp.label] - 1 + 0.5 == pytest.approx(row, abs=2.0)
+    assert {"CTD 100 m", "CTD 500 m", "releases pair"} <= set(named)
+    assert texts[1].rstrip().endswith(" buoy")
+    assert not any("CTD" in text for text in rows(elevation(result, 49, 30)))
+
+
+def test_where_names_crowd_instruments_go_first(solved):
+    texts = rows(elevation(solved("deep-current-meters"), 60, 30))
+    named = [text[45:].strip() for text in texts if text[45:].strip()]
+    assert {"top float", "releases pair", "back-up glass"} <= set(named)
+    assert len(named) < 27
+
+
+def test_plan_has_one_scale(solved):
+    texts = plan(solved("deep-current-meters"), 46, 24)
+    marks = [match.start() for match in re.finditer("┴", texts[-2].plain)]
+    labels = [int(text) for text in re.findall(r"-?\d+", texts[-1].plain)]
+    per_column = (labels[-1] - labels[0]) / (marks[-1] - marks[0])
+    levels = [
+        (row, int(match[1]))
+        for row, text in enumerate(texts[:-2])
+        if (match := re.match(r" *(-?\d+)┤", text.plain))
+    ]
+    (row, high), (last, low) = levels[0], levels[-1]
+    # a cell is twice as high as wide; ticks are on whole cells
+    assert (high - low) / (last - row) == pytest.approx(2.0 * per_column, rel=0.15)
+
+
+def test_current_is_on_the_rows_of_the_elevation(solved):
+    result = solved("deep-current-meters")
+    side = rows(elevation(result, 38, 18))
+    beside = rows(current_profile(water_of(result), 22, 18))
+    assert [row[:5] for row in side[1:-1]] == [row[:5] for row in beside[1:-1]]
+
+
+def test_current_tells_speed_and_direction(solved):
+    texts = rows(current_profile(water_of(solved("deep-current-meters")), 22, 18))
+    assert texts[1].endswith("070°→") and texts[4].endswith("064°↗")
+    narrow = rows(current_profile(water_of(solved("deep-current-meters")), 14, 18))
+    assert narrow[1].endswith(" →")
+    plain = current_profile(water_of(solved("deep-current-meters")), 22, 18, ascii_only=True)
+    assert plain[1].plain.rstrip().endswith("070d") and all(text.plain.isascii() for text in plain)
+
+
+def test_still_water_says_so(solved):
+    water = water_of(solved("s1000")).still()
+    assert current_profile(water, 20, 10)[0].plain.rstrip() == "still water"
+
+
+def test_tension_tells_the_greatest_and_dots_the_limits(solved):
+    result = solved("deep-current-meters")
+    texts = tension(result, 38, 18)
+    assert texts[0].plain.rstrip() == "at most 5718 N; dotted: limits"
+    assert any("red" in str(span.style) for text in texts for span in text.spans)
+    texts = tension(solved("s1000"), 38, 18)
+    assert texts[0].plain.rstrip() == "at most 4003 N"
+
+
+def test_great_tensions_are_in_kilonewtons(solved):
+    result = solved("taut-nylon-surface")
+    greater = replace(result, shape=replace(result.shape, tension=10.0 * result.shape.tension))
+    assert tension(result, 38, 18)[-1].plain.split()[-1] == "N"
+    assert tension(greater, 38, 18)[-1].plain.split()[-2:] == ["50", "kN"]
