@@ -24,7 +24,9 @@ _NO_TERMINAL = (
     "calm build needs a terminal to draw in, and keys; `calm build --serve` opens it in a "
     "browser, `calm run FILE --schematic` prints the line"
 )
-_NO_BROWSER = "--serve needs textual-serve, which is not installed: pip install textual-serve"
+_NO_BROWSER = (
+    "--serve needs textual-serve, which is not installed: pip install 'calm-mooring[browser]'"
+)
 
 
 def build(

@@ -18,7 +18,7 @@ def test_without_textual_serve_it_says_how_to_get_it(calm, monkeypatch):
     monkeypatch.setattr(command, "find_spec", lambda name: None)
     done = calm("build", "--serve")
     assert done.code == 2
-    assert "pip install textual-serve" in done.err
+    assert "pip install 'calm-mooring[browser]'" in done.err
 
 
 def test_a_port_that_is_none(calm):

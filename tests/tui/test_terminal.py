@@ -127,6 +127,7 @@ def fill_table(terminal, rows):
             terminal.press(text, ENTER)
 
 
+@pytest.mark.slow
 def test_build_the_deep_mooring_from_nothing(tmp_path):
     from calm.files.editing import Draft
 

@@ -59,8 +59,8 @@ def test_what_is_done_is_not_done_again(tmp_path, mooring, record, ending):
     assert third == second
 
 
-@pytest.mark.parametrize(("ending", "how"), [(".nc", "moments"), (".zarr", "moments"),
-                                             (".nc", "steps"), (".zarr", "steps")])  # fmt: skip
+@pytest.mark.parametrize("ending", [".nc", ".zarr"])
+@pytest.mark.parametrize("how", ["moments", pytest.param("steps", marks=pytest.mark.slow)])
 @pytest.mark.skipif(sys.platform == "win32", reason="kills processes as POSIX has them")
 def test_killed_at_any_moment_it_finishes_to_the_same_bytes(tmp_path, ending, how):
     # in memory where there is such a folder: a killed process leaves the disk to the system anyway
