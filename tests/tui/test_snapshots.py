@@ -21,7 +21,9 @@ STORIES = {
 
 
 def normal(svg):
-    """Without the number that rich gives to every picture."""
+    """Without the number that rich gives to every picture, and the fonts that it would fetch."""
+    svg = re.sub(r"\s*@font-face \{.*?\}", "", svg, flags=re.DOTALL)
+    svg = re.sub(r"\s*<!-- Generated .*?-->", "", svg)
     return re.sub(r"terminal-\d+", "terminal", svg)
 
 
