@@ -9,6 +9,7 @@ import numpy as np
 
 from calm.assemble import assemble_water
 from calm.batch.kernel.contact import first_chain_of, grips_on, when_looked_for
+from calm.batch.kernel.cuts import cuts_of
 from calm.batch.kernel.lanes import ABOVE_IT, CABLE, CLAMP, ITSELF, ROD
 from calm.case import Mooring
 from calm.files import CurrentTable
@@ -23,12 +24,6 @@ from calm.solve.locate import SHARES, upright_depth
 from calm.solve.mooring import BARELY_LANDED
 from calm.solve.unknown import Unknown
 
-CUTS = 50
-"""Of a line, about, for the first look; they are halved twice and more."""
-LANDING_CUTS, LEAST_CUTS = 32, 8
-"""At least, of what may come down on the seabed, and of each part of it between clamps."""
-SOFTENING = 0.3
-"""Cuts grow with the depth at which they stand upright, plus this share of the water depth."""
 NEAR = 2e-6
 """How far the loads of a rod may be from where they are looked up, as a share of the depth."""
 NEAR_ON_SEABED = 2e-7
@@ -227,34 +222,6 @@ def _place_afloat(line: Line, load: Load, afloat: int) -> float:
     if load.piece == afloat and load.clamp < 0:
         return ITSELF
     return ABOVE_IT if load.piece < afloat and line.floating is not None else 0.0
-
-
-def cuts_of(track: Track, depth: float, lands: bool) -> list[Floats]:
-    """For every cable, the lengths of its cuts [m], shorter towards the surface.
-
-    Currents shear where they are strong, and they are strong towards the surface. But where a line
-    `lands` it may bend within a short length.
-    """
-    height = sum(stage.length for stage in track.stages if not isinstance(stage, Load))
-    landing = sum(s.length for s in track.stages[track.landing :] if isinstance(s, Cable))
-    ends = []
-    for n, stage in enumerate(track.stages):
-        if isinstance(stage, Load):
-            continue
-        upper = max(depth - height, 0.0) + SOFTENING * depth
-        height -= stage.length
-        if isinstance(stage, Cable):
-            few = 1.0
-            if lands and n >= track.landing:
-                few = max(LANDING_CUTS * stage.length / landing, LEAST_CUTS)
-            ends.append((upper, upper + stage.length, few))
-    total = sum(np.log(lower / upper) for upper, lower, _ in ends)
-    cuts = []
-    for upper, lower, few in ends:
-        count = max(round(CUTS * np.log(lower / upper) / total), round(few), 1)
-        joints = np.geomspace(upper, lower, count + 1)
-        cuts.append(np.diff(joints))
-    return cuts
 
 
 def _parts(line: Line, track: Track, loads: list[Load]) -> tuple[Any, ...]:
