@@ -114,7 +114,7 @@ def test_compiling_is_told_when_it_takes_place(tmp_path, mooring):
         "import sys\n"
         "from pathlib import Path\n"
         "from calm.batch.compiling import compile_kernel\n"
-        "from calm.batch.kernel.closing import solve_cases\n"
+        "from calm.batch.kernel.cases import solve_cases\n"
         "from calm.batch.profiles import Batch\n"
         "from tests.unit.batch.made import made_mooring\n"
         "solve_cases._compiler.compile = lambda *signature: sys.exit('compiles')\n"
