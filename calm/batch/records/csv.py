@@ -97,6 +97,7 @@ class CsvRecord(Record):
     def _put_by(self, rows: Floats) -> None:
         try:
             rows.tofile(self._kept)
+            self._kept.flush()
         except OSError:
             place = tempfile.gettempdir()
             raise UsageError(f"no room for the numbers of the record in {place}") from None
