@@ -60,7 +60,9 @@ class Saving(Base):
         try:
             write()
         except (CalmError, OSError) as error:
-            self.tell(f"Not saved: {error}", wrong=True)
+            # the folder is known, and the reason must not be cut off behind it
+            folder = "" if self.session.file.path is None else f"{self.session.file.path.parent}/"
+            self.tell(f"Not saved: {str(error).replace(folder, '')}", wrong=True)
             return
         self.builder.refresh_rows()
         self.tell(f"{self.session.name} saved")
