@@ -6,34 +6,24 @@ aliases and tags have no use in these files and are refused, so that nothing can
 
 from __future__ import annotations
 
-import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
-from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
 from calm.errors import InputError, Problem
-from calm.files import composition, nodes
+from calm.files import composition
+from calm.files.composition import Composition, compose_whole
+from calm.files.nodes import Node
 
 LARGEST_FILE = 1_000_000
 """Bytes; a file of text larger than this is not read."""
 
 Place = tuple[int, int]
 Location = tuple[str | int, ...]
-
-# They would move the cursor of a terminal, or turn the figures beside them round.
-_CONTROL_CHARACTER = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
-
-_NULL = "tag:yaml.org,2002:null"
-_PLAIN_TAGS = frozenset(
-    f"tag:yaml.org,2002:{kind}"
-    for kind in ("map", "seq", "str", "int", "float", "bool", "null", "timestamp", "merge")
-)
 
 
 @dataclass(frozen=True)
@@ -90,25 +80,7 @@ def compose(name: str, text: str) -> Document:
     InputError
         It is no valid YAML, or holds duplicate keys.
     """
-    try:
-        root = YAML(typ="safe", pure=True).compose(text)
-    except MarkedYAMLError as error:
-        raise InputError(_syntax_problems(name, text, error)) from None
-    except RecursionError:
-        raise InputError([Problem(name, 0, 0, "is nested too deeply")]) from None
-    except (YAMLError, ValueError, IndexError) as error:
-        first_line = str(error).partition("\n")[0]
-        raise InputError([Problem(name, 0, 0, f"is not valid YAML: {first_line}")]) from None
-    if root is None:
-        raise InputError([Problem(name, 0, 0, "is empty")])
-    if not isinstance(root, MappingNode):
-        message = "must hold `key: value` lines at its top level"
-        raise InputError([Problem(name, 1, 1, message)])
-    reader = _Composer(name)
-    data = reader.convert(root, ())
-    if reader.problems:
-        raise InputError(reader.problems)
-    return Document(name, data, reader.values, reader.keys)
+    return _document(name, text, compose_whole)
 
 
 _composed = lru_cache(maxsize=32)(compose)
@@ -119,23 +91,35 @@ _composed = lru_cache(maxsize=32)(compose)
 def document_of(name: str, text: str) -> Document:
     """The document of a text that stands in place of a file's content.
 
-    It is read again and again as a person edits it, and only what changed is composed. What is
-    told of a text with mistakes is what `compose` tells.
+    It is read again and again as a person edits it, and only what changed is composed.
     """
-    text = text.removeprefix("\ufeff")
+    return _document(name, text.removeprefix("\ufeff"), composition.compose)
+
+
+def _document(name: str, text: str, read: Callable[[str], Composition]) -> Document:
     try:
-        composed = composition.compose(text)
-    except (YAMLError, ValueError, IndexError, RecursionError):
-        return compose(name, text)
+        composed = read(text)
+    except MarkedYAMLError as error:
+        raise InputError(_syntax_problems(name, text, error)) from None
+    except RecursionError:
+        raise InputError([Problem(name, 0, 0, "is nested too deeply")]) from None
+    except (YAMLError, ValueError, IndexError) as error:
+        first_line = str(error).partition("\n")[0]
+        raise InputError([Problem(name, 0, 0, f"is not valid YAML: {first_line}")]) from None
     root = composed.root
-    if root is None or composed.refusals or root.kind != "mapping":
-        return compose(name, text)
+    if root is None:
+        raise InputError([Problem(name, 0, 0, "is empty")])
+    if root.kind != "mapping":
+        message = "must hold `key: value` lines at its top level"
+        raise InputError([Problem(name, 1, 1, message)])
+    if composed.refusals:
+        raise InputError([Problem(name, *refusal) for refusal in composed.refusals])
     document = Document(name, root.data)
     _note_places(document, root, ())
     return document
 
 
-def _note_places(document: Document, node: nodes.Node, location: Location) -> None:
+def _note_places(document: Document, node: Node, location: Location) -> None:
     """Note where a value is, and all below it; one that is empty is where its key is."""
     document.values[location] = node.line, node.column
     if node.kind == "sequence":
@@ -194,55 +178,3 @@ def _syntax_problems(name: str, text: str, error: MarkedYAMLError) -> list[Probl
     if error.context and error.context_mark and error.problem:
         what = f"{error.context} from line {error.context_mark.line + 1}, {what}"
     return [Problem(name, line, column, f"is not valid YAML: {what}")]
-
-
-class _Composer:
-    """Walks a composed YAML tree into plain data, noting places and everything not allowed."""
-
-    def __init__(self, path: str) -> None:
-        self.path = path
-        self.values: dict[Location, Place] = {}
-        self.keys: dict[Location, Place] = {}
-        self.problems: list[Problem] = []
-        self._refused: set[int] = set()
-
-    def convert(self, node: Node, location: Location) -> Any:
-        self.values[location] = place = (node.start_mark.line + 1, node.start_mark.column + 1)
-        if node.anchor is not None:
-            # An alias composes to the very node of its anchor: reported once, never followed.
-            if id(node) not in self._refused:
-                self._refused.add(id(node))
-                self._refuse(place, "anchors (&) and aliases (*) are not allowed; write it out")
-            return None
-        if str(node.tag) not in _PLAIN_TAGS:
-            self._refuse(place, f"tags (`{node.tag}`) are not allowed")
-            return None
-        if isinstance(node, MappingNode):
-            return self._mapping(node, location)
-        if isinstance(node, SequenceNode):
-            return [self.convert(child, (*location, i)) for i, child in enumerate(node.value)]
-        if str(node.tag) == _NULL:
-            return None
-        return _CONTROL_CHARACTER.sub("\N{REPLACEMENT CHARACTER}", node.value)
-
-    def _mapping(self, node: MappingNode, location: Location) -> dict[str, Any]:
-        data: dict[str, Any] = {}
-        for key_node, value_node in node.value:
-            place = (key_node.start_mark.line + 1, key_node.start_mark.column + 1)
-            if not isinstance(key_node, ScalarNode):
-                self._refuse(place, "a key must be plain text")
-                continue
-            key = key_node.value
-            if key in data:
-                first = self.keys[(*location, key)][0]
-                self._refuse(place, f"`{key}` is given twice (first in line {first})")
-                continue
-            self.keys[(*location, key)] = place
-            data[key] = self.convert(value_node, (*location, key))
-            if data[key] is None:
-                # The end of an empty value may be lines below its key.
-                self.values[(*location, key)] = place
-        return data
-
-    def _refuse(self, place: Place, message: str) -> None:
-        self.problems.append(Problem(self.path, *place, message))

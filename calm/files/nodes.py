@@ -20,6 +20,9 @@ _PLAIN_TAGS = frozenset(
 )
 
 
+Kind = Literal["mapping", "sequence", "scalar"]
+
+
 class Node(NamedTuple):
     """A value in a text.
 
@@ -40,7 +43,7 @@ class Node(NamedTuple):
         The values of a mapping, or the items of a sequence.
     """
 
-    kind: Literal["mapping", "sequence", "scalar"]
+    kind: Kind
     start: int
     end: int
     line: int
@@ -65,8 +68,7 @@ class Node(NamedTuple):
         )
 
 
-@dataclass(frozen=True)
-class Refusal:
+class Refusal(NamedTuple):
     """Something YAML allows and these files do not; places count from 1."""
 
     line: int
@@ -86,7 +88,7 @@ class NodeReader:
         """The node, and all below it."""
         mark = node.start_mark
         place = (mark.line + 1, mark.column + 1)
-        refused = Node("scalar", mark.index, mark.index, *place, "", None)
+        refused = Node(_kind(node), mark.index, mark.index, *place, "", None)
         if node.anchor is not None:
             # An alias composes to the very node of its anchor: reported once, never followed.
             if id(node) not in self._anchored:
@@ -152,6 +154,12 @@ class NodeReader:
             end = children[-1].end if children else mark.index
         place = (mark.line + 1, mark.column + 1)
         return Node(kind, mark.index, end, *place, style, data, keys, children)
+
+
+def _kind(node: ComposedNode) -> Kind:
+    if isinstance(node, MappingNode):
+        return "mapping"
+    return "sequence" if isinstance(node, SequenceNode) else "scalar"
 
 
 def _shown(value: str) -> str:

@@ -5,25 +5,16 @@ import random
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from ruamel.yaml import YAML
 
 from calm.files import composition
-from calm.files.composition import Composition, compose
-from calm.files.nodes import NodeReader
+from calm.files.composition import compose
+from calm.files.composition import compose_whole as whole
 from tests.property.test_editing import FILES
 
 SIGNS = (
     *("\n", "  ", "- ", ":", ": ", "{", "}", "[", "]", ",", "'", '"', "#", " # x", "\t", "|", "> "),
     *("&a", "*a", "!x", "---\n", "? ", "...", "\r\n", "\r", "\x85", "\u2028", "key: v\n", "- - "),
 )
-
-
-def whole(text: str) -> Composition:
-    root = YAML(typ="safe", pure=True).compose(text)
-    if root is None:
-        return Composition(None)
-    reader = NodeReader(text)
-    return Composition(reader.read(root), tuple(reader.refusals))
 
 
 def outcome(read: object, text: str) -> object:
