@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rich.text import Text
 
-from calm.report.sketch.canvas import ACROSS, DOWN, Canvas
-from calm.report.sketch.frame import AXIS, Frame, Scale, levels, number, ticks
+from calm.report.sketch.canvas import Canvas
+from calm.report.sketch.frame import AXIS, Frame, levels, number, ticks
 from calm.report.sketch.parts import SEABED, SURFACE, bearing, header_rows
 
 if TYPE_CHECKING:
@@ -36,28 +36,20 @@ def current_profile(
     beside = 6 if width >= _DEGREES_FROM else 2
     if ascii_only and beside == 2:
         beside = 0
-    columns = width - gutter - 1 - beside
     depths = np.union1d(np.linspace(0.0, water.depth, _SAMPLES), water.level)
     depths = depths[(depths >= 0.0) & (depths <= water.depth)]
     velocity, _ = water.at(depths)
     speeds = np.hypot(velocity[:, 0], velocity[:, 1])
     fastest = float(speeds.max())
-    frame = Frame(
-        canvas,
-        column=gutter + 1,
-        row=head,
-        columns=columns,
-        rows=rows,
-        across=Scale(0.0, 1.08 * fastest if fastest > 0.0 else 1.0, columns * ACROSS),
-        down=Scale(0.0, water.depth, rows * DOWN),
-    )
+    right = 1.08 * fastest if fastest > 0.0 else 1.0
+    frame = Frame.within(canvas, head, gutter, (0.0, right), (0.0, water.depth), beside)
     if head:
         canvas.text(0, 0, "current, m/s" if fastest > 0.0 else "still water", AXIS)
-    frame.line([(0.0, 0.0), (frame.across.high, 0.0)], SURFACE)
-    canvas.text(frame.column, height - 2, "▒" * columns, SEABED)
+    frame.line([(0.0, 0.0), (right, 0.0)], SURFACE)
+    canvas.text(frame.column, height - 2, "▒" * frame.columns, SEABED)
     frame.scale_down(values, gutter, foot)
-    most = max(columns // _COLUMNS_PER_TICK, 2)
-    frame.scale_across(ticks(0.0, frame.across.high, most), "" if head else "m/s")
+    most = max(frame.columns // _COLUMNS_PER_TICK, 2)
+    frame.scale_across(ticks(0.0, right, most), "" if head else "m/s")
     frame.line(zip(speeds.tolist(), depths.tolist(), strict=True), _STYLE)
     if beside:
         for value in values:

@@ -17,8 +17,8 @@ from calm.report.labels import Named, named_parts, names, spread
 from calm.report.plot_mooring import plane_of
 from calm.report.plot_tow import levels_of
 from calm.report.schematic.widths import ELLIPSIS
-from calm.report.sketch.canvas import ACROSS, DOWN, Canvas
-from calm.report.sketch.frame import AXIS, Frame, Scale, levels, number, ticks
+from calm.report.sketch.canvas import Canvas
+from calm.report.sketch.frame import AXIS, COLUMNS_PER_TICK, Frame, levels, number, ticks
 from calm.report.sketch.parts import (
     LINE,
     SEABED,
@@ -46,7 +46,6 @@ _SHARE_OF_NAMES = 0.36
 _LONGEST_NAME = 22
 _FARTHEST = 1.5
 """Rows that a name may stand from its part; where more names crowd, some are left out."""
-_COLUMNS_PER_TICK = 8
 
 _NEED = ("float", "release", "anchor", "instrument")
 
@@ -77,20 +76,11 @@ def elevation(
     gutter = max(map(len, [foot, *map(number, values)]))
     named = _names(result, view, rows, int(_SHARE_OF_NAMES * width)) if width >= _NAMED_FROM else []
     beside = max((cell_len(text) for _, text in named), default=-1) + 1
-    columns = width - gutter - 1 - beside
     low, high = _span(view)
-    frame = Frame(
-        canvas,
-        column=gutter + 1,
-        row=head,
-        columns=columns,
-        rows=rows,
-        across=Scale(low, high, columns * ACROSS),
-        down=Scale(view.top, view.bottom, rows * DOWN),
-    )
+    frame = Frame.within(canvas, head, gutter, (low, high), (view.top, view.bottom), beside)
     _draw_water(frame, view)
     frame.scale_down(values, gutter, foot)
-    frame.scale_across(ticks(low, high, max(columns // _COLUMNS_PER_TICK, 2)), view.along, "m")
+    frame.scale_across(ticks(low, high, max(frame.columns // COLUMNS_PER_TICK, 2)), view.along, "m")
     frame.line(view.still, STILL, dash=1, gap=2)
     frame.line(view.line, LINE)
     if view.ship is not None:

@@ -11,6 +11,9 @@ from calm.report.sketch.canvas import ACROSS, DOWN, Canvas
 AXIS = "white"
 """The style of scales."""
 
+COLUMNS_PER_TICK = 8
+"""Of a scale along the last row."""
+
 _ROWS_PER_TICK = 3
 _STEPS = (1.0, 2.0, 5.0, 10.0)
 
@@ -40,6 +43,36 @@ class Frame:
     rows: int
     across: Scale
     down: Scale
+
+    @classmethod
+    def within(
+        cls,
+        canvas: Canvas,
+        head: int,
+        gutter: int,
+        across: tuple[float, float],
+        down: tuple[float, float],
+        beside: int = 0,
+    ) -> Frame:
+        """What of a canvas the scales leave, below and to the left, and what else stands around it.
+
+        Parameters
+        ----------
+        head : rows above
+        gutter : columns of the numbers to the left
+        across, down : what is at the left and the right edge, at the upper and the lower one
+        beside : columns to the right
+        """
+        columns, rows = canvas.width - gutter - 1 - beside, canvas.height - head - 2
+        return cls(
+            canvas,
+            column=gutter + 1,
+            row=head,
+            columns=columns,
+            rows=rows,
+            across=Scale(*across, columns * ACROSS),
+            down=Scale(*down, rows * DOWN),
+        )
 
     def point(self, x: float, y: float) -> tuple[float, float]:
         """The dot of the canvas where two values are."""

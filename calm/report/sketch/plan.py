@@ -10,7 +10,7 @@ from rich.text import Text
 from calm.case import Result
 from calm.quantities import say
 from calm.report.sketch.canvas import ACROSS, DOWN, Canvas
-from calm.report.sketch.frame import AXIS, Frame, Scale, levels, number, ticks
+from calm.report.sketch.frame import AXIS, COLUMNS_PER_TICK, Frame, levels, number, ticks
 from calm.report.sketch.parts import LINE, SHIP, STILL, bearing, header_rows, mark_parts
 
 if TYPE_CHECKING:
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
 _LEAST_SPAN = 1.0
 _MARGIN = 0.06
-_COLUMNS_PER_TICK = 8
 
 
 def plan(
@@ -47,18 +46,12 @@ def plan(
         gutter = max(map(len, map(number, values)))
     columns = width - gutter - 1
     left, right = _centred(west, east, metres * columns * ACROSS)
-    frame = Frame(
-        canvas,
-        column=gutter + 1,
-        row=head,
-        columns=columns,
-        rows=rows,
-        across=Scale(left, right, columns * ACROSS),
-        down=Scale(top, bottom, rows * DOWN),
-    )
+    frame = Frame.within(canvas, head, gutter, (left, right), (top, bottom))
     canvas.text(gutter, height - 2, "─" * (width - gutter), AXIS)
     frame.scale_down(values, gutter)
-    frame.scale_across(ticks(left, right, max(columns // _COLUMNS_PER_TICK, 2)), "m east", "m E")
+    frame.scale_across(
+        ticks(left, right, max(frame.columns // COLUMNS_PER_TICK, 2)), "m east", "m E"
+    )
     frame.line([(left, 0.0), (right, 0.0)], STILL, dash=1, gap=3)
     frame.line([(0.0, bottom), (0.0, top)], STILL, dash=1, gap=3)
     frame.line(zip(shape.x.tolist(), shape.y.tolist(), strict=True), LINE)

@@ -11,8 +11,8 @@ from calm.case import Result
 from calm.checks.posture import meant_for_the_surface
 from calm.checks.strength import allowable_load
 from calm.quantities import say
-from calm.report.sketch.canvas import ACROSS, DOWN, Canvas
-from calm.report.sketch.frame import AXIS, Frame, Scale, levels, number, ticks
+from calm.report.sketch.canvas import DOWN, Canvas
+from calm.report.sketch.frame import AXIS, COLUMNS_PER_TICK, Frame, levels, number, ticks
 from calm.report.sketch.parts import LIMIT, LINE, header_rows
 
 if TYPE_CHECKING:
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
 _FARTHEST = 2.5
 """Allowable loads are drawn up to this many times the greatest tension."""
-_COLUMNS_PER_TICK = 8
 _KILO = 1e4
 """Tensions are in kilonewtons from here on [N]."""
 
@@ -57,19 +56,10 @@ def tension(
     length = max(float(way[-1]), 1e-9)
     values = levels(0.0, length, rows)
     gutter = max(map(len, map(number, values)))
-    columns = width - gutter - 1
-    frame = Frame(
-        canvas,
-        column=gutter + 1,
-        row=head,
-        columns=columns,
-        rows=rows,
-        across=Scale(0.0, right, columns * ACROSS),
-        down=Scale(0.0, length, rows * DOWN),
-    )
+    frame = Frame.within(canvas, head, gutter, (0.0, right), (0.0, length))
     canvas.text(gutter, height - 2, "─" * (width - gutter), AXIS)
     frame.scale_down(values, gutter)
-    frame.scale_across(ticks(0.0, right, max(columns // _COLUMNS_PER_TICK, 2)), unit)
+    frame.scale_across(ticks(0.0, right, max(frame.columns // COLUMNS_PER_TICK, 2)), unit)
     before = 0.0
     for row, load in _weakest(loads, length, rows * DOWN):
         if load <= _FARTHEST * greatest and (row % 2 == 0 or load != before):
