@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -19,6 +18,7 @@ from calm.batch.kernel.plan import Plan, base_water, plan_of
 from calm.batch.kernel.search import SOLVED
 from calm.batch.kernel.stragglers import Rows, known_levels, solve_one, water_of
 from calm.batch.statuses import STATUSES
+from calm.batch.threads import processors
 from calm.case import Mooring
 from calm.case.measure import clamps_down, clamps_of, components_of
 from calm.errors import NoEquilibrium
@@ -95,7 +95,7 @@ def solve_profiles(
         level where any is NaN is left out, as is one above the water; between levels everything
         is linear in depth, beyond them constant.
     depth : (k,), or shaped as u, of the levels, in any order [m]
-    workers : threads; as many as there are processors where not given
+    workers : threads; one for each processor that may be used where not given
 
     Raises
     ------
@@ -156,7 +156,7 @@ class Batch:
             self._solve_block(mine, columns, status[block], alone[block])
 
         solve(slice(0, 0))  # compiles where need be
-        with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
+        with ThreadPoolExecutor(workers or processors()) as pool:
             for _ in pool.map(solve, [slice(at, at + BLOCK) for at in range(0, count, BLOCK)]):
                 pass
         measured = _measured(self.mooring, rows, status, alone)

@@ -27,6 +27,7 @@ from calm.batch.store.result import (
     store_folder,
 )
 from calm.batch.store.store import open_store
+from calm.batch.threads import processors
 from calm.batch.work import Progress, Work
 from calm.case import Mooring
 from calm.errors import UsageError
@@ -133,7 +134,7 @@ def run_batch(
                 return _found(output)
             store = open_store(folder, layout_of(mooring, record, nodes), block, identity)
             work = Work(batch, record, store, nodes, progress)
-            _complete(work, output, workers or _processors(), scheduler, say)
+            _complete(work, output, workers or processors(), scheduler, say)
             clear(output)
     except (KeyboardInterrupt, OSError) as error:
         if work is None:
@@ -195,10 +196,3 @@ def _reason(error: BaseException) -> str:
     if isinstance(error, OSError):
         return os.strerror(error.errno) if error.errno else str(error)
     return "interrupted"
-
-
-def _processors() -> int:
-    """How many processors this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
