@@ -28,7 +28,9 @@ def assemble_water(environment: Environment) -> Water:
     """Current and density on the union of their levels, viscosity on its own; linear between."""
     flows = [environment.current, *_surface_drift(environment)]
     density_levels, density = _density(environment)
-    levels = np.unique(np.concatenate([density_levels, *(flow.depth for flow in flows)]))
+    # np.unique would import masked arrays
+    depths = {*density_levels.tolist(), *(depth for flow in flows for depth in flow.depth)}
+    levels = np.array(sorted(depths))
     velocity = np.zeros((3, len(levels)))
     for flow in flows:
         velocity += [np.interp(levels, flow.depth, part) for part in (flow.u, flow.v, flow.w)]

@@ -170,8 +170,8 @@ def _flow(solution: Solution) -> tuple[Floats, Floats]:
     return solution.water.at(-0.5 * (solution.position[:-1] + solution.position[1:])[:, 2])
 
 
-def closure(solution: Solution) -> float:
-    """Relative departure of the recomputed loads' sum from the force at the line's end.
+def closure(solution: Solution, load: Floats) -> float:
+    """Relative departure of the recomputed `loads`' sum from the force at the line's end.
 
     Where the line lies on the seabed, the loads above its touchdown must leave no vertical force
     there: but a downward one where a rigid piece or clamp stands, and an upward one that the
@@ -179,7 +179,7 @@ def closure(solution: Solution) -> float:
     horizontal force.
     """
     hanging = solution.hanging
-    load = loads(solution)[:hanging]
+    load = load[:hanging]
     total = load.sum(axis=0)
     scale = max(float(solution.tension[-1]), 1e-3 * float(np.abs(load).sum()), 1e-300)
     if solution.landed:
@@ -218,13 +218,12 @@ def _weight_on_seabed(solution: Solution) -> float:
     return float(-lift.sum())
 
 
-def moment_residual(solution: Solution) -> float:
+def moment_residual(solution: Solution, load: Floats) -> float:
     """Largest angle between an element's axis and the mean of the forces at its ends [rad].
 
-    Or, where that is larger, departure of a cable's strain from what these forces ask for. Both
-    beyond the rounding of the coordinates.
+    The forces follow from the recomputed `loads`. Or, where that is larger, departure of a cable's
+    strain from what these forces ask for. Both beyond the rounding of the coordinates.
     """
-    load = loads(solution)
     above = np.vstack([np.zeros(3), np.cumsum(load, axis=0)])
     chord = np.diff(solution.position, axis=0)
     worst = 0.0

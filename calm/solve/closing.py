@@ -74,6 +74,7 @@ class Closing:
 
     def __init__(self, line: Line, water: Water, settings: Settings) -> None:
         self.line, self.water, self.settings = line, water, settings
+        self.track = Track.of(line)
         self.profile = Profile(water)
         self.span = float(line.length.sum()) if line.towed else water.depth
         self.allowed = settings.tolerance * self.span
@@ -88,7 +89,7 @@ class Closing:
         """
         height = 0.0 if lands else self.line.anchor_height
         return Unknown(
-            Track.of(self.line),
+            self.track,
             height - self.water.depth,
             lands=lands,
             floating=self.line.floating,
@@ -162,10 +163,15 @@ class Closing:
         """The root as the march sees it at a step, near a coarser one, and the cuts it takes there.
 
         With its free choice of cuts the march is not quite continuous, so this is no solution yet.
+        On the cuts it took last it is: the root is a last step away, which the caller marches.
         """
         small = 1e-6 * self.span
-        found, _, end, _ = self._near(root, step, None, small, COARSEST_BRACKET, record=False)
-        return found or root, end.cuts
+        found, miss, end, _ = self._near(root, step, None, small, COARSEST_BRACKET, record=False)
+        if found is None:
+            return root, end.cuts
+        if found.slope < 0.0:
+            found = replace(found, x=found.x - miss / found.slope)
+        return found, end.cuts
 
     def polish(self, root: Root, cuts: Cuts) -> Closed:
         """Close the line on fixed segments, from a root found on others.

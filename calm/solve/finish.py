@@ -126,10 +126,11 @@ def _carried(line: Line, track: Track) -> Line:
 
 def _audited(solution: Solution) -> Solution:
     """The solution with its closure and moment residual; refused where a check fails."""
+    load = audit.loads(solution)
     solution = replace(
         solution,
-        closure=audit.closure(solution),
-        moment_residual=audit.moment_residual(solution),
+        closure=audit.closure(solution, load),
+        moment_residual=audit.moment_residual(solution, load),
     )
     if not solution.closure <= audit.LARGEST_CLOSURE:
         raise Status.NOT_CONVERGED.because(

@@ -12,7 +12,7 @@ import numpy as np
 from calm.physics.hull import AWASH
 from calm.physics.profile import Profile
 from calm.solve.closing import Closing, Root
-from calm.solve.standing import standing_lift
+from calm.solve.standing import standing_length, standing_lift
 from calm.solve.status import Status
 from calm.solve.unknown import Afloat, Unknown
 
@@ -44,7 +44,7 @@ def locate(closing: Closing, lands: bool) -> tuple[Root, Root | None]:
     """
     unknown = closing.whole(lands)
     miss = closing.coarse_miss(unknown)
-    upright = upright_depth(closing, unknown)
+    upright = max(-standing_length(closing.line, closing.water) - unknown.goal, 0.0)
     samples = [(upright, miss(upright))]
     if samples[0][1] < 0.0 < upright:
         # the current's pull stretches the line further
@@ -60,14 +60,6 @@ def locate(closing: Closing, lands: bool) -> tuple[Root, Root | None]:
     if not roots:
         raise Status.GROUNDED.because("The current drags the whole line down to the seabed.")
     return roots[0], roots[-1] if len(roots) > 1 else None
-
-
-def upright_depth(closing: Closing, unknown: Unknown) -> float:
-    """Depth of the free end of the line standing in still water, with its stretch [m]."""
-    still = Profile(closing.water.still())
-    reach = closing.run(unknown, 0.0, closing.coarse_step, profile=still).z
-    unstretched = -float(closing.line.length.sum())
-    return max(min(reach, unstretched) - unknown.goal, 0.0)
 
 
 def _below_surface(

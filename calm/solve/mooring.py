@@ -9,12 +9,12 @@ import numpy as np
 
 from calm.errors import NoEquilibrium
 from calm.physics.line import Floats, Line, Water
-from calm.physics.state import MarchError, Trace
-from calm.physics.track import Track
-from calm.solve.closing import Closing, Root
+from calm.physics.march import Cuts
+from calm.physics.state import MarchError
+from calm.solve.closing import Closed, Closing, Root
 from calm.solve.finish import finished
 from calm.solve.locate import locate
-from calm.solve.refine import refine
+from calm.solve.refine import Polish, refine
 from calm.solve.solution import Settings, Solution
 from calm.solve.standing import refuse_unsupported, standing_lift, too_heavy
 from calm.solve.status import Status
@@ -52,10 +52,9 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
 
 def _solve(closing: Closing) -> Solution:
     """Try it clear of the seabed or lying on it, the likelier first."""
-    track, line = Track.of(closing.line), closing.line
     ways = [_clear_of_it]
-    if track.landing < len(track.stages):
-        longer = float(line.length.sum()) > closing.water.depth
+    if closing.track.landing < len(closing.track.stages):
+        longer = float(closing.line.length.sum()) > closing.water.depth
         ways.insert(0 if longer else 1, _on_the_seabed)
     refusals = {}
     for way in ways:
@@ -92,8 +91,12 @@ def _highest(closing: Closing, way: Way) -> Solution:
 
 
 def _clear_of_it(closing: Closing, root: Root) -> Solution:
-    _refuse_deep_below(closing, root)
-    return _solution(closing, root)
+    def polish(root: Root, cuts: Cuts) -> Closed:
+        closed = closing.polish(root, cuts)
+        _refuse_deep_below(closed, closing.water.depth)
+        return closed
+
+    return _solution(closing, root, polish)
 
 
 def _on_the_seabed(closing: Closing, root: Root) -> Solution:
@@ -110,13 +113,12 @@ def _on_the_seabed(closing: Closing, root: Root) -> Solution:
         return landed
 
 
-def _refuse_deep_below(closing: Closing, root: Root) -> None:
-    """Spare the polish of a line that hangs far below the seabed."""
-    trace = Trace()
-    closing.run(root.unknown, root.x, closing.coarse_step, trace=trace)
-    if min(trace.z) < -1.01 * closing.water.depth:
-        piece = trace.piece[max(int(np.argmin(trace.z)) - 1, 0)]
-        raise _grounded(piece, -closing.water.depth - min(trace.z))
+def _refuse_deep_below(closed: Closed, depth: float) -> None:
+    """Spare a line that hangs far below the seabed the finer cuts."""
+    lowest = min(closed.trace.z)
+    if lowest < -1.01 * depth:
+        piece = closed.trace.piece[max(closed.trace.z.index(lowest) - 1, 0)]
+        raise _grounded(piece, -depth - lowest)
 
 
 def _grounded(piece: int, below: float) -> NoEquilibrium:
@@ -125,8 +127,8 @@ def _grounded(piece: int, below: float) -> NoEquilibrium:
     )
 
 
-def _solution(closing: Closing, root: Root) -> Solution:
-    return finished(closing, refine(closing, root), None, _refuse_out_of_the_water)
+def _solution(closing: Closing, root: Root, polish: Polish | None = None) -> Solution:
+    return finished(closing, refine(closing, root, polish), None, _refuse_out_of_the_water)
 
 
 def _refuse_out_of_the_water(solution: Solution) -> None:

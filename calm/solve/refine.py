@@ -41,14 +41,16 @@ class Refined:
     tension_error: float
 
 
-def refine(
-    closing: Closing, root: Root, polish: Callable[[Root, Cuts], Closed] | None = None
-) -> Refined:
+Polish = Callable[[Root, Cuts], Closed]
+"""Closes a line on cuts, near a root."""
+
+
+def refine(closing: Closing, root: Root, polish: Polish | None = None) -> Refined:
     """Close the line finely enough, from a coarse root.
 
     Parameters
     ----------
-    polish : closes the line on cuts near a root, where that takes more than `Closing.polish`
+    polish : where that takes more than `Closing.polish`
 
     Raises
     ------

@@ -21,6 +21,18 @@ def standing_lift(line: Line, water: Water) -> Floats:
     return line.net_force((density - REFERENCE_DENSITY) * water.gravity)
 
 
+def standing_length(line: Line, water: Water) -> float:
+    """Length of the line standing upright in still water, each piece stretched by its mean
+    tension [m]; where a clamp hangs on a piece makes no difference here."""
+    lift = standing_lift(line, water)
+    tension = np.maximum(np.cumsum(lift) - 0.5 * lift, 0.0)
+    strain: Floats = line.compliance * tension
+    for piece, curve in enumerate(line.elongation):
+        if curve is not None:
+            strain[piece] = curve.strain(float(tension[piece]))
+    return float(((1.0 + strain) * line.length).sum())
+
+
 def refuse_unsupported(line: Line, water: Water) -> None:
     """Refuse a line that nothing holds up or, in still water, one that folds.
 

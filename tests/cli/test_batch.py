@@ -160,6 +160,11 @@ def test_stopped_and_taken_up_again(calm, write_mooring, record, folder, monkeyp
     assert "component.buoyancy was 2000.0, is now 2100.0" in done.err
 
 
+def _heed_interrupts():
+    """What is started in the background of a shell ignores them, and so do its children."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="sends signals as POSIX has them")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_signals_leave_what_can_be_resumed(write_mooring, folder, number):
@@ -172,7 +177,10 @@ def test_signals_leave_what_can_be_resumed(write_mooring, folder, number):
     (folder / file).write_text(text)
     command = [sys.executable, "-m", "calm", "batch", file, "--currents", "long.csv",
                "-o", "r.nc", "--workers", "1"]  # fmt: skip
-    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        command, stderr=subprocess.PIPE, text=True,
+        preexec_fn=_heed_interrupts,
+    )  # fmt: skip
     part = folder / "r.nc.part" / ".batch" / "identity"
     while not part.exists():
         assert process.poll() is None
