@@ -44,7 +44,7 @@ def locate(closing: Closing, lands: bool) -> tuple[Root, Root | None]:
     """
     unknown = closing.whole(lands)
     miss = closing.coarse_miss(unknown)
-    upright = max(-standing_length(closing.line, closing.water) - unknown.goal, 0.0)
+    upright = upright_depth(closing, unknown)
     samples = [(upright, miss(upright))]
     if samples[0][1] < 0.0 < upright:
         # the current's pull stretches the line further
@@ -60,6 +60,11 @@ def locate(closing: Closing, lands: bool) -> tuple[Root, Root | None]:
     if not roots:
         raise Status.GROUNDED.because("The current drags the whole line down to the seabed.")
     return roots[0], roots[-1] if len(roots) > 1 else None
+
+
+def upright_depth(closing: Closing, unknown: Unknown) -> float:
+    """Depth of the free end of the line standing in still water, with its stretch [m]."""
+    return max(-standing_length(closing.line, closing.water) - unknown.goal, 0.0)
 
 
 def _below_surface(

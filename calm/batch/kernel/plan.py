@@ -85,7 +85,7 @@ def plan_of(mooring: Mooring) -> Plan | None:
     if not _simple(line):
         return None
     closing = Closing(line, water, mooring.settings)
-    track = Track.of(line)
+    track = closing.track
     head = track.stages[0]
     if not isinstance(head, Rod):
         return None
