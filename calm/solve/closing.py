@@ -23,6 +23,8 @@ COARSE_STEP = radians(4.0)
 """Angle step of the marches that only look for the neighbourhood of a root."""
 REACH = 0.01
 """Longest segment at an angle step of 1°, as a share of the span."""
+NEARLY_LINEAR = 5e-3
+"""Miss, as a share of the span, below which a secant through a far larger one finds the root."""
 SHARE_TOLERANCE = 1e-9
 """How well the share of a surface float's buoyancy in use is found."""
 COARSEST_BRACKET = 1e-7
@@ -146,12 +148,16 @@ class Closing:
     def coarse_root(
         self, unknown: Unknown, a: float, miss_a: float, b: float, miss_b: float
     ) -> Root:
-        """Root of the coarse miss between a and b."""
-        x, _, slope = bracketed_root(
+        """Root of the coarse miss between a and b, to about 1e-4 of the span."""
+        small, linear = 1e-4 * self.span, unknown.afloat is None
+        if linear:  # below the surface the miss all but is, so that the last step needs no march
+            small = max(small, 0.2 * max(abs(miss_a), abs(miss_b)))
+        x, miss, slope = bracketed_root(
             self.coarse_miss(unknown), a, miss_a, b, miss_b,
-            small=1e-4 * self.span, narrow=COARSEST_BRACKET * abs(b - a),
+            small=min(small, NEARLY_LINEAR * self.span),
+            narrow=COARSEST_BRACKET * abs(b - a),
         )  # fmt: skip
-        return Root(unknown, x, slope)
+        return Root(unknown, x - miss / slope if linear and slope else x, slope)
 
     def coarser(self, root: Root) -> Root:
         """The coarse root near another one; that one where there is none."""
