@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     "Anchor weight",
     "tension",
     "Dewey, Mooring Design & Dynamics: weight in water ≥ 1.5 (V + H/0.6)",
+    of_anchor=True,
 )
 def anchor_weight(result: Result) -> Iterator[Verdict]:
     """Weight in water ≥ factor (V + H / friction): Dewey's rule for deadweights, factor 1.5."""
@@ -40,6 +41,7 @@ def anchor_weight(result: Result) -> Iterator[Verdict]:
     "Anchor uplift",
     "tension",
     "The same rule apart: V ≤ weight in water / 1.5",
+    of_anchor=True,
 )
 def anchor_uplift(result: Result) -> Iterator[Verdict]:
     """Upward pull V ≤ weight in water / factor."""
@@ -60,6 +62,7 @@ def anchor_uplift(result: Result) -> Iterator[Verdict]:
     "Anchor sliding",
     "tension",
     "The same rule apart: H ≤ friction (weight in water / 1.5 - V), friction 0.6 of a deadweight",
+    of_anchor=True,
 )
 def anchor_sliding(result: Result) -> Iterator[Verdict]:
     """Horizontal pull H ≤ friction (weight in water / factor - V)."""

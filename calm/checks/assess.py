@@ -44,7 +44,7 @@ def stand_of(mooring: Mooring, name: str) -> Stand:
     """
     environment = mooring.file.environment.name or OWN
     situations = situations_of(mooring)
-    given, *changed = ([*_judged(each, name, environment)] for each in situations)
+    given, *changed = ([*findings_of(each, name, environment)] for each in situations)
     states = {_of(finding): finding.state.severity for finding in given}
     others = [_softened(finding) for findings in changed for finding in findings]
     graver = [each for each in others if each.state.severity > states.get(_of(each), -1)]
@@ -58,7 +58,7 @@ def failed_stand(mooring: Mooring, name: str, failure: NoEquilibrium) -> Stand:
     """The stand of a mooring that could not be judged, for a reason of its own or of CALM's."""
     environment = mooring.file.environment.name or OWN
     situation = Situation(AS_GIVEN, None, failure)
-    findings = tuple(_judged(situation, name, environment))
+    findings = tuple(findings_of(situation, name, environment))
     return Stand(environment, mooring, (situation,), findings)
 
 
@@ -82,14 +82,26 @@ def assessment_of(name: str, stands: Sequence[Stand]) -> Assessment:
     )
 
 
-def _judged(situation: Situation, mooring: str, environment: str) -> Iterator[Finding]:
+def findings_of(
+    situation: Situation, mooring: str, environment: str, *, anchored: bool = True
+) -> Iterator[Finding]:
+    """What the rules of a standing line find in one situation.
+
+    Parameters
+    ----------
+    mooring, environment : their names in the findings
+    anchored : whether the last piece is an anchor; of one that only stands in for it, nothing is
+        found
+    """
     if situation.failure is not None:
         for verdict in equilibrium.judge(situation.failure):
             yield equilibrium.find(verdict, mooring, environment, situation.name)
     if situation.result is not None:
-        for rule in STANDING:
+        end = situation.result.file.pieces[-1].label
+        for rule in (each for each in STANDING if anchored or not each.of_anchor):
             for verdict in rule.judge(situation.result):
-                yield rule.find(verdict, mooring, environment, situation.name)
+                if anchored or verdict.component != end:
+                    yield rule.find(verdict, mooring, environment, situation.name)
 
 
 def _of(finding: Finding) -> tuple[str, str | None]:

@@ -122,6 +122,7 @@ class Rule:
     quantity : of `calm.quantities`, whose unit its values and limits have
     source : of the rule and of its default limit
     judge : from the evidence, a `Result` for most rules, to verdicts
+    of_anchor : whether it judges the anchor, and nothing where a line has none
     """
 
     name: str
@@ -129,6 +130,7 @@ class Rule:
     quantity: str
     source: str
     judge: Callable[[Any], Iterator[Verdict]]
+    of_anchor: bool = False
 
     def find(
         self, verdict: Verdict, mooring: str, environment: str, situation: str = AS_GIVEN
@@ -145,12 +147,12 @@ class Rule:
 
 
 def rule(
-    name: str, title: str, quantity: str, source: str
+    name: str, title: str, quantity: str, source: str, *, of_anchor: bool = False
 ) -> Callable[[Callable[[Any], Iterator[Verdict]]], Rule]:
     """Make a function that judges into the `Rule` of that name."""
 
     def of(judge: Callable[[Any], Iterator[Verdict]]) -> Rule:
-        return Rule(name, title, quantity, source, judge)
+        return Rule(name, title, quantity, source, judge, of_anchor)
 
     return of
 

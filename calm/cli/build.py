@@ -42,8 +42,8 @@ def build(
 
     The line is a table, its picture and the design check beside it. The file keeps its
     comments, its order and its units: what is not changed stays as it was written. What
-    is not saved is kept beside the file, and offered when a terminal was closed or the
-    power went. Press ? for all keys.
+    is not saved is kept beside the file, and offered after a closed terminal, a crash or a
+    loss of power. Press ? for all keys.
 
     Parameters
     ----------
@@ -54,9 +54,9 @@ def build(
     catalog
         A catalogue of your own; its components hide others of the same id. Repeatable.
     serve
-        Open it in a browser of this machine; nothing else is listened to.
+        Open it in a browser of this machine; other machines cannot reach it.
     port
-        Where --serve is found: http://localhost:PORT, 8000 unless given.
+        Port of --serve: the page is http://localhost:PORT, 8000 unless given.
     """
     if serve:
         return _serve(file, environment, catalog or [], port)
@@ -68,7 +68,7 @@ def build(
 
 
 def _has_terminal() -> bool:
-    """Whether there is something to draw on, the standard error, or a browser that started this."""
+    """Whether it can draw and read keys: in a terminal, or in the browser that started it."""
     if os.environ.get("TEXTUAL_DRIVER"):
         return True
     return all(stream is not None and stream.isatty() for stream in (sys.stdin, sys.stderr))
@@ -76,7 +76,7 @@ def _has_terminal() -> bool:
 
 def _serve(file: Path | None, environment: str | None, catalogs: list[Path], port: int) -> ExitCode:
     if not 1 <= port <= 65535:
-        raise UsageError(f"--port: {port} is none; one from 1024 to 65535 is usual")
+        raise UsageError(f"--port: {port} is not a port; give one from 1024 to 65535")
     if find_spec("textual_serve") is None:
         raise UsageError(_NO_BROWSER)
     from calm.tui.launch import open_session

@@ -11,10 +11,11 @@ does not fit, the whole is composed.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 
-from ruamel.yaml import YAML
+from ruamel.yaml import YAML, tokens
 from ruamel.yaml.error import YAMLError
 
 from calm.files.nodes import Node, NodeReader, Refusal
@@ -27,6 +28,16 @@ _NOT_CONTENT = re.compile(rf"(?:[ ]*(?:#[^{_BREAK}]*)?\r?\n)*")
 _HEADER = re.compile(rf"[ ]*[A-Za-z_][\w-]*:(?:[ ]+#[^{_BREAK}]*|[ ]*)\r?\n")
 _DOCUMENT_SIGN = re.compile(r"^(?:---|\.\.\.|%)", re.MULTILINE)
 _LINE_BREAK = re.compile(r"\r\n?|\n")
+_BRACKET = re.compile(r"[\[\]{}]")
+_BRACKETS: dict[type, str] = {
+    tokens.FlowSequenceStartToken: "[",
+    tokens.FlowSequenceEndToken: "]",
+    tokens.FlowMappingStartToken: "{",
+    tokens.FlowMappingEndToken: "}",
+}
+
+_DEEPEST = 100
+"""Brackets within brackets; the time to read them grows with the square of their number."""
 
 
 class _Unfit(Exception):
@@ -49,23 +60,52 @@ def compose(text: str) -> Composition:
     YAMLError, ValueError, IndexError, RecursionError
         By ruamel.yaml, of a text that is no valid YAML.
     """
-    if not _DOCUMENT_SIGN.search(text):
-        mark = 1 if text.startswith("\ufeff") else 0
+    _refuse_depth(text)
+    mark = 1 if text.startswith("\ufeff") else 0
+    # YAML drops a byte order mark before a text, which a part would have and the whole has not.
+    if not _DOCUMENT_SIGN.search(text) and "\ufeff" not in text[mark:]:
         try:
             return Composition(_in_parts(text[mark:], mark, 0))
         except (_Unfit, YAMLError, ValueError, IndexError, RecursionError):
             pass
-    return compose_whole(text)
+    return _whole(text)
 
 
 def compose_whole(text: str) -> Composition:
     """The same without memory, in less time where the text is read once; errors are the same."""
+    _refuse_depth(text)
+    return _whole(text)
+
+
+def _whole(text: str) -> Composition:
     root = YAML(typ="safe", pure=True).compose(text)
     if root is None:
         return Composition(None)
     reader = NodeReader(text)
     node = reader.read(root)
     return Composition(node, tuple(reader.refusals))
+
+
+def _refuse_depth(text: str) -> None:
+    """Raise RecursionError where brackets stand within brackets too often to be read in time."""
+    if not _is_too_deep(_BRACKET.findall(text)):
+        return
+    try:  # some may stand in comments and quotes
+        kinds = map(type, YAML(typ="safe", pure=True).scan(text))
+        is_refused = _is_too_deep(_BRACKETS[kind] for kind in kinds if kind in _BRACKETS)
+    except YAMLError:
+        return  # which composing says too
+    if is_refused:
+        raise RecursionError
+
+
+def _is_too_deep(signs: Iterable[str]) -> bool:
+    depth = 0
+    for sign in signs:
+        depth = depth + 1 if sign in "[{" else max(depth - 1, 0)
+        if depth > _DEEPEST:
+            return True
+    return False
 
 
 def _in_parts(text: str, offset: int, lines: int) -> Node:

@@ -1,4 +1,4 @@
-"""Every verb of the application, once: keys, help and command palette are made of this list."""
+"""Every key that CALM binds, once: bindings, help and command palette are made of this list."""
 
 from __future__ import annotations
 
@@ -8,7 +8,10 @@ from typing import Literal
 
 from textual.binding import Binding
 
-Place = Literal["anywhere", "line", "catalogue", "cell", "water", "grid", "text", "form"]
+Place = Literal[
+    "anywhere", "line", "catalogue", "cell", "water", "grid", "choice", "given", "text", "area",
+    "form", "sheet", "question", "help",
+]  # fmt: skip
 """Where the keys of an action work: what has the focus, or the screen it is on."""
 
 PLACES: dict[Place, str] = {
@@ -18,8 +21,14 @@ PLACES: dict[Place, str] = {
     "catalogue": "The catalogue",
     "water": "The water",
     "grid": "A table of the water",
+    "choice": "One of some words between arrows",
+    "given": "The form in which density or current is given",
     "text": "The file as text",
+    "area": "While the text is typed",
     "form": "A component of one's own",
+    "sheet": "Some values asked for together",
+    "question": "A question, answered by the letter in front of each answer",
+    "help": "This help",
 }
 """The headings of the help, in its order."""
 
@@ -47,11 +56,6 @@ class Action:
     hint: int | None = None
     palette: bool = True
 
-    @property
-    def shown_keys(self) -> str:
-        """The keys as people read them."""
-        return "  ".join(shown_key(key) for key in self.keys.split(","))
-
 
 _SIGNS = {
     "up": "↑",
@@ -72,6 +76,9 @@ _SIGNS = {
     "slash": "/",
     "plus": "+",
     "minus": "-",
+    "equals_sign": "=",
+    "asterisk": "*",
+    "colon": ":",
 }
 
 
@@ -83,6 +90,11 @@ def shown_key(key: str) -> str:
     else:
         last = _SIGNS.get(last, last.capitalize())
     return "+".join([*(part.capitalize() for part in held), last])
+
+
+def shown_keys(keys: str) -> str:
+    """Keys separated by commas as people read them."""
+    return "  ".join(map(shown_key, keys.split(",")))
 
 
 ACTIONS: tuple[Action, ...] = (
@@ -149,6 +161,13 @@ ACTIONS: tuple[Action, ...] = (
     Action("anywhere", "picture('schematic')", "4", "schematic", "The parts, not to scale."),
     Action("anywhere", "zoom", "z", "zoom", "Give the picture the whole screen, or take it back."),
     Action("anywhere", "mooring", "m", "name, place", "Name, description and position."),
+    Action(
+        "anywhere",
+        "tow",
+        "T",
+        "tow",
+        "Speed and course of a tow; makes the line one, which hangs from a ship.",
+    ),
     Action("anywhere", "text", "t", "text", "The file as text, with its mistakes."),
     Action("anywhere", "save", "ctrl+s,s", "save", "Save the file.", 9),
     Action("anywhere", "save_as", "S", "save as", "Save it under another name."),
@@ -209,10 +228,25 @@ ACTIONS: tuple[Action, ...] = (
     Action("text", "next_problem", "f8", "next mistake", "To the next mistake.", 2),
     Action("text", "back", "escape", "to the line", "To the line, once the text can be read.", 0),
     Action("text", "help", "f1", "help", "All keys.", 3),
+    Action("area", "indent", "tab", "indent", "Blanks to the next even column.", palette=False),
     # a component of one's own
     Action("form", "accept", "ctrl+s", "keep it", "Write the component into the file.", 0),
     Action("form", "cancel", "escape", "leave", "Leave without it.", 1),
     Action("form", "help", "f1", "help", "All keys.", 2),
+    Action("form", "app.focus_next", "down", "next", "To the next figure.", palette=False),
+    Action("form", "app.focus_previous", "up", "last", "To the one before.", palette=False),
+    # what is put over a screen, or beside a name
+    Action("choice", "turn(-1)", "left", "last", "The word before.", palette=False),
+    Action("choice", "turn(1)", "right,space,enter", "next", "The next word.", palette=False),
+    Action("given", "take", "enter", "take it", "Take the form that is shown.", palette=False),
+    Action("sheet", "take", "ctrl+s", "done", "Take all values.", palette=False),
+    Action("sheet", "leave", "escape", "leave", "Leave all as it was.", palette=False),
+    Action("sheet", "app.focus_next", "down", "next", "To the next value.", palette=False),
+    Action("sheet", "app.focus_previous", "up", "last", "To the one before.", palette=False),
+    Action("question", "answer('')", "escape", "go back", "Go back, where one may.", palette=False),
+    Action(
+        "help", "dismiss", "escape,q,enter,question_mark,f1", "close", "Close it.", palette=False
+    ),
 )
 
 

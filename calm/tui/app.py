@@ -2,25 +2,27 @@
 
 from __future__ import annotations
 
-import asyncio
 import os
-import signal
-from collections.abc import Iterable, Mapping
+import sys
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual import on, work
 from textual.app import App, SystemCommand
+from textual.filter import LineFilter, NoColor
 from textual.screen import Screen
 
 from calm.errors import CalmError
-from calm.tui.builder import BuilderScreen
-from calm.tui.dialogs import Answer, Question
+from calm.files.editing import Kept, WorkingFile
+from calm.tui import recovery
+from calm.tui.line.builder import BuilderScreen
 from calm.tui.messages import CatalogueRead, Edited, Judged, JudgingFailed
 from calm.tui.palette import Actions
+from calm.tui.plain import PlainSigns, shows_all_signs
 from calm.tui.saving import Saving
 from calm.tui.session import Session
 from calm.tui.theme import PICTURE_DARK, PICTURE_LIGHT, choose_theme, themes
-from calm.tui.turns import InTurn
 
 if TYPE_CHECKING:
     from calm.tui.live import View
@@ -28,45 +30,57 @@ if TYPE_CHECKING:
 _FULLY_AFTER = 0.5  # seconds without a change before launch, recovery and breaks are judged
 _AUTOSAVED_AFTER = 0.3  # seconds
 _LOOKED_AT_DISK = 2.0  # seconds between two looks
+_COLOURLESS = NoColor()
 
 
-class BuildApp(Saving, InTurn):
+class BuildApp(Saving):
     """The line builder.
 
     Parameters
     ----------
     session : the file that is built
-    recovered : a text that an earlier run has kept and not saved, to be offered
-    ascii_only : draw with plain signs
+    kept : work that an earlier session has kept and not saved, to be offered
     environ : tells of the terminal
+
+    Attributes
+    ----------
+    not_kept : why unsaved work could not be kept at the end; empty as a rule
     """
 
     TITLE = "calm build"
     COMMANDS: ClassVar[set[Any]] = {*App.COMMANDS, Actions}
     CSS = """
     * { scrollbar-size: 1 1; }
+    Input:nocolor > .input--cursor, Input:nocolor > .input--selection,
+    TextArea:nocolor .text-area--cursor, TextArea:nocolor .text-area--selection {
+        text-style: reverse;
+    }
     """
 
     def __init__(
         self,
         session: Session,
         *,
-        recovered: str | None = None,
-        ascii_only: bool = False,
+        kept: Kept | None = None,
         environ: Mapping[str, str] = os.environ,
     ) -> None:
         super().__init__()
         self.session = session
-        self.builder = BuilderScreen(session, ascii_only=ascii_only)
-        self._recovered = recovered
+        self.builder = BuilderScreen(session)
+        self.not_kept = ""
+        self._offered = kept
         self._environ = environ
+        self._plain = [] if shows_all_signs(environ, sys.__stderr__) else [PlainSigns()]
         self._view: View | None = None
         self._read = False
-        self._busy = False
+        self._judging = False
         self._stale = False
         self._wanted = False
+        self._checked: View | None = None
         self._fully: Any = None
         self._autosaving: Any = None
+        self._is_left = False
+        self._lost: str | None = None
 
     def on_mount(self) -> None:
         """Show the line; the first solution and the catalogue follow."""
@@ -76,35 +90,66 @@ class BuildApp(Saving, InTurn):
         self.theme = choose_theme(self._environ)
         self.push_screen(self.builder)
         self.call_after_refresh(self._begin)
-        self._listen()
         self.set_interval(_LOOKED_AT_DISK, self.look_at_disk)
-        if self._recovered is not None:
-            self.call_after_refresh(self._offer_recovered)
-        elif self.session.draft.problems:
-            self.call_after_refresh(self.builder.action_text)
 
     def _begin(self) -> None:
-        """Once the line is on the screen: read the catalogue, solve."""
+        """Once the line is on the screen: read the catalogue, solve, tell what was found."""
         self._read_catalogue()
         self._ask()
+        if self._offered is not None:
+            self._offer(self._offered)
+        else:
+            self._mend()
+        if self.session.file.is_open_elsewhere():
+            self.tell(f"{self.session.name} is open elsewhere, with work not saved", wrong=True)
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
         """Of what textual offers, the colours; the rest has its own keys here."""
         yield SystemCommand("colours", "Choose other colours.", self.action_change_theme)
+
+    def get_line_filters(self) -> Sequence[LineFilter]:
+        """Those of textual; one that takes all colours off, one for terminals of plain signs."""
+        filters = [_COLOURLESS] if self.no_color else super().get_line_filters()
+        return [*filters, *self._plain]
 
     # judging
 
     @property
     def is_idle(self) -> bool:
         """Whether the line that is shown has been solved, and nothing else is under way."""
-        return not (self._busy or self._stale) and self._view is not None and self._read
+        busy = self._judging or self._stale or self._checked is not None
+        return not busy and self._view is not None and self._read
 
     @on(Edited)
     def _after_an_edit(self) -> None:
         self._stale = True
+        self._tell_lost_environment()
         self.call_after_refresh(self._ask)  # what was typed is seen first
         if self._autosaving is None:
             self._autosaving = self.set_timer(_AUTOSAVED_AFTER, self._autosave)
+        self._mend()
+
+    def _tell_lost_environment(self) -> None:
+        before, self._lost = self._lost, self.session.lost_environment
+        if self._lost not in (None, before):
+            told = f"There is no environment {self._lost} now; the line stands in the file's own"
+            self.tell(told)
+
+    def _mend(self, *, as_judged: bool = False) -> None:
+        """Open the text where the draft cannot be read; or, `as_judged`, has mistakes."""
+        judged = self._view if as_judged and self.screen is self.builder else None
+        if (judged and judged.problems) or self.session.draft.problems:
+            self.call_later(self._open_text)
+
+    async def _open_text(self) -> None:
+        from calm.tui.text_screen import TextScreen
+
+        screens = self.draft_screens()
+        if isinstance(screens[-1], TextScreen) or self.screen is not screens[-1]:
+            return  # it is open, or a question is, after which the view comes again
+        while self.screen is not self.builder:
+            await self.pop_screen()
+        self.builder.action_text()
 
     def _ask(self) -> None:
         """Have the file judged, now or when the worker comes back; only its last state counts."""
@@ -112,19 +157,22 @@ class BuildApp(Saving, InTurn):
         if self._fully is not None:
             self._fully.stop()
             self._fully = None
-        if self._busy:
+        if self._judging:
             self._wanted = True
         else:
-            self._busy, self._wanted = True, False
-            self._judge(self.session.draft.text, self.session.environment)
+            self._judging, self._wanted = True, False
+            session = self.session
+            path, environment = session.file.path, session.environment
+            self._judge(session.draft.text, path, environment, session.catalogs)
 
     @work(thread=True, group="judging", exit_on_error=False)
-    def _judge(self, text: str, environment: str | None) -> None:
+    def _judge(
+        self, text: str, path: Path | None, environment: str | None, catalogs: Sequence[Path]
+    ) -> None:
         from calm.tui.live import judge
 
-        session = self.session
         try:
-            view = judge(text, session.file.path, environment, session.catalogs, keep=self._view)
+            view = judge(text, path, environment, catalogs, keep=self._view)
         except Exception as error:
             self.post_message(JudgingFailed(f"{type(error).__name__}: {error}"))
         else:
@@ -143,35 +191,41 @@ class BuildApp(Saving, InTurn):
 
     @on(Judged)
     def _take_view(self, event: Judged) -> None:
-        self._busy = False
-        is_first, self._view = self._view is None, event.view
-        view = event.view
+        if not self.is_running:
+            return  # on the way out: the screens are being taken apart
+        is_first = self._view is None
+        if event.fully:
+            is_late, self._checked = self._checked is not self._view, None
+        else:
+            is_late, self._judging = False, False
+        if not is_late:
+            self._view = event.view
+            for screen in self.draft_screens():
+                screen.show_view(event.view)
+            self._mend(as_judged=is_first)
         if self._wanted:
             self._ask()
-        elif not event.fully and not view.complete:
+        elif (is_late or not event.fully) and not (self._judging or self._fully):
             self._fully = self.set_timer(_FULLY_AFTER, self.ask_fully)
-        for screen in self.screen_stack:
-            show = getattr(screen, "show_view", None)
-            if show is not None:
-                show(view)
-        if is_first and view.problems and isinstance(self.screen, BuilderScreen):
-            self.screen.action_text()  # a file with mistakes is mended as text
+
+    @on(JudgingFailed)
+    def _tell_failure(self, event: JudgingFailed) -> None:
+        if not self.is_running:
+            return
+        self._judging, self._checked = False, None
+        self.tell(f"internal error ({event.reason}); please report it", wrong=True)
+        if self._wanted:
+            self._ask()
 
     def ask_fully(self) -> None:
         """Have the launch, the recovery and the breaks judged, too."""
         if self._fully is not None:
             self._fully.stop()
             self._fully = None
-        if not self._busy and self._view is not None:
-            self._busy = True
-            self._judge_fully(self._view)
-
-    @on(JudgingFailed)
-    def _tell_failure(self, event: JudgingFailed) -> None:
-        self._busy = False
-        self.tell(f"internal error ({event.reason}); please report it", wrong=True)
-        if self._wanted:
-            self._ask()
+        view = self._view
+        if not self._judging and self._checked is None and view is not None and not view.complete:
+            self._checked = view
+            self._judge_fully(view)
 
     # the catalogue
 
@@ -186,6 +240,8 @@ class BuildApp(Saving, InTurn):
 
     @on(CatalogueRead)
     def _take_catalogue(self, event: CatalogueRead) -> None:
+        if not self.is_running:
+            return
         self._read = True
         if event.catalogue is None:
             self.tell(event.reason, wrong=True)
@@ -194,47 +250,58 @@ class BuildApp(Saving, InTurn):
 
     # what is kept, and the way out
 
-    def tell(self, text: str, *, wrong: bool = False) -> None:
-        """Say something in the last line of the screen."""
-        tell = getattr(self.screen, "tell", None) or self.builder.tell
-        tell(text, wrong=wrong)
+    def keep(self) -> str:
+        """Keep what is not saved, at once; why it cannot be kept, empty where it is."""
+        try:
+            self.session.note_unsaved().keep()
+        except (CalmError, OSError) as error:
+            return f"What is not saved could not be kept: {error}"
+        return ""
 
     def _autosave(self) -> None:
         self._autosaving = None
-        self.keep()
+        if not self._is_left:
+            self._keep_aside(self.session.note_unsaved())
 
-    def _listen(self) -> None:
-        """Keep what is not saved when the terminal is closed or the process is ended."""
-        if os.name != "posix":
-            return
-        loop = asyncio.get_running_loop()
-        for number in (signal.SIGHUP, signal.SIGTERM):
-            loop.add_signal_handler(number, self._end)
+    @work(thread=True, group="keeping", exit_on_error=False)
+    def _keep_aside(self, file: WorkingFile) -> None:
+        """A slow disk holds up no key."""
+        try:
+            file.keep()
+        except (CalmError, OSError) as error:
+            self.call_later(self.tell, f"What is not saved cannot be kept: {error}", wrong=True)
 
-    def _end(self) -> None:
-        self.keep()
+    def on_unmount(self) -> None:
+        """Keep what is not saved whatever has ended the application, a closed page or a failure."""
+        self.keep_at_the_end()
+
+    def keep_at_the_end(self) -> None:
+        """Keep what is not saved, unless the person has left; `not_kept` tells what hinders it."""
+        if not self._is_left:
+            self.not_kept = self.keep()
+
+    def leave(self) -> None:
+        """Leave; nothing is to be kept."""
+        self._is_left = True
+        if not self.session.changed:
+            self.keep()  # which removes a copy that is out of date
         self.exit(0)
 
-    def _offer_recovered(self) -> None:
-        text = self._recovered
-        assert text is not None
-
+    def _offer(self, kept: Kept) -> None:
         def take(answer: str | None) -> None:
             if answer == "recover":
-                self.session.write(text, "recover what was not saved")
-                self.builder.changed(told="Recovered; save it to keep it")
+                self.session.recover(kept)
+                self.taken_over("Recovered; save it to keep it")
+            elif answer == "discard":
+                self.push_screen(recovery.confirmation(kept), throw_away)
             else:
-                self.session.file.forget()
-            if self.session.draft.problems:
-                self.builder.action_text()
+                self._mend(as_judged=True)
 
-        answers = [Answer("r", "recover it", "recover"), Answer("d", "throw it away", "discard")]
-        self.push_screen(
-            Question(
-                "Work that was not saved",
-                f"An earlier run ended before {self.session.name} was saved.",
-                answers,
-                must=True,
-            ),
-            take,
-        )
+        def throw_away(answer: str | None) -> None:
+            if answer is None:
+                self._offer(kept)
+            else:
+                self.session.file.discard(kept)
+                self._mend(as_judged=True)
+
+        self.push_screen(recovery.offer(self.session, kept), take)

@@ -25,20 +25,21 @@ class TitleBar(Widget):
 
     def __init__(self) -> None:
         super().__init__()
-        self._left, self._right = "", ""
+        self._said = "", "", False
 
-    def show(self, left: str, right: str) -> None:
-        """Say something else."""
-        if (left, right) != (self._left, self._right):
-            self._left, self._right = left, right
+    def show(self, left: str, right: str, *, old: bool = False) -> None:
+        """Say something else; the right end is dimmed where it is of an `old` state of the line."""
+        if (left, right, old) != self._said:
+            self._said = left, right, old
             self.refresh()
 
     def render(self) -> Text:
         """Both ends; the left one gives way."""
         width = self.content_size.width
-        right = Text(self._right, no_wrap=True)
+        said, verdict, old = self._said
+        right = Text(verdict, style="dim" if old else "", no_wrap=True)
         right.truncate(max(width * 2 // 3, 1), overflow="ellipsis")
-        left = Text(self._left, no_wrap=True)
+        left = Text(said, no_wrap=True)
         left.truncate(max(width - cell_len(right.plain) - 1, 0), overflow="ellipsis", pad=True)
         return Text(" ").join([left, right])
 
@@ -60,11 +61,6 @@ class KeyBar(Static):
         super().__init__()
         self._actions: list[Action] = []
         self._told = ""
-
-    @property
-    def told(self) -> str:
-        """What is told now, if anything."""
-        return self._told
 
     def show_keys(self, actions: Iterable[Action]) -> None:
         """Show other keys."""

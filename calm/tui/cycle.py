@@ -7,18 +7,17 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from rich.text import Text
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.message import Message
 from textual.widget import Widget
+
+from calm.tui.actions import bindings
 
 
 class Cycle(Widget, can_focus=True):
     """A name, and a word between two arrows."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("left", "turn(-1)", show=False),
-        Binding("right,space,enter", "turn(1)", show=False),
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings("choice")]
     DEFAULT_CSS = """
     Cycle { height: 1; width: 1fr; color: $foreground; }
     Cycle:focus { text-style: bold; }

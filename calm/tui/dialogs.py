@@ -8,12 +8,13 @@ from typing import ClassVar
 
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.containers import Vertical
 from textual.events import Key
 from textual.screen import ModalScreen
 from textual.widgets import Static
 
+from calm.tui.actions import bindings
 from calm.tui.checking import Check, anything
 from calm.tui.field import Field
 
@@ -42,7 +43,7 @@ class Answer:
 class Question(ModalScreen[str | None]):
     """One of some answers, by its key or with the mouse; Esc is none, unless it `must` be given."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "answer('')", show=False)]
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings("question")]
     DEFAULT_CSS = "Question {" + _FRAME + "}"
 
     def __init__(
@@ -95,12 +96,7 @@ class Asked:
 class Sheet(ModalScreen[dict[str, str] | None]):
     """Some texts, entered together; Esc leaves all as it was."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("escape", "leave", show=False),
-        Binding("ctrl+s", "take", show=False),
-        Binding("down", "app.focus_next", show=False),
-        Binding("up", "app.focus_previous", show=False),
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings("sheet")]
     DEFAULT_CSS = (
         "Sheet {" + _FRAME + " & Field > Input { width: 1fr; } & .field-note { display: none; }"
         "& #sheet-note { height: auto; min-height: 1; color: $text-muted; margin-top: 1; }"

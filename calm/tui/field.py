@@ -67,6 +67,7 @@ class Field(Horizontal):
     ) -> None:
         super().__init__(id=id)
         self.key, self.check, self.begun, self._note = key, check, text, note
+        self._shown = text  # what the input was filled with
         self._title, self._placeholder = title, placeholder
 
     def compose(self) -> ComposeResult:
@@ -81,9 +82,14 @@ class Field(Horizontal):
         return self.query_one(Input)
 
     @property
+    def is_typing(self) -> bool:
+        """Whether something else was typed than was shown."""
+        return self.input.value != self._shown
+
+    @property
     def text(self) -> str:
-        """What was typed, as it is to be written."""
-        return self.check(self.input.value).text
+        """What was typed, as it is to be written; as it was, where nothing was typed."""
+        return self.check(self.input.value).text if self.is_typing else self.begun
 
     @property
     def reading(self) -> Reading:
@@ -99,7 +105,7 @@ class Field(Horizontal):
 
     def reset(self, text: str) -> None:
         """Show another text as the one to begin with."""
-        self.begun = text
+        self.begun = self._shown = text
         with self.prevent(Input.Changed):
             self.input.value = text
         self._tell(Reading(text))
@@ -152,9 +158,12 @@ class Field(Horizontal):
                 self.input.value = reading.offer
                 self.input.cursor_position = len(reading.offer)
             return False
+        if not self.is_typing:
+            return True
         if self.input.value != reading.text:
             with self.prevent(Input.Changed):
                 self.input.value = reading.text
+        self._shown = reading.text
         self._tell(reading)
         if reading.text != self.begun:
             self.begun = reading.text

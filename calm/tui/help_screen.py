@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from typing import ClassVar
 
 from rich.console import Group, RenderableType
@@ -9,26 +10,32 @@ from rich.table import Table
 from rich.text import Text
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
-from textual.containers import VerticalScroll
-from textual.screen import ModalScreen
-from textual.widgets import Static
+from textual.containers import ScrollableContainer, VerticalScroll
+from textual.screen import ModalScreen, Screen
+from textual.widgets import Input, Static, TextArea
 
-from calm.tui.actions import PLACES, actions_in
+from calm.tui.actions import PLACES, actions_in, bindings, shown_keys
 from calm.tui.signs import LOOKS
 
 _SIGNS = "Signs: " + ", ".join(f"{look.sign} {look.word}" for look in LOOKS.values())
 _GROUND = (
-    "Every change is solved and judged at once. A number without a unit takes the unit shown. "
-    "With the mouse: press a cell to go there, press it again to edit."
+    "Every change is solved and judged at once; until then the figures of the line before are "
+    "dimmed. A number without a unit takes the unit shown. With the mouse: press a cell to go "
+    "there, press it again to edit."
 )
+_OF_TEXTUAL: dict[str, Iterable[BindingType]] = {
+    "On every screen, with Ctrl+P and Ctrl+Q": Screen.BINDINGS,
+    "While a value is typed": Input.BINDINGS,
+    "While the text is typed, as well": TextArea.BINDINGS,
+    "Pictures, verdict and whatever is longer than the screen": ScrollableContainer.BINDINGS,
+}
+"""Keys that CALM leaves to the widgets it is made of; their meanings are told by them."""
 
 
 class HelpScreen(ModalScreen[None]):
     """The list of keys, made of the list of actions."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("escape,q,question_mark,f1,enter", "dismiss", show=False)
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings("help")]
     DEFAULT_CSS = """
     HelpScreen {
         align: center middle;
@@ -48,11 +55,23 @@ class HelpScreen(ModalScreen[None]):
 def _text() -> RenderableType:
     parts: list[RenderableType] = [Text("Keys", style="bold"), Text(_GROUND), Text(_SIGNS)]
     for place, title in PLACES.items():
-        table = Table.grid(padding=(0, 2, 0, 0))
-        table.add_column(width=20, overflow="fold")
-        table.add_column(overflow="fold")
-        for action in actions_in(place):
-            table.add_row(Text(action.shown_keys, style="bold"), Text(action.meaning))
-        parts += [Text(f"\n{title}", style="bold underline"), table]
-    parts.append(Text("\nEsc leaves.", style="dim"))
+        rows = [(action.keys, action.meaning) for action in actions_in(place)]
+        parts += _section(title, rows)
+    for title, inherited in _OF_TEXTUAL.items():
+        parts += _section(title, _told(inherited))
     return Group(*parts)
+
+
+def _told(inherited: Iterable[BindingType]) -> Iterator[tuple[str, str]]:
+    for binding in inherited:
+        if isinstance(binding, Binding):
+            yield binding.key, f"{binding.description.capitalize()}."
+
+
+def _section(title: str, rows: Iterable[tuple[str, str]]) -> list[RenderableType]:
+    table = Table.grid(padding=(0, 2, 0, 0))
+    table.add_column(width=20, overflow="fold")
+    table.add_column(overflow="fold")
+    for keys, meaning in rows:
+        table.add_row(Text(shown_keys(keys), style="bold"), Text(meaning))
+    return [Text(f"\n{title}", style="bold underline"), table]

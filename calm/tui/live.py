@@ -14,9 +14,10 @@ from pathlib import Path
 
 from calm.case import Mooring, Result, Tow, TowResult
 from calm.case.memory import Memory
-from calm.checks.assess import OWN, assessment_of, stand_of
-from calm.checks.finding import Finding, State
-from calm.checks.rules import STANDING, equilibrium
+from calm.checks.assess import OWN, assessment_of, findings_of, stand_of
+from calm.checks.assessment import Situation
+from calm.checks.finding import AS_GIVEN, Finding, State
+from calm.checks.lacking import lacking
 from calm.errors import InputError, NoEquilibrium, Problem, internal_failure
 from calm.files import MooringFile, read_mooring
 from calm.files.document import Document, document_of
@@ -29,7 +30,6 @@ _Figures = tuple[float | None, float | None, float | None, float | None]
 _UNSOLVED: _Figures = (None, None, None, None)
 _NOTHING: tuple[float | None, State | None] = (None, None)
 _GRAVITY = {state: state.severity for state in State}
-_OF_THE_ANCHOR = ("anchor-weight", "anchor-uplift", "anchor-sliding")
 
 
 @dataclass(frozen=True)
@@ -75,6 +75,7 @@ class View:
     result : the line solved; None where it could not be
     failure : why it could not
     findings : of the design check; none for a tow
+    tighter : of each rule what another situation leaves less margin in, without being graver
     seconds : that it took
     environments : the names of those that the file gives besides its own
     rows : down the file, clamps below their piece
@@ -91,11 +92,16 @@ class View:
     result: Result | TowResult | None = None
     failure: NoEquilibrium | None = None
     findings: tuple[Finding, ...] = ()
+    tighter: tuple[Finding, ...] = ()
     seconds: float = 0.0
     environments: tuple[str, ...] = ()
     rows: tuple[Row, ...] = ()
     complete: bool = False
     memory: Memory = field(default_factory=Memory, repr=False, compare=False)
+
+    def is_of(self, text: str, path: Path | None, environment: str | None) -> bool:
+        """Whether a text, of the file of a path, was judged in this environment."""
+        return (self.text, self.path, self.environment) == (text, _placed(path), environment)
 
     @property
     def anchored(self) -> bool:
@@ -127,8 +133,7 @@ def judge(
     """
     started = time.perf_counter()
     memory = Memory() if keep is None else keep.memory
-    view = View(text, Path.cwd() / UNNAMED if path is None else Path(path), environment)
-    view = replace(view, memory=memory)
+    view = View(text, _placed(path), environment, memory=memory)
     try:
         view = _judged(view, catalogs)
     except Exception as error:
@@ -136,6 +141,11 @@ def judge(
             raise
         view = replace(view, failure=internal_failure(error))
     return replace(view, seconds=time.perf_counter() - started)
+
+
+def _placed(path: str | Path | None) -> Path:
+    """Where a text belongs, beside which the files that it names are looked for."""
+    return Path.cwd() / UNNAMED if path is None else Path(path)
 
 
 def judge_fully(view: View) -> View:
@@ -153,11 +163,13 @@ def judge_fully(view: View) -> View:
         if os.environ.get("CALM_DEBUG") == "1":
             raise
         return view
-    findings = tuple(assessment.all_findings())
+    findings, tighter = tuple(assessment.all_findings()), tuple(assessment.tighter_findings())
     seconds = view.seconds + time.perf_counter() - started
     document = document_of(str(view.path), view.text)
-    rows = tuple(_rows(document, mooring.file, view.result, findings))
-    return replace(view, findings=findings, rows=rows, seconds=seconds, complete=True)
+    rows = tuple(_rows(document, mooring.file, view.result, (*findings, *tighter)))
+    return replace(
+        view, findings=findings, tighter=tighter, rows=rows, seconds=seconds, complete=True
+    )
 
 
 def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
@@ -173,7 +185,7 @@ def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
         )  # fmt: skip
     except InputError as error:
         return _wrong(view, error.problems)
-    view = replace(view, file=file, missing=tuple(_lacking(file)))
+    view = replace(view, file=file, missing=tuple(lacking(file)))
     if "no float" in view.missing:
         return replace(view, rows=tuple(_rows(document, file, None)))
     return _solved(view, document, file)
@@ -182,14 +194,22 @@ def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
 def _solved(view: View, document: Document, file: MooringFile) -> View:
     line = Mooring(file, memory=view.memory) if file.tow is None else Tow(file, view.memory)
     try:
-        result = line.solve()
-    except NoEquilibrium as failure:
-        rows = tuple(_rows(document, file, None))
-        findings = () if file.tow else tuple(_of_failure(file, failure))
-        return replace(view, failure=failure, findings=findings, rows=rows)
-    findings = tuple(_standing(result, view.anchored)) if isinstance(result, Result) else ()
+        result, failure = line.solve(), None
+    except NoEquilibrium as error:
+        result, failure = None, error
+    findings = () if isinstance(result, TowResult) else tuple(_found(view, file, result, failure))
     rows = tuple(_rows(document, file, result, findings))
-    return replace(view, result=result, findings=findings, rows=rows)
+    return replace(view, result=result, failure=failure, findings=findings, rows=rows)
+
+
+def _found(
+    view: View, file: MooringFile, result: Result | None, failure: NoEquilibrium | None
+) -> Iterator[Finding]:
+    """What the rules of a standing line find; none of them is of a tow."""
+    if file.tow is None:
+        as_given = Situation(AS_GIVEN, result, failure)
+        environment = file.environment.name or OWN
+        yield from findings_of(as_given, file.name, environment, anchored=view.anchored)
 
 
 def _wrong(view: View, problems: Sequence[Problem]) -> View:
@@ -202,33 +222,6 @@ def _wrong(view: View, problems: Sequence[Problem]) -> View:
 def _variants(document: Document) -> tuple[str, ...]:
     named = document.data.get("environments")
     return tuple(named) if isinstance(named, dict) else ()
-
-
-def _lacking(file: MooringFile) -> Iterator[str]:
-    """What no mooring stands without."""
-    if file.tow is not None:
-        return
-    clamps = [clamp.component for piece in file.pieces for clamp in piece.clamps]
-    parts = [*(piece.component for piece in file.pieces), *clamps]
-    if not any(part.net_buoyancy > 0.0 for part in parts):
-        yield "no float"
-    if file.pieces[-1].use == STAND_IN:
-        yield "no anchor"
-
-
-def _of_failure(file: MooringFile, failure: NoEquilibrium) -> Iterator[Finding]:
-    for verdict in equilibrium.judge(failure):
-        yield equilibrium.find(verdict, file.name, file.environment.name or OWN)
-
-
-def _standing(result: Result, anchored: bool) -> Iterator[Finding]:
-    file = result.file
-    for rule in STANDING:
-        if not anchored and rule.name in _OF_THE_ANCHOR:
-            continue
-        for verdict in rule.judge(result):
-            if anchored or verdict.component != file.pieces[-1].label:
-                yield rule.find(verdict, file.name, file.environment.name or OWN)
 
 
 def _rows(

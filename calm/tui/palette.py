@@ -17,7 +17,7 @@ class Actions(Provider):
 
     @property
     def _offered(self) -> list[Action]:
-        from calm.tui.builder import BuilderScreen
+        from calm.tui.line.builder import BuilderScreen
 
         if not isinstance(self.screen, BuilderScreen):
             return []

@@ -10,11 +10,12 @@ from textual import events
 from textual.app import ComposeResult
 from textual.containers import Vertical
 from textual.geometry import Size
-from textual.message import Message
 from textual.reactive import reactive
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
 from textual.widgets import Static
+
+from calm.tui.signs import ELLIPSIS
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
@@ -60,20 +61,18 @@ class Picture(ScrollView, can_focus=True):
     Picture:focus { background-tint: $foreground 3%; }
     """
 
-    def __init__(self, *, ascii_only: bool = False, id: str | None = None) -> None:
-        super().__init__(id=id)
+    def __init__(self) -> None:
+        super().__init__()
         self.tab: Tab = "elevation"
-        self.ascii_only = ascii_only
         self._view: View | None = None
-        self._old = False
         self._drawn: Size | None = None  # the size that the rows are for
         self._rows: list[Text] = []
 
-    def show(self, view: View | None, tab: Tab, *, old: bool) -> None:
-        """Draw a line as judged; dimmed where it is an earlier one."""
+    def show(self, view: View | None, tab: Tab) -> None:
+        """Draw a line as judged."""
         if tab != self.tab:
             self.scroll_to(y=0, animate=False)
-        self._view, self.tab, self._old = view, tab, old
+        self._view, self.tab = view, tab
         self._drawn = None
         self.refresh()
 
@@ -113,12 +112,11 @@ class Picture(ScrollView, can_focus=True):
     def _elevation(self, result: Result | TowResult, size: Size) -> list[Text]:
         from calm.report.sketch import current_profile, elevation
 
-        options = {"dim": self._old, "ascii_only": self.ascii_only}
         if size.width < _LEAST_BESIDE or result.file.environment.depth is None:
-            return elevation(result, size.width, size.height, **options)
+            return elevation(result, size.width, size.height)
         beside = min(size.width // _BESIDE, _MOST_BESIDE)
-        line = elevation(result, size.width - beside - 1, size.height, **options)
-        profile = current_profile(_water_of(result), beside, size.height, **options)
+        line = elevation(result, size.width - beside - 1, size.height)
+        profile = current_profile(_water_of(result), beside, size.height)
         rows = []
         for left, right in zip(line, profile, strict=True):
             left.truncate(size.width - beside, pad=True)
@@ -128,19 +126,19 @@ class Picture(ScrollView, can_focus=True):
     def _plan(self, result: Result | TowResult, size: Size) -> list[Text]:
         from calm.report.sketch import plan
 
-        return plan(result, size.width, size.height, dim=self._old, ascii_only=self.ascii_only)
+        return plan(result, size.width, size.height)
 
     def _tension(self, result: Result | TowResult, size: Size) -> list[Text]:
         from calm.report.sketch import tension
 
-        return tension(result, size.width, size.height, dim=self._old, ascii_only=self.ascii_only)
+        return tension(result, size.width, size.height)
 
     def _schematic(self, result: Result | TowResult, size: Size) -> list[Text]:
         from calm.report.schematic.text import schematic_text
 
         width = max(size.width, _SCHEMATIC_WIDTH)
-        text = schematic_text(result.file, result, width, ascii_only=self.ascii_only)
-        return [Text(line, style="dim" if self._old else "") for line in text.splitlines()]
+        text = schematic_text(result.file, result, width)
+        return [Text(line) for line in text.splitlines()]
 
 
 def _water_of(result: Result | TowResult) -> Water:
@@ -153,7 +151,7 @@ def _words(view: View | None, size: Size) -> list[Text]:
     """What stands where there is no picture yet."""
     if size.width < 20 or size.height < 6:
         return [Text("(too small)", style="dim")]
-    text = "…" if view is None else "The picture comes with the first line that stands."
+    text = ELLIPSIS if view is None else "The picture comes with the first line that stands."
     return [Text(""), *(Text(line, style="dim") for line in _wrapped(text, size.width))]
 
 
@@ -164,35 +162,32 @@ def _wrapped(text: str, width: int) -> list[str]:
 
 
 class Pictures(Vertical):
-    """The pictures under their names."""
+    """The pictures under their names, dimmed where they are of another state of the line."""
 
     DEFAULT_CSS = """
     Pictures { height: 1fr; width: 1fr; }
+    Pictures.-old Picture { text-style: dim; }
     """
 
     tab: reactive[Tab] = reactive("elevation", init=False)
 
-    class Chosen(Message):
-        """Another picture is shown."""
-
-    def __init__(self, *, ascii_only: bool = False, id: str | None = None) -> None:
+    def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
-        self._ascii_only = ascii_only
         self._view: View | None = None
-        self._old = False
+        self._note = ""
 
     def compose(self) -> ComposeResult:
         """The names, and the picture."""
         yield Tabs()
-        yield Picture(ascii_only=self._ascii_only)
+        yield Picture()
 
     def on_mount(self) -> None:
         """Nothing is solved yet."""
         self._show()
 
-    def show(self, view: View | None, *, old: bool) -> None:
-        """Draw a line as judged; `old` where the line has changed since and does not stand."""
-        self._view, self._old = view, old
+    def show(self, view: View | None, note: str = "") -> None:
+        """Draw a line as judged, with a note."""
+        self._view, self._note = view, note
         self._show()
 
     def watch_tab(self) -> None:
@@ -200,8 +195,8 @@ class Pictures(Vertical):
         self._show()
 
     def _show(self) -> None:
-        self.query_one(Tabs).show(self.tab, "as it last stood" if self._old else "")
-        self.query_one(Picture).show(self._view, self.tab, old=self._old)
+        self.query_one(Tabs).show(self.tab, self._note)
+        self.query_one(Picture).show(self._view, self.tab)
 
     def on_click(self, event: events.Click) -> None:
         """Give the picture the focus."""

@@ -20,6 +20,7 @@ class Profile(Widget):
 
     DEFAULT_CSS = """
     Profile { height: 1fr; }
+    Profile.-old { text-style: dim; }
     """
 
     def __init__(self) -> None:
@@ -28,11 +29,14 @@ class Profile(Widget):
         self._drawn: Size | None = None  # the size that the rows are for
         self._rows: list[Text] = []
 
-    def show(self, view: View | None) -> None:
-        """Draw another one; one that cannot be read leaves the last."""
+    def show(self, view: View | None, *, old: bool = False) -> None:
+        """Draw another one, dimmed where it is `old`; one that cannot be read dims the last."""
         if view is not None and view.file is not None:
             self._view, self._drawn = view, None
             self.refresh()
+        else:
+            old = True
+        self.set_class(old, "-old")
 
     def render_line(self, y: int) -> Strip:
         """A row of the screen."""

@@ -2,170 +2,235 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 from calm.errors import CalmError
 from calm.tui.checking import Reading
 from calm.tui.dialogs import Answer, Asked, Question, Sheet
+from calm.tui.line.builder import BuilderScreen
+from calm.tui.messages import Edited
+from calm.tui.recovery import moment
+from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
-
-if TYPE_CHECKING:
-    from textual.app import App
-
-    Base = App[int]
-else:
-    Base = object
+from calm.tui.turns import InTurn
 
 _SUFFIX = ".yaml"
+_CHANGED = "The file was changed by another program; saving will ask"
+_GONE = "The file is gone from the disk and not saved any more; saving writes it again"
+_READ_AGAIN = "Read again: another program has changed it"
+
+Then = Callable[[], object]
 
 
-class Saving(Base):
-    """What an application does to save the file of its `session` and to leave."""
+class Saving(InTurn):
+    """An application that saves the file of its `session`, keeps what is not saved, and leaves."""
 
     session: Session
-    builder: Any
+    builder: BuilderScreen
 
-    if TYPE_CHECKING:
+    _told: tuple[object] | None = None
+    """The state of the file on the disk that was told of."""
 
-        def tell(self, text: str, *, wrong: bool = False) -> None:
-            """Say something in the last line of the screen."""
+    def tell(self, text: str, *, wrong: bool = False) -> None:
+        """Say something in the last line of the screen."""
+        screen = self.screen if isinstance(self.screen, DraftScreen) else self.builder
+        screen.tell(text, wrong=wrong)
 
-    def keep(self) -> None:
-        """Keep what is not saved beside the file; that it cannot be kept is told."""
-        try:
-            self.session.autosave()
-        except (CalmError, OSError) as error:
-            self.tell(f"What is not saved could not be kept: {error}", wrong=True)
+    def draft_screens(self) -> list[DraftScreen]:
+        """Those that are open, the one on top last."""
+        return [each for each in self.screen_stack if isinstance(each, DraftScreen)]
+
+    def taken_over(self, told: str) -> None:
+        """Another text has taken the place of the draft: every screen reads it again."""
+        for screen in self.draft_screens():
+            screen.replaced()
+        self.tell(told)
+        self.post_message(Edited())
+
+    # saving
 
     def action_save(self) -> None:
         """Save, and ask for a name where there is none."""
-        self._save()
+        if self._is_settled():
+            self._save()
 
     def action_save_as(self) -> None:
         """Save under another name."""
-        self._ask_for_name()
+        if self._is_settled():
+            self._ask_for_name()
 
-    def _save(self, then: Callable[[], object] | None = None) -> None:
+    def _is_settled(self) -> bool:
+        """Whether nothing is being typed any more; a bad value has been told."""
+        return not isinstance(self.screen, DraftScreen) or self.screen.settle()
+
+    def _save(self, then: Then | None = None) -> None:
         file = self.session.file
         if file.path is None:
             self._ask_for_name(then)
-        elif file.changed_on_disk():
+        elif file.stamp is not None and file.changed_on_disk():
             self._ask_of_change(then)
+        elif file.is_protected:
+            self._ask_to_overwrite(file.path, then)
         else:
             self._write(self.session.save, then)
 
-    def _write(self, write: Callable[[], object], then: Callable[[], object] | None) -> None:
+    def _write(self, write: Callable[[], str], then: Then | None) -> None:
         try:
-            write()
+            lost = write()
         except (CalmError, OSError) as error:
             # the folder is known, and the reason must not be cut off behind it
             folder = "" if self.session.file.path is None else f"{self.session.file.path.parent}/"
             self.tell(f"Not saved: {str(error).replace(folder, '')}", wrong=True)
             return
         self.builder.refresh_rows()
-        self.tell(f"{self.session.name} saved")
+        self.tell(f"{self.session.name} saved" + (f", but {lost}" if lost else ""))
+        self.post_message(Edited())  # what it names may be another file in another folder
         if then is not None:
             then()
 
-    def _ask_for_name(self, then: Callable[[], object] | None = None) -> None:
+    def _ask_for_name(self, then: Then | None = None, begin: Path | None = None) -> None:
         path = self.session.file.path
-        begin = "" if path is None else str(path)
 
         def take(texts: dict[str, str] | None) -> None:
             if texts is None:
                 return
-            chosen = _path(texts["path"])
-            if chosen.exists() and chosen != path:
+            chosen = chosen_path(texts["path"])
+            if path is not None and os.path.realpath(chosen) == os.path.realpath(path):
+                self._save(then)
+            elif chosen.exists():
                 self._ask_to_overwrite(chosen, then)
             else:
                 self._write(lambda: self.session.save_as(chosen), then)
 
-        asked = [Asked("path", "File", begin, _is_writable, placeholder="iroise-2026.yaml")]
+        text = str(begin or path or "")
+        asked = [Asked("path", "File", text, _is_writable, placeholder="iroise-2026.yaml")]
         self.push_screen(Sheet("Save as", f"In {Path.cwd()}, unless told otherwise.", asked), take)
 
-    def _ask_to_overwrite(self, path: Path, then: Callable[[], object] | None) -> None:
+    def _ask_to_overwrite(self, path: Path, then: Then | None) -> None:
+        """Of another file that is there, or of one's own that is protected."""
+        is_own = path == self.session.file.path
+
         def take(answer: str | None) -> None:
-            if answer:
-                self._write(lambda: self.session.save_as(path), then)
+            if answer == "overwrite":
+                write = self.session.save if is_own else lambda: self.session.save_as(path)
+                self._write(write, then)
+            elif answer == "other":
+                self._ask_for_name(then, _free_name(path))
 
-        answers = [Answer("o", "overwrite it", "overwrite")]
-        self.push_screen(Question(f"{path.name} is there already", str(path), answers), take)
+        title = f"{path.name} is write-protected" if is_own else f"{path.name} is there already"
+        protected = not is_own and not os.access(path, os.W_OK)
+        text = f"{path}{', and write-protected' if protected else ''}"
+        answers = [
+            Answer("o", "overwrite it", "overwrite"),
+            Answer("n", "save under another name", "other"),
+        ]
+        self.push_screen(Question(title, text, answers), take)
 
-    def _ask_of_change(self, then: Callable[[], object] | None) -> None:
+    def _ask_of_change(self, then: Then | None) -> None:
+        path, stamp = self.session.file.path, self.session.file.stamp
+        assert path is not None
+
         def take(answer: str | None) -> None:
             if answer == "overwrite":
                 self._write(self.session.save, then)
             elif answer == "theirs":
                 self._take_theirs()
             elif answer == "other":
-                self._ask_for_name(then)
+                self._ask_for_name(then, _free_name(path))
 
         answers = [
             Answer("o", "overwrite it with what is here", "overwrite"),
             Answer("n", "save what is here under another name", "other"),
-            Answer("t", "take theirs; what is here can be had back with undo", "theirs"),
+            Answer("t", "take theirs; undo brings back what is here", "theirs"),
         ]
-        self.push_screen(
-            Question(
-                f"{self.session.name} was changed by another program",
-                "It is not as it was when it was read.",
-                answers,
-            ),
-            take,
-        )
+        when = f" It was written {moment(stamp[0] / 1e9)}." if stamp else ""
+        title = f"{self.session.name} was changed by another program"
+        text = f"The file is not what is built here.{when}"
+        self.push_screen(Question(title, text, answers), take)
+
+    # the file on the disk
 
     def look_at_disk(self) -> None:
-        """Take a file that another program has changed; or tell of it, where work is not saved."""
-        session = self.session
-        if session.file.path is None or not session.file.changed_on_disk():
+        """Take a file that another program has changed; tell of it where that would lose work."""
+        session, screen = self.session, self.screen
+        if not isinstance(screen, DraftScreen):
+            return  # a question is open: later
+        if not session.file.changed_on_disk():
+            self._told = None
             return
-        if session.changed:
-            self.tell("The file was changed by another program; saving will ask", wrong=True)
-        else:
-            self._take_theirs()
+        now = (session.file.stamp,)
+        is_new, self._told = now != self._told, now
+        if now[0] is None:
+            if is_new:
+                session.lost_file()
+                self.builder.show_title()
+                self.tell(_GONE, wrong=True)
+                self.post_message(Edited())  # what is here is kept like every change
+        elif not (session.changed or screen.is_typing):
+            self._take_theirs(quietly=not is_new)
+        elif is_new:
+            self.tell(_CHANGED, wrong=True)
 
-    def _take_theirs(self) -> None:
+    def _take_theirs(self, *, quietly: bool = False) -> None:
         try:
             text = self.session.file.read()
         except (CalmError, OSError) as error:
-            self.tell(f"The file cannot be read any more: {error}", wrong=True)
+            if not quietly:
+                self.tell(f"The file cannot be read any more: {error}", wrong=True)
             return
         self.session.take_saved(text)
-        self.builder.changed(told="Read again: another program has changed it")
+        self.taken_over(_READ_AGAIN)
+
+    # the way out
 
     async def action_quit(self) -> None:
         """Leave; unsaved work is asked about."""
+        if not self._is_settled():
+            return
+        self.look_at_disk()
         if not self.session.changed:
             self.leave()
             return
+        if isinstance(self.screen, Question):
+            return  # that one first
 
         def take(answer: str | None) -> None:
             if answer == "save":
                 self._save(self.leave)
             elif answer == "discard":
                 self.session.file.forget()
-                self.exit(0)
+                self.leave()
 
         answers = [
             Answer("s", "save and leave", "save"),
             Answer("d", "leave without saving", "discard"),
         ]
-        self.push_screen(
-            Question("Not saved", f"{self.session.name} has changes that are not saved.", answers),
-            take,
-        )
+        name, file = self.session.name, self.session.file
+        is_gone = file.stamp is None and file.changed_on_disk()
+        told = "is gone from the disk" if is_gone else "has changes that are not saved"
+        self.push_screen(Question("Not saved", f"{name} {told}.", answers), take)
 
     def leave(self) -> None:
-        """Leave; what is saved is kept nowhere else."""
-        self.session.file.forget()
-        self.exit(0)
+        """Leave; nothing is to be kept."""
+        raise NotImplementedError
 
 
-def _path(text: str) -> Path:
-    path = Path(text).expanduser()
-    return path if path.suffix else path.with_suffix(_SUFFIX)
+def chosen_path(text: str) -> Path:
+    """The file that a person means, with the suffix of a mooring file where it has none."""
+    path = Path(os.path.expanduser(text.strip()))
+    is_named = path.name not in ("", "..") and not text.rstrip().endswith(("/", os.sep))
+    bare = is_named and not path.suffix and not path.is_dir()
+    return path.with_name(path.name + _SUFFIX) if bare else path
+
+
+def _free_name(path: Path) -> Path:
+    """A name like that of a file which is free."""
+    number = 2
+    while (free := path.with_name(f"{path.stem}-{number}{path.suffix}")).exists():
+        number += 1
+    return free
 
 
 def _is_writable(text: str) -> Reading:
@@ -173,9 +238,16 @@ def _is_writable(text: str) -> Reading:
     tidy = text.strip()
     if not tidy:
         return Reading("", "a name is needed")
-    path = _path(tidy)
-    if path.is_dir():
-        return Reading(tidy, "is a folder")
-    if not path.absolute().parent.is_dir():
-        return Reading(tidy, f"there is no folder {path.parent}")
+    if "\0" in tidy:
+        return Reading(tidy, "cannot be a name: it holds a null character")
+    try:
+        path = chosen_path(tidy)
+        if path.is_dir() or tidy.endswith(("/", os.sep)):
+            return Reading(tidy, "is a folder; the name of a file is needed")
+        if path.exists() and not path.is_file():
+            return Reading(tidy, "is not a regular file")
+        if not path.absolute().parent.is_dir():
+            return Reading(tidy, f"there is no folder {path.parent}")
+    except (OSError, ValueError) as error:
+        return Reading(tidy, f"cannot be a name: {getattr(error, 'strerror', None) or error}")
     return Reading(tidy)

@@ -5,11 +5,12 @@ Nothing here knows of the screen; nothing is computed here.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from calm.files.editing import Draft, History, Item, WorkingFile
+from calm.files.editing import Draft, History, Item, Kept, WorkingFile
+from calm.tui.standing import Standing
 
 Location = tuple[str | int, ...]
 
@@ -29,28 +30,36 @@ class Spot:
 
 @dataclass(frozen=True)
 class Copied:
-    """What was copied: items of a line as text, or the values of clamped instruments."""
+    """What was copied, as text: items of a line, or clamped instruments."""
 
     items: tuple[str, ...] = ()
-    clamps: tuple[Mapping[str, str], ...] = ()
+    clamps: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.items) or len(self.clamps)
 
 
-class Session:
+class Session(Standing):
     """A mooring or tow file on its way.
 
     Parameters
     ----------
     file : where it is read from and saved to
-    text : what it holds now
-    saved : what the file on the disk holds; None where there is no file yet
+    text : what it holds
+    environment : see `Standing`
 
     Attributes
     ----------
-    environment : the named environment the line is shown in; None for the file's own
     catalogs : catalogue files given with the command
+    copied : what `paste` puts in
+
+    Raises
+    ------
+    EditError
+        By every verb that the text does not allow: it has mistakes, or is written in a way that
+        cannot be taken apart. Nothing is changed then.
+    NotWritten
+        By `save` and `save_as`.
     """
 
     def __init__(
@@ -58,17 +67,14 @@ class Session:
         file: WorkingFile,
         text: str,
         *,
-        saved: str | None = None,
         environment: str | None = None,
         catalogs: Sequence[Path] = (),
     ) -> None:
+        self.history = History(Draft(text))
         self.file = file
-        self.environment = environment
         self.catalogs = tuple(catalogs)
         self.copied = Copied()
-        self.history = History(Draft(text if saved is None else saved))
-        if saved is not None and text != saved:
-            self.history.do(Draft(text), "recovered")
+        super().__init__(environment)
 
     @property
     def draft(self) -> Draft:
@@ -85,6 +91,8 @@ class Session:
         """The file's name, for people."""
         path = self.file.path
         return "unnamed" if path is None else path.name
+
+    # the line
 
     def spots(self) -> list[Spot]:
         """Every row of the line, clamps below their piece."""
@@ -109,8 +117,6 @@ class Session:
         if further:
             self.history.undo()
         self.do(Draft(text), label)
-
-    # the line
 
     def insert(self, spot: Spot | None, values: Mapping[str, str], *, below: bool) -> Spot:
         """A new piece beside a row; at the top of an empty line."""
@@ -155,13 +161,9 @@ class Session:
         if items:
             self.do(self.draft.duplicate(items), label)
             return Spot(items[-1] + 1)
-        last = chosen[-1]
-        draft = self.draft
-        for number, spot in enumerate(chosen):
-            values = self.item(spot).values
-            draft = draft.insert_clamp(last.item, last.clamp + 1 + number, dict(values))
-        self.do(draft, label)
-        return Spot(last.item, last.clamp + 1)
+        below = Spot(chosen[-1].item, chosen[-1].clamp + 1)
+        self.do(self.draft.paste_clamps(below.item, below.clamp, self._clamps(chosen)), label)
+        return below
 
     def move(self, spots: Iterable[Spot], by: int) -> tuple[Spot, ...]:
         """Move rows up (-1) or down (1); where they are then. At the end of the line they stay."""
@@ -187,9 +189,8 @@ class Session:
         to = spot.clamp + by
         if not 0 <= to < len(self.draft.items[spot.item].clamps):
             return (spot,)
-        item = self.item(spot)
-        draft = self.draft.delete_clamp(spot.item, spot.clamp)
-        self.do(draft.insert_clamp(spot.item, to, dict(item.values)), f"move {_label(item)}")
+        draft = self.draft.move_clamp(spot.item, spot.clamp, to)
+        self.do(draft, f"move {_label(self.item(spot))}")
         return (Spot(spot.item, to),)
 
     def copy(self, spots: Iterable[Spot]) -> int:
@@ -199,7 +200,7 @@ class Session:
         if items:
             self.copied = Copied(items=tuple(self.draft.copy(items)))
         elif chosen:
-            self.copied = Copied(clamps=tuple(dict(self.item(spot).values) for spot in chosen))
+            self.copied = Copied(clamps=self._clamps(chosen))
         return len(self.copied) if chosen else 0
 
     def paste(self, spot: Spot | None, *, below: bool) -> Spot | None:
@@ -213,11 +214,13 @@ class Session:
         if not self.copied.clamps or spot is None:
             return None
         first = spot.clamp + below if spot.is_clamp else len(self.draft.items[spot.item].clamps)
-        draft = self.draft
-        for number, values in enumerate(self.copied.clamps):
-            draft = draft.insert_clamp(spot.item, first + number, dict(values))
-        self.do(draft, label)
+        self.do(self.draft.paste_clamps(spot.item, first, self.copied.clamps), label)
         return Spot(spot.item, first)
+
+    def _clamps(self, chosen: Sequence[Spot]) -> tuple[str, ...]:
+        """The text of clamps, of one piece or of several."""
+        copied = (self.draft.copy_clamps(spot.item, [spot.clamp]) for spot in chosen)
+        return tuple(text for texts in copied for text in texts)
 
     def _without(self, chosen: Sequence[Spot]) -> Draft:
         draft = self.draft
@@ -244,28 +247,44 @@ class Session:
         self.write(text, "read the file again")
         self.history.saved()
 
-    def save(self) -> None:
-        """Write the file whole, and forget what was kept in case of a crash."""
-        self.file.save(self.draft.text)
+    def save(self) -> str:
+        """Write the file whole, and forget what was kept; what could not be kept of it.
+
+        Raises
+        ------
+        NotWritten
+        """
+        lost = self.file.save(self.draft.text)
         self.history.saved()
         self.file.forget()
+        return lost
 
-    def save_as(self, path: Path, working: Callable[[Path], WorkingFile] = WorkingFile) -> None:
-        """Write another file and go on with that one."""
-        before, self.file = self.file, working(path)
+    def save_as(self, path: Path) -> str:
+        """Write another file and go on with that one; see `save`."""
+        before, self.file = self.file, WorkingFile(path)
         try:
-            self.save()
+            lost = self.save()
         except Exception:
             self.file = before
             raise
         before.forget()
+        return lost
 
-    def autosave(self) -> None:
-        """Keep what is not saved beside the file; what is saved needs no keeping."""
-        if self.changed:
-            self.file.autosave(self.draft.text)
-        else:
-            self.file.forget()
+    def lost_file(self) -> None:
+        """The file is gone from the disk: nothing of it is saved any more."""
+        self.history.saved("")
+
+    # what is kept in case of a crash
+
+    def note_unsaved(self) -> WorkingFile:
+        """The file, which knows then what it has to `keep`."""
+        self.file.unsaved = self.draft.text if self.changed else None
+        return self.file
+
+    def recover(self, kept: Kept) -> None:
+        """Go on with work that an earlier session has left; undo leads back to the file."""
+        self.file.adopt(kept)
+        self.write(kept.text, "recover what was not saved")
 
 
 def _whole(spots: Iterable[Spot]) -> list[Spot]:

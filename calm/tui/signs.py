@@ -9,18 +9,18 @@ from calm.checks.finding import State
 
 @dataclass(frozen=True)
 class Look:
-    """The sign, the word and the CSS variable of the colour of a state."""
+    """The sign and the word of a state, and the style of rich that goes with them."""
 
     sign: str
     word: str
-    colour: str
+    style: str
 
 
 LOOKS = {
-    State.FAIL: Look("!", "FAIL", "text-error"),
-    State.WARN: Look("~", "warning", "text-warning"),
-    State.UNKNOWN: Look("?", "unknown", "text-muted"),
-    State.PASS: Look("✓", "pass", "text-success"),
+    State.FAIL: Look("!", "FAIL", "bold red"),
+    State.WARN: Look("~", "warning", "yellow"),
+    State.UNKNOWN: Look("?", "unknown", "dim"),
+    State.PASS: Look("✓", "pass", "green"),
 }
 """As in the reports of the design check."""
 

@@ -2,40 +2,60 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.containers import VerticalScroll
-from textual.screen import Screen
+from textual.content import Content
 from textual.widgets import Static, TextArea
 
 from calm.errors import Problem
+from calm.files.editing.retyped import retyped
 from calm.tui.actions import bindings, hints
 from calm.tui.bars import KeyBar, TitleBar
-from calm.tui.messages import Edited
+from calm.tui.messages import Edited, is_elsewhere, mistakes, place_of
+from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
 
 if TYPE_CHECKING:
     from calm.tui.live import View
 
 _INDENT = 2
+_LINE_BREAK = re.compile(r"\r\n?|\n")
 
 
 class YamlArea(TextArea):
     """Text whose tabs are blanks, as YAML wants them."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("tab", "indent", show=False)]
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings("area")]
 
     def action_indent(self) -> None:
         """Blanks up to the next column that is even."""
         _, column = self.cursor_location
         self.insert(" " * (_INDENT - column % _INDENT))
 
+    def undo(self) -> None:
+        """Take back what was typed last."""
+        super().undo()
+        self._wrap()
 
-class TextScreen(Screen[None]):
-    """The text, judged at each pause."""
+    def redo(self) -> None:
+        """Type it again."""
+        super().redo()
+        self._wrap()
+
+    def _wrap(self) -> None:
+        # textual wraps lines that are gone where a step began with a line break
+        self.wrapped_document.wrap(self.wrap_width, self.indent_width)
+        self.refresh()
+
+
+class TextScreen(DraftScreen):
+    """The text, judged at each pause; lines that are not touched keep their line breaks."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("text")]
     DEFAULT_CSS = """
@@ -70,7 +90,7 @@ class TextScreen(Screen[None]):
         self.query_one(KeyBar).show_keys(hints("text"))
         self._show()
         self.text_area.focus()
-        if self._problems:
+        if self._here:
             self.action_next_problem()
 
     @property
@@ -86,23 +106,33 @@ class TextScreen(Screen[None]):
 
     def _show(self) -> None:
         view, draft = self._view, self.session.draft
-        known = view is not None and view.text == draft.text
+        known = self.is_fresh(view)
         self._problems = tuple(draft.problems) or (view.problems if known and view else ())
         if self._problems:
-            lines = [f"[b $text-error]![/] {_said(each)}" for each in self._problems]
+            lines = [_said(each, self._path) for each in self._problems]
         elif known and view is not None and view.missing:
-            lines = [f"? {each}" for each in view.missing]
+            lines = [Content(f"? {each}") for each in view.missing]
+        elif known:
+            lines = [Content.from_markup("[$text-success]✓[/] The text can be read.")]
         else:
-            lines = ["[$text-success]✓[/] The text can be read." if known else "…"]
-        self.query_one("#mistakes-text", Static).update("\n".join(lines))
-        count = len(self._problems)
-        right = f"{count} mistake{'s' * (count != 1)}" if count else ""
-        unsaved = " (not saved)" if self.session.changed else ""
-        self.query_one(TitleBar).show(f"The text of {self.session.name}{unsaved}", right)
+            lines = [Content("…")]
+        self.query_one("#mistakes-text", Static).update(Content("\n").join(lines))
+        told = mistakes(self._problems, self._path)
+        self.query_one(TitleBar).show(f"The text of {self.called}", told)
+
+    @property
+    def _here(self) -> list[Problem]:
+        """The mistakes in this text, not in a file that it names."""
+        return [each for each in self._problems if not is_elsewhere(each, self._path)]
+
+    @property
+    def _path(self) -> Path:
+        """That of the file, as its problems have it."""
+        return Path() if self._view is None else self._view.path
 
     @on(TextArea.Changed)
     def _take(self) -> None:
-        text = self.text_area.text
+        text = self._typed
         if text != self.session.draft.text:
             self.session.write(text, further=self._edited)
             self._edited = self.session.draft.text != self._begun
@@ -110,24 +140,41 @@ class TextScreen(Screen[None]):
             self._show()
             self.post_message(Edited())
 
+    def settle(self) -> bool:
+        """Take the text as it stands."""
+        self._take()
+        return True
+
+    @property
+    def is_typing(self) -> bool:
+        """Whether the text that is shown is not in the draft yet."""
+        return self._typed != self.session.draft.text
+
+    @property
+    def _typed(self) -> str:
+        return retyped(self._begun, self.text_area.document.lines)
+
+    def replaced(self) -> None:
+        """Show the draft anew, the cursor on the line where it was."""
+        area, text = self.text_area, self.session.draft.text
+        self._begun, self._edited, self._next = text, False, 0
+        row, column = area.cursor_location
+        with self.prevent(TextArea.Changed):
+            area.load_text(text)
+        area.move_cursor((min(row, area.document.line_count - 1), column))
+        self._show()
+
     def action_next_problem(self) -> None:
         """Put the cursor on the next mistake."""
-        placed = [each for each in self._problems if each.line]
+        if self._problems and not self._here:
+            self.tell(f"There are no mistakes in {self.session.name} itself")
+        placed = [each for each in self._here if each.line]
         if placed:
             problem = placed[self._next % len(placed)]
             self._next += 1
+            row = _row(self.session.draft.text, problem.line)
             last = self.text_area.document.line_count - 1
-            self.text_area.move_cursor((min(problem.line - 1, last), max(problem.column - 1, 0)))
-
-    async def action_save(self) -> None:
-        """Save the text as it stands."""
-        await self.app.run_action("save")
-
-    def action_help(self) -> None:
-        """All keys."""
-        from calm.tui.help_screen import HelpScreen
-
-        self.app.push_screen(HelpScreen())
+            self.text_area.move_cursor((min(row, last), max(problem.column - 1, 0)))
 
     def action_back(self) -> None:
         """To the line, if the text has one."""
@@ -137,13 +184,13 @@ class TextScreen(Screen[None]):
         else:
             self.dismiss()
 
-    def tell(self, text: str, *, wrong: bool = False) -> None:
-        """Say something in the last line."""
-        self.query_one(KeyBar).tell(text, wrong=wrong)
+
+def _row(text: str, line: int) -> int:
+    """Where the editor has a line of the file, both counted as they count: it knows more breaks."""
+    ends = [0, *(found.end() for found in _LINE_BREAK.finditer(text))]
+    return len(text[: ends[min(line, len(ends)) - 1]].splitlines())
 
 
-def _said(problem: Problem) -> str:
-    from rich.markup import escape
-
-    place = f"line {problem.line}:{problem.column}  " if problem.line else ""
-    return escape(place + problem.message)
+def _said(problem: Problem, path: Path) -> Content:
+    parts = filter(None, (place_of(problem, path), problem.message))
+    return Content.assemble(("!", "bold $text-error"), f" {'  '.join(parts)}")

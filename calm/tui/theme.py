@@ -53,6 +53,7 @@ LIGHT = Theme(
 )
 
 _MANY = frozenset({"truecolor", "24bit", "256"})
+_LIGHT_GROUNDS = frozenset({"7", *map(str, range(9, 16))})
 
 
 PICTURE_DARK = TerminalTheme(
@@ -95,8 +96,11 @@ def choose_theme(environ: Mapping[str, str]) -> str:
     """The name of the theme for a terminal.
 
     One that tells of 256 colours or more gets those of the application; another one keeps its own
-    sixteen, which its owner has chosen to be legible.
+    sixteen, which its owner has chosen to be legible. The ground is light where `COLORFGBG`, which
+    many terminals set, names a light colour as the last of its two or three.
     """
     told = (environ.get("COLORTERM"), environ.get("TEXTUAL_COLOR_SYSTEM"))
     many = "256" in environ.get("TERM", "") or not _MANY.isdisjoint(told)
+    if environ.get("COLORFGBG", "").rpartition(";")[2] in _LIGHT_GROUNDS:
+        return LIGHT.name if many else "ansi-light"
     return DARK.name if many else "ansi-dark"

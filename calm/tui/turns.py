@@ -2,47 +2,34 @@
 
 Keys that are typed ahead, or come in one parcel over a slow line, would otherwise go to what has
 the focus when they arrive: to the line instead of the field that the first of them opens.
+
+A key is done when everything that it may have set going has come to rest. Each part of the screen
+handles what it is sent in the order of its queue: a call that is sent behind the key comes back
+when the key is handled, and a second round finds what the key made the parts send each other.
+Rounds are made until one of them finds no queue with anything left in it.
 """
 
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass
-from time import monotonic
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from textual import events, on
+from textual import events
 from textual.app import App
-from textual.message import Message
 from textual.message_pump import MessagePump
 
-if TYPE_CHECKING:
-    from textual.timer import Timer
-
-_LOOK = 0.05  # seconds between two looks whether what a key went to is still there
-_PATIENCE = 5.0  # seconds after which a key is taken as done whatever it started
-
-
-@dataclass
-class Passed(Message):
-    """Follows a key through everything that might handle it, and comes to the application last.
-
-    What a key does may be told from widget to widget before it is done: as many `rounds` are made.
-    """
-
-    rounds: int = 4
+_MOST = 50
+"""Rounds: what sends itself messages without an end is not waited for."""
 
 
 class InTurn(App[int]):
-    """An application that handles its keys one after the other."""
+    """An application that handles keys, pastes and the mouse one after the other."""
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
-        self._waiting: deque[events.Key] = deque()
+        self._waiting: deque[events.Event] = deque()
         self._is_pressed = False
-        self._pressed_at = 0.0
-        self._target: MessagePump = self
-        self._looking: Timer | None = None
+        self._rounds = 0
 
     @property
     def has_keys_waiting(self) -> bool:
@@ -50,42 +37,48 @@ class InTurn(App[int]):
         return self._is_pressed
 
     async def on_event(self, event: events.Event) -> None:
-        """Let keys wait for those before them."""
-        if isinstance(event, events.Key) and not event.is_forwarded:
-            self._waiting.append(event)
-            if not self._is_pressed:
-                await self._press()
-        else:
+        """Let what a person does wait for what was done before."""
+        if not _is_done_by_a_person(event):
             await super().on_event(event)
+            return
+        self._waiting.append(event)
+        if not self._is_pressed:
+            await self._press()
 
     async def _press(self) -> None:
-        """Press the key that has waited longest."""
+        """Do what has waited longest."""
         self._is_pressed = bool(self._waiting)
         if self._is_pressed:
-            self._target, self._pressed_at = self.focused or self.screen, monotonic()
+            before = self._listeners()
             await super().on_event(self._waiting.popleft())
-            self._target.post_message(Passed())
-            if self._looking is None:
-                self._looking = self.set_interval(_LOOK, self._look)
+            self._rounds = 0
+            self._go_round(before)
 
-    def _look(self) -> None:
-        """Go on where the key has closed what it went to, which then lets nothing pass."""
-        gone = not self._target.is_attached or monotonic() - self._pressed_at > _PATIENCE
-        if self._is_pressed and gone:
-            self._go_on()
+    def _listeners(self) -> list[MessagePump]:
+        """All that a key may set going: what has the focus and what is around it, the screens."""
+        around = [] if self.focused is None else list(self.focused.ancestors_with_self)
+        return list(dict.fromkeys([*around, *reversed(self.screen_stack), self]))
 
-    @on(Passed)
-    def _follow(self, passed: Passed) -> None:
-        if passed.rounds and self._target.is_attached:
-            self._target.post_message(Passed(passed.rounds - 1))
-        else:
-            self._go_on()
-
-    def _go_on(self) -> None:
-        if self._looking is not None:
-            self._looking.stop()
-            self._looking = None
-        if self._waiting:
+    def _go_round(self, listeners: list[MessagePump]) -> None:
+        """Wait for one after the other; one that is gone handles nothing any more."""
+        while listeners:
+            first, *others = listeners
+            if first.call_later(self._go_round, others):
+                return
+            listeners = others
+        self._rounds += 1
+        now = self._listeners()
+        is_busy = any(each.message_queue_size for each in now)
+        if self._rounds < 2 or (is_busy and self._rounds < _MOST):
+            self._go_round(now)
+        elif self._waiting:
             self.call_after_refresh(self._press)
         else:
             self._is_pressed = False
+
+
+def _is_done_by_a_person(event: events.Event) -> bool:
+    """What is forwarded has had its turn; the mouse may move meanwhile."""
+    if event.is_forwarded or isinstance(event, events.MouseMove):
+        return False
+    return isinstance(event, events.InputEvent | events.Paste)

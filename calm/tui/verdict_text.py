@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from calm.checks.finding import Finding, State
+from calm.checks.finding import AS_GIVEN, Finding, Rule, State
 from calm.quantities import QUANTITIES
-from calm.tui.signs import LOOKS, worst
+from calm.tui.messages import mistakes, place_of
+from calm.tui.signs import ELLIPSIS, LOOKS, worst
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
@@ -37,10 +38,9 @@ class Saying:
 def headline(view: View | None) -> Saying:
     """The whole verdict in some words."""
     if view is None:
-        return Saying("…", faint=True)
+        return Saying(ELLIPSIS, faint=True)
     if view.problems:
-        count = len(view.problems)
-        return Saying(f"{count} mistake{'s' * (count != 1)} in the file", state=State.FAIL)
+        return Saying(mistakes(view.problems, view.path), state=State.FAIL)
     if view.missing:
         return Saying(f"incomplete: {view.missing[0]}", state=State.UNKNOWN)
     if view.failure is not None:
@@ -76,7 +76,7 @@ def sayings(view: View | None) -> Iterator[Saying]:
     if view.failure is not None:
         yield Saying(view.failure.message, state=State.FAIL)
         yield Saying(view.failure.advice, faint=True)
-    yield from _figures(view.result)
+    yield from _figures(view.result, (*view.findings, *view.tighter))
     yield from _found(view.findings)
     if view.result is not None:
         for text in view.result.warnings:
@@ -85,7 +85,7 @@ def sayings(view: View | None) -> Iterator[Saying]:
 
 def _mistakes(view: View) -> Iterator[Saying]:
     for problem in view.problems[:_MOST_PROBLEMS]:
-        place = f"line {problem.line}" if problem.line else ""
+        place = place_of(problem, view.path)
         yield Saying(problem.message, heading=place, state=State.FAIL)
     more = len(view.problems) - _MOST_PROBLEMS
     if more > 0:
@@ -97,32 +97,71 @@ def _say(name: str, value: float | None) -> str:
     return QUANTITIES[name].say(value)
 
 
-def _figures(result: Result | TowResult | None) -> Iterator[Saying]:
+def _figures(result: Result | TowResult | None, findings: Sequence[Finding]) -> Iterator[Saying]:
     """The ends of the line; whoever has a result has loaded what solves it, the start has not."""
     from calm.case import Result
 
     if isinstance(result, Result):
-        yield from _mooring(result)
+        yield from _mooring(result, findings)
     elif result is not None:
         yield from _tow(result)
 
 
-def _mooring(result: Result) -> Iterator[Saying]:
+def _mooring(result: Result, findings: Sequence[Finding]) -> Iterator[Saying]:
+    """What the line does as given; what is judged, as the worst of its findings has it."""
+    from calm.checks.anchor import anchor_weight
+    from calm.checks.posture import knockdown
+    from calm.checks.surface import reserve
+
     anchor, top = result.anchor, result.top
-    holds = anchor.weight >= anchor.required_weight
     pull = f"{_say('tension', anchor.tension)}, {_say('angle', anchor.angle)} off the vertical"
     yield Saying(pull, heading="Anchor")
-    weighs = f"{_say('required_weight', anchor.weight)} in water"
-    needs = f"needs {_say('required_weight', anchor.required_weight)}"
-    yield Saying(f"{needs}, has {weighs}", state=State.PASS if holds else State.FAIL)
+    yield _holds(result, _worst(findings, anchor_weight))
     if result.type == "surface":
         used = f"{top.used_buoyancy:.0%} of the float's buoyancy in use"
-        yield Saying(f"{_say('reserve', top.reserve)}; {used}", heading="Reserve")
+        worst = _worst(findings, reserve)
+        if worst is not None and worst.value is not None:
+            used += _at_worst(worst, f"{1.0 - worst.value:.0%}")
+        yield Saying(f"{_say('reserve', top.reserve)}; {used}", "Reserve", _gravity(worst))
     else:
         depth = f"top at {_say('depth', top.depth)}"
-        yield Saying(f"{_say('knockdown', top.knockdown)}, {depth}", heading="Knockdown")
+        worst = _worst(findings, knockdown)
+        if worst is not None:
+            depth += _at_worst(worst, _say("knockdown", worst.value))
+        text = f"{_say('knockdown', top.knockdown)}, {depth}"
+        yield Saying(text, "Knockdown", _gravity(worst))
     if anchor.grounded_length > 0.0:
         yield Saying(f"{_say('grounded_length', anchor.grounded_length)} of line", heading="Lies")
+
+
+def _holds(result: Result, worst: Finding | None) -> Saying:
+    """What the anchor is to weigh, and weighs; of a line without one the first alone."""
+    if worst is None:
+        return Saying(f"needs {_say('required_weight', result.anchor.required_weight)} in water")
+    needs = f"needs {_say('required_weight', worst.limit)}{_situation(worst)}"
+    return Saying(
+        f"{needs}, has {_say('required_weight', worst.value)} in water", state=worst.state
+    )
+
+
+def _worst(findings: Sequence[Finding], rule: Rule) -> Finding | None:
+    """The gravest of those of a rule, of equals the one with the least margin."""
+    own = [each for each in findings if each.rule == rule.name]
+    return min(own, key=lambda each: each.rank, default=None)
+
+
+def _at_worst(worst: Finding, figure: str) -> str:
+    """The figure of the worst situation, where that is not the one as given."""
+    return "" if worst.situation == AS_GIVEN else f"; {figure} at worst{_situation(worst)}"
+
+
+def _situation(finding: Finding) -> str:
+    return "" if finding.situation == AS_GIVEN else f" ({finding.situation})"
+
+
+def _gravity(finding: Finding | None) -> State | None:
+    """The state of a figure in words, whose sign is wanted only where it is grave."""
+    return finding.state if finding is not None and _graver(finding) else None
 
 
 def _tow(result: TowResult) -> Iterator[Saying]:
@@ -141,7 +180,7 @@ def _found(findings: tuple[Finding, ...]) -> Iterator[Saying]:
     for finding in sorted(findings, key=lambda each: each.rank):
         if finding.state in (State.FAIL, State.WARN):
             text = finding.message + (f" {finding.remedy}" if finding.remedy else "")
-            yield Saying(text, heading=_title(finding), state=finding.state)
+            yield Saying(text, f"{_title(finding)}{_situation(finding)}", finding.state)
     yield from _unknown([each for each in findings if each.state is State.UNKNOWN])
     passed = dict.fromkeys(_title(each) for each in findings if each.state is State.PASS)
     kept = [each for each in passed if all(_title(f) != each for f in findings if _graver(f))]

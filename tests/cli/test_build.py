@@ -3,6 +3,8 @@
 import importlib.util
 import socket
 
+import pytest
+
 from calm.cli import build as command
 
 
@@ -37,6 +39,49 @@ def test_a_port_that_is_taken(calm_process, write_mooring):
         done = calm_process("build", write_mooring(), "--serve", "--port", port)
     assert done.returncode == 2
     assert f"port {port} cannot be used" in done.stderr
+    assert "calm build is at" not in done.stderr
+
+
+@pytest.fixture
+def in_terminal(monkeypatch):
+    """As if there were one; nothing is to be opened in it."""
+    monkeypatch.setattr(command, "_has_terminal", lambda: True)
+    monkeypatch.setattr("calm.tui.app.BuildApp.run", lambda _: pytest.fail("it was opened"))
+
+
+@pytest.mark.usefixtures("in_terminal")
+@pytest.mark.parametrize(
+    ("option", "name", "told"),
+    [
+        ("--catalog", "none.yaml", "none.yaml: no such file"),
+        ("--catalog", "broken.yaml", "broken.yaml:2:1: is not valid YAML"),
+        ("--catalog", "weight.yaml", "weight.yaml:1:32: `weight: 5000` needs a unit"),
+        ("--environment", "broken.yaml", "broken.yaml:2:1: is not valid YAML"),
+        ("--environment", "bad.yaml", "bad.yaml:1:32: `speed: -1 m/s` must be at least 0 m/s"),
+        ("--environment", "none.yaml", "none.yaml: neither a file nor an environment of m.yaml"),
+        ("--environment", "strom", "m.yaml; did you mean `storm`?"),
+    ],
+)
+def test_other_files_that_cannot_be_used_are_refused(
+    calm, write_mooring, folder, option, name, told
+):
+    mooring = folder / write_mooring()
+    uses, _, _ = mooring.read_text().partition("  weight: {kind")
+    mooring.write_text(uses + "environments: {storm: {}}\n")
+    (folder / "bad.yaml").write_text("environment: {current: {speed: -1 m/s, toward: 0 deg}}\n")
+    (folder / "broken.yaml").write_text("a: [\n")
+    (folder / "weight.yaml").write_text("weight: {kind: anchor, weight: 5000}\n")
+    done = calm("build", "m.yaml", option, name)
+    assert done.code == 2
+    assert told in done.err
+
+
+@pytest.mark.usefixtures("in_terminal")
+def test_an_environment_file_is_refused_though_the_mooring_is_broken(calm, folder):
+    (folder / "m.yaml").write_text("line: [\n")
+    done = calm("build", "m.yaml", "--environment", "none.yaml")
+    assert done.code == 2
+    assert done.err == "none.yaml: no such file\n"
 
 
 def test_a_folder_that_is_not_there(calm_process):

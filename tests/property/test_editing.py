@@ -1,6 +1,7 @@
 """Whatever is done to a file, what was not touched stays byte for byte, and undo gives it back."""
 
 import re
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -68,7 +69,7 @@ class Editor:
     def insert(self) -> None:
         draft, at = self.draft, self.index(1)
         values, clamps = self.draw(VALUES), self.draw(CLAMPS)
-        new = draft.insert(at, values, clamps)
+        new = draft.insert(at, {**values, "clamps": clamps} if clamps else values)
         assert new.items[at].values == values
         assert [clamp.values for clamp in new.items[at].clamps] == clamps
         self.kept(new, [*range(at), None, *range(at, len(draft.items))])
@@ -127,7 +128,7 @@ class Editor:
             return
         count = len(item.clamps)
         at = self.draw(st.integers(0, count))
-        choice = self.draw(st.integers(0, 2))
+        choice = self.draw(st.integers(0, 4))
         match choice:
             case 0:
                 values = self.draw(VALUES)
@@ -140,6 +141,13 @@ class Editor:
                 key, value = self.draw(KEYS), self.draw(WORDS)
                 new = self.draft.put_clamp(index, at, key, value)
                 assert new.items[index].clamps[at].values[key] == value
+            case 3 if at < count:
+                to = self.draw(st.integers(0, count - 1))
+                new = self.draft.move_clamp(index, at, to)
+                assert new.items[index].clamps[to].values == item.clamps[at].values
+            case 4 if at < count:
+                new = self.draft.paste_clamps(index, at + 1, self.draft.copy_clamps(index, [at]))
+                assert new.items[index].clamps[at + 1].values == item.clamps[at].values
             case _:
                 return
         self.only_within(new, index, taken_out=choice == 1)
@@ -163,6 +171,10 @@ class Editor:
         value = self.draw(st.none() | WORDS)
         new = draft.put_at(location, value)
         assert new.value(location) == value
+        if value is not None and draft.value(location) is None:
+            # what is new takes lines of its own, or goes into one within brackets
+            lost = Counter(draft.text.splitlines()) - Counter(new.text.splitlines())
+            assert lost.total() <= 1
         self.kept(new, list(range(len(draft.items))), taken_out=value is None)
 
     def table(self) -> None:

@@ -4,10 +4,12 @@ import asyncio
 from contextlib import asynccontextmanager
 
 import pytest
+from textual._context import active_app
+from textual.pilot import Pilot
 
 from calm.tui.app import BuildApp
 from calm.tui.launch import open_session
-from calm.tui.line_table import LineTable
+from calm.tui.line.table import LineTable
 
 MOORING = """\
 # A mooring for tests: small, and nothing of it from the catalogue.
@@ -40,6 +42,42 @@ TERMINAL = {"TERM": "xterm-256color"}
 NAMES = {
     " ": "space", "-": "minus", ".": "full_stop", ":": "colon", "/": "slash", ",": "comma",
 }  # fmt: skip
+
+
+async def at_rest(*_):
+    """Until all keys are handled, the queues are empty and the screen is painted.
+
+    Takes the place of a wait of textual that asks the clock whether the processor is idle: 40 ms
+    a key at the least, and no proof where the machine is slow.
+    """
+    app = active_app.get()
+    pilot, quiet = Pilot(app), 0
+    while quiet < 2 and not app._exit:
+        if app.has_keys_waiting:  # what goes round the queues meanwhile would hold them up
+            if app.screen._callbacks:
+                app.screen._on_timer_update()
+            await asyncio.sleep(0)
+            continue
+        if not await pilot._wait_for_screen():
+            return
+        screen = app.screen
+        screen._on_timer_update()
+        pumps = (app, *app.screen_stack, *screen.walk_children())
+        is_busy = app.has_keys_waiting or any(pump.message_queue_size for pump in pumps)
+        is_painted = not (screen._callbacks or screen._dirty_widgets or screen._layout_required)
+        quiet = quiet + 1 if is_painted and not is_busy else 0
+
+
+async def at_once(*_):
+    """The application itself lets a key wait for the one before."""
+    await asyncio.sleep(0)
+
+
+@pytest.fixture(autouse=True)
+def no_clock(monkeypatch):
+    """Nothing is waited for by the clock."""
+    monkeypatch.setattr("textual.pilot.wait_for_idle", at_rest)
+    monkeypatch.setattr("textual.app.wait_for_idle", at_once)
 
 
 @pytest.fixture(autouse=True)
@@ -106,9 +144,10 @@ class Driver:
 
     async def press(self, *keys):
         await self.pilot.press(*keys)
+        await self.pilot.pause()
 
     async def type(self, text):
-        await self.pilot.press(*(NAMES.get(letter, letter) for letter in text))
+        await self.press(*(NAMES.get(letter, letter) for letter in text))
 
     async def settle(self):
         """Until all that was started is done and shown."""
@@ -124,8 +163,8 @@ class Driver:
 
 @asynccontextmanager
 async def driven(path=None, size=(120, 36), *, environ=TERMINAL, environment=None):
-    session, recovered = open_session(path, environment)
-    app = BuildApp(session, recovered=recovered, environ=environ)
+    session, kept = open_session(path, environment)
+    app = BuildApp(session, kept=kept, environ=environ)
     async with app.run_test(size=size) as pilot:
         driver = Driver(app, pilot)
         await driver.settle()

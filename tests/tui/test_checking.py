@@ -4,8 +4,8 @@ import pytest
 
 from calm.files.fields import Quantity
 from calm.tui import checking
-from calm.tui.catalogue_index import Index
-from calm.tui.component_form import defined, form_fields
+from calm.tui.catalogue.component_form import defined, form_fields
+from calm.tui.catalogue.index import Index
 
 
 @pytest.mark.parametrize(
@@ -59,6 +59,17 @@ def test_an_id_comes_before_what_only_mentions_it():
     assert index.search("wire jacketed 8")[0].id == "wire-jacketed-8"
     assert not index.search("rcm4 no-such")
     assert {each.kind for each in index.search("", {"anchor"})} == {"anchor"}
+
+
+@pytest.mark.parametrize("text", ["sbe-37", "sbe 37", "SBE_37", "sbe  -37-"])
+def test_hyphens_part_words_as_blanks_do(text):
+    from calm.files import Catalogue
+
+    index = Index(Catalogue.shipped())
+    found = index.search(text)
+    assert found[0].id == "sbe37"
+    assert len(found) > 10 and found == index.search("sbe 37")
+    assert index.search("wire-jack") == index.search("wire jack") != []
 
 
 @pytest.mark.parametrize("kind", ["sphere", "cylinder", "body", "cable", "chain", "anchor"])

@@ -1,6 +1,10 @@
 """Every verb of the line, by its keys."""
 
+import re
+
 import pytest
+
+from tests.tui.conftest import MOORING
 
 WIRE = "wire-jacketed-8"
 
@@ -57,7 +61,7 @@ def test_the_search_holds_every_word_wherever_it_stands(drive, small):
     async def story(driver):
         await driver.press("slash")
         await driver.type("teledyne adcp")
-        found = driver.builder.catalogue.listing.found
+        found = driver.builder.catalogue.listing.rows
         assert found
         assert all("Teledyne" in each.maker and "adcp" in each.searched for each in found)
         await driver.press("ctrl+u")
@@ -72,9 +76,9 @@ def test_the_search_holds_every_word_wherever_it_stands(drive, small):
 def test_the_files_own_components_come_first_with_a_card(drive, small):
     async def story(driver):
         await driver.press("slash")
-        assert driver.builder.catalogue.listing.found[0].own
+        assert driver.builder.catalogue.listing.rows[0].own
         await driver.type("releaser")
-        assert driver.builder.catalogue.listing.found[0].id == "releaser"
+        assert driver.builder.catalogue.listing.rows[0].id == "releaser"
         await driver.settle()
         assert "-200 N" in driver.screen
 
@@ -84,7 +88,7 @@ def test_the_files_own_components_come_first_with_a_card(drive, small):
 def test_clamp_an_instrument_on_a_piece(drive, small):
     async def story(driver):
         await driver.press("down", "i")
-        assert {each.kind for each in driver.builder.catalogue.listing.found} <= {
+        assert {each.kind for each in driver.builder.catalogue.listing.rows} <= {
             "sphere", "cylinder", "body",
         }  # fmt: skip
         await driver.type("sbe37")
@@ -279,6 +283,22 @@ def test_copy_marked_rows_and_clamps(drive, small):
     drive(story, small)
 
 
+@pytest.mark.parametrize("key", ["c", "x", "d", "alt+up"])
+def test_pieces_with_clamps_of_others_are_not_copied_nor_moved(drive, small, key):
+    async def story(driver):
+        before = driver.text
+        await driver.press("c", "down", "down", "down", "space", "down", "space", key)
+        assert driver.text == before
+        assert "Pieces are marked, and clamps of other pieces" in driver.screen
+        assert len(driver.table.marked) == 2
+        await driver.press("delete")
+        assert driver.uses == ["ball", "rope", "  logger", "weight"]
+        await driver.press("v")
+        assert driver.uses.count("ball") == 2
+
+    drive(story, small)
+
+
 def test_mark_and_delete_several(drive, small):
     async def story(driver):
         await driver.press("space", "end", "space", "delete")
@@ -326,3 +346,143 @@ def test_begin_with_nothing(drive):
         assert driver.uses == ["sphere-ore-41in"]
 
     drive(story)
+
+
+WORDED = """\
+    clamps:
+      # borrowed
+      - use: logger   # serial 1234
+        at: '10 m'
+        drag_measurements: [[0.1, 1.2]]
+      - {use: logger, at: 20 m, label: "deep logger"}
+"""
+CLAMPS = MOORING[MOORING.index("    clamps:") : MOORING.index("  # the release")]
+FIRST, SECOND = re.findall(r"      #.*?\]\]\n|      - {.*\n", WORDED, re.DOTALL)
+
+
+@pytest.fixture
+def worded(small):
+    """A clamp with nested figures, a comment and quotes."""
+    small.write_text(MOORING.replace(CLAMPS, WORDED))
+    return small
+
+
+def test_a_clamp_is_moved_duplicated_and_copied_word_for_word(drive, worded):
+    before = worded.read_text()
+
+    async def story(driver):
+        await driver.press("escape", "down", "down", "alt+down")
+        assert driver.text == before.replace(FIRST + SECOND, SECOND + FIRST)
+        await driver.press("alt+up")
+        assert driver.text == before
+        await driver.press("d")
+        assert driver.text == before.replace(FIRST, FIRST + FIRST)
+        await driver.press("u", "up", "c", "down", "v")
+        assert driver.text == before.replace(SECOND, SECOND + FIRST)
+        await driver.press("u", "home", "down", "down", "x", "V")
+        assert driver.text == before
+        await driver.press("end", "v")
+        assert "use: weight\n    clamps:" not in driver.text
+        assert driver.session.draft.items[-1].clamps[0].values["at"] == "10 m"
+
+    drive(story, worded)
+
+
+def test_marks_go_with_the_rows_they_were_on(drive, small):
+    async def story(driver):
+        before = driver.text
+        await driver.press("d", "end", "space", "u")
+        assert driver.text == before
+        assert driver.table.marked == frozenset()
+        await driver.press("home", "space")
+        driver.session.write(driver.text.replace("  - {use: ball, label: top float} ", "  #"))
+        driver.builder.replaced()
+        assert driver.table.marked == frozenset()
+        assert driver.uses[0] == "rope"
+
+    drive(story, small)
+
+
+def test_a_value_left_with_the_mouse_is_taken_if_it_is_good(drive, small):
+    async def story(driver):
+        await driver.press("n")
+        await driver.type("upper")
+        await driver.pilot.click("#line", offset=(6, 3))
+        await driver.settle()
+        assert driver.session.draft.items[0].values["label"] == "upper"
+        assert not driver.builder.editor.is_open and driver.table.cursor == 2
+        await driver.press("up", "l")
+        await driver.type("80 kg")
+        await driver.pilot.click("#line", offset=(6, 1))
+        await driver.settle()
+        assert driver.session.draft.items[1].values["length"] == "60 m"
+        assert not driver.builder.editor.is_open
+        assert "`80 kg` is not taken: is a mass" in driver.screen
+
+    drive(story, small)
+
+
+def test_what_is_being_typed_is_taken_before_anything_else(drive, small):
+    async def story(driver):
+        screen = driver.builder
+        await driver.press("n")
+        assert not screen.is_typing
+        await driver.type("upper")
+        assert screen.is_typing and screen.settle() and not screen.is_typing
+        assert driver.session.draft.items[0].values["label"] == "upper"
+        await driver.press("n")
+        await driver.type("lower")
+        await driver.press("ctrl+z")
+        assert driver.session.draft.items[0].values["label"] == "upper"
+        await driver.press("down", "l")
+        await driver.type("80 kg")
+        assert not screen.settle() and screen.is_typing
+        await driver.press("ctrl+z")
+        assert "Not taken yet" in driver.screen and screen.editor.is_open
+        assert driver.session.draft.items[0].values["label"] == "upper"
+
+    drive(story, small)
+
+
+@pytest.mark.parametrize("change", ["shorter", "longer"])
+def test_a_draft_that_is_replaced_while_a_value_is_edited_is_left_alone(drive, small, change):
+    ball = "  - {use: ball, label: top float}     # carries all\n"
+    theirs = MOORING.replace(ball, "" if change == "shorter" else ball * 2)
+
+    async def story(driver):
+        await driver.press("end", "n")
+        await driver.type("mine")
+        driver.session.write(theirs)
+        driver.builder.replaced()
+        await driver.press("enter", "escape")
+        assert driver.text == theirs
+
+    drive(story, small)
+
+
+def test_a_value_that_is_opened_and_left_stays_byte_for_byte(drive, small):
+    before = MOORING.replace("label: top float", "label: 'top   float', count: 01").replace(
+        "length: 60 m", "length:  60   m"
+    )
+    small.write_text(before)
+
+    async def story(driver):
+        await driver.press("n", "tab", "enter", "n", "enter", "down", "l", "enter")
+        await driver.press("up", "n")
+        await driver.pilot.click("#line", offset=(6, 3))
+        await driver.settle()
+        assert driver.text == before
+
+    drive(story, small)
+
+
+def test_a_control_character_in_a_label_is_refused_as_such(drive, small):
+    async def story(driver):
+        before = driver.text
+        await driver.press("n")
+        driver.builder.editor.value = "top\x1b[31m"
+        await driver.press("enter")
+        assert "a control character cannot be written into the file" in driver.screen
+        assert driver.text == before
+
+    drive(story, small)

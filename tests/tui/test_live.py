@@ -8,8 +8,8 @@ import calm
 from calm.case import Mooring, Result
 from calm.checks.assess import assessment_of, stand_of
 from calm.checks.finding import AS_GIVEN, State
+from calm.checks.rules import RULES
 from calm.errors import NoEquilibrium
-from calm.tui import live
 from calm.tui.live import judge, judge_fully
 
 LINES = Path(__file__).resolve().parents[2] / "lines"
@@ -149,7 +149,10 @@ def test_a_line_without_an_anchor_stands_on_one_that_holds_anything() -> None:
         assert row.depth == pytest.approx(with_anchor.depth + height, abs=0.02)
         assert row.tension == pytest.approx(with_anchor.tension, rel=1e-3)
     rules = {finding.rule for finding in without.findings}
-    assert "strength" in rules and not {rule for rule in rules if rule.startswith("anchor")}
+    assert "strength" in rules and not {rule for rule in rules if RULES[rule].of_anchor}
+    assert {rule for rule in RULES if RULES[rule].of_anchor} == {
+        "anchor-weight", "anchor-uplift", "anchor-sliding",
+    }  # fmt: skip
     assert {finding.component for finding in without.findings} <= {
         None, *(row.label for row in without.rows),
     }  # fmt: skip
@@ -230,4 +233,3 @@ def test_live_needs_no_screen() -> None:
 
     code = "import sys, calm.tui.live; sys.exit('textual' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
-    assert live.judge.__doc__

@@ -10,12 +10,12 @@ import subprocess
 import sys
 import time
 
+import pexpect
+import pyte
 import pytest
 
 from calm.shipped import shipped_folder
 
-pexpect = pytest.importorskip("pexpect")
-pyte = pytest.importorskip("pyte")
 ESCAPE_DELAY = 0.1  # seconds; as textual has it
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="there are no pseudo-terminals")
 
@@ -143,11 +143,11 @@ def test_build_the_deep_mooring_from_nothing(tmp_path):
 
     terminal.press("w")
     terminal.wait("The water of mine.yaml")
-    terminal.press("4200 m", ENTER, RIGHT)
+    terminal.press("4200 m", ENTER, RIGHT, ENTER)
     terminal.wait("density kg/m^3")
     fill_table(terminal, DENSITY)
     terminal.wait("1047")
-    terminal.press(TAB, RIGHT, RIGHT)
+    terminal.press(TAB, RIGHT, RIGHT, ENTER)
     terminal.wait("speed m/s")
     fill_table(terminal, CURRENT)
     terminal.wait("0.06")
@@ -194,10 +194,7 @@ def test_killed_in_mid_edit_and_recovered(tmp_path):
     first.wait("m.yaml", "a add", "Anchor")
     first.press("n", "a name of mine", ENTER)
     first.wait("a name of mine", "not saved")
-    kept = tmp_path / ".m.yaml.calm-autosave"
-    deadline = time.monotonic() + PATIENCE
-    while not kept.exists() and time.monotonic() < deadline:
-        time.sleep(0.05)
+    kept = copy_of(file)
     first.press("n", "half a na")  # a value half typed is not work yet
     first.wait("half a na")
     first.child.kill(signal.SIGKILL)
@@ -221,7 +218,58 @@ def test_a_closed_terminal_keeps_the_work(tmp_path):
     terminal = Terminal(file)
     terminal.wait("m.yaml", "a add", "Anchor")
     terminal.press("n", "kept", ENTER)
-    terminal.wait("not saved")
+    copy_of(file).unlink()  # it is the end that keeps the work
     terminal.child.kill(signal.SIGHUP)
     terminal.end()
-    assert b"label: kept" in (tmp_path / ".m.yaml.calm-autosave").read_bytes()
+    assert b"label: kept" in copy_of(file).read_bytes()
+
+
+@pytest.mark.parametrize("pressed", ["", "w" + 40 * DOWN])
+def test_a_terminal_that_is_gone_ends_it(tmp_path, pressed):
+    """The end of the terminal's window; what is drawn then can be written nowhere."""
+    file = tmp_path / "m.yaml"
+    file.write_bytes((shipped_folder("lines") / "s1000.yaml").read_bytes())
+    terminal = Terminal(file)
+    terminal.wait("m.yaml", "a add", "Anchor")
+    terminal.press("n", "kept", ENTER)
+    terminal.wait("kept", "not saved")
+    terminal.press(pressed)
+    terminal.child.ptyproc.fileobj.close()
+    deadline = time.monotonic() + PATIENCE
+    while terminal.child.isalive():
+        if time.monotonic() > deadline:
+            os.kill(terminal.child.pid, signal.SIGKILL)
+            pytest.fail("it goes on without a terminal")
+        time.sleep(0.05)
+    assert terminal.child.signalstatus == signal.SIGHUP
+    assert b"label: kept" in copy_of(file).read_bytes()
+
+
+def test_a_file_that_is_open_elsewhere(tmp_path):
+    file = tmp_path / "m.yaml"
+    file.write_bytes((shipped_folder("lines") / "s1000.yaml").read_bytes())
+    first = Terminal(file)
+    first.wait("m.yaml", "a add", "Anchor")
+    first.press("n", "of the first", ENTER)
+    kept = copy_of(file)
+
+    second = Terminal(file)
+    second.wait("m.yaml is open elsewhere", "Anchor")
+    second.press("q")
+    second.end()
+    assert b"of the first" in kept.read_bytes()
+    first.press(SAVE)
+    first.wait("m.yaml saved")
+    first.press("q")
+    first.end()
+    assert not list(tmp_path.glob(".m.yaml.*"))
+
+
+def copy_of(file):
+    """Where unsaved work is kept, once it is."""
+    deadline = time.monotonic() + PATIENCE
+    while not (found := list(file.parent.glob(f".{file.name}.*.calm-autosave"))):
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    (copy,) = found
+    return copy

@@ -1,12 +1,16 @@
 """Depth, density, current, wind and environments."""
 
+import numpy
 import pytest
+import xarray
 from textual.events import Paste
 
-from calm.tui.cells import Cells
 from calm.tui.field import Field
-from calm.tui.grid import Grid
-from calm.tui.water_screen import WaterScreen
+from calm.tui.water.cells import Cells
+from calm.tui.water.current_import import _existing, imported
+from calm.tui.water.grid import Grid
+from calm.tui.water.screen import WaterScreen
+from tests.tui.conftest import MOORING
 
 CURRENT = ("environment", "current")
 
@@ -20,6 +24,7 @@ async def enter(driver, id, text):
     chosen.focus_input()
     await driver.pilot.pause()
     chosen.input.action_select_all()
+    await driver.press("delete")
     await driver.type(text)
     await driver.press("enter")
 
@@ -28,16 +33,19 @@ def cells(driver, id="current-table"):
     return driver.app.screen.query_one(f"#{id}", Grid).query_one(Cells)
 
 
-async def turn(driver, id, key="right"):
+async def turn(driver, id, *keys):
     driver.app.screen.query_one(f"#{id}").focus()
-    await driver.press(key)
+    await driver.press(*keys or ("right",), "enter")
+
+
+def value(driver, *keys):
+    return driver.session.draft.value(("environment", *keys))
 
 
 def test_change_the_depth_and_see_it(drive, small):
     async def story(driver):
         await driver.press("w")
         assert isinstance(driver.app.screen, WaterScreen)
-        await driver.press("ctrl+shift+a")
         await enter(driver, "depth", "120")
         await driver.settle()
         assert driver.session.draft.value(("environment", "depth")) == "120 m"
@@ -49,7 +57,7 @@ def test_change_the_depth_and_see_it(drive, small):
     drive(story, small)
 
 
-def test_a_depth_that_is_none_is_not_taken(drive, small):
+def test_a_mass_is_not_taken_as_depth(drive, small):
     async def story(driver):
         await driver.press("w")
         before = driver.text
@@ -81,7 +89,46 @@ def test_a_uniform_current_becomes_a_table_whose_cells_are_edited(drive, small):
     drive(story, small)
 
 
-def test_a_number_that_is_none_is_not_taken_in_a_table(drive, small):
+@pytest.mark.parametrize(
+    ("unit", "above", "below", "half"),
+    [("deg", "350", "10", "0"), ("deg", "20", "300", "340"), ("deg", "-20", "60", "20"),
+     ("rad", "6", "0.5", "0.108407")],
+)  # fmt: skip
+def test_a_row_between_others_has_the_direction_between_theirs(
+    drive, small, unit, above, below, half
+):
+    table = f"{{columns: [depth m, speed m/s, toward {unit}], rows: [[0, 0.5, {above}], "
+    table += f"[100, 0.3, {below}]]}}"
+    small.write_text(MOORING.replace("{speed: 0.5 m/s, toward: 90 deg}", table))
+
+    async def story(driver):
+        await driver.press("w")
+        cells(driver).focus()
+        await driver.press("a", "escape")
+        # in radians (6 + 0.5 + 2 pi) / 2 - 2 pi, six digits
+        assert value(driver, "current", "rows")[1] == ["50", "0.4", half]
+
+    drive(story, small)
+
+
+def test_of_a_row_only_what_is_changed_is_written_anew(drive, small):
+    table = """
+    columns: [depth m, speed m/s, toward deg]
+    rows:
+      - [0, 0.50, 350]   # surf
+      - [1e2, '0.20',  10]"""
+    small.write_text(MOORING.replace("{speed: 0.5 m/s, toward: 90 deg}", table))
+
+    async def story(driver):
+        await driver.press("w")
+        cells(driver).focus()
+        await driver.press("right", *"0", "full_stop", "6", "enter")
+        assert driver.text == small.read_text().replace("0.50, 350]", "0.6, 350]")
+
+    drive(story, small)
+
+
+def test_what_is_no_number_is_not_taken_in_a_table(drive, small):
     async def story(driver):
         await driver.press("w")
         await turn(driver, "current-form")
@@ -94,17 +141,27 @@ def test_a_number_that_is_none_is_not_taken_in_a_table(drive, small):
     drive(story, small)
 
 
+async def paste(driver, text):
+    cells(driver).post_message(Paste(text))
+    await driver.settle()
+    return value(driver, "current", "rows")
+
+
 def test_rows_of_a_spreadsheet_are_pasted(drive, small):
     async def story(driver):
         await driver.press("w")
         await turn(driver, "current-form")
         cells(driver).focus()
         await driver.pilot.pause()
-        cells(driver).post_message(Paste("depth\tspeed\ttoward\n0\t0.9\t70\n100\t0.1\t60\n"))
-        await driver.settle()
-        assert driver.session.draft.value((*CURRENT, "rows")) == [
-            ["0", "0.9", "70"], ["100", "0.1", "60"],
+        rows = await paste(driver, "depth\tspeed\ttoward\n0\t0.9\t70\n100\t0.1\t60\n")
+        assert rows == [["0", "0.9", "70"], ["100", "0.1", "60"]]
+        assert await paste(driver, "0,0.8,70\n\n90,0.1,60") == [
+            ["0", "0.8", "70"], ["90", "0.1", "60"],
         ]  # fmt: skip
+        before = driver.text
+        await paste(driver, "0\t0.9\t70\n50\tn/a\t70\n100\t0.1\t60")
+        assert "Nothing is pasted: row 2: `n/a` is not a plain number" in driver.screen
+        assert driver.text == before
 
     drive(story, small)
 
@@ -157,28 +214,418 @@ def test_a_file_of_current_that_is_not_there_is_told(drive, small):
     drive(story, small)
 
 
-def test_density_as_a_table(drive, small):
+def test_density_as_a_table_begins_with_the_constant_which_comes_back(drive, small):
+    density = "  density: '1030 kg/m^3'  # of March\n"
+    small.write_text(MOORING.replace("  current", density + "  current"))
+
     async def story(driver):
         await driver.press("w")
         await turn(driver, "density-form")
-        assert driver.session.draft.value(("environment", "density", "columns")) == [
-            "depth m", "density kg/m^3",
-        ]  # fmt: skip
-        await turn(driver, "density-form")
-        assert driver.session.draft.value(("environment", "density")) == "1025 kg/m^3"
+        assert value(driver, "density") == {
+            "columns": ["depth m", "density kg/m^3"],
+            "rows": [["0", "1030"], ["100", "1030"]],
+        }
+        await turn(driver, "density-form", "left")
+        assert value(driver, "density") == "1030 kg/m^3"
+        await driver.press("ctrl+z", "ctrl+z")
+        assert density in driver.text
 
     drive(story, small)
 
 
-def test_wind_comes_and_goes(drive, small):
+def test_the_arrows_change_nothing_before_enter(drive, small):
+    async def story(driver):
+        before = driver.text
+        await driver.press("w")
+        form = driver.app.screen.query_one("#current-form")
+        form.focus()
+        await driver.press("right")
+        assert "table ›   Enter takes it" in driver.screen
+        await driver.press("right", "right", "tab")
+        assert driver.text == before
+        assert form.word == "uniform"
+        await driver.pilot.click("#current-form")
+        assert "table" in driver.screen and driver.text == before
+        await driver.pilot.click("#current-form", offset=(32, 0))
+        assert value(driver, "current", "columns")
+
+    drive(story, small)
+
+
+def test_a_form_comes_back_as_it_was_left(drive, small):
+    async def story(driver):
+        await driver.press("w")
+        await turn(driver, "current-form")
+        cells(driver).focus()
+        await driver.press("right", "0", "full_stop", "8", "enter")
+        table = value(driver, "current")
+        await turn(driver, "current-form", "left")
+        assert value(driver, "current") == {"speed": "0.5 m/s", "toward": "90 deg"}
+        await turn(driver, "current-form", "left")
+        assert value(driver, "current") is None
+        await turn(driver, "current-form", "right", "right")
+        assert value(driver, "current") == table
+
+    drive(story, small)
+
+
+def test_a_uniform_current_begins_with_that_at_the_surface(drive, small):
+    table = "{columns: [depth m, speed knot, toward deg], rows: [[0, 2, 45], [100, 1, 50]]}"
+    small.write_text(MOORING.replace("{speed: 0.5 m/s, toward: 90 deg}", table))
+
+    async def story(driver):
+        await driver.press("w")
+        await turn(driver, "current-form", "left")
+        # 2 knots of 1852/3600 m/s, six digits
+        assert value(driver, "current") == {"speed": "1.02889 m/s", "toward": "45 deg"}
+
+    drive(story, small)
+
+
+def test_temperature_and_salinity_are_begun_and_edited(drive, small):
+    async def story(driver):
+        await driver.press("w")
+        await turn(driver, "density-form", "left")
+        assert value(driver, "density") == {"temperature": "10 degC", "salinity": "35"}
+        await enter(driver, "density-temperature", "4")
+        await turn(driver, "density-salinity-form")
+        assert value(driver, "density") == {
+            "temperature": "4 degC",
+            "salinity": {"columns": ["depth m", "salinity"], "rows": [["0", "35"], ["100", "35"]]},
+        }
+        salinity = cells(driver, "density-salinity-table")
+        salinity.focus()
+        await driver.press("down", "right", "3", "6", "enter")
+        await driver.settle()
+        assert value(driver, "density", "salinity", "rows")[1] == ["100", "36"]
+        assert driver.view.file.environment.density.salinity.value == (35.0, 36.0)
+        await driver.press("a", "escape")
+        assert len(value(driver, "density", "salinity", "rows")) == 3
+
+    drive(story, small)
+
+
+RAGGED = """\
+  current:
+    columns: [depth m, speed m/s, toward deg]
+    rows:
+      - [0, '0.5', 90]   # at the buoy
+      - [50]
+      - [100, , 80]      # lost
+"""
+
+
+def test_a_row_that_lacks_values_is_filled_and_the_others_stay(drive, small):
+    ragged = RAGGED.replace(", ,", ", null,")
+    small.write_text(MOORING.replace("  current: {speed: 0.5 m/s, toward: 90 deg}\n", ragged))
+
+    async def story(driver):
+        await driver.press("escape", "w")
+        cells(driver).focus()
+        await driver.press("down", "right", "enter", "escape")
+        assert driver.text == small.read_text()
+        await driver.press("down", "enter", "0", "full_stop", "1", "enter")
+        assert driver.text == small.read_text().replace("null", "0.1")
+        await driver.press("home", "up", "0", "full_stop", "2", "enter")
+        assert "- [0, '0.5', 90]   # at the buoy\n      - [50, null, 0.2]\n" in driver.text
+
+    drive(story, small)
+
+
+def test_a_table_of_other_things_is_left_to_the_text(drive, small):
+    odd = MOORING.replace(
+        "{speed: 0.5 m/s, toward: 90 deg}", "{columns: [depth m], rows: [1, [2]]}"
+    )
+    small.write_text(odd)
+
+    async def story(driver):
+        await driver.press("escape", "w")
+        cells(driver).focus()
+        assert "edited in the text of the file" in driver.screen
+        await driver.press("enter", "a", "A", "delete", "1")
+        assert driver.text == odd
+
+    drive(story, small)
+
+
+def test_wind_needs_a_direction_and_goes_without_a_speed(drive, small):
     async def story(driver):
         await driver.press("w")
         await enter(driver, "wind-speed", "12")
-        wind = driver.session.draft.value(("environment", "wind"))
-        assert wind == {"speed": "12 m/s", "toward": "0 deg"}
+        assert value(driver, "wind") == {"speed": "12 m/s"}
+        assert "is needed: where the wind blows" in driver.screen
+        assert driver.app.focused is field(driver, "wind-toward").input
+        await driver.type("45")
+        await driver.press("enter")
+        await driver.settle()
+        assert value(driver, "wind") == {"speed": "12 m/s", "toward": "45 deg"}
+        assert driver.view.file.environment.wind.toward == 45.0
         field(driver, "wind-speed").focus_input()
         await driver.press("ctrl+u", "enter")
         assert driver.session.draft.value(("environment", "wind")) is None
+
+    drive(story, small)
+
+
+STORMY = """\
+  wind: {speed: 10 m/s, toward: 90 deg, surface_drift: 0.03}
+
+environments:
+  storm: {depth: 110 m}
+"""
+
+
+@pytest.mark.parametrize(
+    ("id", "text", "expected"),
+    [
+        ("wind-speed", "20", {"speed": "20 m/s", "toward": "90 deg", "surface_drift": "0.03"}),
+        ("current-speed", "2", {"speed": "2 m/s", "toward": "90 deg"}),
+        ("current-toward", "45", {"speed": "0.5 m/s", "toward": "45 deg"}),
+    ],
+)
+def test_what_is_changed_in_a_named_environment_has_the_rest_of_the_files_own(
+    drive, small, id, text, expected
+):
+    small.write_text(MOORING.replace("\nline:", STORMY + "\nline:"))
+
+    async def story(driver):
+        await driver.press("w", "f5")
+        await enter(driver, id, text)
+        await driver.settle()
+        assert driver.session.environment == "storm"
+        key = id.partition("-")[0]
+        assert driver.session.draft.value(("environments", "storm", key)) == expected
+        assert driver.view.problems == ()
+        # an empty wind is that of the file's own environment, not one of no direction
+        if id == "wind-speed":
+            await enter(driver, id, "")
+            assert field(driver, id).input.value == "10 m/s"
+            assert driver.screen.count("as in the file's own environment") == 5
+            assert driver.session.draft.value(("environments", "storm")) == {"depth": "110 m"}
+
+    drive(story, small, environment=None)
+
+
+def test_an_environment_stays_where_its_last_value_goes(drive, small):
+    small.write_text(MOORING + "environments:\n  storm:\n    depth: 110 m\n")
+
+    async def story(driver):
+        await driver.press("w", "f5")
+        await enter(driver, "depth", "")
+        assert driver.session.draft.value(("environments",)) == {"storm": {}}
+        await driver.settle()
+        assert driver.view.problems == ()
+
+    drive(story, small)
+
+
+def test_what_is_being_typed_is_taken_before_anything_else(drive, small):
+    async def story(driver):
+        await driver.press("w", "ctrl+u")
+        await driver.type("130")
+        screen = driver.app.screen
+        assert screen.is_typing
+        assert screen.settle() and not screen.is_typing
+        assert value(driver, "depth") == "130 m"
+        await driver.press("ctrl+u")
+        await driver.type("140 kg")
+        await driver.press("f6")
+        assert driver.app.screen is screen and "Not taken yet, depth: is" in driver.screen
+        assert not screen.settle() and screen.is_typing
+        await driver.press("ctrl+u")
+        await driver.type("140")
+        await driver.press("f6")
+        assert "Another environment" in driver.screen
+        assert value(driver, "depth") == "140 m"
+
+    drive(story, small)
+
+
+def test_what_is_typed_in_a_table_is_taken_before_anything_else(drive, small):
+    async def story(driver):
+        await driver.press("w")
+        await turn(driver, "current-form")
+        cells(driver).focus()
+        await driver.press("right", "1", "x")
+        screen = driver.app.screen
+        assert not screen.settle() and screen.is_typing
+        await driver.press("backspace", "full_stop", "5")
+        assert screen.settle() and not screen.is_typing
+        assert value(driver, "current", "rows")[0] == ["0", "1.5", "90"]
+        await driver.pilot.pause()
+        assert cells(driver).has_focus
+        await driver.press("2", "ctrl+z")
+        assert value(driver, "current", "rows")[0] == ["0", "1.5", "90"]
+        await driver.press("1")
+        driver.session.write(driver.text.replace("1.5", "1.7"))
+        screen.replaced()
+        assert not screen.is_typing and cells(driver).rows[0] == ("0", "1.7", "90")
+
+    drive(story, small)
+
+
+def test_a_value_left_with_the_mouse_is_taken_where_it_was_typed(drive, small):
+    async def story(driver):
+        await driver.press("w")
+        await turn(driver, "current-form")
+        cells(driver).focus()
+        await driver.press("right", "7")
+        await driver.pilot.click(cells(driver), offset=(4, 2))
+        await driver.settle()
+        assert value(driver, "current", "rows") == [["0", "7", "90"], ["100", "0.5", "90"]]
+        assert (cells(driver).cursor, cells(driver).column) == (1, 0)
+        await driver.press("7", "x")
+        await driver.pilot.click(cells(driver), offset=(4, 1))
+        await driver.settle()
+        assert value(driver, "current", "rows")[1][0] == "100"
+        assert "`7x` is not taken: has an unknown unit" in driver.screen
+
+    drive(story, small)
+
+
+def test_a_draft_that_is_replaced_is_shown_and_what_was_typed_is_dropped(drive, small):
+    async def story(driver):
+        await driver.press("w", "ctrl+u", "7")
+        driver.session.write(driver.text.replace("100 m ", "150 m "))
+        driver.app.screen.replaced()
+        assert field(driver, "depth").input.value == "150 m"
+        await driver.press("escape")
+        assert value(driver, "depth") == "150 m"
+
+    drive(story, small)
+
+
+def test_a_draft_that_cannot_be_read_is_shown_as_one_that_says_nothing(drive, small):
+    async def story(driver):
+        await driver.press("w")
+        driver.session.write("line: [")
+        screen = driver.app.screen
+        screen.replaced()
+        assert field(driver, "depth").input.value == ""
+        assert not screen.change(lambda water: water.put(("depth",), "9 m"), "the depth")
+        assert driver.text == "line: ["
+
+    drive(story, small)
+
+
+def netcdf(path, **variables):
+    time = numpy.array(["2026-03-01T00", "2026-03-01T06"], "datetime64[ns]")
+    dimensions = ("time", "depth")
+    data = {
+        name: (dimensions, values, {"units": "m s-1", "standard_name": standard})
+        for name, (standard, values) in variables.items()
+    }
+    depth = ("depth", [0.0, 100.0], {"units": "m", "positive": "down", "standard_name": "depth"})
+    xarray.Dataset(data, {"time": time, "depth": depth}).to_netcdf(path, engine="h5netcdf")
+
+
+@pytest.mark.parametrize("how", ["refer", "copy"])
+def test_a_current_of_a_netcdf_file(drive, small, how):
+    east = ("eastward_sea_water_velocity", [[0.1, 0.1], [0.3, 0.0]])
+    north = ("northward_sea_water_velocity", [[0.0, 0.0], [0.4, 0.2]])
+    netcdf(small.with_name("adcp.nc"), u=east, v=north)
+
+    async def story(driver):
+        await driver.press("w", "ctrl+o")
+        await driver.type("adcp.nc")
+        await driver.press("enter")
+        await driver.type("2026-03-01T06:00")
+        await driver.press("enter", "ctrl+u")
+        await driver.type(how)
+        await driver.press("enter")
+        await driver.settle()
+        if how == "refer":
+            named = {"file": "adcp.nc", "time": "2026-03-01T06:00"}
+            assert value(driver, "current") == named
+        else:
+            assert value(driver, "current") == {
+                "columns": ["depth m", "u m/s", "v m/s"],
+                "rows": [["0", "0.3", "0.4"], ["100", "0", "0.2"]],
+            }
+            assert "The current of adcp.nc is in the table" in driver.screen
+        assert driver.view.file.environment.current.v[0] == pytest.approx(0.4, abs=1e-4)
+
+    drive(story, small)
+
+
+@pytest.mark.parametrize("kind", ["csv", "float32", "float64"])
+def test_a_current_that_is_copied_keeps_its_digits(tmp_path, kind):
+    rows = [["0.1", "0.123456", "359.99"], ["33.3", "0.3", "36.87"], ["100", "0", "0"]]
+    if kind == "csv":
+        path = tmp_path / "adcp.csv"
+        path.write_text(
+            "\n".join(map(",".join, [["depth[m]", "speed[m/s]", "toward[deg]"], *rows]))
+        )
+    else:
+        path = tmp_path / "adcp.nc"
+        depth, speed, toward = numpy.array(rows, kind).T
+        standard = "sea_water_velocity_to_direction"
+        down = {"units": "m", "positive": "down", "standard_name": "depth"}
+        xarray.Dataset(
+            {
+                "speed": ("depth", speed, {"units": "m s-1", "standard_name": "sea_water_speed"}),
+                "toward": ("depth", toward, {"units": "degree", "standard_name": standard}),
+            },
+            {"depth": ("depth", depth, down)},
+        ).to_netcdf(path, engine="h5netcdf")
+    assert imported(path, "", 100.0) == (("depth m", "speed m/s", "toward deg"), rows)
+
+
+def test_a_uniform_current_begins_with_components_at_the_surface(drive, small):
+    table = "{columns: [depth m, u m/s, v m/s], rows: [[0, -0.3, 0.4], [100, 0, 0]]}"
+    small.write_text(MOORING.replace("{speed: 0.5 m/s, toward: 90 deg}", table))
+
+    async def story(driver):
+        await driver.press("w")
+        await turn(driver, "current-form", "left")
+        # of 3, 4 and 5, towards the north-west: 360 - atan(3/4), six digits
+        assert value(driver, "current") == {"speed": "0.5 m/s", "toward": "323.13 deg"}
+
+    drive(story, small)
+
+
+def test_a_file_that_no_library_can_read_is_told(drive, small, monkeypatch):
+    small.with_name("bad.nc").write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(200))
+
+    async def load(driver):
+        await driver.press("ctrl+o")
+        await driver.type("bad.nc")
+        await driver.press("enter", "enter", "ctrl+u")
+        await driver.type("copy")
+        await driver.press("enter")
+        await driver.settle()
+
+    async def story(driver):
+        before = driver.text
+        await driver.press("w")
+        await load(driver)
+        assert "bad.nc" in driver.screen.splitlines()[-1]
+
+        def fail(*_):
+            raise RuntimeError("out of luck")
+
+        monkeypatch.setattr("calm.tui.water.current_import.imported", fail)
+        await load(driver)
+        assert "bad.nc cannot be read: RuntimeError: out of luck" in driver.screen
+        assert driver.text == before
+
+    drive(story, small)
+
+
+def test_a_name_that_no_file_can_have_is_no_such_file(tmp_path):
+    check = _existing(tmp_path)
+    assert check("x" * 5000).note == check("a\0b").note == "no such file"
+
+
+def test_a_depth_that_is_assumed_is_told(drive, small):
+    small.write_text(MOORING.replace("  depth: 100 m                        # at low water\n", ""))
+
+    async def story(driver):
+        await driver.press("w", "ctrl+t")
+        assert "down to 100 m, as no depth is given" in driver.screen
+        await driver.press("escape")
+        await turn(driver, "current-form")
+        assert "no depth is given, so tables go down to 100 m" in driver.screen
 
     drive(story, small)
 
@@ -215,5 +662,39 @@ def test_undo_reaches_the_water(drive, small):
         await driver.press("ctrl+z")
         assert driver.text == before
         assert field(driver, "depth").input.value == "100 m"
+
+    drive(story, small)
+
+
+def test_the_environment_file_that_the_line_stands_in_is_told(drive, small):
+    small.with_name("lab.yaml").write_text("name: lab\nenvironment: {depth: 140 m}\n")
+
+    async def story(driver):
+        await driver.press("w")
+        assert driver.view.file.environment.depth == 140.0
+        assert "The line stands in lab.yaml: the profile and" in driver.screen
+        assert "own   [lab.yaml]" in driver.screen
+        await driver.press("f5")
+        await driver.settle()
+        assert driver.view.file.environment.depth == 100.0
+        assert "[own]" in driver.screen
+        assert "stands in lab.yaml:" not in driver.screen
+        assert "The line no longer stands in lab.yaml" in driver.screen
+
+    drive(story, small, environment="lab.yaml")
+
+
+def test_mistakes_of_the_water_are_told_where_they_are_mended(drive, small):
+    table = "{columns: [depth m, speed m/s, toward deg], rows: [[0, -1, 90], [100, 0.2, 90]]}"
+    small.write_text(MOORING.replace("{speed: 0.5 m/s, toward: 90 deg}", table))
+
+    async def story(driver):
+        await driver.press("escape", "w")
+        message = "`speed` -1 m/s is negative"
+        assert f"! line 5:67  {message}" in driver.screen
+        cells(driver).focus()
+        await driver.press("right", "1", "enter")
+        await driver.settle()
+        assert message not in driver.screen and driver.view.problems == ()
 
     drive(story, small)

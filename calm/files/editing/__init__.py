@@ -4,7 +4,8 @@ from calm.files.editing.changes import EditError
 from calm.files.editing.draft import Draft
 from calm.files.editing.history import History
 from calm.files.editing.items import Item
+from calm.files.editing.kept_work import Kept
 from calm.files.editing.layout import Value
 from calm.files.editing.working_file import NotWritten, WorkingFile
 
-__all__ = ["Draft", "EditError", "History", "Item", "NotWritten", "Value", "WorkingFile"]
+__all__ = ["Draft", "EditError", "History", "Item", "Kept", "NotWritten", "Value", "WorkingFile"]

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from difflib import SequenceMatcher
 
 from calm.errors import CalmError
 from calm.files.document import Location
 from calm.files.editing.data import child_of, nested
-from calm.files.editing.items import new_slot
+from calm.files.editing.items import new_slot, snippet_of, worded_slot
 from calm.files.editing.layout import Layout, Value, Worded
-from calm.files.editing.lists import Items, Slot, items_of
+from calm.files.editing.lists import Items, items_of
 from calm.files.editing.mappings import add_entry, remove_entry, set_scalar, set_value
 from calm.files.editing.spans import Patch
 from calm.files.nodes import Node
@@ -85,14 +85,34 @@ class Page:
             raise EditError(f"{message}; change it in the text")
         return items
 
+    def known(self, location: Location, indices: Iterable[int]) -> list[int]:
+        """Indices of items of a list in its order, each once."""
+        node = self.node(location)
+        count = len(node.children) if node is not None and node.kind == "sequence" else 0
+        known = sorted(set(indices))
+        for index in known:
+            if not 0 <= index < count:
+                what = "clamp" if location[-1] == "clamps" else "item"
+                raise EditError(f"there is no {what} {index} among {count}")
+        return known
+
+    def copy(self, location: Location, indices: Iterable[int]) -> tuple[str, ...]:
+        """The text of items of a list by themselves, with their comments."""
+        known = self.known(location, indices)
+        node = self.node(location)
+        if not known or node is None:
+            return ()
+        items = self.items(location)
+        return tuple(snippet_of(items.slots[i], node.children[i], items) for i in known)
+
     def add(self, location: Location, index: int, values: Sequence[Value]) -> list[Patch]:
         """New items in a list, which may not exist yet."""
         node = self.node(location)
         if node is None or not node.children:
             return self.put(location, values)
         items = self.items(location)
-        if isinstance(values, Worded) and items.form == "block":
-            slots = [Slot(self.layout.moved(one, items.column)) for one in values.lines]
+        if isinstance(values, Worded):
+            slots = [worded_slot(one, items, self.layout) for one in values.wordings]
         else:
             block = all(child.style == "block" for child in node.children)
             slots = [new_slot(value, items, self.layout, block=block) for value in values]
@@ -100,7 +120,7 @@ class Page:
             items.insert(index, slot)
         return [items.patch()]
 
-    def rows(self, location: Location, rows: Sequence[Sequence[str]]) -> list[Patch]:
+    def rows(self, location: Location, rows: Sequence[Sequence[str | None]]) -> list[Patch]:
         """The rows of a table, those that are there already as they stand."""
         node = self.node(location)
         if node is None or not node.children or not rows or node.kind != "sequence":

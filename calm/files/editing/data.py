@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
+from unicodedata import category
 
 from calm.files.document import Location
 from calm.files.editing.layout import Value
@@ -56,3 +57,37 @@ def without(data: Any, location: Location) -> Any:
     if below:
         return {**data, step: without(data[step], below)}
     return {key: one for key, one in data.items() if key != step}
+
+
+def has_control(data: Any) -> bool:
+    """Whether a text of some data has signs that only control how the others are shown."""
+    if isinstance(data, str):
+        return any(category(sign) in ("Cc", "Cf") for sign in data if sign not in "\t\n\r")
+    parts = [*data, *data.values()] if isinstance(data, dict) else data or ()
+    return any(map(has_control, parts))
+
+
+def cells_that_differ(
+    old: Any, new: Sequence[Sequence[str | None]]
+) -> list[tuple[int, int, str]] | None:
+    """Row, column and text of each value in which tables of the same shape differ.
+
+    None where they have not the same shape, or a value goes without another in its place.
+    """
+    if _shape(old) != _shape(new):
+        return None
+    cells = [
+        (i, j, text)
+        for i, (before, row) in enumerate(zip(old, new, strict=True))
+        for j, (value, text) in enumerate(zip(before, row, strict=True))
+        if value != text
+    ]
+    texts = [(i, j, text) for i, j, text in cells if text is not None]
+    return texts if len(texts) == len(cells) else None
+
+
+def _shape(rows: Any) -> list[int]:
+    """How many values each row has, -1 where it is no row."""
+    if not isinstance(rows, list | tuple):
+        return []
+    return [len(row) if isinstance(row, list | tuple) else -1 for row in rows]

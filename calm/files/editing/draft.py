@@ -14,8 +14,8 @@ from calm.files import document
 from calm.files.composition import compose
 from calm.files.document import Location
 from calm.files.editing.changes import NAMED, EditError, Page
-from calm.files.editing.data import data_of, with_value, without
-from calm.files.editing.items import Item, item_of, read_snippet, snippet_of
+from calm.files.editing.data import cells_that_differ, data_of, has_control, with_value, without
+from calm.files.editing.items import Item, item_of, read_snippet
 from calm.files.editing.layout import Layout, Value, Worded
 from calm.files.editing.lists import items_of
 from calm.files.editing.spans import Patch, patched
@@ -24,7 +24,11 @@ from calm.files.nodes import Node
 LINE = "line"
 CLAMPS = "clamps"
 KEPT = "environment"
-"""It is needed even where it says nothing."""
+VARIANTS = "environments"
+"""They are needed even where they say nothing."""
+
+_CONTROL = "a control character cannot be written into the file"
+_ENTANGLED = "the file is written in a way that does not allow this change; make it in the text"
 
 _EMPTY = """\
 # Every figure carries its unit: 12 mm, 1.5 knot, 35 kgf, 0.22 kgf/m, 30 deg, 1/2 in.
@@ -98,80 +102,83 @@ class Draft:
         pairs = zip(node.children, lines, strict=True)
         return tuple(item_of(child, text, lines=own) for child, own in pairs)
 
+    @property
+    def is_tow(self) -> bool:
+        """Whether it says that it is a tow; not where it cannot be read."""
+        return isinstance(self.value(()), dict) and "tow" in self.value(())
+
     def value(self, location: Location) -> Any:
-        """What the file says at a location: text, a mapping, a list; None where nothing."""
-        node = self._page.node(location)
+        """The text, mapping or list at a location; None where nothing is, or with `problems`."""
+        node = self._page.node(location) if self._root is not None else None
         return node.data if node else None
 
-    def insert(
-        self, index: int, values: Mapping[str, Value], clamps: Sequence[Mapping[str, Value]] = ()
-    ) -> Draft:
+    def text_at(self, location: Location) -> str:
+        """The same where it is a plain value, as it is written; empty elsewhere."""
+        value = self.value(location)
+        return value if isinstance(value, str) else ""
+
+    def insert(self, index: int, values: Mapping[str, Value]) -> Draft:
         """A new item above the one of an index, or below the last."""
-        return self._add((LINE,), index, [{**values, CLAMPS: clamps} if clamps else values])
+        return self._add((LINE,), index, [values])
 
     def delete(self, indices: Iterable[int]) -> Draft:
         """The line without some items."""
-        return self._drop((LINE,), self._known(indices))
+        return self._drop((LINE,), indices)
 
     def move(self, index: int, to: int) -> Draft:
         """An item taken to another place, `to` being its index then."""
-        self._known([index, to])
         return self._move((LINE,), index, to)
 
     def duplicate(self, indices: Iterable[int]) -> Draft:
         """The same items again, below the last of them."""
-        known = self._known(indices)
+        known = self._page.known((LINE,), indices)
         return self.paste(known[-1] + 1, self.copy(known)) if known else self
 
     def copy(self, indices: Iterable[int]) -> tuple[str, ...]:
         """The text of items by themselves, with their comments."""
-        known = self._known(indices)
-        items = self._page.items((LINE,)) if known else None
-        node = self._line
-        if items is None or node is None:
-            return ()
-        return tuple(snippet_of(items.slots[i], node.children[i], items) for i in known)
+        return self._page.copy((LINE,), indices)
 
     def paste(self, index: int, snippets: Iterable[str]) -> Draft:
-        """Items from their text above the one of an index, or below the last."""
-        read = [read_snippet(snippet) for snippet in snippets]
-        if None in read:
-            raise EditError("what is to be pasted is no list of items")
-        found = [one for one in read if one is not None]
-        values = [item for _, some in found for item in some]
-        worded = Worded(values, [lines for lines, _ in found])
-        return self._add((LINE,), index, worded) if values else self
+        """Items as `copy` gives them above the one of an index, or below the last."""
+        return self._paste((LINE,), index, snippets)
 
     def put(self, index: int, key: str, value: Value | None) -> Draft:
         """A value of an item; None takes the key out."""
-        self._known([index])
+        self._page.known((LINE,), [index])
         return self.put_at((LINE, index, key), value)
 
     def insert_clamp(self, item: int, index: int, values: Mapping[str, Value]) -> Draft:
         """A new clamp on an item, above the one of an index, or below the last."""
-        self._known([item])
+        self._page.known((LINE,), [item])
         return self._add((LINE, item, CLAMPS), index, [values])
 
     def delete_clamp(self, item: int, clamp: int) -> Draft:
         """An item without one of its clamps."""
-        self._known_clamp(item, clamp)
         return self._drop((LINE, item, CLAMPS), [clamp])
 
     def move_clamp(self, item: int, clamp: int, to: int) -> Draft:
         """A clamp taken to another place of its item, `to` being its index then."""
-        self._known_clamp(item, clamp)
-        self._known_clamp(item, to)
         return self._move((LINE, item, CLAMPS), clamp, to)
+
+    def copy_clamps(self, item: int, clamps: Iterable[int]) -> tuple[str, ...]:
+        """The text of clamps of an item by themselves, with their comments."""
+        return self._page.copy((LINE, item, CLAMPS), clamps)
+
+    def paste_clamps(self, item: int, index: int, snippets: Iterable[str]) -> Draft:
+        """Clamps as `copy_clamps` gives them above the one of an index, or below the last."""
+        self._page.known((LINE,), [item])
+        return self._paste((LINE, item, CLAMPS), index, snippets)
 
     def put_clamp(self, item: int, clamp: int, key: str, value: Value | None) -> Draft:
         """A value of a clamp; None takes the key out."""
-        self._known_clamp(item, clamp)
+        self._page.known((LINE, item, CLAMPS), [clamp])
         return self.put_at((LINE, item, CLAMPS, clamp, key), value)
 
     def put_at(self, location: Location, value: Value | None) -> Draft:
         """A value anywhere in the file, with the mappings that lead to it.
 
-        None takes a key out, and a mapping that is empty then, but for `environment`.
+        None takes a key out, and a mapping that is empty then, but for `environment` and the
+        named environments.
         """
         page = self._page
         if value is not None:
@@ -179,17 +186,21 @@ class Draft:
             return self._changed(patches, with_value(self._data, location, value))
         if page.node(location) is None:
             return self
-        while len(location) > 1 and isinstance(location[-2], str) and location[-2] != KEPT:
+        while len(location) > 1 and isinstance(location[-2], str):
             outer = page.node(location[:-1])
-            if outer is None or len(outer.keys) > 1:
+            is_kept = location[:-1] == (KEPT,) or location[:-2] == (VARIANTS,)
+            if outer is None or len(outer.keys) > 1 or is_kept:
                 break
             location = location[:-1]
         return self._changed(page.remove(location), without(self._data, location))
 
     def put_table(
-        self, location: Location, columns: Sequence[str], rows: Sequence[Sequence[str]]
+        self, location: Location, columns: Sequence[str], rows: Sequence[Sequence[str | None]]
     ) -> Draft:
-        """A table; the rows that it has already stay as they are written."""
+        """A table; the rows that it has already stay as they are written.
+
+        In a table of as many values as before, each stays that does not change.
+        """
         old = self.value(location)
         if not isinstance(old, dict) or set(old) != {"columns", "rows"}:
             return self.put_at(location, {"columns": columns, "rows": rows})
@@ -197,12 +208,24 @@ class Draft:
         if old["columns"] != list(columns):
             draft = draft.put_at((*location, "columns"), columns)
         place = (*location, "rows")
+        cells = cells_that_differ(old["rows"], rows)
+        if cells is not None:
+            for i, j, text in cells:
+                draft = draft.put_at((*place, i, j), text)
+            return draft
         patches = draft._page.rows(place, rows)
         return draft._changed(patches, with_value(draft._data, place, rows))
 
     def put_component(self, id: str, values: Mapping[str, Value]) -> Draft:
         """A definition of a component used only here, in place of one of that id."""
         return self.put_at((NAMED[0], id), values)
+
+    def _paste(self, location: Location, index: int, snippets: Iterable[str]) -> Draft:
+        wordings = [read_snippet(snippet) for snippet in snippets]
+        if None in wordings:
+            raise EditError("what is to be pasted is no list of items")
+        worded = Worded(one for one in wordings if one is not None)
+        return self._add(location, index, worded) if worded else self
 
     def _add(self, location: Location, index: int, values: Sequence[Value]) -> Draft:
         """New items in a list that may not exist yet."""
@@ -218,6 +241,7 @@ class Draft:
         return self._changed(patches, with_value(self._data, location, data))
 
     def _move(self, location: Location, index: int, to: int) -> Draft:
+        self._page.known(location, [index, to])
         if index == to:
             return self
         items = self._page.items(location)
@@ -226,18 +250,18 @@ class Draft:
         data.insert(to, data.pop(index))
         return self._changed([items.patch()], with_value(self._data, location, data))
 
-    def _drop(self, location: Location, indices: Sequence[int]) -> Draft:
-        page = self._page
-        node = page.node(location)
-        if node is None or not indices:
+    def _drop(self, location: Location, indices: Iterable[int]) -> Draft:
+        known = self._page.known(location, indices)
+        if not known:
             return self
-        data = [one for i, one in enumerate(node.data) if i not in indices]
+        page = self._page
+        data = [one for i, one in enumerate(self.value(location)) if i not in known]
         if not data and location[-1] == CLAMPS:
             return self.put_at(location, None)
         if not data:
             return self._changed(page.put(location, []), with_value(self._data, location, data))
         items = page.items(location)
-        for index in sorted(indices, reverse=True):
+        for index in reversed(known):
             items.remove(index)
         return self._changed([items.patch()], with_value(self._data, location, data))
 
@@ -249,10 +273,8 @@ class Draft:
             text = text.removesuffix(line_break)
         draft = Draft(text)
         if draft._root is None or draft._root.data != data:
-            raise EditError(
-                "this cannot be changed here: the file is written in a way that does not allow "
-                "it; change it in the text"
-            )
+            is_hidden = has_control(data) and not has_control(self._data)
+            raise EditError(_CONTROL if is_hidden else _ENTANGLED)
         return draft
 
     @cached_property
@@ -275,23 +297,3 @@ class Draft:
     def _line(self) -> Node | None:
         node = self._page.node((LINE,)) if self._root is not None else None
         return node if node is not None and node.kind == "sequence" else None
-
-    @property
-    def _line_data(self) -> list[Any]:
-        return list(self._line.data) if self._line is not None else []
-
-    def _known(self, indices: Iterable[int]) -> list[int]:
-        """Indices of items in the order of the line, each once."""
-        count = len(self._line_data)
-        known = sorted(set(indices))
-        for index in known:
-            if not 0 <= index < count:
-                raise EditError(f"there is no item {index} in a line of {count}")
-        return known
-
-    def _known_clamp(self, item: int, clamp: int) -> None:
-        self._known([item])
-        clamps = self.value((LINE, item, CLAMPS))
-        count = len(clamps) if isinstance(clamps, list) else 0
-        if not 0 <= clamp < count:
-            raise EditError(f"there is no clamp {clamp} among {count}")

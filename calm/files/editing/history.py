@@ -26,16 +26,6 @@ class History:
         """Whether the draft differs from what was saved."""
         return self.draft.text != self._saved
 
-    @property
-    def undoes(self) -> str | None:
-        """What `undo` would take back, None where there is nothing."""
-        return self._done[-1][0] if self._done else None
-
-    @property
-    def redoes(self) -> str | None:
-        """What `redo` would do again, None where there is nothing."""
-        return self._undone[-1][0] if self._undone else None
-
     def do(self, draft: Draft, label: str) -> None:
         """A new state, and what it came of; an equal one is none."""
         if draft.text == self.draft.text:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import Any
 
 from ruamel.yaml.error import YAMLError
 
 from calm.files.composition import compose
-from calm.files.editing.layout import Layout, Value, inline
+from calm.files.editing.layout import Layout, Value, Wording, inline
 from calm.files.editing.lists import Items, Slot
+from calm.files.editing.spans import line_start
 from calm.files.nodes import Node
 
 _LINE_BREAK = re.compile(r"\r\n|\n")
@@ -61,6 +61,17 @@ def new_slot(value: Value, items: Items, layout: Layout, *, block: bool) -> Slot
     return Slot(inline(value))
 
 
+def worded_slot(wording: Wording, items: Items, layout: Layout) -> Slot:
+    """An item for a list as it is worded; what stands in brackets in one line loses comments."""
+    if items.form == "block":
+        return Slot(layout.moved(wording.lines, items.column))
+    if items.form == "rows":
+        above = layout.moved(wording.above, items.column)
+        behind = wording.behind.replace("\n", layout.line_break)
+        return Slot(above + " " * (items.column - 1) + wording.inline, behind)
+    return Slot(wording.inline)
+
+
 def snippet_of(slot: Slot, node: Node, items: Items) -> str:
     """The text of an item by itself, as an item of a block list that begins in column 1."""
     if items.form == "inline":
@@ -74,8 +85,8 @@ def snippet_of(slot: Slot, node: Node, items: Items) -> str:
     return indent.sub("", _LINE_BREAK.sub("\n", text))
 
 
-def read_snippet(snippet: str) -> tuple[str, list[Any]] | None:
-    """A text of items, moved to column 1, and what it says; None where it is none."""
+def read_snippet(snippet: str) -> Wording | None:
+    """The item that a text as that of `snippet_of` is; None where it is none."""
     try:
         composition = compose(snippet)
     except (YAMLError, ValueError, IndexError, RecursionError):
@@ -83,7 +94,11 @@ def read_snippet(snippet: str) -> tuple[str, list[Any]] | None:
     root = composition.root
     if root is None or composition.refusals or (root.kind, root.style) != ("sequence", "block"):
         return None
-    lines = _LINE_BREAK.sub("\n", snippet).rstrip() + "\n"
-    if root.column > 1:
-        lines = re.sub(rf"^[ ]{{1,{root.column - 1}}}", "", lines, flags=re.MULTILINE)
-    return lines, root.data
+    if len(root.children) != 1 or root.column != 1:
+        return None
+    item = root.children[0]
+    text = snippet[item.start : item.end]
+    above = snippet[: line_start(snippet, root.start)]
+    if item.style == "flow" and "\n" not in text:
+        return Wording(item.data, snippet, above, text, snippet[item.end :])
+    return Wording(item.data, snippet, above, inline(item.data), "\n")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from calm.files.editing.scalars import written
 from calm.files.nodes import Node
@@ -13,12 +14,31 @@ Value = str | None | Mapping[str, "Value"] | Sequence["Value"]
 """What a file can hold: text, nothing, or a mapping or list of what it can hold."""
 
 
-class Worded(list[Value]):
-    """Items of a list with their text as it stands in a block list that begins in column 1."""
+class Wording(NamedTuple):
+    """An item of a list as it is written.
 
-    def __init__(self, values: Iterable[Value], lines: Iterable[str]) -> None:
-        super().__init__(values)
-        self.lines = tuple(lines)
+    Attributes
+    ----------
+    value : Value
+    lines : str
+        In a block list that begins in column 1, with its comments.
+    above, inline, behind : str
+        The comments above it, its text within brackets, and what follows that on its line.
+    """
+
+    value: Value
+    lines: str
+    above: str
+    inline: str
+    behind: str
+
+
+class Worded(list[Value]):
+    """Items of a list that keep their wording."""
+
+    def __init__(self, wordings: Iterable[Wording]) -> None:
+        self.wordings = tuple(wordings)
+        super().__init__(one.value for one in self.wordings)
 
 
 SECTIONS = frozenset({"environment", "line", "components", "environments", "solver", "checks"})
@@ -96,7 +116,7 @@ class Layout:
             lines = [self.entry(key, one, inner, open=deep) for key, one in value.items()]
             return "", "".join(lines)
         if isinstance(value, Worded) and value:
-            return "", "".join(self.moved(one, column + self.dash) for one in value.lines)
+            return "", "".join(self.moved(one.lines, column + self.dash) for one in value.wordings)
         if not value or (not any(map(_is_long, value)) and name not in SECTIONS):
             return " " + inline(value), ""
         return "", "".join(self.item(one, column + self.dash) for one in value)
@@ -127,6 +147,8 @@ def inline(value: Value) -> str:
     if isinstance(value, Mapping):
         entries = (f"{written(key, flow=True)}: {inline(one)}" for key, one in value.items())
         return "{" + ", ".join(entries) + "}"
+    if isinstance(value, Worded):
+        return "[" + ", ".join(one.inline for one in value.wordings) + "]"
     return "[" + ", ".join(inline(one) for one in value) + "]"
 
 

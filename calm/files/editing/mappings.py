@@ -13,6 +13,7 @@ from calm.files.editing.spans import (
     line_end,
     line_start,
     own_end,
+    own_start,
 )
 from calm.files.nodes import Node
 
@@ -37,8 +38,23 @@ def add_entry(
         apart = column == 1 and name in SECTIONS and _BLANK_LINE.search(text)
         return [Patch(place, place, (layout.line_break if apart else "") + lines)]
     first = mapping.keys[0].start
+    if first_on_line(text, first):
+        place = _start(text, mapping, 0)
+        return [Patch(place, place, lines)]
     indent = column - 1
     return [Patch(first, first, lines[indent:] + " " * indent)]
+
+
+def _start(text: str, mapping: Node, at: int) -> int:
+    """Where the lines of a key begin, the first on its line: with the comments directly above.
+
+    Those that a file begins with are about the file.
+    """
+    least = own_end(text, mapping.children[at - 1].end, mapping.column) if at else 0
+    key = mapping.keys[at].start
+    start = own_start(text, key, least, mapping.column)
+    is_head = mapping.column == 1 and start == line_start(text, 0)
+    return line_start(text, key) if is_head else start
 
 
 def _flow_entry(text: str, mapping: Node, at: int, entry: str) -> Patch:
@@ -55,7 +71,7 @@ def _flow_entry(text: str, mapping: Node, at: int, entry: str) -> Patch:
 
 
 def remove_entry(text: str, mapping: Node, at: int) -> list[Patch]:
-    """A key and its value taken out, and the comments that are theirs."""
+    """A key and its value taken out, and the comments directly above it and further right below."""
     if len(mapping.keys) == 1:
         return [Patch(mapping.start, mapping.end, "{}")]
     if mapping.style == "flow":
@@ -63,7 +79,7 @@ def remove_entry(text: str, mapping: Node, at: int) -> list[Patch]:
     start = mapping.keys[at].start
     end = own_end(text, mapping.children[at].end, mapping.column)
     if first_on_line(text, start):
-        return [Patch(line_start(text, start), end, "")]
+        return [Patch(_start(text, mapping, at), end, "")]
     # On the line of a dash: what comes next moves up to it.
     end += len(text[end:]) - len(text[end:].lstrip(" "))
     return [Patch(start, end, "")]

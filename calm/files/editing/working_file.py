@@ -1,25 +1,24 @@
-"""The file that a person works on: saved whole or not at all, and kept where a session ends early.
-
-Nothing here waits or locks, so that a signal handler may keep the work too.
-"""
+"""The file that a person works on, and the copy of what is not saved of it."""
 
 from __future__ import annotations
 
 import contextlib
 import hashlib
-import itertools
 import os
-import stat
 import time
 from pathlib import Path
+from threading import RLock
 
-from calm.errors import CalmError
-from calm.files.document import read_text
+from calm.errors import CalmError, InputError
+from calm.files.document import decoded, read_content
+from calm.files.editing.kept_work import Kept, digest, kept_in, place_of, with_record
+from calm.files.editing.whole_file import lost, replace, status, sweep
+from calm.files.unchanged import GRAIN
 
-_MARK = b"\xef\xbb\xbf"
-_SUFFIX = ".calm-autosave"
-_STALE = 600.0
-"""Age [s] of a part that no running process can still be writing."""
+_UNREADABLE = b"\0"
+"""Stands for the content of what is there and cannot be read; no text has it."""
+
+Stamp = tuple[int, int, int]
 
 
 class NotWritten(CalmError):
@@ -29,20 +28,30 @@ class NotWritten(CalmError):
 class WorkingFile:
     """A mooring file that is worked on, and the copy of unsaved work beside it.
 
+    The copy is this session's own, see `kept_work`; the copies of others are read, and removed
+    only where their work was taken over with `adopt`, or is given up.
+
     Parameters
     ----------
     path : path or None
         None: it has no name yet; its copy is then kept in the user's state folder
         (`XDG_STATE_HOME`), where also go copies that cannot be written beside the file.
-    """
 
-    _numbers = itertools.count()
+    Attributes
+    ----------
+    unsaved : text or None
+        What `keep` is to keep; None where nothing is unsaved.
+    """
 
     def __init__(self, path: str | Path | None) -> None:
         self.path = None if path is None else Path(path)
-        self._seen = self._content()
-        self._own = f"unnamed-{os.getpid()}{_SUFFIX}"
-        self._recovered: Path | None = None
+        self.unsaved: str | None = None
+        self._seen: bytes | None = None
+        self._looked: Stamp | None = None
+        self._differs = False
+        self._places = [place_of(*each) for each in self._folders()]
+        self._adopted: Path | None = None
+        self._lock = RLock()  # a signal may ask for the copy while it is being removed
 
     def read(self) -> str:
         """The text of the file, with its byte order mark and line breaks.
@@ -53,16 +62,20 @@ class WorkingFile:
             It cannot be read, or is no text.
         """
         assert self.path is not None
-        text = read_text(self.path)
-        self._seen = self._content()
-        marked = self._seen is not None and self._seen.startswith(_MARK)
-        _sweep(self.path)
-        return "\ufeff" + text if marked else text
+        content = read_content(self.path)
+        text = decoded(self.path, content)
+        self._see(content)
+        sweep(Path(os.path.realpath(self.path)))
+        return text
 
-    def save(self, text: str) -> None:
+    def save(self, text: str) -> str:
         """Write the file; a reader sees the old text or the new, never a part.
 
         Its permissions stay as they are, and a symbolic link keeps pointing where it did.
+
+        Returns
+        -------
+        str : what of the file could not be kept, for people; empty as a rule
 
         Raises
         ------
@@ -71,140 +84,147 @@ class WorkingFile:
         """
         assert self.path is not None
         content = text.encode()
+        target = Path(os.path.realpath(self.path))
+        before = status(target)
         try:
-            self._replace(Path(os.path.realpath(self.path)), content)
+            replace(target, content, before)
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or error
             raise NotWritten(f"cannot write {self.path}: {reason}") from None
-        self._seen = content
+        self._see(content)
+        return lost(before, status(target))
+
+    @property
+    def is_protected(self) -> bool:
+        """Whether the file is there and may not be written."""
+        path = self.path
+        return path is not None and status(path) is not None and not os.access(path, os.W_OK)
+
+    @property
+    def stamp(self) -> Stamp | None:
+        """Tells one state of the file on the disk from another; None where there is none."""
+        told = None if self.path is None else status(self.path)
+        return told and (told.st_mtime_ns, told.st_size, told.st_ino)
 
     def changed_on_disk(self) -> bool:
-        """Whether the file is another than that last read or saved; it may be gone."""
-        return self._content() != self._seen
+        """Whether the file is another than that last read or saved; it may be gone.
 
-    def autosave(self, text: str) -> Path:
-        """Keep unsaved work; where.
+        It is read only where its time or size changed, and not where it is no regular file.
+        """
+        if self.path is None:
+            return False
+        stamp = self.stamp
+        if stamp is None or stamp != self._looked:
+            self._differs = self._content() != self._seen
+            # a file written this lately may be written again without its time telling
+            settled = stamp is not None and time.time() - stamp[0] / 1e9 > GRAIN
+            self._looked = stamp if settled else None
+        return self._differs
+
+    def keep(self) -> Path | None:
+        """Bring the copy in line with `unsaved`; where it is. For any thread.
+
+        A copy that this session made goes where nothing is unsaved; none but that.
 
         Raises
         ------
         NotWritten
             Neither beside the file nor in the state folder.
         """
+        with self._lock:
+            if self.unsaved is None:
+                self._drop(*self._places)
+                return None
+            return self._keep(self.unsaved)
+
+    def forget(self) -> None:
+        """Remove the copy, and that taken over: the work is saved, or given up."""
+        with self._lock:
+            self.unsaved = None
+            self._drop(*self._places, *([self._adopted] if self._adopted else []))
+            self._adopted = None
+
+    def left_behind(self) -> Kept | None:
+        """The latest work that no session keeps any more and that is not in the file."""
+        content = self._content()
+        found = []
+        for each in self._copies():
+            if each.keeper.is_running:
+                continue
+            if each.text.encode() != content:
+                found.append(each)
+            elif each.keeper.is_here:
+                self._drop(each.place)
+        return max(found, key=lambda each: each.at, default=None)
+
+    def is_open_elsewhere(self) -> bool:
+        """Whether another session that is running has unsaved work of this file."""
+        if self.path is None:
+            return False
+        own = set(self._places)
+        return any(each.keeper.is_running and each.place not in own for each in self._copies())
+
+    def is_of_another(self, kept: Kept) -> bool:
+        """Whether the file is another than that which the work began with."""
+        return self.path is not None and kept.base != digest(self._content())
+
+    def adopt(self, kept: Kept) -> None:
+        """Go on with kept work: its copy stays until this is saved or given up.
+
+        A file that is another than the work began with is then `changed_on_disk`.
+        """
+        self._adopted = kept.place
+        if self.is_of_another(kept):
+            self._see(_UNREADABLE)
+
+    def discard(self, kept: Kept) -> None:
+        """Remove a copy whose work is not wanted."""
+        self._drop(kept.place)
+
+    def _see(self, content: bytes) -> None:
+        self._seen, self._looked = content, None
+
+    def _content(self) -> bytes | None:
+        if self.path is None or status(self.path) is None:
+            return None
+        try:
+            return read_content(self.path)
+        except InputError:
+            return _UNREADABLE if status(self.path) else None
+
+    def _folders(self) -> list[tuple[Path, str]]:
+        """Where the copy goes and how its name begins, the best place first."""
+        if self.path is None:
+            return [(_state_folder(), "unnamed")]
+        target = Path(os.path.realpath(self.path))
+        sign = hashlib.sha256(os.fsencode(target)).hexdigest()[:12]
+        # a long name leaves no room for more beside the file
+        away = _state_folder(), f"{target.name[:40]}-{sign}"
+        return [(target.parent, f".{target.name}"), away]
+
+    def _copies(self) -> list[Kept]:
+        return [each for folder in self._folders() for each in kept_in(*folder)]
+
+    def _keep(self, text: str) -> Path:
+        content = with_record(text, digest(self._seen))
+        like = None if self.path is None else status(self.path)
         reasons = []
-        for place in self._places():
+        for place in self._places:
             try:
                 place.parent.mkdir(parents=True, exist_ok=True)
-                self._replace(place, text.encode(), like=self.path)
+                replace(place, content, like)
             except (OSError, ValueError) as error:
                 reasons.append(f"{place}: {getattr(error, 'strerror', None) or error}")
             else:
                 return place
         raise NotWritten("the work cannot be kept: " + "; ".join(reasons))
 
-    def recovered(self) -> str | None:
-        """Unsaved work of a session that ended early, where it differs from the file."""
-        for place in self._left_behind():
-            with contextlib.suppress(OSError, UnicodeDecodeError):
-                content = place.read_bytes()
-                text = content.decode()
-                if content != self._content():
-                    self._recovered = place
-                    return text
-        return None
-
-    def forget(self) -> None:
-        """Remove the copy: its work is saved, or given up."""
-        for place in (*self._places(), self._recovered):
-            if place is not None:
-                with contextlib.suppress(OSError):
-                    place.unlink()
-        self._recovered = None
-
-    def _content(self) -> bytes | None:
-        if self.path is None:
-            return None
-        try:
-            return self.path.read_bytes()
-        except OSError:
-            return None
-
-    def _places(self) -> list[Path]:
-        """Where the copy goes, the best place first."""
-        if self.path is None:
-            return [_state_folder() / self._own]
-        whole = os.path.realpath(self.path)
-        digest = hashlib.sha256(os.fsencode(whole)).hexdigest()[:12]
-        beside = self.path.with_name(f".{self.path.name}{_SUFFIX}")
-        return [beside, _state_folder() / f"{self.path.name}-{digest}{_SUFFIX}"]
-
-    def _left_behind(self) -> list[Path]:
-        """Copies that may hold work of this file, the latest first."""
-        if self.path is not None:
-            places = self._places()
-        else:
-            others = _state_folder().glob(f"unnamed-*{_SUFFIX}")
-            places = [place for place in others if not _is_running(place.name)]
-        dated = []
+    def _drop(self, *places: Path) -> None:
         for place in places:
             with contextlib.suppress(OSError):
-                dated.append((place.stat().st_mtime_ns, place))
-        return [place for _, place in sorted(dated, reverse=True)]
-
-    def _replace(self, target: Path, content: bytes, like: Path | None = None) -> None:
-        """Write beside the target, then put it in its place."""
-        model = _status(target) or (_status(like) if like else None)
-        if target.exists() and not target.is_file():
-            raise ValueError("it is not a regular file")
-        # A signal handler may write while this is being done: no two parts have one name.
-        number = next(WorkingFile._numbers)
-        part = target.with_name(f".{target.name}.{os.getpid()}-{number}.calm-part")
-        descriptor = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
-        try:
-            with os.fdopen(descriptor, "wb") as stream:
-                stream.write(content)
-                stream.flush()
-                os.fsync(descriptor)
-            if model is not None:
-                with contextlib.suppress(OSError, AttributeError):
-                    os.chown(part, model.st_uid, model.st_gid)
-                os.chmod(part, stat.S_IMODE(model.st_mode))
-            os.replace(part, target)
-        except BaseException:
-            with contextlib.suppress(OSError):
-                part.unlink()
-            raise
-
-
-def _status(path: Path) -> os.stat_result | None:
-    try:
-        return path.stat()
-    except OSError:
-        return None
+                place.unlink()
 
 
 def _state_folder() -> Path:
     state = os.environ.get("XDG_STATE_HOME") or os.path.expanduser("~/.local/state")
     return Path(state) / "calm"
-
-
-def _is_running(name: str) -> bool:
-    """Whether the session that keeps an unnamed copy is still there."""
-    number = name.removeprefix("unnamed-").removesuffix(_SUFFIX)
-    try:
-        os.kill(int(number), 0)
-    except ProcessLookupError:
-        return False
-    except (OSError, ValueError):
-        return True
-    return True
-
-
-def _sweep(path: Path) -> None:
-    """Remove parts that a killed session left beside a file."""
-    target = Path(os.path.realpath(path))
-    with contextlib.suppress(OSError):
-        for part in target.parent.iterdir():
-            about = part.name.startswith((f".{target.name}.", f"..{target.name}."))
-            ours = about and part.suffix == ".calm-part"
-            if ours and time.time() - part.stat().st_mtime > _STALE:
-                part.unlink()

@@ -1,7 +1,6 @@
 """Pictures of a solved line for a terminal, drawn with braille dots in any number of cells.
 
-Each is a text for each row of cells, `dim` where it is no longer true, `ascii_only` for terminals
-that have no other signs. From 20 by 6 cells on they show a scale; more room shows more.
+Each is a text for each row of cells. From 20 by 6 cells on they show a scale; more room shows more.
 """
 
 from calm.report.sketch.current import current_profile as current_profile

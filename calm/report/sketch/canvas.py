@@ -6,7 +6,7 @@ eight colours of every terminal only; a picture says the same without them.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from itertools import pairwise
 from math import ceil, isfinite
 
@@ -18,19 +18,17 @@ ACROSS, DOWN = 2, 4
 
 _BRAILLE = 0x2800
 _BITS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
-_ASCII = str.maketrans("│┤├┴┬─▒●■◆▼▲·°›‹→…", "|++++-%o#R^^.d><>.")
 _MOST_STEPS = 4000
 
 
 class Canvas:
     """Cells to draw on, `width` by `height`; what lies outside is left out.
 
-    Dots are counted from the upper left, as are columns and rows. `ascii_only` draws for terminals
-    that have nothing else.
+    Dots are counted from the upper left, as are columns and rows.
     """
 
-    def __init__(self, width: int, height: int, *, ascii_only: bool = False) -> None:
-        self.width, self.height, self.ascii_only = width, height, ascii_only
+    def __init__(self, width: int, height: int) -> None:
+        self.width, self.height = width, height
         self._bits = [[0] * width for _ in range(height)]
         self._styles = [[""] * width for _ in range(height)]
         self._signs: list[list[str | None]] = [[None] * width for _ in range(height)]
@@ -85,41 +83,15 @@ class Canvas:
         """The sign in a cell of the canvas, if any."""
         return self._signs[row][column]
 
-    def rows(self, *, dim: bool = False) -> list[Text]:
+    def rows(self) -> list[Text]:
         """The picture, a text for each row of cells, all of the full width."""
-        return [self._row(row, "dim" if dim else "") for row in range(self.height)]
+        return [self._row(row) for row in range(self.height)]
 
-    def _row(self, row: int, faint: str) -> Text:
+    def _row(self, row: int) -> Text:
         text = Text(no_wrap=True, end="")
         for column in range(self.width):
             sign, bits = self._signs[row][column], self._bits[row][column]
             if sign is None:
-                sign = self._of_dots(bits) if bits else " "
-            elif self.ascii_only:
-                sign = sign.translate(_ASCII)
-            style = self._styles[row][column]
-            text.append(sign, " ".join(each for each in (style, faint) if each) or None)
+                sign = chr(_BRAILLE + bits) if bits else " "
+            text.append(sign, self._styles[row][column] or None)
         return text
-
-    def _of_dots(self, bits: int) -> str:
-        return _plain(bits) if self.ascii_only else chr(_BRAILLE + bits)
-
-
-def _plain(bits: int) -> str:
-    """The sign most like some dots."""
-    left, right = ([y for y in range(DOWN) if bits & _BITS[y][x]] for x in range(ACROSS))
-    if not left or not right:
-        rows = left or right
-        if len(rows) > 2:
-            return "|"
-        return ":" if len(rows) == 2 else ("'" if rows[0] < 2 else ".")
-    fall = _mean(right) - _mean(left)
-    if abs(fall) > 0.7:
-        return "\\" if fall > 0.0 else "/"
-    if len(left) + len(right) > 4:
-        return "|"
-    return "-" if _mean([*left, *right]) < 2.5 else "_"
-
-
-def _mean(values: Sequence[int]) -> float:
-    return sum(values) / len(values)

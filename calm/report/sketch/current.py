@@ -21,21 +21,17 @@ _DEGREES_FROM = 18
 _SAMPLES = 200
 
 
-def current_profile(
-    water: Water, width: int, height: int, *, dim: bool = False, ascii_only: bool = False
-) -> list[Text]:
+def current_profile(water: Water, width: int, height: int) -> list[Text]:
     """Speed by depth with the directions beside it, from 12 by 6 cells on.
 
     Depths are on the rows where `elevation` of the same height has them.
     """
-    canvas = Canvas(width, height, ascii_only=ascii_only)
+    canvas = Canvas(width, height)
     head = header_rows(height)
     rows = height - head - 2
     values, foot = levels(0.0, water.depth, rows), number(water.depth)
     gutter = max(map(len, [foot, *map(number, values)]))
     beside = 6 if width >= _DEGREES_FROM else 2
-    if ascii_only and beside == 2:
-        beside = 0
     depths = np.union1d(np.linspace(0.0, water.depth, _SAMPLES), water.level)
     depths = depths[(depths >= 0.0) & (depths <= water.depth)]
     velocity, _ = water.at(depths)
@@ -56,11 +52,11 @@ def current_profile(
             _, row = frame.cell(0.0, value)
             (u, v, _), _ = (each[0] for each in water.at(np.array([value])))
             if np.hypot(u, v) > 0.0:
-                canvas.text(width - beside + 1, row, _direction(u, v, beside, ascii_only), _STYLE)
-    return canvas.rows(dim=dim)
+                canvas.text(width - beside + 1, row, _direction(u, v, beside), _STYLE)
+    return canvas.rows()
 
 
-def _direction(u: float, v: float, room: int, ascii_only: bool) -> str:
+def _direction(u: float, v: float, room: int) -> str:
     """Where it flows to: an arrow, and the degrees where there is room."""
-    arrow = "" if ascii_only else _ARROWS[round(np.degrees(np.arctan2(u, v)) / 45.0) % 8]
+    arrow = _ARROWS[round(np.degrees(np.arctan2(u, v)) / 45.0) % 8]
     return arrow if room == 2 else f"{bearing(u, v)}{arrow}"

@@ -52,21 +52,14 @@ _NEED = ("float", "release", "anchor", "instrument")
 Points = list[tuple[float, float]]
 
 
-def elevation(
-    result: Result | TowResult,
-    width: int,
-    height: int,
-    *,
-    dim: bool = False,
-    ascii_only: bool = False,
-) -> list[Text]:
+def elevation(result: Result | TowResult, width: int, height: int) -> list[Text]:
     """A line in the vertical plane of its excursion, or of its tow, from 20 by 6 cells on.
 
     Distances are from the anchor towards the free end, or from the ship backward; their scale is
     not that of the depths. The line in still water is dotted. From 50 cells on parts are named.
     """
     view = _of_mooring(result) if isinstance(result, Result) else _of_tow(result)
-    canvas = Canvas(width, height, ascii_only=ascii_only)
+    canvas = Canvas(width, height)
     head = header_rows(height)
     if head:
         canvas.text(0, 0, view.said, AXIS)
@@ -88,7 +81,7 @@ def elevation(
     mark_parts(frame, result, view.place)
     for row, text in named:
         canvas.text(width - beside + 1, head + row, text, AXIS)
-    return canvas.rows(dim=dim)
+    return canvas.rows()
 
 
 @dataclass(frozen=True)

@@ -20,16 +20,9 @@ _LEAST_SPAN = 1.0
 _MARGIN = 0.06
 
 
-def plan(
-    result: Result | TowResult,
-    width: int,
-    height: int,
-    *,
-    dim: bool = False,
-    ascii_only: bool = False,
-) -> list[Text]:
+def plan(result: Result | TowResult, width: int, height: int) -> list[Text]:
     """A line from above with its anchor, or the ship, at nought, from 20 by 6 cells on."""
-    canvas = Canvas(width, height, ascii_only=ascii_only)
+    canvas = Canvas(width, height)
     head, shape = header_rows(height), result.shape
     if head:
         canvas.text(0, 0, _said(result), AXIS)
@@ -59,7 +52,7 @@ def plan(
         frame.mark(0.0, 0.0, *SHIP)
     mark_parts(frame, result, lambda part: (part.x, part.y))
     canvas.text(gutter + 1, head, "N", AXIS)
-    return canvas.rows(dim=dim)
+    return canvas.rows()
 
 
 def _said(result: Result | TowResult) -> str:

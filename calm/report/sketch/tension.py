@@ -28,20 +28,13 @@ _KILO = 1e4
 """Tensions are in kilonewtons from here on [N]."""
 
 
-def tension(
-    result: Result | TowResult,
-    width: int,
-    height: int,
-    *,
-    dim: bool = False,
-    ascii_only: bool = False,
-) -> list[Text]:
+def tension(result: Result | TowResult, width: int, height: int) -> list[Text]:
     """Tension by the way along the line, as listed from the top, from 20 by 6 cells on.
 
     Dotted in red is what the weakest piece there may bear: its working load, or its breaking load
     over the safety factor that the design asks for. What bears far more than is drawn has no mark.
     """
-    canvas = Canvas(width, height, ascii_only=ascii_only)
+    canvas = Canvas(width, height)
     head = header_rows(height)
     way, pulls = _along(result)
     greatest = max(float(pulls.max()), 1e-9)
@@ -67,7 +60,7 @@ def tension(
             canvas.dot(x, frame.row * DOWN + row, LIMIT)
         before = load
     frame.line(zip((pulls * scale).tolist(), way.tolist(), strict=True), LINE)
-    return canvas.rows(dim=dim)
+    return canvas.rows()
 
 
 def _along(result: Result | TowResult) -> tuple[Floats, Floats]:

@@ -63,7 +63,8 @@ def test_insert() -> None:
 
 
 def test_insert_with_clamps_takes_a_line_a_key() -> None:
-    after = Draft(TEXT).insert(3, {"use": "rope", "length": "9 m"}, [{"use": "meter", "at": "1 m"}])
+    clamps = [{"use": "meter", "at": "1 m"}]
+    after = Draft(TEXT).insert(3, {"use": "rope", "length": "9 m", "clamps": clamps})
     assert after.text == edited(
         "{use: dead}\n",
         "{use: dead}\n  - use: rope\n    length: 9 m\n    clamps:\n      - {use: meter, at: 1 m}\n",
@@ -129,7 +130,7 @@ def test_put() -> None:
     assert draft.put(0, "label", None).text == edited(", label: 'top'", "")
     assert draft.put(1, "use", None).text == edited("use: rope\n    length", "length")
     assert draft.put(2, "label", None).text == TEXT
-    with pytest.raises(EditError, match="no item 3 in a line of 3"):
+    with pytest.raises(EditError, match="no item 3 among 3"):
         draft.put(3, "label", "x")
 
 
@@ -168,7 +169,9 @@ def test_put_at_makes_the_mappings_that_lead_there() -> None:
     assert draft.put_at(("environment", "current"), current).text == edited(
         "depth: 100 m\n", "depth: 100 m\n  current: {speed: 0.5 m/s, toward: 90 deg}\n"
     )
-    assert draft.put_at(("solver", "drag"), None).text == edited("solver: {drag: reynolds}\n", "")
+    assert draft.put_at(("solver", "drag"), None).text == edited(
+        "# the end\nsolver: {drag: reynolds}\n", ""
+    )
     assert draft.put_at(("wind", "speed"), None).text == TEXT
 
 
@@ -202,6 +205,13 @@ def test_put_table_leaves_the_rows_that_stay() -> None:
         "depth: 100 m\n  current:\n    columns: [depth m, speed m/s, toward deg]\n    rows:\n"
         "      - [0, 0.50, 90]\n      - [20, 0.4, 90]\n",
     )
+
+
+def test_put_table_leaves_the_values_that_stay() -> None:
+    columns = ["depth m", "speed m/s", "toward deg"]
+    rows = [["0", "0.6", "90"], ["50", "0.3", "90"], ["100", "0.1", "80"]]
+    after = Draft(TABLE).put_table(("environment", "current"), columns, rows)
+    assert after.text == TABLE.replace("0.50", "0.6").replace("[100, 0.1, 90", "[100, 0.1, 80")
 
 
 def test_a_uniform_current_takes_the_place_of_a_table() -> None:
@@ -241,7 +251,77 @@ def test_a_line_from_nothing() -> None:
     )
 
 
+def test_a_comment_goes_where_its_key_goes() -> None:
+    sea = "environment:\n  # sea water of March\n  density: 1027 kg/m^3\n"
+    deep = Draft(sea + "line: []\n").put_at(("environment", "depth"), "90 m")
+    assert deep.text == sea.replace("  #", "  depth: 90 m\n  #") + "line: []\n"
+    text = (
+        "# of the file\nname: x\n\n# the water\nenvironment:\n  depth: 90 m\n    # charted\n"
+        "  # from the ADCP,\n  # in May\n  current: {speed: 1 m/s, toward: 0 deg}\n"
+        "  # storms\n  wind: {speed: 9 m/s, toward: 0 deg}\n"
+    )
+    calm = Draft(text).put_at(("environment", "current"), None)
+    assert calm.text == text[: text.index("  # from")] + text[text.index("  # storms") :]
+    assert calm.put_at(("environment", "depth"), None).text == (
+        "# of the file\nname: x\n\n# the water\nenvironment:\n"
+        "  # storms\n  wind: {speed: 9 m/s, toward: 0 deg}\n"
+    )
+
+
+def test_a_comment_that_a_file_begins_with_is_about_the_file() -> None:
+    text = "# of the file\nenvironment: {depth: 9 m}\nline: []\n"
+    named = Draft(text).put_at(("name",), "x")
+    assert named.text == text.replace("env", "name: x\nenv")
+    assert named.put_at(("name",), None).text == text
+
+
+NESTED = """\
+line:
+  - use: rope
+    length: 80 m
+    clamps:
+      # borrowed
+      - use: meter   # serial 1234
+        at: '10 m'
+        drag_measurements: [[0.1, 1.2]]
+      - {use: meter, at: "9 m"}
+  - {use: rope, length: 5 m}
+"""
+
+
+def test_a_copied_clamp_is_worded_as_the_one_it_was_copied_from() -> None:
+    draft = Draft(NESTED)
+    upper = NESTED[NESTED.index("      # b") : NESTED.index("      - {use: meter")]
+    lower = '      - {use: meter, at: "9 m"}\n'
+    copied = draft.copy_clamps(0, [0, 1])
+    twice = draft.paste_clamps(0, 2, copied)
+    assert twice.text == NESTED.replace(upper + lower, (upper + lower) * 2)
+    one_line = draft.paste_clamps(1, 0, copied[1:])
+    assert one_line.text == NESTED.replace("5 m}", '5 m, clamps: [{use: meter, at: "9 m"}]}')
+    with pytest.raises(EditError, match="no clamp 0 among 0"):
+        draft.copy_clamps(1, [0])
+
+
+def test_a_copy_in_brackets_keeps_its_quotes_and_comments() -> None:
+    text = "line: [\n  # one\n  {use: 'a', label: \"b\"},   # two\n  {use: c}\n]\n"
+    item = "  # one\n  {use: 'a', label: \"b\"},   # two\n"
+    assert Draft(text).duplicate([0]).text == text.replace(item, item * 2)
+
+
+def test_a_value_of_a_text_with_mistakes_is_none() -> None:
+    assert Draft("line: [").value(("line",)) is None
+    assert Draft("line: [").text_at(("name",)) == ""
+    assert not Draft("tow: [").is_tow and Draft("tow:\n").is_tow and not Draft("").is_tow
+
+
 def test_a_clamp_moves_with_what_is_said_of_it() -> None:
     upper = "      - {use: meter, at: 5 m}   # upper\n"
     lower = "      - {use: meter, at: 9 m}\n"
     assert Draft(TEXT).move_clamp(1, 0, 1).text == edited(upper + lower, lower + upper)
+
+
+@pytest.mark.parametrize("label", ["a\x07b", "\x1b[31mred", "a\x85b", "\u202eb"])
+def test_a_control_character_is_refused_as_what_it_is(label: str) -> None:
+    with pytest.raises(EditError, match="a control character cannot be written"):
+        Draft(TEXT).put(0, "label", label)
+    assert Draft(TEXT).put(0, "label", "a\tb").items[0].values["label"] == "a\tb"

@@ -58,21 +58,3 @@ def test_wide_signs_take_two_cells_and_are_cut_at_the_edge() -> None:
     canvas.text(0, 0, "浮標")
     (row,) = canvas.rows()
     assert row.cell_len == 3 and row.plain == "浮 "
-
-
-def test_an_old_picture_is_dimmed() -> None:
-    canvas = Canvas(1, 1)
-    canvas.dot(0, 0, "bold cyan")
-    (row,) = canvas.rows(dim=True)
-    assert [str(span.style) for span in row.spans] == ["bold cyan dim"]
-
-
-def test_without_braille_a_line_is_drawn_with_the_signs_most_like_it() -> None:
-    canvas = Canvas(6, 2, ascii_only=True)
-    canvas.line([(0, 0), (0, 7)], "")
-    canvas.line([(2, 0), (3, 3)], "")
-    canvas.line([(5, 4), (4, 7)], "")
-    canvas.line([(6, 3), (7, 3)], "")
-    canvas.line([(8, 0), (9, 0)], "")
-    canvas.text(5, 1, "▒")
-    assert plain(canvas) == ["|\\ _- ", "| /  %"]

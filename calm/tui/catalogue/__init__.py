@@ -1,0 +1,1 @@
+"""The catalogue: its pane, its index, and components of one's own."""

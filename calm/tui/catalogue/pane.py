@@ -1,0 +1,205 @@
+"""The catalogue at hand: a search that answers at each key, a card, what else is asked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+from textual import on
+from textual.app import ComposeResult
+from textual.binding import BindingType
+from textual.containers import Horizontal, Vertical, VerticalScroll
+from textual.message import Message
+from textual.widgets import Input, Static
+
+from calm.errors import CalmError
+from calm.tui.actions import bindings
+from calm.tui.catalogue.component_list import ComponentList
+from calm.tui.catalogue.index import CLAMPABLE, WITH_LENGTH, Index, Listed
+from calm.tui.checking import anything, distance, length
+from calm.tui.field import Field
+
+Purpose = Literal["below", "above", "clamp", "replace"]
+"""What the component is wanted for."""
+
+_WHAT_FOR = {
+    "below": "Add below",
+    "above": "Add above",
+    "clamp": "Clamp on",
+    "replace": "In place of",
+}
+
+
+class CataloguePane(Vertical):
+    """Search, list, card; the length of a cable and the place of a clamp are asked for before."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings("catalogue")]
+    SCOPED_CSS = False  # the width of the screen counts
+    DEFAULT_CSS = """
+    CataloguePane {
+        display: none; width: 1fr; height: 1fr; padding: 0 1; background: $background;
+        & #catalogue-title { height: 1; color: $text-muted; }
+        & #catalogue-search { height: 1; background: $surface; }
+        & #catalogue-search:focus { background: $surface; background-tint: $foreground 8%; }
+        & #catalogue-ask { height: auto; display: none; }
+        & #catalogue-found { height: 1fr; layout: vertical; }
+        & #catalogue-card { height: 1fr; padding: 0; margin-top: 1; scrollbar-size-vertical: 1; }
+        &.-asking #catalogue-ask { display: block; }
+    }
+    .-narrow CataloguePane #catalogue-found { layout: horizontal; }
+    .-narrow CataloguePane ComponentList { width: 1fr; }
+    .-narrow CataloguePane #catalogue-card { width: 1fr; height: 1fr; margin: 0 0 0 1; }
+    """
+
+    @dataclass
+    class Taken(Message):
+        """A component was chosen, with what was asked for: `length`, `at`, `label`."""
+
+        purpose: Purpose
+        values: dict[str, str]
+
+    class Closed(Message):
+        """Back to the line."""
+
+    def __init__(self, *, id: str | None = None) -> None:
+        super().__init__(id=id)
+        self.index: Index | None = None
+        self.purpose: Purpose = "below"
+        self.clampable = False
+        self.towed = False
+        self._asked: Listed | None = None
+        self._target = ""
+
+    def compose(self) -> ComposeResult:
+        """Title, search, what is asked for, and the list with its card."""
+        yield Static(id="catalogue-title", markup=False)
+        yield Input(
+            id="catalogue-search",
+            compact=True,
+            placeholder="words of its id, name, maker or kind",
+        )
+        with Vertical(id="catalogue-ask"):
+            yield Field("length", "Length", id="ask-length")
+            yield Field("label", "Label", anything, id="ask-label", placeholder="may stay empty")
+        with Horizontal(id="catalogue-found"):
+            yield ComponentList()
+            with VerticalScroll(id="catalogue-card", can_focus=False):
+                yield Static(id="catalogue-figures", markup=False)
+
+    @property
+    def listing(self) -> ComponentList:
+        """What was found."""
+        return self.query_one(ComponentList)
+
+    @property
+    def search(self) -> Input:
+        """The words."""
+        return self.query_one("#catalogue-search", Input)
+
+    def take_index(self, index: Index) -> None:
+        """Search another catalogue."""
+        self.index = index
+        if self.display or not self.listing.rows:
+            chosen = self.listing.chosen
+            self._search()
+            ids = [each.id for each in self.listing.rows]
+            if chosen is not None and chosen.id in ids:
+                self.listing.cursor = ids.index(chosen.id)
+
+    def open(
+        self, purpose: Purpose, target: str, *, clampable: bool = False, towed: bool = False
+    ) -> None:
+        """Look for a component for the row called `target`, empty in an empty line.
+
+        `clampable` where only what can be clamped on a line will do.
+        """
+        self.purpose, self.clampable, self.towed = purpose, clampable, towed
+        self._leave_asking()
+        self.retitle(target)
+        self._search()
+        self.search.focus()
+        self.search.action_select_all()
+
+    def retitle(self, target: str) -> None:
+        """Say beside which row the next one comes."""
+        self._target = target
+        text = f"{_WHAT_FOR[self.purpose]} {target}" if target else "The top of the line"
+        self.query_one("#catalogue-title", Static).update(text, layout=False)
+
+    @on(Input.Changed, "#catalogue-search")
+    def _search(self) -> None:
+        if self.index is None:
+            return
+        kinds = CLAMPABLE if self.clampable else None
+        self.listing.show(self.index.search(self.search.value, kinds))
+
+    @on(ComponentList.Moved)
+    def _show_card(self) -> None:
+        card = self.query_one("#catalogue-figures", Static)
+        chosen = self.listing.chosen
+        if chosen is None or self.index is None:
+            card.update("Nothing has all these words.")
+            return
+        from calm.report.catalogue import to_card
+
+        try:
+            card.update(to_card(chosen.id, self.index.catalogue.get(chosen.id)))
+        except CalmError as error:
+            card.update(str(error))
+        self.query_one("#catalogue-card", VerticalScroll).scroll_home(animate=False)
+
+    def action_choose(self, by: int) -> None:
+        """Move the cursor of the list."""
+        if self._asked is None:
+            self.listing.cursor += by
+
+    @on(Input.Submitted, "#catalogue-search")
+    @on(ComponentList.Pressed)
+    def action_take(self) -> None:
+        """Put the component into the line, or ask for what it needs first."""
+        chosen = self.listing.chosen
+        if chosen is None:
+            return
+        if self.purpose == "clamp":
+            self._ask(chosen, "at", "From the top")
+        elif chosen.kind in WITH_LENGTH and self.purpose != "replace":
+            self._ask(chosen, "length", "Length")
+        else:
+            self.post_message(self.Taken(self.purpose, {"use": chosen.id}))
+            self.search.action_select_all()
+
+    def _ask(self, chosen: Listed, key: str, title: str) -> None:
+        self._asked = chosen
+        self.add_class("-asking")
+        first = self.query_one("#ask-length", Field)
+        check = distance() if key == "at" else length(towed=self.towed)
+        placeholder = "2 m, from the top of the piece" if key == "at" else "480 m, or fit 105 m"
+        first.ask(key, title, check, placeholder)
+        self.query_one("#ask-label", Field).reset("")
+        first.focus_input()
+
+    @on(Field.Entered)
+    def _answered(self, event: Field.Entered) -> None:
+        event.stop()
+        first, label = self.query_one("#ask-length", Field), self.query_one("#ask-label", Field)
+        if self._asked is None or not (first.settle() and label.settle()):
+            return
+        values = {"use": self._asked.id, first.key: first.text}
+        if label.text:
+            values["label"] = label.text
+        self._leave_asking()
+        self.post_message(self.Taken(self.purpose, values))
+        self.search.focus()
+        self.search.action_select_all()
+
+    def _leave_asking(self) -> None:
+        self._asked = None
+        self.remove_class("-asking")
+
+    def action_close(self) -> None:
+        """Leave what is asked for, then the catalogue."""
+        if self._asked is None:
+            self.post_message(self.Closed())
+        else:
+            self._leave_asking()
+            self.search.focus()

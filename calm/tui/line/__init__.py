@@ -1,0 +1,1 @@
+"""The line: its table, its verbs, and the first screen."""

@@ -1,0 +1,63 @@
+"""What is asked about a whole file: name, description and position; speed and course of a tow."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from calm.files.document import Location
+from calm.files.editing import Draft
+from calm.files.fields import LENGTH, Quantity
+from calm.tui.checking import anything, quantity
+from calm.tui.dialogs import Asked, Sheet
+
+_PLACES: dict[str, Location] = {
+    "name": ("name",),
+    "description": ("description",),
+    "latitude": ("position", "latitude"),
+    "longitude": ("position", "longitude"),
+    "speed": ("tow", "speed"),
+    "toward": ("tow", "toward"),
+    "height": ("tow", "height"),
+}
+
+_LATITUDE = quantity(Quantity("angle", at_least=-90, at_most=90), optional=True)
+_LONGITUDE = quantity(Quantity("angle", at_least=-360, at_most=360), optional=True)
+_NAME_AND_PLACE = (
+    Asked("name", "Name", check=anything),
+    Asked("description", "Description", check=anything),
+    Asked("latitude", "Latitude", check=_LATITUDE, placeholder="48.3 deg, north"),
+    Asked("longitude", "Longitude", check=_LONGITUDE, placeholder="-5.2 deg, east"),
+)
+_TOW = (
+    Asked("speed", "Tow speed", check=quantity(Quantity("speed", above=0)), placeholder="4 knot"),
+    Asked("toward", "Towards", check=quantity(Quantity("angle")), placeholder="90 deg, east"),
+    Asked("height", "Sheave height", check=quantity(LENGTH, optional=True), placeholder="3 m"),
+)
+_BEGIN_A_TOW = (
+    "The line becomes a tow: it hangs from a ship, its pieces from the ship down, and has no "
+    "anchor. Undo makes it a mooring again."
+)
+
+
+def mooring_sheet(draft: Draft) -> Sheet:
+    """Name and place, as the file has them."""
+    return Sheet("Name and place", "", _filled(draft, _NAME_AND_PLACE))
+
+
+def tow_sheet(draft: Draft) -> Sheet:
+    """Speed, course and sheave of a tow, as the file has them; a mooring becomes one by them."""
+    return Sheet("The tow", "" if draft.is_tow else _BEGIN_A_TOW, _filled(draft, _TOW))
+
+
+def _filled(draft: Draft, asked: tuple[Asked, ...]) -> list[Asked]:
+    return [replace(each, text=draft.text_at(_PLACES[each.key])) for each in asked]
+
+
+def changes(draft: Draft, texts: Mapping[str, str]) -> dict[Location, str | None]:
+    """What of the texts of a sheet differs from what the file says; None takes a key away."""
+    return {
+        _PLACES[key]: new or None
+        for key, new in texts.items()
+        if new != draft.text_at(_PLACES[key])
+    }

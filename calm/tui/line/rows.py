@@ -1,0 +1,124 @@
+"""The table of the line: what the file says beside what was found for it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from calm.checks.finding import State
+from calm.files.editing import Draft, Item
+from calm.quantities import QUANTITIES
+from calm.tui.catalogue.index import Index
+from calm.tui.checking import length_text
+from calm.tui.line.table_row import TableRow
+from calm.tui.session import Spot
+from calm.tui.signs import CLAMP, ROLES, UNKNOWN_ROLE, worst
+
+if TYPE_CHECKING:
+    from calm.tui.live import Row, View
+
+_MOST_MARGIN = 9.99
+
+
+def table_rows(draft: Draft, view: View | None, index: Index | None) -> list[TableRow]:
+    """A row for each item and clamp; figures of pieces that share an item are its worst.
+
+    A view of an earlier text gives its figures to the rows that are called as its own are.
+    """
+    found = _figures(draft, view)
+    wrong = _wrong_items(draft, view)
+    rows = []
+    for number, item in enumerate(draft.items):
+        row = _row(Spot(number), item, found.get(Spot(number), ()), index)
+        rows.append(replace(row, state=State.FAIL) if number in wrong else row)
+        for below, clamp in enumerate(item.clamps):
+            spot = Spot(number, below)
+            rows.append(_row(spot, clamp, found.get(spot, ()), index))
+    return rows
+
+
+def _wrong_items(draft: Draft, view: View | None) -> set[int]:
+    """The items in whose lines there are mistakes."""
+    if view is None or view.text != draft.text or not view.problems:
+        return set()
+    lines = {problem.line for problem in view.problems if problem.path == str(view.path)}
+    starts = [(item.line, number) for number, item in enumerate(draft.items)]
+    ends = {number: line + draft.items[number].text.count("\n") for line, number in starts}
+    return {
+        number
+        for line, number in starts
+        if any(line <= wrong < max(ends[number], line + 1) for wrong in lines)
+    }
+
+
+def _figures(draft: Draft, view: View | None) -> dict[Spot, Sequence[Row]]:
+    """What was found for each row."""
+    if view is None:
+        return {}
+    found: dict[Spot, list[Row]] = {}
+    for row in view.rows:
+        found.setdefault(Spot(row.item, row.clamp), []).append(row)
+    if view.text == draft.text:
+        return dict(found)
+    known: dict[tuple[str, str, bool], list[list[Row]]] = {}
+    for spot, rows in found.items():
+        known.setdefault((rows[0].use, _base(rows[0]), spot.is_clamp), []).append(rows)
+    return dict(_taken_over(draft, known))
+
+
+def _taken_over(
+    draft: Draft, known: dict[tuple[str, str, bool], list[list[Row]]]
+) -> Iterator[tuple[Spot, Sequence[Row]]]:
+    for number, item in enumerate(draft.items):
+        for below, each in enumerate((item, *item.clamps), -1):
+            use = each.values.get("use", "")
+            rest = known.get((use, each.values.get("label", use), below >= 0))
+            if rest:
+                yield Spot(number, below), rest.pop(0)
+
+
+def _base(row: Row) -> str:
+    """The label as the file gives it: without the number that sets repeats apart."""
+    head, blank, tail = row.label.rpartition(" ")
+    return head if blank and tail.isdigit() and head == row.use else row.label
+
+
+def _row(spot: Spot, item: Item, found: Sequence[Row], index: Index | None) -> TableRow:
+    values = {key: " ".join(value.split()) for key, value in item.values.items()}  # of one line
+    use = values.get("use", "")
+    listed = None if index is None else index.get(use)
+    sign = UNKNOWN_ROLE if listed is None else ROLES.get(listed.role, " ")
+    unknown = index is not None and listed is None
+    texts = {
+        "component": f"{CLAMP} {use}" if spot.is_clamp else use,
+        "label": values.get("label", ""),
+        "count": values.get("count", ""),
+        "length": f"at {values.get('at', '?')}" if spot.is_clamp else length_text(values),
+        **_told(found),
+    }
+    states = [row.state for row in found if row.state is not None]
+    return TableRow(spot, sign if index else " ", texts, worst(states), unknown)
+
+
+def _told(found: Sequence[Row]) -> dict[str, str]:
+    """The figures of the pieces of one item: where it begins, and the worst of them."""
+    depths = [row.depth for row in found if row.depth is not None]
+    tensions = [row.tension for row in found if row.tension is not None]
+    tilts = [row.tilt for row in found if row.tilt is not None]
+    margins = [row.margin for row in found if row.margin is not None]
+    texts = {}
+    if depths:
+        texts["depth"] = QUANTITIES["depth"].format(depths[0])
+    if tensions:
+        texts["tension"] = QUANTITIES["tension"].format(max(tensions))
+    if tilts:
+        texts["tilt"] = QUANTITIES["tilt"].format(max(tilts))
+    if margins:
+        texts["margin"] = _margin(min(margins))
+    return texts
+
+
+def _margin(margin: float) -> str:
+    """A share of the limit as a percentage with its sign."""
+    return f"{min(margin, _MOST_MARGIN):+.0%}"

@@ -1,0 +1,47 @@
+"""Which environment the line that is built stands in."""
+
+from __future__ import annotations
+
+import os.path
+
+from calm.files.editing import Draft
+
+
+class Standing:
+    """A `draft` whose line stands in its own environment, in a named one or in that of a file.
+
+    Parameters
+    ----------
+    environment : the name of one of its environments, or an environment file; None of its own
+    """
+
+    def __init__(self, environment: str | None) -> None:
+        self._environment = environment
+        self._is_file = environment not in self.environments and os.path.isfile(environment or "")
+
+    @property
+    def draft(self) -> Draft:
+        """The file as it is now."""
+        raise NotImplementedError
+
+    @property
+    def environments(self) -> list[str | None]:
+        """Those of the file; None is its own, the first."""
+        named = self.draft.value(("environments",))
+        return [None, *(named if isinstance(named, dict) else ())]
+
+    @property
+    def environment(self) -> str | None:
+        """What the line stands in: the own one, too, where that chosen is in the file no more."""
+        return None if self.lost_environment else self._environment
+
+    @environment.setter
+    def environment(self, name: str | None) -> None:
+        self._environment, self._is_file = name, False
+
+    @property
+    def lost_environment(self) -> str | None:
+        """The environment that was chosen where the file, as far as it can be read, has it not."""
+        here = self._environment
+        is_there = self._is_file or self.draft.problems or here in self.environments
+        return None if is_there else here

@@ -1,0 +1,1 @@
+"""The water: its screen, its forms and tables, and currents from files."""

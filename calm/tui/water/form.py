@@ -1,0 +1,219 @@
+"""Where the water of an environment is written in a file, and how its form reads and writes it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from math import atan2, degrees, hypot
+from typing import Any
+
+from calm.files.definition import DENSITY
+from calm.files.density import USUAL_DENSITY
+from calm.files.document import Location
+from calm.files.editing import Draft, Value
+from calm.files.fields import POSITIVE_LENGTH, Quantity
+from calm.files.tables import SALINITY, TEMPERATURE
+from calm.tui.water.columns import named
+from calm.units import QuantityError
+
+CURRENT_FORMS = ("still", "uniform", "table", "file")
+DENSITY_FORMS = ("constant", "table", "temperature and salinity")
+PROFILE_FORMS = ("constant", "table")
+"""Of the temperature and of the salinity."""
+
+CURRENT_COLUMNS = ("depth m", "speed m/s", "toward deg")
+
+USUAL_DEPTH = 100.0
+"""How far down [m] tables are begun where no depth is given."""
+
+_CURRENT = ("0.5", "90")
+_CONSTANTS = {
+    ("density",): (DENSITY, "kg/m^3", f"{USUAL_DENSITY['water']:g}"),
+    ("density", "temperature"): (TEMPERATURE, "degC", "10"),
+    ("density", "salinity"): (SALINITY, "", "35"),
+}
+"""What can be a constant or a table: kind, unit, and the figure to begin with."""
+
+Place = tuple[str, ...]
+"""Keys that lead to something within an environment: ``("density", "salinity")``."""
+
+
+class Water:
+    """The water of one environment of a file.
+
+    Parameters
+    ----------
+    draft : the file
+    variant : a named environment, laid over that of the file; None for the file's own
+
+    Raises
+    ------
+    EditError
+        By all that gives another file, where the text does not allow it.
+    """
+
+    def __init__(self, draft: Draft, variant: str | None) -> None:
+        self.draft, self.variant = draft, variant
+        self.place: Location = ("environments", variant) if variant else ("environment",)
+
+    def at(self, *keys: str) -> Location:
+        """The location of a key."""
+        return (*self.place, *keys)
+
+    def own(self, *keys: str) -> Any:
+        """What this environment says; None where nothing."""
+        return self.draft.value(self.at(*keys))
+
+    def value(self, *keys: str) -> Any:
+        """What holds: its own word, or that of the file's own environment below it."""
+        if self.own(keys[0]) is not None:
+            return self.own(*keys)
+        return self.draft.value(("environment", *keys))
+
+    def text(self, *keys: str) -> str:
+        """The same, where it is a plain value; empty elsewhere."""
+        value = self.value(*keys)
+        return value if isinstance(value, str) else ""
+
+    def is_own(self, key: str) -> bool:
+        """Whether a key is this environment's own; those of the file always are."""
+        return self.variant is None or self.own(key) is not None
+
+    @property
+    def depth(self) -> float | None:
+        """The depth [m], above 0; None where none is given or it cannot be read."""
+        return _read(POSITIVE_LENGTH, self.text("depth"))
+
+    @property
+    def lacks_direction(self) -> bool:
+        """Whether there is a wind without a direction."""
+        return bool(self.text("wind", "speed")) and not self.text("wind", "toward")
+
+    def form(self, *keys: str) -> str:
+        """How the current, the density, or the temperature or salinity of that is given."""
+        value = self.value(*keys)
+        if isinstance(value, dict) and {"columns", "rows"} & set(value):
+            return "table"
+        if keys == ("density",):
+            return DENSITY_FORMS[2] if isinstance(value, dict) else "constant"
+        if keys != ("current",):
+            return "constant"
+        if not isinstance(value, dict) or not value:
+            return "still"
+        return "file" if {"file", "time"} & set(value) else "uniform"
+
+    def table(self, *keys: str) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+        """Columns and rows of a table, texts as written, each row of as many as there are columns.
+
+        What a row lacks is empty. There are neither columns nor rows where there is no table, or
+        one that only the text can show: rows longer than the columns, or of anything but texts.
+        """
+        table = self.value(*keys)
+        columns = table.get("columns") if isinstance(table, dict) else None
+        rows = table.get("rows") if isinstance(table, dict) else None
+        if not isinstance(columns, list) or not _is_row(columns, len(columns)):
+            return (), []
+        if not all(_is_row(row, len(columns)) for row in rows or ()):
+            return (), []
+        return tuple(map(str, columns)), [_filled(row, len(columns)) for row in rows or ()]
+
+    # changes: each gives the file with it
+
+    def put(self, keys: Sequence[str], text: str) -> Draft:
+        """A value; an empty one takes the key out. No speed is no wind."""
+        if keys == ("wind", "speed") and not text:
+            return self.draft.put_at(self.at("wind"), None)
+        draft = self._with_own(keys[0]) if len(keys) > 1 else self.draft
+        return draft.put_at(self.at(*keys), text or None)
+
+    def put_rows(
+        self, keys: Sequence[str], columns: Iterable[str], rows: Iterable[Sequence[str]]
+    ) -> Draft:
+        """A table; rows that are as `table` shows them stay as they are written."""
+        names = [*columns]
+        given = self.value(*keys)
+        old = given.get("rows") if isinstance(given, dict) and self.table(*keys)[0] else None
+        known = {_filled(row, len(names)): row for row in old or ()}
+        new = [known.get(tuple(row), [text or None for text in row]) for row in rows]
+        draft = self._with_own(keys[0]) if len(keys) > 1 else self.draft
+        return draft.put_table(self.at(*keys), names, new)
+
+    def put_form(self, keys: Sequence[str], value: Value | None) -> Draft:
+        """The whole of the current or the density; None takes it out."""
+        draft = self._with_own(keys[0]) if len(keys) > 1 else self.draft
+        return draft.put_at(self.at(*keys), value)
+
+    def begun(self, keys: Place, form: str) -> Value | None:
+        """What another form begins with: what is known, else something usual.
+
+        None where nothing has to be said.
+        """
+        if keys == ("current",):
+            return self._begun_current(form)
+        kind, unit, usual = _CONSTANTS[keys]
+        known = _read(kind, self.text(*keys))
+        figure = usual if known is None else f"{known:g}"
+        if form == "table":
+            columns = ["depth m", f"{keys[-1]} {unit}".rstrip()]
+            return {"columns": columns, "rows": [["0", figure], [self._down_to, figure]]}
+        if form == "constant":
+            return f"{figure} {unit}".rstrip()
+        return {name[-1]: self.begun(name, "constant") for name in _CONSTANTS if len(name) > 1}
+
+    def _begun_current(self, form: str) -> Value | None:
+        speed, toward = self._current_at_the_surface()
+        if form == "table":
+            rows = [["0", speed, toward], [self._down_to, speed, toward]]
+            return {"columns": [*CURRENT_COLUMNS], "rows": rows}
+        if form == "uniform":
+            return {"speed": f"{speed} m/s", "toward": f"{toward} deg"}
+        # one that flows in the file's own environment would be there in this one, too
+        return {"speed": "0 m/s", "toward": "0 deg"} if self.variant else None
+
+    def _current_at_the_surface(self) -> tuple[str, str]:
+        """Speed [m/s] and direction [degrees] of a uniform current, or of a table's first row."""
+        place = {name: self.text("current", name) for name in ("speed", "toward")}
+        columns, rows = self.table("current")
+        for column, text in zip(columns, rows[0] if rows else (), strict=False):
+            name, unit = named(column)
+            place[name] = f"{text} {unit}".strip()
+        speed, u, v = (
+            _read(Quantity("speed"), place.get(name, "")) for name in ("speed", "u", "v")
+        )
+        toward = _read(Quantity("angle"), place["toward"])
+        if u is not None and v is not None:
+            speed, toward = hypot(u, v), degrees(atan2(u, v)) % 360
+        return _CURRENT if speed is None or toward is None else (f"{speed:g}", f"{toward:g}")
+
+    @property
+    def _down_to(self) -> str:
+        return f"{self.depth or USUAL_DEPTH:g}"
+
+    def _with_own(self, key: str) -> Draft:
+        """The file with all that the file's own environment says under a key said here, too.
+
+        A key of a named environment stands in place of the whole of it.
+        """
+        inherited = self.value(key)
+        if self.is_own(key) or not isinstance(inherited, dict):
+            return self.draft
+        return self.draft.put_at(self.at(key), inherited)
+
+
+def _read(kind: Quantity, text: str) -> float | None:
+    """A quantity in SI units; None where it cannot be read."""
+    try:
+        return kind.read(text) if text else None
+    except QuantityError:
+        return None
+
+
+def _is_row(row: object, most: int) -> bool:
+    return (
+        isinstance(row, list)
+        and len(row) <= most
+        and all(isinstance(each, str | None) for each in row)
+    )
+
+
+def _filled(row: Sequence[str | None], count: int) -> tuple[str, ...]:
+    return tuple([*(text or "" for text in row), *[""] * count][:count])

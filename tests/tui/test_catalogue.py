@@ -1,0 +1,89 @@
+"""The catalogue beside the line: what is chosen, replaced and defined."""
+
+from calm.files.catalogue import Catalogue
+from calm.tui.catalogue.component_screen import ComponentScreen
+from calm.tui.catalogue.index import Index
+from calm.tui.field import Field
+from tests.tui.conftest import MOORING
+
+
+def test_what_a_person_wrote_is_no_markup(drive, small):
+    """The card tells what is wrong with a definition, and its figures, as they are written."""
+    broken = "  ball: {kind: sphere, diameter: '[/] m [b', buoyancy: '[red]1 N'}"
+    odd = "  odd: {kind: anchor, weight: 5000 N, name: '[/] of [b]steel', note: '[@click=quit]'}"
+    small.write_text(MOORING.replace("  weight: {kind", f"{odd}\n  weight: {{kind"))
+
+    async def story(driver):
+        await driver.press("a")
+        await driver.type("odd")
+        await driver.settle()
+        assert "[/] of [b]steel" in driver.screen
+        assert "[@click=quit]" in driver.screen
+        text = driver.text.replace(MOORING[MOORING.index("  ball:") :].splitlines()[0], broken)
+        driver.session.write(text)
+        driver.builder.changed()
+        await driver.settle()
+        await driver.press("ctrl+u")
+        await driver.type("ball")
+        await driver.settle()
+        assert "[/] m [b" in driver.screen
+
+    drive(story, small, size=(140, 40))
+
+
+def test_what_stays_of_the_component_before_is_told(drive, small):
+    small.write_text(
+        MOORING.replace("    length: 60 m\n", "    length: 60 m\n    breaking_load: 15 kN\n")
+    )
+
+    async def replace(driver, id):
+        await driver.press("r", "ctrl+u")
+        await driver.type(id)
+        await driver.press("enter")
+        return driver.screen.splitlines()[-1]
+
+    async def story(driver):
+        await driver.press("down")
+        told = await replace(driver, "weight")
+        assert "now weight; kept from the one before: length 60 m, breaking_load 15 kN" in told
+        await driver.press("home")
+        told = await replace(driver, "releaser")
+        assert "now releaser" in told and "kept" not in told
+        await driver.press("down", "down")
+        told = await replace(driver, "ball")
+        assert "now ball" in told and "kept" not in told
+
+    drive(story, small)
+
+
+def test_an_id_of_the_file_is_not_defined_again(drive, small):
+    async def story(driver):
+        before = driver.text
+        await driver.press("o")
+        await driver.settle()
+        form = driver.app.screen
+        assert isinstance(form, ComponentScreen)
+        for key, text in {
+            "id": "logger", "diameter": "1 m", "length": "1 m", "buoyancy": "1 N",
+        }.items():  # fmt: skip
+            next(field for field in form.query(Field) if field.key == key).input.value = text
+        await driver.pilot.pause()
+        assert "logger is defined in this file already" in driver.screen
+        assert "It can be used" not in driver.screen
+        await driver.press("ctrl+s")
+        assert driver.app.screen is form
+        next(field for field in form.query(Field) if field.key == "id").input.value = "sbe37"
+        await driver.pilot.pause()
+        assert "sbe37 is in the catalogue" in driver.screen
+        assert "It can be used" in driver.screen
+        await driver.press("escape")
+        assert driver.text == before
+
+    drive(story, small)
+
+
+def test_the_index_of_a_text_that_cannot_be_read_is_that_of_the_catalogue():
+    catalogue = Catalogue.shipped()
+    assert Index.of(catalogue, MOORING).get("ball").own
+    assert Index.of(catalogue, "name: [").get("ball") is None
+    assert Index.of(catalogue, "name: [").get("sbe37") is not None

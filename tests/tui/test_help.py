@@ -1,0 +1,117 @@
+"""The list of keys: what is bound is in the help, once, and does what it says."""
+
+import pytest
+
+from calm.tui.actions import PLACES, actions_in, shown_key, shown_keys
+from calm.tui.catalogue.component_screen import ComponentScreen
+from calm.tui.catalogue.pane import CataloguePane
+from calm.tui.cycle import Cycle
+from calm.tui.dialogs import Question, Sheet
+from calm.tui.help_screen import HelpScreen
+from calm.tui.line.builder import BuilderScreen
+from calm.tui.line.cell_editor import CellEditor
+from calm.tui.text_screen import TextScreen, YamlArea
+from calm.tui.water.cells import Cells
+from calm.tui.water.form_choice import FormChoice
+from calm.tui.water.screen import WaterScreen
+
+OWNERS = {
+    "line": BuilderScreen,
+    "anywhere": BuilderScreen,
+    "cell": CellEditor,
+    "catalogue": CataloguePane,
+    "water": WaterScreen,
+    "grid": Cells,
+    "text": TextScreen,
+    "form": ComponentScreen,
+    "choice": Cycle,
+    "given": FormChoice,
+    "area": YamlArea,
+    "sheet": Sheet,
+    "question": Question,
+    "help": HelpScreen,
+}
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_every_action_is_there_and_no_key_has_two(place):
+    taken = {}
+    for action in actions_in(place):
+        name = action.name.partition("(")[0]
+        if not name.startswith("app."):
+            assert hasattr(OWNERS[place], f"action_{name}"), name
+        for key in action.keys.split(","):
+            assert key not in taken, (key, action.name, taken[key])
+            taken[key] = action.name
+
+
+def test_the_keys_of_the_line_and_of_its_screen_are_apart():
+    line = {key for action in actions_in("line") for key in action.keys.split(",")}
+    screen = {key for action in actions_in("anywhere") for key in action.keys.split(",")}
+    assert not line & screen
+
+
+OPENED = {
+    "line": ([], []),
+    "cell": (["l"], ["escape"]),
+    "catalogue": (["a"], ["escape"]),
+    "picture": (["tab"], ["shift+tab"]),
+    "verdict": (["tab", "tab"], ["shift+tab", "shift+tab"]),
+    "water": (["w"], ["escape"]),
+    "choice": (["w", "tab"], ["escape"]),
+    "form": (["o"], ["escape"]),
+    "text": (["t"], ["escape"]),
+    "sheet": (["m"], ["escape"]),
+    "question": (["d", "q"], ["escape", "u"]),
+    "help": (["question_mark"], ["escape"]),
+}
+"""The keys that lead there, and back."""
+
+
+async def help_of(driver):
+    """The help by its headings, each with its keys and their meanings."""
+    await driver.press("question_mark")
+    assert isinstance(driver.app.screen, HelpScreen)
+    found, heading = {}, ""
+    for line in driver.screen.splitlines():
+        line = line[9:92]  # within its frame, in the middle
+        keys, meaning = line[2:22].strip(), line[22:].strip()
+        if not line.strip():
+            heading = ""
+        elif not heading:
+            heading = line.strip()
+            found[heading] = []
+        elif keys:
+            found[heading].append((keys, meaning))
+    await driver.press("escape")
+    assert driver.app.screen is driver.builder
+    return found
+
+
+def test_the_help_has_every_key_with_its_meaning(drive, small):
+    async def story(driver):
+        told = await help_of(driver)
+        for place, heading in PLACES.items():
+            for action in actions_in(place):
+                first = shown_keys(action.keys)[:16].rstrip()
+                begin = action.meaning[:30].rstrip()
+                assert any(
+                    keys.startswith(first) and meaning.startswith(begin)
+                    for keys, meaning in told[heading]
+                ), (heading, action)
+
+    drive(story, small, size=(100, 320))
+
+
+def test_the_help_has_every_key_that_is_bound(drive, small):
+    async def story(driver):
+        told = {key for rows in (await help_of(driver)).values() for keys, _ in rows
+                for key in keys.split()}  # fmt: skip
+        for place, (there, back) in OPENED.items():
+            await driver.press(*there)
+            bound = {shown_key(key) for key in driver.app.screen.active_bindings}
+            assert bound and bound <= told, (place, bound - told)
+            await driver.press(*back)
+            assert driver.app.focused is driver.table
+
+    drive(story, small, size=(100, 320))

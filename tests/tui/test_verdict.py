@@ -1,0 +1,71 @@
+"""What the verdict says at its head is the worst of what it says below."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from calm.checks.finding import State
+from calm.tui.live import judge, judge_fully
+from calm.tui.verdict_text import sayings
+
+LINES = Path(__file__).resolve().parents[2] / "lines"
+BUOY = (LINES / "braconnot-buoy.yaml").read_text(encoding="utf-8")
+
+
+def said(text):
+    return list(sayings(judge_fully(judge(text))))
+
+
+def the(told, begin):
+    return next(each for each in told if each.text.startswith(begin))
+
+
+@pytest.mark.parametrize(
+    "anchor, needs, state",
+    # as given 720 N, and more as the cable strums; what it only may do is a warning
+    [
+        ("700 N", "needs 720 N, has", State.FAIL),
+        ("800 N", "needs 949 N (strumming), has", State.WARN),
+        ("1000 N", "needs 949 N (strumming), has", State.PASS),
+    ],
+)
+def test_the_anchor_needs_what_the_worst_finding_says(anchor, needs, state):
+    told = said(BUOY.replace("weight: 1000 N", f"weight: {anchor}"))
+    head = the(told, "needs")
+    assert head.text.startswith(needs) and head.state is state
+    for each in (each for each in told if each.heading):
+        if found := re.search(r"([\d.]+ k?N) are required", each.text):
+            assert f"needs {found[1]}" in head.text and each.state is head.state
+            assert each.heading == "Anchor weight" + " (strumming)" * ("strumming" in needs)
+
+
+def test_the_reserve_is_that_of_the_worst_finding():
+    told = said(BUOY.replace("buoyancy: 1000 N", "buoyancy: 550 N"))
+    head, below = the(told, "212 N"), the(told, "24 % of the float's buoyancy is left")
+    assert head.heading == "Reserve" and head.state is below.state is State.WARN
+    assert head.text.endswith("61% of the float's buoyancy in use; 76% at worst (strumming)")
+    assert below.heading == "Reserve of buoyancy (strumming)"
+
+
+def test_the_knockdown_is_that_of_the_worst_finding():
+    text = (LINES / "s1000.yaml").read_text(encoding="utf-8")
+    told = said(text + "checks: {maximum_knockdown: 35 m}\n")
+    head = next(each for each in told if each.heading == "Knockdown" and "top at" in each.text)
+    below = the(told, "The top is knocked down")
+    worst = re.search(r"by ([\d.]+ m)", below.text)[1]
+    assert head.text.endswith(f"; {worst} at worst (strumming)") and head.state is below.state
+
+
+def test_the_margin_of_a_row_is_the_least_of_any_situation():
+    view = judge_fully(judge(BUOY))
+    block = view.rows[-1]
+    tighter = [each for each in view.tighter if each.component == block.label]
+    assert tighter and block.margin == min(each.share for each in tighter)
+    assert block.margin == pytest.approx(1000.0 / 949.2 - 1.0, abs=2e-3)  # as it strums
+    assert block.state is State.PASS
+
+
+def test_a_line_without_an_anchor_is_told_what_one_is_to_weigh():
+    told = list(sayings(judge(BUOY.replace("  - {use: block}\n", ""))))
+    assert the(told, "needs").text == "needs 720 N in water"
