@@ -127,7 +127,6 @@ def fill_table(terminal, rows):
             terminal.press(text, ENTER)
 
 
-@pytest.mark.slow
 def test_build_the_deep_mooring_from_nothing(tmp_path):
     from calm.files.editing import Draft
 
