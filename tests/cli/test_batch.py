@@ -193,6 +193,7 @@ def test_signals_leave_what_can_be_resumed(write_mooring, folder, number):
     assert re.search(r"interrupted; \d[\d ]* of 6 000 profiles are done", told)
 
 
+@pytest.mark.slow  # it compiles the kernel anew
 def test_without_a_folder_to_write_it_works_and_says_so(
     calm_process, write_mooring, record, folder
 ):
@@ -238,7 +239,9 @@ def test_without_statistics_there_is_the_result_alone(calm, write_mooring, recor
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="limits files as POSIX has it")
-@pytest.mark.parametrize("largest", [0, 300, 3000, 30_000])
+@pytest.mark.parametrize(
+    "largest", [0, 3000, *(pytest.param(n, marks=pytest.mark.slow) for n in (300, 30_000))]
+)
 @pytest.mark.parametrize("ending", [".nc", ".zarr"])
 def test_files_that_cannot_grow_are_what_a_full_disk_is(
     calm, write_mooring, record, folder, largest, ending

@@ -42,7 +42,7 @@ CHARACTERS = {
     "colon": ":", "left_curly_bracket": "{", "number_sign": "#", "tilde": "~",
 }  # fmt: skip
 PARCEL = 20
-SIZES = [(80, 24), (60, 15), (40, 12), (20, 6), (120, 36)]
+SIZES = [(80, 24), (60, 15), (40, 12), (20, 6), (30, 40)]
 PASTES = ["0\t0.5\t90\n50\t0.2\t80", "depth,speed,toward\n0,1,90\n70,n/a,80", "~/x\n", "1;2"]
 
 UGLY = (
@@ -172,7 +172,7 @@ def test_a_thousand_keys_at_random_change_what_they_are_about(small, monkeypatch
     steps = Steps(monkeypatch)
 
     async def play():
-        async with driven(small) as driver:
+        async with driven(small, SIZES[0]) as driver:
 
             def check():
                 assert not driver.session.draft.problems
@@ -192,7 +192,7 @@ def test_keys_at_random_in_the_text_are_undone(small, monkeypatch):
     steps = Steps(monkeypatch)
 
     async def play():
-        async with driven(small) as driver:
+        async with driven(small, SIZES[0]) as driver:
             await press_at_random(driver, random.Random(3), TEXT_KEYS, [], 300, steps.check)
             await driver.settle()
             assert undone(driver) == UGLY
@@ -216,7 +216,7 @@ def test_keys_at_random_while_another_program_writes_the_file(small, folder, mon
     monkeypatch.setattr(BuildApp, "exit", lambda app, *_: None)  # stay, and press on
 
     async def play():
-        async with driven(small, environment="storm") as driver:
+        async with driven(small, SIZES[0], environment="storm") as driver:
 
             def write(number):
                 if number % 3 == 0:

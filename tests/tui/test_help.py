@@ -107,6 +107,7 @@ def test_the_help_has_every_key_that_is_bound(drive, small):
     async def story(driver):
         told = {key for rows in (await help_of(driver)).values() for keys, _ in rows
                 for key in keys.split()}  # fmt: skip
+        await driver.pilot.resize_terminal(100, 30)
         for place, (there, back) in OPENED.items():
             await driver.press(*there)
             bound = {shown_key(key) for key in driver.app.screen.active_bindings}

@@ -133,7 +133,7 @@ def test_build_the_deep_mooring_from_nothing(tmp_path):
     shipped = shipped_folder("lines") / "deep-current-meters.yaml"
     wanted = Draft(shipped.read_text(encoding="utf-8"))
     file = tmp_path / "mine.yaml"
-    terminal = Terminal(file)
+    terminal = Terminal(file, columns=80, rows=24)
     terminal.wait("mine.yaml", "? help")
 
     terminal.press("m", CLEAR, "Deep current meters", ENTER, ENTER)

@@ -27,7 +27,10 @@ from tests.validation.closing import solve_continuous
 AFLOAT = 6
 
 
-@pytest.mark.parametrize("block", range(8))
+BLOCKS = [*range(4), *(pytest.param(block, marks=pytest.mark.slow) for block in range(4, 8))]
+
+
+@pytest.mark.parametrize("block", BLOCKS)
 def test_calm_agrees_with_the_referee(block) -> None:
     """Six moorings afloat a block; a failure names the number that draws its mooring."""
     number, afloat = 10_000 + 1000 * block, 0

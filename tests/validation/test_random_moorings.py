@@ -24,7 +24,10 @@ from tests.validation.closing import solve_continuous
 STANDING = 20
 
 
-@pytest.mark.parametrize("block", range(12))
+BLOCKS = [*range(6), *(pytest.param(block, marks=pytest.mark.slow) for block in range(6, 12))]
+
+
+@pytest.mark.parametrize("block", BLOCKS)
 def test_calm_agrees_with_the_referee(block) -> None:
     """Twenty standing moorings a block; a failure names the number that draws its mooring."""
     number, standing = 1000 * block, 0

@@ -25,7 +25,10 @@ from tests.validation.towed import HalfOut, Passing, solve_continuous_tow
 TOWED = 5
 
 
-@pytest.mark.parametrize("block", range(12))
+BLOCKS = [*range(6), *(pytest.param(block, marks=pytest.mark.slow) for block in range(6, 12))]
+
+
+@pytest.mark.parametrize("block", BLOCKS)
 def test_calm_agrees_with_the_referee(block) -> None:
     """Five tows a block; a failure names the number that draws its tow."""
     number, towed = 1000 * block, 0

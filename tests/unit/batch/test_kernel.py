@@ -26,6 +26,7 @@ AVX = platform.machine() in ("x86_64", "AMD64") and any(
 )  # fmt: skip
 
 
+@pytest.mark.slow  # it compiles the kernel anew
 @pytest.mark.skipif(not AVX, reason="packed square roots are told by their names on x86-64")
 @pytest.mark.parametrize("function", [cable.pass_segments, rod.pass_piece])
 def test_square_roots_are_packed(function: Any) -> None:
