@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
+from functools import cached_property
 from math import isfinite
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, Self
@@ -30,12 +31,20 @@ class Columns:
         return SimpleNamespace(**{name: _plain(getattr(self, name)[row]) for name in self._names()})
 
     def __iter__(self) -> Iterator[SimpleNamespace]:
+        return iter(self._records)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: getattr(self, name) for name in self._names()}
+
+    @cached_property
+    def _records(self) -> tuple[SimpleNamespace, ...]:
+        """The rows, which every rule of a design check goes through again."""
         names = self._names()
         columns = [getattr(self, name) for name in names]
         # whole columns become plain numbers faster than their numbers one by one
         plain = [column if isinstance(column, list) else column.tolist() for column in columns]
-        for row in zip(*plain, strict=True):
-            yield SimpleNamespace(**dict(zip(names, row, strict=True)))
+        rows = zip(*plain, strict=True)
+        return tuple(SimpleNamespace(**dict(zip(names, row, strict=True))) for row in rows)
 
     def with_row(self, **row: Any) -> Self:
         """The same table with one more row, a value for every column."""

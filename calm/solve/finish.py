@@ -64,6 +64,7 @@ def finished(
     unknown = fine.root.unknown
     track, _ = unknown.placed(fine.root.x, closing.profile)
     used, reserve = _buoyancy_in_use(closing, fine)
+    afloat = tuple(unknown.shares(fine.root.x))
     unclosed = abs(fine.miss) / closing.span + UNSEEN
     solution = Solution(
         line=closing.line,
@@ -78,10 +79,10 @@ def finished(
         grounded_length=fine.grounded_length,
         cut=np.array(fine.trace.cut),
         strain=np.array(fine.trace.strain),
-        afloat=tuple(unknown.shares(fine.root.x)),
+        afloat=afloat,
         buoyancy_used=used,
         reserve=reserve,
-        carried=_carried(closing.line, track),
+        carried=_carried(closing.line, track) if afloat else closing.line,
         riding=unknown.riding(fine.root.x),
         marches=closing.marches,
         segments=fine.end.segments,

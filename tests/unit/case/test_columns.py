@@ -1,0 +1,32 @@
+"""Tables kept by column: their rows, and what of them goes to another process."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+from calm.case.columns import Clamps
+
+
+@pytest.fixture
+def clamps():
+    figures = {
+        name: np.array([1.5, np.nan])
+        for name in ("depth", "x", "y", "tension", "tilt", "knockdown")
+    }
+    return Clamps(index=np.array([0, 2]), use=["a", "b"], label=["A", "B"], **figures)
+
+
+def test_rows_are_plain_numbers_and_the_same_each_time(clamps):
+    first, second = clamps
+    assert (first.index, first.label, first.depth) == (0, "A", 1.5)
+    assert type(first.depth) is float and type(first.index) is int
+    assert np.isnan(second.depth) and [*clamps] == [first, *[*clamps][1:]]
+    assert clamps[0] == first
+
+
+def test_a_table_that_was_read_by_rows_is_pickled_as_its_columns(clamps):
+    before = pickle.dumps(clamps)
+    assert len([*clamps]) == 2
+    assert pickle.dumps(clamps) == before
+    assert pickle.loads(before).label == ["A", "B"]
