@@ -179,6 +179,11 @@ def components(speed: float, toward: float) -> tuple[float, float]:
     return speed * math.sin(angle), speed * math.cos(angle)
 
 
+def speed_and_direction(u: float, v: float) -> tuple[float, float]:
+    """Speed and direction [deg from north, 0 to 360] of a flow by its east and north parts."""
+    return math.hypot(u, v), math.degrees(math.atan2(u, v)) % 360
+
+
 def _read_columns(
     columns: Sequence[str],
     rows: Sequence[Sequence[str | None]],

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import degrees, radians
 
 import numpy as np
@@ -76,13 +77,17 @@ class Closing:
 
     def __init__(self, line: Line, water: Water, settings: Settings) -> None:
         self.line, self.water, self.settings = line, water, settings
-        self.track = Track.of(line)
         self.profile = Profile(water)
         self.span = float(line.length.sum()) if line.towed else water.depth
         self.allowed = settings.tolerance * self.span
         self.floats = np.flatnonzero(~line.flexible & (line.buoyancy > 0.0)).tolist()
         self.frequency = 0.0
         self.marches = 0
+
+    @cached_property
+    def track(self) -> Track:
+        """The whole line, of which nothing strums."""
+        return Track.of(self.line)
 
     def whole(self, lands: bool) -> Unknown:
         """The whole line with its free end below the surface; `lands`: as in `Unknown`.

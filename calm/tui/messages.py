@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from textual.content import Content
 from textual.message import Message
 
 if TYPE_CHECKING:
@@ -55,6 +56,12 @@ def place_of(problem: Problem, path: Path) -> str:
     file, folder = Path(problem.path), path.parent
     name = file.relative_to(folder) if file.is_relative_to(folder) else file
     return f"{name}, {place}" if place else str(name)
+
+
+def said(problem: Problem, path: Path) -> Content:
+    """A mistake with its sign and its place."""
+    parts = filter(None, (place_of(problem, path), problem.message))
+    return Content.assemble(("!", "bold $text-error"), f" {'  '.join(parts)}")
 
 
 def mistakes(problems: Sequence[Problem], path: Path) -> str:

@@ -17,7 +17,7 @@ from calm.errors import Problem
 from calm.files.editing.retyped import retyped
 from calm.tui.actions import bindings, hints
 from calm.tui.bars import KeyBar, TitleBar
-from calm.tui.messages import Edited, is_elsewhere, mistakes, place_of
+from calm.tui.messages import Edited, is_elsewhere, mistakes, said
 from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
 
@@ -109,7 +109,7 @@ class TextScreen(DraftScreen):
         known = self.is_fresh(view)
         self._problems = tuple(draft.problems) or (view.problems if known and view else ())
         if self._problems:
-            lines = [_said(each, self._path) for each in self._problems]
+            lines = [said(each, self._path) for each in self._problems]
         elif known and view is not None and view.missing:
             lines = [Content(f"? {each}") for each in view.missing]
         elif known:
@@ -179,8 +179,7 @@ class TextScreen(DraftScreen):
     def action_back(self) -> None:
         """To the line, if the text has one."""
         if self.session.draft.problems:
-            bar = self.query_one(KeyBar)
-            bar.tell("The line cannot be shown before the text can be read", wrong=True)
+            self.tell("The line cannot be shown before the text can be read", wrong=True)
         else:
             self.dismiss()
 
@@ -189,8 +188,3 @@ def _row(text: str, line: int) -> int:
     """Where the editor has a line of the file, both counted as they count: it knows more breaks."""
     ends = [0, *(found.end() for found in _LINE_BREAK.finditer(text))]
     return len(text[: ends[min(line, len(ends)) - 1]].splitlines())
-
-
-def _said(problem: Problem, path: Path) -> Content:
-    parts = filter(None, (place_of(problem, path), problem.message))
-    return Content.assemble(("!", "bold $text-error"), f" {'  '.join(parts)}")

@@ -36,7 +36,7 @@ LEAD = 4
 class TableRow:
     """What is shown of a piece, or of what is clamped on one.
 
-    `texts` are by the name of the column; `wrong` tells why the component cannot be used.
+    `texts` are by the name of the column; `wrong` tells that no such component is known.
     """
 
     spot: Spot

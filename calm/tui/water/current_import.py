@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import atan2, degrees, hypot, isclose
+from math import isclose
 from pathlib import Path
 
 from numpy import float32
 
 from calm.errors import UsageError
+from calm.files.tables import speed_and_direction
 from calm.tui.checking import Check, Reading, anything
 from calm.tui.dialogs import Asked, Sheet
 from calm.tui.water.form import CURRENT_COLUMNS
@@ -72,8 +73,7 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
         return _SPEEDS, by_components
     plain = [row[:3] for row in by_components]
     by_direction = [
-        [*map(_written, (depth, hypot(u, v), degrees(atan2(u, v)) % 360))]
-        for depth, u, v, _ in levels
+        [*map(_written, (depth, *speed_and_direction(u, v)))] for depth, u, v, _ in levels
     ]
     if _signs(plain) < _signs(by_direction):
         return _SPEEDS[:3], plain

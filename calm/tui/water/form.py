@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import atan2, degrees, hypot
 from typing import Any
 
 from calm.files.definition import DENSITY
@@ -11,7 +10,7 @@ from calm.files.density import USUAL_DENSITY
 from calm.files.document import Location
 from calm.files.editing import Draft, Value
 from calm.files.fields import POSITIVE_LENGTH, Quantity
-from calm.files.tables import SALINITY, TEMPERATURE
+from calm.files.tables import SALINITY, TEMPERATURE, speed_and_direction
 from calm.tui.water.columns import named
 from calm.units import QuantityError
 
@@ -181,7 +180,7 @@ class Water:
         )
         toward = _read(Quantity("angle"), place["toward"])
         if u is not None and v is not None:
-            speed, toward = hypot(u, v), degrees(atan2(u, v)) % 360
+            speed, toward = speed_and_direction(u, v)
         return _CURRENT if speed is None or toward is None else (f"{speed:g}", f"{toward:g}")
 
     @property

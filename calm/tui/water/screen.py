@@ -23,7 +23,7 @@ from calm.tui.bars import KeyBar, TitleBar
 from calm.tui.checking import needed, quantity
 from calm.tui.field import Field
 from calm.tui.line.cell_editor import CellEditor
-from calm.tui.messages import place_of
+from calm.tui.messages import said
 from calm.tui.profile import Profile
 from calm.tui.verdict_pane import state_word
 from calm.tui.water.cells import Cells
@@ -132,9 +132,7 @@ class WaterScreen(WaterVerbs):
         """What keeps the line from standing in the water that the form shows."""
         file, path = self.environment_file, self.view.path if self.view else Path()
         notes = [Content.styled(_ELSEWHERE.format(file), "$text-warning")] if file else []
-        for each in problems:
-            said = "  ".join(filter(None, (place_of(each, path), each.message)))
-            notes.append(Content.assemble(("!", "bold $text-error"), f" {said}"))
+        notes += [said(each, path) for each in problems]
         shown = self.query_one("#water-notes", Static)
         shown.set_class(not notes, "gone")
         shown.update(Content("\n").join(notes))
