@@ -1,18 +1,11 @@
 """Mooring files and catalogues: text in, validated models in SI out. Nothing is computed here."""
 
+from calm.files.accept import Accept
 from calm.files.catalogue import Assembly, Catalogue
+from calm.files.checks import Checks, SafetyFactors
 from calm.files.components import Anchor, Body, Cable, Chain, Component, Cylinder, Sphere
 from calm.files.environment import Environment, Fouling, Wind
-from calm.files.mooring import (
-    Checks,
-    Clamp,
-    MooringFile,
-    Piece,
-    Position,
-    SafetyFactors,
-    Solver,
-    TowKeys,
-)
+from calm.files.mooring import Clamp, MooringFile, Piece, Position, Solver, TowKeys
 from calm.files.reader import read_mooring
 from calm.files.schema import mooring_schema
 from calm.files.strumming import (
@@ -25,6 +18,7 @@ from calm.files.strumming import (
 from calm.files.tables import CurrentTable, DepthTable, SeaWater
 
 __all__ = [
+    "Accept",
     "AmplitudeModel",
     "Anchor",
     "Assembly",
