@@ -56,7 +56,7 @@ checks:
   minimum_tension: {wire: 50 kgf}
   maximum_tilt: 30 deg
   accept:
-    - {rule: tilt, component: "?*", reason: looked at, by: me, date: "2026-11-22", until: "2027-11-22"}
+    - {rule: tilt, component: "?*", reason: x, by: me, date: "2026-11-22", until: "2027-11-22"}
     - {rule: strength, reason: 5}
 """
 
