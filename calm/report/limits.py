@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 from calm.checks.strength import safety_factor
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
+    from calm.case.columns import ComponentRow
     from calm.files import Component
 
 
@@ -30,7 +30,7 @@ def tilt_mark(component: Component, tilt: float) -> Mark:
     return Mark.NONE
 
 
-def safety_mark(result: Result | TowResult, component: Component, record: SimpleNamespace) -> Mark:
+def safety_mark(result: Result | TowResult, record: ComponentRow) -> Mark:
     """Mark of a safety factor: the working load decides, the breaking load where that is unknown.
 
     The factor asked on the breaking load is the file's `checks.safety_factor`, for a surface
@@ -39,5 +39,5 @@ def safety_mark(result: Result | TowResult, component: Component, record: Simple
     if record.utilisation == record.utilisation:  # NaN where no working load is known
         return Mark.BEYOND if record.utilisation > 1.0 else Mark.NONE
     factors = result.file.checks.safety_factor
-    limit = safety_factor(component, factors, result.type == "surface")
+    limit = safety_factor(record.part.component, factors, result.type == "surface")
     return Mark.BEYOND if record.safety_factor < limit else Mark.NONE
