@@ -46,6 +46,7 @@ class LineTable(Listing, can_focus=True):
         "line-table--wrong",
         "line-table--old",
         "line-table--fail",
+        "line-table--unknown",
         "line-table--warn",
     }
     DEFAULT_CSS = """
@@ -61,6 +62,7 @@ class LineTable(Listing, can_focus=True):
         & > .line-table--wrong { color: $text-error; }
         & > .line-table--old { text-style: dim; }
         & > .line-table--fail { color: $text-error; text-style: bold; }
+        & > .line-table--unknown { color: $text-muted; }
         & > .line-table--warn { color: $text-warning; }
     }
     """
