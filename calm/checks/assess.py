@@ -18,7 +18,7 @@ from calm.checks.recovery import Recovery, recovery_of
 from calm.checks.rules import ONCE, STANDING, equilibrium
 from calm.checks.situations import STRUMMING, situations_of
 from calm.errors import NoEquilibrium
-from calm.files import MooringFile
+from calm.files import MooringFile, Place
 
 OWN = "own"
 """Name of the environment that a mooring file gives itself."""
@@ -119,10 +119,10 @@ def findings_of(
             yield equilibrium.find(verdict, mooring, environment, situation.name)
     if situation.result is not None:
         file = situation.result.file
-        end, acceptance = file.pieces[-1].label, _acceptance(file, day)
+        end, acceptance = file.pieces[-1].place, _acceptance(file, day)
         for rule in (each for each in STANDING if anchored or not each.of_anchor):
             for verdict in rule.judge(situation.result):
-                if anchored or verdict.component != end:
+                if anchored or verdict.place != end:
                     finding = rule.find(verdict, mooring, environment, situation.name)
                     yield acceptance.of(finding)
 
@@ -131,8 +131,8 @@ def _acceptance(file: MooringFile, day: date | None) -> Acceptance:
     return Acceptance(file.accepts, day or date.today())
 
 
-def _of(finding: Finding) -> tuple[str, str | None]:
-    return finding.rule, finding.component
+def _of(finding: Finding) -> tuple[str, Place | None]:
+    return finding.rule, finding.place
 
 
 def _softened(finding: Finding) -> Finding:

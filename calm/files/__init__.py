@@ -5,7 +5,16 @@ from calm.files.catalogue import Assembly, Catalogue
 from calm.files.checks import Checks, SafetyFactors
 from calm.files.components import Anchor, Body, Cable, Chain, Component, Cylinder, Sphere
 from calm.files.environment import Environment, Fouling, Wind
-from calm.files.mooring import Clamp, MooringFile, Piece, Position, Solver, TowKeys
+from calm.files.mooring import (
+    Clamp,
+    MooringFile,
+    Part,
+    Piece,
+    Place,
+    Position,
+    Solver,
+    TowKeys,
+)
 from calm.files.reader import read_mooring
 from calm.files.schema import mooring_schema
 from calm.files.strumming import (
@@ -37,7 +46,9 @@ __all__ = [
     "Environment",
     "Fouling",
     "MooringFile",
+    "Part",
     "Piece",
+    "Place",
     "Position",
     "SafetyFactors",
     "SeaWater",
