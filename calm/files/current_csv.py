@@ -13,7 +13,7 @@ from pathlib import Path
 from calm.errors import InputError, Problem
 from calm.files.current_terms import Terms
 from calm.files.document import read_text
-from calm.files.tables import CurrentTable, read_current, turned_notices
+from calm.files.tables import CurrentTable, heading, read_current, turned_notices
 from calm.files.times import TimeChoiceError, choose_time, parse_time
 
 LARGEST_CSV = 50_000_000
@@ -46,7 +46,7 @@ class CsvHeader:
     @property
     def timed(self) -> bool:
         """Whether the file is a record."""
-        return self.row.cells[0].strip().partition("[")[0].lower() == "time"
+        return heading(self.row.cells[0])[0].lower() == "time"
 
     @property
     def columns(self) -> list[str]:
@@ -70,8 +70,8 @@ class CsvHeader:
 
     def without_gaps(self, rows: Sequence[CsvRow]) -> list[CsvRow]:
         """The rows of a record that give a current."""
-        names = [cell.replace("[", " ").lower().split()[:1] for cell in self.row.cells]
-        current = [j for j, name in enumerate(names) if name not in (["time"], ["depth"])]
+        names = [heading(cell)[0].lower() for cell in self.row.cells]
+        current = [j for j, name in enumerate(names) if name not in ("time", "depth")]
         return [
             row
             for row in rows

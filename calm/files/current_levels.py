@@ -28,8 +28,6 @@ _OF_THE_WATER = re.compile(r"\b(water|bottom|sea ?(bed|floor)) ?depth\b|\bsea fl
 _UPWARDS = re.compile(r"\b(z ?)?up(wards?)?\b")
 _DOWNWARDS = re.compile(r"\b(z ?)?down(wards?)?\b")
 _HEIGHTS = ("z", "z_rho")
-_OFFSETS = ("range_offset", "h_deploy")
-_FIRST_BIN = "bin1_dist_m"
 _STANDARD_DEPTH = "depth"
 
 
@@ -175,34 +173,38 @@ def _from_instrument(
 ) -> Levels:
     """Levels counted from an instrument that looks up or down.
 
-    MHKiT adds the height of the instrument above the seabed, or its depth where it looks down, to
-    `range` once that is known, and then calls the depth of the water `depth`.
+    MHKiT adds the height of the instrument above the seabed to `range` where a person gives it, or
+    the instrument's depth where it looks down, and then calls the depth of the water `depth`.
     """
     if way not in ("up", "down"):
         raise UnreadableError(
             f"`{levels.name}` counts from the instrument, and the file does not say whether that "
             "looks up or down (`positive: up` of the variable, or `orientation: up` of the file)"
         )
-    signed = factor if way == "down" else -factor
     instrument, water = _depths(dataset, levels, time)
-    if str(levels.name).startswith("range") and any(dataset.attrs.get(one) for one in _OFFSETS):
-        if way == "down":
-            note = f"`{levels.name}` counts from the surface, as its offset is added already"
-            return Levels(levels, factor, 0.0, None, (note,))
-        seabed = instrument or water
-        if seabed is None:
+    offset = str(levels.name).startswith("range") and _offset_by_hand(dataset)
+    if offset and way == "down":
+        note = f"`{levels.name}` counts from the surface, as its offset is added already"
+        return Levels(levels, factor, 0.0, None, (note,))
+    if offset and instrument is None:
+        if water is None:
             return _above_seabed(levels, factor, water_depth)
-        note = f"`{levels.name}` counts from the seabed, whose depth is `{seabed[0].name}`"
-        return Levels(levels, signed, 0.0, seabed, (note,))
-    if instrument is None and _FIRST_BIN in dataset.attrs:  # MHKiT takes it for an offset
-        instrument = water
+        note = f"`{levels.name}` counts from the seabed, whose depth is `{water[0].name}`"
+        return Levels(levels, -factor, 0.0, water, (note,))
     if instrument is None:
         but = f"; `{water[0].name}` is that of the water" if water is not None else ""
         raise UnreadableError(
             f"`{levels.name}` counts from the instrument, whose depth is not in the file{but}"
         )
     note = f"`{levels.name}` counts from the instrument, whose depth is `{instrument[0].name}`"
+    signed = factor if way == "down" else -factor
     return Levels(levels, signed, 0.0, instrument, (note,))
+
+
+def _offset_by_hand(dataset: xr.Dataset) -> bool:
+    """Whether MHKiT was given the place of the instrument; Teledyne's offsets are of its head."""
+    given = any(dataset.attrs.get(name) for name in ("range_offset", "h_deploy"))
+    return given and "rdi" not in str(dataset.attrs.get("inst_make", "")).lower()
 
 
 def _way_it_looks(dataset: xr.Dataset, levels: xr.DataArray, told: str) -> str:

@@ -20,6 +20,7 @@ from calm.units import DIMENSIONS, QuantityError, unit_factor
 Report = Callable[[Sequence[str | int], str], Problem]
 """Makes a problem of a message, at ``("columns", j)`` or ``("rows", i, j)``."""
 
+_HEADING = re.compile(r"^([^\s\[(]*)\s*(.*)$", re.DOTALL)
 _BARE_NUMBER = re.compile(r"[-+.,/\deE ]*")
 
 TEMPERATURE = Quantity("temperature", at_least=-6, at_most=40)
@@ -150,12 +151,15 @@ def read_current(
 def magnetic_columns(columns: Sequence[str]) -> tuple[list[str], set[str]]:
     """The headings without the word for their north, and the names of those that count from it."""
     plain = [_without_north(column) for column in columns]
-    names = {
-        re.split(r"[\[ ]", column.strip(), maxsplit=1)[0].lower()
-        for column, other in zip(columns, plain, strict=True)
-        if column != other
-    }
-    return plain, names
+    pairs = zip(columns, plain, strict=True)
+    return plain, {heading(column)[0].lower() for column, other in pairs if column != other}
+
+
+def heading(column: str) -> tuple[str, str]:
+    """Name and unit of ``"depth m"``, ``"depth[m]"`` or ``"depth (m)"``; empty without a unit."""
+    name, unit = _HEADING.findall(column.strip())[0]
+    bracketed = unit[:1] in ("[", "(") and unit[-1:] in ("]", ")")
+    return name, unit[1:-1].strip() if bracketed else unit
 
 
 def turned_notices(columns: Sequence[str], terms: Terms) -> tuple[str, ...]:
@@ -196,10 +200,9 @@ def _from_magnetic_north(
 
 def _without_north(column: str) -> str:
     """A heading without the word ``magnetic`` at the end of its unit."""
-    text = column.strip()
-    inside = text.removesuffix("]")
-    plain = _MAGNETIC.sub("", inside)
-    return column if plain == inside else plain + text[len(inside) :]
+    name, unit = heading(column)
+    plain = _MAGNETIC.sub("", unit)
+    return column if plain == unit else f"{name} {plain}".strip()
 
 
 def read_water(
@@ -315,8 +318,8 @@ def _read_headings(
     """The unit of each known column by its name, empty where the column gives none."""
     units: dict[str, str] = {}
     for j, column in enumerate(columns):
-        name, _, unit = column.replace("[", " ", 1).strip().removesuffix("]").partition(" ")
-        name, unit = name.lower() if name.lower() in known else name, unit.strip()
+        name, unit = heading(column)
+        name = name.lower() if name.lower() in known else name
         if name.lower() in _NO_WAY and "toward" in known:
             message = (
                 f"`{shown(column)}` does not say which way: call it `toward` where the current "

@@ -10,7 +10,7 @@ import numpy as np
 from calm.errors import Problem
 from calm.files.current_csv import CsvHeader, CsvRow
 from calm.files.current_terms import DEEPEST, Terms
-from calm.files.tables import magnetic_columns, turned_notices
+from calm.files.tables import heading, magnetic_columns, turned_notices
 from calm.physics.line import Floats
 from calm.units import QuantityError, unit_factor
 
@@ -87,7 +87,7 @@ class RowReader:
 
 
 def _name(column: str) -> str:
-    return re.split(r"[\[ ]", column, maxsplit=1)[0].lower()
+    return heading(column)[0].lower()
 
 
 def _factors(columns: Sequence[str]) -> dict[str, float] | None:
@@ -96,7 +96,7 @@ def _factors(columns: Sequence[str]) -> dict[str, float] | None:
     for column in columns:
         name = _name(column)
         dimension = _DIMENSIONS.get(name, "speed")
-        unit = column[len(name) :].strip("[] ")
+        unit = heading(column)[1]
         try:
             factors[name] = unit_factor(unit, dimension) if unit else np.nan
         except QuantityError:
