@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from calm.checks.anchor import anchor_sliding, anchor_uplift, anchor_weight
 from calm.checks.finding import State, Verdict, rule, verdict_on
 from calm.checks.handling import backup, launch_speed, launch_strength, recovery, tangling
-from calm.checks.posture import depth_rating, excursion, knockdown, tilt
+from calm.checks.posture import depth_rating, excursion, knockdown, tilt, top_depth
 from calm.checks.slack import slack
 from calm.checks.strength import strength, strength_steps
 from calm.checks.surface import freeboard, reserve, scope, watch_circle
@@ -29,6 +29,7 @@ STANDING = (
     strength_steps,
     tilt,
     depth_rating,
+    top_depth,
     knockdown,
     excursion,
     anchor_weight,

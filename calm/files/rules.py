@@ -73,6 +73,13 @@ RULES = {
         "`depth_rating` less `rating_margin`, 100 m, or half of a rating below 200 m",
         "The maker's rating, less a margin for a stronger current than was thought of",
     ),
+    "top-depth": RuleText(
+        "Depth of the top",
+        "depth",
+        "least depth of the top of a sub-surface line, at low water too",
+        "`minimum_top_depth`: a failure; where it is not given, 10 m: a warning",
+        "A default of this program: clear of waves, hulls and nets",
+    ),
     "knockdown": RuleText(
         "Knockdown",
         "knockdown",
