@@ -156,6 +156,7 @@ class Rule:
     source : of the rule and of its default limit
     judge : from the evidence, a `Result` for most rules, to verdicts
     of_anchor : whether it judges the anchor, and nothing where a line has none
+    situation : of what it judges once of a mooring
     criteria : from a `Mooring` to what is asked of it, where that can be counted in many profiles
     """
 
@@ -166,6 +167,7 @@ class Rule:
     judge: Callable[[Any], Iterator[Verdict]]
     of_anchor: bool = False
     criteria: Callable[[Any], Iterator[Any]] | None = None
+    situation: str = AS_GIVEN
 
     def find(
         self, verdict: Verdict, mooring: str, environment: str, situation: str = AS_GIVEN
@@ -181,13 +183,15 @@ class Rule:
 
 
 def rule(
-    name: str, *, of_anchor: bool = False
+    name: str, *, of_anchor: bool = False, situation: str = AS_GIVEN
 ) -> Callable[[Callable[[Any], Iterator[Verdict]]], Rule]:
     """Make a function that judges into the `Rule` of that name in `calm.files.rules`."""
     text = RULE_TEXTS[name]
 
     def of(judge: Callable[[Any], Iterator[Verdict]]) -> Rule:
-        return Rule(name, text.title, text.quantity, text.source, judge, of_anchor)
+        return Rule(
+            name, text.title, text.quantity, text.source, judge, of_anchor, situation=situation
+        )
 
     return of
 

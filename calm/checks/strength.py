@@ -95,6 +95,46 @@ def _strength_words(
     )
 
 
+@criteria("release-load")
+def release_load(mooring: Mooring) -> Iterator[Criterion]:
+    """What every release bears as long as it stands, and as it opens, against its own loads.
+
+    As it opens it bears the pull below it, against its `opening_load`; where the maker gives none,
+    what it may bear as long as it stands has to do, and the message says so.
+    """
+    factors, surface = mooring.file.checks.safety_factor, reaches_the_surface(mooring)
+    for part in pieces_of(mooring):
+        if part.component.role == "release":
+            stands = allowable_load(part.component, factors, surface)
+            opens = part.component.opening_load
+            words = partial(_release_words, part, "bears", stands)
+            yield Criterion(part, "tension", stands, words)
+            limit = stands if opens is None else opens
+            words = partial(_release_words, part, "opens under", limit)
+            yield Criterion(part, "tension_bottom", limit, words)
+
+
+def _release_words(
+    part: Judged, does: str, limit: float | None, tension: float, _: Result
+) -> tuple[str, str]:
+    bears, given = f"{part.label} {does} {say('tension', tension)}", part.component.opening_load
+    if limit is None:
+        return (
+            f"{bears}; neither its working load nor its opening load is known.",
+            "Give its `working_load` and its `opening_load`.",
+        )
+    if does == "bears":
+        allowed = f"what it may bear is {say('tension', limit)}"
+    elif given is None:
+        allowed = f"its opening load is not given; what it may bear is {say('tension', limit)}"
+    else:
+        allowed = f"its opening load is {say('tension', limit)}"
+    return (
+        f"{bears}; {allowed}.",
+        f"Take a release made for {say('tension', tension)}, or two side by side.",
+    )
+
+
 @rule("strength-steps")
 def strength_steps(result: Result) -> Iterator[Verdict]:
     """Every weak link: a piece that bears less than half of what the cables on both its sides do.
