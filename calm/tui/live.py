@@ -20,7 +20,7 @@ from calm.checks.finding import AS_GIVEN, Finding, State
 from calm.checks.lacking import lacking
 from calm.errors import InputError, NoEquilibrium, Problem, internal_failure
 from calm.files import MooringFile, read_mooring
-from calm.files.document import Document, document_of
+from calm.files.document import Document, compose
 from calm.files.reader import STAND_IN
 
 UNNAMED = "unnamed.yaml"
@@ -165,7 +165,7 @@ def judge_fully(view: View) -> View:
         return view
     findings, tighter = tuple(assessment.all_findings()), tuple(assessment.tighter_findings())
     seconds = view.seconds + time.perf_counter() - started
-    document = document_of(str(view.path), view.text)
+    document = compose(str(view.path), view.text)
     rows = tuple(_rows(document, mooring.file, view.result, (*findings, *tighter)))
     return replace(
         view, findings=findings, tighter=tighter, rows=rows, seconds=seconds, complete=True
@@ -174,7 +174,7 @@ def judge_fully(view: View) -> View:
 
 def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
     try:
-        document = document_of(str(view.path), view.text)
+        document = compose(str(view.path), view.text)
     except InputError as error:
         return _wrong(view, error.problems)
     view = replace(view, environments=_variants(document))
