@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import inf, sqrt
 
-from calm.physics.element import Vector, axis_along, drag_force, drag_share
+from calm.physics.element import axis_along, drag_force, drag_share
 from calm.physics.friction import BERTEAUX, HOERNER, friction_force, turning_friction
 from calm.physics.line import REFERENCE_DENSITY
 from calm.physics.profile import Sea, distance_to_level, water_at
@@ -24,52 +24,21 @@ def strain_at(cable: Cable, knots: Sequence[Knot], tension: float) -> float:
     return curve_strain(knots, cable.first_knot, cable.end_knot, tension)
 
 
-def mean_strain(
-    cable: Cable, knots: Sequence[Knot], top: float, middle: float, bottom: float
-) -> float:
-    """Strain of a segment by the tensions in it [N].
+def segment_in_water(
+    cable: Cable, cut: float, strain: float, density: float, gravity: float
+) -> tuple[float, float]:
+    """What the water does to a segment of an unstretched length [m].
 
-    By a curve it is the mean of all of them, so that the segment may be as long as others.
-    """
-    if cable.first_knot == cable.end_knot:
-        return cable.compliance * middle
-    half = 0.5 * (bottom - top)
-    return mean_curve_strain(knots, cable.first_knot, cable.end_knot, middle, half)
-
-
-def segment_lift(cable: Cable, cut: float, density: float, gravity: float) -> float:
-    """Net force in water of a segment of an unstretched length [m], + up [N]."""
-    return cut * (cable.buoyancy + (density - REFERENCE_DENSITY) * gravity * cable.volume)
-
-
-def segment_area(cable: Cable, cut: float, density: float, strain: float) -> float:
-    """Metres of cable unstretched and in reference water that are dragged as a segment is [m].
-
-    Where its volume is conserved (thinning ½) the drag grows by √(1 + strain), else not (0).
+    Returns
+    -------
+    area : metres of cable, unstretched and in reference water, that are dragged as it is: where
+        its volume is conserved (thinning ½) the drag grows by √(1 + strain), else not (0) [m]
+    lift : its net force, + up [N]
     """
     area = cut * density / REFERENCE_DENSITY
-    if strain != 0.0 and cable.thinning != 0.0:
+    if cable.thinning != 0.0 and strain != 0.0:
         area *= 1.0 + 2.0 * cable.thinning * (sqrt(1.0 + strain) - 1.0)
-    return area
-
-
-def segment_drag(
-    friction: int,
-    kn: float,
-    kt: float,
-    u: float,
-    v: float,
-    w: float,
-    tx: float,
-    ty: float,
-    tz: float,
-) -> Vector:
-    """Drag of a current on a segment of axis t [N], by the law of its friction."""
-    if friction == BERTEAUX:
-        return drag_force(kn, kt, u, v, w, tx, ty, tz)
-    qx, qy, qz = drag_force(kn, 0.0, u, v, w, tx, ty, tz)
-    px, py, pz = friction_force(friction, kt, u, v, w, tx, ty, tz)
-    return qx + px, qy + py, qz + pz
+    return area, cut * (cable.buoyancy + (density - REFERENCE_DENSITY) * gravity * cable.volume)
 
 
 def pass_segment(
@@ -91,7 +60,10 @@ def pass_segment(
         Where the passes do not settle.
     """
     x, y, z, fx, fy, fz, tz, level = state
-    kn, kt, friction = cable.normal_drag, cable.tangential_drag, cable.friction
+    kn, kt, friction, beat = cable.normal_drag, cable.tangential_drag, cable.friction, cable.beat
+    along = kt if friction == BERTEAUX else 0.0
+    compliance, first_knot, end_knot = cable.compliance, cable.first_knot, cable.end_knot
+    gravity = sea.gravity
     half = 0.5 * cut
     tension = sqrt(fx * fx + fy * fy + fz * fz)
     strain = strain_at(cable, knots, tension)
@@ -101,33 +73,33 @@ def pass_segment(
     earlier = inf
     for _ in range(_PASSES):
         u, v, w, density, level = water_at(sea, -z - half * rise, level)
-        area = segment_area(cable, cut, density, strain)
-        lift = segment_lift(cable, cut, density, sea.gravity)
+        area, lift = segment_in_water(cable, cut, strain, density, gravity)
         ax, ay, az = fx, fy, fz + 0.5 * lift
         if friction == HOERNER:
             pull = 0.5 * turning_friction(friction, kt * area, u, v, w)
             ax, ay, az = ax + pull * u, ay + pull * v, az + pull * w
         factor = 1.0
-        if cable.beat == 0.0:
+        if beat == 0.0:
             c = drag_share(ax, ay, az, 0.5 * kn * area, u, v, w)
         else:
             c, factor = vibrating_share(
-                vibration, cable.beat, ax, ay, az, 0.5 * kn * area, u, v, w, tx, ty, tz
+                vibration, beat, ax, ay, az, 0.5 * kn * area, u, v, w, tx, ty, tz
             )
         tx, ty, tz = axis_along(ax, ay, az, c, u, v, w)
-        qx, qy, qz = segment_drag(friction, factor * kn * area, kt * area, u, v, w, tx, ty, tz)
+        qx, qy, qz = drag_force(factor * kn * area, along * area, u, v, w, tx, ty, tz)
+        if friction != BERTEAUX:
+            px, py, pz = friction_force(friction, kt * area, u, v, w, tx, ty, tz)
+            qx, qy, qz = qx + px, qy + py, qz + pz
         qz += lift
         hx, hy, hz = fx + 0.5 * qx, fy + 0.5 * qy, fz + 0.5 * qz
         if hx * tx + hy * ty + hz * tz > 0.0:
             tx, ty, tz = -tx, -ty, -tz
-        bx, by, bz = fx + qx, fy + qy, fz + qz
-        strain = mean_strain(
-            cable,
-            knots,
-            tension,
-            sqrt(hx * hx + hy * hy + hz * hz),
-            sqrt(bx * bx + by * by + bz * bz),
-        )
+        middle = sqrt(hx * hx + hy * hy + hz * hz)
+        strain = compliance * middle
+        if end_knot > first_knot:  # of all tensions in it, so that it may be as long as others
+            bx, by, bz = fx + qx, fy + qy, fz + qz
+            half = 0.5 * (sqrt(bx * bx + by * by + bz * bz) - tension)
+            strain = mean_curve_strain(knots, first_knot, end_knot, middle, half)
         change = abs(tz * (1.0 + strain) - rise)
         rise = tz * (1.0 + strain)
         if change < 1e-12 or change * change < 1e-12 * earlier < inf:
@@ -137,7 +109,7 @@ def pass_segment(
         raise MarchError("a segment finds no balance")
     long = cut * (1.0 + strain)
     return (
-        State(x + long * tx, y + long * ty, z + long * tz, fx + qx, fy + qy, fz + qz, tz, level),
+        (x + long * tx, y + long * ty, z + long * tz, fx + qx, fy + qy, fz + qz, tz, level),
         strain,
     )
 
@@ -183,17 +155,18 @@ def touchdown(
 ) -> float:
     """How much of a segment hangs before its end has nothing left to carry [m]; at most `cut`."""
     low, high, hanging = 0.0, cut, cut
+    _, _, _, _, _, carried, _, _ = state
     for _ in range(_PASSES):
-        probe, _ = pass_segment(cable, knots, vibration, sea, state, hanging)
-        if hanging == cut and probe.fz > 0.0:
+        (_, _, _, _, _, fz, _, _), _ = pass_segment(cable, knots, vibration, sea, state, hanging)
+        if hanging == cut and fz > 0.0:
             return cut
-        if abs(probe.fz) <= 1e-12 * state.fz:
+        if abs(fz) <= 1e-12 * carried:
             break
-        if probe.fz > 0.0:
+        if fz > 0.0:
             low = hanging
         else:
             high = hanging
-        following = hanging * state.fz / (state.fz - probe.fz)
+        following = hanging * carried / (carried - fz)
         hanging = following if low < following < high else 0.5 * (low + high)
     return hanging
 
@@ -249,7 +222,7 @@ def rate_of_turn(
     the tension, where there is any, may not fall by more than half in it either.
     """
     u, v, w, density, _ = water_at(sea, depth, level)
-    lift = segment_lift(cable, 1.0, density, sea.gravity)
+    _, lift = segment_in_water(cable, 1.0, 0.0, density, sea.gravity)
     qx, qy, qz = drag_force(kn * density / REFERENCE_DENSITY, 0.0, u, v, w, tx, ty, tz)
     along = lift * tz
     qx, qy, qz = qx - along * tx, qy - along * ty, qz + lift - along * tz

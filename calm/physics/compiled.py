@@ -70,7 +70,7 @@ def _clone(law: Law) -> Law:
     return clone
 
 
-def packed(value: Any) -> Any:
+def pack(value: Any) -> Any:
     """A named tuple as compiled laws take it: its sequences as arrays."""
     named: Any = type(value)
     kinds = _fields(named)
@@ -81,7 +81,7 @@ def _packed(part: Any, kind: Any) -> Any:
     if kind in (int, float):
         return kind(part)
     if not get_args(kind):
-        return packed(part)
+        return pack(part)
     (item,) = get_args(kind)
     return np.array(list(part), item if item is float else record_type(item))
 
@@ -117,6 +117,12 @@ def cache_folder() -> Path | None:
             return folder
     except OSError:
         return None
+
+
+def is_kept() -> bool:
+    """Whether compiled laws are there already, from an earlier process."""
+    folder = cache_folder()
+    return folder is not None and next(folder.rglob("*.nbi"), None) is not None
 
 
 def _user_cache() -> Path:
