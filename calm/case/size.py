@@ -93,7 +93,7 @@ class Sizing:
             "calm": __version__,
             "name": self.change.file.name,
             "status": self.status,
-            "target": asdict(self.target) | {"unit": self.target.unit},
+            "target": self.target.to_dict(),
             "change": {
                 "text": self.change.text,
                 "labels": list(self.change.labels),
@@ -214,7 +214,7 @@ def _understood(
     except UsageError as error:
         mistakes.append(str(error))
     if wanted is not None and adjustment is not None and adjustment.whole:
-        if wanted.label in adjustment.labels:
+        if any(wanted.place == part.place for part in adjustment.parts):
             mistakes.append(
                 f"{wanted.label} is one of those that {adjustment.text} adds or takes away; "
                 "set the target for another part"

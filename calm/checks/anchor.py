@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 )
 def anchor_weight(result: Result) -> Iterator[Verdict]:
     """Weight in water ≥ factor (V + H / friction): Dewey's rule for deadweights, factor 1.5."""
-    load, label = result.anchor, result.file.pieces[-1].label
+    load = result.anchor
     yield at_least(
-        label,
+        result.file.pieces[-1],
         load.weight,
         load.required_weight,
         f"The anchor weighs {say('tension', load.weight)} in water; "
@@ -48,7 +48,7 @@ def anchor_uplift(result: Result) -> Iterator[Verdict]:
     load, factor = result.anchor, result.file.checks.anchor_factor
     limit = load.weight / factor
     yield at_most(
-        result.file.pieces[-1].label,
+        result.file.pieces[-1],
         load.vertical,
         limit,
         f"The line pulls up with {say('tension', load.vertical)}; the anchor's weight in water "
@@ -70,7 +70,7 @@ def anchor_sliding(result: Result) -> Iterator[Verdict]:
     friction = load.friction
     limit = friction * (load.weight / factor - load.vertical)
     yield at_most(
-        result.file.pieces[-1].label,
+        result.file.pieces[-1],
         load.horizontal,
         limit,
         f"The line pulls sideways with {say('tension', load.horizontal)}; friction of "

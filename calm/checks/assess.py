@@ -16,6 +16,7 @@ from calm.checks.recovery import Recovery, recovery_of
 from calm.checks.rules import ONCE, STANDING, equilibrium
 from calm.checks.situations import STRUMMING, situations_of
 from calm.errors import NoEquilibrium
+from calm.files import Place
 
 OWN = "own"
 """Name of the environment that a mooring file gives itself."""
@@ -97,15 +98,15 @@ def findings_of(
         for verdict in equilibrium.judge(situation.failure):
             yield equilibrium.find(verdict, mooring, environment, situation.name)
     if situation.result is not None:
-        end = situation.result.file.pieces[-1].label
+        end = situation.result.file.pieces[-1].place
         for rule in (each for each in STANDING if anchored or not each.of_anchor):
             for verdict in rule.judge(situation.result):
-                if anchored or verdict.component != end:
+                if anchored or verdict.place != end:
                     yield rule.find(verdict, mooring, environment, situation.name)
 
 
-def _of(finding: Finding) -> tuple[str, str | None]:
-    return finding.rule, finding.component
+def _of(finding: Finding) -> tuple[str, Place | None]:
+    return finding.rule, finding.place
 
 
 def _softened(finding: Finding) -> Finding:

@@ -39,7 +39,7 @@ def slack(result: Result) -> Iterator[Verdict]:
         rope = is_synthetic(piece.component)
         limit = limits.rope if rope else limits.wire
         yield at_least(
-            row.label,
+            row,
             row.least_tension,
             limit,
             f"{row.label} bears no more than {say('tension', row.least_tension)} at its slackest; "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Protocol
 
 from pydantic import AfterValidator, Field
 
@@ -81,6 +81,49 @@ class Checks(Model):
     maximum_tilt: Annotated[float | None, Quantity("angle", above=0, at_most=180)] = None
 
 
+@dataclass(frozen=True, order=True)
+class Place:
+    """Where a piece or a clamp stands in the line as read, by which it is known from there on.
+
+    A row of the file is the place of what it gives: `Place(3)` its fourth item, whatever the count
+    of that, `Place(3, clamp=0)` the first clamp of it.
+
+    Attributes
+    ----------
+    item : of the `line:` of the file, from 0
+    repeat : which of the `count` of the item, from 0
+    part : which piece of an assembly, from 0; -1 where the item is a component
+    clamp : which clamp of the piece, from 0; -1 where the piece itself is meant
+    """
+
+    item: int
+    repeat: int = 0
+    part: int = -1
+    clamp: int = -1
+
+    @property
+    def is_clamp(self) -> bool:
+        """Whether it is that of a clamp."""
+        return self.clamp >= 0
+
+    @property
+    def row(self) -> Place:
+        """The row of the file that gives it: of what stands in an assembly, its item."""
+        return Place(self.item) if self.part >= 0 else Place(self.item, clamp=self.clamp)
+
+
+class Part(Protocol):
+    """A piece or a clamp, or what was found for one."""
+
+    @property
+    def place(self) -> Place:
+        """Which it is."""
+
+    @property
+    def label(self) -> str:
+        """What people call it."""
+
+
 @dataclass(frozen=True)
 class Clamp:
     """An instrument fixed to a piece, `at` metres (unstretched) from the piece's top."""
@@ -89,6 +132,7 @@ class Clamp:
     label: str
     component: Component
     at: float
+    place: Place
 
 
 @dataclass(frozen=True)
@@ -110,6 +154,7 @@ class Piece:
     clamps : tuple of Clamp
     line, column : int
         The item in the mooring file, counted from 1.
+    place : Place
     fit_body_depth : float or None
         Depth wanted for the lower end of the piece at the tow's speed [m], where it is cut to fit.
     """
@@ -123,6 +168,7 @@ class Piece:
     clamps: tuple[Clamp, ...]
     line: int
     column: int
+    place: Place
     fit_body_depth: float | None = None
 
 

@@ -17,7 +17,7 @@ from calm.files.explain import validate
 from calm.files.fields import Model, Text
 from calm.files.labels import numbered
 from calm.files.line import LineReader
-from calm.files.mooring import Checks, MooringFile, Piece, Position, Solver, TowKeys
+from calm.files.mooring import Checks, MooringFile, Piece, Place, Position, Solver, TowKeys
 from calm.files.section import Section
 from calm.files.variants import choose_environment
 from calm.units import QuantityError
@@ -94,7 +94,7 @@ def read_mooring(
     reader.check(definitions.data if definitions is not None else ())
     pieces = reader.read(top, "line") if isinstance(top.data.get("line"), list) else ()
     if stand_in and not towed and pieces and not _anchored(pieces):
-        pieces = (*pieces, _stand_in())
+        pieces = (*pieces, _stand_in(len(top.data["line"])))
     (_check_tow if towed else _check_anchor)(pieces, top, problems)
     _check_one_fit(pieces, top, problems)
     surroundings = None
@@ -120,10 +120,10 @@ def read_mooring(
     )
 
 
-def _stand_in() -> Piece:
-    """An anchor without height that holds anything."""
+def _stand_in(item: int) -> Piece:
+    """An anchor without height that holds anything, as an item below the last."""
     component = Anchor.model_validate({"kind": "anchor", "weight": "1e6 kN"})
-    return Piece(0, STAND_IN, "anchor", component, 0.0, None, (), 0, 0)
+    return Piece(0, STAND_IN, "anchor", component, 0.0, None, (), 0, 0, Place(item))
 
 
 def _child(section: Section, key: str) -> Section | None:
@@ -153,8 +153,7 @@ def _check_anchor(pieces: Sequence[Piece], top: Section, problems: list[Problem]
         if isinstance(piece.component, Anchor):
             message = f"anchor `{piece.use}` is not the last item; a line has one, at its end"
             problems.append(_at(piece, top, message))
-    last_item = top.problem(("line", len(top.data["line"]) - 1), "")
-    last_is_known = (last_item.line, last_item.column) == (pieces[-1].line, pieces[-1].column)
+    last_is_known = pieces[-1].place.item == len(top.data["line"]) - 1
     if last_is_known and not _anchored(pieces):
         message = "the line has no anchor; its last item must be one (`kind: anchor`)"
         problems.append(top.problem(("line",), message, key=True, lacks="no anchor"))

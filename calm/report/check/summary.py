@@ -56,7 +56,7 @@ def worst_by_rule(assessment: Assessment) -> tuple[Worst, ...]:
 
 def worst_by_part(findings: Iterable[Finding]) -> list[Finding]:
     """The worst finding of each rule on each component, the gravest first."""
-    groups = _groups(findings, lambda each: (each.rule, each.component))
+    groups = _groups(findings, lambda each: (each.rule, each.place))
     return sorted((min(group, key=_rank) for group in groups), key=_rank)
 
 
