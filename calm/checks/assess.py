@@ -14,9 +14,10 @@ from calm.checks.inventory import inventory_of
 from calm.checks.launch import Launch, launch_of
 from calm.checks.recovery import Recovery, recovery_of
 from calm.checks.rules import ONCE, STANDING, equilibrium
-from calm.checks.situations import STRUMMING, situations_of
+from calm.checks.situations import SOLVES, STRUMMING, situations_of
 from calm.errors import NoEquilibrium
 from calm.files import Place
+from calm.solve import expect_many
 
 OWN = "own"
 """Name of the environment that a mooring file gives itself."""
@@ -30,6 +31,7 @@ def check(mooring: Mooring, /, *others: Mooring) -> Assessment:
     mooring, others : the same one, loaded in each of the environments it is judged in
     """
     name, moorings = mooring.file.name, (mooring, *others)
+    expect_many(SOLVES * len(moorings))
     return assessment_of(name, [stand_of(mooring, name) for mooring in moorings])
 
 

@@ -98,7 +98,11 @@ def _check_report(folder: Path, json: Path | None, given: Sequence[Path]) -> Non
 
 
 def _assessed(designs: Sequence[Design], workers: int | None) -> list[Assessment]:
+    from calm.checks.situations import SOLVES
+    from calm.solve import expect_many
+
     tasks = [(design.name, mooring) for design in designs for mooring in design.moorings]
+    expect_many(SOLVES * len(tasks))
     stands = iter(mapped(_stand, tasks, workers, "moorings solved"))
     together = [(each.name, tuple(next(stands) for _ in each.moorings)) for each in designs]
     return mapped(_assess, together, workers, "moorings judged")

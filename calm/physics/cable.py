@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import inf, sqrt
 
-from calm.physics.element import axis_along, drag_force, drag_share
+from calm.physics.element import Vector, axis_along, drag_force, drag_share
 from calm.physics.friction import BERTEAUX, HOERNER, friction_force, turning_friction
 from calm.physics.line import REFERENCE_DENSITY
 from calm.physics.profile import Sea, distance_to_level, water_at
@@ -14,7 +14,7 @@ from calm.physics.stretch import Knot, curve_strain, mean_curve_strain
 from calm.physics.strumming import Vibration, amplified_share, strummed
 from calm.physics.track import Cable
 
-_PASSES = 200
+PASSES = 200
 
 
 def strain_at(cable: Cable, knots: Sequence[Knot], tension: float) -> float:
@@ -24,21 +24,39 @@ def strain_at(cable: Cable, knots: Sequence[Knot], tension: float) -> float:
     return curve_strain(knots, cable.first_knot, cable.end_knot, tension)
 
 
-def segment_in_water(
-    cable: Cable, cut: float, strain: float, density: float, gravity: float
-) -> tuple[float, float]:
-    """What the water does to a segment of an unstretched length [m].
+def segment_lift(cable: Cable, cut: float, density: float, gravity: float) -> float:
+    """Net force in water of a segment of an unstretched length [m], + up [N]."""
+    return cut * (cable.buoyancy + (density - REFERENCE_DENSITY) * gravity * cable.volume)
 
-    Returns
-    -------
-    area : metres of cable, unstretched and in reference water, that are dragged as it is: where
-        its volume is conserved (thinning ½) the drag grows by √(1 + strain), else not (0) [m]
-    lift : its net force, + up [N]
+
+def segment_area(cable: Cable, cut: float, density: float, strain: float) -> float:
+    """Metres of cable unstretched and in reference water that are dragged as a segment is [m].
+
+    Where its volume is conserved (thinning ½) the drag grows by √(1 + strain), else not (0).
     """
     area = cut * density / REFERENCE_DENSITY
-    if cable.thinning != 0.0 and strain != 0.0:
+    if strain != 0.0 and cable.thinning != 0.0:
         area *= 1.0 + 2.0 * cable.thinning * (sqrt(1.0 + strain) - 1.0)
-    return area, cut * (cable.buoyancy + (density - REFERENCE_DENSITY) * gravity * cable.volume)
+    return area
+
+
+def segment_drag(
+    friction: int,
+    kn: float,
+    kt: float,
+    u: float,
+    v: float,
+    w: float,
+    tx: float,
+    ty: float,
+    tz: float,
+) -> Vector:
+    """Drag of a current on a segment of axis t [N], by the law of its friction."""
+    if friction == BERTEAUX:
+        return drag_force(kn, kt, u, v, w, tx, ty, tz)
+    qx, qy, qz = drag_force(kn, 0.0, u, v, w, tx, ty, tz)
+    px, py, pz = friction_force(friction, kt, u, v, w, tx, ty, tz)
+    return qx + px, qy + py, qz + pz
 
 
 def pass_segment(
@@ -48,20 +66,24 @@ def pass_segment(
     sea: Sea,
     state: State,
     cut: float,
+    passes: int = PASSES,
 ) -> tuple[State, float]:
     """The state below one segment of an unstretched length [m], and its strain.
 
     The segment's axis, its drag at mid-height and its stretch depend on each other: passes repeat
     until its rise per unstretched metre settles. They contract by about change/earlier each.
 
+    Parameters
+    ----------
+    passes : at most; where there are fewer than `PASSES` it need not settle in them
+
     Raises
     ------
     MarchError
-        Where the passes do not settle.
+        Where it does not settle.
     """
     x, y, z, fx, fy, fz, tz, level = state
     kn, kt, friction, beat = cable.normal_drag, cable.tangential_drag, cable.friction, cable.beat
-    along = kt if friction == BERTEAUX else 0.0
     compliance, first_knot, end_knot = cable.compliance, cable.first_knot, cable.end_knot
     gravity = sea.gravity
     half = 0.5 * cut
@@ -71,9 +93,10 @@ def pass_segment(
     tx, ty, tz = -fx, -fy, -fz
     qx = qy = qz = 0.0
     earlier = inf
-    for _ in range(_PASSES):
+    for _ in range(passes):
         u, v, w, density, level = water_at(sea, -z - half * rise, level)
-        area, lift = segment_in_water(cable, cut, strain, density, gravity)
+        area = segment_area(cable, cut, density, strain)
+        lift = segment_lift(cable, cut, density, gravity)
         ax, ay, az = fx, fy, fz + 0.5 * lift
         if friction == HOERNER:
             pull = 0.5 * turning_friction(friction, kt * area, u, v, w)
@@ -86,10 +109,7 @@ def pass_segment(
                 vibration, beat, ax, ay, az, 0.5 * kn * area, u, v, w, tx, ty, tz
             )
         tx, ty, tz = axis_along(ax, ay, az, c, u, v, w)
-        qx, qy, qz = drag_force(factor * kn * area, along * area, u, v, w, tx, ty, tz)
-        if friction != BERTEAUX:
-            px, py, pz = friction_force(friction, kt * area, u, v, w, tx, ty, tz)
-            qx, qy, qz = qx + px, qy + py, qz + pz
+        qx, qy, qz = segment_drag(friction, factor * kn * area, kt * area, u, v, w, tx, ty, tz)
         qz += lift
         hx, hy, hz = fx + 0.5 * qx, fy + 0.5 * qy, fz + 0.5 * qz
         if hx * tx + hy * ty + hz * tz > 0.0:
@@ -106,7 +126,8 @@ def pass_segment(
             break
         earlier = change
     else:
-        raise MarchError("a segment finds no balance")
+        if passes == PASSES:
+            raise MarchError("a segment finds no balance")
     long = cut * (1.0 + strain)
     return (
         (x + long * tx, y + long * ty, z + long * tz, fx + qx, fy + qy, fz + qz, tz, level),
@@ -156,7 +177,7 @@ def touchdown(
     """How much of a segment hangs before its end has nothing left to carry [m]; at most `cut`."""
     low, high, hanging = 0.0, cut, cut
     _, _, _, _, _, carried, _, _ = state
-    for _ in range(_PASSES):
+    for _ in range(PASSES):
         (_, _, _, _, _, fz, _, _), _ = pass_segment(cable, knots, vibration, sea, state, hanging)
         if hanging == cut and fz > 0.0:
             return cut
@@ -222,7 +243,7 @@ def rate_of_turn(
     the tension, where there is any, may not fall by more than half in it either.
     """
     u, v, w, density, _ = water_at(sea, depth, level)
-    _, lift = segment_in_water(cable, 1.0, 0.0, density, sea.gravity)
+    lift = segment_lift(cable, 1.0, density, sea.gravity)
     qx, qy, qz = drag_force(kn * density / REFERENCE_DENSITY, 0.0, u, v, w, tx, ty, tz)
     along = lift * tz
     qx, qy, qz = qx - along * tx, qy - along * ty, qz + lift - along * tz

@@ -70,7 +70,7 @@ def _clone(law: Law) -> Law:
     return clone
 
 
-def pack(value: Any) -> Any:
+def packed(value: Any) -> Any:
     """A named tuple as compiled laws take it: its sequences as arrays."""
     named: Any = type(value)
     kinds = _fields(named)
@@ -81,7 +81,7 @@ def _packed(part: Any, kind: Any) -> Any:
     if kind in (int, float):
         return kind(part)
     if not get_args(kind):
-        return pack(part)
+        return packed(part)
     (item,) = get_args(kind)
     return np.array(list(part), item if item is float else record_type(item))
 

@@ -172,6 +172,6 @@ def _marched(
     if end.segments > len(lengths):
         return None
     if cuts is None:
-        cuts = Cuts(np.array(lengths[: end.segments]), np.array(counts))
+        cuts = Cuts(np.array(lengths[: end.segments]), np.array(counts, np.int64))
     force = (end.fx, end.fy, end.fz)
     return End(end.z, force, cuts, end.stage, end.hanging, record, end.nodes)

@@ -7,7 +7,7 @@ from functools import cached_property
 from math import inf, isfinite
 from typing import NamedTuple
 
-from calm.physics.compiled import pack
+from calm.physics.compiled import packed
 from calm.physics.line import Floats, Water
 from calm.physics.state import MarchError
 
@@ -142,8 +142,8 @@ class Profile:
     @cached_property
     def packed(self) -> Sea:
         """The same as compiled laws take it."""
-        packed: Sea = pack(self.sea)
-        return packed
+        sea: Sea = packed(self.sea)
+        return sea
 
 
 def _values_and_slopes(depths: list[float], column: Floats) -> tuple[list[float], list[float]]:

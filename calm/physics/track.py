@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-from calm.physics.compiled import pack
+from calm.physics.compiled import packed
 from calm.physics.line import Line
 from calm.physics.stretch import Knot
 from calm.physics.strumming import AT_REST, Vibration
@@ -156,8 +156,8 @@ class Track:
     @cached_property
     def packed(self) -> Course:
         """The same as compiled laws take it."""
-        packed: Course = pack(self.course)
-        return packed
+        course: Course = packed(self.course)
+        return course
 
     @property
     def landing(self) -> int:
