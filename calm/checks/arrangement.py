@@ -97,7 +97,7 @@ def _held_by(way: Sequence[Piece]) -> tuple[Piece, bool] | None:
             return None
         if piece.component.role == "float" and piece.component.net_buoyancy > 0.0:
             return piece, has_swivel
-        words = _words(piece.use, piece.label, piece.component.name)
+        words = _words(piece.use, piece.component.name)
         has_swivel = has_swivel or "swivel" in words
     return None
 

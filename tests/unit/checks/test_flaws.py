@@ -456,7 +456,7 @@ FLAWS = (
     Flaw(
         "a wire that winds up its float",
         FIT,
-        (("  - {use: swivel-miller-c212, label: swivel}\n", ""),),
+        (("{use: swivel-miller-c212, label: swivel}", "{use: shackle-16, label: swivel}"),),
         "swivel",
         "wire",
         "warn",
