@@ -24,7 +24,7 @@ from calm.case import Mooring
 from calm.case.measure import clamps_down, clamps_of, components_of
 from calm.errors import NoEquilibrium
 from calm.physics.line import Floats, Water
-from calm.solve import Status
+from calm.solve import Status, expect_many
 
 BLOCK = 1024
 """Profiles that a worker takes at a time."""
@@ -188,6 +188,7 @@ class Batch:
         lifts = (ended == SOLVED) & (rows[2][:, 1] > self.mooring.anchor_weight)
         status[lifts] = _ANCHOR_LIFTS
         alone[:] = (ended != SOLVED) & (status == 0)
+        expect_many(int(np.count_nonzero(alone)))
         for case in np.flatnonzero(alone):
             profile = [
                 np.asarray(array[0 if len(array) == 1 else case], np.float64) for array in current

@@ -16,9 +16,10 @@ from calm.checks.inventory import inventory_of
 from calm.checks.launch import Launch, launch_of
 from calm.checks.recovery import Recovery, recovery_of
 from calm.checks.rules import ONCE, STANDING, equilibrium
-from calm.checks.situations import STRUMMING, situations_of
+from calm.checks.situations import SOLVES, STRUMMING, situations_of
 from calm.errors import NoEquilibrium
 from calm.files import MooringFile, Place
+from calm.solve import expect_many
 
 OWN = "own"
 """Name of the environment that a mooring file gives itself."""
@@ -33,6 +34,7 @@ def check(mooring: Mooring, /, *others: Mooring, day: date | None = None) -> Ass
     day : on which accepts count or have ended; today unless given
     """
     name, moorings = mooring.file.name, (mooring, *others)
+    expect_many(SOLVES * len(moorings))
     return assessment_of(name, [stand_of(mooring, name, day) for mooring in moorings], day)
 
 

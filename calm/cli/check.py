@@ -101,10 +101,13 @@ def _check_report(folder: Path, json: Path | None, given: Sequence[Path]) -> Non
 
 def _assessed(designs: Sequence[Design], workers: int | None) -> list[Assessment]:
     """All of them on one day: that of the report, today where it has none."""
+    from calm.checks.situations import SOLVES
     from calm.report.provenance import moment
+    from calm.solve import expect_many
 
     day = (moment() or datetime.now()).date()
     tasks = [(design.name, mooring, day) for design in designs for mooring in design.moorings]
+    expect_many(SOLVES * len(tasks))
     stands = iter(mapped(_stand, tasks, workers, "moorings solved"))
     together = [(each.name, tuple(next(stands) for _ in each.moorings), day) for each in designs]
     return mapped(_assess, together, workers, "moorings judged")
