@@ -35,13 +35,13 @@ def verify(words: list[str] | None = None, /, *, json: OutputPath = None) -> Exi
     json
         Write the figures, with the reason for each tolerance, as JSON, - to print it.
     """
-    from calm.report.verification import verification_document, verification_table
+    from calm.report.verification import verification_document, verification_part
 
     outputs = Outputs(json=json)
     outputs.check()
     findings = _checked(_chosen(words or []))
     document = verification_document(findings)
-    outputs.write_answer(document, verification_table(findings))
+    outputs.write_answer(document, verification_part(findings))
     return ExitCode.FINDING if document["out"] else ExitCode.DONE
 
 

@@ -6,12 +6,9 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel
-from rich.console import Group, RenderableType
-from rich.padding import Padding
-from rich.text import Text
 
 from calm.quantities import QUANTITIES
-from calm.report.terminal import plain_table
+from calm.report.blocks import Cell, Column, Heading, Pairs, Part, Table
 
 if TYPE_CHECKING:
     from calm.files import Catalogue, Component
@@ -25,32 +22,30 @@ _LAST = ("note", "source", "date")
 _HEADING_OF_OTHERS = "other"
 
 
-def to_list(catalogue: Catalogue, definitions: Mapping[str, Definition]) -> RenderableType:
+def to_list(catalogue: Catalogue, definitions: Mapping[str, Definition]) -> Part:
     """One line for each definition, under the name of its family."""
-    table = plain_table(gap=1)
-    table.add_column("id", overflow="fold")
-    table.add_column("name", overflow="fold")
-    table.add_column("net force\nin water", justify="right", no_wrap=True)
-    table.add_column("breaking\nload", justify="right", no_wrap=True)
+    columns = (
+        Column("id"),
+        Column("name"),
+        Column("net force\nin water", numeric=True),
+        Column("breaking\nload", numeric=True),
+    )
+    rows: list[tuple[Cell, ...]] = []
     last = None
     for identifier, definition in definitions.items():
         family = _family(catalogue, identifier) or _HEADING_OF_OTHERS
         if family != last:
-            table.add_row(*[Text()] * (last is not None))
-            table.add_row(Text(family.upper(), style="bold"))
+            rows += [(Cell(),), (Cell(family.upper()),)]
             last = family
         net = _say(definition, "net_buoyancy") if definition.kind != "assembly" else ""
         breaking = "" if definition.breaking_load is None else _say(definition, "breaking_load")
-        table.add_row(Text(identifier), Text(definition.name or ""), net, breaking)
-    return table
+        rows.append(tuple(map(Cell, (identifier, definition.name or "", net, breaking))))
+    return Part("", (Table("", columns, tuple(rows), dense=True),))
 
 
-def to_card(identifier: str, definition: Definition) -> RenderableType:
+def to_card(identifier: str, definition: Definition) -> Part:
     """Every figure that a definition gives, in the units people read, and where it comes from."""
-    rows = plain_table(header=False)
-    for heading, text in _figures(definition):
-        rows.add_row(Text(heading), Text(text))
-    return Group(Text(identifier, style="bold"), Padding(rows, (0, 0, 0, 2)))
+    return Part("", (Heading(identifier), Pairs(tuple(_figures(definition)))))
 
 
 def to_documents(

@@ -141,9 +141,10 @@ class CataloguePane(Vertical):
             card.update("Nothing has all these words.")
             return
         from calm.report.catalogue import to_card
+        from calm.report.terminal import shown
 
         try:
-            card.update(to_card(chosen.id, self.index.catalogue.get(chosen.id)))
+            card.update(shown(to_card(chosen.id, self.index.catalogue.get(chosen.id))))
         except CalmError as error:
             card.update(str(error))
         self.query_one("#catalogue-card", VerticalScroll).scroll_home(animate=False)
