@@ -17,10 +17,13 @@ from calm.case.parts import TOP, one_part
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Place
 from calm.physics.line import Floats, Integers, Line, Water
-from calm.solve import solve_mooring
+from calm.solve import expect_many, solve_mooring
 
 if TYPE_CHECKING:
     from calm.case.result import Result
+
+SOLVES = 100.0
+"""Equilibria that are sought for an explanation, or as much work."""
 
 CHANGE = 0.1
 """By how much the buoyancy, the drag and the current are changed."""
@@ -147,6 +150,7 @@ def explain(result: Result, label: str | None = None) -> Explanation:
         part = one_part(mooring.file.pieces[:-1], label or TOP)
     except LookupError as error:
         raise UsageError(str(error.args[0])) from None
+    expect_many(SOLVES)
     figures = figures_of(result, part.place)
     quantities: tuple[str, ...] = ("knockdown", "excursion")
     if figures.knockdown is None or result.type == "surface":

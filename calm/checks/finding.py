@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, fields
 from enum import StrEnum
 from math import inf
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from calm.files import Part, Place
+from calm.files import Accept, Part, Place
+from calm.files.rules import RULES as RULE_TEXTS
 
 AS_GIVEN = "as given"
 """The situation of a mooring in its environment, with nothing changed."""
@@ -173,12 +173,13 @@ class Rule:
 
 
 def rule(
-    name: str, title: str, quantity: str, source: str, *, of_anchor: bool = False
+    name: str, *, of_anchor: bool = False
 ) -> Callable[[Callable[[Any], Iterator[Verdict]]], Rule]:
-    """Make a function that judges into the `Rule` of that name."""
+    """Make a function that judges into the `Rule` of that name in `calm.files.rules`."""
+    text = RULE_TEXTS[name]
 
     def of(judge: Callable[[Any], Iterator[Verdict]]) -> Rule:
-        return Rule(name, title, quantity, source, judge, of_anchor)
+        return Rule(name, text.title, text.quantity, text.source, judge, of_anchor)
 
     return of
 
@@ -188,7 +189,7 @@ class Finding(Verdict):
     """A verdict, and which rule gave it of which mooring in which environment and situation.
 
     `source` is that of the rule and its limit; `situation` tells what was changed for it,
-    `AS_GIVEN` where nothing was.
+    `AS_GIVEN` where nothing was; `accept` is what the design accepts it by, and None otherwise.
     """
 
     mooring: str
@@ -196,10 +197,13 @@ class Finding(Verdict):
     rule: str
     source: str
     situation: str = AS_GIVEN
+    accept: Accept | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """The finding in JSON."""
         first = ("mooring", "environment", "situation", "rule", "component")
-        values = asdict(self)
+        values = {each.name: getattr(self, each.name) for each in fields(self)}
+        accept = values.pop("accept")
         del values["place"]
-        return {name: values.pop(name) for name in first} | values
+        said = {"reason": None if accept is None else accept.reason}
+        return {name: values.pop(name) for name in first} | values | said

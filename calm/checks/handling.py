@@ -37,12 +37,7 @@ class Handling:
     backup: tuple[Break, ...]
 
 
-@rule(
-    "backup",
-    "Back-up buoyancy",
-    "tension",
-    "URI GSO mooring program: if any one link breaks, everything above the release still floats",
-)
+@rule("backup")
 def backup(handling: Handling) -> Iterator[Verdict]:
     """Net buoyancy of what holds the release after the worst break above the back-up floats.
 
@@ -70,13 +65,7 @@ def backup(handling: Handling) -> Iterator[Verdict]:
     )
 
 
-@rule(
-    "launch-strength",
-    "Strength in the launch",
-    "tension",
-    "Anchor-last launch at terminal speed (URI GSO program); the working load, and breaking load "
-    "over 2",
-)
+@rule("launch-strength")
 def launch_strength(handling: Handling) -> Iterator[Verdict]:
     """Tension of every piece as the line falls behind its anchor.
 
@@ -114,12 +103,7 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
         yield at_most(piece, tension, limit, message, remedy)
 
 
-@rule(
-    "launch-speed",
-    "Speed at touchdown",
-    "speed",
-    "A default of this program: faster, an anchor may bury itself or break what stands on it",
-)
+@rule("launch-speed")
 def launch_speed(handling: Handling) -> Iterator[Verdict]:
     """Terminal speed of the anchor as it meets the seabed."""
     launch = handling.launch
@@ -145,12 +129,7 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
         yield unknown(anchor, message, "Give the anchor's `kt`.", speed)
 
 
-@rule(
-    "recovery",
-    "Rise",
-    "speed",
-    "Defaults of this program: below 0.3 m/s a rise is in doubt, below 0.7 m/s it takes long",
-)
+@rule("recovery")
 def recovery(handling: Handling) -> Iterator[Verdict]:
     """Terminal speed of the line as it rises without its anchor."""
     rise, limit = handling.recovery, handling.mooring.file.checks.minimum_rise_speed
@@ -175,7 +154,7 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
     yield verdict
 
 
-@rule("tangling", "Tangling", "", "A default of this program: no part overtakes what is ahead")
+@rule("tangling")
 def tangling(handling: Handling) -> Iterator[Verdict]:
     """Whether the line doubles back on itself as it falls or rises."""
     launch, rise = handling.launch, handling.recovery

@@ -41,13 +41,7 @@ def reaches_the_surface(mooring: Mooring) -> bool:
     return -float(mooring.at_rest.position[0, 2]) <= AT_SURFACE
 
 
-@rule(
-    "tilt",
-    "Tilt",
-    "tilt",
-    "The maker's limit: RCM 27° (BODC), single-point Doppler 30°, ADCP 15 to 20°, release 45°, "
-    "sediment trap 10°",
-)
+@rule("tilt")
 def tilt(result: Result) -> Iterator[Verdict]:
     """Tilt of instruments and releases against their own limits and the design's.
 
@@ -75,12 +69,7 @@ def tilt(result: Result) -> Iterator[Verdict]:
         yield verdict
 
 
-@rule(
-    "depth-rating",
-    "Depth rating",
-    "depth",
-    "The maker's rating, less a margin for a stronger current than was thought of",
-)
+@rule("depth-rating")
 def depth_rating(result: Result) -> Iterator[Verdict]:
     """Depth in the current, and a margin, against the rating of floats and instruments.
 
@@ -111,12 +100,7 @@ def depth_rating(result: Result) -> Iterator[Verdict]:
         )
 
 
-@rule(
-    "knockdown",
-    "Knockdown",
-    "knockdown",
-    "The design's own `maximum_knockdown`",
-)
+@rule("knockdown")
 def knockdown(result: Result) -> Iterator[Verdict]:
     """Knockdown of the top against the design's limit, where it gives one."""
     limit, top = result.file.checks.maximum_knockdown, result.file.pieces[0]
@@ -139,12 +123,7 @@ def knockdown(result: Result) -> Iterator[Verdict]:
     )
 
 
-@rule(
-    "excursion",
-    "Excursion",
-    "offset",
-    "The design's own `maximum_excursion`",
-)
+@rule("excursion")
 def excursion(result: Result) -> Iterator[Verdict]:
     """Horizontal offset of the top against the design's limit, where it gives one."""
     limit, offset = result.file.checks.maximum_excursion, hypot(result.top.x, result.top.y)

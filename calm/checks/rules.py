@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from calm.errors import NoEquilibrium
 
 
-@rule("equilibrium", "Equilibrium", "", "A mooring that does not stand cannot be judged")
+@rule("equilibrium")
 def equilibrium(failure: NoEquilibrium) -> Iterator[Verdict]:
     """Found only where there is none."""
     message = f"{failure.status}: {failure.message}"

@@ -45,13 +45,7 @@ def safety_factor(component: Component, factors: SafetyFactors, surface: bool) -
     return factors.synthetic if is_synthetic(component) else factors.steel
 
 
-@rule(
-    "strength",
-    "Strength",
-    "tension",
-    "The lesser of working load and breaking load over a factor: UFC 4-159-03 table 3-7 (3, chain "
-    "and wire), oceanographic practice MBL/3 to MBL/5",
-)
+@rule("strength")
 def strength(result: Result) -> Iterator[Verdict]:
     """The greatest tension in every piece against working load, and breaking load / factor.
 
@@ -86,12 +80,7 @@ def strength(result: Result) -> Iterator[Verdict]:
         yield at_most(row, row.tension, limit, f"{bears}; {allowed}.", remedy)
 
 
-@rule(
-    "strength-steps",
-    "Strength steps",
-    "tension",
-    "A default of this program: half the strength of the cables on both its sides",
-)
+@rule("strength-steps")
 def strength_steps(result: Result) -> Iterator[Verdict]:
     """Every weak link: a piece that bears less than half of what the cables on both its sides do.
 

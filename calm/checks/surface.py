@@ -14,12 +14,7 @@ if TYPE_CHECKING:
     from calm.case import Result
 
 
-@rule(
-    "reserve",
-    "Reserve of buoyancy",
-    "used_buoyancy",
-    "Dewey: a float that uses all its buoyancy goes under; the share kept is for waves",
-)
+@rule("reserve")
 def reserve(result: Result) -> Iterator[Verdict]:
     """Share of the surface float's buoyancy that is left: what it could still take on.
 
@@ -43,12 +38,7 @@ def reserve(result: Result) -> Iterator[Verdict]:
     )
 
 
-@rule(
-    "freeboard",
-    "Freeboard",
-    "freeboard",
-    "A float at the surface stands out of it",
-)
+@rule("freeboard")
 def freeboard(result: Result) -> Iterator[Verdict]:
     """A float meant for the surface stands out of the water."""
     if not meant_for_the_surface(result):
@@ -72,12 +62,7 @@ def freeboard(result: Result) -> Iterator[Verdict]:
     )
 
 
-@rule(
-    "watch-circle",
-    "Watch circle",
-    "offset",
-    "Worst case √(L² - depth²), against the design's own `maximum_excursion`",
-)
+@rule("watch-circle")
 def watch_circle(result: Result) -> Iterator[Verdict]:
     """Radius √(L² - depth²) within which a surface float can be found, with the line stretched.
 
@@ -98,12 +83,7 @@ def watch_circle(result: Result) -> Iterator[Verdict]:
     yield at_most(top, radius, limit, message, "Shorten the line.")
 
 
-@rule(
-    "scope",
-    "Scope",
-    "scope",
-    "Told, not judged",
-)
+@rule("scope")
 def scope(result: Result) -> Iterator[Verdict]:
     """Cut length over water depth of a line to the surface; it is told, and has no limit."""
     if not meant_for_the_surface(result):

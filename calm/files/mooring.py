@@ -6,24 +6,14 @@ import math
 from dataclasses import dataclass
 from typing import Annotated, Literal, Protocol
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator
 
+from calm.files.accept import Accept
+from calm.files.checks import Checks
 from calm.files.components import Anchor, Component
-from calm.files.environment import Environment
-from calm.files.fields import LENGTH, POSITIVE_LENGTH, Model, Quantity
+from calm.files.environment import Environment, Position
+from calm.files.fields import LENGTH, Model, Quantity
 from calm.files.strumming import Strumming
-
-_FACTOR = Quantity("number", above=0)
-_SHARE = Quantity("number", at_least=0, at_most=1)
-_SPEED = Quantity("speed", at_least=0)
-_LEAST_TENSION = Quantity("force", at_least=0)
-
-
-class Position(Model):
-    """Where the mooring stands [degrees]."""
-
-    latitude: Annotated[float, Quantity("angle", at_least=-90, at_most=90)]
-    longitude: Annotated[float, Quantity("angle", at_least=-360, at_most=360)]
 
 
 class TowKeys(Model):
@@ -46,39 +36,6 @@ class Solver(Model):
     strumming: Strumming = None
     buoy_drag: Literal["immersed", "full"] = "immersed"
     seabed_friction: Annotated[float, Quantity("number", at_least=0)] = 0.0
-
-
-class SafetyFactors(Model):
-    """Least breaking load over tension, where no working load is known."""
-
-    steel: Annotated[float, _FACTOR] = 3.0
-    synthetic: Annotated[float, _FACTOR] = 5.0
-    surface: Annotated[float, _FACTOR] = 5.0
-
-
-class MinimumTensions(Model):
-    """Least tension above the release [N]."""
-
-    wire: Annotated[float, _LEAST_TENSION] = 500.0
-    rope: Annotated[float, _LEAST_TENSION] = 300.0
-
-
-class Checks(Model):
-    """Limits of the design check; a limit without a default is judged only when given."""
-
-    safety_factor: SafetyFactors = Field(default_factory=SafetyFactors)
-    anchor_factor: Annotated[float, _FACTOR] = 1.5
-    anchor_friction: Annotated[float, _FACTOR] = 0.6
-    minimum_tension: MinimumTensions = Field(default_factory=MinimumTensions)
-    backup_margin: Annotated[float, _SHARE] = 0.1
-    minimum_rise_speed: Annotated[float, _SPEED] = 0.3
-    launch_safety_factor: Annotated[float, _FACTOR] = 2.0
-    launch_working_factor: Annotated[float, _FACTOR] = 1.0
-    minimum_reserve: Annotated[float, _SHARE] = 0.3
-    rating_margin: Annotated[float, LENGTH] = 100.0
-    maximum_knockdown: Annotated[float | None, POSITIVE_LENGTH] = None
-    maximum_excursion: Annotated[float | None, POSITIVE_LENGTH] = None
-    maximum_tilt: Annotated[float | None, Quantity("angle", above=0, at_most=180)] = None
 
 
 @dataclass(frozen=True, order=True)
@@ -179,7 +136,7 @@ class MooringFile:
     `pieces` lead from the top of a mooring to its anchor; in a tow, where `tow` is not None, from
     the ship to the towed body. `notices` tell what a person may want to know: a catalogue entry
     hidden by a nearer one, levels dropped from a measured current. `variants` are the names of
-    the environments it gives besides its own.
+    the environments it gives besides its own, `accepts` what it accepts of the design check.
     """
 
     path: str
@@ -193,6 +150,7 @@ class MooringFile:
     checks: Checks
     notices: tuple[str, ...]
     variants: tuple[str, ...] = ()
+    accepts: tuple[Accept, ...] = ()
 
     @property
     def release(self) -> int | None:

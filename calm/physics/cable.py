@@ -14,7 +14,7 @@ from calm.physics.stretch import Knot, curve_strain, mean_curve_strain
 from calm.physics.strumming import Vibration, amplified_share, strummed
 from calm.physics.track import Cable
 
-_PASSES = 200
+PASSES = 200
 
 
 def strain_at(cable: Cable, knots: Sequence[Knot], tension: float) -> float:
@@ -22,19 +22,6 @@ def strain_at(cable: Cable, knots: Sequence[Knot], tension: float) -> float:
     if cable.first_knot == cable.end_knot:
         return cable.compliance * tension
     return curve_strain(knots, cable.first_knot, cable.end_knot, tension)
-
-
-def mean_strain(
-    cable: Cable, knots: Sequence[Knot], top: float, middle: float, bottom: float
-) -> float:
-    """Strain of a segment by the tensions in it [N].
-
-    By a curve it is the mean of all of them, so that the segment may be as long as others.
-    """
-    if cable.first_knot == cable.end_knot:
-        return cable.compliance * middle
-    half = 0.5 * (bottom - top)
-    return mean_curve_strain(knots, cable.first_knot, cable.end_knot, middle, half)
 
 
 def segment_lift(cable: Cable, cut: float, density: float, gravity: float) -> float:
@@ -79,19 +66,26 @@ def pass_segment(
     sea: Sea,
     state: State,
     cut: float,
+    passes: int = PASSES,
 ) -> tuple[State, float]:
     """The state below one segment of an unstretched length [m], and its strain.
 
     The segment's axis, its drag at mid-height and its stretch depend on each other: passes repeat
     until its rise per unstretched metre settles. They contract by about change/earlier each.
 
+    Parameters
+    ----------
+    passes : at most; where there are fewer than `PASSES` it need not settle in them
+
     Raises
     ------
     MarchError
-        Where the passes do not settle.
+        Where it does not settle.
     """
     x, y, z, fx, fy, fz, tz, level = state
-    kn, kt, friction = cable.normal_drag, cable.tangential_drag, cable.friction
+    kn, kt, friction, beat = cable.normal_drag, cable.tangential_drag, cable.friction, cable.beat
+    compliance, first_knot, end_knot = cable.compliance, cable.first_knot, cable.end_knot
+    gravity = sea.gravity
     half = 0.5 * cut
     tension = sqrt(fx * fx + fy * fy + fz * fz)
     strain = strain_at(cable, knots, tension)
@@ -99,20 +93,20 @@ def pass_segment(
     tx, ty, tz = -fx, -fy, -fz
     qx = qy = qz = 0.0
     earlier = inf
-    for _ in range(_PASSES):
+    for _ in range(passes):
         u, v, w, density, level = water_at(sea, -z - half * rise, level)
         area = segment_area(cable, cut, density, strain)
-        lift = segment_lift(cable, cut, density, sea.gravity)
+        lift = segment_lift(cable, cut, density, gravity)
         ax, ay, az = fx, fy, fz + 0.5 * lift
         if friction == HOERNER:
             pull = 0.5 * turning_friction(friction, kt * area, u, v, w)
             ax, ay, az = ax + pull * u, ay + pull * v, az + pull * w
         factor = 1.0
-        if cable.beat == 0.0:
+        if beat == 0.0:
             c = drag_share(ax, ay, az, 0.5 * kn * area, u, v, w)
         else:
             c, factor = vibrating_share(
-                vibration, cable.beat, ax, ay, az, 0.5 * kn * area, u, v, w, tx, ty, tz
+                vibration, beat, ax, ay, az, 0.5 * kn * area, u, v, w, tx, ty, tz
             )
         tx, ty, tz = axis_along(ax, ay, az, c, u, v, w)
         qx, qy, qz = segment_drag(friction, factor * kn * area, kt * area, u, v, w, tx, ty, tz)
@@ -120,24 +114,23 @@ def pass_segment(
         hx, hy, hz = fx + 0.5 * qx, fy + 0.5 * qy, fz + 0.5 * qz
         if hx * tx + hy * ty + hz * tz > 0.0:
             tx, ty, tz = -tx, -ty, -tz
-        bx, by, bz = fx + qx, fy + qy, fz + qz
-        strain = mean_strain(
-            cable,
-            knots,
-            tension,
-            sqrt(hx * hx + hy * hy + hz * hz),
-            sqrt(bx * bx + by * by + bz * bz),
-        )
+        middle = sqrt(hx * hx + hy * hy + hz * hz)
+        strain = compliance * middle
+        if end_knot > first_knot:  # of all tensions in it, so that it may be as long as others
+            bx, by, bz = fx + qx, fy + qy, fz + qz
+            half = 0.5 * (sqrt(bx * bx + by * by + bz * bz) - tension)
+            strain = mean_curve_strain(knots, first_knot, end_knot, middle, half)
         change = abs(tz * (1.0 + strain) - rise)
         rise = tz * (1.0 + strain)
         if change < 1e-12 or change * change < 1e-12 * earlier < inf:
             break
         earlier = change
     else:
-        raise MarchError("a segment finds no balance")
+        if passes == PASSES:
+            raise MarchError("a segment finds no balance")
     long = cut * (1.0 + strain)
     return (
-        State(x + long * tx, y + long * ty, z + long * tz, fx + qx, fy + qy, fz + qz, tz, level),
+        (x + long * tx, y + long * ty, z + long * tz, fx + qx, fy + qy, fz + qz, tz, level),
         strain,
     )
 
@@ -183,17 +176,18 @@ def touchdown(
 ) -> float:
     """How much of a segment hangs before its end has nothing left to carry [m]; at most `cut`."""
     low, high, hanging = 0.0, cut, cut
-    for _ in range(_PASSES):
-        probe, _ = pass_segment(cable, knots, vibration, sea, state, hanging)
-        if hanging == cut and probe.fz > 0.0:
+    _, _, _, _, _, carried, _, _ = state
+    for _ in range(PASSES):
+        (_, _, _, _, _, fz, _, _), _ = pass_segment(cable, knots, vibration, sea, state, hanging)
+        if hanging == cut and fz > 0.0:
             return cut
-        if abs(probe.fz) <= 1e-12 * state.fz:
+        if abs(fz) <= 1e-12 * carried:
             break
-        if probe.fz > 0.0:
+        if fz > 0.0:
             low = hanging
         else:
             high = hanging
-        following = hanging * state.fz / (state.fz - probe.fz)
+        following = hanging * carried / (carried - fz)
         hanging = following if low < following < high else 0.5 * (low + high)
     return hanging
 

@@ -119,6 +119,12 @@ def cache_folder() -> Path | None:
         return None
 
 
+def is_kept() -> bool:
+    """Whether compiled laws are there already, from an earlier process."""
+    folder = cache_folder()
+    return folder is not None and next(folder.rglob("*.nbi"), None) is not None
+
+
 def _user_cache() -> Path:
     if sys.platform == "win32":
         return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from math import inf, isfinite
 from typing import NamedTuple
 
+from calm.physics.compiled import packed
 from calm.physics.line import Floats, Water
 from calm.physics.state import MarchError
 
@@ -136,6 +138,12 @@ class Profile:
                 )
             ],
         )
+
+    @cached_property
+    def packed(self) -> Sea:
+        """The same as compiled laws take it."""
+        sea: Sea = packed(self.sea)
+        return sea
 
 
 def _values_and_slopes(depths: list[float], column: Floats) -> tuple[list[float], list[float]]:

@@ -80,11 +80,26 @@ def speed_across(u: float, v: float, w: float, tx: float, ty: float, tz: float) 
     return sqrt(cx * cx + cy * cy + cz * cz)
 
 
-def pass_clamp(load: Load, sea: Sea, state: State) -> State:
-    """The state below an instrument clamped on a cable."""
-    x, y, z, fx, fy, fz, tz, level = state
+def pass_clamp(
+    load: Load,
+    sea: Sea,
+    state: State,
+    lands: bool,
+    record: Record,
+    recording: bool,
+    nodes: int,
+) -> tuple[State, float, int]:
+    """Take the state past an instrument clamped on a cable: as `pass_rod`."""
+    x, y, z, fx, fy, carried, tz, level = state
     qx, qy, qz = force_at(load, sea, -z, level, 0.0, 0.0, -1.0)
-    return State(x, y, z, fx + qx, fy + qy, fz + qz, tz, level)
+    fz, hanging = carried + qz, -1.0
+    if lands and carried > 0.0 >= fz:
+        fz, hanging = 0.0, inf
+    below: State = (x, y, z, fx + qx, fy + qy, fz, tz, level)
+    if recording:
+        write_element(record, nodes, load.piece, load.clamp, 0.0, 0.0)
+        write_node(record, nodes, below)
+    return below, hanging, nodes + 1
 
 
 def pass_rod(
@@ -110,7 +125,7 @@ def pass_rod(
     The state; 0 where the rod lies on the seabed, inf where it stands on it, -1 where it does
     neither; and how many nodes there are.
     """
-    x, y, z, fx, fy, fz, _, level = state
+    x, y, z, fx, fy, fz, before, level = state
     tx, ty, tz = rod_axis(rod, loads, sea, state)
     sx, sy, sz = fx, fy, fz
     for i in range(rod.first, rod.first + rod.size):
@@ -118,7 +133,7 @@ def pass_rod(
         sx, sy, sz = sx + qx, sy + qy, sz + qz
     landed = lands and fz > 0.0 >= sz
     if landed and tz >= 0.0:
-        return State(x, y, z, fx, fy, 0.0, state.tz, level), 0.0, nodes
+        return (x, y, z, fx, fy, 0.0, before, level), 0.0, nodes
     if recording:
         nodes = _record(rod, loads, sea, state, tx, ty, tz, record, nodes)
     length = rod.length
@@ -126,7 +141,7 @@ def pass_rod(
         sz = 0.0
         if recording:
             record[5][nodes - 1] = 0.0
-    below = State(x + length * tx, y + length * ty, z + length * tz, sx, sy, sz, tz, level)
+    below = (x + length * tx, y + length * ty, z + length * tz, sx, sy, sz, tz, level)
     return below, inf if landed else -1.0, nodes
 
 
@@ -144,7 +159,8 @@ def rod_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) -> Vecto
     MarchError
         Where the passes do not settle.
     """
-    tx, ty, tz = 0.0, 0.0, state.tz
+    _, _, _, _, _, _, rise, _ = state
+    tx, ty, tz = 0.0, 0.0, rise
     pace, earlier = 1.0, inf
     for _ in range(_PASSES):
         x, y, z = next_axis(rod, loads, sea, state, tx, ty, tz)
@@ -232,7 +248,7 @@ def floating_depth(rod: Stage, loads: Sequence[Load], sea: Sea, out: float) -> f
     depth = -out
     for _ in range(_LEANINGS):
         level = interval_at(sea.levels, depth, 0)
-        state = State(0.0, 0.0, -depth, 0.0, 0.0, 0.0, -1.0, level)
+        state = (0.0, 0.0, -depth, 0.0, 0.0, 0.0, -1.0, level)
         _, _, tz = rod_axis(rod, loads, sea, state)
         following = min(out * tz, 0.0)
         if abs(following - depth) <= 1e-14 * out:
@@ -256,14 +272,15 @@ def _record(
 
     The loads of a rod go down it: of every piece its own, then its clamps.
     """
-    x, y, z, fx, fy, fz, _, level = state
+    x, y, top, fx, fy, fz, _, level = state
+    z = top
     end, reached = 0.0, 0.0
     ox = oy = oz = 0.0
     last = rod.first + rod.size - 1
     length, piece = 0.0, 0
     for i in range(rod.first, rod.first + rod.size):
         load = loads[i]
-        qx, qy, qz = force_at(load, sea, -state.z - load.at * tz, level, tx, ty, tz)
+        qx, qy, qz = force_at(load, sea, -top - load.at * tz, level, tx, ty, tz)
         if load.clamp < 0:
             ox, oy, oz, length, piece = qx, qy, qz, load.length, load.piece
             end = reached + length
@@ -273,10 +290,10 @@ def _record(
             x, y, z = x + step * tx, y + step * ty, z + step * tz
             fx, fy, fz = fx + share * ox, fy + share * oy, fz + share * oz
             write_element(record, nodes, piece, -1, step, 0.0)
-            write_node(record, nodes, x, y, z, fx, fy, fz)
+            write_node(record, nodes, (x, y, z, fx, fy, fz, tz, level))
             fx, fy, fz = fx + qx, fy + qy, fz + qz
             write_element(record, nodes + 1, piece, load.clamp, 0.0, 0.0)
-            write_node(record, nodes + 1, x, y, z, fx, fy, fz)
+            write_node(record, nodes + 1, (x, y, z, fx, fy, fz, tz, level))
             nodes += 2
             reached = load.at
         if i == last or loads[i + 1].clamp < 0:
@@ -285,7 +302,7 @@ def _record(
             x, y, z = x + step * tx, y + step * ty, z + step * tz
             fx, fy, fz = fx + share * ox, fy + share * oy, fz + share * oz
             write_element(record, nodes, piece, -1, step, 0.0)
-            write_node(record, nodes, x, y, z, fx, fy, fz)
+            write_node(record, nodes, (x, y, z, fx, fy, fz, tz, level))
             nodes += 1
             reached = end
     return nodes

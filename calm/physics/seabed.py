@@ -9,10 +9,11 @@ from math import sqrt
 from calm.physics.cable import strain_at
 from calm.physics.line import REFERENCE_DENSITY
 from calm.physics.march import End
+from calm.physics.pace import is_fast, paced
 from calm.physics.profile import Profile, water_at
 from calm.physics.state import Record, write_element, write_node
 from calm.physics.stretch import Knot, mean_curve_strain
-from calm.physics.track import CABLE, CLAMP, Cable, Course, Track
+from calm.physics.track import CABLE, Cable, Course, Track
 
 
 def lie_down(
@@ -37,8 +38,8 @@ def lie_down(
     *_, density, _ = water_at(profile.sea, -seabed, 0)
     excess = (density - REFERENCE_DENSITY) * profile.sea.gravity
     fx, fy, _ = end.force
-    nodes, grounded = lay_line(
-        track.course,
+    nodes, grounded = paced(lay_line)(
+        track.packed if is_fast() else track.course,
         end.record,
         end.nodes,
         end.stage,
@@ -72,10 +73,10 @@ def lay_line(
     fx, fy : horizontal force above the touchdown [N]
     excess : what a displaced cubic metre lifts more there than in reference water [N/m³]
     """
-    x, y = record[0][nodes - 1], record[1][nodes - 1]
     tension = sqrt(fx * fx + fy * fy)
     east, north = (-fx / tension, -fy / tension) if tension > 0.0 else (1.0, 0.0)
-    grounded = 0.0
+    grounded, first = 0.0, nodes
+    # elements and tensions first, then the places that follow from them
     for i in range(stage, len(course.stages)):
         here = course.stages[i]
         hung = hanging if i == stage else 0.0
@@ -87,52 +88,65 @@ def lay_line(
             weight = -(cable.buoyancy + excess * cable.volume) * length
             pulled, left = held_back(tension, friction * weight)
             strain = lying_strain(cable, course.knots, pulled, tension, left)
-            x, y = x + length * (1.0 + strain) * east, y + length * (1.0 + strain) * north
             tension = left
-            grounded += length
             write_element(record, nodes, cable.piece, -1, length, strain)
-            write_node(record, nodes, x, y, seabed, -tension * east, -tension * north, 0.0)
+            record[3][nodes] = tension
             nodes += 1
-            continue
-        if hung > 0.0:
-            continue
-        # a rod's loads go down it: of every piece its own, spread along it, then its clamps
-        reached, top, own, length, piece = 0.0, 0.0, 0.0, 0.0, 0
-        last = here.first + here.size - 1
-        for j in range(here.first, here.first + here.size):
-            load = course.loads[j]
-            weight = -(load.buoyancy + excess * load.volume)
-            if load.clamp < 0:
-                reached, own, length, piece = top, weight, load.length, load.piece
-                top += length
-            else:
-                if here.kind != CLAMP:
-                    step = load.at - reached
-                    share = step / length if length > 0.0 else 0.0
-                    x, y, tension = (
-                        x + step * east,
-                        y + step * north,
-                        held_back(tension, friction * share * own)[1],
-                    )
-                    grounded += step
-                    write_element(record, nodes, piece, -1, step, 0.0)
-                    write_node(record, nodes, x, y, seabed, -tension * east, -tension * north, 0.0)
-                    nodes += 1
-                    reached = load.at
-                _, tension = held_back(tension, friction * weight)
-                write_element(record, nodes, load.piece, load.clamp, 0.0, 0.0)
-                write_node(record, nodes, x, y, seabed, -tension * east, -tension * north, 0.0)
-                nodes += 1
-            if here.kind != CLAMP and (j == last or course.loads[j + 1].clamp < 0):
-                step = top - reached
-                share = step / length if length > 0.0 else 1.0
-                _, tension = held_back(tension, friction * share * own)
-                x, y = x + step * east, y + step * north
-                grounded += step
-                write_element(record, nodes, piece, -1, step, 0.0)
-                write_node(record, nodes, x, y, seabed, -tension * east, -tension * north, 0.0)
-                nodes += 1
+        elif hung == 0.0:
+            nodes, tension = lay_rod(course, i, record, nodes, tension, excess, friction)
+    x, y = record[0][first - 1], record[1][first - 1]
+    for n in range(first, nodes):
+        length, strain, pull = record[8][n], record[9][n], record[3][n]
+        x, y = x + length * (1.0 + strain) * east, y + length * (1.0 + strain) * north
+        grounded += length
+        write_node(record, n, (x, y, seabed, -pull * east, -pull * north, 0.0, 0.0, 0))
     return nodes, grounded
+
+
+def lay_rod(
+    course: Course,
+    stage: int,
+    record: Record,
+    nodes: int,
+    tension: float,
+    excess: float,
+    friction: float,
+) -> tuple[int, float]:
+    """Lay down a rod or a clamp; returns the nodes and the tension that is left [N].
+
+    The loads of a rod go down it: of every piece its own, spread along it, then its clamps.
+    """
+    rod, loads = course.stages[stage], course.loads
+    reached, end, own, length, piece = 0.0, 0.0, 0.0, 0.0, -1
+    last = rod.first + rod.size - 1
+    for i in range(rod.first, rod.first + rod.size):
+        load = loads[i]
+        weight = -(load.buoyancy + excess * load.volume)
+        if load.clamp < 0:
+            own, length, piece = weight, load.length, load.piece
+            end = reached + length
+        else:
+            if piece >= 0:
+                step = load.at - reached
+                share = step / length if length > 0.0 else 0.0
+                _, tension = held_back(tension, friction * share * own)
+                write_element(record, nodes, piece, -1, step, 0.0)
+                record[3][nodes] = tension
+                nodes += 1
+                reached = load.at
+            _, tension = held_back(tension, friction * weight)
+            write_element(record, nodes, load.piece, load.clamp, 0.0, 0.0)
+            record[3][nodes] = tension
+            nodes += 1
+        if piece >= 0 and (i == last or loads[i + 1].clamp < 0):
+            step = end - reached
+            share = step / length if length > 0.0 else 1.0
+            _, tension = held_back(tension, friction * share * own)
+            write_element(record, nodes, piece, -1, step, 0.0)
+            record[3][nodes] = tension
+            nodes += 1
+            reached = end
+    return nodes, tension
 
 
 def held_back(tension: float, hold: float) -> tuple[float, float]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
+from calm.physics.compiled import packed
 from calm.physics.line import Line
 from calm.physics.stretch import Knot
 from calm.physics.strumming import AT_REST, Vibration
@@ -151,6 +152,12 @@ class Track:
                 stages.append(Stage(CLAMP, len(loads), 1, 0.0))
                 loads.append(part)
         return Course(stages, loads, cables, self.knots, self.vibration, self.landing)
+
+    @cached_property
+    def packed(self) -> Course:
+        """The same as compiled laws take it."""
+        course: Course = packed(self.course)
+        return course
 
     @property
     def landing(self) -> int:

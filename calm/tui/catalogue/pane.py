@@ -144,7 +144,8 @@ class CataloguePane(Vertical):
         from calm.report.terminal import shown
 
         try:
-            card.update(shown(to_card(chosen.id, self.index.catalogue.get(chosen.id))))
+            catalogue = self.index.catalogue
+            card.update(shown(to_card(chosen.id, catalogue.get(chosen.id), catalogue)))
         except CalmError as error:
             card.update(str(error))
         self.query_one("#catalogue-card", VerticalScroll).scroll_home(animate=False)
