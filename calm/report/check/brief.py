@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from itertools import groupby
 from typing import TYPE_CHECKING
 
 from calm.checks.assess import OWN
 from calm.checks.finding import AS_GIVEN, Finding, State
+from calm.checks.limits import said
 from calm.checks.rules import RULES
 from calm.report.blocks import (
     ON_THE_WAY,
@@ -31,6 +31,7 @@ from calm.report.check.summary import (
     unknown_count,
     worst_by_part,
 )
+from calm.report.check.verdict import SIGNS, verdict_of
 from calm.report.inputs import UNSEEN
 
 if TYPE_CHECKING:
@@ -40,7 +41,6 @@ _SIGNS = {State.FAIL: "!", State.WARN: "~", State.UNKNOWN: "?"}
 _TOLD = 12
 """So many failures, or warnings, are told of a mooring; a report has them all."""
 _NAMED = 3
-_LEGEND = "?: figures that are unknown, so that a rule could not judge."
 
 
 def check_part(assessments: Sequence[Assessment]) -> Part:
@@ -54,10 +54,50 @@ def check_part(assessments: Sequence[Assessment]) -> Part:
         for each in assessments
         for finding in (*each.all_findings(), *each.tighter_findings())
     ]
-    matrix = [*_matrix(assessments)]
-    matrix[-1] = replace(matrix[-1], note=_LEGEND)
-    told = (block for each in assessments for block in _told(each))
-    return Part("", (*matrix, _worst(assessments, every), *told, Note(UNSEEN[:1])))
+    told = (
+        block
+        for each in assessments
+        for block in (*_told(each), *_worded(_accepted(each)), *_worded(_departing(each)))
+    )
+    blocks = (*_matrix(assessments), _verdict(every), _worst(assessments, every), *told)
+    return Part("", (*blocks, Note(UNSEEN[:1])))
+
+
+def _verdict(findings: Sequence[Finding]) -> Prose:
+    state, words = verdict_of(findings)
+    return Prose(((Span(f"{SIGNS[state]} {words}", state),),))
+
+
+def _worded(lines: Iterator[Span]) -> Iterator[Prose]:
+    spans = tuple((line,) for line in lines)
+    if spans:
+        yield Prose(spans)
+
+
+def _accepted(assessment: Assessment) -> Iterator[Span]:
+    """What is accepted, and why: a sentence for each reason, with the components it is for."""
+    reasons: dict[tuple[str, str], list[str]] = {}
+    for finding in assessment.accepted_findings():
+        accept = finding.accept
+        assert accept is not None
+        ends = f" Until {accept.until}." if accept.until else ""
+        by = ", ".join(filter(None, (accept.by, accept.date)))
+        why = f"{accept.reason}{f' ({by})' if by else ''}.{ends}"
+        reasons.setdefault((finding.rule, why), []).append(finding.component or "the line")
+    for (rule, why), labels in reasons.items():
+        sign = SIGNS[State.ACCEPTED]
+        yield Span(f"{sign} {rule} of {', '.join(labels)} is accepted: {why}", quiet=True)
+
+
+def _departing(assessment: Assessment) -> Iterator[Span]:
+    """The limits that depart from their defaults."""
+    for key in assessment.limits:
+        if key.departs:
+            yield Span(
+                f"~ The limit {key.name} is {said(key, key.value)}; its default is "
+                f"{said(key, key.default)} ({key.source}).",
+                State.WARN,
+            )
 
 
 def _matrix(assessments: Sequence[Assessment]) -> Iterator[Table]:
