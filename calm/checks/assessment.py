@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from calm.checks.finding import Finding
+from calm.checks.finding import Finding, State, worst_state
 
 if TYPE_CHECKING:
     from calm.case import Mooring, Result
@@ -86,6 +86,12 @@ class Assessment:
         for stand in self.stands:
             yield from stand.findings
         yield from self.findings
+
+    @property
+    def state(self) -> State:
+        """The worst of all findings; pass where it is accepted."""
+        worst = worst_state(finding.state for finding in self.all_findings())
+        return State.PASS if worst is State.ACCEPTED else worst
 
     def tighter_findings(self) -> Iterator[Finding]:
         """Of every environment, where another situation leaves less margin."""

@@ -77,14 +77,6 @@ def no_source(component: Component) -> str | None:
     return None if component.source else _NO_SOURCE
 
 
-def breaks_below_working_load(component: Component) -> str | None:
-    """A breaking load below the working load."""
-    breaking, working = component.breaking_load, component.working_load
-    if breaking is None or working is None or breaking >= working:
-        return None
-    return f"breaks at {breaking:.4g} N, below its working load of {working:.4g} N"
-
-
 def warns_after_limit(component: Component) -> str | None:
     """A tilt warned of only after the greatest tilt."""
     if component.max_tilt is None or component.warn_tilt is None:
@@ -186,7 +178,6 @@ def is_too_strong(component: Component) -> str | None:
 
 RULES: tuple[Callable[[Component], str | None], ...] = (
     no_source,
-    breaks_below_working_load,
     warns_after_limit,
     displaces_more_than_its_size,
     is_denser_than_lead,

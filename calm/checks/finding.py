@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass
 from enum import StrEnum
 from math import inf
@@ -13,17 +13,27 @@ AS_GIVEN = "as given"
 
 
 class State(StrEnum):
-    """How a rule judges, the least grave first; unknown where a figure that it needs is missing."""
+    """How a rule judges, the least grave first.
 
-    UNKNOWN = "unknown"
+    Unknown, where a figure that the rule needs is missing, is graver than a warning: it may be a
+    failure. Accepted is a failure or an unknown that the design accepts with a reason.
+    """
+
     PASS = "pass"
+    ACCEPTED = "accepted"
     WARN = "warn"
+    UNKNOWN = "unknown"
     FAIL = "fail"
 
     @property
     def severity(self) -> int:
-        """0 for what is unknown, more the graver."""
+        """0 for what passes, more the graver."""
         return list(State).index(self)
+
+
+def worst_state(states: Iterable[State]) -> State:
+    """The gravest of some states; pass of none."""
+    return max(states, key=lambda state: state.severity, default=State.PASS)
 
 
 @dataclass(frozen=True)
@@ -35,7 +45,7 @@ class Verdict:
     component : label of a piece or a clamp; None of the mooring as a whole
     value, limit : SI units and degrees; None where unknown
     margin : how far the value keeps within the limit, in its unit, negative where it does not
-    state : pass, warn, fail or unknown
+    state : pass, accepted, warn, unknown or fail
     message : what was found, with both figures
     remedy : what to change; None where nothing need be
     """

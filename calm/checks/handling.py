@@ -12,6 +12,7 @@ import numpy as np
 from calm.checks.finding import State, Verdict, at_least, at_most, rule, told, unknown
 from calm.checks.launch import Launch
 from calm.checks.recovery import Recovery
+from calm.checks.strength import lesser_load
 from calm.errors import NoEquilibrium
 from calm.quantities import QUANTITIES, say
 
@@ -72,28 +73,38 @@ def backup(handling: Handling) -> Iterator[Verdict]:
     "launch-strength",
     "Strength in the launch",
     "tension",
-    "Anchor-last launch at terminal speed (URI GSO program); breaking load over 2",
+    "Anchor-last launch at terminal speed (URI GSO program); the working load, and breaking load "
+    "over 2",
 )
 def launch_strength(handling: Handling) -> Iterator[Verdict]:
-    """Tension of every piece as the line falls behind its anchor, against its breaking load."""
-    launch, factor = handling.launch, handling.mooring.file.checks.launch_safety_factor
+    """Tension of every piece as the line falls behind its anchor.
+
+    It may be `launch_working_factor` times the working load, and the breaking load over
+    `launch_safety_factor`, whichever is less.
+    """
+    launch, checks = handling.launch, handling.mooring.file.checks
+    factors = checks.launch_working_factor, checks.launch_safety_factor
     if isinstance(launch, NoEquilibrium):
         yield _unsolved("fall", launch)
         return
     greatest = np.maximum(launch.tension_top, launch.tension_bottom)
     for piece, tension in zip(handling.mooring.file.pieces, greatest.tolist(), strict=False):
-        breaking = piece.component.breaking_load
+        limit = lesser_load(piece.component, *factors)
         bears = f"{piece.label} bears {say('tension', tension)} in the fall"
-        if breaking is None:
+        if limit is None:
             yield unknown(
                 piece.label,
-                f"{bears}; its breaking load is not known.",
-                "Give its `breaking_load`.",
+                f"{bears}; neither its working nor its breaking load is known.",
+                "Give its `working_load` or `breaking_load`.",
                 tension,
             )
             continue
-        limit = breaking / factor
-        message = f"{bears}; its breaking load over {factor:g} is {say('tension', limit)}."
+        working = piece.component.working_load
+        if working is not None and limit == factors[0] * working:
+            times = "" if factors[0] == 1.0 else f" times {factors[0]:g}"
+            message = f"{bears}; its working load{times} is {say('tension', limit)}."
+        else:
+            message = f"{bears}; its breaking load over {factors[1]:g} is {say('tension', limit)}."
         if tension > limit and not launch.anchor_drag_known:
             message += " The anchor's own drag is not known: this is the greatest."
             yield unknown(piece.label, message, "Give the anchor's `kt`.", tension)

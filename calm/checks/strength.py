@@ -22,14 +22,20 @@ WEAK_LINK = 0.5
 def allowable_load(component: Component, factors: SafetyFactors, surface: bool) -> float | None:
     """Load that a component may bear in use [N], None where neither of its loads is known.
 
-    The working load where it is known; elsewhere the breaking load over the safety factor of a
-    surface mooring, of a synthetic rope, or of steel.
+    The lesser of its working load and of its breaking load over the safety factor of a surface
+    mooring, of a synthetic rope, or of steel, as far as they are known.
     """
+    return lesser_load(component, 1.0, safety_factor(component, factors, surface))
+
+
+def lesser_load(component: Component, working_factor: float, factor: float) -> float | None:
+    """The lesser of working load × `working_factor` and breaking load / `factor` [N]."""
+    known = []
     if component.working_load is not None:
-        return component.working_load
-    if component.breaking_load is None:
-        return None
-    return component.breaking_load / safety_factor(component, factors, surface)
+        known.append(working_factor * component.working_load)
+    if component.breaking_load is not None:
+        known.append(component.breaking_load / factor)
+    return min(known, default=None)
 
 
 def safety_factor(component: Component, factors: SafetyFactors, surface: bool) -> float:
@@ -43,11 +49,11 @@ def safety_factor(component: Component, factors: SafetyFactors, surface: bool) -
     "strength",
     "Strength",
     "tension",
-    "Working load where known; else breaking load over a factor: UFC 4-159-03 table 3-7 (3, chain "
+    "The lesser of working load and breaking load over a factor: UFC 4-159-03 table 3-7 (3, chain "
     "and wire), oceanographic practice MBL/3 to MBL/5",
 )
 def strength(result: Result) -> Iterator[Verdict]:
-    """The greatest tension in every piece against its working load, or breaking load / factor.
+    """The greatest tension in every piece against working load, and breaking load / factor.
 
     UFC 4-159-03 table 3-7 asks for 3 on new breaking strength of chain and wire; oceanographic
     practice for 3 to 5, synthetics and surface moorings at the upper end.
@@ -65,15 +71,18 @@ def strength(result: Result) -> Iterator[Verdict]:
                 row.tension,
             )
             continue
-        if component.working_load is not None:
+        factor = safety_factor(component, factors, surface)
+        if limit == component.working_load:
             allowed = f"its working load is {say('tension', limit)}"
         else:
-            factor = safety_factor(component, factors, surface)
             allowed = (
                 f"its breaking load of {say('tension', component.breaking_load)} "
                 f"over {factor:g} allows {say('tension', limit)}"
             )
-        remedy = f"Take one with a working load of {say('tension', row.tension)} or more."
+        remedy = (
+            f"Take one with a working load of {say('tension', row.tension)} and a breaking load "
+            f"of {say('tension', factor * row.tension)} or more."
+        )
         yield at_most(row.label, row.tension, limit, f"{bears}; {allowed}.", remedy)
 
 

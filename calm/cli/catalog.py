@@ -103,7 +103,7 @@ def check(file: Path | None = None, /, *, json: bool = False) -> ExitCode:
     """Find what is physically impossible in a catalogue.
 
     Such as a sphere that lifts more than its volume, a rope heavier than a solid
-    bar of its diameter, a breaking load below the working load; also figures
+    bar of its diameter, a cable stiffer than steel; also figures
     without a source. The exit code is 1 when there is a finding.
 
     Parameters

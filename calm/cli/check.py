@@ -34,6 +34,7 @@ def check(
     catalog: list[Path] | None = None,
     json: OutputPath = None,
     report: Path | None = None,
+    allow_unknown: bool = False,
     workers: int | None = None,
 ) -> ExitCode:
     """Check designs: solve every mooring in every environment, and judge it by rule.
@@ -41,7 +42,8 @@ def check(
     Each mooring is solved as given, in still water, and where its file asks for
     it at high and low water, with growth on its cables, and with cables that
     strum; then let go anchor last, released, and parted at each connection. The
-    exit code is 1 when a rule fails, 3 when a mooring has no equilibrium.
+    exit code is 0 when every finding is a pass, a warning or accepted, 1 when a
+    rule fails or lacks a figure, 3 when a mooring has no equilibrium.
 
     Parameters
     ----------
@@ -56,6 +58,8 @@ def check(
         Write every finding as JSON, - to print it.
     report
         Write report.html, report.pdf, report.json, checks.csv and inventory.csv in this folder.
+    allow_unknown
+        End with 0, too, where figures are unknown; what is shown and written stays the same.
     workers
         How many processes share the work; one on each core unless said.
     """
@@ -74,7 +78,7 @@ def check(
     _show(assessments, outputs)
     if report is not None:
         _write(report, assessments, workers)
-    return gravest(code for each in assessments for code in _codes(each))
+    return gravest(_code(each, allow_unknown) for each in assessments)
 
 
 def _check_report(folder: Path, json: Path | None, given: Sequence[Path]) -> None:
@@ -147,10 +151,10 @@ def _write(folder: Path, assessments: Sequence[Assessment], workers: int | None)
     narrate(f"the report is in {folder}")
 
 
-def _codes(assessment: Assessment) -> list[ExitCode]:
+def _code(assessment: Assessment, allow_unknown: bool) -> ExitCode:
     from calm.checks.finding import State
 
-    codes = [ExitCode.NO_EQUILIBRIUM for stand in assessment.stands if stand.result is None]
-    if any(finding.state is State.FAIL for finding in assessment.all_findings()):
-        codes.append(ExitCode.FINDING)
-    return codes
+    if any(stand.result is None for stand in assessment.stands):
+        return ExitCode.NO_EQUILIBRIUM
+    passes = {State.PASS, State.WARN} | ({State.UNKNOWN} if allow_unknown else set())
+    return ExitCode.DONE if assessment.state in passes else ExitCode.FINDING

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from pydantic import ValidationInfo
+from pydantic import ValidationInfo, model_validator
 
 from calm.files.fields import POSITIVE_FORCE, POSITIVE_LENGTH, TILT, Model, Quantity, Role, Text
 from calm.units import KILOGRAM_FORCE
@@ -50,6 +50,15 @@ class Definition(Model):
     max_tilt: Annotated[float | None, TILT] = None
     warn_tilt: Annotated[float | None, TILT] = None
     slack: Literal["allowed"] | None = None
+
+    @model_validator(mode="after")
+    def _works_below_breaking(self) -> Definition:
+        working, breaking = self.working_load, self.breaking_load
+        if working is not None and breaking is not None and working > breaking:
+            raise ValueError(
+                f"`working_load` is {working:g} N, above the `breaking_load` of {breaking:g} N"
+            )
+        return self
 
 
 def is_in_air(info: ValidationInfo) -> bool:

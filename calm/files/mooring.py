@@ -73,6 +73,7 @@ class Checks(Model):
     backup_margin: Annotated[float, _SHARE] = 0.1
     minimum_rise_speed: Annotated[float, _SPEED] = 0.3
     launch_safety_factor: Annotated[float, _FACTOR] = 2.0
+    launch_working_factor: Annotated[float, _FACTOR] = 1.0
     minimum_reserve: Annotated[float, _SHARE] = 0.3
     rating_margin: Annotated[float, LENGTH] = 100.0
     maximum_knockdown: Annotated[float | None, POSITIVE_LENGTH] = None

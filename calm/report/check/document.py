@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
+from calm.checks.finding import worst_state
+
 if TYPE_CHECKING:
     from calm.checks.assessment import Assessment, Situation
 
@@ -16,14 +18,15 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
     Returns
     -------
     dict
-        `findings`, and as `tighter` those of other situations that leave less margin; of each
-        mooring by its name `launch`, `recovery`, `backup`, `inventory`; and `situations`, what was
-        solved of each mooring in each environment.
+        `state`, the worst there is; `findings`, and as `tighter` those of other situations that
+        leave less margin; of each mooring by its name `launch`, `recovery`, `backup`, `inventory`;
+        and `situations`, what was solved of each mooring in each environment.
     """
     from calm.version import __version__
 
     return {
         "calm": __version__,
+        "state": worst_state(each.state for each in assessments),
         "findings": [finding.to_dict() for each in assessments for finding in each.all_findings()],
         "tighter": [
             finding.to_dict() for each in assessments for finding in each.tighter_findings()

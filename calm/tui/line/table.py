@@ -210,7 +210,7 @@ class LineTable(Listing, can_focus=True):
     def _state(self, row: TableRow, is_marked: bool, style: Style) -> list[Segment]:
         if is_marked:
             return [Segment(MARK, style)]
-        if row.state is None or row.state.value in ("pass", "unknown"):
+        if row.state is None or row.state.value in ("pass", "accepted"):
             return [Segment(" ", style)]
         colour = self.get_component_rich_style(f"line-table--{row.state.value}", partial=True)
         return [Segment(LOOKS[row.state].sign, style + colour)]
