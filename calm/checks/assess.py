@@ -8,7 +8,7 @@ from dataclasses import replace
 from calm.case import Mooring
 from calm.checks.assessment import Assessment, Situation, Stand
 from calm.checks.backup import breaks_of
-from calm.checks.finding import AS_GIVEN, Finding, State
+from calm.checks.finding import AS_GIVEN, OWN, Finding, State
 from calm.checks.handling import Handling
 from calm.checks.inventory import inventory_of
 from calm.checks.launch import Launch, launch_of
@@ -16,9 +16,6 @@ from calm.checks.recovery import Recovery, recovery_of
 from calm.checks.rules import ONCE, STANDING, equilibrium
 from calm.checks.situations import STRUMMING, situations_of
 from calm.errors import NoEquilibrium
-
-OWN = "own"
-"""Name of the environment that a mooring file gives itself."""
 
 
 def check(mooring: Mooring, /, *others: Mooring) -> Assessment:

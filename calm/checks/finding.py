@@ -11,6 +11,9 @@ from typing import Any
 AS_GIVEN = "as given"
 """The situation of a mooring in its environment, with nothing changed."""
 
+OWN = "own"
+"""Name of the environment that a mooring file gives itself."""
+
 
 class State(StrEnum):
     """How a rule judges, the least grave first.

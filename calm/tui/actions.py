@@ -180,11 +180,30 @@ ACTIONS: tuple[Action, ...] = (
         "Find any of these by its name.",
         palette=False,
     ),
+    Action(
+        "anywhere", "app.repaint", "ctrl+l", "repaint", "Send the terminal all of the screen again."
+    ),
     Action("anywhere", "app.quit", "q,ctrl+q", "quit", "Leave; unsaved work is asked about.", 11),
     # a value in place
     Action("cell", "done", "enter", "done", "Take the value.", 0, palette=False),
     Action(
-        "cell", "next_cell", "tab", "next", "Take it and edit the next value.", 1, palette=False
+        "cell",
+        "done('edit next')",
+        "tab",
+        "next",
+        "Take it and edit the next value.",
+        1,
+        palette=False,
+    ),
+    Action("cell", "done('up')", "up", "take, up", "Take it and go up.", palette=False),
+    Action("cell", "done('down')", "down", "take, down", "Take it and go down.", palette=False),
+    Action(
+        "cell",
+        "right",
+        "right",
+        "take, right",
+        "At the end of what is typed: take it and go to the right.",
+        palette=False,
     ),
     Action("cell", "abandon", "escape", "leave it", "Leave the value as it was.", 2, palette=False),
     # the catalogue
@@ -205,8 +224,26 @@ ACTIONS: tuple[Action, ...] = (
     Action("water", "app.save", "ctrl+s", "save", "Save the file."),
     Action("water", "app.help", "f1", "help", "All keys.", 5),
     Action("water", "back", "escape", "back", "Back to the line.", 0),
-    Action("grid", "move_row(-1)", "up", "up", "To the row above.", palette=False),
-    Action("grid", "move_row(1)", "down", "down", "To the row below.", palette=False),
+    Action(
+        "grid",
+        "move_row(-1)",
+        "up",
+        "up",
+        "To the row above; from the first one to what is before.",
+        palette=False,
+    ),
+    Action(
+        "grid",
+        "move_row(1)",
+        "down",
+        "down",
+        "To the row below; from the last one on to what follows.",
+        palette=False,
+    ),
+    Action(
+        "grid", "move_cell(1)", "tab", "next cell", "To the next value of the table.", palette=False
+    ),
+    Action("grid", "move_cell(-1)", "shift+tab", "last cell", "To the one before.", palette=False),
     Action("grid", "move_column(-1)", "left", "left", "To the left.", palette=False),
     Action("grid", "move_column(1)", "right", "right", "To the right.", palette=False),
     Action(

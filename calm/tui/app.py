@@ -7,7 +7,9 @@ import sys
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, ClassVar
 
+from rich.console import RenderableType
 from textual import on, work
+from textual._compositor import CompositorUpdate
 from textual.app import SystemCommand
 from textual.filter import LineFilter, NoColor
 from textual.screen import Screen
@@ -19,6 +21,7 @@ from calm.tui import recovery
 from calm.tui.judging import Judging
 from calm.tui.line.builder import BuilderScreen
 from calm.tui.messages import CatalogueRead, Edited, Judged, JudgingFailed
+from calm.tui.painted import Painted
 from calm.tui.palette import Actions
 from calm.tui.plain import PlainSigns, shows_all_signs
 from calm.tui.saving import Saving
@@ -67,25 +70,30 @@ class BuildApp(InTurn):
         super().__init__()
         self.session = session
         self.workspace = Workspace(session, self.tell, lambda: self.post_message(Edited()))
-        self.judging = Judging(self, self.workspace)
+        self.judging = Judging(self, self.workspace, self._show_views)
         self.saving = Saving(self, self.workspace)
         self.builder = BuilderScreen(self.workspace)
         self.not_kept = ""
+        self._painted = Painted()
         self._offered = kept
-        self._environ = environ
         self._plain = [] if shows_all_signs(environ, sys.__stderr__) else [PlainSigns()]
         self._is_catalogue_read = False
         self._autosaving: Timer | None = None
         self._is_left = False
         self._lost: str | None = None
 
-    def on_mount(self) -> None:
-        """Show the line; the first solution and the catalogue follow."""
         for theme in themes():
             self.register_theme(theme)
         self.ansi_theme_dark, self.ansi_theme_light = PICTURE_DARK, PICTURE_LIGHT
-        self.theme = choose_theme(self._environ)
-        self.push_screen(self.builder)
+        self.theme = choose_theme(environ)
+
+    def get_default_screen(self) -> Screen[Any]:
+        """The line, with none below it: what is below is painted too."""
+        return self.builder
+
+    def on_mount(self) -> None:
+        """The first solution and the catalogue follow what is shown."""
+        self.app_resume_signal.subscribe(self, lambda _: self.action_repaint())
         self.call_after_refresh(self._begin)
         self.set_interval(_LOOKED_AT_DISK, self.saving.look_at_disk)
 
@@ -108,6 +116,17 @@ class BuildApp(InTurn):
         """Those of textual; one that takes all colours off, one for terminals of plain signs."""
         filters = [_COLOURLESS] if self.no_color else super().get_line_filters()
         return [*filters, *self._plain]
+
+    def _display(self, screen: Screen[Any], renderable: RenderableType | None) -> None:
+        """Send the terminal what it does not show yet."""
+        if isinstance(renderable, CompositorUpdate):
+            renderable = self._painted.update(renderable)
+        super()._display(screen, renderable)
+
+    def action_repaint(self) -> None:
+        """Send the terminal all of the screen."""
+        self._painted.forget()
+        self.screen.refresh()
 
     # the screens
 
@@ -158,13 +177,16 @@ class BuildApp(InTurn):
 
     @on(Edited)
     def _after_an_edit(self) -> None:
-        for screen in self.draft_screens():
-            screen.show_view()
+        self._show_views()
         self._tell_lost_environment()
         self.judging.after_an_edit()
         if self._autosaving is None:
             self._autosaving = self.set_timer(_AUTOSAVED_AFTER, self._autosave)
         self._mend()
+
+    def _show_views(self) -> None:
+        for screen in self.draft_screens():
+            screen.show_view()
 
     def _tell_lost_environment(self) -> None:
         before, self._lost = self._lost, self.session.standing.lost_environment
@@ -194,8 +216,7 @@ class BuildApp(InTurn):
             return  # on the way out: the screens are being taken apart
         is_first = self.workspace.view is None
         if self.judging.take(event):
-            for screen in self.draft_screens():
-                screen.show_view()
+            self._show_views()
             self._mend(as_judged=is_first)
 
     @on(JudgingFailed)

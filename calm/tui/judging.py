@@ -16,6 +16,7 @@ from calm.tui.workspace import Workspace
 if TYPE_CHECKING:
     from calm.tui.live import View
 
+_DIMMED_AFTER = 0.3  # seconds: what is solved sooner is not dimmed for it
 _FULLY_AFTER = 0.5  # seconds without a change before launch, recovery and breaks are judged
 
 
@@ -26,15 +27,17 @@ class Judging:
     ----------
     app : whose workers they are
     workspace : takes what they find
+    show : shows the workspace as it is
     """
 
-    def __init__(self, app: App[int], workspace: Workspace) -> None:
-        self._app, self._workspace = app, workspace
+    def __init__(self, app: App[int], workspace: Workspace, show: Callable[[], object]) -> None:
+        self._app, self._workspace, self._show = app, workspace, show
         self._is_judging = False
         self._is_stale = False  # a change is not asked about yet
         self._is_wanted = False  # another text is to be judged when the worker comes back
         self._checked: View | None = None  # what is being judged fully
         self._fully: Timer | None = None
+        self._dimming: Timer | None = None
 
     @property
     def is_idle(self) -> bool:
@@ -46,6 +49,15 @@ class Judging:
         """The draft is another one: what was typed is seen first."""
         self._is_stale = True
         self._app.call_after_refresh(self.ask)
+        if self._dimming is None:
+            self._dimming = self._app.set_timer(_DIMMED_AFTER, self.dim)
+
+    def dim(self) -> None:
+        """Show that the figures are still of an earlier draft."""
+        self._dimming = None
+        if not self._workspace.is_fresh:
+            self._workspace.is_late = True
+            self._show()
 
     def ask(self) -> None:
         """Have the draft judged, now or when the worker comes back; only its last state counts."""
@@ -67,7 +79,7 @@ class Judging:
         is_free = not self._is_judging and self._checked is None
         if is_free and view is not None and not view.complete:
             self._checked = view
-            self._work(partial(_judge_fully, view), fully=True)
+            self._work(partial(_judge_fully, view, self._workspace.session.catalogs), fully=True)
 
     def take(self, event: Judged) -> bool:
         """Take what a worker has found; whether it is of the last state that was judged."""
@@ -78,6 +90,7 @@ class Judging:
             is_late, self._is_judging = False, False
         if not is_late:
             workspace.take_view(event.view)
+            workspace.is_late = workspace.is_late and not workspace.is_fresh
         if self._is_wanted:
             self.ask()
         elif (is_late or not event.fully) and not (self._is_judging or self._fully):
@@ -120,7 +133,7 @@ def _judge(
     return judge(text, path, environment, catalogs, keep=keep)
 
 
-def _judge_fully(view: View) -> View:
+def _judge_fully(view: View, catalogs: Sequence[Path]) -> View:
     from calm.tui.live import judge_fully
 
-    return judge_fully(view)
+    return judge_fully(view, catalogs)

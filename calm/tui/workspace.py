@@ -35,6 +35,7 @@ class Workspace:
     index : the catalogue with the file's own components; None until it is read
     view : what was last made of the file; None until it is
     good : the last one that stood
+    is_late : whether the view has been that of an earlier draft for some time
     """
 
     def __init__(self, session: Session, tell: Tell, edited: Callable[[], object]) -> None:
@@ -42,6 +43,7 @@ class Workspace:
         self.index: Index | None = None
         self.view: View | None = None
         self.good: View | None = None
+        self.is_late = False
         self._catalogue: Catalogue | None = None
         self._defined: Any = None
 
@@ -66,14 +68,16 @@ class Workspace:
 
     @property
     def is_fresh(self) -> bool:
-        """Whether the view is of what is edited: the text, the file's place and the environment.
-
-        The figures of any other are shown dimmed.
-        """
+        """Whether the view is of what is edited: the text, the file's place and the environment."""
         session, view = self.session, self.view
         return view is not None and view.is_of(
             session.draft.text, session.file.path, session.standing.environment
         )
+
+    @property
+    def is_old(self) -> bool:
+        """Whether the figures are to be shown dimmed, those of an earlier draft."""
+        return self.is_late and not self.is_fresh
 
     @property
     def called(self) -> str:

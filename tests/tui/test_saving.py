@@ -722,10 +722,10 @@ def test_an_edit_does_not_wait_for_the_full_check(drive, small, monkeypatch):
     going_on, begun = threading.Event(), threading.Event()
     really = live.judge_fully
 
-    def slowly(view):
+    def slowly(view, catalogs):
         begun.set()
         assert going_on.wait(60)
-        return really(view)
+        return really(view, catalogs)
 
     async def story(driver):
         monkeypatch.setattr(live, "judge_fully", slowly)

@@ -698,3 +698,54 @@ def test_mistakes_of_the_water_are_told_where_they_are_mended(drive, small):
         assert message not in driver.screen and driver.view.problems == ()
 
     drive(story, small)
+
+
+def test_tab_goes_through_a_table_and_never_out_of_its_end(drive, folder):
+    path = folder / "m.yaml"
+    rows = "rows: [[0, 0.5, 90], [100, 0.1, 90]]"
+    table = f"  current: {{columns: [depth m, speed m/s, toward deg], {rows}}}"
+    old = "  current: {speed: 0.5 m/s, toward: 90 deg}"
+    path.write_text(MOORING.replace(old, table), encoding="utf-8")
+
+    async def story(driver):
+        await driver.press("w")
+        grid = cells(driver)
+        grid.focus()
+        await driver.press("tab", "tab", "tab", "tab")
+        assert (grid.cursor, grid.column) == (1, 1) and driver.app.focused is grid
+        await driver.type("0.2")
+        await driver.press("tab")  # takes it and edits the direction
+        await driver.type("100")
+        await driver.press("tab", "tab")
+        assert "The table ends here" in driver.screen and driver.app.focused is grid
+        await driver.press("tab")
+        await driver.type("0.9")  # of the table, not of the wind
+        await driver.press("escape", "shift+tab", "shift+tab")
+        assert (grid.cursor, grid.column) == (1, 0)
+        await driver.press("down")
+        assert driver.app.focused is not grid
+        assert "[100, 0.2, 100]" in driver.text and "wind" not in driver.text
+
+    drive(story, path)
+
+
+def test_an_arrow_takes_what_is_typed_as_in_a_spreadsheet(drive, folder):
+    path = folder / "m.yaml"
+    table = "  current: {columns: [depth m, u m/s, v m/s], rows: [[0, 0.5, 0], [100, 0.1, 0]]}"
+    old = "  current: {speed: 0.5 m/s, toward: 90 deg}"
+    path.write_text(MOORING.replace(old, table), encoding="utf-8")
+
+    async def story(driver):
+        await driver.press("w")
+        grid = cells(driver)
+        grid.focus()
+        await driver.press("right")
+        await driver.type("0.7")
+        await driver.press("down")
+        assert "[0, 0.7, 0]" in driver.text and (grid.cursor, grid.column) == (1, 1)
+        await driver.press("left")
+        await driver.type("90")
+        await driver.press("right")
+        assert "[90, 0.1, 0]" in driver.text and (grid.cursor, grid.column) == (1, 1)
+
+    drive(story, path)

@@ -10,8 +10,7 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from calm.checks.assess import OWN
-from calm.checks.finding import AS_GIVEN, Finding, State
+from calm.checks.finding import AS_GIVEN, OWN, Finding, State
 from calm.checks.rules import RULES
 from calm.report.check.summary import (
     abreast,

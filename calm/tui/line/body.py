@@ -51,7 +51,7 @@ class LineBody(Horizontal):
 
     def show_view(self) -> None:
         """Show what a worker made of it; dim what is of an earlier one."""
-        if self.workspace.is_fresh:
+        if self.workspace.is_fresh or self.workspace.is_old:
             self.line.show_rows()
         self._show_beside()
 
@@ -74,8 +74,8 @@ class LineBody(Horizontal):
             self.pictures.show(last or view, "as it last stood" if last else "")
             note = "The picture shows the line as it last stood." if last else ""
             self.verdict.show(view, note)
-        self.pictures.set_class(not fresh or last is not None, "-old")
-        self.verdict.set_class(not fresh, "-old")
+        self.pictures.set_class(self.workspace.is_old or last is not None, "-old")
+        self.verdict.set_class(self.workspace.is_old, "-old")
 
     def title(self) -> tuple[str, str]:
         """Name, file, what is not saved; environment and verdict."""

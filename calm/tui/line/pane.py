@@ -58,7 +58,7 @@ class LinePane(Vertical):
         workspace.refresh_index()
         figures = view if view is not None and (view.rows or view.problems) else workspace.good
         rows = table_rows(self.session.draft, figures, workspace.index)
-        self.table.show_rows(rows, old=not workspace.is_fresh)
+        self.table.show_rows(rows, old=workspace.is_old)
 
     def show_draft(self, spot: Spot | None = None) -> None:
         """Show the draft, another one now; the cursor goes to a row, or stays where it is."""
@@ -235,9 +235,11 @@ class LinePane(Vertical):
         cell = self._editing
         if cell is not None:
             self._put(event.text)
-            onward = cell.onward() if event.onward else None
+            onward = cell.onward() if event.then == "edit next" else None
             if onward is not None:
                 self._edit(onward)
+            self.table.column += event.then == "right"
+            self.table.cursor += (event.then == "down") - (event.then == "up")
 
     def settle(self) -> bool:
         """Take what is typed in a cell; a bad value stays to be corrected."""

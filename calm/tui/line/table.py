@@ -44,6 +44,7 @@ class LineTable(Listing, can_focus=True):
         "line-table--old",
         "line-table--fail",
         "line-table--warn",
+        "line-table--unknown",
     }
     DEFAULT_CSS = """
     LineTable {
@@ -59,12 +60,13 @@ class LineTable(Listing, can_focus=True):
         & > .line-table--old { text-style: dim; }
         & > .line-table--fail { color: $text-error; text-style: bold; }
         & > .line-table--warn { color: $text-warning; }
+        & > .line-table--unknown { text-style: dim; }
     }
     """
 
     HEADING, BEYOND = 1, 2
 
-    column: reactive[int] = reactive(0, init=False)
+    column: reactive[int] = reactive(0, init=False, repaint=False)
 
     class Moved(Listing.Moved):
         """The cursor is on another cell."""

@@ -129,7 +129,7 @@ class WaterPane(Horizontal):
         """The profile of a line as judged, dimmed where it is of what is edited no more."""
         view, fresh = self.workspace.view, self.workspace.is_fresh
         self._show_notes(view.problems if view is not None and fresh else ())
-        self.query_one(Profile).show(view, old=not fresh)
+        self.query_one(Profile).show(view, old=self.workspace.is_old)
 
     def _show_notes(self, problems: Sequence[Problem]) -> None:
         """What keeps the line from standing in the water that the form shows."""
