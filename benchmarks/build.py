@@ -202,9 +202,8 @@ def main() -> None:
         print(f"\n{'key to screen':32}{'median':>11}{'fastest':>11}")
         for name, times in keys(file, repetitions).items():
             print(f"{name:32}{_pair(times)}")
-        print(
-            f"\n{'140 x 45, over a link':32}{'most bytes':>11}{'median':>11}{'fastest':>11}{'processor':>11}"
-        )
+        heads = "".join(f"{each:>11}" for each in ("most bytes", "median", "fastest", "processor"))
+        print(f"\n{'140 x 45, over a link':32}{heads}")
         for rows in (33, 200):
             file.write_text(pieces(rows), encoding="utf-8")
             for name, count, times, busy in links(file, repetitions):

@@ -6,15 +6,14 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from calm.case import Result, TowResult
+from calm.case.parts import parts_of
 from calm.checks.finding import Finding, State
 from calm.checks.strength import strength
-from calm.files import MooringFile
-from calm.files.document import Document
+from calm.files import MooringFile, Piece, Place
 from calm.files.reader import STAND_IN
 
 _Figures = tuple[float | None, float | None, float | None, float | None]
 _Said = tuple[float | None, State | None, bool]
-_UNSOLVED: _Figures = (None, None, None, None)
 _NOTHING: _Said = (None, None, False)
 _GRAVITY = {state: state.severity for state in State}
 _STRENGTH = frozenset({strength.name})
@@ -26,8 +25,7 @@ class Row:
 
     Attributes
     ----------
-    item : index in the `line:` of the file; all pieces of a count or an assembly have the same
-    clamp : index among the clamps of that item, -1 of a piece
+    place : in the line as read
     use, label : as in results
     length : stretched, cut where nothing is solved [m]; None of a clamp, or to be cut to fit
     depth : of the upper end [m], None like all below where nothing is solved
@@ -38,8 +36,7 @@ class Row:
     lacks_strength : whether a figure of its strength is missing
     """
 
-    item: int
-    clamp: int
+    place: Place
     use: str
     label: str
     length: float | None
@@ -52,39 +49,34 @@ class Row:
 
 
 def rows_of(
-    document: Document,
     file: MooringFile,
     result: Result | TowResult | None,
     findings: Iterable[Finding] = (),
 ) -> Iterator[Row]:
     """Down the file; with figures where there is a result, and what the findings say of each."""
-    count = len(document.data["line"])
-    items = {document.values["line", item]: item for item in range(count)}
-    figures: dict[str, _Figures] = {}
+    figures: dict[Place, _Figures] = {}
     if result is not None:
-        for row in result.clamps:
-            figures[row.label] = (None, row.depth, row.tension, row.tilt)
+        for clamp in result.clamps:
+            figures[clamp.place] = (None, clamp.depth, clamp.tension, clamp.tilt)
         for row in result.components:
-            figures[row.label] = (row.length, row.depth_top, row.tension, row.tilt)
+            figures[row.place] = (row.length, row.depth_top, row.tension, row.tilt)
     said = _said(findings)
     for piece in file.pieces:
         if piece.use == STAND_IN:
             continue
-        item, unsolved = items[piece.line, piece.column], (piece.length, None, None, None)
-        solved = figures.get(piece.label, unsolved)
-        yield Row(item, -1, piece.use, piece.label, *solved, *said.get(piece.label, _NOTHING))
-        for number, clamp in enumerate(piece.clamps):
-            solved, told = figures.get(clamp.label, _UNSOLVED), said.get(clamp.label, _NOTHING)
-            yield Row(item, number, clamp.use, clamp.label, *solved, *told)
+        for part in parts_of([piece]):
+            length = part.length if isinstance(part, Piece) else None
+            solved = figures.get(part.place, (length, None, None, None))
+            yield Row(part.place, part.use, part.label, *solved, *said.get(part.place, _NOTHING))
 
 
-def _said(findings: Iterable[Finding]) -> dict[str, _Said]:
-    """By label the least margin, as a share of its limit, the gravest state, what is lacking."""
-    found: dict[str, list[Finding]] = {}
+def _said(findings: Iterable[Finding]) -> dict[Place, _Said]:
+    """By place the least margin, as a share of its limit, the gravest state, what is lacking."""
+    found: dict[Place, list[Finding]] = {}
     for finding in findings:
-        if finding.component is not None:
-            found.setdefault(finding.component, []).append(finding)
-    return {label: _of_one(own) for label, own in found.items()}
+        if finding.place is not None:
+            found.setdefault(finding.place, []).append(finding)
+    return {place: _of_one(own) for place, own in found.items()}
 
 
 def _of_one(own: list[Finding]) -> _Said:

@@ -10,6 +10,7 @@ import os
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 
 from calm.case import Mooring, Result, Tow, TowResult
@@ -21,7 +22,8 @@ from calm.checks.lacking import lacking
 from calm.checks.situations import cut_like
 from calm.errors import InputError, NoEquilibrium, Problem, internal_failure
 from calm.files import MooringFile, read_mooring
-from calm.files.document import Document, document_of
+from calm.files.document import Document, compose
+from calm.files.editing import Draft, Item
 from calm.files.reader import STAND_IN
 from calm.tui.found import Row, rows_of
 
@@ -75,6 +77,11 @@ class View:
     def is_of(self, text: str, path: Path | None, environment: str | None) -> bool:
         """Whether a text, of the file of a path, was judged in this environment."""
         return (self.text, self.path, self.environment) == (text, _placed(path), environment)
+
+    @cached_property
+    def items(self) -> tuple[Item, ...]:
+        """The items of the text, as written."""
+        return Draft(self.text).items
 
     @property
     def anchored(self) -> bool:
@@ -134,8 +141,7 @@ def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
     moorings, problems = _in_all_environments(view, view.result.mooring, catalogs)
     assessment = assessment_of(file.name, [stand_of(each, file.name) for each in moorings])
     findings, tighter = tuple(assessment.all_findings()), tuple(assessment.tighter_findings())
-    document = document_of(str(view.path), view.text)
-    rows = tuple(rows_of(document, file, view.result, (*findings, *tighter)))
+    rows = tuple(rows_of(file, view.result, (*findings, *tighter)))
     return replace(
         view, findings=findings, tighter=tighter, rows=rows, stands=assessment.stands,
         elsewhere=tuple(problems), seconds=view.seconds + time.perf_counter() - started,
@@ -167,7 +173,7 @@ def _in_all_environments(
 
 def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
     try:
-        document = document_of(str(view.path), view.text)
+        document = compose(str(view.path), view.text)
     except InputError as error:
         return _wrong(view, error.problems)
     view = replace(view, environments=_variants(document))
@@ -180,18 +186,18 @@ def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
         return _wrong(view, error.problems)
     view = replace(view, file=file, missing=tuple(lacking(file)))
     if "no float" in view.missing:
-        return replace(view, rows=tuple(rows_of(document, file, None)))
-    return _solved(view, document, file)
+        return replace(view, rows=tuple(rows_of(file, None)))
+    return _solved(view, file)
 
 
-def _solved(view: View, document: Document, file: MooringFile) -> View:
+def _solved(view: View, file: MooringFile) -> View:
     line = Mooring(file, memory=view.memory) if file.tow is None else Tow(file, view.memory)
     try:
         result, failure = line.solve(), None
     except NoEquilibrium as error:
         result, failure = None, error
     findings = () if isinstance(result, TowResult) else tuple(_found(view, file, result, failure))
-    rows = tuple(rows_of(document, file, result, findings))
+    rows = tuple(rows_of(file, result, findings))
     return replace(
         view, result=result, failure=failure, findings=findings, rows=rows,
         complete=isinstance(result, TowResult),

@@ -6,8 +6,9 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
 
 from calm.errors import CalmError
+from calm.files import Place
 from calm.tui.catalogue.index import Index
-from calm.tui.session import Session, Spot
+from calm.tui.session import Session
 
 if TYPE_CHECKING:
     from calm.files import Catalogue
@@ -84,11 +85,11 @@ class Workspace:
         """The name of the file, and that it is not saved where it is not."""
         return self.session.name + (" (not saved)" if self.session.changed else "")
 
-    def attempt(self, change: Callable[[], object]) -> tuple[bool, Spot | None]:
+    def attempt(self, change: Callable[[], object]) -> tuple[bool, Place | None]:
         """Make a change; whether it was made, and the row it leads to. What refuses it is told."""
         try:
             spot = change()
         except CalmError as error:
             self.tell(str(error), wrong=True)
             return False, None
-        return True, spot if isinstance(spot, Spot) else None
+        return True, spot if isinstance(spot, Place) else None

@@ -6,11 +6,11 @@ from textual import on
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
 
+from calm.files import Place
 from calm.tui.catalogue.pane import CataloguePane, Purpose
 from calm.tui.line.pane import LinePane
 from calm.tui.line.table import LineTable
 from calm.tui.pictures import Pictures
-from calm.tui.session import Spot
 from calm.tui.verdict_pane import VerdictPane, state_sign, state_word
 from calm.tui.workspace import Workspace
 
@@ -111,7 +111,7 @@ class LineBody(Horizontal):
         spot = self.line.table.spot
         if spot is None:
             return ""
-        values = self.session.item(spot if purpose == "replace" else Spot(spot.item)).values
+        values = self.session.item(spot if purpose == "replace" else Place(spot.item)).values
         return values.get("label") or values.get("use", "")
 
     @on(CataloguePane.Taken)

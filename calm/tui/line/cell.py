@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from calm.files import Place
 from calm.tui.catalogue.index import WITH_LENGTH
 from calm.tui.checking import Check, anything, count, distance, length, length_text, length_values
 from calm.tui.line.table_row import EDITABLE, Column
-from calm.tui.session import Spot
 from calm.tui.workspace import Workspace
 
 _NO_COUNT = "What is clamped on a piece has no count; duplicate it instead"
@@ -19,7 +19,7 @@ class Cell:
     """A value of a row, as the file of a workspace has it now."""
 
     workspace: Workspace
-    spot: Spot
+    spot: Place
     column: Column
 
     @property

@@ -12,6 +12,7 @@ from textual.binding import BindingType
 from textual.containers import Vertical
 from textual.message import Message
 
+from calm.files import Place
 from calm.tui.actions import bindings
 from calm.tui.catalogue.pane import Purpose
 from calm.tui.line.cell import Cell
@@ -19,7 +20,6 @@ from calm.tui.line.cell_editor import CellEditor
 from calm.tui.line.rows import table_rows
 from calm.tui.line.table import LineTable
 from calm.tui.line.table_row import EDITABLE, Column
-from calm.tui.session import Spot
 from calm.tui.workspace import Workspace
 
 _MIXED = "Pieces are marked, and clamps of other pieces; mark pieces only, or clamps only"
@@ -60,7 +60,7 @@ class LinePane(Vertical):
         rows = table_rows(self.session.draft, figures, workspace.index)
         self.table.show_rows(rows, old=workspace.is_old)
 
-    def show_draft(self, spot: Spot | None = None) -> None:
+    def show_draft(self, spot: Place | None = None) -> None:
         """Show the draft, another one now; the cursor goes to a row, or stays where it is."""
         here = self.table.spot if spot is None else spot
         self.forget()
@@ -151,9 +151,9 @@ class LinePane(Vertical):
         marked, chosen = self.table.marked, self._chosen_of_a_kind()
         if not chosen:
             return
-        moved: list[Spot] = []
+        moved: list[Place] = []
 
-        def move() -> Spot | None:
+        def move() -> Place | None:
             moved.extend(self.session.move(chosen, by))
             return moved[0] if moved else None
 
@@ -180,7 +180,7 @@ class LinePane(Vertical):
         else:
             self.attempt(lambda: self.session.paste(self.table.spot, below=bool(below)))
 
-    def _chosen_of_a_kind(self) -> tuple[Spot, ...]:
+    def _chosen_of_a_kind(self) -> tuple[Place, ...]:
         """What is chosen; nothing, and that is told, where clamps of other pieces are with pieces.
 
         They have no place of their own among pieces that are pasted or moved.

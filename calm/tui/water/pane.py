@@ -14,10 +14,9 @@ from textual.message import Message
 from textual.widget import Widget
 from textual.widgets import Static
 
-from calm.files.definition import DENSITY
 from calm.files.editing import Draft, Value
 from calm.files.fields import POSITIVE_LENGTH, Quantity
-from calm.files.tables import SALINITY, TEMPERATURE
+from calm.files.tables import DIRECTION, SALINITY, TEMPERATURE, WATER_DENSITY
 from calm.tui.checking import needed, quantity
 from calm.tui.field import Field
 from calm.tui.messages import said
@@ -39,11 +38,11 @@ if TYPE_CHECKING:
     from calm.errors import Problem
 
 _DEPTH = quantity(POSITIVE_LENGTH, optional=True)
-_DENSITY = quantity(DENSITY, optional=True)
+_DENSITY = quantity(WATER_DENSITY, optional=True)
 _SPEED = quantity(Quantity("speed", at_least=0))
 _WIND = quantity(Quantity("speed", at_least=0), optional=True)
-_ANGLE = quantity(Quantity("angle"))
-_TOWARD = quantity(Quantity("angle"), optional=True)
+_ANGLE = quantity(DIRECTION)
+_TOWARD = quantity(DIRECTION, optional=True)
 _ELSEWHERE = (
     "The line stands in {0}: the profile and the verdict are of that. Below is the file's own "
     "environment; what {0} gives takes its place."
