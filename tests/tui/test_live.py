@@ -60,7 +60,7 @@ def test_findings_are_those_of_check(name: str) -> None:
     assert view.findings == tuple(each for each in stand.findings if each.situation == AS_GIVEN)
     assert not view.complete
     fully = judge_fully(view)
-    (design,) = read_designs([path], None, [], 1)  # in each of its environments
+    (design,), _ = read_designs([path], None, [], 1)  # in each of its environments
     stands = [stand_of(each, design.name) for each in design.moorings]
     assessment = assessment_of(design.name, stands)
     assert [each.environment for each in fully.stands] == [each.environment for each in stands]
