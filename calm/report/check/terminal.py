@@ -80,8 +80,10 @@ def _accepted(assessment: Assessment) -> Iterator[Text]:
         why = f"{accept.reason}{f' ({by})' if by else ''}.{ends}"
         reasons.setdefault((finding.rule, why), []).append(finding.component or "the line")
     for (rule, why), labels in reasons.items():
-        sign = SIGNS[State.ACCEPTED]
-        yield Text(f"{sign} {rule} of {', '.join(labels)} is accepted: {why}", style="dim")
+        named = ", ".join(labels[:_NAMED])
+        if len(labels) > _NAMED:
+            named += f" and {len(labels) - _NAMED} more"
+        yield Text(f"{SIGNS[State.ACCEPTED]} {rule} of {named} is accepted: {why}", style="dim")
 
 
 def _departing(assessment: Assessment) -> Iterator[Text]:
