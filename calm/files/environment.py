@@ -6,7 +6,7 @@ import math
 import os.path
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Discriminator, Tag, model_validator
 
@@ -31,12 +31,16 @@ from calm.files.tables import (
 from calm.files.times import TimeChoiceError
 from calm.units import QuantityError
 
-if TYPE_CHECKING:
-    from calm.files.mooring import Position
-
 _SPEED = Quantity("speed", at_least=0)
 _WATER_DEPTH = Quantity("length", above=0, at_most=DEEPEST)
 _MAXIMUM_SPEED = 5.0
+
+
+class Position(Model):
+    """Where the mooring stands [degrees]."""
+
+    latitude: Annotated[float, Quantity("angle", at_least=-90, at_most=90)]
+    longitude: Annotated[float, Quantity("angle", at_least=-360, at_most=360)]
 
 
 @dataclass(frozen=True)

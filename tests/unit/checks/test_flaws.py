@@ -45,7 +45,7 @@ TOLD = ("scope",)
 UNDER = (
     ("[0, 0.70, 290]", "[0, 2.9, 290]"),
     ("[80, 0.60, 285]", "[80, 2.5, 285]"),
-    ("label: four wheels}", "label: four wheels, weight: 60 kN}"),
+    ("label: five wheels, weight: 17.16 kN}", "label: five wheels, weight: 60 kN}"),
 )
 """A current that takes a buoy under whose anchor holds."""
 
@@ -232,7 +232,7 @@ FLAWS = (
     Flaw(
         "a buoy with little in reserve",
         NYLON,
-        (("line:\n", "checks: {minimum_reserve: 0.9}\nline:\n"),),
+        (("checks:\n", "checks:\n  minimum_reserve: 0.9\n"),),
         "reserve",
         "buoy",
         "fail",
@@ -241,7 +241,7 @@ FLAWS = (
     Flaw(
         "a watch circle beyond the chart's",
         "chain-and-rope-surface",
-        (("line:\n", "checks: {maximum_excursion: 5 m}\nline:\n"),),
+        (("checks:\n", "checks:\n  maximum_excursion: 5 m\n"),),
         "watch-circle",
         None,
         "fail",
