@@ -6,8 +6,7 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from calm.checks.assess import OWN
-from calm.checks.finding import AS_GIVEN, Finding, State
+from calm.checks.finding import AS_GIVEN, OWN, Finding, State
 from calm.checks.limits import said
 from calm.checks.rules import RULES
 from calm.report.blocks import (
