@@ -148,9 +148,9 @@ def _about_value(details: Any, field: str, value: object, model: type[BaseModel]
     if value is None:
         return f"`{field}` is empty" if kind == "tuple_type" else f"`{field}` has no value"
     form = _form(model, details["loc"])
-    if kind == "union_tag_invalid":
+    if kind == "union_tag_invalid" and isinstance(value, dict):
         kinds = [tag for one in _models_in(form) if (tag := _tag(one))]
-        return not_among("kind", shown(context["tag"]), kinds)
+        return not_among("kind", shown(value.get("kind")), kinds)
     if kind == "literal_error":
         return not_among(field, shown(value), _values_in(form))
     return f"`{field}` {_SHAPES.get(kind, details['msg'])}"

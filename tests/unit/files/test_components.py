@@ -198,7 +198,10 @@ def test_body_gives_its_drag_in_one_way(drag: dict[str, Any]) -> None:
         ),
         ({"made_of": [{"kind": "cone"}]}, "`kind: cone` must be one of sphere, cylinder"),
         ({"made_of": [{"kind": ["cone"]}]}, "`kind: …` must be one of sphere, cylinder"),
-        ({"role": {"a": "1"}}, "`role: …` must be one of float, instrument, release"),
+        (
+            {"role": {"a": "1"}},
+            "`role: …` must be one of float, instrument, release, connector, line, anchor",
+        ),
         ({"made_of": [{"diameter": "1 m"}]}, "`made_of` needs a `kind`"),
         ({"made_of": "sphere"}, "`made_of` must be a list"),
         (
