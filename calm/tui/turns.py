@@ -60,7 +60,7 @@ class InTurn(App[int]):
         Not the screens below it: each message makes them have all of the screen painted anew.
         """
         around = [] if self.focused is None else list(self.focused.ancestors_with_self)
-        return list(dict.fromkeys([*around, self.screen, self]))
+        return list(dict.fromkeys([*around, *self.screen_stack[-1:], self]))
 
     def _go_round(self, listeners: list[MessagePump]) -> None:
         """Wait for one after the other; one that is gone handles nothing any more."""
