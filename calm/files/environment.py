@@ -13,6 +13,7 @@ from pydantic import BeforeValidator, Discriminator, Tag, model_validator
 from calm.errors import InputError, Problem
 from calm.files.current_file import read_current_file
 from calm.files.current_terms import DEEPEST, Terms, too_fast
+from calm.files.definition import DENSITY
 from calm.files.density import USUAL_DENSITY, Density, check_density, read_density
 from calm.files.explain import shown, validate
 from calm.files.fields import POSITIVE_LENGTH, Model, Quantity, Text
@@ -85,10 +86,14 @@ class Environment:
 
 
 class Fouling(Model):
-    """Growth on the cables [m]: how thick it is, from the surface down to a depth."""
+    """Growth on everything [m], from the surface down to a depth: how thick, and how dense.
+
+    Without a density [kg/m³] it is as heavy as water.
+    """
 
     depth: Annotated[float, POSITIVE_LENGTH]
     thickness: Annotated[float, Quantity("length", usual_unit="mm", above=0)]
+    density: Annotated[float | None, DENSITY] = None
 
 
 class Wind(Model):
