@@ -35,6 +35,8 @@ class BuilderScreen(DraftScreen):
         & #catalogue { width: 2fr; height: 1fr; border-left: vkey $panel; }
         &.-searching #study { display: none; }
         &.-searching #catalogue { display: block; }
+        &.-wide.-searching #line-pane { width: 2fr; }
+        &.-wide.-searching #catalogue { width: 3fr; }
         &.-huge.-searching #study { display: block; }
         &.-huge #catalogue { width: 1fr; }
         &.-huge #line-pane { width: 2fr; }
