@@ -34,11 +34,14 @@ AT_A_LEVEL = 0.05
 
 @dataclass(frozen=True)
 class Refined:
-    """A closed line with the error of its depths and offsets [m] and of its tensions [N]."""
+    """A closed line and its errors: of depths and offsets [m], of tensions [N], and of the upward
+    and the horizontal force at its end [N]."""
 
     closed: Closed
     depth_error: float
     tension_error: float
+    lift_error: float
+    pull_error: float
 
 
 Polish = Callable[[Root, Cuts], Closed]
@@ -74,13 +77,14 @@ def refine(closing: Closing, root: Root, polish: Polish | None = None) -> Refine
             break
         root, step = fine.root, step * max(0.8 / sqrt(excess), 0.2)
     strayed, lost = _abrupt(closing.line, fine, closing.water.level)
-    return Refined(fine, depth_error + strayed, tension_error + lost)
+    lift, pull = _errors_at_the_end(coarse, fine)
+    return Refined(fine, depth_error + strayed, tension_error + lost, lift + lost, pull + lost)
 
 
 def _errors(line: Line, coarse: Closed, fine: Closed) -> tuple[float, float, float]:
     """Error of the finer shape: of depths and offsets [m], of tensions [N] and relative.
 
-    From the nodes both have: those above the touchdown, where there is one.
+    From the nodes both have: all but those around the touchdown, where there is one.
     """
     pieces, clamps = coarse.trace.piece[: coarse.hanging], coarse.trace.clamp[: coarse.hanging]
     halves = np.where(line.flexible[pieces] & (clamps < 0), 2, 1)
@@ -89,15 +93,31 @@ def _errors(line: Line, coarse: Closed, fine: Closed) -> tuple[float, float, flo
         same = same[:-1]
     same = same[same <= fine.hanging]
     position, force = nodes_of(fine.trace)
-    before, pulled = (array[: len(same)] for array in nodes_of(coarse.trace))
+    before, pulled = nodes_of(coarse.trace)
+    place = float(np.abs(before[: len(same)] - position[same]).max()) / 3.0
+    there = np.arange(len(same))
+    lying = len(before) - 1 - coarse.hanging
+    if coarse.end.landed and lying == len(position) - 1 - fine.hanging:
+        there = np.concatenate([there, np.arange(coarse.hanging + 1, len(before))])
+        same = np.concatenate([same, np.arange(fine.hanging + 1, len(position))])
     tension = np.linalg.norm(force[same], axis=1)
-    change = np.abs(np.linalg.norm(pulled, axis=1) - tension) / 3.0
+    change = np.abs(np.linalg.norm(pulled[there], axis=1) - tension) / 3.0
     floor = 1e-3 * float(tension.max())
     return (
-        float(np.abs(before - position[same]).max()) / 3.0,
+        place,
         float(change.max()),
         float((change / np.maximum(tension, max(floor, 1e-300))).max()),
     )
+
+
+def _errors_at_the_end(coarse: Closed, fine: Closed) -> tuple[float, float]:
+    """Error of the upward and of the horizontal force at the end of the finer shape [N].
+
+    A third of the change is their error where the shape is smooth; a little more is stated, as
+    these are two figures and no worst of many.
+    """
+    change = (coarse.trace.force[-1] - fine.trace.force[-1]) / 2.5
+    return abs(float(change[2])), float(np.hypot(change[0], change[1]))
 
 
 def _abrupt(line: Line, fine: Closed, levels: Floats) -> tuple[float, float]:
