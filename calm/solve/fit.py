@@ -34,8 +34,9 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
         clamped on the piece sits too low, or too little holds the line up; ``slack`` where the
         line would fold.
     """
-    refuse_unsupported(line, water.still())
-    still, goal = Profile(water.still()), line.anchor_height - water.depth
+    still_water = water.still()
+    refuse_unsupported(line, still_water, standing_lift(line, still_water))
+    still, goal = Profile(still_water), line.anchor_height - water.depth
     room = water.depth - line.anchor_height - top_depth
 
     def miss(length: float) -> float:

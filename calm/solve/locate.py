@@ -12,7 +12,7 @@ import numpy as np
 from calm.physics.hull import AWASH
 from calm.physics.profile import Profile
 from calm.solve.closing import Closing, Root
-from calm.solve.standing import standing_length, standing_lift
+from calm.solve.standing import standing_length
 from calm.solve.status import Status
 from calm.solve.unknown import Afloat, Unknown
 
@@ -64,7 +64,7 @@ def locate(closing: Closing, lands: bool) -> tuple[Root, Root | None]:
 
 def upright_depth(closing: Closing, unknown: Unknown) -> float:
     """Depth of the free end of the line standing in still water, with its stretch [m]."""
-    return max(-standing_length(closing.line, closing.water) - unknown.goal, 0.0)
+    return max(-standing_length(closing.line, closing.lift) - unknown.goal, 0.0)
 
 
 def _below_surface(
@@ -140,8 +140,8 @@ def _growth(closing: Closing, depth: float) -> float:
 
     A current that only weakens does not grow; one that turns does, by what is new in it.
     """
-    levels = closing.water.level
-    current, _ = closing.water.at(levels)
+    water, levels = closing.water, closing.water.level
+    current = np.column_stack([water.u, water.v, water.w])
     upper, lower = current[:-1], current[1:]
     square = np.maximum(np.sum(upper**2, axis=1), 1e-300)
     left = np.clip(np.sum(upper * lower, axis=1) / square, 0.0, 1.0)
@@ -154,7 +154,7 @@ def _growth(closing: Closing, depth: float) -> float:
 def _largest_fall(closing: Closing, unknown: Unknown, depth: float) -> float:
     """Knockdown if the greatest current ran at every level [m]."""
     water = closing.water
-    current, _ = water.at(water.level)
+    current = np.column_stack([water.u, water.v, water.w])
     greatest = current[int(np.argmax(np.linalg.norm(current, axis=1)))]
     u, v, w = (np.full(len(water.level), component) for component in greatest)
     even = Profile(replace(water, u=u, v=v, w=w))
@@ -246,6 +246,6 @@ def _slack_at_rest(closing: Closing, unknown: Unknown) -> bool:
     """In still water: whether the line stands too deep however little buoyancy is used."""
     piece = unknown.afloat
     assert piece is not None
-    spare = float(np.cumsum(standing_lift(closing.line, closing.water))[piece:].min())
+    spare = float(np.cumsum(closing.lift)[piece:].min())
     least = 1.0 - spare / float(closing.line.buoyancy[piece])
     return closing.coarse_miss(unknown)(min(max(least, 0.0) * (1.0 + 1e-9) + 1e-9, 1.0)) < 0.0

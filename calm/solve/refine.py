@@ -20,7 +20,7 @@ import numpy as np
 from calm.physics.line import Floats, Line
 from calm.physics.march import Cuts
 from calm.solve.closing import Closed, Closing, Root
-from calm.solve.solution import nodes_of
+from calm.solve.solution import nodes_of, sizes
 
 DEPTH_TARGET = 4e-5
 TENSION_TARGET = 1.6e-4
@@ -100,8 +100,8 @@ def _errors(line: Line, coarse: Closed, fine: Closed) -> tuple[float, float, flo
     if coarse.end.landed and lying == len(position) - 1 - fine.hanging:
         there = np.concatenate([there, np.arange(coarse.hanging + 1, len(before))])
         same = np.concatenate([same, np.arange(fine.hanging + 1, len(position))])
-    tension = np.linalg.norm(force[same], axis=1)
-    change = np.abs(np.linalg.norm(pulled[there], axis=1) - tension) / 3.0
+    tension = sizes(force[same])
+    change = np.abs(sizes(pulled[there]) - tension) / 3.0
     floor = 1e-3 * float(tension.max())
     return (
         place,
@@ -144,7 +144,7 @@ def _abrupt(line: Line, fine: Closed, levels: Floats) -> tuple[float, float]:
     def excess(nodes: Floats) -> Floats:
         slope = np.diff(np.diff(nodes, axis=0) / length[:, None], axis=0) / apart[:, None]
         bend = np.diff(slope, axis=0) * length[1:-1, None] ** 2 / 8.0
-        size = np.linalg.norm(bend, axis=1)
+        size = sizes(bend)
         around = np.pad(np.where(between, size, -1.0), 2, constant_values=-1.0)
         usual = np.maximum(around[:-4], around[4:])
         abrupt = between & (usual >= 0.0) & (size > usual)
@@ -154,7 +154,7 @@ def _abrupt(line: Line, fine: Closed, levels: Floats) -> tuple[float, float]:
 
     # what a force adds to the tension there, and where the line hangs from in the end
     lost = excess(force)
-    tension = np.linalg.norm(force[1:], axis=1, keepdims=True)
+    tension = sizes(force[1:])[:, None]
     axis = np.divide(force[1:], tension, out=np.zeros_like(force[1:]), where=tension > 0.0)
     along = np.maximum(np.abs((lost * axis[1:-1]).sum(axis=1)), np.abs(lost @ axis[-1]))
-    return float(np.linalg.norm(excess(position), axis=1).max()), float(along.max())
+    return float(sizes(excess(position)).max()), float(along.max())

@@ -132,6 +132,12 @@ class Solution:
         return int(self.element_piece[max(node - 1, 0)])
 
 
+def sizes(vectors: Floats) -> Floats:
+    """(n,) lengths of vectors (n, 3)."""
+    lengths: Floats = np.sqrt(np.einsum("ij,ij->i", vectors, vectors))
+    return lengths
+
+
 def nodes_of(trace: Trace) -> tuple[Floats, Floats]:
     """Positions relative to the line's end, heights absolute, and forces, (k+1, 3) each."""
     position = trace.position.copy()

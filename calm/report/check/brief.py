@@ -84,8 +84,10 @@ def _accepted(assessment: Assessment) -> Iterator[Span]:
         why = f"{accept.reason}{f' ({by})' if by else ''}.{ends}"
         reasons.setdefault((finding.rule, why), []).append(finding.component or "the line")
     for (rule, why), labels in reasons.items():
-        sign = SIGNS[State.ACCEPTED]
-        yield Span(f"{sign} {rule} of {', '.join(labels)} is accepted: {why}", quiet=True)
+        named = ", ".join(labels[:_NAMED])
+        if len(labels) > _NAMED:
+            named += f" and {len(labels) - _NAMED} more"
+        yield Span(f"{SIGNS[State.ACCEPTED]} {rule} of {named} is accepted: {why}", quiet=True)
 
 
 def _departing(assessment: Assessment) -> Iterator[Span]:
