@@ -169,6 +169,7 @@ ACTIONS: tuple[Action, ...] = (
         "Changes that mend what was found, or meet a target; shown before they are taken.",
         10,
     ),
+    Action("anywhere", "compare", "D", "compare", "What has changed since the file was saved."),
     Action("anywhere", "search", "slash", "catalogue", "Search the catalogue."),
     Action("anywhere", "define", "o", "own component", "Define a component of one's own."),
     Action("anywhere", "picture('elevation')", "1", "elevation", "The line seen from the side."),

@@ -14,6 +14,7 @@ from calm.tui.catalogue.pane import CataloguePane
 from calm.tui.line.advising import Advising
 from calm.tui.line.body import LineBody
 from calm.tui.line.cell_editor import CellEditor
+from calm.tui.line.comparing import Comparing
 from calm.tui.pictures import Picture, Tab
 from calm.tui.screen import DraftScreen
 from calm.tui.workspace import Workspace
@@ -114,6 +115,10 @@ class BuilderScreen(DraftScreen):
     def action_advise(self) -> None:
         """Offer changes that mend what was found."""
         Advising(self.app, self.body.line).offer()
+
+    def action_compare(self) -> None:
+        """Show what has changed since the file was saved."""
+        Comparing(self.app, self.body.line).with_saved()
 
     def action_search(self) -> None:
         """Search the catalogue for a piece below."""
