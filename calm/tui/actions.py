@@ -169,6 +169,7 @@ ACTIONS: tuple[Action, ...] = (
         "Changes that mend what was found, or meet a target; shown before they are taken.",
         10,
     ),
+    Action("anywhere", "compare", "D", "compare", "What has changed since the file was saved."),
     Action("anywhere", "search", "slash", "catalogue", "Search the catalogue."),
     Action("anywhere", "define", "o", "own component", "Define a component of one's own."),
     Action("anywhere", "picture('elevation')", "1", "elevation", "The line seen from the side."),
@@ -290,6 +291,8 @@ ACTIONS: tuple[Action, ...] = (
     Action("text", "next_problem", "f8", "next mistake", "To the next mistake.", 2),
     Action("text", "back", "escape", "to the line", "To the line, once the text can be read.", 0),
     Action("text", "app.help", "f1", "help", "All keys.", 3),
+    Action("area", "end(-1)", "ctrl+home", "top", "To the beginning of the text.", palette=False),
+    Action("area", "end(1)", "ctrl+end", "bottom", "To the end of the text.", palette=False),
     Action("area", "indent", "tab", "indent", "Blanks to the next even column.", palette=False),
     # a component of one's own
     Action("form", "accept", "ctrl+s", "keep it", "Write the component into the file.", 0),

@@ -35,6 +35,10 @@ class YamlArea(TextArea):
         _, column = self.cursor_location
         self.insert(" " * (_INDENT - column % _INDENT))
 
+    def action_end(self, way: int) -> None:
+        """To the beginning or the end of the text."""
+        self.move_cursor(self.document.end if way > 0 else (0, 0))
+
     def undo(self) -> None:
         """Take back what was typed last."""
         super().undo()
@@ -64,9 +68,9 @@ class TextPart(Vertical):
     }
     """
 
-    def __init__(self, workspace: Workspace) -> None:
+    def __init__(self, workspace: Workspace, line: int) -> None:
         super().__init__()
-        self.workspace, self.session = workspace, workspace.session
+        self.workspace, self.session, self._line = workspace, workspace.session, line
         self._problems: tuple[Problem, ...] = ()
         self._next = 0
         self._begun = self.session.draft.text
@@ -79,9 +83,11 @@ class TextPart(Vertical):
             yield Static(id="mistakes-text")
 
     def on_mount(self) -> None:
-        """The cursor to the first mistake."""
+        """The cursor to the first mistake, or to the line where to begin."""
         self.show_view()
         self.text_area.focus()
+        last = self.text_area.document.line_count - 1
+        self.text_area.move_cursor((min(_row(self.session.draft.text, self._line), last), 0))
         if self._here:
             self.next_problem()
 
@@ -168,12 +174,12 @@ class TextPart(Vertical):
 
 
 class TextScreen(DraftScreen):
-    """The text of the file, over the whole screen."""
+    """The text of the file over the whole screen, the cursor on a line of it, counted from 1."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("text")]
 
-    def __init__(self, workspace: Workspace) -> None:
-        self.text = TextPart(workspace)
+    def __init__(self, workspace: Workspace, line: int = 1) -> None:
+        self.text = TextPart(workspace, line)
         super().__init__(workspace, self.text, self.text)
 
     def on_mount(self) -> None:

@@ -7,6 +7,7 @@ from calm.errors import UsageError
 from calm.files import Catalogue
 from calm.files.editing import Draft
 from calm.tui.advice import differences, offers, sized
+from calm.tui.line.comparing import changed_lines
 from calm.tui.live import judge, judge_fully
 from tests.tui.conftest import MOORING
 
@@ -126,3 +127,32 @@ def test_advice_is_shown_and_taken_by_key(drive, folder):
         assert driver.text == before
 
     drive(story, path)
+
+
+def test_what_changed_since_the_file_was_saved(drive, folder):
+    path = folder / "light.yaml"
+    path.write_text(LIGHT, encoding="utf-8")
+
+    async def story(driver):
+        await driver.press("D")
+        assert "Nothing has changed" in driver.screen
+        await driver.press("down", "l")
+        await driver.type("50")
+        await driver.press("enter")
+        await driver.settle()
+        await driver.press("D")
+        await driver.settle()
+        assert "Since it was saved" in driver.screen
+        assert "-    length: 60 m" in driver.screen and "+    length: 50 m" in driver.screen
+        assert "top 39" in driver.screen or "top 4" in driver.screen
+        await driver.press("b")
+        assert driver.table.has_focus
+
+    drive(story, path)
+
+
+def test_many_changed_lines_are_counted():
+    before = "\n".join(map(str, range(40)))
+    told = changed_lines(before, "")
+    assert len(told) == 25 and told[-1] == "and 16 lines more"
+    assert changed_lines(before, before) == []

@@ -14,6 +14,7 @@ from calm.tui.catalogue.pane import CataloguePane
 from calm.tui.line.advising import Advising
 from calm.tui.line.body import LineBody
 from calm.tui.line.cell_editor import CellEditor
+from calm.tui.line.comparing import Comparing
 from calm.tui.pictures import Picture, Tab
 from calm.tui.screen import DraftScreen
 from calm.tui.workspace import Workspace
@@ -115,6 +116,10 @@ class BuilderScreen(DraftScreen):
         """Offer changes that mend what was found."""
         Advising(self.app, self.body.line).offer()
 
+    def action_compare(self) -> None:
+        """Show what has changed since the file was saved."""
+        Comparing(self.app, self.body.line).with_saved()
+
     def action_search(self) -> None:
         """Search the catalogue for a piece below."""
         self.body.search("below")
@@ -140,10 +145,12 @@ class BuilderScreen(DraftScreen):
         self.app.push_screen(WaterScreen(self.workspace), self._back)
 
     def action_text(self) -> None:
-        """The file as text."""
+        """The file as text, at the piece under the cursor."""
         from calm.tui.text_screen import TextScreen
 
-        self.app.push_screen(TextScreen(self.workspace), self._back)
+        spot, items = self.body.line.table.spot, self.workspace.session.draft.items
+        line = items[spot.item].line if spot is not None and spot.item < len(items) else 1
+        self.app.push_screen(TextScreen(self.workspace, line), self._back)
 
     def _back(self, _: None) -> None:
         """Another screen may have changed the draft."""
