@@ -123,7 +123,7 @@ def _refuse_deep_below(closed: Closed, depth: float) -> None:
 
 def _grounded(piece: int, below: float) -> NoEquilibrium:
     return Status.GROUNDED.because(
-        f"The line would touch the seabed: piece {piece + 1} comes {below:.2f} m below it.", piece
+        f"The line would touch the seabed: {{piece}} comes {below:.2f} m below it.", piece
     )
 
 
@@ -145,7 +145,7 @@ def _refuse_out_of_the_water(solution: Solution) -> None:
     if height[highest] > margin + standing:
         piece = solution.piece_at(highest)
         raise Status.ABOVE_SURFACE.because(
-            f"The line would rise out of the water: piece {piece + 1} comes "
+            f"The line would rise out of the water: {{piece}} comes "
             f"{height[highest]:.2f} m above the surface.",
             piece,
         )

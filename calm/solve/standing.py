@@ -55,7 +55,7 @@ def refuse_unsupported(line: Line, water: Water, lift: Floats) -> None:
     if len(short):
         piece = first + int(short[0])
         raise Status.SLACK.because(
-            f"In still water the line is slack below piece {piece + 1}: {-above[piece]:.0f} N are "
+            f"In still water the line is slack below {{piece}}: {-above[piece]:.0f} N are "
             "lacking to hold up what is above.",
             piece,
         )
