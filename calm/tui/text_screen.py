@@ -68,9 +68,9 @@ class TextPart(Vertical):
     }
     """
 
-    def __init__(self, workspace: Workspace, line: int) -> None:
+    def __init__(self, workspace: Workspace) -> None:
         super().__init__()
-        self.workspace, self.session, self._line = workspace, workspace.session, line
+        self.workspace, self.session = workspace, workspace.session
         self._problems: tuple[Problem, ...] = ()
         self._next = 0
         self._begun = self.session.draft.text
@@ -83,11 +83,9 @@ class TextPart(Vertical):
             yield Static(id="mistakes-text")
 
     def on_mount(self) -> None:
-        """The cursor to the first mistake, or to the line where to begin."""
+        """The cursor to the first mistake."""
         self.show_view()
         self.text_area.focus()
-        last = self.text_area.document.line_count - 1
-        self.text_area.move_cursor((min(_row(self.session.draft.text, self._line), last), 0))
         if self._here:
             self.next_problem()
 
@@ -174,12 +172,12 @@ class TextPart(Vertical):
 
 
 class TextScreen(DraftScreen):
-    """The text of the file over the whole screen, the cursor on a line of it, counted from 1."""
+    """The text of the file over the whole screen."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("text")]
 
-    def __init__(self, workspace: Workspace, line: int = 1) -> None:
-        self.text = TextPart(workspace, line)
+    def __init__(self, workspace: Workspace) -> None:
+        self.text = TextPart(workspace)
         super().__init__(workspace, self.text, self.text)
 
     def on_mount(self) -> None:

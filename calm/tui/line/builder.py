@@ -145,12 +145,10 @@ class BuilderScreen(DraftScreen):
         self.app.push_screen(WaterScreen(self.workspace), self._back)
 
     def action_text(self) -> None:
-        """The file as text, at the piece under the cursor."""
+        """The file as text."""
         from calm.tui.text_screen import TextScreen
 
-        spot, items = self.body.line.table.spot, self.workspace.session.draft.items
-        line = items[spot.item].line if spot is not None and spot.item < len(items) else 1
-        self.app.push_screen(TextScreen(self.workspace, line), self._back)
+        self.app.push_screen(TextScreen(self.workspace), self._back)
 
     def _back(self, _: None) -> None:
         """Another screen may have changed the draft."""
