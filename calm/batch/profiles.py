@@ -153,7 +153,9 @@ class Batch:
         alone = np.zeros(count, np.bool_)
 
         def solve(block: slice) -> None:
-            mine = tuple(array if len(array) == 1 else array[block] for array in current)
+            depth, *others = current
+            levels = depth if len(depth) == 1 else depth[block]
+            mine = levels, *(array[block] for array in others)
             columns: Rows = rows[0][block], rows[1][block], rows[2][block]
             self._solve_block(mine, columns, status[block], alone[block])
 
