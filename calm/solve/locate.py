@@ -19,6 +19,9 @@ from calm.solve.unknown import Afloat, Unknown
 SCAN = 16
 """Depths tried between the upright line and its deepest conceivable knockdown where the current
 grows or turns with depth: the resolution at which separate equilibria are told apart."""
+NEAR = (0.02, 0.2)
+"""Shares of the first of these steps at which the miss is looked at, too: a line whose top is in a
+weak current may fall short there, and reach the anchor again where more current pulls it up."""
 DIP = 8
 """Depths tried to see whether the miss changes sign between three of those."""
 GOLDEN = 0.381966
@@ -83,8 +86,9 @@ def _below_surface(
         fall = _largest_fall(closing, unknown, top)
         if fall * growth > 0.25:
             last = min(depth + 1.02 * fall, deepest)
-            steps = np.linspace(depth, last, SCAN + 1)[1:].tolist()
-            samples += [(lower, miss(lower)) for lower in steps]
+            steps = np.linspace(0.0, last - depth, SCAN + 1)[1:]
+            near = [share * steps[0] for share in NEAR]
+            samples += [(depth + step, miss(depth + step)) for step in (*near, *steps.tolist())]
             if last < deepest:
                 samples.append((deepest, miss(deepest)))
             return _falls(miss, samples)
