@@ -22,7 +22,7 @@ from machine import describe
 
 import calm
 from calm.batch.profiles import Batch, Profiles
-from calm.batch.records.record import open_record
+from calm.batch.records.opening import open_record
 from calm.batch.run import BLOCK, run_batch
 from calm.batch.statuses import Ending
 

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 from pathlib import Path
 
 from calm.files.document import Document, read_document
 from calm.shipped import shipped_folder
+from calm.whole_file import put
 
 COMPILED = "compiled.json"
 
@@ -47,9 +47,7 @@ def compile_catalogue(folder: Path) -> str:
 def main() -> None:
     """Write the compiled form of the shipped catalogue."""
     target = shipped_folder("catalog") / COMPILED
-    temporary = target.with_suffix(".tmp")
-    temporary.write_text(compile_catalogue(target.parent), encoding="utf-8")
-    os.replace(temporary, target)
+    put(target, compile_catalogue(target.parent).encode())
 
 
 def _digests(files: list[Path]) -> dict[str, str]:

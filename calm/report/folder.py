@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from calm.errors import UsageError
+from calm.whole_file import beside
 
 REPORT_FILES = ("report.html", "report.pdf", "report.json", "checks.csv", "inventory.csv")
 """What a design check writes in the folder."""
@@ -51,24 +52,18 @@ def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
     UsageError
         The system refuses: which file, and why. No temporary file is left behind.
     """
-    parts = {name: folder / f".{name}-{os.getpid()}.part" for name in files}
     target, made = folder, not folder.exists()
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for name, content in files.items():
-            target = folder / name
-            if target.is_dir():
-                raise IsADirectoryError(None, "it is a folder")
-            parts[name].write_bytes(content)
-        for name in files:
-            target = folder / name
-            os.replace(parts[name], target)
+        with contextlib.ExitStack() as all_of_them:
+            for name, content in files.items():
+                target = folder / name
+                if target.is_dir():
+                    raise IsADirectoryError(None, "it is a folder")
+                all_of_them.enter_context(beside(target)).write_bytes(content)
     except OSError as error:
         raise UsageError(f"cannot write {target}: {error.strerror}") from None
     finally:
-        for part in parts.values():
-            with contextlib.suppress(OSError):
-                part.unlink()
         if made:
             with contextlib.suppress(OSError):
                 folder.rmdir()  # which the system does only where nothing was written

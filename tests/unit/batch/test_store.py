@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import zarr
+from calm.batch.store.chunks import packed, unpacked
 
 from calm.batch.dataset import layout_of
 from calm.batch.profiles import solve_profiles
-from calm.batch.store.chunks import packed, unpacked
 from calm.batch.store.identity import differences, identity_of, to_text
 from calm.batch.store.store import open_store
 from tests.unit.batch.made import MadeRecord, content, made_mooring

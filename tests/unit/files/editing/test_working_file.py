@@ -364,7 +364,7 @@ path = sys.argv[1]
 file = WorkingFile(path)
 file.save("#\\n" * 20_000)
 wait = random.Random(7)
-for _ in range(40):
+for turn in range(40):
     child = os.fork()
     number = 0
     while not child:
@@ -372,10 +372,12 @@ for _ in range(40):
         file.save(f"# {number}\\n" * 20_000)
         file.unsaved = f"# {number} and more\\n" * 20_000
         file.keep()
+    folder = os.path.dirname(path)
+    while turn == 39 and not any(name.endswith(".calm-autosave") for name in os.listdir(folder)):
+        time.sleep(0.01)  # a slow disk: one copy at least is there
     time.sleep(wait.uniform(0.0, 0.03))
     os.kill(child, signal.SIGKILL)
     os.waitpid(child, 0)
-    folder = os.path.dirname(path)
     kept = [name for name in os.listdir(folder) if name.endswith(".calm-autosave")]
     for written in (path, *(os.path.join(folder, name) for name in kept)):
         with open(written) as stream:
