@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import zlib
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
@@ -148,7 +149,7 @@ class Store:
         return self.work / str(number)
 
 
-_DAMAGED = (OSError, ValueError, RuntimeError, ArithmeticError)
+_DAMAGED = (OSError, ValueError, RuntimeError, zlib.error)
 """By which codecs leave."""
 
 
