@@ -153,7 +153,7 @@ def _complete(
     for _ in range(ATTEMPTS):
         if scheduler is None:
             if work.missing:
-                compile_kernel(work.batch, tell)
+                compile_kernel(work.batch, tell, work.record.count)
             work.here(workers)
         else:
             try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from datetime import date, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -34,6 +35,7 @@ def check(
     catalog: list[Path] | None = None,
     json: OutputPath = None,
     report: Path | None = None,
+    allow_unknown: bool = False,
     workers: int | None = None,
 ) -> ExitCode:
     """Check designs: solve every mooring in every environment, and judge it by rule.
@@ -41,7 +43,8 @@ def check(
     Each mooring is solved as given, in still water, and where its file asks for
     it at high and low water, with growth on its cables, and with cables that
     strum; then let go anchor last, released, and parted at each connection. The
-    exit code is 1 when a rule fails, 3 when a mooring has no equilibrium.
+    exit code is 0 when every finding is a pass, a warning or accepted, 1 when a
+    rule fails or lacks a figure, 3 when a mooring has no equilibrium.
 
     Parameters
     ----------
@@ -56,6 +59,8 @@ def check(
         Write every finding as JSON, - to print it.
     report
         Write report.html, report.pdf, report.json, checks.csv and inventory.csv in this folder.
+    allow_unknown
+        End with 0, too, where figures are unknown; what is shown and written stays the same.
     workers
         How many processes share the work; one on each core unless said.
     """
@@ -68,13 +73,14 @@ def check(
         _check_report(report, json, given)
     designs = read_designs(files, environment, catalog or [], workers)
     assessments = _assessed(designs, workers)
-    for design in designs:
-        for notice in dict.fromkeys(n for one in design.moorings for n in one.file.notices):
+    for design, assessment in zip(designs, assessments, strict=True):
+        of_files = (notice for one in design.moorings for notice in one.file.notices)
+        for notice in dict.fromkeys((*of_files, *assessment.notices)):
             narrate(f"{design.path}: {notice}")
     _show(assessments, outputs)
     if report is not None:
         _write(report, assessments, workers)
-    return gravest(code for each in assessments for code in _codes(each))
+    return gravest(_code(each, allow_unknown) for each in assessments)
 
 
 def _check_report(folder: Path, json: Path | None, given: Sequence[Path]) -> None:
@@ -94,26 +100,33 @@ def _check_report(folder: Path, json: Path | None, given: Sequence[Path]) -> Non
 
 
 def _assessed(designs: Sequence[Design], workers: int | None) -> list[Assessment]:
-    tasks = [(design.name, mooring) for design in designs for mooring in design.moorings]
+    """All of them on one day: that of the report, today where it has none."""
+    from calm.checks.situations import SOLVES
+    from calm.report.provenance import moment
+    from calm.solve import expect_many
+
+    day = (moment() or datetime.now()).date()
+    tasks = [(design.name, mooring, day) for design in designs for mooring in design.moorings]
+    expect_many(SOLVES * len(tasks))
     stands = iter(mapped(_stand, tasks, workers, "moorings solved"))
-    together = [(each.name, tuple(next(stands) for _ in each.moorings)) for each in designs]
+    together = [(each.name, tuple(next(stands) for _ in each.moorings), day) for each in designs]
     return mapped(_assess, together, workers, "moorings judged")
 
 
-def _stand(task: tuple[str, Mooring]) -> Stand:
+def _stand(task: tuple[str, Mooring, date]) -> Stand:
     """A mooring in an environment; CALM's own failure there does not stop the others."""
     from calm.checks.assess import failed_stand, stand_of
 
-    name, mooring = task
+    name, mooring, day = task
     try:
-        return stand_of(mooring, name)
+        return stand_of(mooring, name, day)
     except Exception as error:
         if os.environ.get("CALM_DEBUG") == "1":
             raise
         return failed_stand(mooring, name, internal_failure(error))
 
 
-def _assess(task: tuple[str, tuple[Stand, ...]]) -> Assessment:
+def _assess(task: tuple[str, tuple[Stand, ...], date]) -> Assessment:
     from calm.checks.assess import assessment_of
 
     return assessment_of(*task)
@@ -147,10 +160,10 @@ def _write(folder: Path, assessments: Sequence[Assessment], workers: int | None)
     narrate(f"the report is in {folder}")
 
 
-def _codes(assessment: Assessment) -> list[ExitCode]:
+def _code(assessment: Assessment, allow_unknown: bool) -> ExitCode:
     from calm.checks.finding import State
 
-    codes = [ExitCode.NO_EQUILIBRIUM for stand in assessment.stands if stand.result is None]
-    if any(finding.state is State.FAIL for finding in assessment.all_findings()):
-        codes.append(ExitCode.FINDING)
-    return codes
+    if any(stand.result is None for stand in assessment.stands):
+        return ExitCode.NO_EQUILIBRIUM
+    passes = {State.PASS, State.WARN} | ({State.UNKNOWN} if allow_unknown else set())
+    return ExitCode.DONE if assessment.state in passes else ExitCode.FINDING

@@ -13,7 +13,7 @@ class ExitCode(IntEnum):
     """What was asked is done."""
 
     FINDING = 1
-    """A check found something."""
+    """A check failed, or lacks a figure that it needs."""
 
     BAD_INPUT = 2
     """A file, an option or an output path cannot be used; nothing was solved."""

@@ -164,6 +164,17 @@ class Catalogue:
             raise InputError(problems)
         return found
 
+    def same_thing(self, id: str) -> list[str]:
+        """The ids that describe the thing an id does, the one to use first; the id alone if none.
+
+        Those are the id that it prefers and all that prefer the same.
+        """
+        preferred = {
+            each: entry.section.data.get("prefer") for each, entry in self._entries.items()
+        }
+        first = preferred.get(id) or id
+        return [first, *(each for each, other in preferred.items() if other == first)]
+
     def search(self, words: Iterable[str]) -> list[str]:
         """The ids whose definition (or family) holds every one of the words."""
         wanted = [word.casefold() for word in words]

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from pydantic import ValidationInfo
+from pydantic import ValidationInfo, model_validator
 
 from calm.files.fields import POSITIVE_FORCE, POSITIVE_LENGTH, TILT, Model, Quantity, Role, Text
 from calm.units import KILOGRAM_FORCE
@@ -34,7 +34,12 @@ DENSITY = Quantity("density", above=0)
 
 
 class Definition(Model):
-    """What every component may say, whatever its kind."""
+    """What every component may say, whatever its kind.
+
+    `source` is that of every figure but those for which `sources` names another, field by field.
+    `searched` are the fields that were looked for and that no source prints; `prefer` is the id of
+    the definition of the same thing that is to be used in place of this one.
+    """
 
     role: Role = "instrument"
     name: Text | None = None
@@ -43,6 +48,9 @@ class Definition(Model):
     material: Text | None = None
     note: Text | None = None
     source: Text | None = None
+    sources: dict[str, Text] | None = None
+    searched: tuple[str, ...] | None = None
+    prefer: Text | None = None
     date: Text | None = None
     depth_rating: Annotated[float | None, POSITIVE_LENGTH] = None
     working_load: Annotated[float | None, POSITIVE_FORCE] = None
@@ -50,6 +58,15 @@ class Definition(Model):
     max_tilt: Annotated[float | None, TILT] = None
     warn_tilt: Annotated[float | None, TILT] = None
     slack: Literal["allowed"] | None = None
+
+    @model_validator(mode="after")
+    def _works_below_breaking(self) -> Definition:
+        working, breaking = self.working_load, self.breaking_load
+        if working is not None and breaking is not None and working > breaking:
+            raise ValueError(
+                f"`working_load` is {working:g} N, above the `breaking_load` of {breaking:g} N"
+            )
+        return self
 
 
 def is_in_air(info: ValidationInfo) -> bool:

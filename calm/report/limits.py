@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
+from calm.case import Result
+from calm.checks.posture import meant_for_the_surface
 from calm.checks.strength import safety_factor
 
 if TYPE_CHECKING:
-    from calm.case import Result, TowResult
+    from calm.case import TowResult
+    from calm.case.columns import ComponentRow
     from calm.files import Component
 
 
@@ -30,14 +32,14 @@ def tilt_mark(component: Component, tilt: float) -> Mark:
     return Mark.NONE
 
 
-def safety_mark(result: Result | TowResult, component: Component, record: SimpleNamespace) -> Mark:
-    """Mark of a safety factor: the working load decides, the breaking load where that is unknown.
+def safety_mark(result: Result | TowResult, record: ComponentRow) -> Mark:
+    """Mark of a safety factor: too small, or the piece bears more than its working load.
 
     The factor asked on the breaking load is the file's `checks.safety_factor`, for a surface
-    mooring, for a synthetic cable, or for steel.
+    mooring, for a synthetic cable, or for steel. What is not known, NaN, is not marked.
     """
-    if record.utilisation == record.utilisation:  # NaN where no working load is known
-        return Mark.BEYOND if record.utilisation > 1.0 else Mark.NONE
-    factors = result.file.checks.safety_factor
-    limit = safety_factor(component, factors, result.type == "surface")
-    return Mark.BEYOND if record.safety_factor < limit else Mark.NONE
+    meant = isinstance(result, Result) and meant_for_the_surface(result)
+    surface = meant or result.type == "surface"
+    least = safety_factor(record.part.component, result.file.checks.safety_factor, surface)
+    beyond = record.safety_factor < least or record.utilisation > 1.0
+    return Mark.BEYOND if beyond else Mark.NONE

@@ -20,6 +20,7 @@ LOOKS = {
     State.FAIL: Look("!", "FAIL", "bold red"),
     State.WARN: Look("~", "warning", "yellow"),
     State.UNKNOWN: Look("?", "unknown", "dim"),
+    State.ACCEPTED: Look("·", "accepted", "dim"),
     State.PASS: Look("✓", "pass", "green"),
 }
 """As in the reports of the design check."""

@@ -58,10 +58,13 @@ def _judged(findings: tuple[Finding, ...]) -> Saying:
         for each, word in ((State.FAIL, "failure"), (State.WARN, "warning"))
         if counts[each]
     ]
-    unknown = f", {counts[State.UNKNOWN]} figures unknown" if counts[State.UNKNOWN] else ""
-    if state in (State.UNKNOWN, State.PASS):
-        return Saying(f"passes{unknown or ' every check'}", state=State.PASS)
-    return Saying(", ".join(told) + unknown, state=state)
+    missing = counts[State.UNKNOWN]
+    unknown = f"{missing} figure{'s' * (missing != 1)} unknown"
+    if state is State.UNKNOWN:
+        return Saying(f"nothing fails, {unknown}", state=state)
+    if not told:
+        return Saying("passes every check", state=State.PASS)
+    return Saying(", ".join([*told, *([unknown] if missing else [])]), state=state)
 
 
 def sayings(view: View | None) -> Iterator[Saying]:

@@ -26,11 +26,11 @@ def findings(done, **wanted):
 
 def test_what_a_person_reads(calm, write_mooring):
     done = calm("check", write_mooring())
-    assert done.code == 0
+    assert done.code == 1
     assert done.err == ""
     lines = done.out.splitlines()
     assert lines[0].split() == ["mooring", "own", "launch,", "recovery,", "breaks"]
-    assert lines[1].split()[:2] == ["Test", "pass,"]
+    assert lines[1].split()[:2] == ["Test", "unknown"]
     assert "There is no release in the line" in done.out
     assert "? strength of top float, weight is unknown. Give its `working_load`" in done.out
     assert "A static calculation does not see waves" in done.out
@@ -127,8 +127,37 @@ components:
     )
     done = calm("check", "sound.yaml", "--json", "-")
     assert done.code == 0
+    assert json.loads(done.out)["state"] == "pass"
     assert {finding["state"] for finding in findings(done)} == {"pass"}
     assert len({finding["rule"] for finding in findings(done)}) == 11
+
+
+def test_what_is_unknown_ends_with_1_unless_it_is_allowed(calm, write_mooring, heavy):
+    file = write_mooring()
+    done = calm("check", file, "--json", "-")
+    assert (done.code, json.loads(done.out)["state"]) == (1, "unknown")
+    allowed = calm("check", file, "--json", "-", "--allow-unknown")
+    assert (allowed.code, allowed.out) == (0, done.out)  # it changes the exit code only
+    # a failure stays 1, and no equilibrium 3
+    strict = file_with(file, "strict.yaml", "checks: {maximum_knockdown: 1 mm}\n")
+    failed = calm("check", strict, "--json", "-", "--allow-unknown")
+    assert (failed.code, json.loads(failed.out)["state"]) == (1, "fail")
+    for words in ((heavy,), (heavy, file), (heavy, strict)):
+        assert calm("check", *words, "--allow-unknown").code == 3
+
+
+def test_an_unknown_ranks_above_a_pass_in_every_table(calm, write_mooring):
+    lines = [line.split() for line in calm("check", write_mooring()).out.splitlines()]
+    assert lines[1][:2] == ["Test", "unknown"]
+    states = {line[0]: line[1] for line in lines if len(line) > 2}
+    # of the strength of three pieces one is known, and passes
+    assert states["strength"] == "unknown" and states["anchor-weight"] == "pass"
+
+
+def file_with(file, name, addition):
+    with open(file, encoding="utf-8") as read, open(name, "w", encoding="utf-8") as written:
+        written.write(read.read() + addition)
+    return name
 
 
 def test_a_tow_is_refused(calm, folder):
@@ -165,7 +194,7 @@ def test_bad_input_is_told_and_nothing_is_solved(calm, write_mooring, storm, bro
 
 def test_a_report_is_a_folder_of_five_files_the_same_every_time(calm, write_mooring, folder, storm):
     words = ("check", write_mooring(), "--environment", storm)
-    first = calm(*words, "--report", "first")
+    first = calm(*words, "--report", "first", "--allow-unknown")
     assert first.code == 0
     assert "the report is in first" in first.err
     again = calm(*words, "--report", "deep/er", "--workers", "2", "--json", "-")
@@ -206,10 +235,10 @@ def test_a_failure_of_calm_itself_does_not_stop_the_rest(calm, write_mooring, mo
 
     stand_of = assess.stand_of
 
-    def failing(mooring, name):
+    def failing(mooring, name, day):
         if name == "Two":
             raise ValueError("a bug")
-        return stand_of(mooring, name)
+        return stand_of(mooring, name, day)
 
     monkeypatch.setattr(assess, "stand_of", failing)
     files = write_mooring("one.yaml", name="One"), write_mooring("two.yaml", name="Two")

@@ -18,7 +18,7 @@ from calm.physics.hull import Floating
 from calm.physics.line import Floats, Line, Water
 from calm.physics.profile import Profile
 from calm.physics.state import MarchError
-from calm.physics.track import Cable, Load, Rod, Stage, Track, head_count
+from calm.physics.track import Cable, Load, Part, Rod, Track, head_count
 from calm.solve.closing import Closing
 from calm.solve.locate import SHARES, upright_depth
 from calm.solve.mooring import BARELY_LANDED
@@ -145,7 +145,7 @@ def _simple(line: Line) -> bool:
     )
 
 
-def _loads(stage: Stage) -> tuple[Load, ...]:
+def _loads(stage: Part) -> tuple[Load, ...]:
     if isinstance(stage, Cable):
         return ()
     return stage.loads if isinstance(stage, Rod) else (stage,)

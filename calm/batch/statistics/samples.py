@@ -68,15 +68,21 @@ def peaks_over(
     if len(over) < 2:
         return np.asarray(values[over], np.float64)
     intervals = np.maximum(np.rint(np.diff(time[over]) / step), 1.0)
-    clusters = ceil(_extremal_index(intervals) * len(over))
+    clusters = ceil(extremal_index(intervals) * len(over))
     longest = np.sort(intervals)[::-1]
     apart = longest[clusters - 1] if clusters <= len(longest) else 1.0
     starts = np.concatenate([[0], 1 + np.flatnonzero(intervals > apart)])
     return np.maximum.reduceat(np.asarray(values[over], np.float64), starts)
 
 
-def _extremal_index(intervals: NDArray[np.float64]) -> float:
-    """θ, the share of exceedances that are independent of those before them."""
+def extremal_index(intervals: NDArray[np.float64]) -> float:
+    """θ, the share of exceedances that are independent of those before them.
+
+    Parameters
+    ----------
+    intervals : (N - 1,) between exceedances [steps], each 1 or more; the form of the estimate
+        changes where one of them is beyond 2
+    """
     one, two = (1.0, 2.0) if intervals.max() > 2.0 else (0.0, 0.0)
     below = float(((intervals - one) * (intervals - two)).sum())
     estimate = 2.0 * float((intervals - one).sum()) ** 2 / (len(intervals) * below)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from calm.checks.posture import meant_for_the_surface
 from calm.checks.strength import allowable_load
 from calm.quantities import QUANTITIES
 from calm.report.drawing import SEABED_COLOUR, WATER_COLOUR, along, mark_parts
@@ -126,7 +127,7 @@ def _draw_tension(axes: Axes, solved: Solved) -> None:
         axes.plot(result.shape.tension, _distance(result), **_style(number))
     _, first = solved[0]
     ends = np.concatenate([[0.0], np.cumsum(first.components.length[:-1])])
-    factors, surface = first.file.checks.safety_factor, first.type == "surface"
+    factors, surface = first.file.checks.safety_factor, meant_for_the_surface(first)
     loads = [
         allowable_load(piece.component, factors, surface) or np.nan
         for piece in first.file.pieces[:-1]

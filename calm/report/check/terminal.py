@@ -28,7 +28,13 @@ from calm.report.terminal import WARNED, plain_table
 if TYPE_CHECKING:
     from calm.checks.assessment import Assessment
 
-STYLES = {State.PASS: "green", State.UNKNOWN: "", State.WARN: "yellow", State.FAIL: WARNED}
+STYLES = {
+    State.PASS: "green",
+    State.ACCEPTED: "",
+    State.WARN: "yellow",
+    State.UNKNOWN: "bold",
+    State.FAIL: WARNED,
+}
 """How a state looks; its word tells it without colour."""
 
 _SIGNS = {State.FAIL: "!", State.WARN: "~", State.UNKNOWN: "?"}

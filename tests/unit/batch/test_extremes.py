@@ -10,7 +10,12 @@ from calm.batch.statistics.extremes import (
     Refusal,
     return_levels,
 )
-from calm.batch.statistics.samples import annual_maxima, median_step, peaks_over
+from calm.batch.statistics.samples import (
+    annual_maxima,
+    extremal_index,
+    median_step,
+    peaks_over,
+)
 
 HOUR, DAY = np.timedelta64(3600, "s"), np.timedelta64(86400, "s")
 
@@ -90,6 +95,36 @@ def test_neighbours_in_time_are_one_cluster():
     # with one of 103 between, θ = 2·102²/(7·102·101) = 0.29: 3 clusters of 8
     longer = np.concatenate([values, np.zeros(100), values])
     assert peaks_over(times(len(longer)), longer, 1.0, HOUR).tolist() == [4.0, 4.0]
+
+
+@pytest.mark.parametrize(
+    ("at", "peaks"),
+    [
+        # intervals 2 2 2, none beyond 2: θ = 2·6²/(3·12) = 2, at most 1, and every peak is its own
+        ([0, 2, 4, 6], [2.0, 3.0, 4.0, 5.0]),
+        # intervals 1 2 1: θ = 2·4²/(3·6) = 1.8, at most 1; what follows at once stays together
+        ([0, 1, 3, 4], [3.0, 5.0]),
+        # intervals 1 1 3, one beyond 2: θ = 2·2²/(3·2) = 1.3, at most 1
+        ([0, 1, 2, 5], [4.0, 5.0]),
+    ],
+)
+def test_the_index_changes_its_form_beyond_an_interval_of_two(at, peaks):
+    values = np.zeros(10)
+    values[at] = 2.0, 3.0, 4.0, 5.0
+    assert peaks_over(times(10), values, 1.0, HOUR).tolist() == peaks
+
+
+@pytest.mark.parametrize(
+    ("intervals", "index"),
+    [
+        # 2 (ΣT)²/((N-1) ΣT²) as long as no interval is beyond 2: 2·22²/(21·24)
+        ([1.0] * 20 + [2.0], 2.0 * 22.0**2 / (21.0 * 24.0)),
+        # 2 (Σ(T-1))²/((N-1) Σ(T-1)(T-2)) from 3 on: 2·2²/(21·2)
+        ([1.0] * 20 + [3.0], 2.0 * 2.0**2 / (21.0 * 2.0)),
+    ],
+)
+def test_the_extremal_index_on_both_sides_of_its_boundary(intervals, index):
+    assert extremal_index(np.array(intervals)) == pytest.approx(min(index, 1.0))
 
 
 def test_what_is_independent_is_not_gathered():

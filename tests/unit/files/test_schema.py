@@ -51,7 +51,13 @@ environments:
   storm: {current: {columns: [depth m, u m/s, v m/s, w m/s], rows: [[0, 1, 0, 0.01]]}}
   record: {current: {file: current.csv, time: "2026-03-01T06:00"}}
 solver: {angle_step: 1 deg, tolerance: 1e-7, drag: reynolds, buoy_drag: full}
-checks: {safety_factor: {steel: 3}, minimum_tension: {wire: 50 kgf}, maximum_tilt: 30 deg}
+checks:
+  safety_factor: {steel: 3}
+  minimum_tension: {wire: 50 kgf}
+  maximum_tilt: 30 deg
+  accept:
+    - {rule: tilt, component: "?*", reason: x, by: me, date: "2026-11-22", until: "2027-11-22"}
+    - {rule: strength, reason: 5}
 """
 
 TOWED = """\
