@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from calm.assemble import with_axial_clamps
 from calm.errors import NoEquilibrium
 from calm.physics.line import Floats, Line
 from calm.physics.track import head_count
@@ -72,7 +73,7 @@ def launch_of(mooring: Mooring, result: Result) -> Launch:
     NoEquilibrium
         As `solve_fall`.
     """
-    whole = mooring.line
+    whole = with_axial_clamps(mooring.line, mooring.file.pieces[:-1])
     count = len(whole.length)
     first = head_count(whole) if result.type == "surface" else 0
     line, kt = part_of(whole, first, count), mooring.file.anchor.kt

@@ -71,7 +71,9 @@ def check(
     if report is not None:
         given = [*files, *map(Path, environment or ()), *(catalog or ())]
         _check_report(report, json, given)
-    designs = read_designs(files, environment, catalog or [], workers)
+    designs, tows = read_designs(files, environment, catalog or [], workers)
+    if tows:
+        narrate(f"not checked, since towed: {', '.join(map(str, tows))}")
     assessments = _assessed(designs, workers)
     for design, assessment in zip(designs, assessments, strict=True):
         of_files = (notice for one in design.moorings for notice in one.file.notices)

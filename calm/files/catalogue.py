@@ -20,6 +20,7 @@ from calm.files.document import Document, read_document
 from calm.files.explain import nearest, shown, unknown, validate
 from calm.files.section import Section
 from calm.files.unchanged import Unchanged
+from calm.shipped import shipped_folder
 
 FAMILY_ROLES = {
     "floats": "float",
@@ -73,8 +74,6 @@ class Catalogue:
         InputError
             A catalogue of the user cannot be read.
         """
-        from calm.files.compile_catalogue import shipped_files
-
         folder = user_folder()
         own = sorted(folder.glob("*.yaml")) if folder.is_dir() else []
         given = [Path(path) for path in files]
@@ -88,15 +87,13 @@ class Catalogue:
                 raise InputError(problems)
             return cls((*levels, *cls.shipped().levels))
 
-        return _LOADED.of([*given, *own, *shipped_files()], read)
+        return _LOADED.of([*given, *own, *_shipped_files()], read)
 
     @classmethod
     def shipped(cls) -> Catalogue:
         """The catalogue that comes with CALM."""
-        from calm.files.compile_catalogue import shipped_documents
-
         problems: list[Problem] = []
-        level = _level(shipped_documents(), problems)
+        level = _read_level(_shipped_files(), problems)
         if problems:
             raise InputError(problems)
         return cls((level,))
@@ -186,6 +183,10 @@ class Catalogue:
 
 
 _LOADED: Unchanged[Catalogue] = Unchanged()
+
+
+def _shipped_files() -> list[Path]:
+    return sorted(shipped_folder("catalog").glob("*.yaml"))
 
 
 def user_folder() -> Path:

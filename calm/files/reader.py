@@ -13,13 +13,13 @@ from calm.files.accept import read_accepts
 from calm.files.catalogue import Catalogue
 from calm.files.checks import Checks
 from calm.files.components import Anchor
-from calm.files.document import document_of, read_document
-from calm.files.environment import read_environment
+from calm.files.document import compose, read_document
+from calm.files.environment import Position, read_environment
 from calm.files.explain import validate
 from calm.files.fields import Model, Text
 from calm.files.labels import numbered
 from calm.files.line import LineReader
-from calm.files.mooring import MooringFile, Piece, Place, Position, Solver, TowKeys
+from calm.files.mooring import MooringFile, Piece, Place, Solver, TowKeys
 from calm.files.section import Section
 from calm.files.variants import choose_environment
 from calm.units import QuantityError
@@ -82,7 +82,7 @@ def read_mooring(
     problems: list[Problem] = []
     notices: list[str] = []
     catalogue = Catalogue.load(catalogs)
-    document = read_document(Path(path)) if text is None else document_of(str(path), text)
+    document = read_document(Path(path)) if text is None else compose(str(path), text)
     top = Section.of(document, (), document.data)
     towed = "tow" in top.data
     keys = validate(MooringKeys, top, problems, context={"towed": towed})

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 
 UNSEEN = (
     "A static calculation does not see waves and the tensions they cause; snap loads on a line "
-    "that falls slack; fatigue, by waves and by vortices; creep, corrosion and wear.",
+    "that falls slack; fatigue, by waves and by vortices; creep, corrosion and wear; the jerk at "
+    "the end of the launch and the swing of the line before it; hauling and lifts on recovery.",
     "No margin in this report covers them. They decide the life of surface moorings in harsh "
     "weather, and no factor on a static tension replaces looking at them.",
 )

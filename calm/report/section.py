@@ -12,6 +12,7 @@ from calm.checks.finding import State
 
 if TYPE_CHECKING:
     from calm.checks.finding import Finding
+    from calm.files.checks import LimitKey
 
 ON_THE_WAY = "launch, recovery, breaks"
 """The column of a summary for what is judged of a mooring outside its environments."""
@@ -121,12 +122,17 @@ class Section:
     parts : what is printed
     columns : the environments and what else was judged, in order; none of a single result
     worst : for each column and rule that applies there
+    findings, accepted : of a design check; what of it is accepted
+    limits : by which it is judged
     """
 
     name: str
     parts: tuple[Part, ...]
     columns: tuple[str, ...] = ()
     worst: tuple[Worst, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    accepted: tuple[Finding, ...] = ()
+    limits: tuple[LimitKey, ...] = ()
 
 
 @dataclass(frozen=True)

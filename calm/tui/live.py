@@ -22,7 +22,7 @@ from calm.checks.finding import AS_GIVEN, Finding, State
 from calm.checks.lacking import lacking
 from calm.errors import InputError, NoEquilibrium, Problem, internal_failure
 from calm.files import MooringFile, Piece, Place, read_mooring
-from calm.files.document import Document, document_of
+from calm.files.document import Document, compose
 from calm.files.editing import Draft, Item
 from calm.files.reader import STAND_IN
 
@@ -178,7 +178,7 @@ def judge_fully(view: View) -> View:
 
 def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
     try:
-        document = document_of(str(view.path), view.text)
+        document = compose(str(view.path), view.text)
     except InputError as error:
         return _wrong(view, error.problems)
     view = replace(view, environments=_variants(document))

@@ -12,6 +12,7 @@ from rich.text import Text
 
 from calm.checks.assess import OWN
 from calm.checks.finding import AS_GIVEN, Finding, State
+from calm.checks.limits import said
 from calm.checks.rules import RULES
 from calm.report.check.summary import (
     abreast,
@@ -21,6 +22,7 @@ from calm.report.check.summary import (
     unknown_count,
     worst_by_part,
 )
+from calm.report.check.verdict import SIGNS, verdict_of
 from calm.report.result_tables import UNSEEN
 from calm.report.section import ON_THE_WAY
 from calm.report.terminal import WARNED, plain_table
@@ -41,7 +43,6 @@ _SIGNS = {State.FAIL: "!", State.WARN: "~", State.UNKNOWN: "?"}
 _TOLD = 12
 """So many failures, or warnings, are told of a mooring; a report has them all."""
 _NAMED = 3
-_LEGEND = Text("?: figures that are unknown, so that a rule could not judge.", style="dim")
 
 
 def check_table(assessments: Sequence[Assessment]) -> RenderableType:
@@ -55,12 +56,43 @@ def check_table(assessments: Sequence[Assessment]) -> RenderableType:
         for each in assessments
         for finding in (*each.all_findings(), *each.tighter_findings())
     ]
-    parts: list[RenderableType] = [*_matrix(assessments), _LEGEND, Text()]
+    parts: list[RenderableType] = [*_matrix(assessments), Text(), _verdict(every), Text()]
     parts.append(_worst(assessments, every))
     for each in assessments:
-        parts += _told(each)
+        parts += [*_told(each), *_accepted(each), *_departing(each)]
     parts += [Text(), Text(UNSEEN[0], style="dim")]
     return Group(*parts)
+
+
+def _verdict(findings: Sequence[Finding]) -> Text:
+    state, words = verdict_of(findings)
+    return Text(f"{SIGNS[state]} {words}", style=STYLES[state])
+
+
+def _accepted(assessment: Assessment) -> Iterator[Text]:
+    """What is accepted, and why: a sentence for each reason, with the components it is for."""
+    reasons: dict[tuple[str, str], list[str]] = {}
+    for finding in assessment.accepted_findings():
+        accept = finding.accept
+        assert accept is not None
+        ends = f" Until {accept.until}." if accept.until else ""
+        by = ", ".join(filter(None, (accept.by, accept.date)))
+        why = f"{accept.reason}{f' ({by})' if by else ''}.{ends}"
+        reasons.setdefault((finding.rule, why), []).append(finding.component or "the line")
+    for (rule, why), labels in reasons.items():
+        sign = SIGNS[State.ACCEPTED]
+        yield Text(f"{sign} {rule} of {', '.join(labels)} is accepted: {why}", style="dim")
+
+
+def _departing(assessment: Assessment) -> Iterator[Text]:
+    """The limits that depart from their defaults."""
+    for key in assessment.limits:
+        if key.departs:
+            yield Text(
+                f"~ The limit {key.name} is {said(key, key.value)}; its default is "
+                f"{said(key, key.default)} ({key.source}).",
+                style="yellow",
+            )
 
 
 def _matrix(assessments: Sequence[Assessment]) -> Iterator[RenderableType]:

@@ -5,13 +5,13 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from ruamel.yaml import YAML
 
 from calm.errors import Problem
 from calm.files import DepthTable, Environment, MooringFile, SeaWater, mooring_schema
 from calm.files.document import read_document
 from calm.files.environment import read_environment
 from calm.files.section import Section
+from tests.core_yaml import loaded
 
 from .conftest import GOOD, Place
 
@@ -82,7 +82,7 @@ def test_sea_water(read: Read, lines: list[str], sea: SeaWater) -> None:
     assert mooring.environment.density == sea
     [notice] = mooring.notices
     assert notice.startswith("Density from temperature and salinity without a `position`")
-    SCHEMA.validate(YAML(typ="safe", pure=True).load(text))
+    SCHEMA.validate(loaded(text))
 
 
 def test_sea_water_at_a_position(read: Read) -> None:
