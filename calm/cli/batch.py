@@ -227,13 +227,17 @@ def _check_output(output: Path, *inputs: Path) -> None:
     UsageError
         See above.
     """
-    folder = output.resolve().parent
-    if not folder.is_dir():
+    # unlike `Path.resolve`, it takes links that lead round in a circle
+    place = os.path.realpath(output)
+    if output.is_symlink() and not output.exists():
+        raise UsageError(f"cannot write {output}: it is a symbolic link that leads nowhere")
+    folder = os.path.dirname(place)
+    if not os.path.isdir(folder):
         raise UsageError(f"cannot write {output}: there is no folder {folder}")
     if not os.access(folder, os.W_OK):
         raise UsageError(f"cannot write {output}: permission denied")
     for path in inputs:
-        if output.resolve() == path.resolve():
+        if place == os.path.realpath(path):
             raise UsageError(f"{output} is an input; it is kept")
 
 
