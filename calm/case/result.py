@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from calm.case.band import StrummingBand, mooring_band
 from calm.case.columns import Clamps, Components, Shape
@@ -106,21 +107,22 @@ class Strumming:
 
 
 class Solved:
-    """How a result shows its table, whatever was solved."""
+    """How a result shows its table, whatever was solved.
+
+    `notebook_form` makes HTML of a result; the rooms above set it.
+    """
 
     components: Components
+    notebook_form: ClassVar[Callable[[Any], str] | None] = None
 
     def to_dataframe(self) -> Any:
         """The components as a pandas data frame (pandas is not installed with CALM)."""
         return self.components.to_dataframe()
 
-    def _repr_html_(self) -> str:
-        """The table of the line, for notebooks."""
-        from importlib import import_module
-
-        # the report room stands above this one, so it is asked for by name at run time
-        html: str = import_module("calm.report.notebook").to_html(self)
-        return html
+    def _repr_html_(self) -> str | None:
+        """The table of the line, for notebooks; None where nothing makes it."""
+        form = type(self).notebook_form
+        return None if form is None else form(self)
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from cyclopts import Parameter
 from calm.cli.batch_progress import Teller, grouped
 from calm.cli.exit_codes import ExitCode
 from calm.cli.options import quantities
-from calm.cli.streams import narrate, show_rich
+from calm.cli.streams import narrate, show_parts
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
@@ -141,11 +141,11 @@ def _summarized(output: Path, mooring: Mooring, stop: Event) -> bool:
         The result cannot be read.
     """
     from calm.batch.threads import Stopped, go_on
+    from calm.report.batch.brief import summary_part
     from calm.report.batch.files import write_summary
-    from calm.report.batch.table import summary_table
 
     try:
-        show_rich(summary_table(write_summary(output, mooring, lambda: go_on(stop))))
+        show_parts(summary_part(write_summary(output, mooring, lambda: go_on(stop))))
     except (Stopped, KeyboardInterrupt):
         reason = "interrupted"
     except MemoryError:

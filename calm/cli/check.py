@@ -135,10 +135,10 @@ def _assess(task: tuple[str, tuple[Stand, ...], date]) -> Assessment:
 
 
 def _show(assessments: Sequence[Assessment], outputs: Outputs) -> None:
+    from calm.report.check.brief import check_part
     from calm.report.check.document import check_document
-    from calm.report.check.terminal import check_table
 
-    outputs.write_answer(check_document(assessments), check_table(assessments))
+    outputs.write_answer(check_document(assessments), check_part(assessments))
 
 
 def _write(folder: Path, assessments: Sequence[Assessment], workers: int | None) -> None:

@@ -126,7 +126,7 @@ def _load(
 def _refuse_one_name(moorings: Sequence[Mooring]) -> None:
     """Two environments of one name could not be told apart."""
     from calm.checks.assess import OWN
-    from calm.report.section import ON_THE_WAY
+    from calm.report.blocks import ON_THE_WAY
 
     names = Counter(mooring.file.environment.name or OWN for mooring in moorings)
     names[ON_THE_WAY] += 1  # a column of its own

@@ -12,7 +12,7 @@ from calm.report.provenance import moment
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
-    from calm.report.section import Report, Section
+    from calm.report.blocks import Report, Section
 
 
 def report_pdf(sections: Sequence[Section]) -> bytes:

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from calm.quantities import QUANTITIES
-from calm.report.result_tables import figure_cell, quantity_column
-from calm.report.section import Cell, Column, Table
+from calm.report.blocks import Cell, Column, Table
+from calm.report.line import figure_cell, quantity_column
 
 if TYPE_CHECKING:
     from calm.checks.inventory import Item
@@ -18,7 +18,7 @@ def deck_table(items: Sequence[Item]) -> Table:
     rows = tuple(
         (
             Cell("" if item.clamped_on else str(item.index)),
-            Cell(f"\u2003{item.label}" if item.clamped_on else item.label),
+            Cell(item.label, indented=item.clamped_on is not None),
             Cell(item.name or item.use),
             figure_cell("cut_length", item.cut_length),
             figure_cell("mass", item.dry_mass),

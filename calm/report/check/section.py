@@ -3,9 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
+from calm.report.blocks import (
+    ON_THE_WAY,
+    Block,
+    Figure,
+    Part,
+    Prose,
+    Report,
+    Section,
+    Signatures,
+)
 from calm.report.check.figures import check_figure
 from calm.report.check.findings import checks_table, results_table
 from calm.report.check.handling import breaks_table, handling_summary, handling_table
@@ -18,26 +29,14 @@ from calm.report.check.summary import (
     worst_table,
 )
 from calm.report.check.verdict import accepted_table, limits_table, unknown_table, verdict_prose
-from calm.report.provenance import date
-from calm.report.result_tables import (
+from calm.report.inputs import (
     UNSEEN,
     current_listing,
     environments_table,
     file_listing,
-    line_table,
     origin,
-    said_below,
 )
-from calm.report.section import (
-    ON_THE_WAY,
-    Block,
-    Figure,
-    Part,
-    Prose,
-    Report,
-    Section,
-    Signatures,
-)
+from calm.report.provenance import date
 from calm.report.sheet import sheet
 
 if TYPE_CHECKING:
@@ -119,8 +118,8 @@ def _line(assessment: Assessment) -> Iterator[Block]:
     yield Figure(title, schematic_svg(assessment.mooring.file, result), tall=True)
     if stand is not None and result is not None:
         said = sheet(result)
-        yield line_table(said, f"Table of the line, environment: {stand.environment}")
-        yield from said_below(said)
+        yield replace(said.table, title=f"Table of the line, environment: {stand.environment}")
+        yield from (*said.summary, Prose((said.convergence,)))
 
 
 def _drawn(assessment: Assessment) -> Iterator[Block]:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from calm.checks.finding import State, worst_state
 from calm.checks.limits import said
 from calm.checks.rules import RULES
+from calm.report.blocks import Cell, Column, Prose, Table
 from calm.report.check.summary import place_of, say_in_unit, worst_by_part
-from calm.report.section import Cell, Column, Prose, Table
 
 if TYPE_CHECKING:
     from calm.checks.finding import Finding

@@ -1,4 +1,4 @@
-"""The design check as a terminal shows it: the matrix, the worst of each rule, what to mend."""
+"""The design check in short: the matrix, the worst of each rule, what to mend."""
 
 from __future__ import annotations
 
@@ -6,14 +6,23 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from rich.console import Group, RenderableType
-from rich.table import Table
-from rich.text import Text
-
 from calm.checks.assess import OWN
 from calm.checks.finding import AS_GIVEN, Finding, State
 from calm.checks.limits import said
 from calm.checks.rules import RULES
+from calm.report.blocks import (
+    ON_THE_WAY,
+    Block,
+    Cell,
+    Column,
+    Heading,
+    Line,
+    Note,
+    Part,
+    Prose,
+    Span,
+    Table,
+)
 from calm.report.check.summary import (
     abreast,
     margin_of,
@@ -23,21 +32,10 @@ from calm.report.check.summary import (
     worst_by_part,
 )
 from calm.report.check.verdict import SIGNS, verdict_of
-from calm.report.result_tables import UNSEEN
-from calm.report.section import ON_THE_WAY
-from calm.report.terminal import WARNED, plain_table
+from calm.report.inputs import UNSEEN
 
 if TYPE_CHECKING:
     from calm.checks.assessment import Assessment
-
-STYLES = {
-    State.PASS: "green",
-    State.ACCEPTED: "",
-    State.WARN: "yellow",
-    State.UNKNOWN: "bold",
-    State.FAIL: WARNED,
-}
-"""How a state looks; its word tells it without colour."""
 
 _SIGNS = {State.FAIL: "!", State.WARN: "~", State.UNKNOWN: "?"}
 _TOLD = 12
@@ -45,8 +43,8 @@ _TOLD = 12
 _NAMED = 3
 
 
-def check_table(assessments: Sequence[Assessment]) -> RenderableType:
-    """Everything that a design check says in short, for a rich console.
+def check_part(assessments: Sequence[Assessment]) -> Part:
+    """Everything that a design check says in short.
 
     Moorings by environments with the worst state in each; of each rule the finding with the worst
     margin; every failure and warning with its figures and remedy. No rule hangs on colour.
@@ -56,20 +54,27 @@ def check_table(assessments: Sequence[Assessment]) -> RenderableType:
         for each in assessments
         for finding in (*each.all_findings(), *each.tighter_findings())
     ]
-    parts: list[RenderableType] = [*_matrix(assessments), Text(), _verdict(every), Text()]
-    parts.append(_worst(assessments, every))
-    for each in assessments:
-        parts += [*_told(each), *_accepted(each), *_departing(each)]
-    parts += [Text(), Text(UNSEEN[0], style="dim")]
-    return Group(*parts)
+    told = (
+        block
+        for each in assessments
+        for block in (*_told(each), *_worded(_accepted(each)), *_worded(_departing(each)))
+    )
+    blocks = (*_matrix(assessments), _verdict(every), _worst(assessments, every), *told)
+    return Part("", (*blocks, Note(UNSEEN[:1])))
 
 
-def _verdict(findings: Sequence[Finding]) -> Text:
+def _verdict(findings: Sequence[Finding]) -> Prose:
     state, words = verdict_of(findings)
-    return Text(f"{SIGNS[state]} {words}", style=STYLES[state])
+    return Prose(((Span(f"{SIGNS[state]} {words}", state),),))
 
 
-def _accepted(assessment: Assessment) -> Iterator[Text]:
+def _worded(lines: Iterator[Span]) -> Iterator[Prose]:
+    spans = tuple((line,) for line in lines)
+    if spans:
+        yield Prose(spans)
+
+
+def _accepted(assessment: Assessment) -> Iterator[Span]:
     """What is accepted, and why: a sentence for each reason, with the components it is for."""
     reasons: dict[tuple[str, str], list[str]] = {}
     for finding in assessment.accepted_findings():
@@ -81,40 +86,37 @@ def _accepted(assessment: Assessment) -> Iterator[Text]:
         reasons.setdefault((finding.rule, why), []).append(finding.component or "the line")
     for (rule, why), labels in reasons.items():
         sign = SIGNS[State.ACCEPTED]
-        yield Text(f"{sign} {rule} of {', '.join(labels)} is accepted: {why}", style="dim")
+        yield Span(f"{sign} {rule} of {', '.join(labels)} is accepted: {why}", quiet=True)
 
 
-def _departing(assessment: Assessment) -> Iterator[Text]:
+def _departing(assessment: Assessment) -> Iterator[Span]:
     """The limits that depart from their defaults."""
     for key in assessment.limits:
         if key.departs:
-            yield Text(
+            yield Span(
                 f"~ The limit {key.name} is {said(key, key.value)}; its default is "
                 f"{said(key, key.default)} ({key.source}).",
-                style="yellow",
+                State.WARN,
             )
 
 
-def _matrix(assessments: Sequence[Assessment]) -> Iterator[RenderableType]:
+def _matrix(assessments: Sequence[Assessment]) -> Iterator[Table]:
     columns = list(
         dict.fromkeys(stand.environment for each in assessments for stand in each.stands)
     )
     for beside in abreast(columns):
-        table = plain_table()
-        table.add_column("mooring", overflow="fold")
-        for column in (*beside, ON_THE_WAY):
-            table.add_column(column, overflow="fold")
+        rows = []
         for each in assessments:
             found = {stand.environment: (*stand.findings, *stand.tighter) for stand in each.stands}
             cells = [found.get(column) for column in beside]
-            table.add_row(each.name, *map(_state, (*cells, each.findings)))
-        yield table
+            rows.append((Cell(each.name), *map(_state, (*cells, each.findings))))
+        yield Table("", tuple(map(Column, ("mooring", *beside, ON_THE_WAY))), tuple(rows))
 
 
-def _state(findings: Sequence[Finding] | None) -> Text:
+def _state(findings: Sequence[Finding] | None) -> Cell:
     """The worst state, the rule that makes it, and how much is unknown besides."""
     if not findings:
-        return Text("-")
+        return Cell("-")
     worst = min(findings, key=lambda finding: finding.rank)
     text = worst.state.value
     if worst.state in (State.FAIL, State.WARN):
@@ -122,33 +124,35 @@ def _state(findings: Sequence[Finding] | None) -> Text:
     missing = unknown_count(findings)
     if missing and worst.state is not State.UNKNOWN:
         text += f", {missing} ?"
-    return Text(text, style=STYLES[worst.state])
+    return Cell(text, state=worst.state)
 
 
 def _worst(assessments: Sequence[Assessment], findings: Sequence[Finding]) -> Table:
     """Each rule with its finding of the worst margin, and how many of its figures are unknown."""
-    table = plain_table()
-    for heading in ("rule", "state"):
-        table.add_column(heading, no_wrap=True)
-    for heading in ("value", "limit", "margin", "unknown"):
-        table.add_column(heading, justify="right", no_wrap=True)
-    table.add_column("where", overflow="fold")
+    columns = (
+        *(Column(heading, share=0.0) for heading in ("rule", "state")),
+        *(Column(heading, numeric=True) for heading in ("value", "limit", "margin", "unknown")),
+        Column("where"),
+    )
     several = len(assessments) > 1
+    rows = []
     for rule in RULES.values():
         found = [finding for finding in findings if finding.rule == rule.name]
         if not found:
             continue
         worst, missing = min(found, key=lambda finding: finding.rank), unknown_count(found)
-        table.add_row(
-            rule.name,
-            Text(worst.state.value, style=STYLES[worst.state]),
-            say_in_unit(worst, worst.value),
-            say_in_unit(worst, worst.limit),
-            margin_of(worst),
-            str(missing) if missing else "",
-            _where(worst, several),
+        rows.append(
+            (
+                Cell(rule.name),
+                Cell(worst.state.value, state=worst.state),
+                Cell(say_in_unit(worst, worst.value)),
+                Cell(say_in_unit(worst, worst.limit)),
+                Cell(margin_of(worst)),
+                Cell(str(missing) if missing else ""),
+                Cell(_where(worst, several)),
+            )
         )
-    return table
+    return Table("", columns, tuple(rows))
 
 
 def _where(finding: Finding, several: bool) -> str:
@@ -159,38 +163,39 @@ def _where(finding: Finding, several: bool) -> str:
     return ", ".join(filter(None, places))
 
 
-def _told(assessment: Assessment) -> Iterator[RenderableType]:
+def _told(assessment: Assessment) -> Iterator[Block]:
     """What a mooring fails or is warned of, the gravest first with its remedy; what is missing."""
     every = (*assessment.all_findings(), *assessment.tighter_findings())
     listed = [each for each in worst_by_part(every) if each.state in _SIGNS]
     if not listed:
         return
-    yield Text()
-    yield Text(assessment.name, style="bold")
+    lines: list[Line] = []
     for state, group in groupby(listed, key=lambda finding: finding.state):
         findings = list(group)
         if state is State.UNKNOWN:
-            yield from _missing(findings)
+            lines += _missing(findings)
             continue
-        yield from map(_sentence, findings[:_TOLD])
+        lines += map(_sentence, findings[:_TOLD])
         if len(findings) > _TOLD:
-            yield Text(f"  and {len(findings) - _TOLD} more that {state}; --json has them")
+            lines.append(f"  and {len(findings) - _TOLD} more that {state}; --json has them")
+    yield Heading(assessment.name)
+    yield Prose(tuple(lines))
 
 
-def _sentence(finding: Finding) -> Text:
-    text = Text(f"{_SIGNS[finding.state]} ", style=STYLES[finding.state])
-    text.append(f"{finding.rule}, {place_of(finding)}: {finding.message}")
-    if finding.remedy:
-        text.append(f" {finding.remedy}", style="" if finding.state is State.FAIL else "dim")
-    return text
+def _sentence(finding: Finding) -> Line:
+    sign = Span(f"{_SIGNS[finding.state]} ", finding.state)
+    found = Span(f"{finding.rule}, {place_of(finding)}: {finding.message}")
+    if not finding.remedy:
+        return sign, found
+    return sign, found, Span(f" {finding.remedy}", quiet=finding.state is not State.FAIL)
 
 
-def _missing(findings: Sequence[Finding]) -> Iterator[Text]:
+def _missing(findings: Sequence[Finding]) -> Iterator[Line]:
     """One sentence for each figure that is missing, with the components that lack it."""
     groups: dict[tuple[str, str], dict[str, None]] = {}
     for finding in findings:
         if finding.component is None:
-            yield Text(f"? {finding.rule}: {finding.message} {finding.remedy}", style="dim")
+            yield (Span(f"? {finding.rule}: {finding.message} {finding.remedy}", quiet=True),)
             continue
         lacking = groups.setdefault((finding.rule, finding.remedy or ""), {})
         lacking[finding.component] = None
@@ -198,4 +203,4 @@ def _missing(findings: Sequence[Finding]) -> Iterator[Text]:
         named = ", ".join(list(names)[:_NAMED])
         if len(names) > _NAMED:
             named += f" and {len(names) - _NAMED} more"
-        yield Text(f"? {rule} of {named} is unknown. {remedy}", style="dim")
+        yield (Span(f"? {rule} of {named} is unknown. {remedy}", quiet=True),)
