@@ -30,7 +30,7 @@ def series_figure(summary: Summary) -> str:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(_WIDTH, 1.7 * len(RESPONSES)))
-    figure.subplots_adjust(0.1, 0.04, 0.99, 0.99, hspace=0.12)
+    figure.subplots_adjust(0.13, 0.04, 0.99, 0.99, hspace=0.12)
     panels = figure.subplots(len(RESPONSES), 1, sharex=True)
     for axes, response in zip(panels, summary.responses, strict=True):
         _draw_series(axes, response)
@@ -43,7 +43,7 @@ def exceedance_figure(summary: Summary) -> str:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(_WIDTH, 5.2))
-    figure.subplots_adjust(0.08, 0.08, 0.99, 0.98, hspace=0.27, wspace=0.06)
+    figure.subplots_adjust(0.1, 0.08, 0.99, 0.98, hspace=0.27, wspace=0.06)
     panels = figure.subplots(2, 2, sharey=True)
     for axes, response in zip(panels.flat, summary.responses, strict=True):
         if response.distribution is not None:
@@ -58,7 +58,7 @@ def parts_figure(parts: list[Part]) -> str:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(_WIDTH, 3.4))
-    figure.subplots_adjust(0.08, 0.12, 0.99, 0.98, wspace=0.06)
+    figure.subplots_adjust(0.1, 0.12, 0.99, 0.98, wspace=0.06)
     panels = figure.subplots(1, 2, sharey=True)
     for axes, name in zip(panels, ("knockdown", "tilt"), strict=True):
         known = [(part.label, getattr(part, name)) for part in parts]
