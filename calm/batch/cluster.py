@@ -85,7 +85,8 @@ def solved_on(
             under_way = more()
             while under_way and not stop.is_set():
                 try:
-                    done = wait(under_way, timeout=ASKED_ANEW, return_when="FIRST_COMPLETED").done
+                    with client.as_current():  # `wait` asks whose the tasks are
+                        done = wait(under_way, ASKED_ANEW, "FIRST_COMPLETED").done
                 except TimeoutError:
                     under_way |= more()
                     continue
