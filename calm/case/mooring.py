@@ -158,10 +158,22 @@ class Mooring:
 
     def _refuse_a_heap(self, solution: Solution) -> None:
         """A sub-surface line is meant to stand: only chain may lie on the seabed below it."""
-        lying = set(solution.element_piece[solution.hanging :].tolist())
-        kinds = {self.file.pieces[piece].component.kind for piece in lying}
-        if not solution.surface and kinds - {"chain"}:
-            raise too_heavy(standing_lift(self.line, self.water))
+        if solution.surface:
+            return
+        pieces = self.file.pieces
+        for lying in sorted(set(solution.element_piece[solution.hanging :].tolist())):
+            if pieces[lying].component.kind != "chain":
+                raise self.heaped(pieces[lying].label)
+
+    def heaped(self, label: str) -> NoEquilibrium:
+        """Why a sub-surface line is refused of which more than chain lies on the seabed."""
+        lift = standing_lift(self.line, self.water)
+        if float(lift.sum()) <= 0.0:
+            return too_heavy(lift)
+        return Status.GROUNDED.because(
+            f"The current lays {label} on the seabed: of a line below the surface nothing but "
+            "chain may lie there."
+        )
 
     def _still(self, solution: Solution) -> Solution | None:
         """The same line without current; None where it has no unique shape."""

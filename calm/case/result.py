@@ -33,7 +33,7 @@ def document_of(result: Result | TowResult, ends: dict[str, Any]) -> dict[str, A
         "segments": result.segments,
         "miss": result.miss,
         "closure": result.closure,
-        "accuracy": asdict(result.accuracy),
+        "accuracy": {k: v for k, v in asdict(result.accuracy).items() if v is not None},
         **ends,
         "other_equilibrium": None if result.other_depth is None else {"depth": result.other_depth},
         "components": components,
@@ -50,10 +50,16 @@ def known(part: Strumming | StrummingBand | None) -> dict[str, Any] | None:
 
 @dataclass(frozen=True)
 class Accuracy:
-    """The solver's own estimate of the worst error of any depth or offset [m] and tension [N]."""
+    """The solver's own estimate of its errors.
+
+    Of the worst of any depth or offset [m], of any tension [N], of the vertical and the horizontal
+    pull on the anchor [N], and of the weight that it needs [N]; the last two None in a tow.
+    """
 
     depth: float
     tension: float
+    anchor: float | None = None
+    required_weight: float | None = None
 
 
 @dataclass(frozen=True)

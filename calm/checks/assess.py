@@ -10,7 +10,7 @@ from calm.case import Mooring
 from calm.checks.acceptance import Acceptance
 from calm.checks.assessment import Assessment, Situation, Stand
 from calm.checks.backup import breaks_of, losses_of
-from calm.checks.finding import AS_GIVEN, Finding, State
+from calm.checks.finding import AS_GIVEN, OWN, Finding, State
 from calm.checks.handling import Handling
 from calm.checks.inventory import inventory_of
 from calm.checks.launch import Launch, launch_of
@@ -22,9 +22,6 @@ from calm.checks.situations import SOLVES, STRUMMING, situations_of
 from calm.errors import NoEquilibrium
 from calm.files import MooringFile, Place
 from calm.solve import expect_many
-
-OWN = "own"
-"""Name of the environment that a mooring file gives itself."""
 
 
 def check(mooring: Mooring, /, *others: Mooring, day: date | None = None) -> Assessment:

@@ -14,6 +14,9 @@ from calm.files.rules import RULES as RULE_TEXTS
 AS_GIVEN = "as given"
 """The situation of a mooring in its environment, with nothing changed."""
 
+OWN = "own"
+"""Name of the environment that a mooring file gives itself."""
+
 
 class State(StrEnum):
     """How a rule judges, the least grave first.

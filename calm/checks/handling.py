@@ -138,6 +138,8 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
         f"drag along the line and of the anchor); {GREATEST_TOUCHDOWN_SPEED:g} m/s should not be "
         "passed"
     )
+    if launch.in_still_water:
+        message += " (in still water: in the current it finds no steady motion)"
     remedy = "Lower it, or add drag: a parachute, a wider anchor."
     if launch.anchor_drag_known:
         limit = GREATEST_TOUCHDOWN_SPEED

@@ -125,7 +125,7 @@ def _load(
 
 def _refuse_one_name(moorings: Sequence[Mooring]) -> None:
     """Two environments of one name could not be told apart."""
-    from calm.checks.assess import OWN
+    from calm.checks.finding import OWN
     from calm.report.blocks import ON_THE_WAY
 
     names = Counter(mooring.file.environment.name or OWN for mooring in moorings)

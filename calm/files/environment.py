@@ -11,7 +11,6 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Discriminator, Tag, model_validator
 
 from calm.errors import InputError, Problem
-from calm.files.current_file import read_current_file
 from calm.files.current_terms import DEEPEST, Terms, too_fast
 from calm.files.definition import DENSITY
 from calm.files.density import USUAL_DENSITY, Density, check_density, read_density
@@ -294,6 +293,8 @@ def _current(
         maximum_speed=maximum_speed,
     )
     try:
+        from calm.files.current_file import read_current_file
+
         table, told = read_current_file(path, current.time, terms)
     except TimeChoiceError as error:
         problems.append(report(("time",), str(error)))

@@ -182,8 +182,9 @@ def _level(result: TowResult, depth: float) -> str:
 def _convergence(result: Result | TowResult, end: str) -> str:
     """How the solution was reached and how good it is; `end` is where the line is held."""
     accuracy = result.accuracy
+    pull = "" if accuracy.anchor is None else f", at the anchor {accuracy.anchor:.2g} N"
     return (
         f"{result.status.capitalize()} in {result.iterations} marches of {result.segments} "
-        f"segments, good to {accuracy.depth:.2g} m and {accuracy.tension:.2g} N; {end} missed by "
-        f"{abs(result.miss):.1g} m, forces closed to {result.closure:.1g}."
+        f"segments, good to {accuracy.depth:.2g} m and {accuracy.tension:.2g} N{pull}; {end} "
+        f"missed by {abs(result.miss):.1g} m, forces closed to {result.closure:.1g}."
     )

@@ -55,8 +55,8 @@ def open_session(
 def _refuse_other_files(session: Session) -> None:
     """Refuse mistakes in files other than that which is built: they cannot be mended here."""
     Catalogue.load(session.catalogs)
-    here, names = session.environment, session.environments
-    if (lost := session.lost_environment) is not None:
+    here, names = session.standing.environment, session.standing.environments
+    if (lost := session.standing.lost_environment) is not None:
         what = f"--environment {lost}: neither a file nor an environment of {session.name}"
         raise UsageError(unknown(what, lost, filter(None, names)))
     given = {str(each) for each in session.catalogs}
@@ -106,7 +106,10 @@ def end(app: BuildApp, number: int, _frame: object) -> None:
     The loop of the application is not waited for: it may itself wait for a terminal that is gone,
     for ever. Of a closed terminal nothing is to be put right, and the process ends at once.
     """
-    app.keep_at_the_end()
+    try:
+        app.take_typed()
+    finally:  # whatever the screen is at just then
+        app.keep_at_the_end()
     signal.signal(number, signal.SIG_DFL)
     if not (app.is_running and os.isatty(0)):
         os.kill(os.getpid(), number)

@@ -154,6 +154,20 @@ def test_an_unknown_ranks_above_a_pass_in_every_table(calm, write_mooring):
     assert states["strength"] == "unknown" and states["anchor-weight"] == "pass"
 
 
+def test_the_verdict_counts_each_figure_of_each_mooring_once(calm, write_mooring):
+    one, two = write_mooring("one.yaml", name="One"), write_mooring("two.yaml", name="Two")
+
+    def verdict(*files):
+        done = calm("check", *files, "--json", "-")
+        unknown = {
+            (f["mooring"], f["rule"], f["component"]) for f in findings(done, state="unknown")
+        }
+        assert f"\n? nothing fails, {len(unknown)} figures unknown" in calm("check", *files).out
+        return len(unknown)
+
+    assert verdict(one, two) == 2 * verdict(one) > 0
+
+
 def file_with(file, name, addition):
     with open(file, encoding="utf-8") as read, open(name, "w", encoding="utf-8") as written:
         written.write(read.read() + addition)

@@ -146,7 +146,7 @@ def test_build_the_deep_mooring_from_nothing(tmp_path):
     terminal.wait("density kg/m^3")
     fill_table(terminal, DENSITY)
     terminal.wait("1047")
-    terminal.press(TAB, RIGHT, RIGHT, ENTER)
+    terminal.press(DOWN, RIGHT, RIGHT, ENTER)
     terminal.wait("speed m/s")
     fill_table(terminal, CURRENT)
     terminal.wait("0.06")
@@ -221,6 +221,19 @@ def test_a_closed_terminal_keeps_the_work(tmp_path):
     terminal.child.kill(signal.SIGHUP)
     terminal.end()
     assert b"label: kept" in copy_of(file).read_bytes()
+
+
+@pytest.mark.parametrize("number", [signal.SIGHUP, signal.SIGTERM])
+def test_a_value_half_typed_survives_the_end(tmp_path, number):
+    file = tmp_path / "m.yaml"
+    file.write_bytes((shipped_folder("lines") / "s1000.yaml").read_bytes())
+    terminal = Terminal(file)
+    terminal.wait("m.yaml", "a add", "Anchor")
+    terminal.press("n", "half a na")
+    terminal.wait("half a na")
+    terminal.child.kill(number)
+    terminal.end()
+    assert b"label: half a na" in copy_of(file).read_bytes()
 
 
 @pytest.mark.parametrize("pressed", ["", "w" + 40 * DOWN])

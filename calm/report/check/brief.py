@@ -6,8 +6,7 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from calm.checks.assess import OWN
-from calm.checks.finding import AS_GIVEN, Finding, State
+from calm.checks.finding import AS_GIVEN, OWN, Finding, State
 from calm.checks.limits import said
 from calm.checks.rules import RULES
 from calm.report.blocks import (
@@ -85,8 +84,10 @@ def _accepted(assessment: Assessment) -> Iterator[Span]:
         why = f"{accept.reason}{f' ({by})' if by else ''}.{ends}"
         reasons.setdefault((finding.rule, why), []).append(finding.component or "the line")
     for (rule, why), labels in reasons.items():
-        sign = SIGNS[State.ACCEPTED]
-        yield Span(f"{sign} {rule} of {', '.join(labels)} is accepted: {why}", quiet=True)
+        named = ", ".join(labels[:_NAMED])
+        if len(labels) > _NAMED:
+            named += f" and {len(labels) - _NAMED} more"
+        yield Span(f"{SIGNS[State.ACCEPTED]} {rule} of {named} is accepted: {why}", quiet=True)
 
 
 def _departing(assessment: Assessment) -> Iterator[Span]:

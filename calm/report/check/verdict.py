@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
@@ -30,9 +31,11 @@ def verdict_of(findings: Iterable[Finding]) -> tuple[State, str]:
 
     A figure of a component is counted once, wherever it is missed.
     """
-    found = worst_by_part(findings)
-    counts = {state: sum(one.state is state for one in found) for state in State}
-    state = worst_state(counts_of for counts_of, count in counts.items() if count)
+    by_mooring: dict[str, list[Finding]] = {}
+    for finding in findings:
+        by_mooring.setdefault(finding.mooring, []).append(finding)
+    counts = Counter(one.state for each in by_mooring.values() for one in worst_by_part(each))
+    state = worst_state(counts)
     words = [
         _counted(counts[State.FAIL], "failure") if counts[State.FAIL] else "nothing fails",
         _counted(counts[State.UNKNOWN], "figure") + " unknown" if counts[State.UNKNOWN] else "",

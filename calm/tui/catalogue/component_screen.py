@@ -169,9 +169,3 @@ class ComponentScreen(Screen[Defined | None]):
     def action_cancel(self) -> None:
         """Give nothing."""
         self.dismiss(None)
-
-    def action_help(self) -> None:
-        """All keys."""
-        from calm.tui.help_screen import HelpScreen
-
-        self.app.push_screen(HelpScreen())

@@ -10,6 +10,7 @@ from calm.checks.assess import check
 from calm.checks.clamps import clamp_grip
 from calm.checks.launch import launch_of
 from calm.checks.recovery import recovery_of
+from calm.shipped import shipped_folder
 
 FILE = """
 name: By hand
@@ -93,6 +94,17 @@ def test_clamps_in_the_fall_and_the_rise_have_their_drag_along_the_line(load):
     assert recovery_of(mooring, result).rise_speed == pytest.approx((net / drag) ** 0.5, rel=1e-4)
     falls = ((20_000.0 - net) / (drag + 600.0)) ** 0.5
     assert launch_of(mooring, result).fall_speed == pytest.approx(falls, rel=1e-4)
+
+
+def test_a_fall_that_is_not_steady_in_the_current_is_that_in_still_water():
+    """Loggers fall faster than the wire that they are on: the line doubles back."""
+    mooring = calm.load(shipped_folder("lines") / "taut-nylon-surface.yaml")
+    launch = launch_of(mooring, mooring.solve())
+    assert launch.in_still_water and launch.tangles
+    assert launch.drift == (0.0, 0.0)
+    speed = next(one for one in check(mooring).findings if one.rule == "launch-speed")
+    assert speed.value == launch.fall_speed
+    assert "in still water: in the current it finds no steady motion" in speed.message
 
 
 def test_what_has_no_axis_has_its_one_drag(load):
