@@ -379,6 +379,7 @@ for _ in range(40):
     time.sleep(wait.uniform(0.0, 0.03))
     os.kill(child, signal.SIGKILL)
     os.waitpid(child, 0)
+    folder = os.path.dirname(path)
     kept = [name for name in os.listdir(folder) if name.endswith(".calm-autosave")]
     for written in (path, *(os.path.join(folder, name) for name in kept)):
         with open(written) as stream:
