@@ -59,7 +59,10 @@ def _legend(elevation: Axes, names: Sequence[str]) -> list[tuple[Line2D, str]]:
 
     environments = [(Line2D([], [], **_style(number)), name) for number, name in enumerate(names)]
     limit = Line2D([], [], color=_LIMIT["colors"], linewidth=_LIMIT["linewidth"])
-    others = zip(*elevation.get_legend_handles_labels(), strict=True)
+    lines, labels = elevation.get_legend_handles_labels()
+    others = [
+        (line, label) for line, label in zip(lines, labels, strict=True) if isinstance(line, Line2D)
+    ]
     return [*environments, *others, (limit, "limit")]
 
 
