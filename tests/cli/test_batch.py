@@ -249,7 +249,7 @@ def test_signals_leave_what_can_be_resumed(write_mooring, folder, number):
         time.sleep(0.05)
     time.sleep(2.0)
     os.kill(process.pid, number)
-    told = process.communicate(timeout=60)[1]
+    told = process.communicate(timeout=600)[1]
     assert process.returncode == 75, told
     # a block of these takes a while; how far it comes is for the machine to say
     assert re.search(r"interrupted; \d[\d ]* of 6 000 profiles are done", told)
