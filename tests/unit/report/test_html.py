@@ -14,6 +14,7 @@ import pytest
 import calm
 from calm.checks.finding import State
 from calm.errors import UsageError
+from calm.report.check.figures import check_figure
 from calm.report.check.section import mooring_section
 from calm.report.html import report_html, result_html
 from calm.report.provenance import input_hash
@@ -123,6 +124,12 @@ def test_the_figures_are_those_of_the_findings(assessment, section):
     assert f"{knockdown:.1f}" in text
 
 
+def test_a_drawing_owes_nothing_to_the_one_before(assessment, hostile):
+    alone = check_figure(assessment)
+    assert check_figure(hostile) != alone
+    assert check_figure(assessment) == alone
+
+
 def test_states_are_told_in_words(section):
     html = report_html([section])
     shown = re.findall(r'<span class="state (\w+)">([^<]+)</span>', html)
@@ -221,6 +228,7 @@ PROGRAM = """
 import hashlib, sys
 from pathlib import Path
 from tests.judged import judged
+from calm.report.check.figures import check_figure
 from calm.report.check.section import mooring_section
 from calm.report.html import report_html
 from calm.report.pdf import report_pdf
