@@ -114,6 +114,13 @@ def test_limits_as_used_stand_with_their_sources(assessment, section):
     assert "departs" not in text[text.index("Limits as used") :][:200]
 
 
+def test_limits_stand_on_the_page_of_one_result(assessment):
+    text = Page(result_html(assessment.stands[0].result)).text
+    used = text[text.index("Limits as used") :]
+    for key in assessment.limits:
+        assert key.name in used and key.source in used
+
+
 def test_the_figures_are_those_of_the_findings(assessment, section):
     text = Page(report_html([section])).text
     failed = next(each for each in assessment.all_findings() if each.state is State.FAIL)
