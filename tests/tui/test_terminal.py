@@ -95,11 +95,13 @@ def add(terminal, values):
 
 
 def name(terminal, items):
-    """Press what gives the rigid pieces their labels, from the top."""
+    """Press what gives the rigid pieces their labels and counts, from the top."""
     terminal.press(HOME)
     for item in items:
         if "length" not in item.values:
             terminal.press("n", item.values["label"], ENTER)
+        if "count" in item.values:
+            terminal.press("=", item.values["count"], ENTER)
         terminal.press(DOWN)
 
 
@@ -120,7 +122,7 @@ def fill_table(terminal, rows):
     terminal.press(TAB)
     for _ in rows[2:]:
         terminal.press("a", ESCAPE)
-    terminal.press(*[UP] * len(rows))
+    terminal.press(*[UP] * (len(rows) - 2))
     for row in rows:
         for value in row:
             text = f"{value:g}" if value != int(value) else str(int(value))
