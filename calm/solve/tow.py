@@ -105,7 +105,8 @@ def _refuse_limp(towed: Line) -> None:
     clamped = ((towed.clamp_piece == 0) & (towed.clamp_at == 0.0)).any()
     if towed.flexible[0] and not bears and not clamped:
         raise Status.NO_EQUILIBRIUM.because(
-            "The free end of {piece} weighs nothing and has no drag along it: nothing stretches it.",
+            "The free end of {piece} weighs nothing and has no drag along it, so that nothing "
+            "stretches it.",
             0,
             "Give it a weight or a `ct`, or tow something at its end.",
         )
