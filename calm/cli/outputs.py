@@ -18,6 +18,7 @@ from calm.errors import NoEquilibrium, UsageError
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
     from calm.case.explain import Explanation
+    from calm.case.uncertain import Uncertain
     from calm.report.blocks import Part
     from calm.report.schematic.text import TerminalSchematic
 
@@ -61,6 +62,7 @@ class Outcome:
     failure: NoEquilibrium | None = None
     explanation: Explanation | None = None
     schematic: TerminalSchematic | None = None
+    uncertain: Uncertain | None = None
 
     @property
     def code(self) -> ExitCode:
@@ -82,6 +84,8 @@ class Outcome:
         document = self.result.to_dict()
         if self.explanation is not None:
             document["explain"] = self.explanation.to_dict()
+        if self.uncertain is not None:
+            document["uncertainty"] = self.uncertain.to_dict()
         return document
 
     def parts(self) -> list[Shows]:
@@ -97,6 +101,10 @@ class Outcome:
             from calm.report.explain import explanation_part
 
             parts.append(explanation_part(self.explanation))
+        if self.uncertain is not None:
+            from calm.report.uncertain import uncertainty_part
+
+            parts.append(uncertainty_part(self.uncertain))
         return parts
 
     def rendered(self, suffix: str) -> bytes | None:
@@ -106,18 +114,18 @@ class Outcome:
         if suffix == ".html":
             from calm.report.html import result_html
 
-            return result_html(self.result).encode("utf-8", "replace")
+            return result_html(self.result, self.uncertain).encode("utf-8", "replace")
         if suffix == ".pdf":
             from calm.report.pdf import result_pdf
 
-            return result_pdf(self.result)
+            return result_pdf(self.result, self.uncertain)
         if suffix == ".nc":
             from calm.report.netcdf import result_netcdf
 
             return result_netcdf(self.result)
         from calm.report.plot import picture
 
-        return picture(self.result, suffix)
+        return picture(self.result, suffix, self.uncertain)
 
 
 @dataclass(frozen=True)
@@ -189,8 +197,13 @@ class Outputs:
             if path != STDOUT:
                 check_destination(path)
 
-    def write_answer(self, document: dict[str, Any], part: Part | None) -> None:
+    def write_answer(self, document: Callable[[], dict[str, Any]], part: Part | None) -> None:
         """Write what a command without files answers: `json`, and the part unless that is shown.
+
+        Parameters
+        ----------
+        document : callable
+            Makes the JSON object; called only where it was asked for.
 
         Raises
         ------
@@ -200,14 +213,13 @@ class Outputs:
         from calm.report.document import to_json
         from calm.report.write import write_file
 
-        text = to_json([document])
         if self.json == STDOUT:
-            show(text)
+            show(to_json([document()]))
             return
         if part is not None:
             show_parts(part)
         if self.json is not None:
-            write_file(self.json, text.encode())
+            write_file(self.json, to_json([document()]).encode())
 
     def write(self, shown: Sequence[Shown], to_csv: Callable[[], str]) -> None:
         """Write the files, then the standard output: what was asked for there, or the tables.
