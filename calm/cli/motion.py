@@ -151,7 +151,7 @@ def motion(
             each = cross_validated(mooring, measured, names, hidden, narrate, workers)
             study = replace(study, held_out=(*study.held_out, *each))
     name = mooring.file.name or file.stem
-    outputs.write_answer(motion_document(study, name), motion_part(study, name))
+    outputs.write_answer(lambda: motion_document(study, name), motion_part(study, name))
     return code
 
 
