@@ -40,6 +40,14 @@ class Mixture:
         """
         self._found.append((times, _log(odds + found.evidence), way, found, without))
 
+    @property
+    def best(self) -> Floats:
+        """(n,) greatest weight so far, its logarithm."""
+        best = np.full(len(self.first.evidence), -np.inf)
+        for times, log, *_ in self._found:
+            best[times] = np.maximum(best[times], log)
+        return best
+
     def estimate(self) -> Estimate:
         """The mean over all explanations, and the deviation about it."""
         from calm.motion.moment import Estimate, Way
