@@ -156,7 +156,7 @@ def motion(
     instruments = None
     if onto is not None:
         instruments = read_instruments(onto, labels, replace=replace_depth)
-    measured, notes, source = _measured(
+    measured, notes, source = read_measured(
         mooring, currents, pressures, match, flags, apart, sea_level, turned
     )
     for note in notes:
@@ -235,7 +235,7 @@ def parse_gap(text: str) -> np.timedelta64:
     return np.timedelta64(round(seconds * 1e9), "ns")
 
 
-def _measured(
+def read_measured(
     mooring: Mooring,
     currents: list[Path],
     pressures: list[str],

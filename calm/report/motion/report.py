@@ -66,9 +66,10 @@ def motion_report(
     shown = sorted(series, key=lambda one: not one.hidden)[:MOST_PANELS]
     shown = [one for one in series if any(one is each for each in shown)]
     doubts = Prose(study.doubts, State.WARN) if study.doubts else Prose((_NOTHING,))
-    held: tuple[Block, ...] = (held_out_table(study),) if study.held_out else ()
+    held: tuple[Block, ...] = (held_out_table(study.held_out),) if study.held_out else ()
+    factors = factors_table(study.factors, study.task.common.datum)
     parts = (
-        Part("Factors", (factors_table(study), Figure("Over time", factor_figure(time, factor)))),
+        Part("Factors", (factors, Figure("Over time", factor_figure(time, factor)))),
         Part("Measured against computed", (sensors_table(study), *held, Note((PLAIN,)))),
         Part("What to doubt", (doubts,)),
         Part("Depths", (Figure(_LEGEND, depth_figure(shown), tall=True),)),
