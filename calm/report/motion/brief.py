@@ -30,7 +30,7 @@ def motion_part(study: Study, name: str) -> Part:
     """Factors, sensors, sensors that were hidden, and what to doubt."""
     blocks: list[Block] = [
         Heading(name),
-        factors_table(study),
+        factors_table(study.factors, study.task.common.datum),
         sensors_table(study),
         Prose((PLAIN,)),
     ]
