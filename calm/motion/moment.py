@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -223,14 +224,16 @@ def posterior(
     seen = slope[:, one.point, :].copy()
     seen[:, np.arange(s), free + f + 1 + np.arange(s)] = 1.0
     tide = np.zeros(n) if one.tide is None else one.tide
-    base = at.depth + common.datum + tide[:, None]
+    lost: Any = ~np.isfinite(at.depth).all(axis=1)  # without current, or without equilibrium
+    there = np.where(lost[:, None], still, at.depth)
+    base = there + common.datum + tide[:, None]
     base = base - np.einsum("npg,ng->np", at.slope, at.logs)
     known = np.isfinite(one.depth)
     innovation = np.where(known, one.depth - base[:, one.point] - common.offset, 0.0)
     noise = np.where(known, prior.NOISE**2, UNMEASURED**2)
     if spike >= 0:
         noise[:, spike] = np.maximum(noise[:, spike], prior.SPIKE**2)
-    down = np.maximum(at.depth - still, 0.0) * prior.WORST
+    down = np.maximum(there - still, 0.0) * prior.WORST
     length = 0.25 * np.ptp(still)
     alike = np.exp(-np.abs(still[:, None] - still[one.point]) / max(length, 1.0))
     bent = down[:, :, None] * alike * down[:, None, one.point]
@@ -250,12 +253,13 @@ def posterior(
     _, size = np.linalg.slogdet(expected)
     misfit = (innovation * solved).sum(axis=1)
     even = np.full(g, 1.0 / max(g, 1))
+    depth[lost] = np.nan
     return Posterior(
         logs,
         gain[:, g] + tide,
         depth,
         np.maximum(whole - taken, 0.0),
-        -0.5 * (misfit + size),
+        np.where(lost, -np.inf, -0.5 * (misfit + size)),
         innovation,
         expected,
         logs @ even,
@@ -356,7 +360,8 @@ def estimated(moments: Moments, common: Common) -> Estimate:
         best = mixture.best
         for without in sets:
             chance = odds[:, list(without)].sum(axis=1)
-            tried = np.flatnonzero(chance + fair > best + np.log(NEGLIGIBLE))
+            likely = chance + fair > best + np.log(NEGLIGIBLE)
+            tried = np.flatnonzero(likely & np.isfinite(best))
             if len(tried):
                 part = Moments(one.at(tried), moments.forward, {})
                 other = part.way(level[tried], common.scale, without)

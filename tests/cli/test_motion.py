@@ -201,6 +201,24 @@ def test_a_constant_sensor_is_named_and_left_out(calm, given, truth):
     assert [one["label"] for one in json.loads(done.out)["sensors"]] == ["upper", "lower"]
 
 
+def test_times_without_current_have_a_status_and_those_without_pressure_wider_bands(
+    calm, given, truth, folder
+):
+    lines = (folder / "c.csv").read_text().splitlines()
+    (folder / "c.csv").write_text("\n".join([lines[0], *lines[1:31], *lines[61:]]) + "\n")
+    values = dbar(truth[1])
+    given("late.csv", values=values[8:], times=stamps()[8:])
+    done = calm(*COMMAND, "--pressures", "late.csv", "-o", "d.nc")
+    assert done.code == 0, done.err
+    with xarray.open_dataset(folder / "d.nc", engine="h5netcdf") as result:
+        assert result.sizes["time"] == HOURS
+        gap = slice(10, 20)
+        assert (result["status"].values[gap] != 0).all()
+        assert np.isnan(result["clamp_depth"].values[gap]).all()
+        spread = result["clamp_depth_sd"].values[:, 1]
+        assert spread[:8].min() > 1.5 * spread[20:].max()
+
+
 def test_a_clamp_that_slipped_is_named(calm, given, truth):
     values = dbar(truth[1])
     values[HOURS // 2 :, 1] += 6.0
