@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from calm.batch.kernel.cases import LEVELS_COINCIDE, NO_DATA, NOT_TRIED, solve_cases
-from calm.batch.kernel.closing import HEAP
+from calm.batch.kernel.endings import HEAP, LEVELS_COINCIDE, NO_DATA, NOT_TRIED, SOLVED
+from calm.batch.kernel.layout import Results
 from calm.batch.kernel.outcome import OF_CLAMP, OF_ENDS, OF_PIECE
-from calm.batch.kernel.plan import Plan, base_water, plan_of
-from calm.batch.kernel.search import SOLVED
-from calm.batch.kernel.stragglers import Rows, known_levels, solve_one, water_of
+from calm.batch.kernel.plan import Plan, plan_of
+from calm.batch.kernel.solve import solve_cases
+from calm.batch.kernel.stragglers import known_levels, solve_one, water_of
 from calm.batch.statuses import STATUSES
 from calm.batch.threads import processors
 from calm.case import Mooring
@@ -116,14 +116,9 @@ class Batch:
     mooring: Mooring
 
     @cached_property
-    def plan(self) -> Plan | None:
-        """The mooring as the lanes take it; None where they do not."""
+    def plan(self) -> Plan:
+        """The mooring as the lanes take it."""
         return plan_of(self.mooring)
-
-    @cached_property
-    def water(self) -> Water:
-        """The water without the current of the file."""
-        return base_water(self.mooring) if self.plan is None else self.plan.water
 
     def solve(
         self,
@@ -142,7 +137,7 @@ class Batch:
             raise ValueError(f"{workers} workers: one at least is needed")
         shape, current = _checked(u, v, depth, w)
         line, count = self.mooring.line, len(current[1])
-        rows = (
+        rows = Results(
             np.full((count, len(OF_PIECE), len(line.length)), np.nan),
             np.full((count, len(OF_CLAMP), len(line.clamp_piece)), np.nan),
             np.full((count, len(OF_ENDS)), np.nan),
@@ -152,7 +147,7 @@ class Batch:
 
         def solve(block: slice) -> None:
             mine = tuple(array if len(array) == 1 else array[block] for array in current)
-            columns: Rows = rows[0][block], rows[1][block], rows[2][block]
+            columns = Results(*(array[block] for array in rows))
             self._solve_block(mine, columns, status[block], alone[block])
 
         solve(slice(0, 0))  # compiles where need be
@@ -165,20 +160,18 @@ class Batch:
     def _solve_block(
         self,
         current: tuple[Floats, ...],
-        rows: Rows,
+        rows: Results,
         status: NDArray[np.int8],
         alone: NDArray[np.bool_],
     ) -> None:
         ended = np.full(len(status), NOT_TRIED)
-        plan = self.plan
-        if plan is not None:
-            # always copies: what is read-only would be compiled for once more
-            depth, u, v, w = (np.array(array, np.float64, order="C") for array in current)
-            solve_cases(plan.arrays, depth, u, v, w, rows, ended)
+        # always copies: what is read-only would be compiled for once more
+        depth, u, v, w = (np.array(array, np.float64, order="C") for array in current)
+        solve_cases(self.plan, depth, u, v, w, rows, ended)
         status[ended == NO_DATA] = _NO_CURRENT
         status[ended == LEVELS_COINCIDE] = _LEVELS_COINCIDE
         status[ended == HEAP] = _NO_EQUILIBRIUM
-        lifts = (ended == SOLVED) & (rows[2][:, 1] > self.mooring.anchor_weight)
+        lifts = (ended == SOLVED) & (rows.ends[:, 1] > self.mooring.anchor_weight)
         status[lifts] = _ANCHOR_LIFTS
         alone[:] = (ended != SOLVED) & (status == 0)
         for case in np.flatnonzero(alone):
@@ -190,9 +183,9 @@ class Batch:
                 status[case] = _LEVELS_COINCIDE if len(levels) else _NO_CURRENT
                 alone[case] = False
                 continue
-            own = rows[0][case], rows[1][case], rows[2][case]
+            own = Results(*(array[case] for array in rows))
             try:
-                solve_one(self.mooring, water_of(self.water, *profile), own)
+                solve_one(self.mooring, water_of(self.plan.water, *profile), own)
             except NoEquilibrium as refusal:
                 status[case] = STATUSES.index(refusal.status)
         for array in rows:
@@ -241,7 +234,7 @@ def _shaped(profiles: Profiles, shape: tuple[int, ...]) -> Profiles:
 
 
 def _measured(
-    mooring: Mooring, rows: Rows, status: NDArray[np.int8], alone: NDArray[np.bool_]
+    mooring: Mooring, rows: Results, status: NDArray[np.int8], alone: NDArray[np.bool_]
 ) -> Profiles:
     """The results with the anchor, and with the knockdown from the shape in still water."""
     pieces, clamps, ends = rows
