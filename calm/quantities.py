@@ -235,6 +235,7 @@ _TABLE = (
     Quantity(
         "drag_area", "drag area", "m²", "Area to which its drag coefficient belongs.", decimals=4
     ),
+    Quantity("cd_area", "Cd × area", "m²", "Drag coefficient times area.", decimals=4),
     Quantity("wind_area", "wind area", "m²", "Area on which the wind blows.", decimals=2),
     Quantity("cx", "Cx", "", "Drag coefficient of a sphere.", decimals=3),
     Quantity("cn", "Cn", "", "Drag coefficient across the axis.", decimals=3),

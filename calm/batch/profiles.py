@@ -17,18 +17,21 @@ from calm.batch.kernel.outcome import OF_CLAMP, OF_ENDS, OF_PIECE
 from calm.batch.kernel.plan import Plan, plan_of
 from calm.batch.kernel.solve import solve_cases
 from calm.batch.kernel.stragglers import known_levels, solve_one, water_of
+from calm.batch.plausible import implausible
 from calm.batch.statuses import STATUSES
 from calm.batch.threads import processors
 from calm.case import Mooring
 from calm.case.measure import clamps_down, clamps_of, components_of
 from calm.errors import NoEquilibrium
 from calm.physics.line import Floats, Water
-from calm.solve import Status
+from calm.solve import Status, expect_many
 
 BLOCK = 1024
 """Profiles that a worker takes at a time."""
 
-_NO_CURRENT, _LEVELS_COINCIDE = STATUSES.index("no-current"), STATUSES.index("levels-coincide")
+_NO_CURRENT, _LEVELS_COINCIDE, _IMPLAUSIBLE = map(
+    STATUSES.index, ("no-current", "levels-coincide", "implausible-current")
+)
 _NO_EQUILIBRIUM = STATUSES.index(Status.NO_EQUILIBRIUM.label)
 _ANCHOR_LIFTS = STATUSES.index(Status.ANCHOR_LIFTS.label)
 
@@ -167,6 +170,10 @@ class Batch:
         ended = np.full(len(status), NOT_TRIED)
         # always copies: what is read-only would be compiled for once more
         depth, u, v, w = (np.array(array, np.float64, order="C") for array in current)
+        false = implausible(depth, u, v, w, self.mooring.file.environment.maximum_speed).any(axis=1)
+        if false.any():
+            u[false] = np.nan
+        current = depth, u, v, w
         solve_cases(self.plan, depth, u, v, w, rows, ended)
         status[ended == NO_DATA] = _NO_CURRENT
         status[ended == LEVELS_COINCIDE] = _LEVELS_COINCIDE
@@ -174,6 +181,7 @@ class Batch:
         lifts = (ended == SOLVED) & (rows.ends[:, 1] > self.mooring.anchor_weight)
         status[lifts] = _ANCHOR_LIFTS
         alone[:] = (ended != SOLVED) & (status == 0)
+        expect_many(int(np.count_nonzero(alone)))
         for case in np.flatnonzero(alone):
             profile = [
                 np.asarray(array[0 if len(array) == 1 else case], np.float64) for array in current
@@ -188,6 +196,7 @@ class Batch:
                 solve_one(self.mooring, water_of(self.plan.water, *profile), own)
             except NoEquilibrium as refusal:
                 status[case] = STATUSES.index(refusal.status)
+        status[false] = _IMPLAUSIBLE
         for array in rows:
             array[status != 0] = np.nan
 

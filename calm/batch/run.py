@@ -35,9 +35,8 @@ from calm.errors import UsageError
 if TYPE_CHECKING:
     from calm.batch.records.record import Record
 
-BLOCK, BLOCK_ALONE = 8192, 256
-"""Profiles to a block: what is written at once, and lost where a process is killed. The second
-where the lanes do not solve the mooring, and each profile takes 500 to 3000 times as long."""
+BLOCK = 8192
+"""Profiles to a block: what is written at once, and lost where a process is killed."""
 
 MOST_BLOCKS, LARGEST_BLOCK = 2048, 65536
 """Longer records have larger blocks, up to a size, as each makes a file for every variable."""
@@ -117,7 +116,7 @@ def run_batch(
     nodes = shape_of(mooring) if shape else None
     batch = Batch(nodes.mooring if nodes else mooring)
     if block is None:
-        block = BLOCK_ALONE if batch.plan is None else _block_for(record.count)
+        block = _block_for(record.count)
     folder = store_folder(output)
     identity, work = "", None
     try:

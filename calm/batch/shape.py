@@ -81,7 +81,7 @@ def shape_of(mooring: Mooring) -> Shape:
         if index < len(lengths) and flexible[index]:
             length = float(lengths[index])
             inner = np.linspace(0.0, length, max(ceil(length / part), 1) + 1)[1:-1]
-            clamps += tuple(Clamp("", "", nothing, float(at)) for at in inner)
+            clamps += tuple(Clamp("", "", nothing, float(at), piece.place) for at in inner)
             component += [index] * len(inner)
             distance += (tops[index] + inner).tolist()
             piece = replace(piece, length=length, fit_top_depth=None, clamps=clamps)

@@ -17,7 +17,8 @@ class Ending(Enum):
     NO_DATA = "without data"
 
 
-STATUSES = (*(status.label for status in Status), "no-current", "levels-coincide")
+STATUSES = (*(status.label for status in Status), "no-current", "levels-coincide",
+            "implausible-current")  # fmt: skip
 """What the numbers of a `status` mean; the first is 0."""
 
 IN_WEAK_CURRENT = frozenset({Status.SLACK.label, Status.ABOVE_SURFACE.label})
@@ -29,6 +30,7 @@ _ENDINGS = {
     Status.NOT_CONVERGED.label: Ending.NOT_CONVERGED,
     "no-current": Ending.NO_DATA,
     "levels-coincide": Ending.NO_DATA,
+    "implausible-current": Ending.NO_DATA,
 }
 
 

@@ -68,7 +68,7 @@ class Work:
         self.progress = progress
         self.stop, self.alone = Event(), 0
         self._reading, self._counting = Lock(), Lock()
-        self._length = FEWEST if batch.plan is None else FIRST
+        self._length = FIRST
         found = ((number, store.flag(number)) for number in range(store.count))
         self.flags: dict[int, Flag] = {number: flag for number, flag in found if flag is not None}
         begun = ((number, store.begun(number)) for number in self.missing)

@@ -7,13 +7,13 @@ everything else follows as ever.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import ClassVar
 
-from calm.files import Cable, Clamp, Component, MooringFile, Piece
+from calm.files import Cable, Clamp, Component, MooringFile, Piece, Place
 from calm.files.definition import STANDARD_GRAVITY
-from calm.files.labels import numbered
+from calm.files.labels import numbered, placed
 from calm.units import DIMENSIONS
 
 MOST_BUOYANCY = 100.0
@@ -34,12 +34,12 @@ class Adjustment(ABC):
     ----------
     text : as it was written, e.g. ``top float.buoyancy``
     file : the mooring as it is
-    labels : of the parts that change together
+    parts : that change together, as they are
     """
 
     text: str
     file: MooringFile
-    labels: tuple[str, ...]
+    parts: tuple[Piece | Clamp, ...]
 
     whole: ClassVar[bool] = False
     note: ClassVar[str] = ""
@@ -67,6 +67,15 @@ class Adjustment(ABC):
     @abstractmethod
     def to(self, value: float) -> MooringFile:
         """The mooring with another number."""
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Of the parts that change."""
+        return tuple(part.label for part in self.parts)
+
+    @cached_property
+    def _places(self) -> frozenset[Place]:
+        return frozenset(part.place for part in self.parts)
 
 
 class Buoyancy(Adjustment):
@@ -97,10 +106,9 @@ class Buoyancy(Adjustment):
         pieces = tuple(
             replace(
                 piece,
-                component=self._lifted(piece.label, piece.component, value),
+                component=self._lifted(piece, value),
                 clamps=tuple(
-                    replace(clamp, component=self._lifted(clamp.label, clamp.component, value))
-                    for clamp in piece.clamps
+                    replace(clamp, component=self._lifted(clamp, value)) for clamp in piece.clamps
                 ),
             )
             for piece in self.file.pieces
@@ -109,10 +117,11 @@ class Buoyancy(Adjustment):
 
     @property
     def _component(self) -> Component:
-        return next(components_called(self.file, self.labels))
+        return self.parts[0].component
 
-    def _lifted(self, label: str, component: Component, value: float) -> Component:
-        if label not in self.labels:
+    def _lifted(self, part: Piece | Clamp, value: float) -> Component:
+        component = part.component
+        if part.place not in self._places:
             return component
         # what else the net force could follow from goes, as in an override on the line
         other = "weight" if isinstance(component, Cable) else "volume"
@@ -124,21 +133,21 @@ class Length(Adjustment):
 
     @property
     def now(self) -> float:
-        length = pieces_called(self.file, self.labels)[0].length
-        assert length is not None
-        return length
+        first = self.parts[0]
+        assert isinstance(first, Piece) and first.length is not None
+        return first.length
 
     @property
     def range(self) -> tuple[float, float]:
-        pieces = pieces_called(self.file, self.labels)
-        lowest = max((clamp.at for piece in pieces for clamp in piece.clamps), default=0.0)
+        clamps = [clamp for part in self.parts if isinstance(part, Piece) for clamp in part.clamps]
+        lowest = max((clamp.at for clamp in clamps), default=0.0)
         depth = self.file.environment.depth
         assert depth is not None  # a mooring stands on the seabed
         return max(lowest, LEAST_LENGTH), MOST_LENGTH * depth
 
     def to(self, value: float) -> MooringFile:
         pieces = tuple(
-            replace(piece, length=value) if piece.label in self.labels else piece
+            replace(piece, length=value) if piece.place in self._places else piece
             for piece in self.file.pieces
         )
         return replace(self.file, pieces=pieces)
@@ -155,39 +164,22 @@ class Count(Adjustment):
 
     @property
     def now(self) -> float:
-        return float(len(self._group))
+        return float(len(self.parts))
 
     @property
     def range(self) -> tuple[float, float]:
         return 1.0, float(MOST_COUNT)
 
     def to(self, value: float) -> MooringFile:
-        pieces, group = self.file.pieces, self._group
-        one = group[0]
+        pieces, group = self.file.pieces, self.parts
+        one, last = group[0], group[-1]
+        assert isinstance(one, Piece) and isinstance(last, Piece)
         if len(group) > 1:  # labels of several are numbered
             clamps = tuple(replace(c, label=_unnumbered(c.label)) for c in one.clamps)
             one = replace(one, label=_unnumbered(one.label), clamps=clamps)
-        first, last = group[0].index, group[-1].index
-        line = (*pieces[:first], *(one,) * int(value), *pieces[last + 1 :])
+        repeats = (placed(one, replace(one.place, repeat=number)) for number in range(int(value)))
+        line = (*pieces[: one.index], *repeats, *pieces[last.index + 1 :])
         return replace(self.file, pieces=numbered(line))
-
-    @property
-    def _group(self) -> tuple[Piece, ...]:
-        return pieces_called(self.file, self.labels)
-
-
-def pieces_called(file: MooringFile, labels: tuple[str, ...]) -> tuple[Piece, ...]:
-    """The pieces of these labels, down the line."""
-    return tuple(piece for piece in file.pieces if piece.label in labels)
-
-
-def components_called(file: MooringFile, labels: tuple[str, ...]) -> Iterator[Component]:
-    """The components of the pieces and clamps of these labels."""
-    for piece in file.pieces:
-        parts: tuple[Piece | Clamp, ...] = (piece, *piece.clamps)
-        for part in parts:
-            if part.label in labels:
-                yield part.component
 
 
 def _unnumbered(label: str) -> str:

@@ -38,8 +38,8 @@ _SETTINGS = Settings(angle_step=radians(4.0), tolerance=1e-10)
 """Coarse: what the shares lack is made up when they are scaled to the whole."""
 
 
-Part = tuple[int, int]
-"""A piece of the line, and the clamp on it that is meant, or -1."""
+SolverPart = tuple[int, int]
+"""Number of a piece of the line, and that of a clamp on it, or -1: as the arrays have them."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Attribution:
 
 
 def attribute(
-    line: Line, water: Water, start: Floats | None, whole: Floats, point: Part
+    line: Line, water: Water, start: Floats | None, whole: Floats, point: SolverPart
 ) -> Attribution:
     """Share out a point's depth and excursion, and the buoyancy in use, among the drags.
 
@@ -116,7 +116,7 @@ def with_drag(line: Line, factor: float) -> Line:
     )
 
 
-def _parts_with_drag(line: Line) -> list[Part]:
+def _parts_with_drag(line: Line) -> list[SolverPart]:
     """Down the line, the clamps of a piece behind it."""
     pieces = np.flatnonzero((line.normal_drag > 0.0) | (line.tangential_drag > 0.0))
     clamps = np.flatnonzero(line.clamp_drag > 0.0)
@@ -124,7 +124,7 @@ def _parts_with_drag(line: Line) -> list[Part]:
     return sorted(parts)
 
 
-def _with_part(line: Line, part: Part, factor: float) -> Line:
+def _with_part(line: Line, part: SolverPart, factor: float) -> Line:
     piece, clamp = part
     if clamp >= 0:
         factors = np.ones(len(line.clamp_drag))
@@ -140,7 +140,7 @@ def _with_part(line: Line, part: Part, factor: float) -> Line:
 
 
 def _integral(
-    line: Line, water: Water, parts: list[Part], least: float, stages: int, point: Part
+    line: Line, water: Water, parts: list[SolverPart], least: float, stages: int, point: SolverPart
 ) -> Floats:
     """(p, 3) ∫ ∂y/∂λ ds from `least` to 1, with s = t² and ∂y/∂λ = (∂y/∂ln λ)/s."""
     abscissae, weights = np.polynomial.legendre.leggauss(stages)
@@ -164,7 +164,7 @@ def _observed(position: Floats, used: float, node: int) -> Floats:
     return np.array([-z, np.hypot(x, y), used])
 
 
-def _node(solution: Solution, point: Part) -> int:
+def _node(solution: Solution, point: SolverPart) -> int:
     piece, clamp = point
     if clamp >= 0:
         return int(np.flatnonzero(solution.element_clamp == clamp)[0])

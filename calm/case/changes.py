@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from calm.case.adjustment import (
-    Adjustment,
-    Buoyancy,
-    Count,
-    Length,
-    components_called,
-    pieces_called,
-)
-from calm.case.parts import all_labels, labels_of
+from collections.abc import Sequence
+
+from calm.case.adjustment import Adjustment, Buoyancy, Count, Length
+from calm.case.parts import all_parts
 from calm.case.targets import pointed
 from calm.errors import UsageError
-from calm.files import Anchor, Cable, Chain, Component, MooringFile, Piece
+from calm.files import Anchor, Cable, Chain, Clamp, Component, MooringFile, Piece
 from calm.files.explain import unknown
 from calm.units import QuantityError, parse_quantity, with_unit
+
+Parts = tuple[Piece | Clamp, ...]
 
 
 def parse_change(text: str, file: MooringFile) -> Adjustment:
@@ -39,8 +36,7 @@ def parse_change(text: str, file: MooringFile) -> Adjustment:
         message = unknown(what, field if point else "", _FIELDS)
         raise pointed("--change", text, len(name) + 1 if point else len(text), message)
     try:
-        labels = all_labels(file.pieces, name)
-        return _FIELDS[field](text, file, labels)
+        return _FIELDS[field](text, file, all_parts(file.pieces, name))
     except LookupError as error:
         raise pointed("--change", text, 0, str(error.args[0])) from None
 
@@ -76,52 +72,48 @@ def parse_range(texts: tuple[str, str] | None, change: Adjustment) -> tuple[floa
     return low, high
 
 
-def _buoyancy(text: str, file: MooringFile, labels: tuple[str, ...]) -> Adjustment:
-    components = list(components_called(file, labels))
+def _buoyancy(text: str, file: MooringFile, parts: Parts) -> Adjustment:
+    components = [part.component for part in parts]
     for component in components:
         if isinstance(component, Chain | Anchor):
             raise LookupError(f"{_article(component)} has a weight and no buoyancy to change")
     if any(component != components[0] for component in components):
         raise LookupError("these parts are not alike; name one")
-    return Buoyancy(text, file, labels)
+    return Buoyancy(text, file, parts)
 
 
-def _length(text: str, file: MooringFile, labels: tuple[str, ...]) -> Adjustment:
-    pieces = pieces_called(file, labels)
-    if len(pieces) < len(labels) or not isinstance(pieces[0].component, Cable | Chain):
+def _length(text: str, file: MooringFile, parts: Parts) -> Adjustment:
+    pieces = [part for part in parts if isinstance(part, Piece)]
+    if len(pieces) < len(parts) or not isinstance(pieces[0].component, Cable | Chain):
         raise LookupError("only cables and chains are cut to length")
     if any(piece.length is None for piece in pieces):
         raise LookupError("it is cut to fit (`length: fit`); give it a length in the file first")
     _refuse_several_items(pieces)
-    return Length(text, file, labels)
+    return Length(text, file, parts)
 
 
-def _count(text: str, file: MooringFile, labels: tuple[str, ...]) -> Adjustment:
-    pieces = pieces_called(file, labels)
-    if len(pieces) < len(labels):
+def _count(text: str, file: MooringFile, parts: Parts) -> Adjustment:
+    pieces = [part for part in parts if isinstance(part, Piece)]
+    if len(pieces) < len(parts):
         raise LookupError("clamped instruments are not counted; only pieces in line are")
     if isinstance(pieces[0].component, Anchor):
         raise LookupError("a line has one anchor")
     _refuse_several_items(pieces)
-    item = [one for one in file.pieces if (one.line, one.column) == _place(pieces[0])]
+    item = tuple(one for one in file.pieces if one.place.item == pieces[0].place.item)
     if any((one.use, one.component) != (item[0].use, item[0].component) for one in item):
         raise LookupError("it is part of an assembly, which is counted as a whole")
     if any(one.length is None for one in item):
         raise LookupError("it is cut to fit (`length: fit`), which only one piece can be")
-    return Count(text, file, tuple(one.label for one in item))
+    return Count(text, file, item)
 
 
 _FIELDS = {"buoyancy": _buoyancy, "length": _length, "count": _count}
 
 
-def _refuse_several_items(pieces: tuple[Piece, ...]) -> None:
-    if len({_place(piece) for piece in pieces}) > 1:
-        labels = labels_of(pieces)
-        raise LookupError(f"several items of the line are called so; name one: {labels[0]} …")
-
-
-def _place(piece: Piece) -> tuple[int, int]:
-    return piece.line, piece.column
+def _refuse_several_items(pieces: Sequence[Piece]) -> None:
+    if len({piece.place.item for piece in pieces}) > 1:
+        named = pieces[0].label
+        raise LookupError(f"several items of the line are called so; name one: {named} …")
 
 
 def _article(component: Component) -> str:

@@ -6,19 +6,29 @@ from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from functools import cached_property
 from math import isfinite
-from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, TypeVar
 
 import numpy as np
 
+from calm.files import Clamp, Piece, Place
 from calm.physics.line import Floats, Integers
 
 if TYPE_CHECKING:
     import pandas
 
+    from calm.case.result import Result
+    from calm.case.tow import TowResult
 
-class Columns:
-    """A table whose dataclass fields are its columns, all of one length."""
+Row = TypeVar("Row")
+
+_OF_THE_FILE = "part"
+"""The column with the models of the file, left out of JSON and of a data frame."""
+
+
+class Columns(Generic[Row]):
+    """A table whose dataclass fields are its columns, all of one length, as those of `record`."""
+
+    record: ClassVar[type[Any]]
 
     def _names(self) -> list[str]:
         return [field.name for field in fields(self)]  # type: ignore[arg-type]
@@ -26,63 +36,117 @@ class Columns:
     def __len__(self) -> int:
         return len(getattr(self, self._names()[0]))
 
-    def __getitem__(self, row: int) -> SimpleNamespace:
+    def __getitem__(self, row: int) -> Row:
         """One row as a record with the columns' names."""
-        return SimpleNamespace(**{name: _plain(getattr(self, name)[row]) for name in self._names()})
+        return self._records[row]
 
-    def __iter__(self) -> Iterator[SimpleNamespace]:
+    def __iter__(self) -> Iterator[Row]:
         return iter(self._records)
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: getattr(self, name) for name in self._names()}
 
     @cached_property
-    def _records(self) -> tuple[SimpleNamespace, ...]:
+    def _records(self) -> tuple[Row, ...]:
         """The rows, which every rule of a design check goes through again."""
-        names = self._names()
-        columns = [getattr(self, name) for name in names]
+        columns = [getattr(self, name) for name in self._names()]
         # whole columns become plain numbers faster than their numbers one by one
         plain = [column if isinstance(column, list) else column.tolist() for column in columns]
-        rows = zip(*plain, strict=True)
-        return tuple(SimpleNamespace(**dict(zip(names, row, strict=True))) for row in rows)
+        return tuple(map(self.record, *plain))
 
-    def with_row(self, **row: Any) -> Self:
-        """The same table with one more row, a value for every column."""
+    def with_row(self, row: Row) -> Self:
+        """The same table with one more row."""
         columns = {name: getattr(self, name) for name in self._names()}
         longer = {
-            name: [*column, row[name]] if isinstance(column, list) else np.append(column, row[name])
+            name: [*column, getattr(row, name)]
+            if isinstance(column, list)
+            else np.append(column, getattr(row, name))
             for name, column in columns.items()
         }
         return type(self)(**longer)
 
     def to_dicts(self) -> list[dict[str, Any]]:
         """The rows as dictionaries of plain numbers and text; None where unknown."""
-        return [{name: _known(value) for name, value in vars(record).items()} for record in self]
+        names = [name for name in self._names() if name != _OF_THE_FILE]
+        return [{name: _known(getattr(row, name)) for name in names} for row in self]
 
     def to_dataframe(self) -> pandas.DataFrame:
         """The table as a pandas data frame; needs pandas, which CALM does not."""
         import pandas
 
-        return pandas.DataFrame({name: getattr(self, name) for name in self._names()})
-
-
-def _plain(value: Any) -> Any:
-    return value.item() if isinstance(value, np.generic) else value
+        names = (name for name in self._names() if name != _OF_THE_FILE)
+        return pandas.DataFrame({name: getattr(self, name) for name in names})
 
 
 def _known(value: Any) -> Any:
     return None if isinstance(value, float) and not isfinite(value) else value
 
 
+@dataclass(frozen=True, slots=True)
+class ComponentRow:
+    """A piece of a solved line: a row of `Components`, which says what the figures are."""
+
+    part: Piece
+    index: int
+    use: str
+    label: str
+    kind: str
+    role: str
+    length: float
+    cut_length: float
+    depth_top: float
+    depth_bottom: float
+    x_top: float
+    y_top: float
+    x_bottom: float
+    y_bottom: float
+    tension_top: float
+    tension_bottom: float
+    tension: float
+    least_tension: float
+    tilt: float
+    knockdown: float
+    safety_factor: float
+    utilisation: float
+    reynolds: float
+
+    @property
+    def place(self) -> Place:
+        """Which piece it is."""
+        return self.part.place
+
+
+@dataclass(frozen=True, slots=True)
+class ClampRow:
+    """An instrument clamped on a solved line: a row of `Clamps`."""
+
+    part: Clamp
+    index: int
+    use: str
+    label: str
+    depth: float
+    x: float
+    y: float
+    tension: float
+    tilt: float
+    knockdown: float
+
+    @property
+    def place(self) -> Place:
+        """Which clamp it is."""
+        return self.part.place
+
+
 @dataclass(frozen=True)
-class Components(Columns):
+class Components(Columns[ComponentRow]):
     """The n pieces of the line in file order; NaN where a figure is unknown.
 
     Those of a mooring from the free end down, the anchor last; those of a tow from the ship.
 
     Attributes
     ----------
-    index, use, label, kind, role : (n,) which piece, of what component
+    part : (n,) the piece of the file
+    index, use, label, kind, role : (n,) which it is, of what component
     length, cut_length : (n,) stretched and unstretched [m]
     depth_top, depth_bottom : (n,) of the first-listed and the other end [m], + down
     x_top, y_top, x_bottom, y_bottom : (n,) east and north of the anchor or the tow point [m]
@@ -95,6 +159,9 @@ class Components(Columns):
     reynolds : (n,) greatest Reynolds number of speed and diameter
     """
 
+    record = ComponentRow
+
+    part: list[Piece]
     index: Integers
     use: list[str]
     label: list[str]
@@ -120,11 +187,12 @@ class Components(Columns):
 
 
 @dataclass(frozen=True)
-class Clamps(Columns):
+class Clamps(Columns[ClampRow]):
     """The m instruments clamped on the line, in file order.
 
     Attributes
     ----------
+    part : (m,) the clamp of the file
     index : (m,) of the piece each sits on
     use, label : (m,)
     depth, x, y, knockdown : (m,) [m]
@@ -132,6 +200,9 @@ class Clamps(Columns):
     tilt : (m,) of the piece's axis there [degrees]
     """
 
+    record = ClampRow
+
+    part: list[Clamp]
     index: Integers
     use: list[str]
     label: list[str]
@@ -159,3 +230,12 @@ class Shape:
     y: Floats
     tension: Floats
     tilt: Floats
+
+
+def rows_down(result: Result | TowResult) -> Iterator[tuple[ComponentRow, list[ClampRow]]]:
+    """The pieces of a result, each with what is clamped on it."""
+    on: dict[int, list[ClampRow]] = {}
+    for clamp in result.clamps:
+        on.setdefault(clamp.index, []).append(clamp)
+    for component in result.components:
+        yield component, on.get(component.index, [])

@@ -8,25 +8,42 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from calm.case.attribution import FAIR, Attribution, Part, attribute, with_drag
+from calm.case.attribution import FAIR, Attribution, SolverPart, attribute, with_drag
 from calm.case.columns import Columns
 from calm.case.figures import Figures, figures_of
 from calm.case.measure import clamps_in
 from calm.case.mooring import Mooring
-from calm.case.parts import TOP, one_label
+from calm.case.parts import TOP, one_part
 from calm.errors import NoEquilibrium, UsageError
+from calm.files import Place
 from calm.physics.line import Floats, Integers, Line, Water
-from calm.solve import solve_mooring
+from calm.solve import expect_many, solve_mooring
 
 if TYPE_CHECKING:
     from calm.case.result import Result
+
+SOLVES = 100.0
+"""Equilibria that are sought for an explanation, or as much work."""
 
 CHANGE = 0.1
 """By how much the buoyancy, the drag and the current are changed."""
 
 
+@dataclass(frozen=True, slots=True)
+class Cause:
+    """What the drag of a piece or clamp causes: a row of `Causes`."""
+
+    index: int
+    label: str
+    clamped: bool
+    drag: float
+    knockdown: float
+    excursion: float
+    used_buoyancy: float
+
+
 @dataclass(frozen=True)
-class Causes(Columns):
+class Causes(Columns[Cause]):
     """The p pieces and clamped instruments that have drag, in file order.
 
     Attributes
@@ -37,6 +54,8 @@ class Causes(Columns):
     drag : (p,) horizontal force of the water on it [N]
     knockdown, excursion, used_buoyancy : (p,) its share of that of the mooring [m], [m], [-]
     """
+
+    record = Cause
 
     index: Integers
     label: list[str]
@@ -128,17 +147,18 @@ def explain(result: Result, label: str | None = None) -> Explanation:
     """
     mooring = result.mooring
     try:
-        label = one_label(mooring.file.pieces[:-1], label or TOP)
+        part = one_part(mooring.file.pieces[:-1], label or TOP)
     except LookupError as error:
         raise UsageError(str(error.args[0])) from None
-    figures = figures_of(result, label)
+    expect_many(SOLVES)
+    figures = figures_of(result, part.place)
     quantities: tuple[str, ...] = ("knockdown", "excursion")
     if figures.knockdown is None or result.type == "surface":
         quantities = ("excursion", "used_buoyancy") if result.type == "surface" else ("excursion",)
     notes = list(_notes(result, quantities))
     causes, without_drag, miss = None, dict.fromkeys(quantities, 0.0), 0.0
     try:
-        shares = _shares(mooring, figures, "knockdown" in quantities, _point(mooring, label))
+        shares = _shares(mooring, figures, "knockdown" in quantities, _point(mooring, part.place))
     except NoEquilibrium as failure:
         notes.append(
             "What each drag causes cannot be told: with less drag the line has no equilibrium "
@@ -155,13 +175,13 @@ def explain(result: Result, label: str | None = None) -> Explanation:
                 f"The shares are rough: they grow unevenly with the drag ({miss:.0%} were scaled)."
             )
     return Explanation(
-        label=label,
+        label=part.label,
         quantities=quantities,
         figures=figures,
         without_drag=without_drag,
         causes=causes,
         miss=miss,
-        changes=tuple(_changed(name, other, label) for name, other in _variations(mooring)),
+        changes=tuple(_changed(name, other, part.place) for name, other in _variations(mooring)),
         notes=tuple(notes),
     )
 
@@ -185,21 +205,16 @@ def _notes(result: Result, quantities: tuple[str, ...]) -> Iterator[str]:
         yield "There is no current, and so no drag."
 
 
-def _point(mooring: Mooring, label: str) -> Part:
-    pieces, clamps = _labels(mooring)
-    if label in clamps:
-        m = clamps.index(label)
-        return int(mooring.line.clamp_piece[m]), m
-    return pieces.index(label), -1
-
-
-def _labels(mooring: Mooring) -> tuple[list[str], list[str]]:
-    """Of the pieces and of the clamps, in the order of the solver."""
+def _point(mooring: Mooring, place: Place) -> SolverPart:
+    """The number of the piece, and that of the clamp or -1, which the solver knows it by."""
     pieces = mooring.file.pieces
-    return [piece.label for piece in pieces], [clamp.label for clamp in clamps_in(pieces)]
+    own = replace(place, clamp=-1)
+    index = next(piece.index for piece in pieces if piece.place == own)
+    clamps = [clamp.place for clamp in clamps_in(pieces)]
+    return index, clamps.index(place) if place.is_clamp else -1
 
 
-def _shares(mooring: Mooring, figures: Figures, stands: bool, point: Part) -> Attribution:
+def _shares(mooring: Mooring, figures: Figures, stands: bool, point: SolverPart) -> Attribution:
     whole = np.array([figures.depth, figures.excursion, figures.used_buoyancy])
     start = None
     if stands:
@@ -209,11 +224,11 @@ def _shares(mooring: Mooring, figures: Figures, stands: bool, point: Part) -> At
 
 
 def _causes(mooring: Mooring, shares: Attribution) -> Causes:
-    pieces, clamps = _labels(mooring)
+    pieces, clamps = mooring.file.pieces, clamps_in(mooring.file.pieces)
     parts = list(zip(shares.piece.tolist(), shares.clamp.tolist(), strict=True))
     return Causes(
         index=shares.piece,
-        label=[clamps[m] if m >= 0 else pieces[p] for p, m in parts],
+        label=[(clamps[m] if m >= 0 else pieces[p]).label for p, m in parts],
         clamped=[m >= 0 for _, m in parts],
         drag=_drags(mooring, parts),
         knockdown=shares.shares[:, 0],
@@ -222,7 +237,7 @@ def _causes(mooring: Mooring, shares: Attribution) -> Causes:
     )
 
 
-def _drags(mooring: Mooring, parts: list[Part]) -> Floats:
+def _drags(mooring: Mooring, parts: list[SolverPart]) -> Floats:
     """(p,) size of the horizontal force of the water on each part [N]."""
     solution = solve_mooring(mooring.line, mooring.water, mooring.settings)
     change = np.diff(solution.force[: solution.hanging + 1, :2], axis=0)
@@ -266,8 +281,8 @@ def _with_current(water: Water, factor: float) -> Water:
     return replace(water, u=factor * water.u, v=factor * water.v, w=factor * water.w)
 
 
-def _changed(name: str, mooring: Mooring, label: str) -> WhatIf:
+def _changed(name: str, mooring: Mooring, place: Place) -> WhatIf:
     try:
-        return WhatIf(name, figures_of(mooring.solve(), label))
+        return WhatIf(name, figures_of(mooring.solve(), place))
     except NoEquilibrium as failure:
         return WhatIf(name, failure=failure)

@@ -6,6 +6,9 @@ from dataclasses import dataclass
 from math import hypot
 from typing import TYPE_CHECKING
 
+from calm.case.columns import ClampRow, ComponentRow
+from calm.files import Place
+
 if TYPE_CHECKING:
     from calm.case.result import Result
 
@@ -28,14 +31,14 @@ class Spot:
     tension: float
 
 
-def spot_of(result: Result, label: str) -> Spot:
-    """What a result says of the piece or clamp of this label."""
-    components, clamps = result.components, result.clamps
-    if label in components.label:
-        row = components[components.label.index(label)]
+def spot_of(result: Result, place: Place | None = None) -> Spot:
+    """What a result says of the part at a place; of the top of the line where none is given."""
+    row: ComponentRow | ClampRow = result.components[0]
+    if place is not None:
+        row = next(row for row in (*result.components, *result.clamps) if row.place == place)
+    if isinstance(row, ComponentRow):
         depth, x, y = row.depth_top, row.x_top, row.y_top
     else:
-        row = clamps[clamps.label.index(label)]
         depth, x, y = row.depth, row.x, row.y
     known = row.knockdown == row.knockdown
     return Spot(depth, hypot(x, y), row.knockdown if known else None, row.tilt, row.tension)
@@ -62,9 +65,9 @@ class Figures:
     required_weight: float
 
 
-def figures_of(result: Result, label: str | None = None) -> Figures:
-    """The figures of a result, those of the line for the part of this label (the top)."""
-    spot = spot_of(result, label or result.components.label[0])
+def figures_of(result: Result, place: Place | None = None) -> Figures:
+    """The figures of a result, those of the line for the part of a place (the top)."""
+    spot = spot_of(result, place)
     return Figures(
         depth=spot.depth,
         knockdown=spot.knockdown,

@@ -58,6 +58,7 @@ def components_of(
     breaking, working = (_figures(pieces, name) for name in ("breaking_load", "working_load"))
     pulled = np.where(greatest > 0, greatest, np.nan)
     return Components(
+        part=list(pieces),
         index=np.array([piece.index for piece in pieces]),
         use=[piece.use for piece in pieces],
         label=[piece.label for piece in pieces],
@@ -97,10 +98,12 @@ def clamps_of(pieces: Sequence[Piece], solution: Solution, still: Solution | Non
     if still is not None:
         before = still.position[np.flatnonzero(still.element_clamp >= 0)]
         knockdown = before[:, 2] - position[:, 2]
+    clamps = [order[m] for m in which]
     return Clamps(
+        part=clamps,
         index=index,
-        use=[order[m].use for m in which],
-        label=[order[m].label for m in which],
+        use=[clamp.use for clamp in clamps],
+        label=[clamp.label for clamp in clamps],
         depth=-position[:, 2],
         x=position[:, 0],
         y=position[:, 1],

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calm.case.columns import Components
+from calm.case.columns import ComponentRow, Components
 from calm.case.measure import clamps_of, components_of, shape_of
 from calm.case.result import Accuracy, AnchorLoad, Result, Top
 from calm.case.strumming import strumming_of
@@ -65,7 +65,8 @@ def _with_anchor(above: Components, anchor: Piece, depth: float) -> Components:
     line_end = above[-1]
     pull, height = line_end.tension_bottom, anchor.length or 0.0
     breaking, working = anchor.component.breaking_load, anchor.component.working_load
-    return above.with_row(
+    row = ComponentRow(
+        part=anchor,
         index=anchor.index,
         use=anchor.use,
         label=anchor.label,
@@ -89,6 +90,7 @@ def _with_anchor(above: Components, anchor: Piece, depth: float) -> Components:
         utilisation=pull / working if working else nan,
         reynolds=nan,
     )
+    return above.with_row(row)
 
 
 def _anchor_load(mooring: Mooring, solution: Solution) -> AnchorLoad:

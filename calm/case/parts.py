@@ -5,53 +5,56 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from calm.files import Piece
+from calm.files import Clamp, Piece
 from calm.files.explain import unknown
 
 TOP = "top"
 """The free end of the line, whatever its label."""
 
 
-def labels_of(pieces: Sequence[Piece]) -> list[str]:
-    """Every label of a line, the clamps of a piece behind it."""
-    return [label for piece in pieces for label in (piece.label, *_clamped(piece))]
+def parts_of(pieces: Sequence[Piece]) -> list[Piece | Clamp]:
+    """Every piece of a line, its clamps behind it."""
+    parts: list[Piece | Clamp] = []
+    for piece in pieces:
+        parts += (piece, *piece.clamps)
+    return parts
 
 
-def one_label(pieces: Sequence[Piece], text: str) -> str:
-    """The label meant by a text.
+def one_part(pieces: Sequence[Piece], text: str) -> Piece | Clamp:
+    """The part meant by a text.
 
     Raises
     ------
     LookupError
         No part, or more than one, is called so; its message says what is.
     """
-    found = all_labels(pieces, text)
+    found = all_parts(pieces, text)
     if len(found) > 1:
-        raise LookupError(f"{len(found)} parts are called `{text}`; name one: {_listed(found)}")
+        listed = _listed([part.label for part in found])
+        raise LookupError(f"{len(found)} parts are called `{text}`; name one: {listed}")
     return found[0]
 
 
-def all_labels(pieces: Sequence[Piece], text: str) -> tuple[str, ...]:
-    """The labels meant by a text: that label, or all that are it with a number.
+def all_parts(pieces: Sequence[Piece], text: str) -> tuple[Piece | Clamp, ...]:
+    """The parts meant by a text: that of the label, or all whose label is it with a number.
 
     Raises
     ------
     LookupError
         No part is called so; the message offers the nearest that is.
     """
-    labels = labels_of(pieces)
-    if text in labels:
-        return (text,)
+    parts = parts_of(pieces)
+    for part in parts:
+        if part.label == text:
+            return (part,)
     if text == TOP:
-        return (pieces[0].label,)
-    numbered = tuple(one for one in labels if re.fullmatch(re.escape(text) + r" \d+", one))
-    if not numbered:
-        raise LookupError(unknown(f"no part of the line is called `{text}`", text, [TOP, *labels]))
-    return numbered
-
-
-def _clamped(piece: Piece) -> list[str]:
-    return [clamp.label for clamp in piece.clamps]
+        return (pieces[0],)
+    numbered = re.compile(re.escape(text) + r" \d+")
+    found = tuple(part for part in parts if numbered.fullmatch(part.label))
+    if not found:
+        labels = [TOP, *(part.label for part in parts)]
+        raise LookupError(unknown(f"no part of the line is called `{text}`", text, labels))
+    return found
 
 
 def _listed(labels: Sequence[str]) -> str:

@@ -12,6 +12,7 @@ from calm.case.mooring import Mooring
 from calm.case.result import Result
 from calm.case.targets import Target, parse_target
 from calm.errors import NoEquilibrium, UsageError
+from calm.solve import expect_many
 from calm.solve.least_change import LeastChange
 from calm.units import with_unit
 
@@ -20,6 +21,9 @@ MET, MET_ALREADY, NOT_MET = "met", "met-already", "not-met"
 
 _NOTHING = 1e-6
 """A change of the target's quantity, as a share of it, that is none."""
+SOLVES = 60.0
+"""Equilibria that are sought for an answer, about: three for each value tried."""
+
 _EXACT = 1e-7
 """How near an `=` target is met, as a share of the limit or of how far one was from it."""
 
@@ -93,7 +97,7 @@ class Sizing:
             "calm": __version__,
             "name": self.change.file.name,
             "status": self.status,
-            "target": asdict(self.target) | {"unit": self.target.unit},
+            "target": self.target.to_dict(),
             "change": {
                 "text": self.change.text,
                 "labels": list(self.change.labels),
@@ -150,6 +154,7 @@ def size(
         )
     first = 0.0 if before.measured is None else before.measured - wanted.limit
     sign = -1.0 if wanted.relation == ">=" or (wanted.relation == "=" and first < 0.0) else 1.0
+    expect_many(SOLVES)
     search = LeastChange(
         lambda value: trials.excess(value, sign),
         *limits,
@@ -214,7 +219,7 @@ def _understood(
     except UsageError as error:
         mistakes.append(str(error))
     if wanted is not None and adjustment is not None and adjustment.whole:
-        if wanted.label in adjustment.labels:
+        if any(wanted.place == part.place for part in adjustment.parts):
             mistakes.append(
                 f"{wanted.label} is one of those that {adjustment.text} adds or takes away; "
                 "set the target for another part"

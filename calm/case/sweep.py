@@ -9,6 +9,9 @@ from calm.case.tow import Tow, TowResult
 from calm.errors import NoEquilibrium, UsageError
 from calm.files.strumming import BourgetMarichalKeys
 
+SOLVES = 3.0
+"""Equilibria that are sought for one speed, about."""
+
 CHANGE = 0.1
 """By which share `sensitivity` changes a coefficient, down and up."""
 

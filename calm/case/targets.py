@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from calm.case.figures import spot_of
-from calm.case.parts import TOP, labels_of, one_label
+from calm.case.parts import TOP, one_part, parts_of
 from calm.errors import UsageError
-from calm.files import Piece
+from calm.files import Piece, Place
 from calm.files.explain import unknown
 from calm.units import DIMENSIONS, QuantityError, parse_quantity
 
@@ -49,7 +49,7 @@ class Target:
     ----------
     text : as it was written
     quantity : one of `QUANTITIES`
-    label : of the part; None for the top of the line, and for the anchor's required weight
+    label, place : of the part; None for the top of the line, and for the anchor's required weight
     relation : ``<=``, ``>=`` or ``=``
     limit : SI, degrees
     """
@@ -59,6 +59,7 @@ class Target:
     label: str | None
     relation: str
     limit: float
+    place: Place | None = None
 
     @property
     def unit(self) -> str:
@@ -69,9 +70,19 @@ class Target:
         """The quantity in a result; None for a knockdown that has no meaning."""
         if self.quantity == "required_weight":
             return result.anchor.required_weight
-        spot = spot_of(result, self.label or result.components.label[0])
-        value: float | None = getattr(spot, self.quantity)
+        value: float | None = getattr(spot_of(result, self.place), self.quantity)
         return value
+
+    def to_dict(self) -> dict[str, Any]:
+        """The target in JSON."""
+        return {
+            "text": self.text,
+            "quantity": self.quantity,
+            "label": self.label,
+            "relation": self.relation,
+            "limit": self.limit,
+            "unit": self.unit,
+        }
 
 
 def parse_target(text: str, pieces: Sequence[Piece]) -> Target:
@@ -103,13 +114,14 @@ def parse_target(text: str, pieces: Sequence[Piece]) -> Target:
     if relation not in RELATIONS:
         what = f"`{relation}` is no relation" if relation else "there is no relation"
         raise mistake("relation", f"{what}; write <=, >= or =, as in `{_EXAMPLE}`")
-    label = None
+    meant = None
     if found["part"] is not None and quantity == "required_weight":
         raise mistake("part", "the required weight is the anchor's; leave the brackets out")
     part = TOP if found["part"] is None else found["label"].strip()
-    if quantity != "required_weight" and (part != TOP or TOP in labels_of(pieces)):
+    called_top = any(each.label == TOP for each in parts_of(pieces))
+    if quantity != "required_weight" and (part != TOP or called_top):
         try:
-            label = one_label(pieces, part)
+            meant = one_part(pieces, part)
         except LookupError as error:
             raise mistake("label", str(error.args[0])) from None
     try:
@@ -117,4 +129,5 @@ def parse_target(text: str, pieces: Sequence[Piece]) -> Target:
     except QuantityError as error:
         shown = f"`{found['limit']}` {error}" if found["limit"] else "there is no limit"
         raise mistake("limit", shown) from None
-    return Target(text, quantity, label, RELATIONS[relation], limit)
+    label, place = (None, None) if meant is None else (meant.label, meant.place)
+    return Target(text, quantity, label, RELATIONS[relation], limit, place)

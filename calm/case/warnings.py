@@ -62,11 +62,8 @@ def _anchor_too_light(result: Result, _: Solution) -> Iterator[str]:
 
 
 def _tilted(result: Result | TowResult, _: Solution) -> Iterator[str]:
-    leaning = [
-        (row.label, row.tilt, result.file.pieces[row.index].component) for row in result.components
-    ]
-    clamped = {clamp.label: clamp.component for clamp in clamps_in(result.file.pieces)}
-    leaning += [(row.label, row.tilt, clamped[row.label]) for row in result.clamps]
+    leaning = [(row.label, row.tilt, row.part.component) for row in result.components]
+    leaning += [(row.label, row.tilt, row.part.component) for row in result.clamps]
     for label, tilt, component in leaning:
         limit, warned = component.max_tilt, component.warn_tilt
         if limit is not None and tilt > limit:

@@ -15,18 +15,12 @@ if TYPE_CHECKING:
     from calm.case import Result
 
 
-@rule(
-    "anchor-weight",
-    "Anchor weight",
-    "tension",
-    "Dewey, Mooring Design & Dynamics: weight in water ≥ 1.5 (V + H/0.6)",
-    of_anchor=True,
-)
+@rule("anchor-weight", of_anchor=True)
 def anchor_weight(result: Result) -> Iterator[Verdict]:
     """Weight in water ≥ factor (V + H / friction): Dewey's rule for deadweights, factor 1.5."""
-    load, label = result.anchor, result.file.pieces[-1].label
+    load = result.anchor
     yield at_least(
-        label,
+        result.file.pieces[-1],
         load.weight,
         load.required_weight,
         f"The anchor weighs {say('tension', load.weight)} in water; "
@@ -36,19 +30,13 @@ def anchor_weight(result: Result) -> Iterator[Verdict]:
     )
 
 
-@rule(
-    "anchor-uplift",
-    "Anchor uplift",
-    "tension",
-    "The same rule apart: V ≤ weight in water / 1.5",
-    of_anchor=True,
-)
+@rule("anchor-uplift", of_anchor=True)
 def anchor_uplift(result: Result) -> Iterator[Verdict]:
     """Upward pull V ≤ weight in water / factor."""
     load, factor = result.anchor, result.file.checks.anchor_factor
     limit = load.weight / factor
     yield at_most(
-        result.file.pieces[-1].label,
+        result.file.pieces[-1],
         load.vertical,
         limit,
         f"The line pulls up with {say('tension', load.vertical)}; the anchor's weight in water "
@@ -57,20 +45,14 @@ def anchor_uplift(result: Result) -> Iterator[Verdict]:
     )
 
 
-@rule(
-    "anchor-sliding",
-    "Anchor sliding",
-    "tension",
-    "The same rule apart: H ≤ friction (weight in water / 1.5 - V), friction 0.6 of a deadweight",
-    of_anchor=True,
-)
+@rule("anchor-sliding", of_anchor=True)
 def anchor_sliding(result: Result) -> Iterator[Verdict]:
     """Horizontal pull H ≤ friction (weight in water / factor - V)."""
     load, factor = result.anchor, result.file.checks.anchor_factor
     friction = load.friction
     limit = friction * (load.weight / factor - load.vertical)
     yield at_most(
-        result.file.pieces[-1].label,
+        result.file.pieces[-1],
         load.horizontal,
         limit,
         f"The line pulls sideways with {say('tension', load.horizontal)}; friction of "

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from datetime import date
 
 from calm.case import Mooring
+from calm.checks.acceptance import Acceptance
 from calm.checks.assessment import Assessment, Situation, Stand
 from calm.checks.backup import breaks_of
 from calm.checks.finding import AS_GIVEN, Finding, State
@@ -14,44 +16,50 @@ from calm.checks.inventory import inventory_of
 from calm.checks.launch import Launch, launch_of
 from calm.checks.recovery import Recovery, recovery_of
 from calm.checks.rules import ONCE, STANDING, equilibrium
-from calm.checks.situations import STRUMMING, situations_of
+from calm.checks.situations import SOLVES, STRUMMING, situations_of
 from calm.errors import NoEquilibrium
+from calm.files import MooringFile, Place
+from calm.solve import expect_many
 
 OWN = "own"
 """Name of the environment that a mooring file gives itself."""
 
 
-def check(mooring: Mooring, /, *others: Mooring) -> Assessment:
+def check(mooring: Mooring, /, *others: Mooring, day: date | None = None) -> Assessment:
     """Judge a mooring by every rule of the design check.
 
     Parameters
     ----------
     mooring, others : the same one, loaded in each of the environments it is judged in
+    day : on which accepts count or have ended; today unless given
     """
     name, moorings = mooring.file.name, (mooring, *others)
-    return assessment_of(name, [stand_of(mooring, name) for mooring in moorings])
+    expect_many(SOLVES * len(moorings))
+    return assessment_of(name, [stand_of(mooring, name, day) for mooring in moorings], day)
 
 
-def stand_of(mooring: Mooring, name: str) -> Stand:
+def stand_of(mooring: Mooring, name: str, day: date | None = None) -> Stand:
     """Solve a mooring in its environment, in every situation, and judge it.
 
     Parameters
     ----------
     name : of the mooring in its findings
+    day : see `check`
 
     Findings as given are all there, of another situation those whose state is worse there. What
     fails only as the cables strum is a warning: they may not.
     """
     environment = mooring.file.environment.name or OWN
     situations = situations_of(mooring)
-    given, *changed = ([*findings_of(each, name, environment)] for each in situations)
+    given, *changed = ([*findings_of(each, name, environment, day=day)] for each in situations)
     states = {_of(finding): finding.state.severity for finding in given}
     others = [_softened(finding) for findings in changed for finding in findings]
     graver = [each for each in others if each.state.severity > states.get(_of(each), -1)]
     listed = (*given, *graver)
     worst = _worst_of_each_rule((*listed, *others))
     tighter = tuple(finding for finding in worst if finding not in listed)
-    return Stand(environment, mooring, situations, listed, tighter)
+    accepted = tuple(one for one in (*given, *others) if one.accept is not None)
+    return Stand(environment, mooring, situations, listed, tighter, accepted)
 
 
 def failed_stand(mooring: Mooring, name: str, failure: NoEquilibrium) -> Stand:
@@ -62,12 +70,18 @@ def failed_stand(mooring: Mooring, name: str, failure: NoEquilibrium) -> Stand:
     return Stand(environment, mooring, (situation,), findings)
 
 
-def assessment_of(name: str, stands: Sequence[Stand]) -> Assessment:
-    """Judge a mooring's launch, recovery and breaks too, in the first environment it stands in."""
+def assessment_of(name: str, stands: Sequence[Stand], day: date | None = None) -> Assessment:
+    """Judge a mooring's launch, recovery and breaks too, in the first environment it stands in.
+
+    Parameters
+    ----------
+    day : see `check`
+    """
     first = next((stand for stand in stands if stand.result is not None), stands[0])
     handling = _handled(first)
+    acceptance = _acceptance(first.mooring.file, day)
     findings = [
-        rule.find(verdict, name, first.environment)
+        acceptance.of(rule.find(verdict, name, first.environment))
         for rule in ONCE
         for verdict in rule.judge(handling)
     ]
@@ -79,11 +93,19 @@ def assessment_of(name: str, stands: Sequence[Stand]) -> Assessment:
         backup=handling.backup,
         inventory=inventory_of(first.mooring),
         findings=tuple(findings),
+        notices=tuple(
+            acceptance.notices([*(one for stand in stands for one in stand.accepted), *findings])
+        ),
     )
 
 
 def findings_of(
-    situation: Situation, mooring: str, environment: str, *, anchored: bool = True
+    situation: Situation,
+    mooring: str,
+    environment: str,
+    *,
+    anchored: bool = True,
+    day: date | None = None,
 ) -> Iterator[Finding]:
     """What the rules of a standing line find in one situation.
 
@@ -92,20 +114,27 @@ def findings_of(
     mooring, environment : their names in the findings
     anchored : whether the last piece is an anchor; of one that only stands in for it, nothing is
         found
+    day : see `check`
     """
     if situation.failure is not None:
         for verdict in equilibrium.judge(situation.failure):
             yield equilibrium.find(verdict, mooring, environment, situation.name)
     if situation.result is not None:
-        end = situation.result.file.pieces[-1].label
+        file = situation.result.file
+        end, acceptance = file.pieces[-1].place, _acceptance(file, day)
         for rule in (each for each in STANDING if anchored or not each.of_anchor):
             for verdict in rule.judge(situation.result):
-                if anchored or verdict.component != end:
-                    yield rule.find(verdict, mooring, environment, situation.name)
+                if anchored or verdict.place != end:
+                    finding = rule.find(verdict, mooring, environment, situation.name)
+                    yield acceptance.of(finding)
 
 
-def _of(finding: Finding) -> tuple[str, str | None]:
-    return finding.rule, finding.component
+def _acceptance(file: MooringFile, day: date | None) -> Acceptance:
+    return Acceptance(file.accepts, day or date.today())
+
+
+def _of(finding: Finding) -> tuple[str, Place | None]:
+    return finding.rule, finding.place
 
 
 def _softened(finding: Finding) -> Finding:

@@ -40,6 +40,7 @@ class Stand:
     situations : what was solved, the first as given
     findings : all as given, and of the other situations those whose state is worse
     tighter : of each rule the finding of another situation that leaves less margin than all those
+    accepted : of every situation, whether it is listed or not
     """
 
     environment: str
@@ -47,6 +48,7 @@ class Stand:
     situations: tuple[Situation, ...]
     findings: tuple[Finding, ...]
     tighter: tuple[Finding, ...] = ()
+    accepted: tuple[Finding, ...] = ()
 
     @property
     def result(self) -> Result | None:
@@ -66,6 +68,7 @@ class Assessment:
     backup : a break at each connection above the release, from the top
     inventory : the pieces and clamps as they come to the deck
     findings : those of the launch, the recovery and the breaks
+    notices : what there is to say of accepts that have ended, or that no finding needs
     """
 
     name: str
@@ -75,6 +78,7 @@ class Assessment:
     backup: tuple[Break, ...]
     inventory: tuple[Item, ...]
     findings: tuple[Finding, ...]
+    notices: tuple[str, ...] = ()
 
     @property
     def mooring(self) -> Mooring:
@@ -92,6 +96,15 @@ class Assessment:
         """The worst of all findings; pass where it is accepted."""
         worst = worst_state(finding.state for finding in self.all_findings())
         return State.PASS if worst is State.ACCEPTED else worst
+
+    def accepted_findings(self) -> list[Finding]:
+        """What is accepted, once for each rule and component, in the order of the rules."""
+        every = (*(one for stand in self.stands for one in stand.accepted), *self.findings)
+        once: dict[tuple[str, str | None], Finding] = {}
+        for finding in every:
+            if finding.accept is not None:
+                once.setdefault((finding.rule, finding.component), finding)
+        return list(once.values())
 
     def tighter_findings(self) -> Iterator[Finding]:
         """Of every environment, where another situation leaves less margin."""

@@ -6,7 +6,7 @@ the definition gives; a missing figure is no fault, except a missing source.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from math import pi
 
@@ -28,6 +28,9 @@ STEEL_MODULUS = 210e9
 
 GREATEST_STRENGTH = 4e9
 """Tensile strength that no fibre or wire of a cable surpasses [Pa]."""
+
+DEEPEST_WATER = 11000.0
+"""Greatest depth of the ocean, in round figures [m]."""
 
 DENSITIES = {
     "steel": STEEL_DENSITY,
@@ -60,7 +63,7 @@ def check_catalogue(
     definitions : mapping
         What to check, by id.
     known : collection of str
-        Every id that the parts of an assembly may use.
+        Every id that the parts of an assembly, or a `prefer`, may name.
     """
     findings = []
     for identifier, definition in definitions.items():
@@ -69,12 +72,33 @@ def check_catalogue(
         else:
             messages = (message for rule in RULES if (message := rule(definition)) is not None)
         findings += [Finding(identifier, message) for message in messages]
+        if definition.prefer is not None:
+            other = definitions.get(definition.prefer)
+            if definition.prefer not in known or definition.prefer == identifier:
+                message = f"prefers `{definition.prefer}`, which no catalogue has beside it"
+                findings.append(Finding(identifier, message))
+            elif other is not None and other.prefer is not None:
+                message = f"prefers `{definition.prefer}`, which itself prefers `{other.prefer}`"
+                findings.append(Finding(identifier, message))
     return findings
 
 
 def no_source(component: Component) -> str | None:
     """Figures whose origin nobody can look up."""
     return None if component.source else _NO_SOURCE
+
+
+def source_of_nothing(component: Component) -> str | None:
+    """A source of a figure that is not there, or a figure given though searched for in vain."""
+    given = {name for name in type(component).model_fields if getattr(component, name) is not None}
+    if absent := [name for name in component.sources or () if name not in given]:
+        return f"names a source of {_listed(absent)}, which it does not give"
+    if found := [name for name in component.searched or () if name in given]:
+        return f"was searched in vain for {_listed(found)}, which it gives"
+    known = type(component).model_fields
+    if strange := [name for name in component.searched or () if name not in known]:
+        return f"was searched for {_listed(strange)}, which a {component.kind} does not have"
+    return None
 
 
 def warns_after_limit(component: Component) -> str | None:
@@ -166,6 +190,15 @@ def is_stiffer_than_steel(component: Component) -> str | None:
     )
 
 
+def is_rated_below_the_ocean(component: Component) -> str | None:
+    """A depth rating deeper than any water."""
+    if component.depth_rating is None or component.depth_rating <= DEEPEST_WATER:
+        return None
+    return (
+        f"is rated to {component.depth_rating:.5g} m; no water is deeper than {DEEPEST_WATER:g} m"
+    )
+
+
 def is_too_strong(component: Component) -> str | None:
     """A cable stronger than any fibre or wire of its diameter."""
     if not isinstance(component, Cable) or component.breaking_load is None:
@@ -178,6 +211,7 @@ def is_too_strong(component: Component) -> str | None:
 
 RULES: tuple[Callable[[Component], str | None], ...] = (
     no_source,
+    source_of_nothing,
     warns_after_limit,
     displaces_more_than_its_size,
     is_denser_than_lead,
@@ -186,8 +220,13 @@ RULES: tuple[Callable[[Component], str | None], ...] = (
     is_no_chain,
     is_stiffer_than_steel,
     is_too_strong,
+    is_rated_below_the_ocean,
 )
 """Every rule, in the order their findings are told."""
+
+
+def _listed(names: Iterable[str]) -> str:
+    return " and ".join(f"`{name}`" for name in names)
 
 
 def _unknown_parts(assembly: Assembly, known: Collection[str]) -> Iterator[str]:

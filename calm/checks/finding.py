@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, fields
 from enum import StrEnum
 from math import inf
 from typing import Any
+
+from calm.files import Accept, Part, Place
+from calm.files.rules import RULES as RULE_TEXTS
 
 AS_GIVEN = "as given"
 """The situation of a mooring in its environment, with nothing changed."""
@@ -42,7 +45,7 @@ class Verdict:
 
     Attributes
     ----------
-    component : label of a piece or a clamp; None of the mooring as a whole
+    component, place : label and place of a piece or a clamp; None of the mooring as a whole
     value, limit : SI units and degrees; None where unknown
     margin : how far the value keeps within the limit, in its unit, negative where it does not
     state : pass, accepted, warn, unknown or fail
@@ -57,6 +60,7 @@ class Verdict:
     state: State
     message: str
     remedy: str | None = None
+    place: Place | None = None
 
     @property
     def share(self) -> float | None:
@@ -72,7 +76,7 @@ class Verdict:
 
 
 def at_most(
-    component: str | None,
+    part: Part | None,
     value: float,
     limit: float,
     message: str,
@@ -80,11 +84,11 @@ def at_most(
     beyond: State = State.FAIL,
 ) -> Verdict:
     """The verdict on a value that may not pass a limit; `beyond` is its state where it does."""
-    return _verdict(component, value, limit, limit - value, message, remedy, beyond)
+    return _verdict(part, value, limit, limit - value, message, remedy, beyond)
 
 
 def at_least(
-    component: str | None,
+    part: Part | None,
     value: float,
     limit: float,
     message: str,
@@ -92,23 +96,35 @@ def at_least(
     beyond: State = State.FAIL,
 ) -> Verdict:
     """The verdict on a value that may not fall short of a limit."""
-    return _verdict(component, value, limit, value - limit, message, remedy, beyond)
+    return _verdict(part, value, limit, value - limit, message, remedy, beyond)
 
 
-def told(component: str | None, value: float, message: str) -> Verdict:
+def told(part: Part | None, value: float, message: str) -> Verdict:
     """The verdict on a value that has no limit: it passes as nothing is asked of it."""
-    return Verdict(component, value, None, None, State.PASS, message)
+    return verdict_on(part, State.PASS, message, value=value)
 
 
-def unknown(
-    component: str | None, message: str, remedy: str, value: float | None = None
-) -> Verdict:
+def unknown(part: Part | None, message: str, remedy: str, value: float | None = None) -> Verdict:
     """The verdict where a figure that the rule needs is missing."""
-    return Verdict(component, value, None, None, State.UNKNOWN, message, remedy)
+    return verdict_on(part, State.UNKNOWN, message, remedy, value)
+
+
+def verdict_on(
+    part: Part | None,
+    state: State,
+    message: str,
+    remedy: str | None = None,
+    value: float | None = None,
+    limit: float | None = None,
+    margin: float | None = None,
+) -> Verdict:
+    """The verdict on a part of the line; None for the mooring as a whole."""
+    label, place = (None, None) if part is None else (part.label, part.place)
+    return Verdict(label, value, limit, margin, state, message, remedy, place)
 
 
 def _verdict(
-    component: str | None,
+    part: Part | None,
     value: float,
     limit: float,
     margin: float,
@@ -118,7 +134,7 @@ def _verdict(
 ) -> Verdict:
     kept = margin >= 0.0
     state = State.PASS if kept else beyond
-    return Verdict(component, value, limit, margin, state, message, None if kept else remedy)
+    return verdict_on(part, state, message, None if kept else remedy, value, limit, margin)
 
 
 @dataclass(frozen=True)
@@ -157,12 +173,13 @@ class Rule:
 
 
 def rule(
-    name: str, title: str, quantity: str, source: str, *, of_anchor: bool = False
+    name: str, *, of_anchor: bool = False
 ) -> Callable[[Callable[[Any], Iterator[Verdict]]], Rule]:
-    """Make a function that judges into the `Rule` of that name."""
+    """Make a function that judges into the `Rule` of that name in `calm.files.rules`."""
+    text = RULE_TEXTS[name]
 
     def of(judge: Callable[[Any], Iterator[Verdict]]) -> Rule:
-        return Rule(name, title, quantity, source, judge, of_anchor)
+        return Rule(name, text.title, text.quantity, text.source, judge, of_anchor)
 
     return of
 
@@ -172,7 +189,7 @@ class Finding(Verdict):
     """A verdict, and which rule gave it of which mooring in which environment and situation.
 
     `source` is that of the rule and its limit; `situation` tells what was changed for it,
-    `AS_GIVEN` where nothing was.
+    `AS_GIVEN` where nothing was; `accept` is what the design accepts it by, and None otherwise.
     """
 
     mooring: str
@@ -180,9 +197,13 @@ class Finding(Verdict):
     rule: str
     source: str
     situation: str = AS_GIVEN
+    accept: Accept | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """The finding in JSON."""
         first = ("mooring", "environment", "situation", "rule", "component")
-        values = asdict(self)
-        return {name: values.pop(name) for name in first} | values
+        values = {each.name: getattr(self, each.name) for each in fields(self)}
+        accept = values.pop("accept")
+        del values["place"]
+        said = {"reason": None if accept is None else accept.reason}
+        return {name: values.pop(name) for name in first} | values | said

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calm.checks.finding import State, Verdict, at_least, at_most, rule, told, unknown
+from calm.checks.finding import State, Verdict, at_least, at_most, rule, told, unknown, verdict_on
 from calm.checks.launch import Launch
 from calm.checks.recovery import Recovery
 from calm.checks.strength import lesser_load
 from calm.errors import NoEquilibrium
+from calm.files import Part
 from calm.quantities import QUANTITIES, say
 
 if TYPE_CHECKING:
@@ -36,12 +37,7 @@ class Handling:
     backup: tuple[Break, ...]
 
 
-@rule(
-    "backup",
-    "Back-up buoyancy",
-    "tension",
-    "URI GSO mooring program: if any one link breaks, everything above the release still floats",
-)
+@rule("backup")
 def backup(handling: Handling) -> Iterator[Verdict]:
     """Net buoyancy of what holds the release after the worst break above the back-up floats.
 
@@ -60,7 +56,7 @@ def backup(handling: Handling) -> Iterator[Verdict]:
     judged = [one for one in handling.backup if one.judged]
     worst = min(judged, key=lambda one: one.margin - one.required)
     yield at_least(
-        worst.label,
+        handling.mooring.file.pieces[worst.break_after],
         worst.margin,
         worst.required,
         f"After a break below {worst.label} what holds the release has a buoyancy of "
@@ -69,13 +65,7 @@ def backup(handling: Handling) -> Iterator[Verdict]:
     )
 
 
-@rule(
-    "launch-strength",
-    "Strength in the launch",
-    "tension",
-    "Anchor-last launch at terminal speed (URI GSO program); the working load, and breaking load "
-    "over 2",
-)
+@rule("launch-strength")
 def launch_strength(handling: Handling) -> Iterator[Verdict]:
     """Tension of every piece as the line falls behind its anchor.
 
@@ -93,7 +83,7 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
         bears = f"{piece.label} bears {say('tension', tension)} in the fall"
         if limit is None:
             yield unknown(
-                piece.label,
+                piece,
                 f"{bears}; neither its working nor its breaking load is known.",
                 "Give its `working_load` or `breaking_load`.",
                 tension,
@@ -107,25 +97,20 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
             message = f"{bears}; its breaking load over {factors[1]:g} is {say('tension', limit)}."
         if tension > limit and not launch.anchor_drag_known:
             message += " The anchor's own drag is not known: this is the greatest."
-            yield unknown(piece.label, message, "Give the anchor's `kt`.", tension)
+            yield unknown(piece, message, "Give the anchor's `kt`.", tension)
             continue
         remedy = "Take a stronger one, or lower the anchor on a parachute or a wire."
-        yield at_most(piece.label, tension, limit, message, remedy)
+        yield at_most(piece, tension, limit, message, remedy)
 
 
-@rule(
-    "launch-speed",
-    "Speed at touchdown",
-    "speed",
-    "A default of this program: faster, an anchor may bury itself or break what stands on it",
-)
+@rule("launch-speed")
 def launch_speed(handling: Handling) -> Iterator[Verdict]:
     """Terminal speed of the anchor as it meets the seabed."""
     launch = handling.launch
     if isinstance(launch, NoEquilibrium):
         yield _unsolved("fall", launch)
         return
-    label, speed = handling.mooring.file.pieces[-1].label, launch.fall_speed
+    anchor, speed = handling.mooring.file.pieces[-1], launch.fall_speed
     slow, fast = (QUANTITIES["speed"].format(one) for one in launch.fall_speed_band)
     message = (
         f"The anchor lands with {say('speed', speed)} ({slow} to {fast} with double and half the "
@@ -135,46 +120,41 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
     remedy = "Lower it, or add drag: a parachute, a wider anchor."
     if launch.anchor_drag_known:
         limit = GREATEST_TOUCHDOWN_SPEED
-        yield at_most(label, speed, limit, f"{message}.", remedy, State.WARN)
+        yield at_most(anchor, speed, limit, f"{message}.", remedy, State.WARN)
         return
     message += ". Its own drag is not known: this is the greatest."
     if speed <= GREATEST_TOUCHDOWN_SPEED:
-        yield at_most(label, speed, GREATEST_TOUCHDOWN_SPEED, message, remedy, State.WARN)
+        yield at_most(anchor, speed, GREATEST_TOUCHDOWN_SPEED, message, remedy, State.WARN)
     else:
-        yield unknown(label, message, "Give the anchor's `kt`.", speed)
+        yield unknown(anchor, message, "Give the anchor's `kt`.", speed)
 
 
-@rule(
-    "recovery",
-    "Rise",
-    "speed",
-    "Defaults of this program: below 0.3 m/s a rise is in doubt, below 0.7 m/s it takes long",
-)
+@rule("recovery")
 def recovery(handling: Handling) -> Iterator[Verdict]:
     """Terminal speed of the line as it rises without its anchor."""
     rise, limit = handling.recovery, handling.mooring.file.checks.minimum_rise_speed
     if isinstance(rise, NoEquilibrium):
         yield _unsolved("rise", rise)
         return
-    label = handling.mooring.file.pieces[rise.released].label
+    lowest = handling.mooring.file.pieces[rise.released]
     if rise.time_to_surface == 0.0:
-        yield _hauled_in(label, float(rise.arrival[rise.released]), rise)
+        yield _hauled_in(lowest, float(rise.arrival[rise.released]), rise)
         return
     if rise.rise_speed > 0.0:
-        message = f"Freed below {label}, the line rises with {say('speed', rise.rise_speed)}"
+        message = f"Freed below {lowest.label}, the line rises with {say('speed', rise.rise_speed)}"
     else:
-        message = f"Freed below {label}, the line does not rise"
+        message = f"Freed below {lowest.label}, the line does not rise"
     message += f"; {say('speed', limit)} are asked for."
     if rise.in_still_water:
         message += " That is in still water: in the current it finds no steady motion."
     remedy = "Add buoyancy above the release, or take weight off."
-    verdict = at_least(label, rise.rise_speed, limit, message, remedy)
+    verdict = at_least(lowest, rise.rise_speed, limit, message, remedy)
     if verdict.state is State.PASS and rise.rise_speed < USUAL_RISE_SPEED:
         verdict = replace(verdict, state=State.WARN, remedy=remedy)
     yield verdict
 
 
-@rule("tangling", "Tangling", "", "A default of this program: no part overtakes what is ahead")
+@rule("tangling")
 def tangling(handling: Handling) -> Iterator[Verdict]:
     """Whether the line doubles back on itself as it falls or rises."""
     launch, rise = handling.launch, handling.recovery
@@ -194,15 +174,19 @@ def tangling(handling: Handling) -> Iterator[Verdict]:
         )
 
 
-def _hauled_in(label: str, arrival: float, rise: Recovery) -> Verdict:
+def _hauled_in(lowest: Part, arrival: float, rise: Recovery) -> Verdict:
     """Of a line whose float is at the surface: whether its lower end comes up by itself."""
     if isnan(arrival):
         depth = say("depth", float(rise.hangs_at[rise.released]))
-        message = f"Freed, {label} does not come up: it hangs from the float, down to {depth}."
+        message = (
+            f"Freed, {lowest.label} does not come up: it hangs from the float, down to {depth}."
+        )
         remedy = "Haul it in; mind its weight."
-        return Verdict(label, None, None, None, State.WARN, message, remedy)
+        return verdict_on(lowest, State.WARN, message, remedy)
     minutes = arrival / 60.0
-    return told(label, rise.rise_speed, f"Freed, {label} comes up after {minutes:.0f} minutes.")
+    return told(
+        lowest, rise.rise_speed, f"Freed, {lowest.label} comes up after {minutes:.0f} minutes."
+    )
 
 
 def _unsolved(motion: str, failure: NoEquilibrium) -> Verdict:
@@ -211,7 +195,9 @@ def _unsolved(motion: str, failure: NoEquilibrium) -> Verdict:
 
 
 def _tangled(handling: Handling, tangles: Sequence[int], what: str, remedy: str) -> Verdict:
-    labels = [handling.mooring.file.pieces[piece].label for piece in tangles]
-    named = ", ".join(labels[:3]) + (f" and {len(labels) - 3} more" if len(labels) > 3 else "")
+    pieces = [handling.mooring.file.pieces[piece] for piece in tangles]
+    named = ", ".join(piece.label for piece in pieces[:3])
+    if len(pieces) > 3:
+        named += f" and {len(pieces) - 3} more"
     message = f"{what} {named}: the line doubles back and may tangle."
-    return Verdict(labels[0], None, None, None, State.WARN, message, remedy)
+    return verdict_on(pieces[0], State.WARN, message, remedy)

@@ -106,18 +106,20 @@ def _wet_weight(component: Component, length: float | None, gravity: float) -> f
 
 def _dry_mass(component: Component, length: float | None) -> float | None:
     """Of a piece of a length [m], in kg."""
-    mass = component.mass if component.mass is not None else _mass_from_weight(component)
+    mass = mass_in_air(component)
     if not isinstance(component, Cable | Chain):
         return mass
     return None if mass is None or length is None else mass * length
 
 
-def _mass_from_weight(component: Component) -> float | None:
-    """Mass, per metre of a cable or chain, that follows from the weight in water [kg, kg/m].
+def mass_in_air(component: Component) -> float | None:
+    """Mass, per metre of a cable or chain, as given or from the weight in water [kg, kg/m].
 
-    By the displaced volume, or by the density of the material: that of steel for a chain or an
-    anchor that does not say.
+    It follows from the displaced volume, or from the density of the material: that of steel for a
+    chain or an anchor that does not say. None where it does not follow.
     """
+    if component.mass is not None:
+        return component.mass
     net = component.net_buoyancy / STANDARD_GRAVITY
     if component.displaced_volume is not None:
         return CATALOGUE_DENSITY * component.displaced_volume - net

@@ -7,9 +7,8 @@ from dataclasses import replace
 from math import hypot
 from typing import TYPE_CHECKING
 
-from calm.case.measure import clamps_down
+from calm.case.columns import ClampRow, ComponentRow
 from calm.checks.finding import State, Verdict, at_most, rule, unknown
-from calm.files import Component
 from calm.quantities import say
 
 if TYPE_CHECKING:
@@ -42,13 +41,7 @@ def reaches_the_surface(mooring: Mooring) -> bool:
     return -float(mooring.at_rest.position[0, 2]) <= AT_SURFACE
 
 
-@rule(
-    "tilt",
-    "Tilt",
-    "tilt",
-    "The maker's limit: RCM 27° (BODC), single-point Doppler 30°, ADCP 15 to 20°, release 45°, "
-    "sediment trap 10°",
-)
+@rule("tilt")
 def tilt(result: Result) -> Iterator[Verdict]:
     """Tilt of instruments and releases against their own limits and the design's.
 
@@ -56,7 +49,8 @@ def tilt(result: Result) -> Iterator[Verdict]:
     30, an ADCP by 20 and is doubtful from 15, a release by 45, a sediment trap by 10.
     """
     design = result.file.checks.maximum_tilt
-    for label, leaning, component in _tilted(result):
+    for row in _rows(result):
+        label, leaning, component = row.label, row.tilt, row.part.component
         own, warned = component.max_tilt, component.warn_tilt
         if own is warned is None and component.role not in ("instrument", "release"):
             continue
@@ -65,35 +59,31 @@ def tilt(result: Result) -> Iterator[Verdict]:
         leans = f"{label} leans {say('tilt', leaning)}"
         if limits:
             message = f"{leans}; {say('tilt', min(limits))} is its limit."
-            verdict = at_most(label, leaning, min(limits), message, remedy)
+            verdict = at_most(row, leaning, min(limits), message, remedy)
         else:
             message = f"{leans}; how far it may is not known."
-            verdict = unknown(label, message, "Give its `max_tilt`.", leaning)
+            verdict = unknown(row, message, "Give its `max_tilt`.", leaning)
         if warned is not None and leaning > warned and verdict.state is not State.FAIL:
             message = f"{leans}; from {say('tilt', warned)} on its data are doubtful."
             verdict = replace(verdict, state=State.WARN, message=message, remedy=remedy)
         yield verdict
 
 
-@rule(
-    "depth-rating",
-    "Depth rating",
-    "depth",
-    "The maker's rating, less a margin for a stronger current than was thought of",
-)
+@rule("depth-rating")
 def depth_rating(result: Result) -> Iterator[Verdict]:
     """Depth in the current, and a margin, against the rating of floats and instruments.
 
     A float that is knocked down below its rating is crushed, and the line with it.
     """
     margin = result.file.checks.rating_margin
-    for label, depth, component in _at_depth(result):
+    for row, depth in _at_depth(result):
+        component = row.part.component
         rating = component.depth_rating
-        stands = f"{label} is {say('depth', depth)} deep"
+        stands = f"{row.label} is {say('depth', depth)} deep"
         if rating is None:
             if component.role in JUDGED_ROLES:
                 yield unknown(
-                    label,
+                    row,
                     f"{stands}; what depth it stands is not known.",
                     "Give its `depth_rating`.",
                     depth,
@@ -101,7 +91,7 @@ def depth_rating(result: Result) -> Iterator[Verdict]:
             continue
         spare = min(margin, MOST_OF_A_RATING * rating)
         yield at_most(
-            label,
+            row,
             depth,
             rating - spare,
             f"{stands}; it is rated to {say('depth_rating', rating)}, less a margin of "
@@ -110,26 +100,21 @@ def depth_rating(result: Result) -> Iterator[Verdict]:
         )
 
 
-@rule(
-    "knockdown",
-    "Knockdown",
-    "knockdown",
-    "The design's own `maximum_knockdown`",
-)
+@rule("knockdown")
 def knockdown(result: Result) -> Iterator[Verdict]:
     """Knockdown of the top against the design's limit, where it gives one."""
-    limit, label = result.file.checks.maximum_knockdown, result.file.pieces[0].label
+    limit, top = result.file.checks.maximum_knockdown, result.file.pieces[0]
     if limit is None:
         return
     if result.top.knockdown is None:
         yield unknown(
-            label,
+            top,
             "The line has no unique shape in still water to measure a knockdown from.",
             "Judge a slack line by its excursion: `maximum_excursion`.",
         )
         return
     yield at_most(
-        label,
+        top,
         result.top.knockdown,
         limit,
         f"The top is knocked down by {say('knockdown', result.top.knockdown)}; "
@@ -138,19 +123,14 @@ def knockdown(result: Result) -> Iterator[Verdict]:
     )
 
 
-@rule(
-    "excursion",
-    "Excursion",
-    "offset",
-    "The design's own `maximum_excursion`",
-)
+@rule("excursion")
 def excursion(result: Result) -> Iterator[Verdict]:
     """Horizontal offset of the top against the design's limit, where it gives one."""
     limit, offset = result.file.checks.maximum_excursion, hypot(result.top.x, result.top.y)
     if limit is None:
         return
     yield at_most(
-        result.file.pieces[0].label,
+        result.file.pieces[0],
         offset,
         limit,
         f"The top is {say('offset', offset)} off the anchor; {say('offset', limit)} are allowed.",
@@ -158,21 +138,15 @@ def excursion(result: Result) -> Iterator[Verdict]:
     )
 
 
-def _tilted(result: Result) -> Iterator[tuple[str, float, Component]]:
-    """Label, tilt [degrees] and component of the pieces above the anchor and the clamps."""
-    pieces = result.file.pieces[:-1]
-    for row, piece in zip(result.components, pieces, strict=False):
-        yield row.label, row.tilt, piece.component
-    for clamp_row, clamp in zip(result.clamps, clamps_down(pieces), strict=True):
-        yield clamp_row.label, clamp_row.tilt, clamp.component
+def _rows(result: Result) -> tuple[ComponentRow | ClampRow, ...]:
+    """The pieces above the anchor and the clamps."""
+    return (*list(result.components)[:-1], *result.clamps)
 
 
-def _at_depth(result: Result) -> Iterator[tuple[str, float, Component]]:
-    """Label, greatest depth [m] and component of what is under water above the anchor."""
-    pieces = result.file.pieces[:-1]
-    for row, piece in zip(result.components, pieces, strict=False):
-        if result.type == "surface" and row.depth_top <= AT_SURFACE:
-            continue
-        yield row.label, max(row.depth_top, row.depth_bottom), piece.component
-    for clamp_row, clamp in zip(result.clamps, clamps_down(pieces), strict=True):
-        yield clamp_row.label, clamp_row.depth, clamp.component
+def _at_depth(result: Result) -> Iterator[tuple[ComponentRow | ClampRow, float]]:
+    """What is under water above the anchor, and its greatest depth [m]."""
+    for row in _rows(result):
+        if isinstance(row, ClampRow):
+            yield row, row.depth
+        elif result.type != "surface" or row.depth_top > AT_SURFACE:
+            yield row, max(row.depth_top, row.depth_bottom)

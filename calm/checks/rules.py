@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from calm.checks.anchor import anchor_sliding, anchor_uplift, anchor_weight
-from calm.checks.finding import State, Verdict, rule
+from calm.checks.finding import State, Verdict, rule, verdict_on
 from calm.checks.handling import backup, launch_speed, launch_strength, recovery, tangling
 from calm.checks.posture import depth_rating, excursion, knockdown, tilt
 from calm.checks.slack import slack
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from calm.errors import NoEquilibrium
 
 
-@rule("equilibrium", "Equilibrium", "", "A mooring that does not stand cannot be judged")
+@rule("equilibrium")
 def equilibrium(failure: NoEquilibrium) -> Iterator[Verdict]:
     """Found only where there is none."""
     message = f"{failure.status}: {failure.message}"
-    yield Verdict(None, None, None, None, State.FAIL, message, failure.advice)
+    yield verdict_on(None, State.FAIL, message, failure.advice)
 
 
 STANDING = (

@@ -18,6 +18,9 @@ from calm.solve import Status
 
 STILL, STILL_LOW = "still water", "still low water"
 HIGH, LOW = "high water", "low water"
+SOLVES = 6.0
+"""Equilibria that are sought for one mooring in one environment, about."""
+
 FOULED, STRUMMING = "fouling", "strumming"
 
 _NO_CURRENT = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))

@@ -15,12 +15,7 @@ if TYPE_CHECKING:
     from calm.case import Result
 
 
-@rule(
-    "slack",
-    "Least tension",
-    "tension",
-    "Practice of mooring groups, 50 to 100 kgf above the release; no figure is published",
-)
+@rule("slack")
 def slack(result: Result) -> Iterator[Verdict]:
     """The least tension in every wire and rope above the release; of the whole line without one.
 
@@ -39,7 +34,7 @@ def slack(result: Result) -> Iterator[Verdict]:
         rope = is_synthetic(piece.component)
         limit = limits.rope if rope else limits.wire
         yield at_least(
-            row.label,
+            row,
             row.least_tension,
             limit,
             f"{row.label} bears no more than {say('tension', row.least_tension)} at its slackest; "

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from calm.case.warnings import is_synthetic
 from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown
 from calm.checks.posture import meant_for_the_surface
-from calm.files import Cable, Component
+from calm.files import Cable, Component, Piece
 from calm.quantities import say
 
 if TYPE_CHECKING:
@@ -45,13 +45,7 @@ def safety_factor(component: Component, factors: SafetyFactors, surface: bool) -
     return factors.synthetic if is_synthetic(component) else factors.steel
 
 
-@rule(
-    "strength",
-    "Strength",
-    "tension",
-    "The lesser of working load and breaking load over a factor: UFC 4-159-03 table 3-7 (3, chain "
-    "and wire), oceanographic practice MBL/3 to MBL/5",
-)
+@rule("strength")
 def strength(result: Result) -> Iterator[Verdict]:
     """The greatest tension in every piece against working load, and breaking load / factor.
 
@@ -65,7 +59,7 @@ def strength(result: Result) -> Iterator[Verdict]:
         bears = f"{row.label} bears {say('tension', row.tension)}"
         if limit is None:
             yield unknown(
-                row.label,
+                row,
                 f"{bears}; neither its working nor its breaking load is known.",
                 "Give its `working_load` or `breaking_load`.",
                 row.tension,
@@ -83,15 +77,10 @@ def strength(result: Result) -> Iterator[Verdict]:
             f"Take one with a working load of {say('tension', row.tension)} and a breaking load "
             f"of {say('tension', factor * row.tension)} or more."
         )
-        yield at_most(row.label, row.tension, limit, f"{bears}; {allowed}.", remedy)
+        yield at_most(row, row.tension, limit, f"{bears}; {allowed}.", remedy)
 
 
-@rule(
-    "strength-steps",
-    "Strength steps",
-    "tension",
-    "A default of this program: half the strength of the cables on both its sides",
-)
+@rule("strength-steps")
 def strength_steps(result: Result) -> Iterator[Verdict]:
     """Every weak link: a piece that bears less than half of what the cables on both its sides do.
 
@@ -101,14 +90,14 @@ def strength_steps(result: Result) -> Iterator[Verdict]:
     """
     factors, surface = result.file.checks.safety_factor, meant_for_the_surface(result)
     loads = [allowable_load(piece.component, factors, surface) for piece in result.file.pieces[:-1]]
-    steps = sorted(_steps(result, loads))
+    steps = sorted(_steps(result, loads), key=lambda step: (step[0], step[1].label))
     weak = [step for step in steps if step[0] < WEAK_LINK]
-    for _, label, load, cables in weak or steps[:1]:
+    for _, piece, load, cables in weak or steps[:1]:
         yield at_least(
-            label,
+            piece,
             load,
             WEAK_LINK * cables,
-            f"{label} may bear {say('tension', load)}, the cables above and below it "
+            f"{piece.label} may bear {say('tension', load)}, the cables above and below it "
             f"{say('tension', cables)} and more.",
             "Match its strength to that of the cables beside it, or theirs to its own.",
             State.WARN,
@@ -117,8 +106,8 @@ def strength_steps(result: Result) -> Iterator[Verdict]:
 
 def _steps(
     result: Result, loads: Sequence[float | None]
-) -> Iterator[tuple[float, str, float, float]]:
-    """Of all between two cables: share of their strength, label, own load and theirs [N]."""
+) -> Iterator[tuple[float, Piece, float, float]]:
+    """Of all between two cables: share of their strength, the piece, own load and theirs [N]."""
     cables = [
         load if isinstance(piece.component, Cable) else None
         for piece, load in zip(result.file.pieces, loads, strict=False)
@@ -128,4 +117,4 @@ def _steps(
         below = next((one for one in cables[index + 1 :] if one is not None), None)
         if load is not None and above is not None and below is not None:
             beside = min(above, below)
-            yield load / beside, result.file.pieces[index].label, load, beside
+            yield load / beside, result.file.pieces[index], load, beside

@@ -14,12 +14,7 @@ if TYPE_CHECKING:
     from calm.case import Result
 
 
-@rule(
-    "reserve",
-    "Reserve of buoyancy",
-    "used_buoyancy",
-    "Dewey: a float that uses all its buoyancy goes under; the share kept is for waves",
-)
+@rule("reserve")
 def reserve(result: Result) -> Iterator[Verdict]:
     """Share of the surface float's buoyancy that is left: what it could still take on.
 
@@ -27,7 +22,7 @@ def reserve(result: Result) -> Iterator[Verdict]:
     """
     if not meant_for_the_surface(result):
         return
-    label, limit = result.file.pieces[0].label, result.file.checks.minimum_reserve
+    limit = result.file.checks.minimum_reserve
     left = 1.0 - result.top.used_buoyancy
     if result.type == "surface":
         message = f"{100 * left:.0f} % of the float's buoyancy is left"
@@ -35,7 +30,7 @@ def reserve(result: Result) -> Iterator[Verdict]:
         left = 0.0
         message = f"The float is {say('depth', result.top.depth)} under water: 0 % is left"
     yield at_least(
-        label,
+        result.file.pieces[0],
         left,
         limit,
         f"{message}; {100 * limit:.0f} % should be.",
@@ -43,28 +38,23 @@ def reserve(result: Result) -> Iterator[Verdict]:
     )
 
 
-@rule(
-    "freeboard",
-    "Freeboard",
-    "freeboard",
-    "A float at the surface stands out of it",
-)
+@rule("freeboard")
 def freeboard(result: Result) -> Iterator[Verdict]:
     """A float meant for the surface stands out of the water."""
     if not meant_for_the_surface(result):
         return
-    label, height = result.file.pieces[0].label, result.top.freeboard
+    top, height = result.file.pieces[0], result.top.freeboard
     if result.type != "surface":
         height = -result.top.depth
     if height is None:
         yield unknown(
-            label,
+            top,
             "The freeboard of the float is not known.",
             "Give its `hull`, `mass` and `volume`, and let `buoy_drag` be `immersed`.",
         )
         return
     yield at_least(
-        label,
+        top,
         height,
         0.0,
         f"The float stands {say('freeboard', height)} out of the water.",
@@ -72,12 +62,7 @@ def freeboard(result: Result) -> Iterator[Verdict]:
     )
 
 
-@rule(
-    "watch-circle",
-    "Watch circle",
-    "offset",
-    "Worst case √(L² - depth²), against the design's own `maximum_excursion`",
-)
+@rule("watch-circle")
 def watch_circle(result: Result) -> Iterator[Verdict]:
     """Radius √(L² - depth²) within which a surface float can be found, with the line stretched.
 
@@ -89,21 +74,16 @@ def watch_circle(result: Result) -> Iterator[Verdict]:
         return
     length, depth = float(result.components.length.sum()), result.mooring.water.depth
     radius = sqrt(max(length**2 - depth**2, 0.0))
-    label = result.file.pieces[0].label
+    top = result.file.pieces[0]
     message = f"The watch circle has a radius of {say('offset', radius)}"
     if limit is None:
-        yield told(label, radius, f"{message}.")
+        yield told(top, radius, f"{message}.")
         return
     message += f"; {say('offset', limit)} are allowed."
-    yield at_most(label, radius, limit, message, "Shorten the line.")
+    yield at_most(top, radius, limit, message, "Shorten the line.")
 
 
-@rule(
-    "scope",
-    "Scope",
-    "scope",
-    "Told, not judged",
-)
+@rule("scope")
 def scope(result: Result) -> Iterator[Verdict]:
     """Cut length over water depth of a line to the surface; it is told, and has no limit."""
     if not meant_for_the_surface(result):

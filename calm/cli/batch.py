@@ -14,10 +14,12 @@ from cyclopts import Parameter
 
 from calm.cli.batch_progress import Teller, grouped
 from calm.cli.exit_codes import ExitCode
+from calm.cli.options import quantities
 from calm.cli.streams import narrate, show_rich
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
+    from calm.batch.records.record import Record
     from calm.batch.run import Outcome
     from calm.case import Mooring
 
@@ -38,6 +40,7 @@ def batch(
     time: str | None = None,
     every: int = 1,
     at: Annotated[str | None, Parameter(allow_leading_hyphen=True)] = None,
+    declination: Annotated[str | None, Parameter(allow_leading_hyphen=True)] = None,
     workers: int | None = None,
     scheduler: str | None = None,
     shape: bool = False,
@@ -71,6 +74,9 @@ def batch(
     at
         Latitude and longitude [degrees] of the column to take from a grid, as LAT,LON;
         the `position` of the mooring file unless given.
+    declination
+        Of magnetic north from true north, such as "12.5 deg", positive to the east: turns
+        the currents that the record says count from magnetic north.
     workers
         How many threads; one for each processor unless given.
     scheduler
@@ -100,7 +106,10 @@ def batch(
     place = own if at is None else parse_place(at)
     seabed = float(mooring.water.depth)
     teller = Teller()
-    with open_record(currents, seabed=seabed, at=place, time=period, every=every) as record:
+    turned = quantities({"declination": (declination, "angle")}).get("declination")
+    with open_record(
+        currents, seabed=seabed, at=place, declination=turned, time=period, every=every
+    ) as record:
         for notice in (*mooring.file.notices, *record.notes):
             if notice not in RULES:
                 narrate(f"{currents}: {notice}")
@@ -113,6 +122,8 @@ def batch(
                 )  # fmt: skip
         finally:
             teller.clear()
+        if outcome.counts.get("implausible-current"):
+            narrate(f"{currents}: {_implausible(outcome, mooring, record)}")
     code = _ended(outcome, output, record.count)
     if outcome.done and not no_statistics and not _summarized(output, mooring):
         return ExitCode.INCOMPLETE
@@ -135,6 +146,18 @@ def _summarized(output: Path, mooring: Mooring) -> bool:
         )
         return False
     return True
+
+
+def _implausible(outcome: Outcome, mooring: Mooring, record: Record) -> str:
+    """How many profiles have a current that cannot be true, and the first of them."""
+    from calm.batch.plausible import first_implausible
+
+    greatest = mooring.file.environment.maximum_speed
+    count = grouped(outcome.counts["implausible-current"])
+    return (
+        f"{count} profiles without result, as their current is implausible "
+        f"(above `maximum_speed`, {greatest:g} m/s): {first_implausible(record, greatest)}"
+    )
 
 
 def _ended(outcome: Outcome, output: Path, total: int) -> ExitCode:

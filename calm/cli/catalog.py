@@ -71,7 +71,10 @@ def search(words: list[str], /, *, json: bool = False) -> ExitCode:
 
 @catalog.command(name="show", usage="Usage: calm catalog show [OPTIONS] ID...")
 def show_components(ids: list[str], /, *, json: bool = False) -> ExitCode:
-    """Show every figure of components, and where the figures come from.
+    """Show every figure of components, where they come from, and what follows from them.
+
+    That is the net force in water, Kn and Kt, the drag at 1 m/s. Where several components are the
+    same thing by different sources, they stand beside one another with the one to use first.
 
     Parameters
     ----------
@@ -94,37 +97,48 @@ def show_components(ids: list[str], /, *, json: bool = False) -> ExitCode:
         return _show(catalogue, chosen, json)
     from calm.report.catalogue import to_card
 
-    show_rich(*(to_card(identifier, definition) for identifier, definition in chosen.items()))
+    show_rich(*(to_card(each, definition, catalogue) for each, definition in chosen.items()))
     return ExitCode.DONE
 
 
 @catalog.command(usage="Usage: calm catalog check [OPTIONS] [FILE]")
 def check(file: Path | None = None, /, *, json: bool = False) -> ExitCode:
-    """Find what is physically impossible in a catalogue.
+    """Find what is physically impossible in a catalogue, and list what is missing.
 
-    Such as a sphere that lifts more than its volume, a rope heavier than a solid
-    bar of its diameter, a cable stiffer than steel; also figures
-    without a source. The exit code is 1 when there is a finding.
+    Impossible is a sphere that lifts more than its volume, a rope heavier than a solid bar of its
+    diameter, a cable stiffer than steel; figures without a source are found, too. The exit code is
+    1 when there is a finding.
+
+    What is missing is a list, not a finding: the figures of each component without which a design
+    check has an unknown or the masses do not add up. Those that were looked for and that no source
+    prints are marked.
 
     Parameters
     ----------
     file
         A catalogue file; when not given, the whole catalogue with your own files.
     json
-        As JSON: a list of objects with `id` and `message`.
+        As JSON: a list of objects with `id`, `finding` (true or false), `message`, `missing` and
+        `searched`.
     """
     from calm.checks.catalogue import check_catalogue
+    from calm.checks.missing import missing_figures
     from calm.files import Catalogue
+    from calm.report.missing import summarised, to_objects, told
 
     catalogue = Catalogue.load([file] if file else [])
     checked = Catalogue(catalogue.levels[:1]) if file else catalogue
     definitions = checked.all()
     findings = check_catalogue(definitions, known=catalogue.ids())
+    missing = missing_figures(definitions)
     if json:
-        show(_json([{"id": finding.id, "message": finding.message} for finding in findings]))
+        show(_json(to_objects(findings, missing)))
     else:
         show("".join(f"{finding.id}: {finding.message}\n" for finding in findings))
+        show("".join(f"{each.id}: {told(each)}\n" for each in missing))
         narrate(f"{len(definitions)} components checked, {len(findings)} findings")
+        if missing:
+            narrate(summarised(missing))
     return ExitCode.FINDING if findings else ExitCode.DONE
 
 

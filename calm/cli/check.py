@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from datetime import date, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -72,8 +73,9 @@ def check(
         _check_report(report, json, given)
     designs = read_designs(files, environment, catalog or [], workers)
     assessments = _assessed(designs, workers)
-    for design in designs:
-        for notice in dict.fromkeys(n for one in design.moorings for n in one.file.notices):
+    for design, assessment in zip(designs, assessments, strict=True):
+        of_files = (notice for one in design.moorings for notice in one.file.notices)
+        for notice in dict.fromkeys((*of_files, *assessment.notices)):
             narrate(f"{design.path}: {notice}")
     _show(assessments, outputs)
     if report is not None:
@@ -98,26 +100,33 @@ def _check_report(folder: Path, json: Path | None, given: Sequence[Path]) -> Non
 
 
 def _assessed(designs: Sequence[Design], workers: int | None) -> list[Assessment]:
-    tasks = [(design.name, mooring) for design in designs for mooring in design.moorings]
+    """All of them on one day: that of the report, today where it has none."""
+    from calm.checks.situations import SOLVES
+    from calm.report.provenance import moment
+    from calm.solve import expect_many
+
+    day = (moment() or datetime.now()).date()
+    tasks = [(design.name, mooring, day) for design in designs for mooring in design.moorings]
+    expect_many(SOLVES * len(tasks))
     stands = iter(mapped(_stand, tasks, workers, "moorings solved"))
-    together = [(each.name, tuple(next(stands) for _ in each.moorings)) for each in designs]
+    together = [(each.name, tuple(next(stands) for _ in each.moorings), day) for each in designs]
     return mapped(_assess, together, workers, "moorings judged")
 
 
-def _stand(task: tuple[str, Mooring]) -> Stand:
+def _stand(task: tuple[str, Mooring, date]) -> Stand:
     """A mooring in an environment; CALM's own failure there does not stop the others."""
     from calm.checks.assess import failed_stand, stand_of
 
-    name, mooring = task
+    name, mooring, day = task
     try:
-        return stand_of(mooring, name)
+        return stand_of(mooring, name, day)
     except Exception as error:
         if os.environ.get("CALM_DEBUG") == "1":
             raise
         return failed_stand(mooring, name, internal_failure(error))
 
 
-def _assess(task: tuple[str, tuple[Stand, ...]]) -> Assessment:
+def _assess(task: tuple[str, tuple[Stand, ...], date]) -> Assessment:
     from calm.checks.assess import assessment_of
 
     return assessment_of(*task)

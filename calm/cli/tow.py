@@ -133,9 +133,11 @@ def _only_tows(files: list[Path], environment: str | None, catalogs: list[Path])
 
 
 def _sweep(file: Path, each: Tow, speeds: list[float]) -> _Tabulated:
-    from calm.case.sweep import sweep
+    from calm.case.sweep import SOLVES, sweep
     from calm.report.tabulation import by_speed
+    from calm.solve import expect_many
 
+    expect_many(SOLVES * len(speeds))
     outcomes = sweep(each, progress(speeds, f"speeds of {file}"))
     failed = [
         (speed, outcome)

@@ -36,10 +36,13 @@ def verify(words: list[str] | None = None, /, *, json: OutputPath = None) -> Exi
         Write the figures, with the reason for each tolerance, as JSON, - to print it.
     """
     from calm.report.verification import verification_document, verification_table
+    from calm.solve import expect_many
 
     outputs = Outputs(json=json)
     outputs.check()
-    findings = _checked(_chosen(words or []))
+    chosen = _chosen(words or [])
+    expect_many(sum(len(source.cases) for source in chosen))
+    findings = _checked(chosen)
     document = verification_document(findings)
     outputs.write_answer(document, verification_table(findings))
     return ExitCode.FINDING if document["out"] else ExitCode.DONE

@@ -1,15 +1,17 @@
 """Mooring files and catalogues: text in, validated models in SI out. Nothing is computed here."""
 
+from calm.files.accept import Accept
 from calm.files.catalogue import Assembly, Catalogue
+from calm.files.checks import Checks, SafetyFactors
 from calm.files.components import Anchor, Body, Cable, Chain, Component, Cylinder, Sphere
 from calm.files.environment import Environment, Fouling, Wind
 from calm.files.mooring import (
-    Checks,
     Clamp,
     MooringFile,
+    Part,
     Piece,
+    Place,
     Position,
-    SafetyFactors,
     Solver,
     TowKeys,
 )
@@ -25,6 +27,7 @@ from calm.files.strumming import (
 from calm.files.tables import CurrentTable, DepthTable, SeaWater
 
 __all__ = [
+    "Accept",
     "AmplitudeModel",
     "Anchor",
     "Assembly",
@@ -43,7 +46,9 @@ __all__ = [
     "Environment",
     "Fouling",
     "MooringFile",
+    "Part",
     "Piece",
+    "Place",
     "Position",
     "SafetyFactors",
     "SeaWater",

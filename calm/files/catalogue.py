@@ -20,6 +20,7 @@ from calm.files.document import Document, read_document
 from calm.files.explain import nearest, shown, unknown, validate
 from calm.files.section import Section
 from calm.files.unchanged import Unchanged
+from calm.shipped import shipped_folder
 
 FAMILY_ROLES = {
     "floats": "float",
@@ -73,8 +74,6 @@ class Catalogue:
         InputError
             A catalogue of the user cannot be read.
         """
-        from calm.files.compile_catalogue import shipped_files
-
         folder = user_folder()
         own = sorted(folder.glob("*.yaml")) if folder.is_dir() else []
         given = [Path(path) for path in files]
@@ -88,15 +87,13 @@ class Catalogue:
                 raise InputError(problems)
             return cls((*levels, *cls.shipped().levels))
 
-        return _LOADED.of([*given, *own, *shipped_files()], read)
+        return _LOADED.of([*given, *own, *_shipped_files()], read)
 
     @classmethod
     def shipped(cls) -> Catalogue:
         """The catalogue that comes with CALM."""
-        from calm.files.compile_catalogue import shipped_documents
-
         problems: list[Problem] = []
-        level = _level(shipped_documents(), problems)
+        level = _read_level(_shipped_files(), problems)
         if problems:
             raise InputError(problems)
         return cls((level,))
@@ -164,6 +161,17 @@ class Catalogue:
             raise InputError(problems)
         return found
 
+    def same_thing(self, id: str) -> list[str]:
+        """The ids that describe the thing an id does, the one to use first; the id alone if none.
+
+        Those are the id that it prefers and all that prefer the same.
+        """
+        preferred = {
+            each: entry.section.data.get("prefer") for each, entry in self._entries.items()
+        }
+        first = preferred.get(id) or id
+        return [first, *(each for each, other in preferred.items() if other == first)]
+
     def search(self, words: Iterable[str]) -> list[str]:
         """The ids whose definition (or family) holds every one of the words."""
         wanted = [word.casefold() for word in words]
@@ -175,6 +183,10 @@ class Catalogue:
 
 
 _LOADED: Unchanged[Catalogue] = Unchanged()
+
+
+def _shipped_files() -> list[Path]:
+    return sorted(shipped_folder("catalog").glob("*.yaml"))
 
 
 def user_folder() -> Path:

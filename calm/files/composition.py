@@ -1,208 +1,274 @@
-"""YAML text to nodes, the unchanged parts of a text that is edited taken from memory.
+"""YAML text to nodes, by the events of PyYAML.
 
-Composing is slow: 20 ms for a line of 60 items. A block collection whose entries begin in one
-column is therefore composed entry by entry, each text remembered. The outcome is that of
-composing the whole: at the beginning of a line in that column YAML's scanner, unless it is within
-quotes or brackets, is where it was at the beginning of the entry before. Within them the entry
-above does not end, which is an error when it is composed by itself; then, as for all else that
-does not fit, the whole is composed.
+libyaml, where PyYAML has it, is some thirty times as fast as the parser in Python. A file means the
+same with both: what they read differently, and what libyaml refuses, is read by the one in Python.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
-from dataclasses import dataclass
-from functools import lru_cache
+from collections.abc import Callable
+from typing import Any
 
-from ruamel.yaml import YAML, tokens
-from ruamel.yaml.error import YAMLError
+import yaml
+from yaml.error import MarkedYAMLError, YAMLError
+from yaml.events import (
+    AliasEvent,
+    CollectionEndEvent,
+    CollectionStartEvent,
+    Event,
+    MappingStartEvent,
+    NodeEvent,
+    ScalarEvent,
+    SequenceStartEvent,
+    StreamEndEvent,
+)
 
-from calm.files.nodes import Node, NodeReader, Refusal
-
-_WORTHWHILE = 150
-"""Characters from which on a text is composed in parts."""
-
-_BREAK = "\n\r\x85\u2028\u2029"
-_NOT_CONTENT = re.compile(rf"(?:[ ]*(?:#[^{_BREAK}]*)?\r?\n)*")
-_HEADER = re.compile(rf"[ ]*[A-Za-z_][\w-]*:(?:[ ]+#[^{_BREAK}]*|[ ]*)\r?\n")
-_DOCUMENT_SIGN = re.compile(r"^(?:---|\.\.\.|%)", re.MULTILINE)
-_LINE_BREAK = re.compile(r"\r\n?|\n")
-_BRACKET = re.compile(r"[\[\]{}]")
-_BRACKETS: dict[type, str] = {
-    tokens.FlowSequenceStartToken: "[",
-    tokens.FlowSequenceEndToken: "]",
-    tokens.FlowMappingStartToken: "{",
-    tokens.FlowMappingEndToken: "}",
-}
+from calm.files.nodes import Composition, Kind, Node, Refusal
 
 _DEEPEST = 100
-"""Brackets within brackets; the time to read them grows with the square of their number."""
+"""Mappings and lists within others; the time to read brackets grows with the square of this."""
+
+# In YAML 1.2 they break no line, but PyYAML is of 1.1.
+_NO_BREAKS = str.maketrans(dict.fromkeys("\x85\u2028\u2029", " "))
+
+_TAG = re.compile(r"(?<![^\s\[{,])!")
+
+# The parser in Python takes these within brackets for the sign of a key.
+_INNER_QUESTION_MARK = re.compile(r"(?<=[^\s,\[\]{}])\?|(?<=[^\s,\[\]{}:?-]) +\?")
+
+# They would move the cursor of a terminal, turn the figures beside them round, or be no text.
+_CONTROL_CHARACTER = re.compile(
+    "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
+)
+_KINDS: dict[type[Event], Kind] = {
+    MappingStartEvent: "mapping",
+    SequenceStartEvent: "sequence",
+    ScalarEvent: "scalar",
+    AliasEvent: "scalar",
+}
+_COLON = re.compile(r"\s*:")
+_NULLS = frozenset({"", "~", "null", "Null", "NULL"})
+_NULL_TAG = "tag:yaml.org,2002:null"
+_PLAIN_TAGS = frozenset(
+    f"tag:yaml.org,2002:{kind}"
+    for kind in ("map", "seq", "str", "int", "float", "bool", "null", "timestamp", "merge")
+) | {None, "!"}
 
 
-class _Unfit(Exception):
-    """The text cannot be composed in parts."""
+class _Parser(yaml.SafeLoader):
+    """The parser in Python, to which a tab between values within brackets is a space."""
+
+    def scan_to_next_token(self) -> None:
+        super().scan_to_next_token()
+        while self.flow_level and self.peek() == "\t":
+            self.forward()
+            super().scan_to_next_token()
 
 
-@dataclass(frozen=True)
-class Composition:
-    """The nodes of a text (None: it is empty), and what in it is not allowed."""
-
-    root: Node | None
-    refusals: tuple[Refusal, ...] = ()
+class _TooDeep(Exception):
+    """Too many collections stand within others."""
 
 
 def compose(text: str) -> Composition:
-    """The nodes of a YAML text.
+    """The nodes of a YAML text, before which a byte order mark may stand."""
+    start = int(text.startswith("\ufeff"))
+    plain = text[start:] if text.isascii() else text[start:].translate(_NO_BREAKS)
+    try:
+        if yaml.__with_libyaml__ and not _is_read_differently(plain):
+            try:
+                return _Reader(text, start, yaml.CSafeLoader(plain).get_event).read()
+            except (YAMLError, ValueError):
+                pass  # which the parser in Python says better
+        return _composed_by_python(text, start, plain)
+    except _TooDeep:
+        return Composition(None, (Refusal(0, 0, "is nested too deeply"),))
 
-    Raises
-    ------
-    YAMLError, ValueError, IndexError, RecursionError
-        By ruamel.yaml, of a text that is no valid YAML.
+
+def _is_read_differently(text: str) -> bool:
+    """Whether the parser in Python sees other tabs, byte order marks or tags in it."""
+    return "\t" in text or "\ufeff" in text or ("!" in text and _TAG.search(text) is not None)
+
+
+def _composed_by_python(text: str, start: int, plain: str) -> Composition:
+    # Messages would show a sign that cannot be printed by its number.
+    stand_in = next((sign for sign in map(chr, range(0x4E00, 0x9FFF)) if sign not in plain), "?")
+    masked = _INNER_QUESTION_MARK.sub(lambda found: found[0].replace("?", stand_in), plain)
+
+    def next_event() -> Event:
+        event = parser.get_event()
+        if isinstance(event, ScalarEvent):
+            event.value = event.value.replace(stand_in, "?")
+        return event
+
+    try:
+        parser = _Parser(masked)
+        return _Reader(text, start, next_event).read()
+    except MarkedYAMLError as error:
+        refusals = _syntax_refusals(plain, error)
+    except (YAMLError, ValueError, OverflowError) as error:
+        first_line = str(error).partition("\n")[0]
+        refusals = [Refusal(0, 0, f"is not valid YAML: {first_line}")]
+    shown = [one._replace(message=one.message.replace(stand_in, "?")) for one in refusals]
+    return Composition(None, tuple(shown))
+
+
+def _syntax_refusals(text: str, error: MarkedYAMLError) -> list[Refusal]:
+    """Tabs in the indentation are the usual cause and are all shown; else what the parser says."""
+    if "\\t" in str(error.problem):
+        found = [
+            Refusal(number, line.index("\t") + 1, "a tab; YAML is indented with spaces")
+            for number, line in enumerate(text.splitlines(), 1)
+            if "\t" in line[: len(line) - len(line.lstrip())]
+        ]
+        if found:
+            return found
+    mark = error.problem_mark or error.context_mark
+    what = error.problem or error.context
+    if error.context and error.context_mark and error.problem:
+        what = f"{error.context} from line {error.context_mark.line + 1}, {what}"
+    return [Refusal(mark.line + 1, mark.column + 1, f"is not valid YAML: {what}")]
+
+
+class _Reader:
+    """Turns the events of a text into nodes, noting what is not allowed.
+
+    Parameters
+    ----------
+    text : str
+    start : int
+        Where in it that begins which the events are of.
+    next_event : gives one after the other
     """
-    _refuse_depth(text)
-    mark = 1 if text.startswith("\ufeff") else 0
-    # YAML drops a byte order mark before a text, which a part would have and the whole has not.
-    if not _DOCUMENT_SIGN.search(text) and "\ufeff" not in text[mark:]:
-        try:
-            return Composition(_in_parts(text[mark:], mark, 0))
-        except (_Unfit, YAMLError, ValueError, IndexError, RecursionError):
-            pass
-    return _whole(text)
 
+    def __init__(self, text: str, start: int, next_event: Callable[[], Event]) -> None:
+        self._text = text
+        self._start = start
+        self._next = next_event
+        self._refusals: list[Refusal] = []
+        self._anchors: set[str] = set()
 
-def compose_whole(text: str) -> Composition:
-    """The same without memory, in less time where the text is read once; errors are the same."""
-    _refuse_depth(text)
-    return _whole(text)
+    def read(self) -> Composition:
+        """The nodes of the only document."""
+        self._next()  # the stream begins
+        if isinstance(self._next(), StreamEndEvent):
+            return Composition(None)
+        event = self._next()
+        root = self._node(event, 0)
+        self._next()  # the document ends
+        behind = self._next()
+        if not isinstance(behind, StreamEndEvent):
+            what = "expected a single document in the stream", "but found another document"
+            raise MarkedYAMLError(what[0], event.start_mark, what[1], behind.start_mark)
+        return Composition(root, tuple(self._refusals))
 
-
-def _whole(text: str) -> Composition:
-    root = YAML(typ="safe", pure=True).compose(text)
-    if root is None:
-        return Composition(None)
-    reader = NodeReader(text)
-    node = reader.read(root)
-    return Composition(node, tuple(reader.refusals))
-
-
-def _refuse_depth(text: str) -> None:
-    """Raise RecursionError where brackets stand within brackets too often to be read in time."""
-    if not _is_too_deep(_BRACKET.findall(text)):
-        return
-    try:  # some may stand in comments and quotes
-        kinds = map(type, YAML(typ="safe", pure=True).scan(text))
-        is_refused = _is_too_deep(_BRACKETS[kind] for kind in kinds if kind in _BRACKETS)
-    except YAMLError:
-        return  # which composing says too
-    if is_refused:
-        raise RecursionError
-
-
-def _is_too_deep(signs: Iterable[str]) -> bool:
-    depth = 0
-    for sign in signs:
-        depth = depth + 1 if sign in "[{" else max(depth - 1, 0)
+    def _node(self, event: NodeEvent, depth: int) -> Node:
+        """The node that an event begins, and all below it."""
         if depth > _DEEPEST:
-            return True
-    return False
-
-
-def _in_parts(text: str, offset: int, lines: int) -> Node:
-    """The block collection that a text is, which begins with a line of its own.
-
-    `offset` characters and `lines` lines of the whole stand before it.
-    """
-    filling = _NOT_CONTENT.match(text)
-    start = filling.end() if filling else 0
-    column = len(text) - start - len(text[start:].lstrip(" "))
-    is_sequence = text[start + column : start + column + 1] == "-"
-    entries: list[Node] = []
-    cuts = [match.start() for match in _beginnings(column, is_sequence).finditer(text, start)]
-    if not cuts or cuts[0] != start:
-        raise _Unfit
-    lines += len(_LINE_BREAK.findall(text, 0, start))
-    for cut, end in zip(cuts, [*cuts[1:], len(text)], strict=True):
-        part = text[cut:end]
-        entries.append(_entry(part, offset + cut, lines, column, is_sequence))
-        lines += len(_LINE_BREAK.findall(part))
-    return _joined(entries)
-
-
-@lru_cache(maxsize=64)
-def _beginnings(column: int, is_sequence: bool) -> re.Pattern[str]:
-    """Where entries begin: in their column, and in a mapping not with the dash of an item.
-
-    What begins in that column and is no entry (`?`, `:`) is taken for one, and found out later.
-    """
-    entry = r"-(?=\s)" if is_sequence else r"(?!-\s)[^\s#]"
-    return re.compile(rf"^[ ]{{{column}}}{entry}", re.MULTILINE)
-
-
-def _entry(part: str, offset: int, lines: int, column: int, is_sequence: bool) -> Node:
-    """The collection of a single entry that a part is."""
-    if len(part) > _WORTHWHILE:
-        try:
-            inner = _inner(part, offset, lines, column, is_sequence)
-        except (_Unfit, YAMLError, ValueError, IndexError):
-            pass
+            raise _TooDeep
+        mark = event.start_mark
+        start = mark.index + self._start
+        place = mark.line + 1, mark.column + 1
+        kind = _KINDS[type(event)]
+        if event.anchor is not None or event.tag not in _PLAIN_TAGS:
+            self._refuse_node(event)
+            return Node(kind, start, start, *place, "", None)
+        if kind == "scalar":
+            end = event.end_mark.index + self._start
+            if event.style in ("|", ">"):
+                end = start + len(self._text[start:end].rstrip())
+            is_plain = not event.style and event.tag in (None, "!")
+            is_null = event.tag == _NULL_TAG or (is_plain and event.value in _NULLS)
+            text = None if is_null else _shown(event.value)
+            return Node(kind, start, end, *place, event.style or "", text)
+        keys: list[Node] = []
+        if kind == "sequence":
+            children, ending = self._items(depth + 1)
+            data: Any = [child.data for child in children]
         else:
-            return inner
-    node = _remembered(part, offset, lines)
-    kind = "sequence" if is_sequence else "mapping"
-    if (node.kind, node.style, node.column) != (kind, "block", column + 1):
-        raise _Unfit
-    return node
+            children, ending = self._entries(keys, depth + 1)
+            data = {key.data: child.data for key, child in zip(keys, children, strict=True)}
+        style, end = "flow", ending.end_mark.index + self._start
+        if not event.flow_style:
+            # It is over where the next thing begins, below comments that are not its own.
+            style, end = "block", children[-1].end if children else start
+        return Node(kind, start, end, *place, style, data, tuple(keys), tuple(children))
+
+    def _items(self, depth: int) -> tuple[list[Node], CollectionEndEvent]:
+        """The items of a sequence, and what ends it."""
+        items = []
+        while not isinstance(event := self._next(), CollectionEndEvent):
+            items.append(self._node(event, depth))
+        return items, event
+
+    def _entries(self, keys: list[Node], depth: int) -> tuple[list[Node], CollectionEndEvent]:
+        """The values of a mapping, whose keys are put into `keys`, and what ends it."""
+        lines: dict[str, int] = {}
+        values = []
+        while not isinstance(event := self._next(), CollectionEndEvent):
+            if event.anchor is not None:
+                self._refuse_node(event)
+            elif not isinstance(event, ScalarEvent):
+                self._refuse(event, "a key must be plain text")
+                self._skip(event)
+            elif (name := _shown(event.value)) in lines:
+                self._refuse(event, f"`{name}` is given twice (first in line {lines[name]})")
+            else:
+                mark = event.start_mark
+                lines[name] = line = mark.line + 1
+                start, end = mark.index + self._start, event.end_mark.index + self._start
+                key = Node("scalar", start, end, line, mark.column + 1, event.style or "", name)
+                value = self._node(self._next(), depth)
+                if value.data is None and value.start == value.end:
+                    # Its event is before whatever comes next.
+                    colon = _COLON.match(self._text, end)
+                    behind = colon.end() if colon else end
+                    value = Node("scalar", behind, behind, line, key.column, "", None)
+                keys.append(key)
+                values.append(value)
+                continue
+            self._skip(self._next())
+        return values, event
+
+    def _refuse_node(self, event: NodeEvent) -> None:
+        """Refuse an anchor (and, with it, what refers to it) or a tag, and what belongs to it."""
+        if isinstance(event, AliasEvent):
+            self._find_anchor(event)
+            return
+        if event.anchor is None:
+            self._refuse(event, f"tags (`{event.tag}`) are not allowed")
+        else:
+            self._refuse(event, "anchors (&) and aliases (*) are not allowed; write it out")
+        self._skip(event)
+
+    def _refuse(self, event: NodeEvent, message: str) -> None:
+        mark = event.start_mark
+        self._refusals.append(Refusal(mark.line + 1, mark.column + 1, message))
+
+    def _skip(self, event: Event) -> None:
+        """Pass over a node that an event begins."""
+        depth = 0
+        while True:
+            if isinstance(event, AliasEvent):
+                self._find_anchor(event)
+            elif isinstance(event, NodeEvent) and event.anchor is not None:
+                self._anchors.add(event.anchor)
+            depth += isinstance(event, CollectionStartEvent)
+            depth -= isinstance(event, CollectionEndEvent)
+            if depth > _DEEPEST:
+                raise _TooDeep
+            if not depth:
+                return
+            event = self._next()
+
+    def _find_anchor(self, event: AliasEvent) -> None:
+        """Its mistake is reported where its anchor is, which there must be."""
+        if event.anchor not in self._anchors:
+            problem = f"found undefined alias '{event.anchor}'"
+            raise MarkedYAMLError(None, None, problem, event.start_mark)
 
 
-def _inner(part: str, offset: int, lines: int, column: int, is_sequence: bool) -> Node:
-    """The same, what is below its dash or its key composed in parts again."""
-    start = offset + column
-    if is_sequence:
-        # Below its dash the item stands as it would below a key.
-        blank = " " * (column + 1)
-        child = _in_parts(blank + part[column + 1 :], offset, lines)
-        place = (start, child.end, lines + 1, column + 1)
-        if child.column <= column + 1:
-            raise _Unfit
-        return Node("sequence", *place, "block", [child.data], (), (child,))
-    header = _HEADER.match(part)
-    if header is None:
-        raise _Unfit
-    child = _in_parts(part[header.end() :], offset + header.end(), lines + 1)
-    if child.column <= column + (child.kind == "mapping"):
-        raise _Unfit
-    name = part[column : part.index(":")]
-    key = Node("scalar", start, start + len(name), lines + 1, column + 1, "", name)
-    place = (start, child.end, lines + 1, column + 1)
-    return Node("mapping", *place, "block", {name: child.data}, (key,), (child,))
-
-
-@lru_cache(maxsize=4096)
-def _remembered(part: str, offset: int, lines: int) -> Node:
-    return _composed(part).shifted(offset, lines)
-
-
-@lru_cache(maxsize=4096)
-def _composed(part: str) -> Node:
-    root = YAML(typ="safe", pure=True).compose(part)
-    if root is None or part.lstrip(" ")[0] in "?:":
-        raise _Unfit
-    reader = NodeReader(part)
-    node = reader.read(root)
-    if reader.refusals or len(node.children) != 1:
-        raise _Unfit
-    return node
-
-
-def _joined(entries: list[Node]) -> Node:
-    first, last = entries[0], entries[-1]
-    children = tuple([entry.children[0] for entry in entries])
-    if first.kind == "sequence":
-        data = [child.data for child in children]
-        return first._replace(end=last.end, data=data, children=children)
-    keys = tuple([entry.keys[0] for entry in entries])
-    table = {key.data: child.data for key, child in zip(keys, children, strict=True)}
-    if len(table) < len(keys):
-        raise _Unfit
-    return first._replace(end=last.end, data=table, keys=keys, children=children)
+def _shown(value: str) -> str:
+    if value.isprintable():
+        return value
+    return _CONTROL_CHARACTER.sub("\N{REPLACEMENT CHARACTER}", value)

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from calm.errors import InputError, Problem
+from calm.files.current_terms import Terms
 from calm.files.document import read_text
-from calm.files.tables import CurrentTable, read_current
+from calm.files.tables import CurrentTable, heading, read_current, turned_notices
 from calm.files.times import TimeChoiceError, choose_time, parse_time
 
 LARGEST_CSV = 50_000_000
@@ -45,14 +46,16 @@ class CsvHeader:
     @property
     def timed(self) -> bool:
         """Whether the file is a record."""
-        return self.row.cells[0].strip().partition("[")[0] == "time"
+        return heading(self.row.cells[0])[0].lower() == "time"
 
     @property
     def columns(self) -> list[str]:
         """Names with units, without that of the time."""
         return [cell.strip() for cell in self.row.cells[int(self.timed) :]]
 
-    def profile(self, rows: Sequence[CsvRow], problems: list[Problem]) -> CurrentTable | None:
+    def profile(
+        self, rows: Sequence[CsvRow], problems: list[Problem], terms: Terms
+    ) -> CurrentTable | None:
         """The current of the rows of one time; None, with mistakes added, when it has any."""
         first = int(self.timed)
 
@@ -63,12 +66,12 @@ class CsvHeader:
             return Problem(str(self.path), row.number, column, message)
 
         values = [[cell.strip() or None for cell in row.cells[first:]] for row in rows]
-        return read_current(self.columns, values, report, problems)
+        return read_current(self.columns, values, report, problems, terms)
 
     def without_gaps(self, rows: Sequence[CsvRow]) -> list[CsvRow]:
         """The rows of a record that give a current."""
-        names = [cell.replace("[", " ").split()[:1] for cell in self.row.cells]
-        current = [j for j, name in enumerate(names) if name not in (["time"], ["depth"])]
+        names = [heading(cell)[0].lower() for cell in self.row.cells]
+        current = [j for j, name in enumerate(names) if name not in ("time", "depth")]
         return [
             row
             for row in rows
@@ -77,7 +80,7 @@ class CsvHeader:
         ]
 
 
-def read_current_csv(path: Path, time: str | None) -> tuple[CurrentTable, list[str]]:
+def read_current_csv(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
     """The profile of a time, and notices; `time` may be None where there is only one.
 
     Raises
@@ -101,10 +104,10 @@ def read_current_csv(path: Path, time: str | None) -> tuple[CurrentTable, list[s
     elif time is not None:
         raise TimeChoiceError("the file has no column `time`")
     problems: list[Problem] = []
-    table = header.profile(rows, problems)
+    table = header.profile(rows, problems, terms)
     if table is None:
         raise InputError(abridged(problems))
-    return table, notices
+    return table, [*notices, *turned_notices(header.columns, terms)]
 
 
 def read_csv_header(path: Path, number: int, line: str) -> CsvHeader:
@@ -116,6 +119,9 @@ def read_csv_header(path: Path, number: int, line: str) -> CsvHeader:
         The line is none.
     """
     cells = line.split(",")
+    if len(cells) > 1 and not cells[-1].strip():
+        message = "the line ends in a comma; take it off every line"
+        raise InputError([Problem(str(path), number, len(line.rstrip()), message)])
     if len(cells) < 2:
         message = f"`{cells[0][:40]}` is no header such as `depth[m],u[m/s],v[m/s]`"
         raise InputError([Problem(str(path), number, 1, message)])

@@ -6,8 +6,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from calm.files.current_levels import Levels, find_levels
-from calm.files.current_place import Place, choose_column, is_regular
+from calm.files.current_place import choose_column, is_regular
+from calm.files.current_terms import Terms
 from calm.files.current_times import find_times, read_times
+from calm.files.current_values import known_values
 from calm.files.current_variables import (
     UnreadableError,
     Velocity,
@@ -15,6 +17,7 @@ from calm.files.current_variables import (
     find_velocity,
     holdings,
 )
+from calm.files.current_vectors import with_components
 
 if TYPE_CHECKING:
     import numpy as np
@@ -49,16 +52,19 @@ class CurrentDataset:
     ----------
     times : (n,) in the order of the file; None for a profile without a time
     notices : what a person should know before trusting it
+    turned : by how much a current that counted from magnetic north was turned
     rules : what was understood without a doubt, and how
     source : names of the variables, and the place
     """
 
     times: NDArray[np.datetime64] | None
     notices: tuple[str, ...]
+    turned: tuple[str, ...]
     rules: tuple[str, ...]
     source: dict[str, str]
     _parts: tuple[tuple[xr.DataArray, float], ...]
     _turn: float | None
+    _declination: float
     _levels: Levels
     _time: str | None
 
@@ -91,28 +97,30 @@ class CurrentDataset:
         if self._turn is not None:
             angle = np.radians(second + self._turn)
             first, second = first * np.sin(angle), first * np.cos(angle)
+        if self._declination:
+            angle = np.radians(self._declination)
+            first, second = (
+                first * np.cos(angle) + second * np.sin(angle),
+                second * np.cos(angle) - first * np.sin(angle),
+            )
         depth = self._levels.depths(self._time, index)
         return CurrentArrays(depth, first, second, up[0] if up else None)
 
     def _values(self, variable: xr.DataArray, index: Any) -> NDArray[np.float64]:
         """Times by levels, contiguous, so that equal values give equal results in any company."""
-        import numpy as np
-
         if self._time is None:
-            return np.array(variable.values, np.float64).reshape(1, -1)
-        chosen = variable.isel({self._time: index}).transpose(self._time, ...)
-        values = np.ascontiguousarray(chosen.values, np.float64)
+            return known_values(variable).reshape(1, -1)
+        values = known_values(variable.isel({self._time: index}).transpose(self._time, ...))
         return values.reshape(len(values), -1)
 
 
-def understand(dataset: xr.Dataset, water_depth: float, place: Place | None) -> CurrentDataset:
+def understand(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
     """What a dataset holds, without reading its currents.
 
     Parameters
     ----------
     dataset : as it stands in the file, its times undecoded
-    water_depth : places heights above the seabed [m]
-    place : latitude and longitude at which a column is wanted, where there are several
+    terms : how its currents are to be taken
 
     Raises
     ------
@@ -120,19 +128,21 @@ def understand(dataset: xr.Dataset, water_depth: float, place: Place | None) -> 
         It holds no current that can be understood: why, and what it holds.
     """
     try:
-        return _understood(dataset, water_depth, place)
+        return _understood(dataset, terms)
     except UnreadableError as error:
         raise UnreadableError(f"{error}; it holds {holdings(dataset)}") from None
 
 
-def _understood(dataset: xr.Dataset, water_depth: float, place: Place | None) -> CurrentDataset:
+def _understood(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
+    dataset = with_components(dataset)
     velocity = find_velocity(dataset, regular=is_regular(dataset))
+    turned = _turned(velocity, terms.declination)
     name_of_time = find_times(dataset, velocity.names[0])
     times = None if name_of_time is None else read_times(dataset, name_of_time)
     time = _dimension(dataset, name_of_time)
-    column = choose_column(dataset, velocity.names, time, place)
+    column = choose_column(dataset, velocity.names, time, terms.place)
     level, dataset = _single_levels(dataset.isel(column.index), velocity, time)
-    levels = find_levels(dataset, level, time, water_depth)
+    levels = find_levels(dataset, level, time, terms.water_depth)
     source = {"velocity": ", ".join(velocity.all_names), "levels": str(levels.variable.name)}
     if name_of_time is not None:
         source["time"] = name_of_time
@@ -146,13 +156,34 @@ def _understood(dataset: xr.Dataset, water_depth: float, place: Place | None) ->
     return CurrentDataset(
         times=times,
         notices=tuple(notices),
+        turned=turned,
         rules=(*velocity.notes, *levels.notes),
         source=source,
         _parts=tuple(_parts(dataset, velocity)),
         _turn=velocity.turn,
+        _declination=terms.declination or 0.0,
         _levels=levels,
         _time=time,
     )
+
+
+def _turned(velocity: Velocity, declination: float | None) -> tuple[str, ...]:
+    """What is told of a current that counts from magnetic north."""
+    counted = velocity.names if velocity.turn is None else velocity.names[1:]
+    which = " and ".join(f"`{name}`" for name in counted)
+    if velocity.magnetic and declination is None:
+        raise UnreadableError(
+            f"{which} count from magnetic north; give the `declination` there, positive to the "
+            "east (beside `file:`, or `--declination`)"
+        )
+    if declination is not None and not velocity.magnetic:
+        raise UnreadableError(
+            f"{which} are not said to count from magnetic north, so no `declination` is applied; "
+            "leave it out"
+        )
+    if declination is None:
+        return ()
+    return (f"{which} counted from magnetic north, turned by {declination:g}°",)
 
 
 def _dimension(dataset: xr.Dataset, time: str | None) -> str | None:

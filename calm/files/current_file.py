@@ -7,16 +7,12 @@ from pathlib import Path
 from calm.errors import InputError, Problem
 from calm.files.current_csv import read_current_csv
 from calm.files.current_netcdf import is_netcdf, is_zarr, read_current_netcdf
-from calm.files.current_place import Place
+from calm.files.current_terms import Terms
 from calm.files.tables import CurrentTable
 
 
-def read_current_file(
-    path: Path, time: str | None, water_depth: float, place: Place | None = None
-) -> tuple[CurrentTable, list[str]]:
+def read_current_file(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
     """The profile of a file at a time, and what to tell about it.
-
-    `place` [degrees north, degrees east] chooses a column where the file holds several.
 
     Raises
     ------
@@ -26,8 +22,8 @@ def read_current_file(
         The time is not in the file, or is needed to choose one of several.
     """
     if holds_arrays(path):
-        return read_current_netcdf(path, time, water_depth, place)
-    return read_current_csv(path, time)
+        return read_current_netcdf(path, time, terms)
+    return read_current_csv(path, time, terms)
 
 
 def holds_arrays(path: Path) -> bool:

@@ -6,18 +6,28 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from calm.files.current_values import known_values
 from calm.files.current_variables import UnreadableError, factor_of, first_present
+from calm.files.current_words import words_of
 
 if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import NDArray
 
 _NAMES = (
-    "depth", "DEPTH", "Depth", "depthu", "deptht", "lev", "z", "height", "HEIGHT", "bin_depths",
-    "bindepth", "BIN_DEPTH", "HEIGHT_ABOVE_SENSOR", "DIST_SEABED", "height_above_seabed",
+    "depth", "DEPTH", "Depth", "depthu", "deptht", "lev", "z", "z_rho", "height", "HEIGHT",
+    "bin_depths", "bindepth", "BIN_DEPTH", "HEIGHT_ABOVE_SENSOR", "DIST_SEABED",
+    "height_above_seabed", "range", "range_avg",
 )  # fmt: skip
-_ABOVE_SEABED = re.compile(r"above_?(the_?)?(sea_?(bed|floor)|bottom)|dist_seabed")
-_FROM_INSTRUMENT = re.compile(r"(above|below|from|to)_?(the_?)?(sensor|transducer|instrument)")
+_ABOVE_SEABED = re.compile(r"above (the )?(sea ?(bed|floor)|bottom)|dist seabed")
+_HEAD = r"(adcp|adp|sensor|transducers?|instrument|head|profiler|device)"
+_FROM_INSTRUMENT = re.compile(
+    rf"\b(above|below|from|to) (the )?(\w+ )?{_HEAD}\b|\b(profile|bin) range\b|^range( avg)?\b"
+)
+_OF_THE_WATER = re.compile(r"\b(water|bottom|sea ?(bed|floor)) ?depth\b|\bsea floor\b|\bseabed\b")
+_UPWARDS = re.compile(r"\b(z ?)?up(wards?)?\b")
+_DOWNWARDS = re.compile(r"\b(z ?)?down(wards?)?\b")
+_HEIGHTS = ("z", "z_rho")
 _STANDARD_DEPTH = "depth"
 
 
@@ -52,7 +62,7 @@ class Levels:
         def values(variable: xr.DataArray) -> NDArray[Any]:
             chosen = variable.isel({time: index}) if time in variable.dims else variable
             order = [dim for dim in (time,) if dim in chosen.dims]
-            return np.asarray(chosen.transpose(*order, ...).values, np.float64)
+            return known_values(chosen.transpose(*order, ...))
 
         depth = self.start + values(self.variable) * self.factor
         depth = depth.reshape(-1, 1) if self.variable.dims == (time,) else np.atleast_1d(depth)
@@ -111,57 +121,124 @@ def _candidates(dataset: xr.Dataset, level: str | None, time: str | None) -> lis
 def _placed(
     dataset: xr.Dataset, levels: xr.DataArray, factor: float, time: str | None, water_depth: float
 ) -> Levels:
-    told = " ".join(
-        str(word)
-        for word in (
-            levels.name,
-            levels.attrs.get("standard_name", ""),
-            levels.attrs.get("long_name", ""),
-            levels.attrs.get("reference_datum", ""),
-        )
-    )
-    told = re.sub(r"\W+", "_", told.lower())
+    told = f"{levels.name} " + words_of(levels, "standard_name", "long_name", "reference_datum")
+    told = re.sub(r"[\W_]+", " ", told.lower())
     if _ABOVE_SEABED.search(told):
-        note = f"`{levels.name}` is the height above the seabed, at {water_depth:g} m"
-        return Levels(levels, -factor, water_depth, None, (note,))
+        return _above_seabed(levels, factor, water_depth)
     positive = str(levels.attrs.get("positive", "")).lower()
-    from_instrument = _FROM_INSTRUMENT.search(told) or str(
-        levels.attrs.get("reference_datum", "")
-    ).lower() in ("sensor", "instrument", "transducer")
-    if not positive and "depth" in told and not from_instrument:
+    if _FROM_INSTRUMENT.search(told) or words_of(levels, "reference_datum") in (
+        "sensor",
+        "instrument",
+        "transducer",
+    ):
+        way = positive or _way_it_looks(dataset, levels, told)
+        return _from_instrument(dataset, levels, factor, way, time, water_depth)
+    if not positive and levels.name in _HEIGHTS and _sign(levels, time) < 0:
+        positive = "up"
+    elif not positive and "depth" in told:
         positive = "down"
     if positive not in ("up", "down"):
         raise UnreadableError(f"`{levels.name}` does not say whether it is `positive` up or down")
     factor = factor if positive == "down" else -factor
-    if not from_instrument and time not in levels.dims and _all_in_air(levels, factor):
+    if _sign(levels, time) * factor < 0:
         raise UnreadableError(
             f"`{levels.name}` is positive {positive}, and no level of it is below the surface: "
             "its sign or its `positive` is wrong"
         )
-    if not from_instrument:
-        return Levels(levels, factor, 0.0, None, ())
-    instrument = _instrument(dataset, levels, time)
+    return Levels(levels, factor, 0.0, None, ())
+
+
+def _above_seabed(levels: xr.DataArray, factor: float, water_depth: float) -> Levels:
+    note = f"`{levels.name}` is the height above the seabed, at {water_depth:g} m"
+    return Levels(levels, -factor, water_depth, None, (note,))
+
+
+def _sign(levels: xr.DataArray, time: str | None) -> int:
+    """1 or -1 where all values other than zero have that sign, else 0; of the first time."""
+
+    first = levels.isel({time: slice(1)}) if time in levels.dims else levels
+    values = known_values(first)
+    if (values > 0).any() == (values < 0).any():
+        return 0
+    return 1 if (values > 0).any() else -1
+
+
+def _from_instrument(
+    dataset: xr.Dataset,
+    levels: xr.DataArray,
+    factor: float,
+    way: str,
+    time: str | None,
+    water_depth: float,
+) -> Levels:
+    """Levels counted from an instrument that looks up or down.
+
+    MHKiT adds the height of the instrument above the seabed to `range` where a person gives it, or
+    the instrument's depth where it looks down, and then calls the depth of the water `depth`.
+    """
+    if way not in ("up", "down"):
+        raise UnreadableError(
+            f"`{levels.name}` counts from the instrument, and the file does not say whether that "
+            "looks up or down (`positive: up` of the variable, or `orientation: up` of the file)"
+        )
+    instrument, water = _depths(dataset, levels, time)
+    offset = str(levels.name).startswith("range") and _offset_by_hand(dataset)
+    if offset and way == "down":
+        note = f"`{levels.name}` counts from the surface, as its offset is added already"
+        return Levels(levels, factor, 0.0, None, (note,))
+    if offset and instrument is None:
+        if water is None:
+            return _above_seabed(levels, factor, water_depth)
+        note = f"`{levels.name}` counts from the seabed, whose depth is `{water[0].name}`"
+        return Levels(levels, -factor, 0.0, water, (note,))
+    if instrument is None:
+        but = f"; `{water[0].name}` is that of the water" if water is not None else ""
+        raise UnreadableError(
+            f"`{levels.name}` counts from the instrument, whose depth is not in the file{but}"
+        )
     note = f"`{levels.name}` counts from the instrument, whose depth is `{instrument[0].name}`"
-    return Levels(levels, factor, 0.0, instrument, (note,))
+    signed = factor if way == "down" else -factor
+    return Levels(levels, signed, 0.0, instrument, (note,))
 
 
-def _all_in_air(levels: xr.DataArray, factor: float) -> bool:
-    import numpy as np
+def _offset_by_hand(dataset: xr.Dataset) -> bool:
+    """Whether MHKiT was given the place of the instrument; Teledyne's offsets are of its head."""
+    given = any(dataset.attrs.get(name) for name in ("range_offset", "h_deploy"))
+    return given and "rdi" not in str(dataset.attrs.get("inst_make", "")).lower()
 
-    depth = np.asarray(levels.values, np.float64) * factor
-    return bool((depth < 0).any() and not (depth > 0).any())
+
+def _way_it_looks(dataset: xr.Dataset, levels: xr.DataArray, told: str) -> str:
+    """Whether an instrument looks ``"up"`` or ``"down"``; empty where nothing says so."""
+    for word, way in (("above", "up"), ("below", "down")):
+        if word in told.split():
+            return way
+    given = [one.attrs.get("orientation", "") for one in (levels, dataset)]
+    looks = re.sub(r"[\W_]+", " ", " ".join(map(str, given)).lower())
+    up, down = _UPWARDS.search(looks), _DOWNWARDS.search(looks)
+    if bool(up) == bool(down):
+        return ""
+    return "up" if up else "down"
 
 
-def _instrument(
+Depth = tuple[Any, float]
+"""A variable with depths, and its factor to metres."""
+
+
+def _depths(
     dataset: xr.Dataset, levels: xr.DataArray, time: str | None
-) -> tuple[xr.DataArray, float]:
-    """The depth of the instrument and its factor to metres."""
-    names = [*dataset.cf.standard_names.get(_STANDARD_DEPTH, []), *_NAMES]
+) -> tuple[Depth | None, Depth | None]:
+    """The depth of the instrument and that of the water, each None where the file has none."""
+    instrument: Depth | None = None
+    water: Depth | None = None
+    names = [*dataset.cf.standard_names.get(_STANDARD_DEPTH, []), *_NAMES, "depth_avg"]
     for name in first_present(dataset, names):
         depth = dataset[name]
         upwards = depth.attrs.get("positive") == "up"
-        if name != levels.name and set(depth.dims) <= {time} and not upwards:
-            return depth, factor_of(depth, "length")
-    raise UnreadableError(
-        f"`{levels.name}` counts from the instrument, whose depth is not in the file"
-    )
+        if name == levels.name or not set(depth.dims) <= {time} or upwards:
+            continue
+        of_the_water = _OF_THE_WATER.search(words_of(depth, "long_name", "comment"))
+        if of_the_water and water is None:
+            water = depth, factor_of(depth, "length")
+        elif not of_the_water and instrument is None:
+            instrument = depth, factor_of(depth, "length")
+    return instrument, water

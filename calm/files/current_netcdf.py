@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from calm.errors import CalmError, InputError, Problem
 from calm.files.current_dataset import CurrentArrays, understand
-from calm.files.current_place import Place
+from calm.files.current_terms import Terms, too_deep, too_fast
 from calm.files.current_variables import UnreadableError
 from calm.files.tables import CurrentTable
 from calm.files.times import TimeChoiceError, choose_time
@@ -34,12 +34,9 @@ def is_netcdf(path: Path) -> bool:
 
 
 def read_current_netcdf(
-    path: Path, time: str | None, water_depth: float, place: Place | None = None
+    path: Path, time: str | None, terms: Terms
 ) -> tuple[CurrentTable, list[str]]:
     """The profile of a time, and notices; `time` may be None where there is only one.
-
-    `water_depth` [m] places levels that are given as heights above the seabed, `place` chooses a
-    column where there are several.
 
     Raises
     ------
@@ -49,8 +46,8 @@ def read_current_netcdf(
         The time is not in the file.
     """
     with reading(path), open_current(path) as dataset:
-        current = understand(dataset, water_depth, place)
-        notices = list(current.notices)
+        current = understand(dataset, terms)
+        notices = [*current.notices, *current.turned]
         index = 0
         if current.times is not None:
             seconds = current.times.astype("datetime64[us]").tolist()
@@ -59,7 +56,7 @@ def read_current_netcdf(
             notices = [*([notice] if notice else []), *notices]
         elif time is not None:
             raise TimeChoiceError("the file has no times")
-        return _profile(current.read(slice(index, index + 1)), notices), notices
+        return _profile(current.read(slice(index, index + 1)), terms, notices), notices
 
 
 @contextmanager
@@ -93,7 +90,7 @@ def open_current(path: Path) -> xr.Dataset:
     return xr.open_dataset(path, engine=engine, decode_times=False, cache=False)
 
 
-def _profile(arrays: CurrentArrays, notices: list[str]) -> CurrentTable:
+def _profile(arrays: CurrentArrays, terms: Terms, notices: list[str]) -> CurrentTable:
     """The levels in water that have a value, by depth."""
     import numpy as np
 
@@ -105,6 +102,11 @@ def _profile(arrays: CurrentArrays, notices: list[str]) -> CurrentTable:
     _tell(notices, int(np.sum(known & ~below)), "above the surface")
     if not below.any():
         raise UnreadableError("no level below the surface has a value")
+    for level, east, north, up in zip(*(one[below] for one in (depth, u, v, w)), strict=True):
+        if reason := too_deep(level):
+            raise UnreadableError(f"its {reason}")
+        if reason := too_fast(east, north, up, terms.maximum_speed):
+            raise UnreadableError(f"its current at {level:g} m, {reason}")
     order = np.argsort(depth[below])
     depth, u, v, w = (values[below][order] for values in (depth, u, v, w))
     if np.any(np.diff(depth) == 0):

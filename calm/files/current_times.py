@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 from calm.files.current_variables import UnreadableError, first_present
@@ -15,6 +16,8 @@ _NAMES = ("time", "TIME", "Time", "time_counter", "ocean_time", "MT")
 _CALENDARS = ("standard", "gregorian", "proleptic_gregorian")
 _FIRST, _LAST = "1678-01-01", "2262-01-01"
 _AT_ONCE = 50_000
+_ZONE = re.compile(r" since .*\d\s*([A-Za-z]{2,}(/[A-Za-z_]+)?)\s*$")
+_UTC = ("UTC", "utc", "GMT", "gmt", "Z")
 
 
 def find_times(dataset: xr.Dataset, velocity: str) -> str | None:
@@ -70,6 +73,12 @@ def _decoded(times: xr.DataArray) -> NDArray[Any]:
     if times.dtype.kind == "f" and not times.notnull().any():
         return np.array("NaT", "datetime64[ns]")  # to xarray, no numbers at all are no times
     unit = str(times.attrs.get("units", ""))
+    zone = _ZONE.search(unit)
+    if zone is not None and zone[1] not in _UTC:
+        raise UnreadableError(
+            f"the times in `{times.name}` are `{unit}`: what `{zone[1]}` is ahead of UTC is not "
+            "known for sure; write the offset in hours, such as `+01:00`, or use UTC"
+        )
     refusal = UnreadableError(
         f"the times in `{times.name}` cannot be read: their unit, `{unit}`, is none of seconds, "
         "minutes, hours or days since a date"

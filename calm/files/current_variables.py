@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from calm.files.current_words import is_magnetic, not_a_current, other_frame, way_of
 from calm.units import QuantityError, unit_factor
 
 if TYPE_CHECKING:
@@ -15,36 +16,36 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class _Sought:
-    """A quantity: its standard names, its usual names, and the sense of a standard name."""
+    """A quantity: its standard names, and the names that programs and archives use for it."""
 
     standard: tuple[str, ...]
     usual: tuple[str, ...]
-    sense: str
 
 
 _EAST = _Sought(
     ("eastward_sea_water_velocity",),
-    ("uo", "UCUR", "EWCT", "water_u", "u", "U", "u_eastward", "u_1205"),
-    "east",
+    ("uo", "UCUR", "EWCT", "water_u", "u", "U", "u_eastward", "u_1205", "UCUR_MAG"),
 )
 _NORTH = _Sought(
     ("northward_sea_water_velocity",),
-    ("vo", "VCUR", "NSCT", "water_v", "v", "V", "v_northward", "v_1206"),
-    "north",
+    ("vo", "VCUR", "NSCT", "water_v", "v", "V", "v_northward", "v_1206", "VCUR_MAG"),
 )
 _UP = _Sought(
-    ("upward_sea_water_velocity",), ("wo", "WCUR", "water_w", "w", "W", "w_1204"), "upward"
+    ("upward_sea_water_velocity",), ("wo", "WCUR", "water_w", "w", "W", "w_1204", "WCUR_MAG")
 )
-_SPEED = _Sought(("sea_water_speed",), ("HCSP", "speed"), "speed")
+_SPEED = _Sought(("sea_water_speed",), ("HCSP", "speed", "CSPD"))
 _TOWARD = _Sought(
-    ("sea_water_velocity_to_direction", "direction_of_sea_water_velocity"),
-    ("HCDT", "toward"),
-    "direction",
+    ("sea_water_velocity_to_direction", "direction_of_sea_water_velocity"), ("HCDT", "toward")
 )
-_FROM = _Sought(("sea_water_velocity_from_direction",), (), "direction")
+_FROM = _Sought(("sea_water_velocity_from_direction",), ())
 
-_ALONG_THE_GRID = {"east": "sea_water_x_velocity", "north": "sea_water_y_velocity"}
-_AMBIGUOUS = ("direction", "DIR", "dir", "CDIR", "current_direction", "cdir")
+_ALONG_THE_GRID = {"sea_water_x_velocity": _EAST, "sea_water_y_velocity": _NORTH}
+_AMBIGUOUS = (
+    "direction", "DIR", "dir", "CDIR", "current_direction", "cdir", "CDIR_MAG", "HCDT_MAG",
+)  # fmt: skip
+_NORTH_NAMED = re.compile(
+    r"(?i)[ _](true|t|magnetic)$|\s*\(?clockwise from ((true|magnetic) )?north\)?$"
+)
 _MOST_LISTED = 24
 
 
@@ -61,12 +62,14 @@ class Velocity:
     names : eastward and northward velocity, or speed and direction
     up : upward velocity, None where there is none
     turn : what is added to a direction to have it flow toward [degrees]; None for components
+    magnetic : whether it counts from magnetic north
     notes : what had to be taken for granted
     """
 
     names: tuple[str, str]
     up: str | None
     turn: float | None
+    magnetic: bool
     notes: tuple[str, ...]
 
     @property
@@ -83,23 +86,26 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
     UnreadableError
         There is none, there are several, or what is there is no current to the east and north.
     """
+    if (reason := other_frame(dataset.attrs)) is not None:
+        raise UnreadableError(f"its current {reason}")
     notes: list[str] = []
     east, north, up = (_find(dataset, one, regular, notes) for one in (_EAST, _NORTH, _UP))
     if east is not None and north is not None:
-        return Velocity((east, north), up, None, tuple(notes))
-    speed, toward, origin = (
-        _find(dataset, one, regular, notes) for one in (_SPEED, _TOWARD, _FROM)
-    )
-    direction = toward or origin
+        magnetic = [name for name in (east, north) if is_magnetic(dataset[name])]
+        if len(magnetic) == 1:
+            other = north if magnetic == [east] else east
+            raise UnreadableError(f"`{magnetic[0]}` is to magnetic north, `{other}` is not")
+        return Velocity((east, north), up, None, bool(magnetic), tuple(notes))
+    speed = _find(dataset, _SPEED, regular, notes)
+    direction, way = _direction(dataset, regular, notes)
+    if speed is not None and direction is not None and way is not None:
+        flows = "the current flows to" if way == "to" else "the current comes from"
+        notes.append(f"`{direction}` is the direction {flows}")
+        turn = 0.0 if way == "to" else 180.0
+        return Velocity((speed, direction), up, turn, is_magnetic(dataset[direction]), tuple(notes))
     if speed is not None and direction is not None:
-        turn = 0.0 if toward is not None else 180.0
-        way = "the current flows to" if toward is not None else "the current comes from"
-        notes.append(f"`{direction}` is the direction {way}")
-        return Velocity((speed, direction), up, turn, tuple(notes))
-    unclear = [name for name in _AMBIGUOUS if name in dataset.data_vars]
-    if speed is not None and unclear:
         raise UnreadableError(
-            f"`{unclear[0]}` does not say whether it is where the current flows to or where it "
+            f"`{direction}` does not say whether it is where the current flows to or where it "
             f"comes from; its `standard_name` should be {_TOWARD.standard[0]} or "
             f"{_FROM.standard[0]}"
         )
@@ -107,6 +113,25 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
         "holds no current: eastward and northward velocity, or speed and direction to or from, "
         "are looked for by CF standard name, then by usual name"
     )
+
+
+def _direction(
+    dataset: xr.Dataset, regular: bool, notes: list[str]
+) -> tuple[str | None, str | None]:
+    """The variable of a direction, and which way it is: None where the file does not say."""
+    for sought, way in ((_TOWARD, "to"), (_FROM, "from")):
+        name = _find(dataset, sought, regular, notes)
+        if name is not None:
+            told = way_of(dataset[name])
+            if told not in (way, None):
+                said = dataset[name].attrs.get("long_name", "")
+                raise UnreadableError(
+                    f"`{name}` says two things: it is called the direction the current flows to, "
+                    f"and `{said}`"
+                )
+            return name, way
+    unclear = next((name for name in _AMBIGUOUS if name in dataset.data_vars), None)
+    return unclear, None if unclear is None else way_of(dataset[unclear])
 
 
 def holdings(dataset: xr.Dataset) -> str:
@@ -134,7 +159,7 @@ def factor_of(variable: xr.DataArray, dimension: str) -> float:
         It has no unit, or that of something else.
     """
     unit = str(variable.attrs.get("units", ""))
-    plain = re.sub(r"(?i)[ _](true|t)$|\s*\(?clockwise from (true )?north\)?$", "", unit.strip())
+    plain = _NORTH_NAMED.sub("", unit.strip())
     if not plain:
         raise UnreadableError(f"`{variable.name}` has no `units`")
     if plain.istitle() and len(plain) > 1:  # `Meter`
@@ -152,22 +177,41 @@ def first_present(dataset: xr.Dataset, names: Iterable[str]) -> list[str]:
 
 
 def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str]) -> str | None:
-    """The variable of a standard name, else of a usual name."""
+    """The variable of a standard name, else of a usual name; one to true north before another.
+
+    Raises
+    ------
+    UnreadableError
+        Several have the standard name, or what the variable says of itself is something else.
+    """
     for standard_name in sought.standard:
-        found = dataset.cf.standard_names.get(standard_name, [])
-        if len(found) > 1:
-            raise UnreadableError(f"several variables are {standard_name}: {', '.join(found)}")
+        found = [str(name) for name in dataset.cf.standard_names.get(standard_name, [])]
+        true = [name for name in found if not is_magnetic(dataset[name])]
+        if len(true or found) > 1:
+            listed = ", ".join(true or found)
+            raise UnreadableError(f"several variables are {standard_name}: {listed}")
         if found:
-            return str(found[0])
+            return _believed(dataset, (true or found)[0])
     name = next((name for name in sought.usual if name in dataset.data_vars), None)
     if name is None:
         return None
     own = str(dataset[name].attrs.get("standard_name", ""))
-    told = str(dataset[name].attrs.get("long_name", ""))
-    if not own and re.search(r"(?i)\bwind\b", told):
-        raise UnreadableError(f"`{name}` is `{told}`, which is no current")
-    if regular and own and own == _ALONG_THE_GRID.get(sought.sense):
-        notes.append(f"`{name}`, {own}, is {sought.sense}ward: the grid runs along latitudes")
-    elif own and not (sought.sense in own and ("water" in own or "current" in own)):
+    if regular and _ALONG_THE_GRID.get(own) is sought:
+        way = "east" if sought is _EAST else "north"
+        notes.append(f"`{name}`, {own}, is {way}ward: the grid runs along latitudes")
+    elif own and own not in sought.standard and not _only_marked(own, sought):
         raise UnreadableError(f"`{name}` is {own}, which is not {sought.standard[0]}")
+    return _believed(dataset, name)
+
+
+def _only_marked(own: str, sought: _Sought) -> bool:
+    """Whether a standard name is one of those sought but for a word on its north."""
+    plain = re.sub(r"_?magnetic_?(north)?", "", own)
+    return plain != own and plain in sought.standard
+
+
+def _believed(dataset: xr.Dataset, name: str) -> str:
+    """The name of a variable whose own words do not speak against it."""
+    if (reason := not_a_current(dataset[name])) is not None:
+        raise UnreadableError(f"`{name}` {reason}")
     return name

@@ -34,7 +34,12 @@ DENSITY = Quantity("density", above=0)
 
 
 class Definition(Model):
-    """What every component may say, whatever its kind."""
+    """What every component may say, whatever its kind.
+
+    `source` is that of every figure but those for which `sources` names another, field by field.
+    `searched` are the fields that were looked for and that no source prints; `prefer` is the id of
+    the definition of the same thing that is to be used in place of this one.
+    """
 
     role: Role = "instrument"
     name: Text | None = None
@@ -43,6 +48,9 @@ class Definition(Model):
     material: Text | None = None
     note: Text | None = None
     source: Text | None = None
+    sources: dict[str, Text] | None = None
+    searched: tuple[str, ...] | None = None
+    prefer: Text | None = None
     date: Text | None = None
     depth_rating: Annotated[float | None, POSITIVE_LENGTH] = None
     working_load: Annotated[float | None, POSITIVE_FORCE] = None

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated
 
 from pydantic import Discriminator, Tag
 
 from calm.errors import Problem
 from calm.files.definition import CATALOGUE_DENSITY, DENSITY
-from calm.files.fields import Model
+from calm.files.explain import about_quantity
+from calm.files.fields import Model, Quantity
 from calm.files.section import Section
 from calm.files.tables import (
     SALINITY,
     TEMPERATURE,
+    WATER_DENSITY,
     DepthTable,
     SeaWater,
     Table,
@@ -21,6 +24,7 @@ from calm.files.tables import (
     report_at,
     table_of,
 )
+from calm.units import QuantityError
 
 USUAL_DENSITY = {"water": CATALOGUE_DENSITY, "air": 1.225}
 """Where a file gives none [kg/m³]; that of air is the standard atmosphere's at sea level."""
@@ -58,25 +62,59 @@ Density = Annotated[
 """The value of `density:` as a person writes it."""
 
 
+_RANGES: Mapping[str, Quantity] = {"water": WATER_DENSITY, "air": DENSITY}
+_FALL = 0.1
+"""Water that gets lighter by more than this with depth turns over [kg/m³]."""
+
+
 def read_density(
-    given: float | Table | SeaWaterKeys, section: Section, problems: list[Problem]
+    given: float | Table | SeaWaterKeys,
+    fluid: str,
+    section: Section,
+    problems: list[Problem],
+    notices: list[str],
 ) -> float | DepthTable | SeaWater | None:
     """The density of a section's `density:`; None, with its mistakes told, when it has any."""
+    density = _RANGES[fluid]
     if isinstance(given, Table):
-        return read_water(given.columns, given.rows, report_at(section, "density"), problems)
+        report = report_at(section, "density")
+        table = read_water(given.columns, given.rows, report, problems, density)
+        if isinstance(table, DepthTable):
+            notices.extend(_falls(table))
+        return table
     if not isinstance(given, SeaWaterKeys):
-        return given
+        try:
+            return density.read(f"{given!r} kg/m^3")
+        except QuantityError as error:
+            message = about_quantity("density", f"{given:g} kg/m^3", error)
+            problems.append(section.problem(("density",), message))
+            return None
     temperature = _profile("temperature", given.temperature, section, problems)
     salinity = _profile("salinity", given.salinity, section, problems)
     return SeaWater(temperature, salinity) if temperature and salinity else None
 
 
+def _falls(table: DepthTable) -> list[str]:
+    """A notice where the density falls with depth."""
+    greatest, depth = table.value[0], table.depth[0]
+    for below, value in zip(table.depth, table.value, strict=True):
+        if value < greatest - _FALL:
+            return [
+                f"The density falls from {greatest:g} kg/m^3 at {depth:g} m to {value:g} kg/m^3 "
+                f"at {below:g} m: heavy water over light does not stay."
+            ]
+        if value >= greatest:
+            greatest, depth = value, below
+    return []
+
+
 def check_density(section: Section, problems: list[Problem]) -> None:
     """Tell the mistakes in the tables below `density:`, whatever else is wrong with it."""
     given = section.data.get("density")
+    density = _RANGES["air" if section.data.get("fluid") == "air" else "water"]
     table = table_of(given)
     if table is not None:
-        read_water(table.columns, table.rows, report_at(section, "density"), problems)
+        read_water(table.columns, table.rows, report_at(section, "density"), problems, density)
     for name in SeaWaterKeys.model_fields:
         table = table_of(given.get(name)) if isinstance(given, dict) else None
         if table is not None:

@@ -6,17 +6,13 @@ aliases and tags have no use in these files and are refused, so that nothing can
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from ruamel.yaml.error import MarkedYAMLError, YAMLError
-
 from calm.errors import InputError, Problem
 from calm.files import composition
-from calm.files.composition import Composition, compose_whole
 from calm.files.nodes import Node
 
 LARGEST_FILE = 1_000_000
@@ -65,11 +61,11 @@ def read_document(path: Path) -> Document:
     InputError
         The file cannot be read, is no text, no valid YAML, or holds duplicate keys.
     """
-    return _composed(str(path), read_text(path))
+    return compose(str(path), read_text(path))
 
 
 def compose(name: str, text: str) -> Document:
-    """The document of a text.
+    """The document of a text, as that of a file or in place of one.
 
     Parameters
     ----------
@@ -80,40 +76,14 @@ def compose(name: str, text: str) -> Document:
     InputError
         It is no valid YAML, or holds duplicate keys.
     """
-    return _document(name, text, compose_whole)
-
-
-_composed = lru_cache(maxsize=32)(compose)
-"""A mooring that is read in many environments is composed once."""
-
-
-@lru_cache(maxsize=8)
-def document_of(name: str, text: str) -> Document:
-    """The document of a text that stands in place of a file's content.
-
-    It is read again and again as a person edits it, and only what changed is composed.
-    """
-    return _document(name, text.removeprefix("\ufeff"), composition.compose)
-
-
-def _document(name: str, text: str, read: Callable[[str], Composition]) -> Document:
-    try:
-        composed = read(text)
-    except MarkedYAMLError as error:
-        raise InputError(_syntax_problems(name, text, error)) from None
-    except RecursionError:
-        raise InputError([Problem(name, 0, 0, "is nested too deeply")]) from None
-    except (YAMLError, ValueError, IndexError) as error:
-        first_line = str(error).partition("\n")[0]
-        raise InputError([Problem(name, 0, 0, f"is not valid YAML: {first_line}")]) from None
-    root = composed.root
-    if root is None:
-        raise InputError([Problem(name, 0, 0, "is empty")])
-    if root.kind != "mapping":
+    root, refusals = composition.compose(text.removeprefix("\ufeff"))
+    if root is not None and root.kind != "mapping":
         message = "must hold `key: value` lines at its top level"
         raise InputError([Problem(name, 1, 1, message)])
-    if composed.refusals:
-        raise InputError([Problem(name, *refusal) for refusal in composed.refusals])
+    if refusals:
+        raise InputError([Problem(name, *refusal) for refusal in refusals])
+    if root is None:
+        raise InputError([Problem(name, 0, 0, "is empty")])
     document = Document(name, root.data)
     _note_places(document, root, ())
     return document
@@ -169,22 +139,3 @@ def decoded(path: Path, content: bytes) -> str:
 
 def _refused(path: Path, message: str, line: int = 0) -> InputError:
     return InputError([Problem(str(path), line, 1 if line else 0, message)])
-
-
-def _syntax_problems(name: str, text: str, error: MarkedYAMLError) -> list[Problem]:
-    """Tabs in the indentation are the usual cause and are all shown; else what the parser says."""
-    mark = error.problem_mark or error.context_mark
-    if "\\t" in str(error.problem):
-        lines = text.splitlines()
-        found = [
-            Problem(name, number, line.index("\t") + 1, "a tab; YAML is indented with spaces")
-            for number, line in enumerate(lines, 1)
-            if "\t" in line[: len(line) - len(line.lstrip())]
-        ]
-        if found:
-            return found
-    line, column = (mark.line + 1, mark.column + 1) if mark else (0, 0)
-    what = str(error.problem or error.context)
-    if error.context and error.context_mark and error.problem:
-        what = f"{error.context} from line {error.context_mark.line + 1}, {what}"
-    return [Problem(name, line, column, f"is not valid YAML: {what}")]

@@ -12,11 +12,13 @@ from pydantic import BeforeValidator, Discriminator, Tag, model_validator
 
 from calm.errors import InputError, Problem
 from calm.files.current_file import read_current_file
+from calm.files.current_terms import DEEPEST, Terms, too_fast
 from calm.files.density import USUAL_DENSITY, Density, check_density, read_density
 from calm.files.explain import shown, validate
 from calm.files.fields import POSITIVE_LENGTH, Model, Quantity, Text
 from calm.files.section import Section
 from calm.files.tables import (
+    DIRECTION,
     CurrentTable,
     DepthTable,
     SeaWater,
@@ -33,7 +35,8 @@ if TYPE_CHECKING:
     from calm.files.mooring import Position
 
 _SPEED = Quantity("speed", at_least=0)
-_DIRECTION = Quantity("angle")
+_WATER_DEPTH = Quantity("length", above=0, at_most=DEEPEST)
+_MAXIMUM_SPEED = 5.0
 
 
 @dataclass(frozen=True)
@@ -60,6 +63,8 @@ class Environment:
         Water depth at low and at high water [m].
     fouling : Fouling or None
         What grows on the cables.
+    maximum_speed : float
+        A faster current is taken for a mistake of its source [m/s]; inf in a tow and in air.
     """
 
     name: str | None
@@ -72,6 +77,7 @@ class Environment:
     position: Position | None
     depth_range: tuple[float, float] | None = None
     fouling: Fouling | None = None
+    maximum_speed: float = math.inf
 
 
 class Fouling(Model):
@@ -89,7 +95,7 @@ class Wind(Model):
     """
 
     speed: Annotated[float, _SPEED]
-    toward: Annotated[float, _DIRECTION]
+    toward: Annotated[float, DIRECTION]
     surface_drift: Annotated[float, Quantity("number", at_least=0, at_most=0.1)] = 0.0
     drift_depth: Annotated[float | None, POSITIVE_LENGTH] = None
 
@@ -104,21 +110,25 @@ class UniformCurrent(Model):
     """The same current at all depths [m/s, degrees]."""
 
     speed: Annotated[float, _SPEED]
-    toward: Annotated[float, _DIRECTION]
+    toward: Annotated[float, DIRECTION]
     w: Annotated[float, Quantity("speed")] = 0.0
 
 
 class CurrentFile(Model):
-    """A current measured or modelled: a CSV or NetCDF file, and a time in it."""
+    """A current measured or modelled: a CSV or NetCDF file, and a time in it.
+
+    `declination` [degrees], positive to the east, turns what the file says is magnetic.
+    """
 
     file: Text
     time: Text | None = None
+    declination: Annotated[float | None, Quantity("angle", at_least=-180, at_most=180)] = None
 
 
 def _current_form(value: object) -> str:
     if not isinstance(value, dict):
         return "uniform"
-    if {"file", "time"} & set(value):
+    if {"file", "time", "declination"} & set(value):
         return "file"
     return "table" if {"columns", "rows"} & set(value) else "uniform"
 
@@ -129,7 +139,7 @@ def _water_only(value: object) -> object:
     return value
 
 
-_Levels = tuple[Annotated[float, POSITIVE_LENGTH], Annotated[float, POSITIVE_LENGTH]]
+_Levels = tuple[Annotated[float, _WATER_DEPTH], Annotated[float, _WATER_DEPTH]]
 
 
 def _two_depths(value: object) -> object:
@@ -142,7 +152,7 @@ class TowEnvironmentKeys(Model):
     """The keys of `environment:` as a person writes them for a tow."""
 
     fluid: Literal["water", "air"] = "water"
-    depth: Annotated[float | None, POSITIVE_LENGTH] = None
+    depth: Annotated[float | None, _WATER_DEPTH] = None
     density: Density = USUAL_DENSITY["water"]
     gravity: Annotated[float | None, Quantity("acceleration", above=0)] = None
     current: Annotated[
@@ -158,7 +168,8 @@ class EnvironmentKeys(TowEnvironmentKeys):
     """The same for a mooring, which stands in water of a given depth."""
 
     fluid: Annotated[Literal["water"], BeforeValidator(_water_only)] = "water"
-    depth: Annotated[float, POSITIVE_LENGTH]
+    depth: Annotated[float, _WATER_DEPTH]
+    maximum_speed: Annotated[float, Quantity("speed", above=0)] = _MAXIMUM_SPEED
     depth_range: Annotated[_Levels | None, BeforeValidator(_two_depths)] = None
     fouling: Fouling | None = None
 
@@ -185,7 +196,7 @@ def read_environment(
         return None
     before = len(problems)
     given = keys.density if "density" in keys.model_fields_set else USUAL_DENSITY[keys.fluid]
-    density = read_density(given, section, problems)
+    density = read_density(given, keys.fluid, section, problems, notices)
     if isinstance(density, SeaWater) and keys.fluid == "air":
         message = "temperature and salinity are those of the sea, not of air"
         problems.append(section.problem(("density",), message))
@@ -211,6 +222,7 @@ def read_environment(
         position=position,
         depth_range=getattr(keys, "depth_range", None),
         fouling=getattr(keys, "fouling", None),
+        maximum_speed=getattr(keys, "maximum_speed", math.inf),
     )
 
 
@@ -250,10 +262,15 @@ def _current(
 ) -> CurrentTable | None:
     current = keys.current
     report = report_at(section, "current")
+    maximum_speed = getattr(keys, "maximum_speed", math.inf)
     if isinstance(current, Table):
-        return read_current(current.columns, current.rows, report, problems)
+        terms = Terms(maximum_speed=maximum_speed)
+        return read_current(current.columns, current.rows, report, problems, terms)
     if isinstance(current, UniformCurrent):
         u, v = components(current.speed, current.toward)
+        if reason := too_fast(u, v, current.w, maximum_speed):
+            problems.append(report(("speed",), reason))
+            return None
         return CurrentTable((0.0,), (u,), (v,), (current.w,))
     path = Path(section.home("current").document.path).parent / current.file
     if not (os.path.isfile(path) or os.path.isdir(path)):
@@ -261,10 +278,14 @@ def _current(
         return None
     if not open_files:
         return None
-    bottom = math.inf if keys.depth is None else keys.depth
-    place = None if position is None else (position.latitude, position.longitude)
+    terms = Terms(
+        water_depth=math.inf if keys.depth is None else keys.depth,
+        place=None if position is None else (position.latitude, position.longitude),
+        declination=current.declination,
+        maximum_speed=maximum_speed,
+    )
     try:
-        table, told = read_current_file(path, current.time, bottom, place)
+        table, told = read_current_file(path, current.time, terms)
     except TimeChoiceError as error:
         problems.append(report(("time",), str(error)))
     except InputError as error:

@@ -1,4 +1,4 @@
-"""Labels of pieces and clamps: each is its own in the line."""
+"""Places and labels of pieces and clamps: each has its own in the line."""
 
 from __future__ import annotations
 
@@ -6,7 +6,16 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import replace
 
-from calm.files.mooring import Piece
+from calm.files.mooring import Piece, Place
+
+
+def placed(piece: Piece, place: Place) -> Piece:
+    """The piece, with its clamps, at another place of the line."""
+    clamps = tuple(
+        replace(clamp, place=replace(place, clamp=number))
+        for number, clamp in enumerate(piece.clamps)
+    )
+    return replace(piece, place=place, clamps=clamps)
 
 
 def numbered(pieces: Iterable[Piece]) -> tuple[Piece, ...]:

@@ -12,7 +12,8 @@ from calm.files.components import Anchor, Body, Cable, Chain, Component, Cylinde
 from calm.files.definition import IN_AIR
 from calm.files.explain import about_quantity, shown, unknown
 from calm.files.fields import LENGTH, POSITIVE_LENGTH, Quantity
-from calm.files.mooring import Clamp, Piece
+from calm.files.labels import placed
+from calm.files.mooring import Clamp, Piece, Place
 from calm.files.overrides import contradicted
 from calm.files.section import Section
 from calm.units import QuantityError
@@ -96,14 +97,21 @@ class LineReader:
         if isinstance(definition, Assembly):
             once = self._assembly(entry, item)
         else:
-            once = self._piece(definition, item)
+            once = (self._piece(definition, item),)
         if len(once) * count > MOST_PIECES:
             message = f"{count} times makes more than {MOST_PIECES} pieces"
             self._refuse(item, ("count",), message)
             return ()
-        return once * count
+        number = item.location[-1]
+        assert isinstance(number, int)  # its place in a list
+        first = 0 if isinstance(definition, Assembly) else -1
+        return tuple(
+            placed(piece, Place(number, repeat, part))
+            for repeat in range(count)
+            for part, piece in enumerate(once, first)
+        )
 
-    def _piece(self, component: Component, item: Section) -> tuple[Piece, ...]:
+    def _piece(self, component: Component, item: Section) -> Piece:
         length: float | None
         if not isinstance(component, (Cable, Chain)):
             length = component.length
@@ -119,7 +127,7 @@ class LineReader:
         place = item.problem((), "")
         use = item.data["use"]
         self._tell_of_mass(use, component)
-        piece = Piece(
+        return Piece(
             index=0,
             use=use,
             label=self._label(item),
@@ -129,9 +137,9 @@ class LineReader:
             clamps=clamps,
             line=place.line,
             column=place.column,
+            place=Place(0),
             fit_body_depth=fit_depth if self._towed else None,
         )
-        return (piece,)
 
     def _fit_depth(self, item: Section, *, fits: bool) -> float | None:
         """The depth a piece is cut to fit: of the line's top, in a tow of its own lower end."""
@@ -158,7 +166,7 @@ class LineReader:
 
     def _clamps(self, item: Section, length: float | None) -> tuple[Clamp, ...]:
         """The clamps of an item, none beyond its length where that is known."""
-        clamps = []
+        clamps: list[Clamp] = []
         for clamp in self._items(item, "clamps") if "clamps" in item.data else ():
             entry = self._entry(clamp)
             component = self._definition(entry, clamp, _CLAMP_KEYS) if entry else None
@@ -168,7 +176,8 @@ class LineReader:
                 self._refuse(clamp, ("at",), message)
             if isinstance(component, (Sphere, Cylinder, Body)) and at is not None:
                 self._tell_of_mass(clamp.data["use"], component)
-                clamps.append(Clamp(clamp.data["use"], self._label(clamp), component, at))
+                where = Place(0, clamp=len(clamps))
+                clamps.append(Clamp(clamp.data["use"], self._label(clamp), component, at, where))
             elif component is not None and at is not None:
                 message = f"a component of kind {component.kind} cannot be clamped on a line"
                 self._refuse(clamp, ("use",), message)

@@ -4,19 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Protocol
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator
 
+from calm.files.accept import Accept
+from calm.files.checks import Checks
 from calm.files.components import Anchor, Component
 from calm.files.environment import Environment
-from calm.files.fields import LENGTH, POSITIVE_LENGTH, Model, Quantity
+from calm.files.fields import LENGTH, Model, Quantity
 from calm.files.strumming import Strumming
-
-_FACTOR = Quantity("number", above=0)
-_SHARE = Quantity("number", at_least=0, at_most=1)
-_SPEED = Quantity("speed", at_least=0)
-_LEAST_TENSION = Quantity("force", at_least=0)
 
 
 class Position(Model):
@@ -48,37 +45,47 @@ class Solver(Model):
     seabed_friction: Annotated[float, Quantity("number", at_least=0)] = 0.0
 
 
-class SafetyFactors(Model):
-    """Least breaking load over tension, where no working load is known."""
+@dataclass(frozen=True, order=True)
+class Place:
+    """Where a piece or a clamp stands in the line as read, by which it is known from there on.
 
-    steel: Annotated[float, _FACTOR] = 3.0
-    synthetic: Annotated[float, _FACTOR] = 5.0
-    surface: Annotated[float, _FACTOR] = 5.0
+    A row of the file is the place of what it gives: `Place(3)` its fourth item, whatever the count
+    of that, `Place(3, clamp=0)` the first clamp of it.
+
+    Attributes
+    ----------
+    item : of the `line:` of the file, from 0
+    repeat : which of the `count` of the item, from 0
+    part : which piece of an assembly, from 0; -1 where the item is a component
+    clamp : which clamp of the piece, from 0; -1 where the piece itself is meant
+    """
+
+    item: int
+    repeat: int = 0
+    part: int = -1
+    clamp: int = -1
+
+    @property
+    def is_clamp(self) -> bool:
+        """Whether it is that of a clamp."""
+        return self.clamp >= 0
+
+    @property
+    def row(self) -> Place:
+        """The row of the file that gives it: of what stands in an assembly, its item."""
+        return Place(self.item) if self.part >= 0 else Place(self.item, clamp=self.clamp)
 
 
-class MinimumTensions(Model):
-    """Least tension above the release [N]."""
+class Part(Protocol):
+    """A piece or a clamp, or what was found for one."""
 
-    wire: Annotated[float, _LEAST_TENSION] = 500.0
-    rope: Annotated[float, _LEAST_TENSION] = 300.0
+    @property
+    def place(self) -> Place:
+        """Which it is."""
 
-
-class Checks(Model):
-    """Limits of the design check; a limit without a default is judged only when given."""
-
-    safety_factor: SafetyFactors = Field(default_factory=SafetyFactors)
-    anchor_factor: Annotated[float, _FACTOR] = 1.5
-    anchor_friction: Annotated[float, _FACTOR] = 0.6
-    minimum_tension: MinimumTensions = Field(default_factory=MinimumTensions)
-    backup_margin: Annotated[float, _SHARE] = 0.1
-    minimum_rise_speed: Annotated[float, _SPEED] = 0.3
-    launch_safety_factor: Annotated[float, _FACTOR] = 2.0
-    launch_working_factor: Annotated[float, _FACTOR] = 1.0
-    minimum_reserve: Annotated[float, _SHARE] = 0.3
-    rating_margin: Annotated[float, LENGTH] = 100.0
-    maximum_knockdown: Annotated[float | None, POSITIVE_LENGTH] = None
-    maximum_excursion: Annotated[float | None, POSITIVE_LENGTH] = None
-    maximum_tilt: Annotated[float | None, Quantity("angle", above=0, at_most=180)] = None
+    @property
+    def label(self) -> str:
+        """What people call it."""
 
 
 @dataclass(frozen=True)
@@ -89,6 +96,7 @@ class Clamp:
     label: str
     component: Component
     at: float
+    place: Place
 
 
 @dataclass(frozen=True)
@@ -110,6 +118,7 @@ class Piece:
     clamps : tuple of Clamp
     line, column : int
         The item in the mooring file, counted from 1.
+    place : Place
     fit_body_depth : float or None
         Depth wanted for the lower end of the piece at the tow's speed [m], where it is cut to fit.
     """
@@ -123,6 +132,7 @@ class Piece:
     clamps: tuple[Clamp, ...]
     line: int
     column: int
+    place: Place
     fit_body_depth: float | None = None
 
 
@@ -133,7 +143,7 @@ class MooringFile:
     `pieces` lead from the top of a mooring to its anchor; in a tow, where `tow` is not None, from
     the ship to the towed body. `notices` tell what a person may want to know: a catalogue entry
     hidden by a nearer one, levels dropped from a measured current. `variants` are the names of
-    the environments it gives besides its own.
+    the environments it gives besides its own, `accepts` what it accepts of the design check.
     """
 
     path: str
@@ -147,6 +157,7 @@ class MooringFile:
     checks: Checks
     notices: tuple[str, ...]
     variants: tuple[str, ...] = ()
+    accepts: tuple[Accept, ...] = ()
 
     @property
     def release(self) -> int | None:

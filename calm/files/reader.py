@@ -9,15 +9,17 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field
 
 from calm.errors import InputError, Problem
+from calm.files.accept import read_accepts
 from calm.files.catalogue import Catalogue
+from calm.files.checks import Checks
 from calm.files.components import Anchor
-from calm.files.document import document_of, read_document
+from calm.files.document import compose, read_document
 from calm.files.environment import read_environment
 from calm.files.explain import validate
 from calm.files.fields import Model, Text
 from calm.files.labels import numbered
 from calm.files.line import LineReader
-from calm.files.mooring import Checks, MooringFile, Piece, Position, Solver, TowKeys
+from calm.files.mooring import MooringFile, Piece, Place, Position, Solver, TowKeys
 from calm.files.section import Section
 from calm.files.variants import choose_environment
 from calm.units import QuantityError
@@ -80,7 +82,7 @@ def read_mooring(
     problems: list[Problem] = []
     notices: list[str] = []
     catalogue = Catalogue.load(catalogs)
-    document = read_document(Path(path)) if text is None else document_of(str(path), text)
+    document = read_document(Path(path)) if text is None else compose(str(path), text)
     top = Section.of(document, (), document.data)
     towed = "tow" in top.data
     keys = validate(MooringKeys, top, problems, context={"towed": towed})
@@ -92,11 +94,17 @@ def read_mooring(
     in_air = stands_in is not None and stands_in.data.get("fluid") == "air"
     reader = LineReader(catalogue, problems, notices, towed=towed, in_air=in_air)
     reader.check(definitions.data if definitions is not None else ())
+    before = len(problems)
     pieces = reader.read(top, "line") if isinstance(top.data.get("line"), list) else ()
+    line_is_whole = bool(pieces) and len(problems) == before
     if stand_in and not towed and pieces and not _anchored(pieces):
-        pieces = (*pieces, _stand_in())
+        pieces = (*pieces, _stand_in(len(top.data["line"])))
     (_check_tow if towed else _check_anchor)(pieces, top, problems)
     _check_one_fit(pieces, top, problems)
+    pieces = numbered(pieces)
+    checks = (keys and keys.checks) or Checks()
+    labels = _labels(pieces) if line_is_whole else None
+    accepts = read_accepts(checks.accept, labels, top, problems)
     surroundings = None
     if chosen:
         position = keys.position if keys else None
@@ -112,18 +120,28 @@ def read_mooring(
         position=keys.position,
         tow=keys.tow,
         environment=surroundings,
-        pieces=numbered(pieces),
+        pieces=pieces,
         solver=keys.solver or Solver(),
-        checks=keys.checks or Checks(),
+        checks=checks,
         notices=tuple(notices),
         variants=tuple(keys.environments or ()),
+        accepts=accepts,
     )
 
 
-def _stand_in() -> Piece:
-    """An anchor without height that holds anything."""
+def _labels(pieces: Sequence[Piece]) -> list[str]:
+    """Of pieces and clamps, down the line."""
+    return [
+        label
+        for piece in pieces
+        for label in (piece.label, *(clamp.label for clamp in piece.clamps))
+    ]
+
+
+def _stand_in(item: int) -> Piece:
+    """An anchor without height that holds anything, as an item below the last."""
     component = Anchor.model_validate({"kind": "anchor", "weight": "1e6 kN"})
-    return Piece(0, STAND_IN, "anchor", component, 0.0, None, (), 0, 0)
+    return Piece(0, STAND_IN, "anchor", component, 0.0, None, (), 0, 0, Place(item))
 
 
 def _child(section: Section, key: str) -> Section | None:
@@ -153,8 +171,7 @@ def _check_anchor(pieces: Sequence[Piece], top: Section, problems: list[Problem]
         if isinstance(piece.component, Anchor):
             message = f"anchor `{piece.use}` is not the last item; a line has one, at its end"
             problems.append(_at(piece, top, message))
-    last_item = top.problem(("line", len(top.data["line"]) - 1), "")
-    last_is_known = (last_item.line, last_item.column) == (pieces[-1].line, pieces[-1].column)
+    last_is_known = pieces[-1].place.item == len(top.data["line"]) - 1
     if last_is_known and not _anchored(pieces):
         message = "the line has no anchor; its last item must be one (`kind: anchor`)"
         problems.append(top.problem(("line",), message, key=True, lacks="no anchor"))

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pydantic import ValidationError
 
 from calm.errors import Problem
+from calm.files.current_terms import Terms, too_deep, too_fast
 from calm.files.definition import DENSITY
 from calm.files.explain import about_quantity, shown, unknown
 from calm.files.fields import Model, Quantity, Text
@@ -19,11 +20,17 @@ from calm.units import DIMENSIONS, QuantityError, unit_factor
 Report = Callable[[Sequence[str | int], str], Problem]
 """Makes a problem of a message, at ``("columns", j)`` or ``("rows", i, j)``."""
 
+_HEADING = re.compile(r"^([^\s\[(]*)\s*(.*)$", re.DOTALL)
 _BARE_NUMBER = re.compile(r"[-+.,/\deE ]*")
 
 TEMPERATURE = Quantity("temperature", at_least=-6, at_most=40)
 SALINITY = Quantity("salinity", at_least=0, at_most=42)
 """Temperatures and salinities are limited to those that TEOS-10 is valid for."""
+
+WATER_DENSITY = Quantity("density", at_least=900, at_most=1350)
+"""From fresh water under a glacier to the brines at the bottom of the Red Sea."""
+
+DIRECTION = Quantity("angle", at_least=-360, at_most=360)
 
 _DEPTH = Quantity("length")
 _SPEED = Quantity("speed")
@@ -33,8 +40,11 @@ _CURRENT = {
     "v": _SPEED,
     "w": _SPEED,
     "speed": _SPEED,
-    "toward": Quantity("angle"),
+    "toward": DIRECTION,
+    "from": DIRECTION,
 }
+_NO_WAY = ("direction", "dir", "heading", "bearing")
+_MAGNETIC = re.compile(r"(?i)\s*\bmag(netic)?$")
 _WATER = {
     "depth": _DEPTH,
     "density": DENSITY,
@@ -81,6 +91,7 @@ def read_current(
     rows: Sequence[Sequence[str | None]],
     report: Report,
     problems: list[Problem],
+    terms: Terms = Terms(),  # noqa: B008 (frozen)
 ) -> CurrentTable | None:
     """A current from a table; None, with its mistakes added to `problems`, when it has any.
 
@@ -88,18 +99,26 @@ def read_current(
     ----------
     columns : sequence of str
         Names with their unit, ``"depth m"`` or ``"depth[m]"``; without, each value has its own.
-        `depth`, with `u` and `v` or `speed` and `toward`, and optionally `w`.
+        `depth`, with `u` and `v`, or `speed` and `toward` or `from`, and optionally `w`. A unit
+        such as ``"deg magnetic"`` says that a column counts from magnetic north.
     rows : sequence of rows
         Numbers, or quantities with a unit, as text.
+    terms : the declination that turns what counts from magnetic north, the greatest speed
     """
     before = len(problems)
-    values = _read_columns(columns, rows, _CURRENT, report, problems)
+    plain, turned = _from_magnetic_north(columns, terms, report, problems)
+    values = _read_columns(plain, rows, _CURRENT, report, problems)
     given = values.keys()
     if len(given) == len(columns):
-        if given & {"u", "v"} and given & {"speed", "toward"}:
+        ways = [given & {"u", "v"}, given & {"speed", "toward", "from"}]
+        if all(ways) or given >= {"toward", "from"}:
             message = "give `u` and `v`, or `speed` and `toward`, not both"
+            if not ways[0]:
+                message = "give `toward`, where the current flows to, or `from`, not both"
             problems.append(report(("columns",), message))
-        elif not (given >= {"u", "v"} or given >= {"speed", "toward"}):
+        elif not (
+            given >= {"u", "v"} or given >= {"speed", "toward"} or given >= {"speed", "from"}
+        ):
             message = "a current needs `u` and `v`, or `speed` and `toward`; the columns are "
             problems.append(report(("columns",), message + ", ".join(given)))
     for i, speed in enumerate(values.get("speed", ())):
@@ -110,12 +129,80 @@ def read_current(
     if len(problems) > before:
         return None
     if "u" in values:
-        u, v = values["u"], values["v"]
+        flows = (
+            turned_by(turned, *flow) if turned else flow
+            for flow in zip(values["u"], values["v"], strict=True)
+        )
     else:
-        flows = zip(values["speed"], values["toward"], strict=True)
-        u, v = map(list, zip(*(components(*flow) for flow in flows), strict=True))
+        way, turn = ("from", 180.0 + turned) if "from" in values else ("toward", turned)
+        directions = [direction + turn for direction in values[way]]
+        flows = (components(*flow) for flow in zip(values["speed"], directions, strict=True))
+    u, v = map(list, zip(*flows, strict=True))
     w = values.get("w", [0.0] * len(u))
+    for i, flow in enumerate(zip(u, v, w, strict=True)):
+        if reason := too_fast(*flow, terms.maximum_speed):
+            place = ("rows", i, list(values).index("u" if "u" in values else "speed"))
+            problems.append(report(place, reason))
+    if len(problems) > before:
+        return None
     return CurrentTable(tuple(values["depth"]), tuple(u), tuple(v), tuple(w))
+
+
+def magnetic_columns(columns: Sequence[str]) -> tuple[list[str], set[str]]:
+    """The headings without the word for their north, and the names of those that count from it."""
+    plain = [_without_north(column) for column in columns]
+    pairs = zip(columns, plain, strict=True)
+    return plain, {heading(column)[0].lower() for column, other in pairs if column != other}
+
+
+def heading(column: str) -> tuple[str, str]:
+    """Name and unit of ``"depth m"``, ``"depth[m]"`` or ``"depth (m)"``; empty without a unit."""
+    name, unit = _HEADING.findall(column.strip())[0]
+    bracketed = unit[:1] in ("[", "(") and unit[-1:] in ("]", ")")
+    return name, unit[1:-1].strip() if bracketed else unit
+
+
+def turned_notices(columns: Sequence[str], terms: Terms) -> tuple[str, ...]:
+    """What is told of a current whose columns counted from magnetic north."""
+    if terms.declination is None:
+        return ()
+    which = " and ".join(f"`{name}`" for name in sorted(magnetic_columns(columns)[1]))
+    return (f"{which} counted from magnetic north, turned by {terms.declination:g}°",)
+
+
+def _from_magnetic_north(
+    columns: Sequence[str], terms: Terms, report: Report, problems: list[Problem]
+) -> tuple[list[str], float]:
+    """The columns without the word for their north, and by how much they are turned [degrees]."""
+    plain, magnetic = magnetic_columns(columns)
+    if not magnetic:
+        if terms.declination is not None:
+            message = "no column counts from magnetic north, such as `toward[deg magnetic]`, so no "
+            problems.append(
+                report(("columns",), message + "`declination` is applied; leave it out")
+            )
+        return plain, 0.0
+    first = next(
+        j for j, (one, other) in enumerate(zip(columns, plain, strict=True)) if one != other
+    )
+    if magnetic in ({"u"}, {"v"}):
+        one = next(iter(magnetic))
+        message = f"`{one}` counts from magnetic north, `{'v' if one == 'u' else 'u'}` does not"
+        problems.append(report(("columns", first), message))
+    if terms.declination is None:
+        message = (
+            f"`{shown(columns[first])}` counts from magnetic north; give the `declination` there, "
+            "positive to the east (beside `file:`, or `--declination`)"
+        )
+        problems.append(report(("columns", first), message))
+    return plain, terms.declination or 0.0
+
+
+def _without_north(column: str) -> str:
+    """A heading without the word ``magnetic`` at the end of its unit."""
+    name, unit = heading(column)
+    plain = _MAGNETIC.sub("", unit)
+    return column if plain == unit else f"{name} {plain}".strip()
 
 
 def read_water(
@@ -123,13 +210,15 @@ def read_water(
     rows: Sequence[Sequence[str | None]],
     report: Report,
     problems: list[Problem],
+    density: Quantity = WATER_DENSITY,
 ) -> DepthTable | SeaWater | None:
     """Densities [kg/m³], or sea water, from a table as that of `read_current`.
 
-    Its columns are `depth`, and `density` or `temperature` and `salinity`.
+    Its columns are `depth`, and `density` or `temperature` and `salinity`; `density` is the
+    plausible range of the fluid.
     """
     before = len(problems)
-    values = _read_columns(columns, rows, _WATER, report, problems)
+    values = _read_columns(columns, rows, {**_WATER, "density": density}, report, problems)
     given = values.keys() - {"depth"}
     if len(values) == len(columns) and given not in ({"density"}, {"temperature", "salinity"}):
         message = "needs `density`, or `temperature` and `salinity`; the columns are "
@@ -179,6 +268,12 @@ def components(speed: float, toward: float) -> tuple[float, float]:
     return speed * math.sin(angle), speed * math.cos(angle)
 
 
+def turned_by(angle: float, u: float, v: float) -> tuple[float, float]:
+    """A flow u to the east, v to the north, turned clockwise by an angle [degrees]."""
+    sine, cosine = math.sin(math.radians(angle)), math.cos(math.radians(angle))
+    return u * cosine + v * sine, v * cosine - u * sine
+
+
 def speed_and_direction(u: float, v: float) -> tuple[float, float]:
     """Speed and direction [deg from north, 0 to 360] of a flow by its east and north parts."""
     return math.hypot(u, v), math.degrees(math.atan2(u, v)) % 360
@@ -223,9 +318,15 @@ def _read_headings(
     """The unit of each known column by its name, empty where the column gives none."""
     units: dict[str, str] = {}
     for j, column in enumerate(columns):
-        name, _, unit = column.replace("[", " ", 1).strip().removesuffix("]").partition(" ")
-        unit = unit.strip()
-        if name not in known:
+        name, unit = heading(column)
+        name = name.lower() if name.lower() in known else name
+        if name.lower() in _NO_WAY and "toward" in known:
+            message = (
+                f"`{shown(column)}` does not say which way: call it `toward` where the current "
+                "flows to, or `from` where it comes from"
+            )
+            problems.append(report(("columns", j), message))
+        elif name not in known:
             message = unknown(f"no column is called `{shown(name)}`", name, known)
             problems.append(report(("columns", j), message))
         elif name in units:
@@ -256,10 +357,18 @@ def _check_depths(
     if "depth" not in values:
         return
     column = list(values).index("depth")
+    depths = values["depth"]
+    if len(depths) > 1 and all(depth <= 0 for depth in depths) and any(depths):
+        message = "the depths count upwards; depth is positive down, so leave the sign out"
+        first = next(i for i, depth in enumerate(depths) if depth < 0)
+        problems.append(report(("rows", first, column), message))
+        return
     previous = -math.inf
-    for i, depth in enumerate(values["depth"]):
+    for i, depth in enumerate(depths):
         if depth < 0:
             problems.append(report(("rows", i, column), f"depth {depth:g} m is above the surface"))
+        elif reason := too_deep(depth):
+            problems.append(report(("rows", i, column), reason))
         elif depth <= previous:
             word = "repeats" if depth == previous else "comes after"
             message = f"depth {depth:g} m {word} {previous:g} m; depths must increase"

@@ -42,7 +42,7 @@ def choose_time(times: Sequence[datetime], wanted: str | None) -> tuple[int, str
             return 0, None
         raise TimeChoiceError(f"the file has {len(times)} times, {span}; give `time:`")
     moment = parse_time(wanted)
-    if not first <= moment <= last:
+    if not first.replace(microsecond=0) <= moment <= last:
         raise TimeChoiceError(f"{_short(moment)} is outside the record, {span}")
     index = min(range(len(times)), key=lambda i: abs(times[i] - moment))
     if times[index] == moment:

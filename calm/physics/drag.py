@@ -7,7 +7,6 @@ Kt along it [N/(m/s)²]. Constant coefficients hold for Reynolds numbers from 1e
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Sequence
 from math import log, pi
 
@@ -32,13 +31,20 @@ _END_SLENDERNESS = (0.1, 0.6, 0.88, 1.3, 1.8)
 _END_CT = (1.17, 1.07, 0.97, 0.86, 0.82)
 
 
-def _interpolated(x: float, xs: Sequence[float], ys: Sequence[float]) -> float:
+def interpolated(xs: Sequence[float], ys: Sequence[float], x: float) -> float:
+    """Value y at x, linear between points of growing x and held beyond both ends."""
     if x <= xs[0]:
         return ys[0]
-    if x >= xs[-1]:
-        return ys[-1]
-    i = bisect_right(xs, x) - 1
-    return ys[i] + (ys[i + 1] - ys[i]) * (x - xs[i]) / (xs[i + 1] - xs[i])
+    low, high = 0, len(xs) - 1
+    if x >= xs[high]:
+        return ys[high]
+    while high - low > 1:
+        middle = (low + high) // 2
+        if xs[middle] <= x:
+            low = middle
+        else:
+            high = middle
+    return ys[low] + (ys[high] - ys[low]) * (x - xs[low]) / (xs[high] - xs[low])
 
 
 def finite_length_factor(slenderness: float) -> float:
@@ -51,9 +57,7 @@ def finite_length_factor(slenderness: float) -> float:
 
     Source: DNV-RP-C205 table 6-2 (Re < 2e5); Wieselsberger (NACA report 121) below 2.
     """
-    if slenderness <= _SLENDERNESS[0]:
-        return _KAPPA[0]
-    return _interpolated(log(slenderness), [log(x) for x in _SLENDERNESS], _KAPPA)
+    return interpolated([log(x) for x in _SLENDERNESS], _KAPPA, log(max(slenderness, 1.0)))
 
 
 def end_face_coefficient(slenderness: float) -> float:
@@ -65,7 +69,7 @@ def end_face_coefficient(slenderness: float) -> float:
 
     Source: Kritzinger's measurements of cylinders end-on.
     """
-    return _interpolated(slenderness, _END_SLENDERNESS, _END_CT)
+    return interpolated(_END_SLENDERNESS, _END_CT, slenderness)
 
 
 def sphere_drag(diameter: float, cx: float | None = None) -> float:

@@ -12,12 +12,9 @@ one scalar equation for c, solved here exactly however strong the drag is.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import inf, sqrt
 
 Vector = tuple[float, float, float]
-
-_SCAN = 16
 
 
 def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, vz: float) -> float:
@@ -80,118 +77,38 @@ def share_step(aa: float, av: float, vv: float, target: float, c: float) -> tupl
     return excess, (c - excess / slope if slope > 0.0 else inf)
 
 
-def amplified_share(
+def few_steps_share(
     ax: float,
     ay: float,
     az: float,
     k: float,
-    amplified: Callable[[float], float],
+    size: float,
     vx: float,
     vy: float,
     vz: float,
+    steps: int,
 ) -> tuple[float, float]:
-    """`drag_share` for a coefficient that grows as the element leans: k f(sin φ).
+    """`drag_share` by so many Newton steps, where drag turns the element but little.
 
     Parameters
     ----------
-    k : half its normal drag coefficient at rest [N/(m/s)²]
-    amplified : f ≥ 1 of the sine of the angle φ between axis and current, falling with it
+    size : about |A| [N]; the first guess is the share if drag did not turn the element
+    steps : at least 1
 
     Returns
     -------
-    c [N/(m/s)], the smallest root of c |A + c V| = k f |V × A|, and f there. Putting f(c) back
-    climbs to it from below and never past it; the climb is extrapolated as long as that stays
-    below, too.
+    c [N/(m/s)], and how much the last step turned A + c V, squared [rad²].
     """
-    speed = sqrt(vx * vx + vy * vy + vz * vz)
+    aa = ax * ax + ay * ay + az * az
+    av = ax * vx + ay * vy + az * vz
+    vv = vx * vx + vy * vy + vz * vz
     cx, cy, cz = ay * vz - az * vy, az * vx - ax * vz, ax * vy - ay * vx
-    across = sqrt(cx * cx + cy * cy + cz * cz)
-    if k == 0.0 or across == 0.0:
-        return 0.0, 1.0
-
-    def factor(c: float) -> float:
-        x, y, z = ax + c * vx, ay + c * vy, az + c * vz
-        return amplified(min(across / (speed * sqrt(x * x + y * y + z * z)), 1.0))
-
-    def climbed(c: float) -> float:
-        return drag_share(ax, ay, az, k * factor(c), vx, vy, vz)
-
-    c, above = drag_share(ax, ay, az, k, vx, vy, vz), inf
-    first = climbed(c)
-    for _ in range(100):
-        second = climbed(first)
-        gain = second - first
-        if gain <= 1e-14 * second:
-            return second, factor(second)
-        ratio = gain / (first - c)
-        trial = second + gain * ratio / (1.0 - ratio) if ratio < 1.0 else inf
-        if trial >= above:
-            trial = 0.5 * (second + above) if above < inf else 2.0 * second
-        following = climbed(trial)
-        if following >= trial:
-            c, first = trial, following
-        else:
-            c, first, above = first, second, trial
-    return first, factor(first)
-
-
-def varying_share(
-    ax: float,
-    ay: float,
-    az: float,
-    k: float,
-    varied: Callable[[float], float],
-    vx: float,
-    vy: float,
-    vz: float,
-) -> float:
-    """`drag_share` for a coefficient that varies with the speed across the element: k f(|Vn|).
-
-    Parameters
-    ----------
-    k : half its normal drag coefficient where f = 1 [N/(m/s)²]
-    varied : f > 0, continuous, of |Vn| [m/s]
-
-    Returns
-    -------
-    c = k f(s) s [N/(m/s)] for the smallest root s = |Vn| of s |A + k f(s) s V| = |V × A|, told
-    apart from others to |V|/16. In the drag crisis, where less speed makes more drag, an element
-    may lean in the slow flow along it or stand in the fast flow across it; the smallest root, the
-    more drag, is the one reached when the current grows from rest.
-    """
-    speed = sqrt(vx * vx + vy * vy + vz * vz)
-    cx, cy, cz = ay * vz - az * vy, az * vx - ax * vz, ax * vy - ay * vx
-    across = sqrt(cx * cx + cy * cy + cz * cz)
-    if k == 0.0 or across == 0.0:
-        return 0.0
-
-    def excess(s: float) -> float:
-        c = k * varied(s) * s
-        x, y, z = ax + c * vx, ay + c * vy, az + c * vz
-        return s * sqrt(x * x + y * y + z * z) - across
-
-    low, below, side = 0.0, -across, 0
-    for i in range(1, _SCAN + 1):
-        high = speed * i / _SCAN
-        above = excess(high)
-        if above >= 0.0:
-            break
-        if i < _SCAN:
-            low, below = high, above
-    above = max(above, 0.0)  # at |V| it may be below by rounding
-    for _ in range(100):
-        s = (low * above - high * below) / (above - below)
-        found = excess(s)
-        if abs(found) <= 1e-14 * across:
-            break
-        # the secant keeps to one side of the root unless the other side is made light of
-        if found > 0.0:
-            high, above, below = s, found, below * (0.5 if side > 0 else 1.0)
-            side = 1
-        else:
-            low, below, above = s, found, above * (0.5 if side < 0 else 1.0)
-            side = -1
-    return k * varied(s) * s
+    target = k * sqrt(cx * cx + cy * cy + cz * cz)
+    before = c = target / size
+    for _ in range(steps):
+        before = c
+        _, c = share_step(aa, av, vv, target, c)
+    return c, (c - before) * (c - before) * vv / aa
 
 
 def axis_along(

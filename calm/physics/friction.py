@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from enum import Enum
+from math import copysign, sqrt
+
+from calm.physics.element import Vector
 
 
 class Friction(Enum):
@@ -19,3 +22,33 @@ class Friction(Enum):
     BERTEAUX = "berteaux"
     HOERNER = "hoerner"
     CONSTANT = "constant"
+
+    @property
+    def law(self) -> int:
+        """The number by which `friction_force` knows it."""
+        return list(Friction).index(self)
+
+
+BERTEAUX, HOERNER, CONSTANT = (friction.law for friction in Friction)
+
+
+def turning_friction(law: int, kt: float, u: float, v: float, w: float) -> float:
+    """What a friction of Kt [N/(m/s)²] that is not along the cable pulls with per m/s [N/(m/s)].
+
+    Along the current u, v, w [m/s]; it turns the cable, which a friction along it does not.
+    """
+    return kt * sqrt(u * u + v * v + w * w) if law == HOERNER else 0.0
+
+
+def friction_force(
+    law: int, kt: float, u: float, v: float, w: float, tx: float, ty: float, tz: float
+) -> Vector:
+    """Friction of the current u, v, w [m/s] on a cable of axis t [N], Kt in N/(m/s)²."""
+    if law == HOERNER:
+        pull = turning_friction(law, kt, u, v, w)
+        return pull * u, pull * v, pull * w
+    along = u * tx + v * ty + w * tz
+    pull = kt * abs(along) * along
+    if law == CONSTANT:
+        pull = copysign(kt * (u * u + v * v + w * w), along) if along != 0.0 else 0.0
+    return pull * tx, pull * ty, pull * tz

@@ -12,47 +12,82 @@ function of its start.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from math import inf
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, NamedTuple
 
-from calm.physics.cable import evenly, march_cable
+import numpy as np
+
 from calm.physics.element import Vector
+from calm.physics.line import Floats, Integers
+from calm.physics.pace import is_fast, paced
+from calm.physics.passing import pass_line
 from calm.physics.profile import Profile
-from calm.physics.rod import load_force, pass_rod
-from calm.physics.state import State, Trace
-from calm.physics.track import Cable, Load, Rod, Track
+from calm.physics.state import COLUMNS, Record, Trace
+from calm.physics.track import Load, Track
 
-Cuts = list[list[float]]
-"""For every cable of a `Track`, the unstretched lengths of its segments [m]."""
+ROOM = 1024
+"""Segments that a march may choose at first; if it needs more, it is done again with more room."""
 
 
-@dataclass(frozen=True)
-class Landing:
-    """Where a line comes down on the seabed: the stage, and how much of it hangs above [m].
+class Cuts(NamedTuple):
+    """The unstretched lengths of the segments of all cables [m], and how many each cable has."""
 
-    A rod or clamp hangs wholly (inf: it stands on the seabed) or not at all (0: it lies there).
-    """
+    lengths: Floats
+    counts: Integers
 
-    stage: int
-    hanging: float
+    def halved(self) -> Cuts:
+        """Every segment cut in two."""
+        return Cuts(np.repeat(0.5 * self.lengths, 2), 2 * self.counts)
+
+    def first(self, cables: int) -> Cuts:
+        """Those of the first cables."""
+        counts = self.counts[:cables]
+        return Cuts(self.lengths[: counts.sum()], counts)
+
+    def after(self, cables: int) -> Cuts:
+        """Those of the other cables."""
+        return Cuts(self.lengths[self.counts[:cables].sum() :], self.counts[cables:])
+
+    def and_then(self, others: Cuts) -> Cuts:
+        """Those of more cables, too."""
+        lengths = np.concatenate([self.lengths, others.lengths])
+        return Cuts(lengths, np.concatenate([self.counts, others.counts]))
+
+
+NO_CUTS = Cuts(np.zeros(0), np.zeros(0, np.int64))
 
 
 @dataclass(frozen=True)
 class End:
-    """Where and how a march ended: height [m], force above [N], and the segments it used.
+    """Where and how a march ended.
 
-    `landing` tells where it stopped short of the line's end, having no more weight to give.
+    Attributes
+    ----------
+    z, force : height [m], force above [N]
+    cuts : the segments used
+    stage, hanging : as in `Marched`
+    record, nodes : what was recorded, and how many nodes of it
     """
 
     z: float
     force: Vector
     cuts: Cuts
-    landing: Landing | None = None
+    stage: int
+    hanging: float
+    record: Record = field(repr=False)
+    nodes: int
 
     @property
-    def segments(self) -> int:
-        """How many segments the cables were cut into."""
-        return sum(map(len, self.cuts))
+    def landed(self) -> bool:
+        """Whether it stopped short of the line's end, having no more weight to give."""
+        return self.stage >= 0
+
+    @cached_property
+    def trace(self) -> Trace:
+        """The shape; of a march that was recorded."""
+        return Trace.of(self.record, self.nodes)
 
 
 def march(
@@ -63,8 +98,10 @@ def march(
     angle_step: float,
     reach: float,
     cuts: Cuts | None = None,
-    trace: Trace | None = None,
+    record: bool = False,
     lands: bool = False,
+    out: float = 0.0,
+    afloat: Mapping[int, Load] | None = None,
 ) -> End:
     """March down the line from a free end at `depth`.
 
@@ -74,54 +111,67 @@ def march(
     angle_step : how much a segment may turn [rad]
     reach : the longest a segment may be [m]
     cuts : the segments to use; None lets the march choose them
-    trace : filled with every node and element when given
+    record : whether to keep every node and element
     lands : stop at the touchdown: below the last buoyant piece, where the vertical force vanishes
+    out : length of the head above the surface [m], from which its depth follows; 0 where it is
+        `depth`
+    afloat : loads that are not as in the track, by their place among its loads
 
     Raises
     ------
     MarchError
         An element finds no balance or a cable would need more than 50 000 segments.
     """
-    state = State(0.0, 0.0, -depth, level=profile.interval(depth, 0))
-    used: Cuts = []
-    if trace is not None:
-        trace.node(state.x, state.y, state.z, (0.0, 0.0, 0.0))
-    first_to_land = track.landing if lands else len(track.stages)
-    for i, stage in enumerate(track.stages):
-        hanging: float | None = None
-        may_land = i >= first_to_land
-        if isinstance(stage, Cable):
-            given = None if cuts is None else cuts[len(used)]
-            taken, hanging = march_cable(
-                stage, profile, state, angle_step, reach, given, trace, may_land
-            )
-            used.append(taken)
-        elif isinstance(stage, Rod):
-            hanging = pass_rod(stage, profile, state, trace, may_land)
-        else:
-            hanging = _pass_clamp(stage, profile, state, trace, may_land)
-        if hanging is not None:
-            used += _remaining(track, i + 1, reach) if cuts is None else cuts[len(used) :]
-            force = (state.fx, state.fy, state.fz)
-            return End(state.z, force, used, Landing(i, hanging))
-    return End(state.z, (state.fx, state.fy, state.fz), used)
+    if record and cuts is None:
+        chosen = march(
+            track, profile, depth, angle_step=angle_step, reach=reach, lands=lands, out=out,
+            afloat=afloat,
+        )  # fmt: skip
+        cuts = chosen.cuts
+    room = ROOM
+    while True:
+        end = _marched(
+            track, profile, depth, out, angle_step, reach, lands, cuts, room, record, afloat or {}
+        )
+        if end is not None:
+            return end
+        room *= 8
 
 
-def _pass_clamp(
-    clamp: Load, profile: Profile, state: State, trace: Trace | None, lands: bool
-) -> float | None:
-    carried = state.fz
-    plumb = (0.0, 0.0, -1.0)
-    state.add(load_force(clamp, profile, -state.z, plumb, state.level))
-    landed = lands and carried > 0.0 >= state.fz
-    if landed:
-        state.fz = 0.0
-    if trace is not None:
-        trace.element(clamp.piece, clamp.clamp, 0.0, 0.0)
-        trace.node(state.x, state.y, state.z, (state.fx, state.fy, state.fz))
-    return inf if landed else None
-
-
-def _remaining(track: Track, first: int, reach: float) -> Cuts:
-    """Segments for the cables that a march did not come to."""
-    return [evenly(s.length, reach) for s in track.stages[first:] if isinstance(s, Cable)]
+def _marched(
+    track: Track,
+    profile: Profile,
+    depth: float,
+    out: float,
+    angle_step: float,
+    reach: float,
+    lands: bool,
+    cuts: Cuts | None,
+    room: int,
+    recording: bool,
+    afloat: Mapping[int, Load],
+) -> End | None:
+    """`march` with room for so many segments; None where it needs more."""
+    fast = is_fast()
+    course, sea = (track.packed, profile.packed) if fast else (track.course, profile.sea)
+    if afloat:
+        loads: Any = np.array(course.loads) if fast else list(course.loads)
+        for place, load in afloat.items():
+            loads[place] = load
+        course = course._replace(loads=loads)
+    given = cuts is not None
+    lengths = np.empty(room) if cuts is None else cuts.lengths
+    counts = np.zeros(len(course.cables), np.int64) if cuts is None else cuts.counts
+    most = len(lengths) + 3 * len(course.loads) + 2 * len(course.stages) + 1 if recording else 0
+    record: Record = np.empty((COLUMNS, most))
+    if not fast:
+        lengths, counts, record = lengths.tolist(), counts.tolist(), record.tolist()
+    end = paced(pass_line)(
+        course, sea, depth, out, angle_step, reach, lands, given, lengths, counts, record, recording
+    )
+    if end.segments > len(lengths):
+        return None
+    if cuts is None:
+        cuts = Cuts(np.array(lengths[: end.segments]), np.array(counts, np.int64))
+    force = (end.fx, end.fy, end.fz)
+    return End(end.z, force, cuts, end.stage, end.hanging, record, end.nodes)

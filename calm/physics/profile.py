@@ -2,88 +2,154 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
+from collections.abc import Sequence
+from functools import cached_property
 from math import inf, isfinite
+from typing import NamedTuple
 
-from calm.physics.line import Water
+from calm.physics.compiled import packed
+from calm.physics.line import Floats, Water
 from calm.physics.state import MarchError
 
 
-class Profile:
-    """The levels of a `Water` as plain lists, extended beyond the first and the last.
+class Interval(NamedTuple):
+    """The water between two levels: its origin [m], values there and what they grow by per metre.
+
+    Current u, v, w [m/s] and density [kg/m³].
+    """
+
+    origin: float
+    u: float
+    du: float
+    v: float
+    dv: float
+    w: float
+    dw: float
+    density: float
+    ddensity: float
+
+
+class Stratum(NamedTuple):
+    """Kinematic viscosity from a depth on [m]: its value there [m²/s] and growth per metre."""
+
+    top: float
+    origin: float
+    value: float
+    slope: float
+
+
+class Sea(NamedTuple):
+    """The water as the march takes it.
 
     Attributes
     ----------
     levels : depths that bound the intervals [m], from -inf to inf
-    rows : per interval its origin depth, then value there and slope of u, v, w and density
+    intervals : the water in each
     gravity : [m/s²]
+    strata : kinematic viscosity, from -inf down
     """
 
+    levels: Sequence[float]
+    intervals: Sequence[Interval]
+    gravity: float
+    strata: Sequence[Stratum]
+
+
+def interval_at(levels: Sequence[float], depth: float, i: int) -> int:
+    """Index of the interval that holds `depth` [m], searched from interval `i`."""
+    if not isfinite(depth):
+        raise MarchError("the line runs off to infinity")
+    while depth >= levels[i + 1]:
+        i += 1
+    while depth < levels[i]:
+        i -= 1
+    return i
+
+
+def water_at(sea: Sea, depth: float, i: int) -> tuple[float, float, float, float, int]:
+    """Current u, v, w [m/s], density [kg/m³] and interval at a depth [m], searched from one."""
+    levels = sea.levels
+    if not levels[i] <= depth < levels[i + 1]:
+        i = interval_at(levels, depth, i)
+    row = sea.intervals[i]
+    below = depth - row.origin
+    return (
+        row.u + row.du * below,
+        row.v + row.dv * below,
+        row.w + row.dw * below,
+        row.density + row.ddensity * below,
+        i,
+    )
+
+
+def viscosity_at(sea: Sea, depth: float) -> float:
+    """Kinematic viscosity at a depth [m²/s]."""
+    i = len(sea.strata) - 1
+    while depth < sea.strata[i].top:
+        i -= 1
+    stratum = sea.strata[i]
+    return stratum.value + stratum.slope * (depth - stratum.origin)
+
+
+def distance_to_level(
+    levels: Sequence[float], depth: float, sinking: float, i: int, least: float
+) -> float:
+    """Way to the next level from a depth [m], along a path that sinks so much per metre.
+
+    Searched from interval `i`. A level no farther than `least` is as good as reached: the one
+    behind it counts.
+    """
+    if sinking == 0.0:
+        return inf
+    i = interval_at(levels, depth, i)
+    ahead = -1
+    if sinking > 0.0:
+        ahead, i = 1, i + 1
+    gap = (levels[i] - depth) / sinking
+    while gap <= least:
+        i += ahead
+        gap = (levels[i] - depth) / sinking
+    return gap
+
+
+class Profile:
+    """A `Water` laid out for the march, extended beyond its first and last level."""
+
     def __init__(self, water: Water) -> None:
-        depths = [float(depth) for depth in water.level]
-        self.levels = [-inf, *depths, inf]
-        self.gravity = water.gravity
+        depths = water.level.tolist()
         columns = [
-            _values_and_slopes(depths, [float(value) for value in values])
+            number
             for values in (water.u, water.v, water.w, water.density)
+            for number in _values_and_slopes(depths, values)
         ]
         origins = [depths[0], *depths]
-        self.rows = [
-            (origin, *(number for column in columns for number in column[i]))
-            for i, origin in enumerate(origins)
-        ]
-        self._viscous = [float(depth) for depth in water.viscosity_level]
-        self._viscosity = _values_and_slopes(self._viscous, [float(v) for v in water.viscosity])
-
-    def interval(self, depth: float, i: int) -> int:
-        """Index of the interval that holds `depth`, searched from interval `i`."""
-        if not isfinite(depth):
-            raise MarchError("the line runs off to infinity")
-        levels = self.levels
-        while depth >= levels[i + 1]:
-            i += 1
-        while depth < levels[i]:
-            i -= 1
-        return i
-
-    def at(self, depth: float, i: int) -> tuple[float, float, float, float]:
-        """Current u, v, w [m/s] and density [kg/m³] at a depth, searched from interval `i`."""
-        levels = self.levels
-        if not levels[i] < depth < levels[i + 1]:
-            i = self.interval(depth, i)
-        origin, u, du, v, dv, w, dw, density, ddensity = self.rows[i]
-        below = depth - origin
-        return (
-            u + du * below,
-            v + dv * below,
-            w + dw * below,
-            density + ddensity * below,
+        viscous = water.viscosity_level.tolist()
+        self.sea = Sea(
+            [-inf, *depths, inf],
+            [Interval(*row) for row in zip(origins, *columns, strict=True)],
+            water.gravity,
+            [
+                Stratum(*row)
+                for row in zip(
+                    [-inf, *viscous],
+                    [viscous[0], *viscous],
+                    *_values_and_slopes(viscous, water.viscosity),
+                    strict=True,
+                )
+            ],
         )
 
-    def viscosity(self, depth: float) -> float:
-        """Kinematic viscosity at a depth [m²/s]."""
-        i = bisect_right(self._viscous, depth)
-        value, slope = self._viscosity[i]
-        return value + slope * (depth - self._viscous[max(i - 1, 0)])
-
-    def distance_to_level(self, depth: float, sinking: float, i: int, least: float = 0.0) -> float:
-        """Way to the next level from a depth [m], along a path that sinks so much per metre.
-
-        A level no farther than `least` is as good as reached: the one behind it counts.
-        """
-        if sinking == 0.0:
-            return inf
-        i = self.interval(depth, i) + (sinking > 0.0)
-        ahead = 1 if sinking > 0.0 else -1
-        while (gap := (self.levels[i] - depth) / sinking) <= least:
-            i += ahead
-        return gap
+    @cached_property
+    def packed(self) -> Sea:
+        """The same as compiled laws take it."""
+        sea: Sea = packed(self.sea)
+        return sea
 
 
-def _values_and_slopes(depths: list[float], values: list[float]) -> list[tuple[float, float]]:
+def _values_and_slopes(depths: list[float], column: Floats) -> tuple[list[float], list[float]]:
     """Value at its origin and slope of every interval; constant in the first and the last."""
-    inner = [
-        (values[i], (values[i + 1] - values[i]) / (depths[i + 1] - depths[i]))
-        for i in range(len(depths) - 1)
+    values = column.tolist()
+    slopes = [
+        (values[i + 1] - values[i]) / (depths[i + 1] - depths[i]) for i in range(len(depths) - 1)
     ]
-    return [(values[0], 0.0), *inner, (values[-1], 0.0)]
+    return [values[0], *values], [0.0, *slopes, 0.0]

@@ -7,37 +7,20 @@ used for real ones. So nothing takes these curves unless it is declared smooth.
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from dataclasses import dataclass
 from functools import cached_property
-from math import log, pow
+from math import log, pow, sqrt
+from typing import NamedTuple
 
-from calm.physics import drag
-
-
-class _Curve:
-    """Points joined by straight lines over the logarithm of x, and held beyond both ends."""
-
-    __slots__ = ("_logarithms", "_values")
-
-    def __init__(self, *points: tuple[float, float]) -> None:
-        self._logarithms = [log(x) for x, _ in points]
-        self._values = [y for _, y in points]
-
-    def __call__(self, x: float) -> float:
-        values, logarithms = self._values, self._logarithms
-        position = log(x) if x > 0.0 else logarithms[0]
-        if position <= logarithms[0]:
-            return values[0]
-        if position >= logarithms[-1]:
-            return values[-1]
-        i = bisect_right(logarithms, position) - 1
-        share = (position - logarithms[i]) / (logarithms[i + 1] - logarithms[i])
-        return values[i] + share * (values[i + 1] - values[i])
-
+from calm.physics.drag import (
+    LONG_CYLINDER_CN,
+    SPHERE_CX,
+    finite_length_factor,
+    interpolated,
+)
 
 # fmt: off
-_CYLINDER = _Curve(
+_CYLINDER = (
     # Wieselsberger, as measured
     (3.18, 4.87), (8.01, 2.94), (17.7, 2.12), (31.7, 1.73), (63.6, 1.48), (196, 1.27),
     (356, 1.15), (892, 0.964), (2.27e3, 0.886), (5.15e3, 0.944), (9.18e3, 1.06), (1.5e4, 1.14),
@@ -48,14 +31,21 @@ _CYLINDER = _Curve(
     (7.44e5, 0.297), (1.07e6, 0.389), (1.39e6, 0.470), (1.83e6, 0.539), (2.26e6, 0.584),
     (2.90e6, 0.629), (3.66e6, 0.648), (4.94e6, 0.678),
 )
-_KAPPA_ABOVE = _Curve(
-    (2, 0.80), (5, 0.80), (10, 0.82), (20, 0.90), (40, 0.98), (50, 0.99), (100, 1.00)
-)
+_KAPPAS = ((2, 0.80), (5, 0.80), (10, 0.82), (20, 0.90), (40, 0.98), (50, 0.99), (100, 1.00))
 # fmt: on
-_KAPPA_CHANGES = (1.8e5, 2.2e5)
-_CHANGE = log(_KAPPA_CHANGES[1] / _KAPPA_CHANGES[0])
+_CYLINDER_AT, _CYLINDER_CN = (
+    tuple(log(re) for re, _ in _CYLINDER),
+    tuple(cn for _, cn in _CYLINDER),
+)
+_KAPPA_AT, _KAPPA = (
+    tuple(log(slenderness) for slenderness, _ in _KAPPAS),
+    tuple(k for _, k in _KAPPAS),
+)
+_KAPPA_BELOW, _KAPPA_ABOVE = 1.8e5, 2.2e5
+_CHANGE = log(_KAPPA_ABOVE / _KAPPA_BELOW)
 
-_CREEPING = 0.1
+_CREEPING, _SLOWEST = 0.1, 1.0
+_SCAN = 16
 
 LARGEST_SPHERE, LARGEST_CYLINDER = 1e6, 4.94e6
 """Reynolds numbers where the curves end; beyond, they are held."""
@@ -74,7 +64,7 @@ def cylinder_coefficient(reynolds: float) -> float:
     crisis the latter falls later, to the safe side, and goes on to higher Re, so there it is the
     one taken. Roshko (1961) found 0.7 above 3.5e6, where this comes to 0.65 to 0.68.
     """
-    return _CYLINDER(reynolds)
+    return interpolated(_CYLINDER_AT, _CYLINDER_CN, log(max(reynolds, _SLOWEST)))
 
 
 def sphere_coefficient(reynolds: float) -> float:
@@ -89,13 +79,109 @@ def sphere_coefficient(reynolds: float) -> float:
     """
     re = min(max(reynolds, _CREEPING), LARGEST_SPHERE)
     intermediate, crisis, beyond = re / 5.0, re / 2.63e5, re / 1e6
+    squared = crisis * crisis
+    eighth = squared * squared * squared * squared
     return (
         24.0 / re
         + 2.6 * intermediate / (1.0 + pow(intermediate, 1.52))
         # crisis^-7.94 / (1 + crisis^-8), free of overflow at small Re
-        + 0.411 * pow(crisis, 0.06) / (1.0 + crisis**8)
+        + 0.411 * pow(crisis, 0.06) / (1.0 + eighth)
         + 0.25 * beyond / (1.0 + beyond)
     )
+
+
+class Smooth(NamedTuple):
+    """What of a smooth sphere or cylinder, and of the water about it, sets its drag.
+
+    Attributes
+    ----------
+    reynolds : its Reynolds number at 1 m/s [-]
+    lengthening : of a cylinder, κ(L/D) above the crisis over that below; 0 of a sphere
+    """
+
+    reynolds: float
+    lengthening: float
+
+
+def drag_variation(smooth: Smooth, speed: float) -> float:
+    """Drag at a speed across the axis [m/s] over that by the constant coefficient.
+
+    That is Cx = 0.5 of a sphere or Cn = 1.2 κ of a cylinder.
+    """
+    reynolds = smooth.reynolds * speed
+    if smooth.lengthening == 0.0:
+        return sphere_coefficient(reynolds) / SPHERE_CX
+    factor = cylinder_coefficient(reynolds) / LONG_CYLINDER_CN
+    if reynolds <= _KAPPA_BELOW:
+        return factor
+    if reynolds >= _KAPPA_ABOVE:
+        return factor * smooth.lengthening
+    way = log(reynolds / _KAPPA_BELOW) / _CHANGE
+    return factor * (1.0 + (smooth.lengthening - 1.0) * way)
+
+
+def varying_share(
+    ax: float,
+    ay: float,
+    az: float,
+    k: float,
+    smooth: Smooth,
+    vx: float,
+    vy: float,
+    vz: float,
+) -> float:
+    """`drag_share` of a smooth element, whose coefficient varies with the speed across it.
+
+    Parameters
+    ----------
+    k : half its normal drag coefficient where its factor f is 1 [N/(m/s)²]
+    smooth : by which `drag_variation` gives f > 0, continuous, of |Vn| [m/s]
+
+    Returns
+    -------
+    c = k f(s) s [N/(m/s)] for the smallest root s = |Vn| of s |A + k f(s) s V| = |V × A|, told
+    apart from others to |V|/16. In the drag crisis, where less speed makes more drag, an element
+    may lean in the slow flow along it or stand in the fast flow across it; the smallest root, the
+    more drag, is the one reached when the current grows from rest.
+    """
+    speed = sqrt(vx * vx + vy * vy + vz * vz)
+    cx, cy, cz = ay * vz - az * vy, az * vx - ax * vz, ax * vy - ay * vx
+    across = sqrt(cx * cx + cy * cy + cz * cz)
+    if k == 0.0 or across == 0.0:
+        return 0.0
+    low, below, side = 0.0, -across, 0
+    high, above = speed, 0.0
+    for i in range(1, _SCAN + 1):
+        high = speed * i / _SCAN
+        above = _turned(ax, ay, az, k * drag_variation(smooth, high), high, vx, vy, vz) - across
+        if above >= 0.0:
+            break
+        if i < _SCAN:
+            low, below = high, above
+    above = max(above, 0.0)  # at |V| it may be below by rounding
+    s = low
+    for _ in range(100):
+        s = (low * above - high * below) / (above - below)
+        found = _turned(ax, ay, az, k * drag_variation(smooth, s), s, vx, vy, vz) - across
+        if abs(found) <= 1e-14 * across:
+            break
+        # the secant keeps to one side of the root unless the other side is made light of
+        if found > 0.0:
+            high, above, below = s, found, below * (0.5 if side > 0 else 1.0)
+            side = 1
+        else:
+            low, below, above = s, found, above * (0.5 if side < 0 else 1.0)
+            side = -1
+    return k * drag_variation(smooth, s) * s
+
+
+def _turned(
+    ax: float, ay: float, az: float, k: float, s: float, vx: float, vy: float, vz: float
+) -> float:
+    """Its left side at k and s: s |A + k s V|."""
+    c = k * s
+    x, y, z = ax + c * vx, ay + c * vy, az + c * vz
+    return s * sqrt(x * x + y * y + z * z)
 
 
 @dataclass(frozen=True)
@@ -117,23 +203,15 @@ class DragCurve:
         return LARGEST_SPHERE if self.slenderness is None else LARGEST_CYLINDER
 
     def factor(self, reynolds: float) -> float:
-        """Drag across the axis over that by the constant coefficient, Cx = 0.5 or Cn = 1.2 κ."""
-        if self.slenderness is None:
-            return sphere_coefficient(reynolds) / drag.SPHERE_CX
-        return cylinder_coefficient(reynolds) / drag.LONG_CYLINDER_CN * self._lengthening(reynolds)
-
-    def _lengthening(self, reynolds: float) -> float:
-        """κ over that below the crisis."""
-        if reynolds <= _KAPPA_CHANGES[0]:
-            return 1.0
-        if reynolds >= _KAPPA_CHANGES[1]:
-            return self._lengthened
-        return 1.0 + (self._lengthened - 1.0) * log(reynolds / _KAPPA_CHANGES[0]) / _CHANGE
+        """`drag_variation` at a Reynolds number."""
+        return drag_variation(Smooth(reynolds, self.lengthening), 1.0)
 
     @cached_property
-    def _lengthened(self) -> float:
-        assert self.slenderness is not None
-        below = drag.finite_length_factor(self.slenderness)
+    def lengthening(self) -> float:
+        """As in `Smooth`."""
+        if self.slenderness is None:
+            return 0.0
+        below = finite_length_factor(self.slenderness)
         return finite_length_factor_above(self.slenderness) / below
 
 
@@ -148,4 +226,4 @@ def finite_length_factor_above(slenderness: float) -> float:
     Source: DNV-RP-C205, table 6-2, whose columns change at 2e5. Between the two κ is linear in
     log Re here, so that drag has no step.
     """
-    return _KAPPA_ABOVE(slenderness)
+    return interpolated(_KAPPA_AT, _KAPPA, log(max(slenderness, 1.0)))

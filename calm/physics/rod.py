@@ -2,93 +2,150 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Sequence
 from math import inf, sqrt
 
-from calm.physics.element import Vector, axis_along, drag_force, drag_share, varying_share
+from calm.physics.element import Vector, axis_along, drag_force, drag_share
 from calm.physics.line import REFERENCE_DENSITY
-from calm.physics.profile import Profile
-from calm.physics.reynolds import DragCurve
-from calm.physics.state import MarchError, State, Trace
-from calm.physics.track import Load, Rod
+from calm.physics.profile import Sea, interval_at, viscosity_at, water_at
+from calm.physics.reynolds import Smooth, drag_variation, varying_share
+from calm.physics.state import MarchError, Record, State, write_element, write_node
+from calm.physics.track import Load, Stage
 
 _PASSES = 200
+_LEANINGS = 50
 
 
-def load_force(load: Load, profile: Profile, depth: float, axis: Vector, level: int) -> Vector:
-    """Buoyancy, drag and lift of a rigid piece or clamp at a depth [N], searched from `level`."""
-    u, v, w, density = profile.at(depth, level)
-    scale = density / REFERENCE_DENSITY
-    lift = load.buoyancy + (density - REFERENCE_DENSITY) * profile.gravity * load.volume
-    if load.lift:
-        lift += scale * load.lift * (u * u + v * v + w * w)
-    kn = scale * load.normal_drag
+def load_lift(load: Load, squared: float, density: float, gravity: float) -> float:
+    """Buoyancy of a rigid piece or clamp and its lift in a current of a squared speed [N]."""
+    lift = load.buoyancy + (density - REFERENCE_DENSITY) * gravity * load.volume
+    return lift + density / REFERENCE_DENSITY * load.lift * squared
+
+
+def load_force(
+    load: Load,
+    varied: float,
+    u: float,
+    v: float,
+    w: float,
+    density: float,
+    gravity: float,
+    tx: float,
+    ty: float,
+    tz: float,
+) -> Vector:
+    """Buoyancy, drag, lift and wind of a rigid piece or clamp of axis t [N].
+
+    Parameters
+    ----------
+    varied : how many times its constant normal drag it has: see `load_variation`
+    """
+    scale, squared = density / REFERENCE_DENSITY, u * u + v * v + w * w
+    kn = varied * scale * load.normal_drag
     if load.directional:
-        if load.curve is not None:
-            kn *= _variation(load.curve, profile, depth)(_speed_across(axis, u, v, w))
-        qx, qy, qz = drag_force(kn, scale * load.tangential_drag, u, v, w, *axis)
+        qx, qy, qz = drag_force(kn, scale * load.tangential_drag, u, v, w, tx, ty, tz)
     else:
-        speed = sqrt(u * u + v * v + w * w)
-        if load.curve is not None:
-            kn *= _variation(load.curve, profile, depth)(speed)
-        drag = kn * speed
+        drag = kn * sqrt(squared)
         qx, qy, qz = drag * u, drag * v, drag * w
+    lift = load_lift(load, squared, density, gravity)
     return qx + load.push_east, qy + load.push_north, qz + lift
 
 
-def _variation(curve: DragCurve, profile: Profile, depth: float) -> Callable[[float], float]:
-    """How many times its constant drag a load on a curve has, by the speed it goes with [m/s]."""
-    per_speed = curve.diameter / profile.viscosity(depth)
-    return lambda speed: curve.factor(per_speed * speed)
+def load_variation(
+    load: Load, viscosity: float, u: float, v: float, w: float, tx: float, ty: float, tz: float
+) -> float:
+    """How many times its constant normal drag a load of axis t has, in water of a viscosity."""
+    if load.diameter == 0.0:
+        return 1.0
+    speed = speed_across(u, v, w, tx, ty, tz)
+    if not load.directional:
+        speed = sqrt(u * u + v * v + w * w)
+    return drag_variation(Smooth(load.diameter / viscosity, load.lengthening), speed)
 
 
-def _speed_across(axis: Vector, u: float, v: float, w: float) -> float:
+def force_at(
+    load: Load, sea: Sea, depth: float, level: int, tx: float, ty: float, tz: float
+) -> Vector:
+    """`load_force` at a depth [m] of the sea, searched from an interval."""
+    u, v, w, density, _ = water_at(sea, depth, level)
+    varied = 1.0
+    if load.diameter > 0.0:
+        varied = load_variation(load, viscosity_at(sea, depth), u, v, w, tx, ty, tz)
+    return load_force(load, varied, u, v, w, density, sea.gravity, tx, ty, tz)
+
+
+def speed_across(u: float, v: float, w: float, tx: float, ty: float, tz: float) -> float:
     """|V × t| [m/s]."""
-    tx, ty, tz = axis
     cx, cy, cz = v * tz - w * ty, w * tx - u * tz, u * ty - v * tx
     return sqrt(cx * cx + cy * cy + cz * cz)
 
 
+def pass_clamp(
+    load: Load,
+    sea: Sea,
+    state: State,
+    lands: bool,
+    record: Record,
+    recording: bool,
+    nodes: int,
+) -> tuple[State, float, int]:
+    """Take the state past an instrument clamped on a cable: as `pass_rod`."""
+    x, y, z, fx, fy, carried, tz, level = state
+    qx, qy, qz = force_at(load, sea, -z, level, 0.0, 0.0, -1.0)
+    fz, hanging = carried + qz, -1.0
+    if lands and carried > 0.0 >= fz:
+        fz, hanging = 0.0, inf
+    below: State = (x, y, z, fx + qx, fy + qy, fz, tz, level)
+    if recording:
+        write_element(record, nodes, load.piece, load.clamp, 0.0, 0.0)
+        write_node(record, nodes, below)
+    return below, hanging, nodes + 1
+
+
 def pass_rod(
-    rod: Rod, profile: Profile, state: State, trace: Trace | None, lands: bool = False
-) -> float | None:
+    rod: Stage,
+    loads: Sequence[Load],
+    sea: Sea,
+    state: State,
+    lands: bool,
+    record: Record,
+    recording: bool,
+    nodes: int,
+) -> tuple[State, float, int]:
     """Take the state from the top of a rod to its bottom.
 
     Parameters
     ----------
     lands : whether the seabed carries what the line cannot: at the rod's lower end, or all along
         it where it would tip over
+    record, recording, nodes : where to write it, if at all, and how many nodes are there
 
     Returns
     -------
-    0 where the rod lies on the seabed, inf where it stands on it, None where it does neither.
+    The state; 0 where the rod lies on the seabed, inf where it stands on it, -1 where it does
+    neither; and how many nodes there are.
     """
-    axis = rod_axis(rod, profile, state)
-    forces = [
-        load_force(load, profile, -state.z - load.at * axis[2], axis, state.level)
-        for load in rod.loads
-    ]
-    landed = lands and state.fz > 0.0 >= state.fz + sum(force[2] for force in forces)
-    if landed and axis[2] >= 0.0:
-        state.fz = 0.0
-        return 0.0
-    if trace is not None:
-        _record(rod, forces, trace, state, axis)
-    state.x += rod.length * axis[0]
-    state.y += rod.length * axis[1]
-    state.z += rod.length * axis[2]
-    state.tz = axis[2]
-    for force in forces:
-        state.add(force)
-    if not landed:
-        return None
-    state.fz = 0.0
-    if trace is not None:
-        trace.force[-1] = (state.fx, state.fy, 0.0)
-    return inf
+    x, y, z, fx, fy, fz, before, level = state
+    tx, ty, tz = rod_axis(rod, loads, sea, state)
+    sx, sy, sz = fx, fy, fz
+    for i in range(rod.first, rod.first + rod.size):
+        qx, qy, qz = force_at(loads[i], sea, -z - loads[i].at * tz, level, tx, ty, tz)
+        sx, sy, sz = sx + qx, sy + qy, sz + qz
+    landed = lands and fz > 0.0 >= sz
+    if landed and tz >= 0.0:
+        return (x, y, z, fx, fy, 0.0, before, level), 0.0, nodes
+    if recording:
+        nodes = _record(rod, loads, sea, state, tx, ty, tz, record, nodes)
+    length = rod.length
+    if landed:
+        sz = 0.0
+        if recording:
+            record[5][nodes - 1] = 0.0
+    below = (x + length * tx, y + length * ty, z + length * tz, sx, sy, sz, tz, level)
+    return below, inf if landed else -1.0, nodes
 
 
-def rod_axis(rod: Rod, profile: Profile, state: State) -> Vector:
+def rod_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) -> Vector:
     """Axis for which the moments about the rod's middle vanish.
 
     With several loads q_i at distances a_i from the top the rule of one load becomes
@@ -102,116 +159,150 @@ def rod_axis(rod: Rod, profile: Profile, state: State) -> Vector:
     MarchError
         Where the passes do not settle.
     """
-    axis: Vector = (0.0, 0.0, state.tz)
+    _, _, _, _, _, _, rise, _ = state
+    tx, ty, tz = 0.0, 0.0, rise
     pace, earlier = 1.0, inf
     for _ in range(_PASSES):
-        following = _next_axis(rod, profile, state, axis)
-        change = (
-            abs(following[0] - axis[0]) + abs(following[1] - axis[1]) + abs(following[2] - axis[2])
-        )
+        x, y, z = next_axis(rod, loads, sea, state, tx, ty, tz)
+        change = abs(x - tx) + abs(y - ty) + abs(z - tz)
         if change < 1e-12:
-            return following
+            return x, y, z
         if change > 0.7 * earlier:
             pace *= 0.5
         earlier = change
         if pace < 1.0:
-            x, y, z = (old + pace * (new - old) for new, old in zip(following, axis, strict=True))
+            x, y, z = tx + pace * (x - tx), ty + pace * (y - ty), tz + pace * (z - tz)
             size = sqrt(x * x + y * y + z * z)
             if size == 0.0:
                 break
-            following = x / size, y / size, z / size
-        axis = following
+            x, y, z = x / size, y / size, z / size
+        tx, ty, tz = x, y, z
     raise MarchError("a rigid piece finds no balance")
 
 
-def _next_axis(rod: Rod, profile: Profile, state: State, axis: Vector) -> Vector:
-    ax, ay, az = state.fx, state.fy, state.fz
-    normals: list[tuple[float, float, float, float]] = []
-    curved: list[tuple[int, Callable[[float], float]]] = []
-    for load in rod.loads:
-        ax, ay = ax + load.lever * load.push_east, ay + load.lever * load.push_north
-        depth = -state.z - load.at * axis[2]
-        u, v, w, density = profile.at(depth, state.level)
-        scale = load.lever * density / REFERENCE_DENSITY
-        excess = (density - REFERENCE_DENSITY) * profile.gravity
-        az += load.lever * (load.buoyancy + excess * load.volume)
-        if load.lift:
-            az += scale * load.lift * (u * u + v * v + w * w)
-        kn = scale * load.normal_drag
-        if load.directional:
-            if load.curve is not None:
-                curved.append((len(normals), _variation(load.curve, profile, depth)))
-            normals.append((kn, u, v, w))
-        else:
-            speed = sqrt(u * u + v * v + w * w)
-            if load.curve is not None:
-                kn *= _variation(load.curve, profile, depth)(speed)
-            drag = kn * speed
-            ax, ay, az = ax + drag * u, ay + drag * v, az + drag * w
-    if curved and len(normals) == 1:
-        k, gx, gy, gz = normals[0]
-        c = varying_share(ax, ay, az, k, curved[0][1], gx, gy, gz)
-    else:
-        for i, varied in curved:
-            k, u, v, w = normals[i]
-            normals[i] = k * varied(_speed_across(axis, u, v, w)), u, v, w
-        k, gx, gy, gz = _gather(normals, axis)
-        c = drag_share(ax, ay, az, k, gx, gy, gz)
-    tx, ty, tz = following = axis_along(ax, ay, az, c, gx, gy, gz)
-    mx, my, mz = state.fx, state.fy, state.fz
-    for load in rod.loads:
-        depth = -state.z - load.at * tz
-        qx, qy, qz = load_force(load, profile, depth, following, state.level)
-        mx, my, mz = mx + load.lever * qx, my + load.lever * qy, mz + load.lever * qz
-    return (-tx, -ty, -tz) if mx * tx + my * ty + mz * tz > 0.0 else following
-
-
-def _gather(
-    normals: list[tuple[float, float, float, float]], axis: Vector
-) -> tuple[float, float, float, float]:
-    """One coefficient K and current V with K|V × t|V = Σ K_i|V_i × t|V_i at the axis t."""
-    if len(normals) == 1:
-        return normals[0]
+def next_axis(
+    rod: Stage,
+    loads: Sequence[Load],
+    sea: Sea,
+    state: State,
+    tx: float,
+    ty: float,
+    tz: float,
+) -> Vector:
+    """The axis of a rod whose loads are looked up, and gathered, at another one: see `rod_axis`."""
+    _, _, z, fx, fy, fz, _, level = state
+    ax, ay, az = fx, fy, fz
+    normals = 0
+    k = smooth = 0.0
     total = gx = gy = gz = 0.0
-    for k, u, v, w in normals:
-        share = k * _speed_across(axis, u, v, w)
-        total += share
-        gx, gy, gz = gx + share * u, gy + share * v, gz + share * w
-    if total == 0.0:
-        return 0.0, 0.0, 0.0, 0.0
-    gx, gy, gz = gx / total, gy / total, gz / total
-    across = _speed_across(axis, gx, gy, gz)
-    return (total / across if across > 0.0 else 0.0), gx, gy, gz
+    u = v = w = 0.0
+    curve = Smooth(0.0, 0.0)
+    for i in range(rod.first, rod.first + rod.size):
+        load = loads[i]
+        lever = load.lever
+        depth = -z - load.at * tz
+        flow_u, flow_v, flow_w, density, _ = water_at(sea, depth, level)
+        squared = flow_u * flow_u + flow_v * flow_v + flow_w * flow_w
+        ax, ay = ax + lever * load.push_east, ay + lever * load.push_north
+        az += lever * load_lift(load, squared, density, sea.gravity)
+        kn = lever * density / REFERENCE_DENSITY * load.normal_drag
+        varied, smooth = 1.0, 0.0
+        if load.diameter > 0.0:
+            viscosity = viscosity_at(sea, depth)
+            smooth = load.diameter / viscosity
+            varied = load_variation(load, viscosity, flow_u, flow_v, flow_w, tx, ty, tz)
+        if not load.directional:
+            drag = varied * kn * sqrt(squared)
+            ax, ay, az = ax + drag * flow_u, ay + drag * flow_v, az + drag * flow_w
+            continue
+        normals += 1
+        k, u, v, w, curve = kn, flow_u, flow_v, flow_w, Smooth(smooth, load.lengthening)
+        if rod.size > 1:
+            share = varied * kn * speed_across(u, v, w, tx, ty, tz)
+            total += share
+            gx, gy, gz = gx + share * u, gy + share * v, gz + share * w
+    if normals == 1 and curve.reynolds > 0.0:
+        c = varying_share(ax, ay, az, k, curve, u, v, w)
+    else:
+        if normals != 1:
+            k = u = v = w = 0.0
+            if total > 0.0:
+                u, v, w = gx / total, gy / total, gz / total
+                across = speed_across(u, v, w, tx, ty, tz)
+                k = total / across if across > 0.0 else 0.0
+        c = drag_share(ax, ay, az, k, u, v, w)
+    tx, ty, tz = axis_along(ax, ay, az, c, u, v, w)
+    mx, my, mz = fx, fy, fz
+    for i in range(rod.first, rod.first + rod.size):
+        load = loads[i]
+        qx, qy, qz = force_at(load, sea, -z - load.at * tz, level, tx, ty, tz)
+        mx, my, mz = mx + load.lever * qx, my + load.lever * qy, mz + load.lever * qz
+    return (-tx, -ty, -tz) if mx * tx + my * ty + mz * tz > 0.0 else (tx, ty, tz)
 
 
-def _record(rod: Rod, forces: list[Vector], trace: Trace, state: State, axis: Vector) -> None:
-    """Record a rod piece by piece; a piece's own load counts as spread along it, a clamp's not."""
-    x, y, z = state.x, state.y, state.z
-    fx, fy, fz = state.fx, state.fy, state.fz
-    if len(forces) == 1:
-        ((qx, qy, qz),) = forces
-        tx, ty, tz = axis
-        trace.element(rod.pieces[0], -1, rod.length, 0.0)
-        x, y, z = x + rod.length * tx, y + rod.length * ty, z + rod.length * tz
-        trace.node(x, y, z, (fx + qx, fy + qy, fz + qz))
-        return
-    loads = list(zip(rod.loads, forces, strict=True))
-    start = 0.0
-    for piece, length in zip(rod.pieces, rod.lengths, strict=True):
-        here = [(load, force) for load, force in loads if load.piece == piece]
-        own = next(force for load, force in here if load.clamp < 0)
-        clamps = [(load.clamp, load.at, force) for load, force in here if load.clamp >= 0]
-        reached, end = start, start + length
-        for clamp, at, force in [*clamps, (-1, end, (0.0, 0.0, 0.0))]:
-            step = at - reached
-            share = step / length if length > 0.0 else float(clamp < 0)
-            x, y, z = x + step * axis[0], y + step * axis[1], z + step * axis[2]
-            fx, fy, fz = fx + share * own[0], fy + share * own[1], fz + share * own[2]
-            trace.element(piece, -1, step, 0.0)
-            trace.node(x, y, z, (fx, fy, fz))
-            if clamp >= 0:
-                fx, fy, fz = fx + force[0], fy + force[1], fz + force[2]
-                trace.element(piece, clamp, 0.0, 0.0)
-                trace.node(x, y, z, (fx, fy, fz))
-            reached = at
-        start = end
+def floating_depth(rod: Stage, loads: Sequence[Load], sea: Sea, out: float) -> float:
+    """Depth of the free end that has a length `out` of the head above the surface [m].
+
+    The head of the line leans as its loads have it, and they depend a little on its depth.
+    """
+    depth = -out
+    for _ in range(_LEANINGS):
+        level = interval_at(sea.levels, depth, 0)
+        state = (0.0, 0.0, -depth, 0.0, 0.0, 0.0, -1.0, level)
+        _, _, tz = rod_axis(rod, loads, sea, state)
+        following = min(out * tz, 0.0)
+        if abs(following - depth) <= 1e-14 * out:
+            break
+        depth = following
+    return depth
+
+
+def _record(
+    rod: Stage,
+    loads: Sequence[Load],
+    sea: Sea,
+    state: State,
+    tx: float,
+    ty: float,
+    tz: float,
+    record: Record,
+    nodes: int,
+) -> int:
+    """Record a rod piece by piece; a piece's own load counts as spread along it, a clamp's not.
+
+    The loads of a rod go down it: of every piece its own, then its clamps.
+    """
+    x, y, top, fx, fy, fz, _, level = state
+    z = top
+    end, reached = 0.0, 0.0
+    ox = oy = oz = 0.0
+    last = rod.first + rod.size - 1
+    length, piece = 0.0, 0
+    for i in range(rod.first, rod.first + rod.size):
+        load = loads[i]
+        qx, qy, qz = force_at(load, sea, -top - load.at * tz, level, tx, ty, tz)
+        if load.clamp < 0:
+            ox, oy, oz, length, piece = qx, qy, qz, load.length, load.piece
+            end = reached + length
+        else:
+            step = load.at - reached
+            share = step / length if length > 0.0 else 0.0
+            x, y, z = x + step * tx, y + step * ty, z + step * tz
+            fx, fy, fz = fx + share * ox, fy + share * oy, fz + share * oz
+            write_element(record, nodes, piece, -1, step, 0.0)
+            write_node(record, nodes, (x, y, z, fx, fy, fz, tz, level))
+            fx, fy, fz = fx + qx, fy + qy, fz + qz
+            write_element(record, nodes + 1, piece, load.clamp, 0.0, 0.0)
+            write_node(record, nodes + 1, (x, y, z, fx, fy, fz, tz, level))
+            nodes += 2
+            reached = load.at
+        if i == last or loads[i + 1].clamp < 0:
+            step = end - reached
+            share = step / length if length > 0.0 else 1.0
+            x, y, z = x + step * tx, y + step * ty, z + step * tz
+            fx, fy, fz = fx + share * ox, fy + share * oy, fz + share * oz
+            write_element(record, nodes, piece, -1, step, 0.0)
+            write_node(record, nodes, (x, y, z, fx, fy, fz, tz, level))
+            nodes += 1
+            reached = end
+    return nodes

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
-from math import hypot
+from collections.abc import Sequence
+from dataclasses import replace
+from math import sqrt
 
+from calm.physics.cable import strain_at
 from calm.physics.line import REFERENCE_DENSITY
 from calm.physics.march import End
-from calm.physics.profile import Profile
-from calm.physics.state import Trace
-from calm.physics.track import Cable, Load, Rod, Stage, Track
+from calm.physics.pace import is_fast, paced
+from calm.physics.profile import Profile, water_at
+from calm.physics.state import Record, write_element, write_node
+from calm.physics.stretch import Knot, mean_curve_strain
+from calm.physics.track import CABLE, Cable, Course, Track
 
 
 def lie_down(
-    track: Track, profile: Profile, end: End, trace: Trace, seabed: float, friction: float
-) -> float:
-    """Continue a trace from its touchdown to the anchor.
+    track: Track, profile: Profile, end: End, seabed: float, friction: float
+) -> tuple[End, float]:
+    """Continue a recorded march from its touchdown to the anchor.
 
     The line lies along the horizontal force at touchdown. Its tension falls by friction times the
     weight of what lies, down to nothing; there is no drag. What the vertical force could not carry
@@ -23,81 +28,128 @@ def lie_down(
     Parameters
     ----------
     end : of a march that landed
-    trace : of that march; the nodes and elements on the seabed are appended
     seabed : height [m], + up from the surface
     friction : of the line on the seabed [-]
 
     Returns
     -------
-    Unstretched length on the seabed [m].
+    The march with the nodes and elements on the seabed, and the unstretched length there [m].
     """
-    assert end.landing is not None
-    x, y = trace.x[-1], trace.y[-1]
-    tension = hypot(end.force[0], end.force[1])
-    east, north = (
-        (-end.force[0] / tension, -end.force[1] / tension) if tension > 0.0 else (1.0, 0.0)
+    *_, density, _ = water_at(profile.sea, -seabed, 0)
+    excess = (density - REFERENCE_DENSITY) * profile.sea.gravity
+    fx, fy, _ = end.force
+    nodes, grounded = paced(lay_line)(
+        track.packed if is_fast() else track.course,
+        end.record,
+        end.nodes,
+        end.stage,
+        end.hanging,
+        fx,
+        fy,
+        seabed,
+        excess,
+        friction,
     )
-    *_, density = profile.at(-seabed, 0)
-    excess = (density - REFERENCE_DENSITY) * profile.gravity
-    grounded = 0.0
-    hanging = end.landing.hanging
-    for stage in track.stages[end.landing.stage :]:
-        for piece, clamp, length, weight in _lying(stage, hanging, excess):
-            pulled, left = _held_back(tension, friction * weight)
-            strain = _strain(stage, pulled, tension, left) if isinstance(stage, Cable) else 0.0
-            tension = left
-            x += length * (1.0 + strain) * east
-            y += length * (1.0 + strain) * north
-            grounded += length
-            trace.element(piece, clamp, length, strain)
-            trace.node(x, y, seabed, (-tension * east, -tension * north, 0.0))
-        hanging = 0.0
-    return grounded
+    return replace(end, nodes=nodes), grounded
 
 
-Part = tuple[int, int, float, float]
-"""Piece, clamp or -1, unstretched length [m] and weight in water [N] of something on the seabed."""
+def lay_line(
+    course: Course,
+    record: Record,
+    nodes: int,
+    stage: int,
+    hanging: float,
+    fx: float,
+    fy: float,
+    seabed: float,
+    excess: float,
+    friction: float,
+) -> tuple[int, float]:
+    """Lay down what is below a touchdown: see `lie_down`; returns the nodes and the length [m].
 
-
-def _lying(stage: Stage, hanging: float, excess: float) -> list[Part]:
-    """What of a stage lies on the seabed, below the length that hangs [m].
-
-    `excess` is what a displaced cubic metre lifts more there than in reference water [N/m³].
+    Parameters
+    ----------
+    stage, hanging : where the line came down
+    fx, fy : horizontal force above the touchdown [N]
+    excess : what a displaced cubic metre lifts more there than in reference water [N/m³]
     """
-    if isinstance(stage, Cable):
-        length = stage.length - hanging
-        weight = _weight(stage, excess) * length
-        return [(stage.piece, -1, length, weight)] if length > 0.0 else []
-    if hanging > 0.0:
-        return []
-    if isinstance(stage, Load):
-        return [(stage.piece, stage.clamp, 0.0, _weight(stage, excess))]
-    return _lying_rod(stage, excess)
+    tension = sqrt(fx * fx + fy * fy)
+    east, north = (-fx / tension, -fy / tension) if tension > 0.0 else (1.0, 0.0)
+    grounded, first = 0.0, nodes
+    # elements and tensions first, then the places that follow from them
+    for i in range(stage, len(course.stages)):
+        here = course.stages[i]
+        hung = hanging if i == stage else 0.0
+        if here.kind == CABLE:
+            cable = course.cables[here.first]
+            length = cable.length - hung
+            if length <= 0.0:
+                continue
+            weight = -(cable.buoyancy + excess * cable.volume) * length
+            pulled, left = held_back(tension, friction * weight)
+            strain = lying_strain(cable, course.knots, pulled, tension, left)
+            tension = left
+            write_element(record, nodes, cable.piece, -1, length, strain)
+            record[3][nodes] = tension
+            nodes += 1
+        elif hung == 0.0:
+            nodes, tension = lay_rod(course, i, record, nodes, tension, excess, friction)
+    x, y = record[0][first - 1], record[1][first - 1]
+    for n in range(first, nodes):
+        length, strain, pull = record[8][n], record[9][n], record[3][n]
+        x, y = x + length * (1.0 + strain) * east, y + length * (1.0 + strain) * north
+        grounded += length
+        write_node(record, n, (x, y, seabed, -pull * east, -pull * north, 0.0, 0.0, 0))
+    return nodes, grounded
 
 
-def _weight(load: Cable | Load, excess: float) -> float:
-    return -(load.buoyancy + excess * load.volume)
+def lay_rod(
+    course: Course,
+    stage: int,
+    record: Record,
+    nodes: int,
+    tension: float,
+    excess: float,
+    friction: float,
+) -> tuple[int, float]:
+    """Lay down a rod or a clamp; returns the nodes and the tension that is left [N].
+
+    The loads of a rod go down it: of every piece its own, spread along it, then its clamps.
+    """
+    rod, loads = course.stages[stage], course.loads
+    reached, end, own, length, piece = 0.0, 0.0, 0.0, 0.0, -1
+    last = rod.first + rod.size - 1
+    for i in range(rod.first, rod.first + rod.size):
+        load = loads[i]
+        weight = -(load.buoyancy + excess * load.volume)
+        if load.clamp < 0:
+            own, length, piece = weight, load.length, load.piece
+            end = reached + length
+        else:
+            if piece >= 0:
+                step = load.at - reached
+                share = step / length if length > 0.0 else 0.0
+                _, tension = held_back(tension, friction * share * own)
+                write_element(record, nodes, piece, -1, step, 0.0)
+                record[3][nodes] = tension
+                nodes += 1
+                reached = load.at
+            _, tension = held_back(tension, friction * weight)
+            write_element(record, nodes, load.piece, load.clamp, 0.0, 0.0)
+            record[3][nodes] = tension
+            nodes += 1
+        if piece >= 0 and (i == last or loads[i + 1].clamp < 0):
+            step = end - reached
+            share = step / length if length > 0.0 else 1.0
+            _, tension = held_back(tension, friction * share * own)
+            write_element(record, nodes, piece, -1, step, 0.0)
+            record[3][nodes] = tension
+            nodes += 1
+            reached = end
+    return nodes, tension
 
 
-def _lying_rod(rod: Rod, excess: float) -> list[Part]:
-    parts: list[Part] = []
-    start = 0.0
-    for piece, length in zip(rod.pieces, rod.lengths, strict=True):
-        here = [load for load in rod.loads if load.piece == piece]
-        weight = next(_weight(load, excess) for load in here if load.clamp < 0)
-        reached, end = start, start + length
-        for load in [load for load in here if load.clamp >= 0]:
-            share = (load.at - reached) / length if length > 0.0 else 0.0
-            parts.append((piece, -1, load.at - reached, share * weight))
-            parts.append((piece, load.clamp, 0.0, _weight(load, excess)))
-            reached = load.at
-        share = (end - reached) / length if length > 0.0 else 1.0
-        parts.append((piece, -1, end - reached, share * weight))
-        start = end
-    return parts
-
-
-def _held_back(tension: float, hold: float) -> tuple[float, float]:
+def held_back(tension: float, hold: float) -> tuple[float, float]:
     """Share of a part that the tension reaches into against friction, up to `hold`, and what is
     left of it at its end [N]."""
     if hold <= tension:
@@ -105,10 +157,13 @@ def _held_back(tension: float, hold: float) -> tuple[float, float]:
     return tension / hold, 0.0
 
 
-def _strain(cable: Cable, pulled: float, tension: float, left: float) -> float:
+def lying_strain(
+    cable: Cable, knots: Sequence[Knot], pulled: float, tension: float, left: float
+) -> float:
     """Mean strain of a part where the tension falls evenly over a share `pulled` of its length."""
     middle = 0.5 * (tension + left)
-    if cable.elongation is None:
+    if cable.first_knot == cable.end_knot:
         return pulled * cable.compliance * middle
-    strain = cable.elongation.mean_strain(middle, 0.5 * (tension - left))
-    return pulled * strain + (1.0 - pulled) * cable.elongation.strain(0.0)
+    half = 0.5 * (tension - left)
+    strain = mean_curve_strain(knots, cable.first_knot, cable.end_knot, middle, half)
+    return pulled * strain + (1.0 - pulled) * strain_at(cable, knots, 0.0)

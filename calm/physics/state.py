@@ -2,58 +2,79 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from typing import Any
 
-from calm.physics.element import Vector
+import numpy as np
+
+from calm.physics.line import Floats, Integers
 
 
 class MarchError(ArithmeticError):
     """The march cannot go on: an element has no balance, or the line needs endless segments."""
 
 
-@dataclass(slots=True)
-class State:
-    """The point reached: place [m], force above it [N], last axis's rise, profile interval."""
-
-    x: float
-    y: float
-    z: float
-    fx: float = 0.0
-    fy: float = 0.0
-    fz: float = 0.0
-    tz: float = -1.0
-    level: int = 0
-
-    def add(self, load: Vector) -> None:
-        """Take on a load [N]."""
-        self.fx += load[0]
-        self.fy += load[1]
-        self.fz += load[2]
+State = tuple[float, float, float, float, float, float, float, int]
+"""The point reached, x, y, z, fx, fy, fz, tz and level: its place [m], the force above it [N], the
+last axis's rise, the interval of the water. A bare tuple: in CPython a named one costs as much as
+half of a segment's balance."""
 
 
-@dataclass
+Record = Any
+"""Columns of numbers, as written by `write_node`: lists, or the rows of an array."""
+COLUMNS = 10
+
+
+def write_node(record: Record, n: int, state: State) -> None:
+    """Write node n: the place [m] and the force above it [N] of a state."""
+    x, y, z, fx, fy, fz, _, _ = state
+    record[0][n] = x
+    record[1][n] = y
+    record[2][n] = z
+    record[3][n] = fx
+    record[4][n] = fy
+    record[5][n] = fz
+
+
+def write_element(
+    record: Record, n: int, piece: int, clamp: int, cut: float, strain: float
+) -> None:
+    """Write the element that ends at node n; `clamp` is -1 for a part of the piece."""
+    record[6][n] = piece
+    record[7][n] = clamp
+    record[8][n] = cut
+    record[9][n] = strain
+
+
+@dataclass(frozen=True)
 class Trace:
-    """What a recorded march leaves: nodes and the elements between them, free end first."""
+    """What a recorded march leaves: k + 1 nodes and the k elements between, free end first.
 
-    x: list[float] = field(default_factory=list)
-    y: list[float] = field(default_factory=list)
-    z: list[float] = field(default_factory=list)
-    force: list[Vector] = field(default_factory=list)
-    piece: list[int] = field(default_factory=list)
-    clamp: list[int] = field(default_factory=list)
-    cut: list[float] = field(default_factory=list)
-    strain: list[float] = field(default_factory=list)
+    Attributes
+    ----------
+    position : (k+1, 3) [m]
+    force : (k+1, 3) above each node [N]
+    piece, clamp : (k,) the piece of each element, and the clamp that it is or -1
+    cut : (k,) unstretched length [m]
+    strain : (k,) of cables and chains
+    """
 
-    def node(self, x: float, y: float, z: float, force: Vector) -> None:
-        """Add a node: its place [m] and the force above it [N]."""
-        self.x.append(x)
-        self.y.append(y)
-        self.z.append(z)
-        self.force.append(force)
+    position: Floats
+    force: Floats
+    piece: Integers
+    clamp: Integers
+    cut: Floats
+    strain: Floats
 
-    def element(self, piece: int, clamp: int, cut: float, strain: float) -> None:
-        """Add the element that ends at the next node; `clamp` is -1 for a part of the piece."""
-        self.piece.append(piece)
-        self.clamp.append(clamp)
-        self.cut.append(cut)
-        self.strain.append(strain)
+    @staticmethod
+    def of(record: Record, nodes: int) -> Trace:
+        """The trace of a record with so many nodes."""
+        columns = np.array([column[:nodes] for column in record])
+        return Trace(
+            position=columns[:3].T.copy(),
+            force=columns[3:6].T.copy(),
+            piece=columns[6, 1:].astype(np.int64),
+            clamp=columns[7, 1:].astype(np.int64),
+            cut=columns[8, 1:],
+            strain=columns[9, 1:],
+        )

@@ -2,16 +2,72 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from math import isfinite, sqrt
 from types import MappingProxyType
+from typing import NamedTuple
 
 TRUSTED_LOAD = 0.8
 """Share of the breaking load beyond which an elongation curve should not be trusted."""
 
 _GAUSS = sqrt(1.0 / 3.0)
+
+
+class Knot(NamedTuple):
+    """A point of an elongation curve: its tension [N], and the strain beyond it as a cubic.
+
+    That is a + x (b + x (c + x d)), x newtons beyond the point.
+    """
+
+    tension: float
+    a: float
+    b: float
+    c: float
+    d: float
+
+
+def curve_strain(knots: Sequence[Knot], first: int, end: int, tension: float) -> float:
+    """Strain of a rope at a tension ≥ 0 [N], by the knots of its curve from `first` to `end` [-].
+
+    Monotone cubic interpolation; beyond the last knot it goes on straight.
+    """
+    knot = knots[_knots_below(knots, first + 1, end, tension) - 1]
+    x = tension - knot.tension
+    return knot.a + x * (knot.b + x * (knot.c + x * knot.d))
+
+
+def mean_curve_strain(
+    knots: Sequence[Knot], first: int, end: int, tension: float, half: float
+) -> float:
+    """Mean strain where the tension goes evenly from `tension` - `half` to `tension` + `half`.
+
+    By two Gauss points between the knots that lie in the range: exact [-].
+    """
+    half = abs(half)
+    low, high = tension - half, tension + half
+    i, last = _knots_below(knots, first, end, low), _knots_below(knots, first, end, high)
+    if i == last:
+        return _gauss(knots, first, end, tension, half)
+    total = 0.0
+    while low < high:
+        bend = knots[i].tension if i < last else high
+        total += (bend - low) * _gauss(knots, first, end, 0.5 * (low + bend), 0.5 * (bend - low))
+        low, i = bend, i + 1
+    return total / (2.0 * half)
+
+
+def _gauss(knots: Sequence[Knot], first: int, end: int, middle: float, half: float) -> float:
+    away = half * _GAUSS
+    lower = curve_strain(knots, first, end, middle - away)
+    return 0.5 * (lower + curve_strain(knots, first, end, middle + away))
+
+
+def _knots_below(knots: Sequence[Knot], first: int, end: int, tension: float) -> int:
+    """Index of the first knot above a tension, from `first` on."""
+    while first < end and knots[first].tension <= tension:
+        first += 1
+    return first
 
 
 class ElongationCurve:
@@ -32,6 +88,7 @@ class ElongationCurve:
     ----------
     tensions, strains : the points of the table, from (0, 0) on [N], [-]
     permanent : as given [-]
+    knots : the curve as the march takes it, permanent elongation included
     limit : tension beyond which an answer deserves a warning [N]: that of the last point, and at
         most 80 % of the breaking load
 
@@ -45,7 +102,7 @@ class ElongationCurve:
     slopes at the points.
     """
 
-    __slots__ = ("_cubics", "limit", "permanent", "strains", "tensions")
+    __slots__ = ("knots", "limit", "permanent", "strains", "tensions")
 
     def __init__(
         self,
@@ -61,31 +118,21 @@ class ElongationCurve:
         self.tensions = [load * breaking_load for load in loads]
         self.permanent = permanent
         self.limit = min(loads[-1], TRUSTED_LOAD) * breaking_load
-        self._cubics = _cubics(self.tensions, self.strains)
+        self.knots = tuple(
+            Knot(tension, permanent + a, b, c, d)
+            for tension, (a, b, c, d) in zip(
+                self.tensions, _cubics(self.tensions, self.strains), strict=True
+            )
+        )
 
     def strain(self, tension: float) -> float:
         """Strain at a tension ≥ 0 [N], permanent elongation included [-]."""
-        i = bisect_right(self.tensions, tension, 1) - 1
-        a, b, c, d = self._cubics[i]
-        x = tension - self.tensions[i]
-        return self.permanent + a + x * (b + x * (c + x * d))
+        return curve_strain(self.knots, 0, len(self.knots), tension)
 
     def mean_strain(self, tension: float, half: float) -> float:
-        """Mean strain where the tension goes evenly from `tension` - `half` to `tension` + `half`.
-
-        By two Gauss points between the points of the table that lie in the range: exact [-].
-        """
-        half = abs(half)
-        low, high = tension - half, tension + half
-        first, last = (bisect_right(self.tensions, end) for end in (low, high))
-        if first == last:
-            away = half * _GAUSS
-            return 0.5 * (self.strain(tension - away) + self.strain(tension + away))
-        total = 0.0
-        for a, b in pairwise([low, *self.tensions[first:last], high]):
-            middle, away = 0.5 * (a + b), 0.5 * (b - a) * _GAUSS
-            total += 0.5 * (b - a) * (self.strain(middle - away) + self.strain(middle + away))
-        return total / (2.0 * half)
+        """Mean strain where the tension goes evenly from `tension` - `half` to `tension` + `half`,
+        permanent elongation included [-]."""
+        return mean_curve_strain(self.knots, 0, len(self.knots), tension, half)
 
 
 def _checked(points: Iterable[tuple[float, float]]) -> tuple[list[float], list[float]]:

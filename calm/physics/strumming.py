@@ -9,8 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import cbrt, cos, degrees, pi, pow, radians, sin, sqrt
+from math import asin, cbrt, cos, inf, pi, pow, radians, sin, sqrt
 from types import MappingProxyType
+from typing import NamedTuple
+
+from calm.physics.element import drag_share
 
 STROUHAL = 0.2
 """Strouhal number for static work, whatever the Reynolds number."""
@@ -134,6 +137,105 @@ def drag_factor(ratio: float) -> float:
     return sqrt(1.0 + square) * bracket / (3.0 * a)
 
 
+class Vibration(NamedTuple):
+    """How a cable strums: the law of Bourget & Marichal as the march takes it.
+
+    Attributes
+    ----------
+    a1, b1, c1 : a/D = a1 + b1 φ + c1 φ², φ in degrees
+    greatest : factor on the cable's Cn at rest [-]
+    beat : F D/|V|, the frequency of the cable made dimensionless with its diameter and the speed
+        there; 0.166 sin φ_n in an even flow, whatever its speed [-]
+    """
+
+    a1: float
+    b1: float
+    c1: float
+    greatest: float
+    beat: float
+
+
+AT_REST = Vibration(0.0, 0.0, 0.0, 1.0, 0.0)
+"""Of a line that does not strum."""
+
+
+def amplitude(vibration: Vibration, angle: float) -> float:
+    """a/D [-] where the cable is at an angle φ to the flow [rad]."""
+    phi = angle * (180.0 / pi)
+    return vibration.a1 + (vibration.b1 + vibration.c1 * phi) * phi
+
+
+def strummed(vibration: Vibration, across: float) -> float:
+    """C*/C₀ = f(λ), at most the greatest, by the sine of the angle φ of the cable to the flow.
+
+    λ = 2π (a/D) F D/(|V| sin φ). Along the flow the factor is the greatest.
+    """
+    if across <= 0.0:
+        return vibration.greatest if vibration.beat > 0.0 else 1.0
+    ratio = 2.0 * pi * amplitude(vibration, asin(across)) * vibration.beat / across
+    return min(drag_factor(ratio), vibration.greatest)
+
+
+def amplified_share(
+    ax: float,
+    ay: float,
+    az: float,
+    k: float,
+    vibration: Vibration,
+    vx: float,
+    vy: float,
+    vz: float,
+) -> tuple[float, float]:
+    """`drag_share` of a cable that strums, whose coefficient grows as it leans: k f(sin φ).
+
+    Parameters
+    ----------
+    k : half its normal drag coefficient at rest [N/(m/s)²]
+    vibration : by which `strummed` gives f ≥ 1, falling with the sine of the angle φ between axis
+        and current
+
+    Returns
+    -------
+    c [N/(m/s)], the smallest root of c |A + c V| = k f |V × A|, and f there. Putting f(c) back
+    climbs to it from below and never past it; the climb is extrapolated as long as that stays
+    below, too.
+    """
+    speed = sqrt(vx * vx + vy * vy + vz * vz)
+    cx, cy, cz = ay * vz - az * vy, az * vx - ax * vz, ax * vy - ay * vx
+    across = sqrt(cx * cx + cy * cy + cz * cz)
+    if k == 0.0 or across == 0.0:
+        return 0.0, 1.0
+    flat = across / speed
+    c, above = drag_share(ax, ay, az, k, vx, vy, vz), inf
+    factor = strummed(vibration, _leaning(ax, ay, az, c, vx, vy, vz, flat))
+    first = drag_share(ax, ay, az, k * factor, vx, vy, vz)
+    for _ in range(100):
+        factor = strummed(vibration, _leaning(ax, ay, az, first, vx, vy, vz, flat))
+        second = drag_share(ax, ay, az, k * factor, vx, vy, vz)
+        gain = second - first
+        if gain <= 1e-14 * second:
+            return second, strummed(vibration, _leaning(ax, ay, az, second, vx, vy, vz, flat))
+        ratio = gain / (first - c)
+        trial = second + gain * ratio / (1.0 - ratio) if ratio < 1.0 else inf
+        if trial >= above:
+            trial = 0.5 * (second + above) if above < inf else 2.0 * second
+        factor = strummed(vibration, _leaning(ax, ay, az, trial, vx, vy, vz, flat))
+        following = drag_share(ax, ay, az, k * factor, vx, vy, vz)
+        if following >= trial:
+            c, first = trial, following
+        else:
+            c, first, above = first, second, trial
+    return first, strummed(vibration, _leaning(ax, ay, az, first, vx, vy, vz, flat))
+
+
+def _leaning(
+    ax: float, ay: float, az: float, c: float, vx: float, vy: float, vz: float, flat: float
+) -> float:
+    """Sine of the angle between A + c V and V, from |A × V|/|V|."""
+    x, y, z = ax + c * vx, ay + c * vy, az + c * vz
+    return min(flat / sqrt(x * x + y * y + z * z), 1.0)
+
+
 @dataclass(frozen=True)
 class BourgetMarichal:
     """Strumming of a towed cable: the frequency is set at the ship, the amplitude by the angle.
@@ -167,8 +269,11 @@ class BourgetMarichal:
 
     def amplitude(self, angle: float) -> float:
         """a/D [-] where the cable is at an angle φ to the flow [rad]."""
-        phi = degrees(angle)
-        return self.a1 + (self.b1 + self.c1 * phi) * phi
+        return amplitude(self.vibration(0.0), angle)
+
+    def vibration(self, beat: float) -> Vibration:
+        """The law at a beat: see `Vibration`."""
+        return Vibration(self.a1, self.b1, self.c1, self.greatest, beat)
 
     def frequency(self, speed: float, ship_angle: float, diameter: float) -> float:
         """Frequency F = 0.166 V₀ sin φ_n/D [Hz] of the whole cable of a diameter [m].
@@ -181,19 +286,11 @@ class BourgetMarichal:
         return self.strouhal * speed * sin(ship_angle) / diameter
 
     def factor(self, angle: float, beat: float) -> float:
-        """C*/C₀ = f(λ), at most 3.0/C₀, where the cable is at an angle φ to the flow [rad].
+        """C*/C₀, at most 3.0/C₀, where the cable is at an angle φ to the flow [rad].
 
-        Parameters
-        ----------
-        beat : F D/|V|, the frequency of the cable made dimensionless with its diameter and the
-            speed there; 0.166 sin φ_n in an even flow, whatever its speed [-]
-
-        λ = 2π (a/D) F D/(|V| sin φ). Along the flow the factor is the greatest.
+        `beat` : see `Vibration`.
         """
-        across = sin(angle)
-        if across <= 0.0:
-            return self.greatest if beat > 0.0 else 1.0
-        return min(drag_factor(2.0 * pi * self.amplitude(angle) * beat / across), self.greatest)
+        return strummed(self.vibration(beat), min(sin(angle), 1.0))
 
     def coefficient(self, angle: float, ship_angle: float) -> float:
         """C* of a cable at an angle φ in an even flow, the same at every speed.

@@ -2,37 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
-from calm.physics.friction import Friction
+from calm.physics.compiled import packed
 from calm.physics.line import Line
-from calm.physics.reynolds import DragCurve
-from calm.physics.stretch import ElongationCurve
-from calm.physics.strumming import BourgetMarichal
+from calm.physics.stretch import Knot
+from calm.physics.strumming import AT_REST, Vibration
 
 
-@dataclass(frozen=True)
-class Load:
+class Load(NamedTuple):
     """A rigid piece or a clamped instrument at `at` metres below the top of its rod.
 
-    `lever` is 1 - at/length, the share of the load that turns the rod; ½ for a rod of no length.
+    Attributes
+    ----------
+    piece, clamp : of the line; the clamp is -1 for the piece itself
+    at : [m]
+    lever : 1 - at/length, the share of the load that turns the rod; ½ for a rod of no length
+    length : of the piece [m]; 0 of a clamp
+    buoyancy, volume, normal_drag, tangential_drag, directional, lift, push_east, push_north : as
+        in `Line`
+    diameter, lengthening : of the curve that its drag follows, see `DragCurve`; the diameter is 0
+        where it follows none
     """
 
     piece: int
     clamp: int
     at: float
     lever: float
+    length: float
     buoyancy: float
     volume: float
     normal_drag: float
     tangential_drag: float
-    directional: bool
-    lift: float = 0.0
-    push_east: float = 0.0
-    push_north: float = 0.0
-    curve: DragCurve | None = None
+    directional: int
+    lift: float
+    push_east: float
+    push_north: float
+    diameter: float
+    lengthening: float
 
 
 @dataclass(frozen=True)
@@ -48,17 +58,19 @@ class Rod:
         return sum(self.lengths)
 
 
-@dataclass(frozen=True)
-class Vibration:
-    """A cable that strums: the law, and its frequency times its diameter [m/s]."""
+class Cable(NamedTuple):
+    """A stretch of cable or chain without clamps: a whole piece, or the part between two clamps.
 
-    law: BourgetMarichal
-    beat: float
-
-
-@dataclass(frozen=True)
-class Cable:
-    """A stretch of cable or chain without clamps: a whole piece, or the part between two clamps."""
+    Attributes
+    ----------
+    piece : of the line
+    length : unstretched [m]
+    buoyancy, volume, normal_drag, tangential_drag, compliance, thinning : as in `Line`
+    friction : number of the law, see `Friction`
+    first_knot, end_knot : of its elongation curve among the knots of the track; the same where it
+        has none
+    beat : its frequency times its diameter [m/s]; 0 where it does not strum
+    """
 
     piece: int
     length: float
@@ -68,25 +80,84 @@ class Cable:
     tangential_drag: float
     compliance: float
     thinning: float
-    elongation: ElongationCurve | None = None
-    friction: Friction = Friction.BERTEAUX
-    vibration: Vibration | None = None
-
-    def strain(self, tension: float) -> float:
-        """At a tension [N]."""
-        if self.elongation is None:
-            return self.compliance * tension
-        return self.elongation.strain(tension)
+    friction: int
+    first_knot: int
+    end_knot: int
+    beat: float
 
 
-Stage = Rod | Cable | Load
+Part = Rod | Cable | Load
+
+
+ROD, CABLE, CLAMP = range(3)
+
+
+class Stage(NamedTuple):
+    """A rod, a stretch of cable or a clamp as the march comes to it.
+
+    Attributes
+    ----------
+    kind : ROD, CABLE or CLAMP
+    first, size : its first load among those of the course and how many it has; of a cable, its
+        place among the cables and 1
+    length : [m]
+    """
+
+    kind: int
+    first: int
+    size: int
+    length: float
+
+
+class Course(NamedTuple):
+    """A `Track` as the march takes it: what stands in it, kind by kind, down the line.
+
+    `landing` is the first stage that may come down on the seabed: none below it is buoyant.
+    """
+
+    stages: Sequence[Stage]
+    loads: Sequence[Load]
+    cables: Sequence[Cable]
+    knots: Sequence[Knot]
+    vibration: Vibration
+    landing: int
 
 
 @dataclass(frozen=True)
 class Track:
-    """A `Line` laid out for the march: its stages from the free end to the anchor."""
+    """A `Line` laid out for the march: its parts from the free end to the anchor.
 
-    stages: tuple[Stage, ...]
+    `knots` are those of the elongation curves of its cables, `vibration` the law by which they
+    strum.
+    """
+
+    stages: tuple[Part, ...]
+    knots: tuple[Knot, ...] = ()
+    vibration: Vibration = AT_REST
+
+    @cached_property
+    def course(self) -> Course:
+        """As the march takes it."""
+        stages: list[Stage] = []
+        loads: list[Load] = []
+        cables: list[Cable] = []
+        for part in self.stages:
+            if isinstance(part, Cable):
+                stages.append(Stage(CABLE, len(cables), 1, part.length))
+                cables.append(part)
+            elif isinstance(part, Rod):
+                stages.append(Stage(ROD, len(loads), len(part.loads), part.length))
+                loads += part.loads
+            else:
+                stages.append(Stage(CLAMP, len(loads), 1, 0.0))
+                loads.append(part)
+        return Course(stages, loads, cables, self.knots, self.vibration, self.landing)
+
+    @cached_property
+    def packed(self) -> Course:
+        """The same as compiled laws take it."""
+        course: Course = packed(self.course)
+        return course
 
     @property
     def landing(self) -> int:
@@ -105,16 +176,21 @@ class Track:
         `frequency` is that of the cables that strum [Hz].
         """
         head = head_count(line)
-        stages: list[Stage] = [_rod(line, range(head))] if head else []
+        parts: list[Part] = [_rod(line, range(head))] if head else []
+        knots: list[Knot] = []
         for piece in range(head, len(line.length)):
             if line.flexible[piece]:
-                stages.extend(_cable_stages(line, piece, frequency))
+                curve = line.elongation[piece] if line.elongation else None
+                mine = () if curve is None else curve.knots
+                parts.extend(_cable_parts(line, piece, frequency, len(knots), len(mine)))
+                knots += mine
             else:
-                stages.append(_rod(line, range(piece, piece + 1)))
-        return Track(tuple(stages))
+                parts.append(_rod(line, range(piece, piece + 1)))
+        vibration = AT_REST if line.strumming is None else line.strumming.vibration(0.0)
+        return Track(tuple(parts), tuple(knots), vibration)
 
 
-def loads_of(stage: Stage) -> tuple[Load | Cable, ...]:
+def loads_of(stage: Part) -> tuple[Load | Cable, ...]:
     """What hangs on the line in a stage."""
     return stage.loads if isinstance(stage, Rod) else (stage,)
 
@@ -142,18 +218,23 @@ def _clamps_of(line: Line, piece: int) -> list[int]:
 
 
 def _clamp_load(line: Line, m: int, at: float = 0.0, lever: float = 0.5) -> Load:
+    curve = line.clamp_drag_curve[m] if line.clamp_drag_curve else None
     return Load(
         piece=int(line.clamp_piece[m]),
         clamp=m,
         at=at,
         lever=lever,
+        length=0.0,
         buoyancy=float(line.clamp_buoyancy[m]),
         volume=float(line.clamp_volume[m]),
         normal_drag=float(line.clamp_drag[m]),
         tangential_drag=0.0,
         directional=False,
         lift=float(line.clamp_lift[m]),
-        curve=line.clamp_drag_curve[m] if line.clamp_drag_curve else None,
+        push_east=0.0,
+        push_north=0.0,
+        diameter=0.0 if curve is None else curve.diameter,
+        lengthening=0.0 if curve is None else curve.lengthening,
     )
 
 
@@ -167,19 +248,24 @@ def _rod(line: Line, pieces: range) -> Rod:
 
     for piece, length in zip(pieces, lengths, strict=True):
         middle = top + 0.5 * length
+        curve = line.drag_curve[piece] if line.drag_curve else None
         loads.append(
             Load(
                 piece=piece,
                 clamp=-1,
                 at=middle,
                 lever=lever(middle),
+                length=length,
                 buoyancy=float(line.buoyancy[piece]),
                 volume=float(line.volume[piece]),
                 normal_drag=float(line.normal_drag[piece]),
                 tangential_drag=float(line.tangential_drag[piece]),
                 directional=bool(line.directional[piece]),
                 lift=float(line.lift[piece]),
-                curve=line.drag_curve[piece] if line.drag_curve else None,
+                push_east=0.0,
+                push_north=0.0,
+                diameter=0.0 if curve is None else curve.diameter,
+                lengthening=0.0 if curve is None else curve.lengthening,
             )
         )
         for m in _clamps_of(line, piece):
@@ -189,10 +275,10 @@ def _rod(line: Line, pieces: range) -> Rod:
     return Rod(tuple(pieces), lengths, tuple(loads))
 
 
-def _cable_stages(line: Line, piece: int, frequency: float) -> Iterable[Stage]:
-    vibration = None
-    if line.strumming is not None and frequency * line.diameter[piece] > 0.0:
-        vibration = Vibration(line.strumming, frequency * float(line.diameter[piece]))
+def _cable_parts(
+    line: Line, piece: int, frequency: float, first_knot: int, knots: int
+) -> Iterable[Part]:
+    strums = line.strumming is not None
 
     def stretch(length: float) -> Cable:
         return Cable(
@@ -204,9 +290,10 @@ def _cable_stages(line: Line, piece: int, frequency: float) -> Iterable[Stage]:
             tangential_drag=float(line.tangential_drag[piece]),
             compliance=float(line.compliance[piece]),
             thinning=float(line.thinning[piece]),
-            elongation=line.elongation[piece] if line.elongation else None,
-            friction=line.friction,
-            vibration=vibration,
+            friction=line.friction.law,
+            first_knot=first_knot,
+            end_knot=first_knot + knots,
+            beat=frequency * float(line.diameter[piece]) if strums else 0.0,
         )
 
     start, end = 0.0, float(line.length[piece])

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel
@@ -10,6 +12,7 @@ from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
+from calm.assemble.datasheet import Datasheet, datasheet
 from calm.quantities import QUANTITIES
 from calm.report.terminal import plain_table
 
@@ -21,7 +24,10 @@ if TYPE_CHECKING:
 
 _PER_METRE = ("mass", "weight", "buoyancy", "net_buoyancy")
 _FIRST = ("name", "kind", "role")
-_LAST = ("note", "source", "date")
+_LAST = ("note", "source", "sources", "searched", "date")
+_ELSEWHERE = ("prefer",)
+_AUTHOR = re.compile(r"[,;] (?![^()]*\))")
+"""What ends the name of who printed a figure: a comma that is not in brackets."""
 _HEADING_OF_OTHERS = "other"
 
 
@@ -41,25 +47,51 @@ def to_list(catalogue: Catalogue, definitions: Mapping[str, Definition]) -> Rend
             last = family
         net = _say(definition, "net_buoyancy") if definition.kind != "assembly" else ""
         breaking = "" if definition.breaking_load is None else _say(definition, "breaking_load")
-        table.add_row(Text(identifier), Text(definition.name or ""), net, breaking)
+        name = definition.name or ""
+        if definition.prefer is not None:
+            name += f" (use {definition.prefer})"
+        table.add_row(Text(identifier), Text(name), net, breaking)
     return table
 
 
-def to_card(identifier: str, definition: Definition) -> RenderableType:
-    """Every figure that a definition gives, in the units people read, and where it comes from."""
+def to_card(
+    identifier: str, definition: Definition, catalogue: Catalogue | None = None
+) -> RenderableType:
+    """Every figure that a definition gives, in the units people read, and where it comes from.
+
+    What follows from the figures comes after them, then, where several definitions of the catalogue
+    describe the same thing, how far they are apart and which to use.
+    """
     rows = plain_table(header=False)
     for heading, text in _figures(definition):
         rows.add_row(Text(heading), Text(text))
-    return Group(Text(identifier, style="bold"), Padding(rows, (0, 0, 0, 2)))
+    for heading, text in _following(datasheet(definition, catalogue), _per_metre(definition)):
+        rows.add_row(Text(heading), Text(text))
+    parts: list[RenderableType] = [
+        Text(identifier, style="bold"),
+        Padding(rows, (0, 0, 0, 2)),
+    ]
+    same = [] if catalogue is None else catalogue.same_thing(identifier)
+    if catalogue is not None and len(same) > 1:
+        parts.append(Padding(_comparison(catalogue, same), (1, 0, 0, 2)))
+    return Group(*parts)
 
 
 def to_documents(
     catalogue: Catalogue, definitions: Mapping[str, Definition]
 ) -> list[dict[str, Any]]:
-    """An object each: `id`, `family` and every field, SI or degrees, None if absent."""
+    """An object each: `id`, `family` and every field, SI or degrees, None if absent.
+
+    `derived` has what follows from the figures, `same_thing` the ids that describe the same, the
+    one to use first.
+    """
     return [
         {"id": identifier, "family": _family(catalogue, identifier)}
         | definition.model_dump(mode="json")
+        | {
+            "derived": asdict(sheet) if (sheet := datasheet(definition, catalogue)) else None,
+            "same_thing": catalogue.same_thing(identifier),
+        }
         for identifier, definition in definitions.items()
     ]
 
@@ -70,14 +102,60 @@ def _family(catalogue: Catalogue, identifier: str) -> str | None:
 
 
 def _figures(definition: Definition) -> Iterator[tuple[str, str]]:
-    fields = [name for name in type(definition).model_fields if name not in (*_FIRST, *_LAST)]
-    if definition.kind != "assembly" and not any(
-        getattr(definition, given, None) is not None for given in ("buoyancy", "weight")
-    ):
-        fields.insert(0, "net_buoyancy")
+    placed = (*_FIRST, *_LAST, *_ELSEWHERE)
+    fields = [name for name in type(definition).model_fields if name not in placed]
     for name in (*_FIRST, *fields, *_LAST):
         if getattr(definition, name) is not None:
             yield _heading(name), _say(definition, name)
+
+
+def _following(sheet: Datasheet | None, per_metre: str) -> Iterator[tuple[str, str]]:
+    """What follows from the figures, for people."""
+    if sheet is None:
+        return
+    yield _heading("net_buoyancy"), _text("net_buoyancy", sheet.net_buoyancy) + per_metre
+    if sheet.kn is None or sheet.cd_area is None:
+        return
+    for name, value in (("kn", sheet.kn), ("kt", sheet.kt)):
+        yield f"{QUANTITIES[name].symbol}", f"{_text(name, value)}{per_metre and ' per metre'}"
+    across = QUANTITIES["force"].figure(sheet.kn) + per_metre
+    along = QUANTITIES["force"].figure(sheet.kt or 0.0) + per_metre
+    yield "drag at 1 m/s", f"{across} across, {along} along"
+    yield "Cd × area", QUANTITIES["cd_area"].figure(sheet.cd_area) + per_metre
+
+
+def _comparison(catalogue: Catalogue, same: Sequence[str]) -> RenderableType:
+    """The definitions of one thing beside one another, and how far they are apart."""
+    table = plain_table()
+    table.add_column("the same thing", no_wrap=True)
+    table.add_column("")
+    table.add_column("net force in water", justify="right")
+    table.add_column("Cd × area", justify="right")
+    table.add_column("by", overflow="fold")
+    sheets = []
+    for identifier in same:
+        definition = catalogue.get(identifier)
+        sheet = datasheet(definition, catalogue)
+        if sheet is None:
+            continue
+        sheets.append(sheet)
+        table.add_row(
+            Text(identifier),
+            "use this" if identifier == same[0] else "",
+            _text("net_buoyancy", sheet.net_buoyancy) + _per_metre(definition),
+            "" if sheet.cd_area is None else _text("cd_area", sheet.cd_area),
+            Text(_AUTHOR.split(definition.source or "", maxsplit=1)[0]),
+        )
+    nets = [sheet.net_buoyancy for sheet in sheets]
+    areas = [sheet.cd_area for sheet in sheets if sheet.cd_area is not None]
+    for word, extreme in (("least", min), ("most", max)):
+        area = _text("cd_area", extreme(areas)) if areas else ""
+        table.add_row(word, "", _text("net_buoyancy", extreme(nets)), area, style="dim")
+    return table
+
+
+def _per_metre(definition: Definition) -> str:
+    return "/m" if definition.kind in ("cable", "chain") else ""
 
 
 def _heading(name: str) -> str:
@@ -86,10 +164,13 @@ def _heading(name: str) -> str:
 
 def _say(definition: Definition, name: str) -> str:
     value = getattr(definition, name)
+    if name == "searched":
+        return ", ".join(_heading(each) for each in value) + " (not printed by the sources seen)"
+    if name == "sources":
+        return "\n".join(f"{_heading(each)}: {text}" for each, text in value.items())
     if isinstance(value, tuple):
         return "\n".join(_text(name, member) for member in value)
-    per_metre = "/m" if definition.kind in ("cable", "chain") and name in _PER_METRE else ""
-    return _text(name, value) + per_metre
+    return _text(name, value) + (_per_metre(definition) if name in _PER_METRE else "")
 
 
 def _text(name: str, value: Any) -> str:

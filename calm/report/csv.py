@@ -5,13 +5,14 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterator, Sequence
-from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
+from calm.case.columns import rows_down
 from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
+    from calm.case.columns import ClampRow, ComponentRow
 
 _WORDS = ("mooring", "part", "index", "use", "label")
 _NUMBERS = (
@@ -57,16 +58,15 @@ def to_csv(results: Sequence[Result | TowResult]) -> str:
 
 
 def _rows(result: Result | TowResult) -> Iterator[list[object]]:
-    for component in result.components:
+    for component, clamps in rows_down(result):
         numbers = (getattr(component, name) for name in _NUMBERS)
         yield [*_words(result, "component", component), *map(_number, numbers)]
-        for clamp in result.clamps:
-            if clamp.index == component.index:
-                numbers = (getattr(clamp, _at_a_point(name), None) for name in _NUMBERS)
-                yield [*_words(result, "clamp", clamp), *map(_number, numbers)]
+        for clamp in clamps:
+            numbers = (getattr(clamp, _at_a_point(name), None) for name in _NUMBERS)
+            yield [*_words(result, "clamp", clamp), *map(_number, numbers)]
 
 
-def _words(result: Result | TowResult, part: str, row: SimpleNamespace) -> list[object]:
+def _words(result: Result | TowResult, part: str, row: ComponentRow | ClampRow) -> list[object]:
     return [as_text(result.name), part, row.index, as_text(row.use), as_text(row.label)]
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from calm.case.columns import rows_down
+
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
 
@@ -27,16 +29,14 @@ class Named:
 def named_parts(result: Result | TowResult) -> list[Named]:
     """The floats, instruments, releases and the anchor, clamped ones too, in file order."""
     parts = []
-    for piece, component in zip(result.file.pieces, result.components, strict=True):
+    for component, clamps in rows_down(result):
         x = (component.x_top + component.x_bottom) / 2
         y = (component.y_top + component.y_bottom) / 2
         depth = (component.depth_top + component.depth_bottom) / 2
         parts.append(Named(component.use, component.label, component.role, x, y, depth))
-        roles = {clamp.label: clamp.component.role for clamp in piece.clamps}
         parts += [
-            Named(clamp.use, clamp.label, roles[clamp.label], clamp.x, clamp.y, clamp.depth)
-            for clamp in result.clamps
-            if clamp.index == component.index
+            Named(clamp.use, clamp.label, clamp.part.component.role, clamp.x, clamp.y, clamp.depth)
+            for clamp in clamps
         ]
     return [part for part in parts if part.role in NAMED_ROLES]
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 from calm.case import Result
@@ -12,6 +11,7 @@ from calm.checks.strength import safety_factor
 
 if TYPE_CHECKING:
     from calm.case import TowResult
+    from calm.case.columns import ComponentRow
     from calm.files import Component
 
 
@@ -32,7 +32,7 @@ def tilt_mark(component: Component, tilt: float) -> Mark:
     return Mark.NONE
 
 
-def safety_mark(result: Result | TowResult, component: Component, record: SimpleNamespace) -> Mark:
+def safety_mark(result: Result | TowResult, record: ComponentRow) -> Mark:
     """Mark of a safety factor: too small, or the piece bears more than its working load.
 
     The factor asked on the breaking load is the file's `checks.safety_factor`, for a surface
@@ -40,6 +40,6 @@ def safety_mark(result: Result | TowResult, component: Component, record: Simple
     """
     meant = isinstance(result, Result) and meant_for_the_surface(result)
     surface = meant or result.type == "surface"
-    least = safety_factor(component, result.file.checks.safety_factor, surface)
+    least = safety_factor(record.part.component, result.file.checks.safety_factor, surface)
     beyond = record.safety_factor < least or record.utilisation > 1.0
     return Mark.BEYOND if beyond else Mark.NONE

@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
+from calm.case.columns import rows_down
 from calm.quantities import QUANTITIES
 from calm.report.limits import Mark, safety_mark, tilt_mark
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
-    from calm.files import Component
+    from calm.case.columns import ClampRow, ComponentRow
 
 
 @dataclass(frozen=True)
@@ -59,23 +59,20 @@ class Sheet:
 
 def rows(result: Result | TowResult, columns: tuple[str, ...]) -> Iterator[Row]:
     """The rows of the table, in file order, each clamped instrument below its component."""
-    for piece, record in zip(result.file.pieces, result.components, strict=True):
+    for record, clamps in rows_down(result):
         figures = _figures(result, record, record.depth_top, record.x_top, record.y_top)
         figures |= {"length": record.length, "safety_factor": record.safety_factor}
         marks = {
-            "tilt": tilt_mark(piece.component, record.tilt),
-            "safety_factor": safety_mark(result, piece.component, record),
+            "tilt": tilt_mark(record.part.component, record.tilt),
+            "safety_factor": safety_mark(result, record),
         }
         instrument = record.role == "instrument"
         yield Row(record.label, False, instrument, _cells(columns, figures, marks))
-        clamped: dict[str, Component] = {clamp.label: clamp.component for clamp in piece.clamps}
-        for clamp in result.clamps:
-            if clamp.index == record.index:
-                definition = clamped[clamp.label]
-                figures = _figures(result, clamp, clamp.depth, clamp.x, clamp.y)
-                marks = {"tilt": tilt_mark(definition, clamp.tilt)}
-                instrument = definition.role == "instrument"
-                yield Row(clamp.label, True, instrument, _cells(columns, figures, marks))
+        for clamp in clamps:
+            figures = _figures(result, clamp, clamp.depth, clamp.x, clamp.y)
+            marks = {"tilt": tilt_mark(clamp.part.component, clamp.tilt)}
+            instrument = clamp.part.component.role == "instrument"
+            yield Row(clamp.label, True, instrument, _cells(columns, figures, marks))
 
 
 def convergence(result: Result | TowResult, end: str) -> str:
@@ -89,7 +86,7 @@ def convergence(result: Result | TowResult, end: str) -> str:
 
 
 def _figures(
-    result: Result | TowResult, record: SimpleNamespace, depth: float, x: float, y: float
+    result: Result | TowResult, record: ComponentRow | ClampRow, depth: float, x: float, y: float
 ) -> dict[str, float]:
     """What a component and a clamped instrument both have, at their (upper) point."""
     bottom = result.file.environment.depth

@@ -71,8 +71,8 @@ def _answer(sizing: Sizing) -> str:
 
 
 def _each(sizing: Sizing) -> str:
-    several = len(sizing.change.labels) > 1 and not sizing.change.whole
-    return f", each of {len(sizing.change.labels)}" if several else ""
+    several = len(sizing.change.parts) > 1 and not sizing.change.whole
+    return f", each of {len(sizing.change.parts)}" if several else ""
 
 
 def _comparison(sizing: Sizing, before: Trial, after: Trial) -> Table:

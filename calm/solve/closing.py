@@ -54,9 +54,12 @@ class Closed:
     root: Root
     miss: float
     end: End
-    trace: Trace
     hanging: int
     grounded_length: float
+
+    @property
+    def trace(self) -> Trace:
+        return self.end.trace
 
 
 class Closing:
@@ -129,21 +132,22 @@ class Closing:
         *,
         profile: Profile | None = None,
         cuts: Cuts | None = None,
-        trace: Trace | None = None,
+        record: bool = False,
     ) -> End:
         """One march at an angle step, or over given cuts."""
-        profile = profile or self.profile
-        track, depth = unknown.placed(x, profile)
+        depth, out, afloat = unknown.placed(x, self.water.gravity)
         self.marches += not unknown.part
         return march(
-            track,
-            profile,
+            unknown.track,
+            profile or self.profile,
             depth,
             angle_step=step,
             reach=REACH * degrees(step) * self.span,
             cuts=cuts,
-            trace=trace,
+            record=record,
             lands=unknown.lands,
+            out=out,
+            afloat=afloat,
         )
 
     def coarse_miss(self, unknown: Unknown) -> Callable[[float], float]:
@@ -177,7 +181,7 @@ class Closing:
         On the cuts it took last it is: the root is a last step away, which the caller marches.
         """
         small = 1e-6 * self.span
-        found, miss, end, _ = self._near(root, step, None, small, COARSEST_BRACKET, record=False)
+        found, miss, end = self._near(root, step, None, small, COARSEST_BRACKET, record=False)
         if found is None:
             return root, end.cuts
         if found.slope < 0.0:
@@ -204,7 +208,7 @@ class Closing:
         for afloat, lower in zip(unknown.above, at_surface[1:], strict=False):
             part = replace(unknown, afloat=afloat.piece, above=above).down_to(lower)
             cables = sum(isinstance(stage, Cable) for stage in part.track.stages)
-            root = self._closed(Root(part, afloat.share, afloat.slope), cuts[:cables]).root
+            root = self._closed(Root(part, afloat.share, afloat.slope), cuts.first(cables)).root
             above = (*above, Afloat(afloat.piece, root.x, root.slope))
         return replace(unknown, above=above)
 
@@ -213,7 +217,7 @@ class Closing:
         if root.unknown.afloat is not None:
             small = min(small, SHARE_TOLERANCE * abs(root.slope))
         step = self.settings.angle_step
-        found, miss, end, trace = self._near(root, step, cuts, small, NARROWEST_BRACKET)
+        found, miss, end = self._near(root, step, cuts, small, NARROWEST_BRACKET)
         if found is None:
             raise Status.NOT_CONVERGED.because("No closed shape was found near the first one.")
         if abs(miss) > self.allowed:
@@ -225,12 +229,11 @@ class Closing:
             raise Status.NOT_CONVERGED.because(
                 f"The line's end misses the {end_point} by {abs(miss):.3g} m."
             )
-        hanging, grounded = len(trace.piece), 0.0
-        if end.landing is not None:
-            track, _ = found.unknown.placed(found.x, self.profile)
-            friction = self.settings.seabed_friction
-            grounded = lie_down(track, self.profile, end, trace, found.unknown.goal, friction)
-        return Closed(found, miss, end, trace, hanging, grounded)
+        hanging, grounded = end.nodes - 1, 0.0
+        if end.landed:
+            unknown, friction = found.unknown, self.settings.seabed_friction
+            end, grounded = lie_down(unknown.track, self.profile, end, unknown.goal, friction)
+        return Closed(found, miss, end, hanging, grounded)
 
     def _near(
         self,
@@ -241,22 +244,20 @@ class Closing:
         narrow: float,
         *,
         record: bool = True,
-    ) -> tuple[Root | None, float, End, Trace]:
+    ) -> tuple[Root | None, float, End]:
         """Root near another one, across the surface if need be, its miss and its march.
 
         Where there is none, the miss and march are those of the last try. `narrow` is the width
         of the last bracket as a share of the whole range; `record` keeps the trace of the march.
         """
-        tried: dict[float, tuple[float, End, Trace]] = {}
+        tried: dict[float, tuple[float, End]] = {}
         start: Root | None = root
 
         def miss(x: float) -> float:
             assert start is not None
-            trace = Trace()
-            kept = trace if record else None
-            end = self.run(start.unknown, x, step, cuts=cuts, trace=kept)
+            end = self.run(start.unknown, x, step, cuts=cuts, record=record)
             tried.clear()
-            tried[x] = end.z - start.unknown.goal, end, trace
+            tried[x] = end.z - start.unknown.goal, end
             return tried[x][0]
 
         while start is not None:

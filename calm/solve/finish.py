@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
-from itertools import chain
 
 import numpy as np
 
 from calm.physics.line import REFERENCE_DENSITY, Floats, Line
-from calm.physics.track import Rod, Track
+from calm.physics.track import Load
 from calm.solve import audit
 from calm.solve.closing import Closed, Closing
 from calm.solve.refine import Refined
@@ -62,7 +61,7 @@ def finished(
     fine = refined.closed
     position, force = nodes_of(fine.trace)
     unknown = fine.root.unknown
-    track, _ = unknown.placed(fine.root.x, closing.profile)
+    changed = unknown.placed(fine.root.x, closing.water.gravity).afloat.values()
     used, reserve = _buoyancy_in_use(closing, fine)
     afloat = tuple(unknown.shares(fine.root.x))
     unclosed = abs(fine.miss) / closing.span + UNSEEN
@@ -72,20 +71,20 @@ def finished(
         settings=closing.settings,
         position=position,
         force=force,
-        element_piece=np.array(fine.trace.piece, dtype=np.int64),
-        element_clamp=np.array(fine.trace.clamp, dtype=np.int64),
-        landed=fine.end.landing is not None,
+        element_piece=fine.trace.piece,
+        element_clamp=fine.trace.clamp,
+        landed=fine.end.landed,
         hanging=fine.hanging,
         grounded_length=fine.grounded_length,
-        cut=np.array(fine.trace.cut),
-        strain=np.array(fine.trace.strain),
+        cut=fine.trace.cut,
+        strain=fine.trace.strain,
         afloat=afloat,
         buoyancy_used=used,
         reserve=reserve,
-        carried=_carried(closing.line, track) if afloat else closing.line,
+        carried=_carried(closing.line, changed) if afloat else closing.line,
         riding=unknown.riding(fine.root.x),
         marches=closing.marches,
-        segments=fine.end.segments,
+        segments=len(fine.end.cuts.lengths),
         miss=fine.miss,
         depth_error=refined.depth_error + closing.span * unclosed,
         tension_error=refined.tension_error + _greatest_force(closing, fine, force) * unclosed,
@@ -115,10 +114,10 @@ def _greatest_force(closing: Closing, fine: Closed, force: Floats) -> float:
     return max(float(np.linalg.norm(force, axis=1).max()), float(lift.max(initial=0.0)))
 
 
-def _carried(line: Line, track: Track) -> Line:
+def _carried(line: Line, changed: Iterable[Load]) -> Line:
     """The line as it is loaded: what is at the surface by what is in the water and in use of it."""
     columns = {name: getattr(line, name).copy() for name in (*_OF_PIECE, *_OF_CLAMP)}
-    for load in chain.from_iterable(s.loads for s in track.stages if isinstance(s, Rod)):
+    for load in changed:
         where, names = (load.piece, _OF_PIECE) if load.clamp < 0 else (load.clamp, _OF_CLAMP)
         for column, name in names.items():
             columns[column][where] = getattr(load, name)

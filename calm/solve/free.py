@@ -22,7 +22,7 @@ import numpy as np
 
 from calm.physics.line import Floats, Line, Water
 from calm.physics.march import Cuts
-from calm.physics.state import MarchError, Trace
+from calm.physics.state import MarchError
 from calm.physics.track import head_count
 from calm.solve import audit
 from calm.solve.free_march import Falling, FallingAnchor, Moving, Rising
@@ -110,8 +110,10 @@ def _solve(moving: Moving, settings: Settings) -> FreeMotion:
 
 def _recorded(moving: Moving, place: Place, cuts: Cuts, settings: Settings) -> FreeMotion:
     """The motion at a place, marched once more, audited."""
-    flow, trace = moving.flow(place.velocity), Trace()
-    meeting = moving.meet(flow, place.depth, settings.angle_step, cuts, trace)
+    flow = moving.flow(place.velocity)
+    meeting = moving.meet(flow, place.depth, settings.angle_step, cuts, record=True)
+    trace = meeting.trace
+    assert trace is not None
     position, force = nodes_of(trace)
     solution = Solution(
         line=moving.line,
@@ -119,19 +121,19 @@ def _recorded(moving: Moving, place: Place, cuts: Cuts, settings: Settings) -> F
         settings=settings,
         position=position,
         force=force,
-        element_piece=np.array(trace.piece, dtype=np.int64),
-        element_clamp=np.array(trace.clamp, dtype=np.int64),
+        element_piece=trace.piece,
+        element_clamp=trace.clamp,
         landed=False,
         hanging=len(trace.piece),
         grounded_length=0.0,
-        cut=np.array(trace.cut),
-        strain=np.array(trace.strain),
+        cut=trace.cut,
+        strain=trace.strain,
         afloat=(),
         buoyancy_used=1.0,
         reserve=0.0,
         carried=moving.line,
         marches=0,
-        segments=sum(map(len, meeting.cuts)),
+        segments=len(meeting.cuts.lengths),
         miss=meeting.gap,
         depth_error=nan,
         tension_error=nan,

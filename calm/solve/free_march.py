@@ -52,11 +52,13 @@ class Meeting:
     force : (3,) sum of all forces [N]
     gap : by which the end in question should start deeper [m]
     cuts : the segments used
+    trace : the shape, where it was to be recorded
     """
 
     force: Floats
     gap: float
     cuts: Cuts
+    trace: Trace | None
 
 
 @dataclass(frozen=True)
@@ -81,11 +83,11 @@ class Moving(ABC):
         depth: float,
         angle_step: float,
         cuts: Cuts | None = None,
-        trace: Trace | None = None,
+        record: bool = False,
     ) -> Meeting:
         """March in the water as it flows past the line.
 
-        `angle_step` [rad], `cuts` and `trace` are those of `calm.physics.march`.
+        `angle_step` [rad], `cuts` and `record` are those of `calm.physics.march`.
         """
 
     def anchor_force(self, flow: Water) -> Floats:
@@ -123,11 +125,17 @@ class Moving(ABC):
         depth: float,
         angle_step: float,
         cuts: Cuts | None,
-        trace: Trace | None,
+        record: bool,
     ) -> End:
         reach = REACH * degrees(angle_step) * self.water.depth
         return march(
-            track, Profile(flow), depth, angle_step=angle_step, reach=reach, cuts=cuts, trace=trace
+            track,
+            Profile(flow),
+            depth,
+            angle_step=angle_step,
+            reach=reach,
+            cuts=cuts,
+            record=record,
         )
 
 
@@ -159,11 +167,12 @@ class Falling(Moving):
         depth: float,
         angle_step: float,
         cuts: Cuts | None = None,
-        trace: Trace | None = None,
+        record: bool = False,
     ) -> Meeting:
-        end = self._run(self._track, flow, depth, angle_step, cuts, trace)
+        end = self._run(self._track, flow, depth, angle_step, cuts, record)
         goal = self.line.anchor_height - self.water.depth
-        return Meeting(np.array(end.force) + self.anchor_force(flow), end.z - goal, end.cuts)
+        force = np.array(end.force) + self.anchor_force(flow)
+        return Meeting(force, end.z - goal, end.cuts, end.trace if record else None)
 
 
 @dataclass(frozen=True)
@@ -207,34 +216,37 @@ class Rising(Moving):
         depth: float,
         angle_step: float,
         cuts: Cuts | None = None,
-        trace: Trace | None = None,
+        record: bool = False,
     ) -> Meeting:
         above, below = self._tracks
         cables = sum(isinstance(stage, Cable) for stage in above.stages)
-        upper, lower = (None, None) if cuts is None else (cuts[:cables], cuts[cables:])
-        rest = None if trace is None else Trace()
-        down = self._run(above, flow, self.top, angle_step, upper, trace)
-        up = self._run(below, flow, depth, angle_step, lower, rest)
-        if trace is not None and rest is not None:
-            _join(trace, rest, len(self.line.length))
-        return Meeting(np.add(down.force, up.force), up.z - down.z, down.cuts + up.cuts)
+        upper = None if cuts is None else cuts.first(cables)
+        lower = None if cuts is None else cuts.after(cables)
+        down = self._run(above, flow, self.top, angle_step, upper, record)
+        up = self._run(below, flow, depth, angle_step, lower, record)
+        trace = _joined(down.trace, up.trace, len(self.line.length)) if record else None
+        force = np.add(down.force, up.force)
+        return Meeting(force, up.z - down.z, down.cuts.and_then(up.cuts), trace)
 
 
 def _first_pieces(track: Track, count: int) -> Track:
     """The track as far as the first pieces go."""
-    return Track(
-        tuple(
-            stage
-            for stage in track.stages
-            if (stage.pieces[-1] if isinstance(stage, Rod) else stage.piece) < count
-        )
+    parts = tuple(
+        part
+        for part in track.stages
+        if (part.pieces[-1] if isinstance(part, Rod) else part.piece) < count
     )
+    return replace(track, stages=parts)
 
 
-def _join(trace: Trace, rest: Trace, pieces: int) -> None:
-    """Add to a march from the upper end of a line that from its lower end, to where they meet."""
-    dx, dy, dz = trace.x[-1] - rest.x[-1], trace.y[-1] - rest.y[-1], trace.z[-1] - rest.z[-1]
-    for i in reversed(range(len(rest.piece))):
-        trace.element(pieces - 1 - rest.piece[i], rest.clamp[i], rest.cut[i], rest.strain[i])
-        fx, fy, fz = rest.force[i]
-        trace.node(rest.x[i] + dx, rest.y[i] + dy, rest.z[i] + dz, (-fx, -fy, -fz))
+def _joined(upper: Trace, lower: Trace, pieces: int) -> Trace:
+    """A march from the upper end of a line and that from its lower end, to where they meet."""
+    position = lower.position + (upper.position[-1] - lower.position[-1])
+    return Trace(
+        position=np.concatenate([upper.position, position[-2::-1]]),
+        force=np.concatenate([upper.force, -lower.force[-2::-1]]),
+        piece=np.concatenate([upper.piece, pieces - 1 - lower.piece[::-1]]),
+        clamp=np.concatenate([upper.clamp, lower.clamp[::-1]]),
+        cut=np.concatenate([upper.cut, lower.cut[::-1]]),
+        strain=np.concatenate([upper.strain, lower.strain[::-1]]),
+    )

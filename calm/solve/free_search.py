@@ -8,8 +8,8 @@ from math import copysign, sqrt
 import numpy as np
 
 from calm.physics.line import Floats
-from calm.physics.march import Cuts
-from calm.physics.state import MarchError, Trace
+from calm.physics.march import NO_CUTS, Cuts
+from calm.physics.state import MarchError
 from calm.solve.free_march import Moving
 from calm.solve.free_root import system_root
 from calm.solve.root import root_near
@@ -50,7 +50,7 @@ def terminal(moving: Moving, angle_step: float) -> tuple[Place, Cuts]:
     """
     plumb = _plumb(moving, angle_step)
     for shares in WAYS:
-        found: tuple[Place, Cuts] | None = (plumb, [])
+        found: tuple[Place, Cuts] | None = (plumb, NO_CUTS)
         for share in shares:
             if found is not None:
                 found = _closed(_sheared(moving, plumb.velocity, share), found[0], angle_step)
@@ -105,9 +105,10 @@ def _mean_current(moving: Moving, place: Place, angle_step: float) -> Floats:
     water, line = moving.water, moving.line
     if moving.plumb:
         return np.array([water.u[0], water.v[0], 0.0])
-    trace, flow = Trace(), moving.flow(place.velocity)
-    moving.meet(flow, place.depth, COARSE * angle_step, trace=trace)
-    piece, clamp, height = np.array(trace.piece), np.array(trace.clamp), np.array(trace.z)
+    flow = moving.flow(place.velocity)
+    trace = moving.meet(flow, place.depth, COARSE * angle_step, record=True).trace
+    assert trace is not None
+    piece, clamp, height = trace.piece, trace.clamp, trace.position[:, 2]
     drag = line.normal_drag[piece] * np.where(line.flexible[piece], trace.cut, 1.0)
     drag[clamp >= 0] = line.clamp_drag[clamp[clamp >= 0]]
     current, _ = water.at(-0.5 * (height[1:] + height[:-1]))

@@ -100,7 +100,7 @@ def _clear_of_it(closing: Closing, root: Root) -> Solution:
 
 
 def _on_the_seabed(closing: Closing, root: Root) -> Solution:
-    if closing.run(root.unknown, root.x, closing.coarse_step).landing is None:
+    if not closing.run(root.unknown, root.x, closing.coarse_step).landed:
         return _solution(closing, closing.clear_of_seabed(root))
     landed = _solution(closing, root)
     if not landed.landed:
@@ -115,10 +115,11 @@ def _on_the_seabed(closing: Closing, root: Root) -> Solution:
 
 def _refuse_deep_below(closed: Closed, depth: float) -> None:
     """Spare a line that hangs far below the seabed the finer cuts."""
-    lowest = min(closed.trace.z)
-    if lowest < -1.01 * depth:
-        piece = closed.trace.piece[max(closed.trace.z.index(lowest) - 1, 0)]
-        raise _grounded(piece, -depth - lowest)
+    height = closed.trace.position[:, 2]
+    lowest = int(np.argmin(height))
+    if height[lowest] < -1.01 * depth:
+        piece = int(closed.trace.piece[max(lowest - 1, 0)])
+        raise _grounded(piece, -depth - float(height[lowest]))
 
 
 def _grounded(piece: int, below: float) -> NoEquilibrium:

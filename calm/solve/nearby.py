@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from calm.errors import NoEquilibrium
 from calm.physics.line import Floats, Line, Water
 from calm.physics.state import MarchError
@@ -48,8 +50,8 @@ class Nearby:
     def node(self, piece: int, clamp: int = -1) -> int:
         """The node at the top of a piece, or at a clamp, in every one of these shapes."""
         if clamp >= 0:
-            return self._trace.clamp.index(clamp)
-        return self._trace.piece.index(piece)
+            return int(np.argmax(self._trace.clamp == clamp))
+        return int(np.argmax(self._trace.piece == piece))
 
     def shape(self, line: Line) -> tuple[Floats, float]:
         """Nodes of a line that differs in its forces alone, and its buoyancy in use.

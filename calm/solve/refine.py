@@ -63,22 +63,18 @@ def refine(closing: Closing, root: Root, polish: Polish | None = None) -> Refine
     for _ in range(MOST_ROUNDS):
         root, cuts = closing.planned(root, 2.0 * step)
         coarse = polish(root, cuts)
-        fine = polish(coarse.root, _halved(cuts))
+        fine = polish(coarse.root, cuts.halved())
         depth_error, tension_error, relative = _errors(closing.line, coarse, fine)
         target = degrees(wanted) ** 2
         excess = max(
             depth_error / (DEPTH_TARGET * target * closing.span),
             relative / (TENSION_TARGET * target),
         )
-        if excess <= 1.0 or fine.end.segments > MOST_SEGMENTS:
+        if excess <= 1.0 or len(fine.end.cuts.lengths) > MOST_SEGMENTS:
             break
         root, step = fine.root, step * max(0.8 / sqrt(excess), 0.2)
     strayed, lost = _abrupt(closing.line, fine, closing.water.level)
     return Refined(fine, depth_error + strayed, tension_error + lost)
-
-
-def _halved(cuts: Cuts) -> Cuts:
-    return [[0.5 * cut for cut in cable for _ in (0, 1)] for cable in cuts]
 
 
 def _errors(line: Line, coarse: Closed, fine: Closed) -> tuple[float, float, float]:
@@ -86,11 +82,10 @@ def _errors(line: Line, coarse: Closed, fine: Closed) -> tuple[float, float, flo
 
     From the nodes both have: those above the touchdown, where there is one.
     """
-    pieces = np.array(coarse.trace.piece[: coarse.hanging])
-    clamps = np.array(coarse.trace.clamp[: coarse.hanging])
+    pieces, clamps = coarse.trace.piece[: coarse.hanging], coarse.trace.clamp[: coarse.hanging]
     halves = np.where(line.flexible[pieces] & (clamps < 0), 2, 1)
     same = np.concatenate([[0], np.cumsum(halves)])
-    if coarse.end.landing is not None:
+    if coarse.end.landed:
         same = same[:-1]
     same = same[same <= fine.hanging]
     position, force = nodes_of(fine.trace)
@@ -113,8 +108,8 @@ def _abrupt(line: Line, fine: Closed, levels: Floats) -> tuple[float, float]:
     only what exceeds their bend is abrupt.
     """
     hanging = fine.hanging
-    piece, clamp = (np.array(column[:hanging]) for column in (fine.trace.piece, fine.trace.clamp))
-    cut = np.array(fine.trace.cut[:hanging])
+    trace = fine.trace
+    piece, clamp, cut = trace.piece[:hanging], trace.clamp[:hanging], trace.cut[:hanging]
     segment = line.flexible[piece] & (clamp < 0) & (cut > 0.0)
     longer = np.maximum(cut[1:], cut[:-1])
     position, force = (nodes[: hanging + 1] for nodes in nodes_of(fine.trace))

@@ -131,6 +131,6 @@ class Solution:
 
 def nodes_of(trace: Trace) -> tuple[Floats, Floats]:
     """Positions relative to the line's end, heights absolute, and forces, (k+1, 3) each."""
-    position = np.column_stack([trace.x, trace.y, trace.z])
+    position = trace.position.copy()
     position[:, :2] -= position[-1, :2]
-    return position, np.array(trace.force)
+    return position, trace.force

@@ -10,7 +10,7 @@ from calm.errors import NoEquilibrium
 from calm.physics.hull import AIR_DENSITY
 from calm.physics.line import Floats, Line, Water
 from calm.physics.march import Cuts, End
-from calm.physics.state import MarchError, Trace
+from calm.physics.state import MarchError
 from calm.solve.closing import Closed, Closing, Root
 from calm.solve.finish import finished
 from calm.solve.refine import refine
@@ -231,12 +231,11 @@ def _frequency(closing: Closing, end: End) -> float:
 
 def _surfaces(closing: Closing, root: Root) -> bool:
     """Whether the line comes near to the surface on the far side of its lowest point."""
-    trace = Trace()
     try:
-        closing.run(root.unknown, root.x, closing.coarse_step, trace=trace)
+        end = closing.run(root.unknown, root.x, closing.coarse_step, record=True)
     except MarchError:
         return root.x < NEARLY_OUT * closing.span
-    height = np.array(trace.z)
+    height = end.trace.position[:, 2]
     return bool(height[: int(np.argmin(height)) + 1].max() > -NEARLY_OUT * closing.span)
 
 

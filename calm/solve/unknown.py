@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container
 from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
 
 from calm.physics.hull import Floating, Riding
 from calm.physics.line import REFERENCE_DENSITY
-from calm.physics.profile import Profile
-from calm.physics.rod import rod_axis
-from calm.physics.state import State
-from calm.physics.track import Load, Rod, Stage, Track
-
-_LEANINGS = 50
+from calm.physics.track import Load, Rod, Track, loads_of
 
 
 @dataclass(frozen=True)
@@ -22,6 +18,21 @@ class Afloat:
     piece: int
     share: float
     slope: float
+
+
+class Placed(NamedTuple):
+    """Where a march begins.
+
+    Attributes
+    ----------
+    depth : of the free end [m]
+    out : length of the head above the surface, from which that depth follows [m]; 0 without
+    afloat : the loads at the surface, by their place among those of the track
+    """
+
+    depth: float
+    out: float
+    afloat: dict[int, Load]
 
 
 @dataclass(frozen=True)
@@ -59,92 +70,72 @@ class Unknown:
             return None
         return self.floating.riding(x)
 
-    def placed(self, x: float, profile: Profile) -> tuple[Track, float]:
-        """Track and depth of the free end [m] for the value x of the unknown."""
+    def placed(self, x: float, gravity: float) -> Placed:
+        """Where the free end is, and the loads at the surface, for the value x of the unknown."""
         if self.afloat is None:
-            return self.track, x
-        track = _with_shares(self.track, self.shares(x))
-        riding = self.riding(x)
-        if riding is None:
-            return track, 0.0
-        track = _as_riding(track, self.afloat, riding, profile.gravity)
-        return track, _depth_of_free_end(track.stages[0], self.afloat, riding, profile)
+            return Placed(x, 0.0, {})
+        shares, riding = self.shares(x), self.riding(x)
+        changed = {}
+        head: Rod | None = None
+        for place, load, part in self._rigid:
+            loaded = load
+            if load.clamp < 0 and load.piece in shares:
+                loaded = _with_share(load, shares[load.piece])
+            if riding is not None and self.afloat in part.pieces:
+                head = part
+                if load.piece < self.afloat:
+                    loaded = _lifted_out(loaded, riding.above, gravity)
+                elif load.clamp < 0 and load.piece == self.afloat:
+                    loaded = _as_riding(loaded, riding)
+            if loaded is not load:
+                changed[place] = loaded
+        out = 0.0
+        if riding is not None and head is not None and head is self.track.stages[0]:
+            *above, own = head.lengths[: head.pieces.index(self.afloat) + 1]
+            out = riding.above * sum(above) + riding.standing * own
+        return Placed(0.0, out, changed)
+
+    @cached_property
+    def _rigid(self) -> list[tuple[int, Load, Rod]]:
+        """The loads of the rods down to the lowest float at the surface, and their places."""
+        lowest = max(self.shares(0.0), default=-1)
+        found, place = [], 0
+        for part in self.track.stages:
+            loads = loads_of(part)
+            if isinstance(part, Rod) and part.pieces[0] <= lowest:
+                found += [(place + i, load, part) for i, load in enumerate(part.loads)]
+            place += sum(isinstance(load, Load) for load in loads)
+        return found
 
     def down_to(self, piece: int) -> Unknown:
         """The question for the part of the line above a float: to bring its top to the surface."""
         stages = self.track.stages
         end = next(i for i, s in enumerate(stages) if isinstance(s, Rod) and piece in s.pieces)
-        return replace(self, track=Track(stages[:end]), goal=0.0, lands=False, part=True)
+        part = replace(self.track, stages=stages[:end])
+        return replace(self, track=part, goal=0.0, lands=False, part=True)
 
 
-def _reloaded(track: Track, pieces: Container[int], change: Callable[[Load], Load]) -> Track:
-    """The track with other loads on the rods that have any of the pieces."""
-    return Track(
-        tuple(
-            replace(stage, loads=tuple(map(change, stage.loads)))
-            if isinstance(stage, Rod) and any(piece in pieces for piece in stage.pieces)
-            else stage
-            for stage in track.stages
-        )
+def _with_share(load: Load, share: float) -> Load:
+    return load._replace(buoyancy=share * load.buoyancy, volume=share * load.volume)
+
+
+def _as_riding(load: Load, riding: Riding) -> Load:
+    """A float with the wind on it and its drag at the surface."""
+    return load._replace(
+        normal_drag=riding.drag * load.normal_drag,
+        tangential_drag=riding.drag * load.tangential_drag,
+        push_east=riding.push[0],
+        push_north=riding.push[1],
     )
-
-
-def _with_shares(track: Track, shares: dict[int, float]) -> Track:
-    def loaded(load: Load) -> Load:
-        if load.clamp >= 0 or load.piece not in shares:
-            return load
-        share = shares[load.piece]
-        return replace(load, buoyancy=share * load.buoyancy, volume=share * load.volume)
-
-    return _reloaded(track, shares, loaded)
-
-
-def _as_riding(track: Track, piece: int, riding: Riding, gravity: float) -> Track:
-    """The track with the wind on the float and its drag, and without water where there is none."""
-
-    def loaded(load: Load) -> Load:
-        if load.piece < piece:
-            return _lifted_out(load, riding.above, gravity)
-        if load.clamp >= 0 or load.piece != piece:
-            return load
-        return replace(
-            load,
-            normal_drag=riding.drag * load.normal_drag,
-            tangential_drag=riding.drag * load.tangential_drag,
-            push_east=riding.push[0],
-            push_north=riding.push[1],
-        )
-
-    return _reloaded(track, (piece,), loaded)
 
 
 def _lifted_out(load: Load, share: float, gravity: float) -> Load:
     """A load with a share of it out of the water: there it is not dragged, nor does it displace."""
     wet = 1.0 - share
-    return replace(
-        load,
+    return load._replace(
         buoyancy=load.buoyancy - share * REFERENCE_DENSITY * gravity * load.volume,
         volume=wet * load.volume,
         normal_drag=wet * load.normal_drag,
         tangential_drag=wet * load.tangential_drag,
         lift=wet * load.lift,
     )
-
-
-def _depth_of_free_end(head: Stage, piece: int, riding: Riding, profile: Profile) -> float:
-    """Depth of the free end that brings the waterline of the float to the surface [m].
-
-    The head of the line leans as its loads have it, and they depend a little on its depth.
-    """
-    if not isinstance(head, Rod) or piece not in head.pieces:
-        return 0.0
-    *above, own = head.lengths[: head.pieces.index(piece) + 1]
-    out = riding.above * sum(above) + riding.standing * own
-    depth = -out
-    for _ in range(_LEANINGS):
-        state = State(0.0, 0.0, -depth, level=profile.interval(depth, 0))
-        following = min(out * rod_axis(head, profile, state)[2], 0.0)
-        if abs(following - depth) <= 1e-14 * out:
-            break
-        depth = following
-    return depth

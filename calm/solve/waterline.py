@@ -29,10 +29,10 @@ class Waterline:
     def moved(self, closed: Closed) -> Cuts | None:
         """The cuts with that node shifted along its cable; None where it need or can not be."""
         trace = closed.trace
-        heights, cut = np.array(trace.z), np.array(trace.cut)
+        heights, cut = trace.position[:, 2], trace.cut
         node = int(np.argmin(np.abs(heights)))
         height = float(heights[node])
-        cable = self._line.flexible[np.array(trace.piece)] & (np.array(trace.clamp) < 0)
+        cable = self._line.flexible[trace.piece] & (trace.clamp < 0)
         if abs(height) <= self._near or not 0 < node < len(cable) or self._moves == MOST_MOVES:
             return None
         if not (cable[node - 1] and cable[node]):
@@ -51,13 +51,8 @@ class Waterline:
 
 def _shifted(cuts: Cuts, segment: int, shift: float) -> Cuts | None:
     """The cuts with one segment longer and the next shorter; None where that is another cable's."""
-    moved = [list(part) for part in cuts]
-    for part in moved:
-        if segment < len(part):
-            if segment + 1 == len(part):
-                return None
-            part[segment] += shift
-            part[segment + 1] -= shift
-            return moved
-        segment -= len(part)
-    return None
+    if segment + 1 in np.cumsum(cuts.counts):
+        return None
+    lengths = cuts.lengths.copy()
+    lengths[segment : segment + 2] += shift, -shift
+    return cuts._replace(lengths=lengths)

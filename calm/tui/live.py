@@ -10,24 +10,26 @@ import os
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 
 from calm.case import Mooring, Result, Tow, TowResult
 from calm.case.memory import Memory
+from calm.case.parts import parts_of
 from calm.checks.assess import OWN, assessment_of, findings_of, stand_of
 from calm.checks.assessment import Situation
 from calm.checks.finding import AS_GIVEN, Finding, State
 from calm.checks.lacking import lacking
 from calm.errors import InputError, NoEquilibrium, Problem, internal_failure
-from calm.files import MooringFile, read_mooring
-from calm.files.document import Document, document_of
+from calm.files import MooringFile, Piece, Place, read_mooring
+from calm.files.document import Document, compose
+from calm.files.editing import Draft, Item
 from calm.files.reader import STAND_IN
 
 UNNAMED = "unnamed.yaml"
 """The path of a text that belongs to no file yet."""
 
 _Figures = tuple[float | None, float | None, float | None, float | None]
-_UNSOLVED: _Figures = (None, None, None, None)
 _NOTHING: tuple[float | None, State | None] = (None, None)
 _GRAVITY = {state: state.severity for state in State}
 
@@ -38,8 +40,7 @@ class Row:
 
     Attributes
     ----------
-    item : index in the `line:` of the file; all pieces of a count or an assembly have the same
-    clamp : index among the clamps of that item, -1 of a piece
+    place : in the line as read
     use, label : as in results
     length : stretched, cut where nothing is solved [m]; None of a clamp, or to be cut to fit
     depth : of the upper end [m], None like all below where nothing is solved
@@ -49,8 +50,7 @@ class Row:
     state : the gravest of its findings; None where there is none
     """
 
-    item: int
-    clamp: int
+    place: Place
     use: str
     label: str
     length: float | None
@@ -102,6 +102,11 @@ class View:
     def is_of(self, text: str, path: Path | None, environment: str | None) -> bool:
         """Whether a text, of the file of a path, was judged in this environment."""
         return (self.text, self.path, self.environment) == (text, _placed(path), environment)
+
+    @cached_property
+    def items(self) -> tuple[Item, ...]:
+        """The items of the text, as written."""
+        return Draft(self.text).items
 
     @property
     def anchored(self) -> bool:
@@ -165,8 +170,7 @@ def judge_fully(view: View) -> View:
         return view
     findings, tighter = tuple(assessment.all_findings()), tuple(assessment.tighter_findings())
     seconds = view.seconds + time.perf_counter() - started
-    document = document_of(str(view.path), view.text)
-    rows = tuple(_rows(document, mooring.file, view.result, (*findings, *tighter)))
+    rows = tuple(_rows(mooring.file, view.result, (*findings, *tighter)))
     return replace(
         view, findings=findings, tighter=tighter, rows=rows, seconds=seconds, complete=True
     )
@@ -174,7 +178,7 @@ def judge_fully(view: View) -> View:
 
 def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
     try:
-        document = document_of(str(view.path), view.text)
+        document = compose(str(view.path), view.text)
     except InputError as error:
         return _wrong(view, error.problems)
     view = replace(view, environments=_variants(document))
@@ -187,18 +191,18 @@ def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
         return _wrong(view, error.problems)
     view = replace(view, file=file, missing=tuple(lacking(file)))
     if "no float" in view.missing:
-        return replace(view, rows=tuple(_rows(document, file, None)))
-    return _solved(view, document, file)
+        return replace(view, rows=tuple(_rows(file, None)))
+    return _solved(view, file)
 
 
-def _solved(view: View, document: Document, file: MooringFile) -> View:
+def _solved(view: View, file: MooringFile) -> View:
     line = Mooring(file, memory=view.memory) if file.tow is None else Tow(file, view.memory)
     try:
         result, failure = line.solve(), None
     except NoEquilibrium as error:
         result, failure = None, error
     findings = () if isinstance(result, TowResult) else tuple(_found(view, file, result, failure))
-    rows = tuple(_rows(document, file, result, findings))
+    rows = tuple(_rows(file, result, findings))
     return replace(view, result=result, failure=failure, findings=findings, rows=rows)
 
 
@@ -225,42 +229,37 @@ def _variants(document: Document) -> tuple[str, ...]:
 
 
 def _rows(
-    document: Document,
     file: MooringFile,
     result: Result | TowResult | None,
     findings: Iterable[Finding] = (),
 ) -> Iterator[Row]:
     """Down the file; with figures where there is a result, and what the findings say of each."""
-    count = len(document.data["line"])
-    items = {document.values["line", item]: item for item in range(count)}
-    figures: dict[str, _Figures] = {}
+    figures: dict[Place, _Figures] = {}
     if result is not None:
-        for row in result.clamps:
-            figures[row.label] = (None, row.depth, row.tension, row.tilt)
+        for clamp in result.clamps:
+            figures[clamp.place] = (None, clamp.depth, clamp.tension, clamp.tilt)
         for row in result.components:
-            figures[row.label] = (row.length, row.depth_top, row.tension, row.tilt)
+            figures[row.place] = (row.length, row.depth_top, row.tension, row.tilt)
     said = _said(findings)
     for piece in file.pieces:
         if piece.use == STAND_IN:
             continue
-        item, unsolved = items[piece.line, piece.column], (piece.length, None, None, None)
-        solved = figures.get(piece.label, unsolved)
-        yield Row(item, -1, piece.use, piece.label, *solved, *said.get(piece.label, _NOTHING))
-        for number, clamp in enumerate(piece.clamps):
-            solved, told = figures.get(clamp.label, _UNSOLVED), said.get(clamp.label, _NOTHING)
-            yield Row(item, number, clamp.use, clamp.label, *solved, *told)
+        for part in parts_of([piece]):
+            length = part.length if isinstance(part, Piece) else None
+            solved = figures.get(part.place, (length, None, None, None))
+            yield Row(part.place, part.use, part.label, *solved, *said.get(part.place, _NOTHING))
 
 
-def _said(findings: Iterable[Finding]) -> dict[str, tuple[float | None, State | None]]:
-    """By label the least margin, as a share of its limit, and the gravest state."""
-    found: dict[str, list[Finding]] = {}
+def _said(findings: Iterable[Finding]) -> dict[Place, tuple[float | None, State | None]]:
+    """By place the least margin, as a share of its limit, and the gravest state."""
+    found: dict[Place, list[Finding]] = {}
     for finding in findings:
-        if finding.component is not None:
-            found.setdefault(finding.component, []).append(finding)
+        if finding.place is not None:
+            found.setdefault(finding.place, []).append(finding)
     return {
-        label: (
+        place: (
             min((each.share for each in own if each.share is not None), default=None),
             max((each.state for each in own), key=_GRAVITY.__getitem__),
         )
-        for label, own in found.items()
+        for place, own in found.items()
     }

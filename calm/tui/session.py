@@ -9,23 +9,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from calm.files import Place
 from calm.files.editing import Draft, History, Item, Kept, WorkingFile
 from calm.tui.standing import Standing
 
 Location = tuple[str | int, ...]
-
-
-@dataclass(frozen=True, order=True)
-class Spot:
-    """A row of the line: an item of the file or, where `clamp` is not -1, what is clamped on it."""
-
-    item: int
-    clamp: int = -1
-
-    @property
-    def is_clamp(self) -> bool:
-        """Whether it is an instrument clamped on the item."""
-        return self.clamp >= 0
 
 
 @dataclass(frozen=True)
@@ -94,15 +82,15 @@ class Session(Standing):
 
     # the line
 
-    def spots(self) -> list[Spot]:
+    def spots(self) -> list[Place]:
         """Every row of the line, clamps below their piece."""
         return [
-            spot
+            Place(number, clamp=clamp)
             for number, item in enumerate(self.draft.items)
-            for spot in (Spot(number), *(Spot(number, clamp) for clamp in range(len(item.clamps))))
+            for clamp in range(-1, len(item.clamps))
         ]
 
-    def item(self, spot: Spot) -> Item:
+    def item(self, spot: Place) -> Item:
         """The item, or clamp, of a row."""
         item = self.draft.items[spot.item]
         return item.clamps[spot.clamp] if spot.is_clamp else item
@@ -118,19 +106,19 @@ class Session(Standing):
             self.history.undo()
         self.do(Draft(text), label)
 
-    def insert(self, spot: Spot | None, values: Mapping[str, str], *, below: bool) -> Spot:
+    def insert(self, spot: Place | None, values: Mapping[str, str], *, below: bool) -> Place:
         """A new piece beside a row; at the top of an empty line."""
         index = 0 if spot is None else spot.item + below
         self.do(self.draft.insert(index, dict(values)), f"add {values['use']}")
-        return Spot(index)
+        return Place(index)
 
-    def clamp(self, spot: Spot, values: Mapping[str, str]) -> Spot:
+    def clamp(self, spot: Place, values: Mapping[str, str]) -> Place:
         """A new instrument on the piece of a row, below the other ones."""
         index = spot.clamp + 1 if spot.is_clamp else len(self.draft.items[spot.item].clamps)
         self.do(self.draft.insert_clamp(spot.item, index, dict(values)), f"clamp {values['use']}")
-        return Spot(spot.item, index)
+        return Place(spot.item, clamp=index)
 
-    def put(self, spot: Spot, values: Mapping[str, str | None], label: str) -> None:
+    def put(self, spot: Place, values: Mapping[str, str | None], label: str) -> None:
         """Set keys of a row; None takes one away."""
         draft = self.draft
         for key, value in values.items():
@@ -140,7 +128,7 @@ class Session(Standing):
                 draft = draft.put(spot.item, key, value)
         self.do(draft, label)
 
-    def delete(self, spots: Iterable[Spot]) -> Spot | None:
+    def delete(self, spots: Iterable[Place]) -> Place | None:
         """Take rows out, a piece with its clamps; the row to go to, None where none is left."""
         chosen = _whole(spots)
         if not chosen:
@@ -151,7 +139,7 @@ class Session(Standing):
         left = self.spots()
         return left[min(first, len(left) - 1)] if left else None
 
-    def duplicate(self, spots: Iterable[Spot]) -> Spot | None:
+    def duplicate(self, spots: Iterable[Place]) -> Place | None:
         """Repeat rows below the last of them; the first of the copies."""
         chosen = _whole(spots)
         if not chosen:
@@ -160,12 +148,12 @@ class Session(Standing):
         label = f"duplicate {self._called(chosen)}"
         if items:
             self.do(self.draft.duplicate(items), label)
-            return Spot(items[-1] + 1)
-        below = Spot(chosen[-1].item, chosen[-1].clamp + 1)
+            return Place(items[-1] + 1)
+        below = Place(chosen[-1].item, clamp=chosen[-1].clamp + 1)
         self.do(self.draft.paste_clamps(below.item, below.clamp, self._clamps(chosen)), label)
         return below
 
-    def move(self, spots: Iterable[Spot], by: int) -> tuple[Spot, ...]:
+    def move(self, spots: Iterable[Place], by: int) -> tuple[Place, ...]:
         """Move rows up (-1) or down (1); where they are then. At the end of the line they stay."""
         chosen = _whole(spots)
         items = [spot.item for spot in chosen if not spot.is_clamp]
@@ -175,25 +163,25 @@ class Session(Standing):
             return self._move_clamp(chosen[0], by)
         return tuple(chosen)
 
-    def _move_items(self, items: list[int], by: int, label: str) -> tuple[Spot, ...]:
+    def _move_items(self, items: list[int], by: int, label: str) -> tuple[Place, ...]:
         limit = len(self.draft.items)
         if items[0] + by < 0 or items[-1] + by >= limit:
-            return tuple(map(Spot, items))
+            return tuple(map(Place, items))
         draft = self.draft
         for index in items if by < 0 else reversed(items):
             draft = draft.move(index, index + by)
         self.do(draft, label)
-        return tuple(Spot(index + by) for index in items)
+        return tuple(Place(index + by) for index in items)
 
-    def _move_clamp(self, spot: Spot, by: int) -> tuple[Spot, ...]:
+    def _move_clamp(self, spot: Place, by: int) -> tuple[Place, ...]:
         to = spot.clamp + by
         if not 0 <= to < len(self.draft.items[spot.item].clamps):
             return (spot,)
         draft = self.draft.move_clamp(spot.item, spot.clamp, to)
         self.do(draft, f"move {_label(self.item(spot))}")
-        return (Spot(spot.item, to),)
+        return (Place(spot.item, clamp=to),)
 
-    def copy(self, spots: Iterable[Spot]) -> int:
+    def copy(self, spots: Iterable[Place]) -> int:
         """Keep rows for pasting; how many."""
         chosen = _whole(spots)
         items = [spot.item for spot in chosen if not spot.is_clamp]
@@ -203,26 +191,26 @@ class Session(Standing):
             self.copied = Copied(clamps=self._clamps(chosen))
         return len(self.copied) if chosen else 0
 
-    def paste(self, spot: Spot | None, *, below: bool) -> Spot | None:
+    def paste(self, spot: Place | None, *, below: bool) -> Place | None:
         """Put what was copied beside a row; the first row of it, None where nothing was."""
         count = len(self.copied)
         label = f"paste {count} row{'s' * (count != 1)}"
         if self.copied.items:
             index = 0 if spot is None else spot.item + below
             self.do(self.draft.paste(index, self.copied.items), label)
-            return Spot(index)
+            return Place(index)
         if not self.copied.clamps or spot is None:
             return None
         first = spot.clamp + below if spot.is_clamp else len(self.draft.items[spot.item].clamps)
         self.do(self.draft.paste_clamps(spot.item, first, self.copied.clamps), label)
-        return Spot(spot.item, first)
+        return Place(spot.item, clamp=first)
 
-    def _clamps(self, chosen: Sequence[Spot]) -> tuple[str, ...]:
+    def _clamps(self, chosen: Sequence[Place]) -> tuple[str, ...]:
         """The text of clamps, of one piece or of several."""
         copied = (self.draft.copy_clamps(spot.item, [spot.clamp]) for spot in chosen)
         return tuple(text for texts in copied for text in texts)
 
-    def _without(self, chosen: Sequence[Spot]) -> Draft:
+    def _without(self, chosen: Sequence[Place]) -> Draft:
         draft = self.draft
         for spot in reversed(chosen):
             if spot.is_clamp:
@@ -230,7 +218,7 @@ class Session(Standing):
         items = [spot.item for spot in chosen if not spot.is_clamp]
         return draft.delete(items) if items else draft
 
-    def _called(self, chosen: Sequence[Spot]) -> str:
+    def _called(self, chosen: Sequence[Place]) -> str:
         return _label(self.item(chosen[0])) if len(chosen) == 1 else f"{len(chosen)} rows"
 
     def put_all(self, changes: Mapping[Location, str | None], label: str) -> None:
@@ -287,7 +275,7 @@ class Session(Standing):
         self.write(kept.text, "recover what was not saved")
 
 
-def _whole(spots: Iterable[Spot]) -> list[Spot]:
+def _whole(spots: Iterable[Place]) -> list[Place]:
     """The rows in order, without clamps whose piece is among them."""
     chosen = sorted(set(spots))
     pieces = {spot.item for spot in chosen if not spot.is_clamp}

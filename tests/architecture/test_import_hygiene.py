@@ -40,13 +40,13 @@ def loaded_by_import(module: str) -> set[str]:
 
 
 def test_the_package_itself_loads_nothing_it_may_not_need() -> None:
-    unwanted = HEAVY | {"pydantic", "ruamel", "rich", "cyclopts"}
+    unwanted = HEAVY | {"pydantic", "yaml", "rich", "cyclopts"}
     assert not unwanted & loaded_by_import("calm")
 
 
 @pytest.mark.parametrize("module", ["calm.physics", "calm.solve"])
 def test_the_numbers_know_only_arrays(module: str) -> None:
-    unwanted = HEAVY | {"pydantic", "ruamel", "rich", "cyclopts"}
+    unwanted = HEAVY | {"pydantic", "yaml", "rich", "cyclopts"}
     modules = loaded_by_import(module)
     assert not unwanted & modules
     above = {"calm.files", "calm.units", "calm.shipped", "calm.case", "calm.report", "calm.cli"}

@@ -101,9 +101,58 @@ def test_none_converged_is_3_and_some_are_counted(calm, write_mooring, heavy, re
     assert "equilibrium" not in done.err
 
 
+def test_implausible_currents_have_no_result_and_are_reported(calm, write_mooring, record, folder):
+    """Fill values that no one marked; one of them above the surface, where it drops out."""
+    text = (folder / record).read_text()
+    text = text.replace("T05:00,100,0.1,0.1", "T05:00,100,-32.768,0.1")
+    text = text.replace("T07:00,0,0.14,0.1", "T07:00,0,0.14,999.9")
+    (folder / "filled.csv").write_text(text)
+    done = calm("batch", write_mooring(), "--currents", "filled.csv", "-o", "r.nc")
+    assert done.code == 0
+    assert "2 of 30 profiles are NaN: 2 without data (2 implausible-current)" in done.err
+    assert "the first at 2024-01-01T05:00, 100 m: 32.768 m/s" in done.err
+    with xarray.open_dataset(folder / "r.nc", engine="h5netcdf") as result:
+        bad = result["status"].values != 0
+        assert np.flatnonzero(bad).tolist() == [5, 7]
+        assert np.isnan(result["knockdown"].values[bad]).all()
+        meanings = result["status"].attrs["flag_meanings"].split()
+        assert meanings[result["status"].values[5]] == "implausible-current"
+    mooring = (folder / "m.yaml").read_text()
+    (folder / "fast.yaml").write_text(
+        mooring.replace("environment:", "environment:\n  maximum_speed: 40 m/s", 1)
+    )
+    done = calm("batch", "fast.yaml", "--currents", "filled.csv", "-o", "fast.nc")
+    assert "1 implausible-current" in done.err
+    assert "the first at 2024-01-01T07:00, 0 m: 999.9 m/s" in done.err
+
+
+def test_a_declination_turns_what_is_magnetic(calm, write_mooring, record, folder):
+    text = (folder / record).read_text()
+    magnetic = text.replace("u[m/s],v[m/s]", "u[m/s magnetic],v[m/s magnetic]")
+    (folder / "magnetic.csv").write_text(magnetic)
+    done = calm("batch", write_mooring(), "--currents", "magnetic.csv", "-o", "r.nc")
+    assert (done.code, done.out) == (2, "")
+    assert "counts from magnetic north; give the `declination` there" in done.err
+    turned = ("--declination", "90 deg")
+    done = calm("batch", "m.yaml", "--currents", record, "-o", "r.nc", *turned)
+    assert done.code == 2
+    assert "so no `declination` is applied" in done.err
+    for name, more in (("r", ()), ("magnetic", turned)):
+        done = calm("batch", "m.yaml", "--currents", f"{name if more else 'record'}.csv",
+                    "-o", f"{name}.nc", *more)  # fmt: skip
+        assert done.code == 0, done.err
+    assert "`u` and `v` counted from magnetic north, turned by 90°" in done.err
+    true, other = (
+        xarray.load_dataset(folder / f"{name}.nc", engine="h5netcdf") for name in ("r", "magnetic")
+    )
+    # what flowed east flows south, to the angle that the solver leaves open
+    assert other["y_top"].values[5:, 0] == pytest.approx(-true["x_top"].values[5:, 0], rel=1e-6)
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [
+        (["-o", "r.nc", "--declination", "12"], "needs a unit: `12 deg`"),
         (["-o", "r.txt"], "ends in .nc or .zarr"),
         (["-o", "nowhere/r.nc"], "no folder"),
         (["-o", "r.nc", "--time", "2024"], "2024"),

@@ -55,6 +55,41 @@ def test_assembly_is_shown(calm):
     assert "glass-17in" in calm("catalog", "show", "glass-cluster-4").out
 
 
+def test_what_follows_from_the_figures_is_shown(calm):
+    # Kn of a sphere: 1/2 x 1025 x 0.5 x pi/4 x 1.25^2 = 314.5 N/(m/s)^2; Cd x area is 0.6136 m^2.
+    shown = calm("catalog", "show", "sphere-steel-1250").out
+    assert "314.5 N/(m/s)²" in shown
+    assert "314.5 N across, 314.5 N along" in shown
+    assert "0.6136 m²" in shown
+    (sphere,) = json.loads(calm("catalog", "show", "sphere-steel-1250", "--json").out)
+    assert sphere["derived"] == {
+        "net_buoyancy": 7000.0,
+        "kn": pytest.approx(314.5, abs=0.05),
+        "kt": pytest.approx(314.5, abs=0.05),
+        "cd_area": pytest.approx(0.6136, abs=5e-5),
+    }
+    assert sphere["same_thing"] == ["sphere-steel-1250"]
+
+
+def test_one_thing_by_several_sources_is_shown_with_the_one_to_use(calm):
+    shown = calm("catalog", "show", "sbe37-clamp").out
+    table = shown[shown.index("the same thing") :]
+    rows = {line.split()[0]: " ".join(line.split()) for line in table.splitlines()[1:]}
+    assert rows["sbe37"].startswith("sbe37 use this -27.46 N 0.05078 m²")
+    assert rows["sbe37-clamp"].startswith("sbe37-clamp -22.69 N 0.1643 m²")
+    assert rows["least"] == "least -29.42 N 0.039 m²"
+    assert rows["most"] == "most -22.69 N 0.1643 m²"
+    assert "(use sbe37)" in " ".join(calm("catalog", "search", "sbe37-clamp").out.split())
+    (found,) = json.loads(calm("catalog", "show", "sbe37-clamp", "--json").out)
+    assert found["prefer"] == "sbe37"
+    assert found["same_thing"] == ["sbe37", "sbe37-clamp", "sbe37-lpo"]
+
+
+def test_sources_of_single_figures_are_shown(calm):
+    shown = " ".join(calm("catalog", "show", "shackle-13-dewey").out.split())
+    assert "working load: Crosby carbon shackles" in shown
+
+
 def test_unknown_ids_are_told_at_once_with_the_nearest(calm):
     done = calm("catalog", "show", "wire-jackted-8", "rcm4", "shakle-13")
     assert done.code == 2
@@ -77,9 +112,30 @@ def test_search_without_a_find(calm):
     assert json.loads(calm("catalog", "search", "unobtainium", "--json").out) == []
 
 
-def test_shipped_catalogue_has_no_finding(calm):
+def test_shipped_catalogue_has_no_finding_and_lists_what_it_lacks(calm):
     done = calm("catalog", "check")
-    assert (done.code, done.out) == (0, "")
+    assert done.code == 0
+    lines = dict(line.split(": ", 1) for line in done.out.splitlines())
+    assert (
+        lines["vacm"] == "gives no mass, working load, breaking load, depth rating, greatest tilt"
+    )
+    assert lines["rcm11"].endswith("searched for and not found: working load, breaking load")
+    assert "shackle-13" not in lines
+    assert "0 findings" in done.err
+    assert "lack figures" in done.err
+
+
+def test_what_is_missing_as_json(calm, mine):
+    found = json.loads(calm("catalog", "check", mine(), "--json").out)
+    assert found == [
+        {
+            "id": "good",
+            "finding": False,
+            "message": "gives no mass, working load, breaking load, depth rating, greatest tilt",
+            "missing": ["mass", "working_load", "breaking_load", "depth_rating", "max_tilt"],
+            "searched": [],
+        }
+    ]
 
 
 def test_finding_gives_exit_code_1(calm, mine):
@@ -88,7 +144,8 @@ def test_finding_gives_exit_code_1(calm, mine):
     assert done.code == 1
     assert done.out.startswith("bad: lifts 9000 N")
     findings = json.loads(calm("catalog", "check", file, "--json").out)
-    assert [finding["id"] for finding in findings] == ["bad"]
+    assert [finding["id"] for finding in findings if finding["finding"]] == ["bad"]
+    assert {finding["id"] for finding in findings if not finding["finding"]} == {"good", "bad"}
     assert calm("catalog", "check", mine()).code == 0
 
 

@@ -235,10 +235,10 @@ def test_a_failure_of_calm_itself_does_not_stop_the_rest(calm, write_mooring, mo
 
     stand_of = assess.stand_of
 
-    def failing(mooring, name):
+    def failing(mooring, name, day):
         if name == "Two":
             raise ValueError("a bug")
-        return stand_of(mooring, name)
+        return stand_of(mooring, name, day)
 
     monkeypatch.setattr(assess, "stand_of", failing)
     files = write_mooring("one.yaml", name="One"), write_mooring("two.yaml", name="Two")

@@ -3,7 +3,8 @@ import os
 
 import pytest
 from jsonschema import Draft202012Validator
-from ruamel.yaml import YAML
+
+from tests.core_yaml import loaded
 
 
 def test_new_prints_a_commented_file(calm):
@@ -70,5 +71,5 @@ def test_new_record_goes_to_a_file(calm):
 def test_schema_accepts_the_starter(calm):
     schema = json.loads(calm("schema").out)
     Draft202012Validator.check_schema(schema)
-    starter = YAML(typ="safe").load(calm("new").out)
+    starter = loaded(calm("new").out)
     assert list(Draft202012Validator(schema).iter_errors(starter)) == []

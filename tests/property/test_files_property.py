@@ -7,11 +7,11 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from ruamel.yaml import YAML
 
 from calm.errors import InputError
 from calm.files import read_mooring
 from calm.units import DIMENSIONS, QuantityError, parse_quantity
+from tests.core_yaml import loaded
 
 GOOD = """\
 name: Good
@@ -162,11 +162,7 @@ def places(data: Any, at: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
     return found
 
 
-PLACES = [
-    (text, place)
-    for text in (GOOD, TOW)
-    for place in places(YAML(typ="safe", pure=True).load(text))
-]
+PLACES = [(text, place) for text in (GOOD, TOW) for place in places(loaded(text))]
 
 KEYS = [
     "use", "kind", "length", "at", "file", "time", "w", "slack", "tow", "fluid", "factor", "model",
@@ -189,7 +185,7 @@ def test_values_of_any_shape(
     environment: str | None,
 ) -> None:
     text, place = text_and_place
-    data = YAML(typ="safe", pure=True).load(text)
+    data = loaded(text)
     around = data
     for part in place[:-1]:
         around = around[part]

@@ -10,6 +10,7 @@ from calm.checks.assess import assessment_of, stand_of
 from calm.checks.finding import AS_GIVEN, State
 from calm.checks.rules import RULES
 from calm.errors import NoEquilibrium
+from calm.files import Place
 from calm.tui.live import judge, judge_fully
 
 LINES = Path(__file__).resolve().parents[2] / "lines"
@@ -75,20 +76,22 @@ def test_a_row_has_the_gravest_state_and_the_least_margin_of_its_findings() -> N
 
 def test_rows_know_their_item_and_clamp() -> None:
     view = judge(WHOLE)
-    assert [(row.item, row.clamp, row.label) for row in view.rows] == [
-        (0, -1, "top"),
-        (1, -1, "wire"),
-        (1, 0, "sbe37"),
-        (2, -1, "glass-17in 1"),
-        (2, -1, "glass-17in 2"),
-        (3, -1, "anchor-wheels-4"),
+    assert [(row.place, row.label) for row in view.rows] == [
+        (Place(0), "top"),
+        (Place(1), "wire"),
+        (Place(1, clamp=0), "sbe37"),
+        (Place(2), "glass-17in 1"),
+        (Place(2, repeat=1), "glass-17in 2"),
+        (Place(3), "anchor-wheels-4"),
     ]
 
 
 def test_an_assembly_is_one_item() -> None:
     own = "components:\n  pack: {kind: assembly, parts: [{use: glass-17in}, {use: shackle-13}]}\n"
     view = judge(line(FLOAT, WIRE, "  - {use: pack, count: 2}\n", ANCHOR) + own)
-    assert [row.item for row in view.rows] == [0, 1, 1, 2, 2, 2, 2, 3]
+    assert [row.place.row.item for row in view.rows] == [0, 1, 1, 2, 2, 2, 2, 3]
+    pieces = [(row.place.repeat, row.place.part) for row in view.rows if row.place.item == 2]
+    assert pieces == [(0, 0), (0, 1), (1, 0), (1, 1)]
 
 
 def test_a_named_environment_is_that_of_run() -> None:

@@ -8,6 +8,7 @@ from math import isfinite, pi
 import pytest
 
 from calm.assemble import drag_of
+from calm.assemble.datasheet import datasheet
 from calm.checks.catalogue import check_catalogue
 from calm.files import Anchor, Assembly, Cable, Catalogue, Chain, Component, Cylinder, Sphere
 
@@ -70,7 +71,11 @@ def test_everything_has_a_name_a_source_and_the_day_it_was_read(catalogue: Catal
 
 def test_sources_name_no_web_address(catalogue: Catalogue) -> None:
     address = re.compile(r"https?:|www\.|\.(com|org|net|ca|ie)\b")
-    assert [id for id, found in catalogue.all().items() if address.search(found.source or "")] == []
+    named = {
+        id: " ".join([found.source or "", *(found.sources or {}).values()])
+        for id, found in catalogue.all().items()
+    }
+    assert [id for id, source in named.items() if address.search(source)] == []
 
 
 def test_every_kind_is_there(components: dict[str, Component]) -> None:
@@ -178,3 +183,93 @@ def test_breaking_loads_exceed_working_loads(components: dict[str, Component]) -
         if found.working_load is not None and found.breaking_load is not None:
             # 3 for the steel sphere, 4 for grade 80 chain, 6 for shackles, 12 for fibre rope
             assert 3.0 <= found.breaking_load / found.working_load <= 15.0, id
+
+
+def test_depth_ratings_are_those_of_things_under_water(components: dict[str, Component]) -> None:
+    for id, found in components.items():
+        if found.depth_rating is not None:
+            assert 100.0 <= found.depth_rating <= 7000.0, id
+
+
+ROPE_STRENGTHS = {
+    "nylon": (100.0, 220.0),
+    "polyester": (100.0, 295.0),
+    "polypropylene": (80.0, 170.0),
+    "HMPE": (900.0, 1600.0),
+    "aramid": (400.0, 1600.0),
+    "steel": (300.0, 1100.0),
+    "galvanised steel": (300.0, 1100.0),
+}
+"""Strength of ropes over the section of their outside diameter [MPa]."""
+
+CHAIN_STRENGTHS = (215.0, 800.0)
+"""Mean stress in both sides of a link at the break [MPa]: long links 220, grade 80 nearly 800."""
+
+
+def test_breaking_loads_go_with_the_section_of_ropes_and_chains(
+    components: dict[str, Component],
+) -> None:
+    judged = 0
+    for id, found in components.items():
+        if found.breaking_load is None:
+            continue
+        if isinstance(found, Chain):
+            least, most = CHAIN_STRENGTHS
+            section = 2.0 * pi / 4 * found.diameter**2
+        elif isinstance(found, Cable):
+            least, most = ROPE_STRENGTHS[(found.material or "").split(" parallel")[0]]
+            section = pi / 4 * found.diameter**2
+        else:
+            continue
+        assert least <= found.breaking_load / section / 1e6 <= most, id
+        judged += 1
+    assert judged >= 150
+
+
+@pytest.mark.parametrize(
+    ("family", "least", "most"),
+    # Breaking load over the square of the size in the id [N/mm^2]; a pair has that of its weaker.
+    [("shackle", 340.0, 1100.0), ("link-end", 500.0, 900.0), ("link-pear", 280.0, 480.0)],
+)
+def test_breaking_loads_go_with_the_size_of_connectors(
+    components: dict[str, Component], family: str, least: float, most: float
+) -> None:
+    sized = re.compile(rf"{family}(?:-[a-z]+)*-(\d+)(?:-[a-z]+)?")
+    judged = 0
+    for id, found in components.items():
+        size = sized.fullmatch(id)
+        if size and found.breaking_load is not None:
+            assert least <= found.breaking_load / float(size[1]) ** 2 <= most, id
+            judged += 1
+    assert judged >= 8
+
+
+def test_what_has_a_mass_weighs_less_in_water(components: dict[str, Component]) -> None:
+    for id, found in components.items():
+        volume = found.displaced_volume
+        if found.mass is not None and volume is not None:
+            assert volume >= 0.0, id
+            # 11 340 kg/m^3 is lead; a volume this small is a figure to few digits
+            assert found.mass <= 11_340.0 * volume or found.mass < 0.05, id
+
+
+def test_what_is_preferred_is_much_the_same_thing(catalogue: Catalogue) -> None:
+    preferring = {id: found for id, found in catalogue.all().items() if found.prefer}
+    assert len(preferring) >= 40
+    for id, found in preferring.items():
+        assert found.prefer
+        own, other = (datasheet(each, catalogue) for each in (found, catalogue.get(found.prefer)))
+        assert own and other, id
+        assert own.net_buoyancy == pytest.approx(other.net_buoyancy, rel=0.45), id
+
+
+def test_figures_of_one_standard_are_the_same_wherever_they_stand(
+    components: dict[str, Component],
+) -> None:
+    # 2 t and 3.25 t of working load by Crosby and RR-C-271, six times that at the break
+    for id in ("shackle-13", "shackle-13-dewey", "shackle-13-ios"):
+        assert components[id].working_load == pytest.approx(2000 * 9.80665, rel=1e-3)
+        assert components[id].breaking_load == pytest.approx(12000 * 9.80665, rel=1e-3)
+    # DIN 763: 13 mm breaks at 63 kN; EN 818-3 grade 4: 10 mm carries 1.6 t
+    assert components["chain-long-13"].breaking_load == 63e3
+    assert components["chain-short-g40-10"].working_load == pytest.approx(15.69e3)

@@ -121,15 +121,15 @@ def pass_singly(s: Floats, water: Tables, course: Course, stage: int) -> None:
         if s[lane.BUSY + i] == 0.0 or lost(s, i):
             continue
         state = state_of(s, water, i)
+        x, y, z, fx, fy, fz, _, _ = state
         cut, each = s[lane.CUT + i], s[lane.PER_METRE + i]
         below, strain = pass_segment(
             cable, course.knots, course.vibration, water.sea, state, cut, PASSES
         )
-        per = each / (1.0 + strain)
-        s[lane.TX + i] = per * (below.x - state.x)
-        s[lane.TY + i] = per * (below.y - state.y)
-        s[lane.TZ + i] = below.tz
-        s[lane.QX + i] = each * (below.fx - state.fx)
-        s[lane.QY + i] = each * (below.fy - state.fy)
-        s[lane.QZ + i] = each * (below.fz - state.fz)
         take(s, water, i, below)
+        per = each / (1.0 + strain)
+        s[lane.TX + i], s[lane.TY + i] = per * (s[lane.X + i] - x), per * (s[lane.Y + i] - y)
+        s[lane.TZ + i] = per * (s[lane.Z + i] - z)
+        s[lane.QX + i] = each * (s[lane.FX + i] - fx)
+        s[lane.QY + i] = each * (s[lane.FY + i] - fy)
+        s[lane.QZ + i] = each * (s[lane.FZ + i] - fz)

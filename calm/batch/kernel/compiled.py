@@ -1,78 +1,63 @@
-"""Compiling the kernel: once a machine, where its cache folder can be written."""
+"""Compiling the kernel, and the laws into it: once a machine, where its cache can be written."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
-from types import FunctionType
+from pathlib import Path
 from typing import Any
 
 import numba
-import numpy as np
 
-from calm.physics.compiled import cache_folder
+from calm.physics import compiled
 
 FLAGS = {"contract", "nsz", "arcp"}
 """Liberties with arithmetic. Not with NaN, which tells a lane that has failed, nor with the order
 of sums: it might be another in the first lanes than in the last, and their digits with it."""
 
-OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": FLAGS, "_nrt": False}
-ALONE: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": FLAGS, "_nrt": False}
+"""Nothing is allocated by the kernel, so that arrays need not be counted when they are passed on:
+that takes as long as a segment."""
+
+Function = Callable[..., Any]
 
 
 @cache
-def called(function: Callable[..., Any]) -> Any:
-    return numba.njit(_clone(function), **OPTIONS, **ALONE)
-
-
-def _clone(function):
-    names = {**function.__globals__}
-    for name in function.__code__.co_names:
-        value = names.get(name)
-        if isinstance(value, FunctionType) and value.__module__.startswith("calm."):
-            names[name] = called(value)
-        elif isinstance(value, tuple) and value and all(type(x) is float for x in value):
-            names[name] = np.array(value)
-    clone = FunctionType(
-        function.__code__, names, function.__name__, function.__defaults__, function.__closure__
+def called(function: Function) -> Any:
+    """A function compiled into those that call it."""
+    return numba.njit(
+        compiled.clone(function, called),
+        nogil=True,
+        no_cpython_wrapper=True,
+        no_cfunc_wrapper=True,
+        **OPTIONS,
     )
-    clone.__module__, clone.__qualname__ = function.__module__, function.__qualname__
-    return clone
 
 
 @cache
-def entry(function):
-    return _kept(numba.njit, _clone(function), **OPTIONS)
+def entry(function: Function) -> Any:
+    """A function that is called from outside: compiled, and kept for the next process."""
+    options = {"nogil": True, **OPTIONS}
+    return compiled.kept(numba.njit, compiled.clone(function, called), cache_folder(), **options)
 
 
-def by_address(function, *arguments):
-    return _by_address(function)(*arguments)
+def by_address(function: Function, *arguments: Any) -> Any:
+    """A function for arguments of some types, compiled by itself and called by its address.
+
+    Those that call it are not compiled anew with it, which would take as long for each.
+    """
+    types = tuple(numba.typeof(argument) for argument in arguments)
+    return _by_address(function, numba.void(*types))
 
 
 @cache
-def _by_address(function):
-    found = []
+def _by_address(function: Function, signature: Any) -> Any:
+    def compiler(clone: Function, **options: Any) -> Any:
+        return numba.cfunc(signature, **options)(clone)
 
-    def of(*arguments):
-        if not found:
-            signature = numba.void(*(numba.typeof(a) for a in arguments))
-            options = {k: v for k, v in OPTIONS.items() if k != "nogil"}
-            found.append(
-                _kept(lambda f, **o: numba.cfunc(signature, **o)(f), _clone(function), **options)
-            )
-        return found[0]
-
-    return of
+    return compiled.kept(compiler, compiled.clone(function, called), cache_folder(), **OPTIONS)
 
 
-def _kept(compiler, function, **options):
-    folder = cache_folder()
-    if folder is None:
-        return compiler(function, **options)
-    settings: Any = numba.config
-    chosen = settings.CACHE_DIR
-    settings.CACHE_DIR = str(folder)  # read as the function is decorated
-    try:
-        return compiler(function, cache=True, **options)
-    finally:
-        settings.CACHE_DIR = chosen
+def cache_folder() -> Path | None:
+    """Where the compiled kernel is kept: see `calm.physics.compiled`."""
+    return compiled.cache_folder("kernel", Path(__file__).parent)

@@ -116,18 +116,17 @@ def look_up(s: Floats, water: Tables) -> None:
 
 def state_of(s: Floats, water: Tables, i: int) -> State:
     """Where a lane stands."""
-    return State(
-        s[X + i], s[Y + i], s[Z + i], s[FX + i], s[FY + i], s[FZ + i], s[TZ + i], water.interval[i]
-    )
+    at = water.interval[i]
+    return s[X + i], s[Y + i], s[Z + i], s[FX + i], s[FY + i], s[FZ + i], s[TZ + i], at
 
 
 def take(s: Floats, water: Tables, i: int, state: State) -> None:
-    """Put a lane where a segment or clamp of its own has brought it."""
-    s[X + i], s[Y + i], s[Z + i] = state.x, state.y, state.z
-    s[FX + i], s[FY + i], s[FZ + i] = state.fx, state.fy, state.fz
-    water.interval[i] = state.level
-    s[LOWEST + i] = min(s[LOWEST + i], state.z)
-    s[HIGHEST + i] = max(s[HIGHEST + i], state.z)
+    """Put a lane where a segment of its own has brought it."""
+    x, y, z, fx, fy, fz, tz, at = state
+    s[X + i], s[Y + i], s[Z + i], s[TZ + i] = x, y, z, tz
+    s[FX + i], s[FY + i], s[FZ + i] = fx, fy, fz
+    water.interval[i] = at
+    s[LOWEST + i], s[HIGHEST + i] = min(s[LOWEST + i], z), max(s[HIGHEST + i], z)
 
 
 def lost(s: Floats, i: int) -> bool:

@@ -5,18 +5,16 @@ from __future__ import annotations
 from math import sqrt
 
 from calm.batch.kernel import lane
-from calm.batch.kernel.lane import LANES, Tables, look_up, lost, state_of, take
+from calm.batch.kernel.lane import LANES, Tables, look_up, lost
 from calm.batch.kernel.layout import Way
-from calm.physics import rod
 from calm.physics.line import REFERENCE_DENSITY, Floats
-from calm.physics.rod import load_force, load_lift, speed_across
+from calm.physics.profile import viscosity_at
+from calm.physics.rod import load_force, load_lift, load_variation, speed_across
 from calm.physics.track import Load
 
 IN_WATER, AFLOAT, ABOVE_FLOAT = range(3)
 """Where a load is while the float is at the surface: below, the float itself, or out of the water
 above it by some share."""
-
-pass_plain_clamp = rod.pass_clamp
 
 
 def load_in_lane(s: Floats, i: int, load: Load, place: int, gravity: float) -> Load:
@@ -90,22 +88,21 @@ def add_load(s: Floats, load: Load, place: int, gravity: float) -> None:
 
 def pass_clamp(s: Floats, water: Tables, way: Way, stage: int) -> None:
     """Add an instrument clamped on a cable."""
-    first = way.course.stages[stage].first
-    if way.course.loads[first].diameter > 0.0:
-        for i in range(LANES):
-            if s[lane.BUSY + i] > 0.0 and not lost(s, i):
-                state = state_of(s, water, i)
-                take(
-                    s, water, i, pass_plain_clamp(way.course.loads[first], water.sea, state)
-                )
-        return
-    load = in_registers(way.course.loads[first])
+    load = in_registers(way.course.loads[way.course.stages[stage].first])
     for i in range(LANES):
         s[lane.DEPTH + i] = -s[lane.Z + i]
+        s[lane.C + i] = 1.0
     look_up(s, water)
+    if load.diameter > 0.0:
+        for i in range(LANES):
+            if s[lane.BUSY + i] > 0.0 and not lost(s, i):
+                viscosity = viscosity_at(water.sea, s[lane.DEPTH + i])
+                u, v, w = s[lane.U + i], s[lane.V + i], s[lane.W + i]
+                s[lane.C + i] = load_variation(load, viscosity, u, v, w, 0.0, 0.0, -1.0)
     for i in range(LANES):
         u, v, w, density = s[lane.U + i], s[lane.V + i], s[lane.W + i], s[lane.DENSITY + i]
-        qx, qy, qz = load_force(load, 1.0, u, v, w, density, water.sea.gravity, 0.0, 0.0, -1.0)
+        varied = s[lane.C + i]
+        qx, qy, qz = load_force(load, varied, u, v, w, density, water.sea.gravity, 0.0, 0.0, -1.0)
         s[lane.FX + i] += qx
         s[lane.FY + i] += qy
         s[lane.FZ + i] += qz

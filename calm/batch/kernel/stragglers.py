@@ -13,6 +13,7 @@ from calm.case import Mooring
 from calm.case.measure import clamps_of, components_of
 from calm.physics.line import Floats, Water
 
+
 def known_levels(depth: Floats, u: Floats, v: Floats, w: Floats) -> NDArray[np.intp]:
     """Indices of the levels with a value, at or below the surface, from it down."""
     known = np.isfinite(u) & np.isfinite(v) & np.isfinite(w) & np.isfinite(depth) & (depth >= 0.0)

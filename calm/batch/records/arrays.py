@@ -9,7 +9,7 @@ from calm.batch.records.record import RULES, Levels, Record
 from calm.errors import InputError, Problem
 from calm.files.current_dataset import CurrentArrays, understand
 from calm.files.current_netcdf import open_current, reading
-from calm.files.current_place import Place
+from calm.files.current_terms import Terms
 
 AHEAD = 16_000_000
 """Bytes that are read together where a file has compressed them together."""
@@ -21,15 +21,13 @@ class ArrayRecord(Record):
     Parameters and errors are those of `open_record`.
     """
 
-    def __init__(
-        self, path: Path, seabed: float, at: Place | None, period: Period | None, every: int
-    ) -> None:
+    def __init__(self, path: Path, terms: Terms, period: Period | None, every: int) -> None:
         self._path = path
         with reading(path):
             self._dataset = open_current(path)
         try:
             with reading(path):
-                self._current = understand(self._dataset, seabed, at)
+                self._current = understand(self._dataset, terms)
             times = self._current.times
             if times is None:
                 message = "has no times: it is one profile, for `calm run`"
@@ -39,7 +37,13 @@ class ArrayRecord(Record):
             self._dataset.close()
             raise
         self.time = times[self._index]
-        self.notes = (*chosen, *self._current.notices, *self._current.rules, *RULES)
+        self.notes = (
+            *chosen,
+            *self._current.notices,
+            *self._current.turned,
+            *self._current.rules,
+            *RULES,
+        )
         self.source = {"file": path.name, **self._current.source}
         self._ahead: tuple[int, int, CurrentArrays] | None = None
 

@@ -19,6 +19,7 @@ from calm.files.current_csv import (
     is_content,
     read_csv_header,
 )
+from calm.files.current_terms import Terms
 from calm.files.times import TimeChoiceError, parse_time
 from calm.physics.line import Floats
 
@@ -35,7 +36,8 @@ class CsvRecord(Record):
     numbers stand in a file of the system's temporary folder until the record is closed.
     """
 
-    def __init__(self, path: Path, period: Period | None, every: int) -> None:
+    def __init__(self, path: Path, terms: Terms, period: Period | None, every: int) -> None:
+        self._terms = terms
         self._kept = tempfile.TemporaryFile()  # noqa: SIM115 (until it is closed)
         try:
             header = self._read(path)
@@ -44,7 +46,7 @@ class CsvRecord(Record):
             self._kept.close()
             raise
         self.time = self._times[self._index]
-        self.notes = (*chosen, *RULES)
+        self.notes = (*chosen, *self._turned, *RULES)
         self.source = {"file": path.name, "columns": ", ".join(header.columns)}
 
     def _read(self, path: Path) -> CsvHeader:
@@ -67,7 +69,7 @@ class CsvRecord(Record):
         if not header.timed:
             message = "has no column `time`: it is one profile, for `calm run`"
             raise InputError([Problem(str(path), first[0], 1, message)])
-        reader = RowReader(header)
+        reader = RowReader(header, self._terms)
         problems: list[Problem] = []
         times: list[np.datetime64] = []
         counts: list[int] = []
@@ -91,7 +93,7 @@ class CsvRecord(Record):
         self._rows = np.empty((0, COLUMNS))
         if self._first[-1]:
             self._rows = np.memmap(self._kept, np.float64, "r", shape=(self._first[-1], COLUMNS))
-        self._has_w = reader.has_w
+        self._has_w, self._turned = reader.has_w, reader.turned
         return header
 
     def _put_by(self, rows: Floats) -> None:

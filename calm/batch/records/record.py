@@ -14,6 +14,7 @@ from calm.batch.records.choice import Period
 from calm.errors import InputError, Problem
 from calm.files.current_file import holds_arrays
 from calm.files.current_place import Place
+from calm.files.current_terms import Terms
 from calm.physics.line import Floats
 
 Levels = tuple[Floats, Floats, Floats, Floats | None]
@@ -96,6 +97,7 @@ def open_record(
     *,
     seabed: float,
     at: Place | None = None,
+    declination: float | None = None,
     time: Period | None = None,
     every: int = 1,
 ) -> Record:
@@ -105,6 +107,7 @@ def open_record(
     ----------
     seabed : depth of the water [m], where heights above the seabed begin
     at : latitude and longitude whose column is wanted, where there are several
+    declination : turns what the record says counts from magnetic north [degrees], east positive
     time : first and last time, see `parse_period`
     every : take one profile in so many
 
@@ -119,10 +122,11 @@ def open_record(
         raise InputError([Problem(str(path), 0, 0, "no such file")])
     if not (path.is_file() or path.is_dir()):
         raise InputError([Problem(str(path), 0, 0, "is not a regular file")])
+    terms = Terms(water_depth=seabed, place=at, declination=declination)
     if holds_arrays(path):
         from calm.batch.records.arrays import ArrayRecord
 
-        return ArrayRecord(path, seabed, at, time, every)
+        return ArrayRecord(path, terms, time, every)
     from calm.batch.records.csv import CsvRecord
 
-    return CsvRecord(path, time, every)
+    return CsvRecord(path, terms, time, every)

@@ -9,6 +9,8 @@ import numpy as np
 
 from calm.errors import Problem
 from calm.files.current_csv import CsvHeader, CsvRow
+from calm.files.current_terms import DEEPEST, Terms
+from calm.files.tables import heading, magnetic_columns, turned_notices
 from calm.physics.line import Floats
 from calm.units import QuantityError, unit_factor
 
@@ -16,9 +18,8 @@ COLUMNS = 4
 """Depth [m], u, v and w [m/s]."""
 
 _BLANK = re.compile(r",[ \t]*(?=,|$)", re.MULTILINE)
-_DIMENSIONS = {"depth": "length", "toward": "angle"}
-_PLAIN = ({"depth", "u", "v"}, {"depth", "u", "v", "w"}, {"depth", "speed", "toward"},
-          {"depth", "speed", "toward", "w"})  # fmt: skip
+_DIMENSIONS = {"depth": "length", "toward": "angle", "from": "angle"}
+_PLAIN = ({"depth", "u", "v"}, {"depth", "speed", "toward"}, {"depth", "speed", "from"})
 
 Lines = Sequence[tuple[int, str]]
 """Lines of a file without their ends, each with its number."""
@@ -31,10 +32,17 @@ class RowReader:
     any other case profile by profile, as `calm run` reads one, which finds the mistakes.
     """
 
-    def __init__(self, header: CsvHeader) -> None:
-        self._header = header
-        self._factors = _factors(header.columns)
-        self.has_w = any(_name(column) == "w" for column in header.columns)
+    def __init__(self, header: CsvHeader, terms: Terms) -> None:
+        self._header, self._terms = header, terms
+        plain, magnetic = magnetic_columns(header.columns)
+        agreed = bool(magnetic) == (terms.declination is not None) and magnetic not in (
+            {"u"},
+            {"v"},
+        )
+        self._factors = _factors(plain) if agreed else None  # otherwise the mistake is found
+        self._turn = terms.declination or 0.0
+        self.turned = turned_notices(header.columns, terms)
+        self.has_w = any(_name(column) == "w" for column in plain)
 
     def read(self, profiles: Sequence[Lines], problems: list[Problem]) -> tuple[Floats, list[int]]:
         """The rows of some profiles, one after the other, and how many each has.
@@ -66,20 +74,20 @@ class RowReader:
         values = {
             name: cells[:, j] * factor for j, (name, factor) in enumerate(self._factors.items())
         }
-        rows = _components(values)
+        rows = _components(values, self._turn)
         return rows if _possible(values, rows, counts) else None
 
     def _one(self, lines: Lines, problems: list[Problem]) -> Floats:
         rows = [CsvRow(number, line.split(",")) for number, line in lines]
         known = self._header.without_gaps(rows)
-        table = self._header.profile(known, problems) if known else None
+        table = self._header.profile(known, problems, self._terms) if known else None
         if table is None:
             return np.empty((0, COLUMNS))
         return np.column_stack([table.depth, table.u, table.v, table.w])
 
 
 def _name(column: str) -> str:
-    return re.split(r"[\[ ]", column, maxsplit=1)[0]
+    return heading(column)[0].lower()
 
 
 def _factors(columns: Sequence[str]) -> dict[str, float] | None:
@@ -88,21 +96,26 @@ def _factors(columns: Sequence[str]) -> dict[str, float] | None:
     for column in columns:
         name = _name(column)
         dimension = _DIMENSIONS.get(name, "speed")
-        unit = column.removeprefix(name).strip("[] ")
+        unit = heading(column)[1]
         try:
             factors[name] = unit_factor(unit, dimension) if unit else np.nan
         except QuantityError:
             return None
-    plain = set(factors) in _PLAIN and len(factors) == len(columns)
+    plain = set(factors) - {"w"} in _PLAIN and len(factors) == len(columns)
     return factors if plain and all(np.isfinite(list(factors.values()))) else None
 
 
-def _components(values: dict[str, Floats]) -> Floats:
-    """Depth, u, v and w, whatever way the current is given."""
+def _components(values: dict[str, Floats], turn: float) -> Floats:
+    """Depth, u, v and w, whatever way the current is given, turned clockwise [degrees]."""
     w = values.get("w", np.zeros_like(values["depth"]))
     if "u" in values:
-        return np.column_stack([values["depth"], values["u"], values["v"], w])
-    angle = np.radians(values["toward"])
+        u, v = values["u"], values["v"]
+        if turn:
+            sine, cosine = np.sin(np.radians(turn)), np.cos(np.radians(turn))
+            u, v = u * cosine + v * sine, v * cosine - u * sine
+        return np.column_stack([values["depth"], u, v, w])
+    direction = values["from"] + 180.0 if "from" in values else values["toward"]
+    angle = np.radians(direction + turn)
     speed = values["speed"]
     return np.column_stack([values["depth"], speed * np.sin(angle), speed * np.cos(angle), w])
 
@@ -111,9 +124,13 @@ def _possible(values: dict[str, Floats], rows: Floats, counts: list[int]) -> boo
     """Whether a reading row by row would find no mistake."""
     known = ~np.isnan(rows).any(axis=1)
     depth = values["depth"]
-    if not (np.isfinite(depth) & (depth >= 0)).all() or np.isinf(rows).any():
+    if not (np.isfinite(depth) & (depth >= 0) & (depth <= DEEPEST)).all() or np.isinf(rows).any():
         return False
     if "speed" in values and (values["speed"][known] < 0).any():
+        return False
+    if any(
+        (np.abs(values[way][known]) > 360.0).any() for way in ("toward", "from") if way in values
+    ):
         return False
     profile = np.repeat(np.arange(len(counts)), counts)[known]
     same = profile[1:] == profile[:-1]

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from ruamel.yaml.error import YAMLError
-
 from calm.errors import InputError, Problem
 from calm.files import document
 from calm.files.composition import compose
@@ -72,10 +70,7 @@ class Draft:
 
     @cached_property
     def _root(self) -> Node | None:
-        try:
-            composition = compose(self.text)
-        except (YAMLError, ValueError, IndexError, RecursionError):
-            return None
+        composition = compose(self.text)
         root = composition.root
         return None if root is None or composition.refusals or root.kind != "mapping" else root
 
@@ -85,7 +80,7 @@ class Draft:
         if self._root is not None:
             return ()
         try:
-            document.compose("", self.text.removeprefix("\ufeff"))
+            document.compose("", self.text)
         except InputError as error:
             return error.problems
         raise AssertionError("a text that can be read has nodes")

@@ -5,8 +5,6 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from ruamel.yaml.error import YAMLError
-
 from calm.files.composition import compose
 from calm.files.editing.layout import Layout, Value, Wording, inline
 from calm.files.editing.lists import Items, Slot
@@ -87,10 +85,7 @@ def snippet_of(slot: Slot, node: Node, items: Items) -> str:
 
 def read_snippet(snippet: str) -> Wording | None:
     """The item that a text as that of `snippet_of` is; None where it is none."""
-    try:
-        composition = compose(snippet)
-    except (YAMLError, ValueError, IndexError, RecursionError):
-        return None
+    composition = compose(snippet)
     root = composition.root
     if root is None or composition.refusals or (root.kind, root.style) != ("sequence", "block"):
         return None

@@ -33,6 +33,7 @@ CHECKS_HEADER = (
     "message",
     "remedy",
     "source",
+    "reason",
 )
 """First row of `checks_csv`; value, limit and margin are in the unit of their row."""
 
@@ -86,6 +87,7 @@ def _finding(finding: Finding) -> Sequence[object]:
         finding.message,
         finding.remedy,
         finding.source,
+        None if finding.accept is None else finding.accept.reason,
     )
 
 

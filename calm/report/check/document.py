@@ -10,6 +10,7 @@ from calm.checks.finding import worst_state
 
 if TYPE_CHECKING:
     from calm.checks.assessment import Assessment, Situation
+    from calm.checks.finding import Finding
 
 
 def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
@@ -18,15 +19,21 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
     Returns
     -------
     dict
-        `state`, the worst there is; `findings`, and as `tighter` those of other situations that
-        leave less margin; of each mooring by its name `launch`, `recovery`, `backup`, `inventory`;
-        and `situations`, what was solved of each mooring in each environment.
+        `state`, the worst there is; what is `accepted`, and why; `findings`, and as `tighter` those
+        of other situations that leave less margin; of each mooring by its name `launch`,
+        `recovery`, `backup`, `inventory`; and `situations`, what was solved of each mooring in
+        each environment.
     """
     from calm.version import __version__
 
     return {
         "calm": __version__,
         "state": worst_state(each.state for each in assessments),
+        "accepted": [
+            _accepted(each.name, finding)
+            for each in assessments
+            for finding in each.accepted_findings()
+        ],
         "findings": [finding.to_dict() for each in assessments for finding in each.all_findings()],
         "tighter": [
             finding.to_dict() for each in assessments for finding in each.tighter_findings()
@@ -43,6 +50,20 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
         "recovery": {each.name: _recovery(each) for each in assessments},
         "backup": {each.name: [asdict(one) for one in each.backup] for each in assessments},
         "inventory": {each.name: [asdict(one) for one in each.inventory] for each in assessments},
+    }
+
+
+def _accepted(mooring: str, finding: Finding) -> dict[str, Any]:
+    accept = finding.accept
+    assert accept is not None
+    return {
+        "mooring": mooring,
+        "rule": finding.rule,
+        "component": finding.component,
+        "reason": accept.reason,
+        "by": accept.by,
+        "date": accept.date,
+        "until": accept.until,
     }
 
 

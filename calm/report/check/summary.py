@@ -56,7 +56,7 @@ def worst_by_rule(assessment: Assessment) -> tuple[Worst, ...]:
 
 def worst_by_part(findings: Iterable[Finding]) -> list[Finding]:
     """The worst finding of each rule on each component, the gravest first."""
-    groups = _groups(findings, lambda each: (each.rule, each.component))
+    groups = _groups(findings, lambda each: (each.rule, each.place))
     return sorted((min(group, key=_rank) for group in groups), key=_rank)
 
 
@@ -169,7 +169,7 @@ def _judged(worst: Worst | None) -> Cell:
         return Cell("–")
     finding = worst.finding
     detail = " ".join(filter(None, (margin_of(finding), finding.component)))
-    return Cell(finding.state.value, _with_unknown(detail, worst.unknown, finding), finding.state)
+    return Cell(finding.state.value, _with_unknown(detail, worst.unknown), finding.state)
 
 
 def _of_column(section: Section, column: str) -> Cell:
@@ -179,12 +179,12 @@ def _of_column(section: Section, column: str) -> Cell:
     finding = min((each.finding for each in here), key=_rank)
     detail = f"{RULES[finding.rule].title} {margin_of(finding)}".rstrip()
     missing = sum(each.unknown for each in here)
-    return Cell(finding.state.value, _with_unknown(detail, missing, finding), finding.state)
+    return Cell(finding.state.value, _with_unknown(detail, missing), finding.state)
 
 
-def _with_unknown(detail: str, count: int, finding: Finding) -> str:
-    """The detail, and how many findings are unknown where the state does not tell."""
-    return f"{detail}; {count} unknown" if count and finding.state is not State.UNKNOWN else detail
+def _with_unknown(detail: str, count: int) -> str:
+    """The detail, and how many findings are unknown."""
+    return "; ".join(filter(None, (detail, f"{count} unknown" if count else "")))
 
 
 def unknown_count(findings: Iterable[Finding]) -> int:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import accumulate
 from typing import TYPE_CHECKING
 
-from calm.files import Body, Cylinder, Sphere
+from calm.files import Body, Cylinder, Place, Sphere
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
@@ -29,7 +29,7 @@ class Levels:
     lengths, depths : tuple of float
         Cut length of each piece, and depth of its upper end [m].
     clamps : mapping
-        Depth of each clamped instrument by its label [m].
+        Depth of each clamped instrument [m].
     surface : bool
         Whether the first piece floats at the surface.
     note : str
@@ -38,7 +38,7 @@ class Levels:
 
     lengths: tuple[float, ...]
     depths: tuple[float, ...]
-    clamps: Mapping[str, float]
+    clamps: Mapping[Place, float]
     surface: bool
     note: str
 
@@ -52,7 +52,7 @@ def levels_of(file: MooringFile, result: Result | TowResult | None) -> Levels:
         return Levels(
             tuple(float(length) for length in result.components.cut_length),
             tuple(float(depth) for depth in result.components.depth_top),
-            {clamp.label: clamp.depth for clamp in result.clamps},
+            {clamp.place: clamp.depth for clamp in result.clamps},
             result.type == "surface",
             _SOLVED,
         )
@@ -62,7 +62,7 @@ def levels_of(file: MooringFile, result: Result | TowResult | None) -> Levels:
     if surface:
         depths = (math.nan,) * len(depths)
     clamps = {
-        clamp.label: depth + clamp.at
+        clamp.place: depth + clamp.at
         for piece, depth in zip(file.pieces, depths, strict=True)
         for clamp in piece.clamps
     }

@@ -163,7 +163,7 @@ def _part(cells: _Cells, levels: Levels, piece: Piece, length: float, depth: flo
     clamps = tuple(
         Clamped(
             sign_of(clamp.use, clamp.label, clamp.component),
-            _row(clamp, cells.at(levels.clamps[clamp.label])),
+            _row(clamp, cells.at(levels.clamps[clamp.place])),
         )
         for clamp in sorted(piece.clamps, key=lambda clamp: clamp.at)
     )

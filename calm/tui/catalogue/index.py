@@ -9,7 +9,7 @@ from functools import cached_property
 
 from calm.errors import InputError
 from calm.files.catalogue import FAMILY_ROLES, Catalogue, Entry
-from calm.files.document import document_of
+from calm.files.document import compose
 from calm.files.section import Section
 
 _ROLES = {"cable": "line", "chain": "line", "anchor": "anchor"}
@@ -50,7 +50,7 @@ class Index:
     def of(cls, catalogue: Catalogue, text: str) -> Index:
         """The index of a catalogue under the `components:` of a mooring file that can be read."""
         try:
-            document = document_of("", text)
+            document = compose("", text)
         except InputError:
             return cls(catalogue)
         if isinstance(document.data.get("components"), dict):

@@ -143,7 +143,8 @@ class CataloguePane(Vertical):
         from calm.report.catalogue import to_card
 
         try:
-            card.update(to_card(chosen.id, self.index.catalogue.get(chosen.id)))
+            catalogue = self.index.catalogue
+            card.update(to_card(chosen.id, catalogue.get(chosen.id), catalogue))
         except CalmError as error:
             card.update(str(error))
         self.query_one("#catalogue-card", VerticalScroll).scroll_home(animate=False)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from textual import on
 
+from calm.files import Place
 from calm.tui.catalogue.pane import CataloguePane, Purpose
 from calm.tui.line.builder_base import BuilderBase
 from calm.tui.line.table import LineTable
-from calm.tui.session import Spot
 
 _OF_THE_ROW = frozenset({"use", "label", "count", "at", "clamps"})
 """Keys of a row that hold whatever component is there."""
@@ -50,7 +50,7 @@ class CatalogueVerbs(BuilderBase):
         spot = self.table.spot
         if spot is None:
             return ""
-        values = self.session.item(spot if purpose == "replace" else Spot(spot.item)).values
+        values = self.session.item(spot if purpose == "replace" else Place(spot.item)).values
         return values.get("label") or values.get("use", "")
 
     @on(CataloguePane.Taken)
@@ -71,7 +71,7 @@ class CatalogueVerbs(BuilderBase):
                 self.catalogue.purpose = "below"
         self.catalogue.retitle(self._target(self.catalogue.purpose))
 
-    def _replace(self, spot: Spot, values: dict[str, str]) -> None:
+    def _replace(self, spot: Place, values: dict[str, str]) -> None:
         """Another component on a row; what the row has said of the one before is told."""
         place = ("line", spot.item, *(("clamps", spot.clamp) if spot.is_clamp else ()))
         written = self.session.draft.value(place)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from calm.errors import CalmError
+from calm.files import Place
 from calm.tui.bars import TitleBar
 from calm.tui.catalogue.index import Index
 from calm.tui.catalogue.pane import CataloguePane
@@ -15,7 +16,7 @@ from calm.tui.line.table import LineTable
 from calm.tui.messages import Edited
 from calm.tui.pictures import Pictures
 from calm.tui.screen import DraftScreen
-from calm.tui.session import Session, Spot
+from calm.tui.session import Session
 from calm.tui.verdict_pane import VerdictPane, state_sign, state_word
 
 if TYPE_CHECKING:
@@ -119,7 +120,7 @@ class BuilderBase(DraftScreen):
         parts.append((state_sign if narrow else state_word)(self.view, old=old))
         self.query_one(TitleBar).show(f"{self.called}  {name}".rstrip(), "   ".join(parts), old=old)
 
-    def changed(self, spot: Spot | None = None, told: str = "") -> None:
+    def changed(self, spot: Place | None = None, told: str = "") -> None:
         """The file is another one."""
         self.refresh_rows()
         self.table.go_to(spot)
@@ -134,5 +135,5 @@ class BuilderBase(DraftScreen):
             self.tell(str(error), wrong=True)
             return False
         self.table.mark(frozenset())
-        self.changed(spot if isinstance(spot, Spot) else None, told)
+        self.changed(spot if isinstance(spot, Place) else None, told)
         return True

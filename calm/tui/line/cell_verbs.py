@@ -6,13 +6,13 @@ from collections.abc import Callable
 
 from textual import on
 
+from calm.files import Place
 from calm.tui.catalogue.index import WITH_LENGTH
 from calm.tui.catalogue.verbs import CatalogueVerbs
 from calm.tui.checking import Check, anything, count, distance, length, length_text, length_values
 from calm.tui.line.cell_editor import CellEditor
 from calm.tui.line.table import LineTable
 from calm.tui.line.table_row import EDITABLE, Column
-from calm.tui.session import Spot
 
 _NO_COUNT = "What is clamped on a piece has no count; duplicate it instead"
 _NO_LENGTH = "Its length is that of the component"
@@ -21,7 +21,7 @@ _NO_LENGTH = "Its length is that of the component"
 class CellVerbs(CatalogueVerbs):
     """Opening a cell, judging what is typed, taking it."""
 
-    _editing: tuple[Spot, Column] | None = None
+    _editing: tuple[Place, Column] | None = None
 
     def action_edit(self) -> None:
         """Edit the value under the cursor."""
@@ -51,7 +51,7 @@ class CellVerbs(CatalogueVerbs):
         region = self.table.cell_region(column)
         self.editor.open(text, check, region, least_width=16 if column == "length" else 6)
 
-    def _refused(self, spot: Spot, column: Column) -> str:
+    def _refused(self, spot: Place, column: Column) -> str:
         """Why a value cannot be edited; empty where it can."""
         if spot.is_clamp:
             return _NO_COUNT if column == "count" else ""
@@ -62,7 +62,7 @@ class CellVerbs(CatalogueVerbs):
         rigid = listed is not None and listed.kind not in WITH_LENGTH and "length" not in values
         return _NO_LENGTH if rigid else ""
 
-    def _value(self, spot: Spot, column: Column) -> tuple[str, Check]:
+    def _value(self, spot: Place, column: Column) -> tuple[str, Check]:
         """The text of a cell as it is edited, and what judges it."""
         values = self.session.item(spot).values
         if column == "label":
@@ -115,7 +115,7 @@ class CellVerbs(CatalogueVerbs):
         self._forget_rows()
         self.refresh_rows()
 
-    def changed(self, spot: Spot | None = None, told: str = "") -> None:
+    def changed(self, spot: Place | None = None, told: str = "") -> None:
         """The file is another one, and so may be the piece that is marked or edited."""
         here = self.table.spot
         self._forget_rows()
@@ -143,7 +143,7 @@ class CellVerbs(CatalogueVerbs):
             name = "place" if spot.is_clamp and column == "length" else column
             self.attempt(lambda: self.session.put(spot, given, f"change the {name}"))
 
-    def _keys(self, spot: Spot, column: Column, text: str) -> dict[str, str | None]:
+    def _keys(self, spot: Place, column: Column, text: str) -> dict[str, str | None]:
         """The keys of the file that a text of a cell stands for."""
         if column == "label":
             return {"label": text or None}

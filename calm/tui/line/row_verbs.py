@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from calm.files import Place
 from calm.tui.line.builder_base import BuilderBase
-from calm.tui.session import Spot
 
 _MIXED = "Pieces are marked, and clamps of other pieces; mark pieces only, or clamps only"
 
@@ -45,9 +45,9 @@ class RowVerbs(BuilderBase):
         marked, chosen = self.table.marked, self._chosen_of_a_kind()
         if not chosen:
             return
-        moved: list[Spot] = []
+        moved: list[Place] = []
 
-        def move() -> Spot | None:
+        def move() -> Place | None:
             moved.extend(self.session.move(chosen, by))
             return moved[0] if moved else None
 
@@ -88,7 +88,7 @@ class RowVerbs(BuilderBase):
         else:
             self.attempt(lambda: self.session.paste(self.table.spot, below=bool(below)))
 
-    def _chosen_of_a_kind(self) -> tuple[Spot, ...]:
+    def _chosen_of_a_kind(self) -> tuple[Place, ...]:
         """What is chosen; nothing, and that is told, where clamps of other pieces are with pieces.
 
         They have no place of their own among pieces that are pasted or moved.

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
+from calm.files import Place
 from calm.files.editing import Draft, Item
 from calm.quantities import QUANTITIES
 from calm.tui.catalogue.index import Index
 from calm.tui.checking import length_text
 from calm.tui.line.table_row import TableRow
-from calm.tui.session import Spot
 from calm.tui.signs import CLAMP, ROLES, UNKNOWN_ROLE, worst
 
 if TYPE_CHECKING:
@@ -30,10 +30,10 @@ def table_rows(draft: Draft, view: View | None, index: Index | None) -> list[Tab
     wrong = _wrong_items(draft, view)
     rows = []
     for number, item in enumerate(draft.items):
-        row = _row(Spot(number), item, found.get(Spot(number), ()), index)
+        row = _row(Place(number), item, found.get(Place(number), ()), index)
         rows.append(replace(row, state=State.FAIL) if number in wrong else row)
         for below, clamp in enumerate(item.clamps):
-            spot = Spot(number, below)
+            spot = Place(number, clamp=below)
             rows.append(_row(spot, clamp, found.get(spot, ()), index))
     return rows
 
@@ -52,39 +52,37 @@ def _wrong_items(draft: Draft, view: View | None) -> set[int]:
     }
 
 
-def _figures(draft: Draft, view: View | None) -> dict[Spot, Sequence[Row]]:
+def _figures(draft: Draft, view: View | None) -> dict[Place, Sequence[Row]]:
     """What was found for each row."""
     if view is None:
         return {}
-    found: dict[Spot, list[Row]] = {}
+    found: dict[Place, list[Row]] = {}
     for row in view.rows:
-        found.setdefault(Spot(row.item, row.clamp), []).append(row)
+        found.setdefault(row.place.row, []).append(row)
     if view.text == draft.text:
         return dict(found)
-    known: dict[tuple[str, str, bool], list[list[Row]]] = {}
-    for spot, rows in found.items():
-        known.setdefault((rows[0].use, _base(rows[0]), spot.is_clamp), []).append(rows)
-    return dict(_taken_over(draft, known))
-
-
-def _taken_over(
-    draft: Draft, known: dict[tuple[str, str, bool], list[list[Row]]]
-) -> Iterator[tuple[Spot, Sequence[Row]]]:
+    known: dict[tuple[str, str, bool], list[Sequence[Row]]] = {}
+    for place, rows in found.items():
+        known.setdefault(_called(view.items, place), []).append(rows)
+    taken: dict[Place, Sequence[Row]] = {}
     for number, item in enumerate(draft.items):
-        for below, each in enumerate((item, *item.clamps), -1):
-            use = each.values.get("use", "")
-            rest = known.get((use, each.values.get("label", use), below >= 0))
+        for below in range(-1, len(item.clamps)):
+            place = Place(number, clamp=below)
+            rest = known.get(_called(draft.items, place))
             if rest:
-                yield Spot(number, below), rest.pop(0)
+                taken[place] = rest.pop(0)
+    return taken
 
 
-def _base(row: Row) -> str:
-    """The label as the file gives it: without the number that sets repeats apart."""
-    head, blank, tail = row.label.rpartition(" ")
-    return head if blank and tail.isdigit() and head == row.use else row.label
+def _called(items: Sequence[Item], place: Place) -> tuple[str, str, bool]:
+    """What the file says a row is: component, label, and whether it is clamped."""
+    item = items[place.item]
+    values = (item.clamps[place.clamp] if place.is_clamp else item).values
+    use = values.get("use", "")
+    return use, values.get("label", use), place.is_clamp
 
 
-def _row(spot: Spot, item: Item, found: Sequence[Row], index: Index | None) -> TableRow:
+def _row(spot: Place, item: Item, found: Sequence[Row], index: Index | None) -> TableRow:
     values = {key: " ".join(value.split()) for key, value in item.values.items()}  # of one line
     use = values.get("use", "")
     listed = None if index is None else index.get(use)

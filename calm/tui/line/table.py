@@ -15,6 +15,7 @@ from textual.message import Message
 from textual.reactive import reactive
 from textual.strip import Strip
 
+from calm.files import Place
 from calm.tui.actions import bindings
 from calm.tui.line.table_row import (
     EDITABLE,
@@ -26,7 +27,6 @@ from calm.tui.line.table_row import (
     layout_for,
 )
 from calm.tui.listing import Listing
-from calm.tui.session import Spot
 from calm.tui.signs import CURSOR, ELLIPSIS, LOOKS, MARK
 
 _TAIL = 4
@@ -46,6 +46,7 @@ class LineTable(Listing, can_focus=True):
         "line-table--wrong",
         "line-table--old",
         "line-table--fail",
+        "line-table--unknown",
         "line-table--warn",
     }
     DEFAULT_CSS = """
@@ -61,6 +62,7 @@ class LineTable(Listing, can_focus=True):
         & > .line-table--wrong { color: $text-error; }
         & > .line-table--old { text-style: dim; }
         & > .line-table--fail { color: $text-error; text-style: bold; }
+        & > .line-table--unknown { color: $text-muted; }
         & > .line-table--warn { color: $text-warning; }
     }
     """
@@ -78,7 +80,7 @@ class LineTable(Listing, can_focus=True):
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
         self.rows: tuple[TableRow, ...] = ()
-        self.marked: frozenset[Spot] = frozenset()
+        self.marked: frozenset[Place] = frozenset()
         self.old = False
         self._arranged: tuple[int, Layout] = (0, layout_for(80))
 
@@ -100,7 +102,7 @@ class LineTable(Listing, can_focus=True):
         return self.rows[self.cursor] if self.rows else None
 
     @property
-    def spot(self) -> Spot | None:
+    def spot(self) -> Place | None:
         """Where the cursor is in the line."""
         return self.row.spot if self.row else None
 
@@ -110,7 +112,7 @@ class LineTable(Listing, can_focus=True):
         return EDITABLE[self.column]
 
     @property
-    def chosen(self) -> tuple[Spot, ...]:
+    def chosen(self) -> tuple[Place, ...]:
         """The rows marked, or that under the cursor."""
         if self.marked:
             return tuple(row.spot for row in self.rows if row.spot in self.marked)
@@ -123,14 +125,14 @@ class LineTable(Listing, can_focus=True):
         self.marked &= {row.spot for row in rows}
         self.take_rows(tuple(rows))
 
-    def go_to(self, spot: Spot | None) -> None:
+    def go_to(self, spot: Place | None) -> None:
         """Put the cursor on a row of the line."""
         for number, row in enumerate(self.rows):
             if row.spot == spot:
                 self.cursor = number
                 self.follow()
 
-    def mark(self, spots: frozenset[Spot]) -> None:
+    def mark(self, spots: frozenset[Place]) -> None:
         """Mark these rows and no other."""
         self.marked = spots
         self.refresh()

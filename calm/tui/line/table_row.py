@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from calm.checks.finding import State
-from calm.tui.session import Spot
+from calm.files import Place
 
 Column = Literal["component", "label", "count", "length"]
 EDITABLE: tuple[Column, ...] = ("component", "label", "count", "length")
@@ -39,7 +39,7 @@ class TableRow:
     `texts` are by the name of the column; `wrong` tells that no such component is known.
     """
 
-    spot: Spot
+    spot: Place
     sign: str
     texts: dict[str, str]
     state: State | None = None

@@ -61,10 +61,11 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
         The file, or the time, cannot be used.
     """
     from calm.files.current_file import read_current_file
+    from calm.files.current_terms import Terms
     from calm.files.times import TimeChoiceError
 
     try:
-        table, _ = read_current_file(path, time or None, depth)
+        table, _ = read_current_file(path, time or None, Terms(water_depth=depth))
     except TimeChoiceError as error:
         raise UsageError(f"{path.name}: {error}") from None
     levels = list(zip(table.depth, table.u, table.v, table.w, strict=True))

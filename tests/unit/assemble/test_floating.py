@@ -5,7 +5,7 @@ from math import cbrt, pi, sqrt
 import pytest
 
 from calm.assemble import assemble_floating, assemble_water
-from calm.files import Body, Cable, CurrentTable, Cylinder, Environment, Piece, Sphere, Wind
+from calm.files import Body, Cable, CurrentTable, Cylinder, Environment, Piece, Place, Sphere, Wind
 
 GRAVITY = 9.80665
 STILL = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
@@ -13,7 +13,9 @@ DRAG_BELOW = 512.5 * 0.5 * pi / 4
 
 
 def piece(component):
-    return Piece(0, "id", "buoy", component, getattr(component, "length", 0.0), None, (), 1, 1)
+    return Piece(
+        0, "id", "buoy", component, getattr(component, "length", 0.0), None, (), 1, 1, Place(0)
+    )
 
 
 def floating(*components, density=1025.0, **wind):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from calm.assemble import assemble_line, drag_of
-from calm.files import Anchor, Body, Cable, Chain, Clamp, Cylinder, Piece, Solver, Sphere
+from calm.files import Anchor, Body, Cable, Chain, Clamp, Cylinder, Piece, Place, Solver, Sphere
 from calm.physics.reynolds import DragCurve
 
 HALF_DENSITY = 512.5
@@ -14,7 +14,9 @@ HALF_DENSITY = 512.5
 
 def piece(index, component, length=None, clamps=()):
     own = getattr(component, "length", None) if length is None else length
-    return Piece(index, "id", f"piece {index}", component, own, None, tuple(clamps), 1, 1)
+    return Piece(
+        index, "id", f"piece {index}", component, own, None, tuple(clamps), 1, 1, Place(index)
+    )
 
 
 def test_sphere_and_cylinder():
@@ -91,7 +93,7 @@ def test_chain():
 
 
 def test_a_line_of_pieces():
-    clamp = Clamp("id", "logger", body(drag_area="0.1 m^2", cd=1), 7.0)
+    clamp = Clamp("id", "logger", body(drag_area="0.1 m^2", cd=1), 7.0, Place(1, clamp=0))
     rope = Cable(kind="cable", diameter="12 mm", weight="-0.2 N/m", stiffness="80 kN")
     line = assemble_line(
         [
@@ -135,7 +137,7 @@ def test_who_follows_the_curves_of_the_reynolds_number(component, curve):
     """Smooth spheres and cylinders without a drag of their own, in the line or clamped on it."""
     pieces = [
         piece(0, component),
-        piece(1, ROPE, 50.0, [Clamp("id", "clamped", component, 7.0)]),
+        piece(1, ROPE, 50.0, [Clamp("id", "clamped", component, 7.0, Place(1, clamp=0))]),
         piece(2, Anchor(kind="anchor", mass="800 kg")),
     ]
     line = assemble_line(pieces, Solver(drag="reynolds"))

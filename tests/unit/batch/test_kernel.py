@@ -15,7 +15,7 @@ from calm.batch.kernel.march import march as march_lanes
 from calm.batch.kernel.plan import plan_of
 from calm.batch.kernel.profile import lay_profile, read_profile
 from calm.case import Mooring, load
-from calm.physics.march import march
+from calm.physics.march import Cuts, march
 from calm.physics.profile import Profile
 from calm.physics.track import Track
 from calm.shipped import shipped_folder
@@ -65,11 +65,10 @@ def test_a_lane_ends_where_the_plain_march_does() -> None:
     mooring, z, force = marching()
     track, profile = Track.of(mooring.line), Profile(mooring.water)
     stages = plan_of(mooring).clear.stages
-    cuts = [
-        np.repeat(stages[5][first : first + count] / 8.0, 8).tolist()
-        for kind, first, count in zip(*stages[:3], strict=True)
-        if kind == lanes.CABLE
+    counts = [
+        count for kind, count in zip(stages[0], stages[2], strict=True) if kind == lanes.CABLE
     ]
+    cuts = Cuts(np.repeat(stages[5] / 8.0, 8), 8 * np.array(counts))
     for lane in range(lanes.LANES):
         end = march(track, profile, 80.0 + lane, angle_step=1.0, reach=1.0, cuts=cuts)
         # the lanes look a segment's current up where its top has it, one order further down

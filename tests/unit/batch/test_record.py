@@ -11,8 +11,10 @@ from calm.batch.records.record import Record, open_record
 from calm.errors import InputError, UsageError
 from calm.files import CurrentTable
 from calm.files.current_file import read_current_file
+from calm.files.current_terms import Terms
 from tests.unit.batch.records import ARRAYS, COUNT, HERE, SEABED, adcp, glorys, hycom, write
 
+TERMS = Terms(SEABED, HERE)
 LAYOUTS = [
     *((name, "nc") for name in ARRAYS),
     ("glorys", "zarr"),
@@ -42,7 +44,7 @@ def test_every_profile_is_that_of_calm_run(tmp_path: Path, name: str, ending: st
     with opened(path) as record:
         assert record.count == COUNT
         for i, time in enumerate(record.time):
-            alone, _ = read_current_file(path, str(time.astype("datetime64[us]")), SEABED, HERE)
+            alone, _ = read_current_file(path, str(time.astype("datetime64[us]")), TERMS)
             # sines and cosines may differ in their last digit between one and many
             found = vars(table(record, i))
             assert len(alone.depth) > 0

@@ -77,7 +77,7 @@ def test_mistakes_are_all_told_with_their_place(csv: Path) -> None:
     )
     assert problems(csv, text) == [
         (2, 18, "`v: x` is not a speed (m/s, cm/s, mm/s, knot, km/h, ft/s)"),
-        (3, 12, "depth -5 m is above the surface"),
+        (3, 12, "the depths count upwards; depth is positive down, so leave the sign out"),
         (4, 1, "the row has 2 values, 3 are needed"),
         (6, 12, "depth 9 m repeats 9 m; depths must increase"),
         (7, 1, "`noon` is no time; write 2026-03-01T06:00"),

@@ -1,11 +1,14 @@
 """Tables kept by column: their rows, and what of them goes to another process."""
 
 import pickle
+from dataclasses import fields
 
 import numpy as np
 import pytest
 
-from calm.case.columns import Clamps
+from calm.case.columns import Clamps, Components
+from calm.case.explain import Causes
+from calm.files import Clamp, Place
 
 
 @pytest.fixture
@@ -14,7 +17,11 @@ def clamps():
         name: np.array([1.5, np.nan])
         for name in ("depth", "x", "y", "tension", "tilt", "knockdown")
     }
-    return Clamps(index=np.array([0, 2]), use=["a", "b"], label=["A", "B"], **figures)
+    part = [
+        Clamp("a", "A", None, 1.0, Place(0, clamp=0)),
+        Clamp("b", "B", None, 2.0, Place(2, clamp=0)),
+    ]
+    return Clamps(part=part, index=np.array([0, 2]), use=["a", "b"], label=["A", "B"], **figures)
 
 
 def test_rows_are_plain_numbers_and_the_same_each_time(clamps):
@@ -30,3 +37,14 @@ def test_a_table_that_was_read_by_rows_is_pickled_as_its_columns(clamps):
     assert len([*clamps]) == 2
     assert pickle.dumps(clamps) == before
     assert pickle.loads(before).label == ["A", "B"]
+
+
+def test_records_have_the_columns_of_their_table():
+    for table in (Components, Clamps, Causes):
+        assert [field.name for field in fields(table.record)] == [f.name for f in fields(table)]
+
+
+def test_a_reader_gets_no_model_of_the_file(clamps):
+    assert all("part" not in row for row in clamps.to_dicts())
+    assert clamps.to_dicts()[1]["depth"] is None
+    assert "part" not in clamps.to_dataframe()

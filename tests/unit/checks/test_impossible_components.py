@@ -35,6 +35,10 @@ def test_good_components_pass(good):
     ("good", "change", "told"),
     [
         (GOOD_SPHERE, {"source": None}, "source"),
+        (GOOD_SPHERE, {"sources": {"mass": "a scale"}}, "source of `mass`"),
+        (GOOD_SPHERE, {"searched": ["buoyancy"]}, "in vain for `buoyancy`"),
+        (GOOD_SPHERE, {"searched": ["stiffness"]}, "a sphere does not have"),
+        (GOOD_SPHERE, {"depth_rating": "11500 m"}, "no water is deeper"),
         (GOOD_SPHERE, {"max_tilt": "20 deg", "warn_tilt": "25 deg"}, "after its greatest tilt"),
         (GOOD_SPHERE, {"buoyancy": "5300 N"}, "lifts 5300 N"),
         (GOOD_SPHERE, {"buoyancy": "3000 N", "mass": "300 kg"}, "displaces"),
@@ -85,6 +89,21 @@ def test_parts_of_an_assembly_must_exist():
     assert findings(assembly, known=["a", "b"]) == []
     (message,) = findings(assembly, known=["a"])
     assert "`b`" in message
+
+
+@pytest.mark.parametrize(
+    ("prefer", "told"),
+    [("nothing", "which no catalogue has"), ("x", "beside it"), ("y", "itself prefers `z`")],
+)
+def test_what_is_preferred_must_be_there_and_be_final(prefer, told):
+    definitions = {
+        "x": Sphere.model_validate(GOOD_SPHERE | {"prefer": prefer}),
+        "y": Sphere.model_validate(GOOD_SPHERE | {"prefer": "z"}),
+        "z": Sphere.model_validate(GOOD_SPHERE),
+    }
+    (finding,) = check_catalogue(definitions, list(definitions))
+    assert finding.id == "x"
+    assert told in finding.message
 
 
 def test_every_rule_says_what_it_is_for():

@@ -1,17 +1,13 @@
-"""The levels of the catalogue, and its compiled form."""
+"""The levels of the catalogue."""
 
-import json
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from calm.errors import InputError, UsageError
 from calm.files import Assembly, Catalogue, Sphere
-from calm.files import compile_catalogue as compiled
+from calm.files import catalogue as catalogues
 from calm.files.catalogue import user_folder
-from calm.shipped import shipped_folder
 
 BALL = "{kind: sphere, name: Big Ball, diameter: %s m, buoyancy: 100 N, source: here}\n"
 
@@ -23,7 +19,7 @@ def shipped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     folder.mkdir()
     (folder / "floats.yaml").write_text(f"ball: {BALL % 1}glass-17in: {BALL % 0.43}")
     (folder / "ropes.yaml").write_text("rope-12: {kind: cable, diameter: 12 mm, weight: 1 N/m}\n")
-    monkeypatch.setattr(compiled, "shipped_folder", lambda _: folder)
+    monkeypatch.setattr(catalogues, "shipped_folder", lambda _: folder)
     return folder
 
 
@@ -127,46 +123,3 @@ def test_folder_of_the_user(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> 
     monkeypatch.delenv("XDG_CONFIG_HOME")
     monkeypatch.setenv("HOME", str(tmp_path))
     assert user_folder() == tmp_path / ".config" / "calm" / "catalog"
-
-
-def places(folder: Path) -> bool:
-    """Whether the shipped catalogue was parsed: only then are places known."""
-    return any(document.values for document in compiled.shipped_documents())
-
-
-def test_compiled_form_is_used_while_it_matches(shipped: Path) -> None:
-    assert places(shipped)
-    (shipped / "compiled.json").write_text(compiled.compile_catalogue(shipped))
-    assert not places(shipped)
-    assert diameter(Catalogue.shipped(), "ball") == 1.0
-    (shipped / "floats.yaml").write_text(f"ball: {BALL % 7}")
-    assert places(shipped)
-    assert diameter(Catalogue.shipped(), "ball") == 7.0
-    (shipped / "compiled.json").write_text("{")
-    assert places(shipped)
-
-
-def test_compiling_writes_beside_the_files(shipped: Path) -> None:
-    compiled.main()
-    assert sorted(path.name for path in shipped.iterdir()) == [
-        "compiled.json",
-        "floats.yaml",
-        "ropes.yaml",
-    ]
-    assert not places(shipped)
-
-
-def test_shipped_compiled_form_is_that_of_the_files() -> None:
-    folder = shipped_folder("catalog")
-    written = json.loads((folder / "compiled.json").read_text(encoding="utf-8"))
-    remedy = "run python -m calm.files.compile_catalogue"
-    assert written == json.loads(compiled.compile_catalogue(folder)), remedy
-
-
-def test_shipped_catalogue_is_read_without_a_yaml_parser() -> None:
-    code = (
-        "import sys; import calm.files; import ruamel.yaml;"
-        "ruamel.yaml.YAML.compose = None;"
-        "sys.exit(not calm.files.Catalogue.shipped().ids())"
-    )
-    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

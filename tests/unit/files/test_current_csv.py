@@ -9,6 +9,7 @@ from calm.errors import InputError
 from calm.files import CurrentTable, MooringFile
 from calm.files.current_csv import MOST_PROBLEMS
 from calm.files.current_file import read_current_file
+from calm.files.current_terms import Terms
 from calm.files.times import TimeChoiceError
 
 from .conftest import GOOD, Place
@@ -30,7 +31,7 @@ def csv(tmp_path: Path) -> Path:
 
 def profile(path: Path, text: str, time: str | None = None) -> tuple[CurrentTable, list[str]]:
     path.write_text(text)
-    return read_current_file(path, time, 1000.0)
+    return read_current_file(path, time, Terms(1000.0))
 
 
 def problems(path: Path, text: str) -> list[Place]:

@@ -11,6 +11,7 @@ import xarray as xr
 from calm.errors import InputError
 from calm.files import CurrentTable, MooringFile
 from calm.files.current_file import read_current_file
+from calm.files.current_terms import Terms
 from calm.files.times import TimeChoiceError
 
 from .conftest import GOOD
@@ -36,7 +37,7 @@ def read(
 ) -> tuple[CurrentTable, list[str]]:
     path = folder / "current.nc"
     dataset.to_netcdf(path, engine=engine)
-    return read_current_file(path, time, 1000.0)
+    return read_current_file(path, time, Terms(1000.0))
 
 
 def problem(dataset: xr.Dataset, folder: Path) -> str:
@@ -232,7 +233,7 @@ def grid() -> xr.Dataset:
 def test_column_of_a_place(tmp_path: Path) -> None:
     path = tmp_path / "current.nc"
     grid().to_netcdf(path, engine="h5netcdf")
-    table, notices = read_current_file(path, None, 1000.0, (48.28, -5.31))
+    table, notices = read_current_file(path, None, Terms(1000.0, (48.28, -5.31)))
     assert table.u == pytest.approx([1.1 * u for u in U])
     assert notices == [
         "the column nearest to 48.28° N 5.31° W is that at 48.3° N 5.3° W, 2.3 km away"
@@ -267,4 +268,4 @@ def test_damaged_files(tmp_path: Path, signature: bytes) -> None:
     path = tmp_path / "current.nc"
     path.write_bytes(signature + b"nothing that makes sense" * 9)
     with pytest.raises(InputError, match=r"current.nc: cannot be read as NetCDF: "):
-        read_current_file(path, None, 1000.0)
+        read_current_file(path, None, Terms(1000.0))

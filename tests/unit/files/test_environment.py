@@ -5,13 +5,13 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from ruamel.yaml import YAML
 
 from calm.errors import Problem
 from calm.files import DepthTable, Environment, MooringFile, SeaWater, mooring_schema
 from calm.files.document import read_document
 from calm.files.environment import read_environment
 from calm.files.section import Section
+from tests.core_yaml import loaded
 
 from .conftest import GOOD, Place
 
@@ -82,7 +82,7 @@ def test_sea_water(read: Read, lines: list[str], sea: SeaWater) -> None:
     assert mooring.environment.density == sea
     [notice] = mooring.notices
     assert notice.startswith("Density from temperature and salinity without a `position`")
-    SCHEMA.validate(YAML(typ="safe", pure=True).load(text))
+    SCHEMA.validate(loaded(text))
 
 
 def test_sea_water_at_a_position(read: Read) -> None:
@@ -291,3 +291,53 @@ def test_tide_and_growth(read: Read) -> None:
     assert file.environment.depth_range == (1098.0, 1104.0)
     assert file.environment.fouling is not None
     assert (file.environment.fouling.depth, file.environment.fouling.thickness) == (50.0, 0.02)
+
+
+STRATIFIED = "density: {columns: [depth m, density kg/m^3], rows: [[0, 1027], [50, %s]]}"
+
+
+@pytest.mark.parametrize(("below", "warned"), [("1026.95", False), ("1026.8", True)])
+def test_density_that_falls_with_depth_is_a_warning(
+    read: Callable[..., MooringFile], below: str, warned: bool
+) -> None:
+    notices = read(with_keys(STRATIFIED % below)).notices
+    assert [f"falls from 1027 kg/m^3 at 0 m to {below} kg/m^3" in one for one in notices] == (
+        [True] if warned else []
+    )
+
+
+@pytest.mark.parametrize(
+    ("lines", "mistake"),
+    [
+        (["density: 90 kg/m^3"], (4, 12, "`density: 90 kg/m^3` must be at least 900 kg/m^3")),
+        ([STRATIFIED % "1400"], (4, 72, "`density: 1400` must be at most 1350 kg/m^3")),
+        (["maximum_speed: 0 m/s"], (4, 18, "`maximum_speed: 0 m/s` must be more than 0 m/s")),
+        (
+            ["maximum_speed: 0.5 m/s"],
+            (
+                8,
+                13,
+                "0.8 m/s is faster than `maximum_speed`, 0.5 m/s: a fill value, or another unit? "
+                "(`maximum_speed` of the environment allows it if it is true)",
+            ),
+        ),
+        (
+            ["wind: {speed: 9 m/s, toward: 400 deg}"],
+            (4, 32, "`toward: 400 deg` must be at most 360 deg"),
+        ),
+    ],
+)
+def test_figures_that_no_sea_has(mistakes: Mistakes, lines: list[str], mistake: Place) -> None:
+    assert mistakes(with_keys(*lines)) == [mistake]
+
+
+def test_no_sea_is_so_deep(mistakes: Mistakes) -> None:
+    [mistake] = mistakes(GOOD.replace("depth: 1100 m", "depth: 11001 m"))
+    assert mistake == (3, 10, "`depth: 11001 m` must be at most 11000 m")
+
+
+def test_towing_and_air_have_no_greatest_speed(towed: Towed) -> None:
+    environment, problems = towed("current: {speed: 9 m/s, toward: 90 deg}\n")
+    assert (problems, environment is not None) == ([], True)
+    _, problems = towed("fluid: air\ndensity: 1.2 kg/m^3\nmaximum_speed: 5 m/s\n")
+    assert problems[0].startswith("unknown key `maximum_speed`")

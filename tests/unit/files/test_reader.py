@@ -131,6 +131,27 @@ def test_assemblies_are_expanded(read: Read) -> None:
         "deadweight",
     ]
     assert [piece.line for piece in mooring.pieces] == [10, 11, 11, 11, 11, 12, 12, 12, 12, 13]
+    at = [(p.place.item, p.place.repeat, p.place.part) for p in mooring.pieces]
+    pairs = [(1, 0, 0), (1, 0, 1), (1, 1, 0), (1, 1, 1)]
+    assert at == [(0, 0, -1), *pairs, *((2, 0, part) for part in range(4)), (3, 0, -1)]
+
+
+def test_every_part_of_the_line_has_a_place_of_its_own(read: Read) -> None:
+    hung = "clamps: [{use: meter, at: 1 m}, {use: meter, at: 2 m}]"
+    pack = f"  pack: {{kind: assembly, parts: [{{use: rope-12, length: 3 m, {hung}}}]}}\n"
+    rope = f"  - {{use: rope-12, length: 9 m, count: 2, {hung}}}\n"
+    text = f"{LINE}  - {{use: ball}}\n{rope}  - {{use: pack}}\n{ANCHOR}components:\n{pack}"
+    pieces = read(text).pieces
+    places = [part.place for piece in pieces for part in (piece, *piece.clamps)]
+    assert len(set(places)) == len(places) == 11
+    first, second = pieces[2].clamps
+    assert (first.place.item, first.place.repeat, first.place.clamp) == (1, 1, 0)
+    assert second.place > first.place > pieces[2].place and second.place.is_clamp
+    rows = [place.row for place in places]
+    assert [(row.item, row.clamp) for row in rows] == [
+        (0, -1), (1, -1), (1, 0), (1, 1), (1, -1), (1, 0), (1, 1),
+        (2, -1), (2, -1), (2, -1), (3, -1),
+    ]  # fmt: skip
 
 
 def test_a_piece_cut_to_fit(read: Read) -> None:

@@ -5,9 +5,9 @@ from typing import Any
 
 import jsonschema
 import pytest
-from ruamel.yaml import YAML
 
 from calm.files import MooringFile, mooring_schema
+from tests.core_yaml import loaded
 
 from . import test_strumming, test_tow
 from .conftest import GOOD, TOW
@@ -51,7 +51,13 @@ environments:
   storm: {current: {columns: [depth m, u m/s, v m/s, w m/s], rows: [[0, 1, 0, 0.01]]}}
   record: {current: {file: current.csv, time: "2026-03-01T06:00"}}
 solver: {angle_step: 1 deg, tolerance: 1e-7, drag: reynolds, buoy_drag: full}
-checks: {safety_factor: {steel: 3}, minimum_tension: {wire: 50 kgf}, maximum_tilt: 30 deg}
+checks:
+  safety_factor: {steel: 3}
+  minimum_tension: {wire: 50 kgf}
+  maximum_tilt: 30 deg
+  accept:
+    - {rule: tilt, component: "?*", reason: x, by: me, date: "2026-11-22", until: "2027-11-22"}
+    - {rule: strength, reason: 5}
 """
 
 TOWED = """\
@@ -67,22 +73,18 @@ solver: {friction: constant, strumming: {model: bourget-marichal, a1: 1.6, strou
 """
 
 
-def plain(text: str) -> Any:
-    return YAML(typ="safe", pure=True).load(text)
-
-
 def test_schema_is_one() -> None:
     jsonschema.Draft202012Validator.check_schema(mooring_schema())
 
 
 @pytest.mark.parametrize("text", [GOOD, EVERYTHING, TOW, TOWED, test_tow.HELICOPTER])
 def test_good_files(text: str) -> None:
-    VALIDATOR.validate(plain(text))
+    VALIDATOR.validate(loaded(text))
 
 
 @pytest.mark.parametrize("strumming", ["none", "vandiver", "{factor: 1.5}", "{cn: 1.85}"])
 def test_ways_of_strumming(strumming: str) -> None:
-    VALIDATOR.validate(plain(GOOD + f"solver: {{strumming: {strumming}}}\n"))
+    VALIDATOR.validate(loaded(GOOD + f"solver: {{strumming: {strumming}}}\n"))
 
 
 def test_the_reader_takes_everything_too(read: Callable[..., MooringFile], tmp_path: Any) -> None:
@@ -113,7 +115,7 @@ KNOWN_TO_THE_SCHEMA = [
 
 @pytest.mark.parametrize("mistake", KNOWN_TO_THE_SCHEMA)
 def test_mistakes_the_schema_knows(mistake: str) -> None:
-    assert not VALIDATOR.is_valid(plain(ONE_MISTAKE[mistake][0]))
+    assert not VALIDATOR.is_valid(loaded(ONE_MISTAKE[mistake][0]))
 
 
 KNOWN_OF_TOWS = [
@@ -132,20 +134,20 @@ KNOWN_OF_TOWS = [
 
 @pytest.mark.parametrize("mistake", KNOWN_OF_TOWS)
 def test_mistakes_of_tows_the_schema_knows(mistake: str) -> None:
-    assert not VALIDATOR.is_valid(plain(test_tow.ONE_MISTAKE[mistake][0]))
+    assert not VALIDATOR.is_valid(loaded(test_tow.ONE_MISTAKE[mistake][0]))
 
 
 @pytest.mark.parametrize("strumming", test_strumming.KNOWN_TO_THE_SCHEMA)
 def test_mistakes_of_strumming_the_schema_knows(strumming: str) -> None:
-    assert not VALIDATOR.is_valid(plain(TOW + f"solver: {{strumming: {strumming}}}\n"))
+    assert not VALIDATOR.is_valid(loaded(TOW + f"solver: {{strumming: {strumming}}}\n"))
 
 
 def test_only_a_mooring_needs_a_depth() -> None:
     line = GOOD[GOOD.index("line:") :]
     tow = "tow: {speed: 1 m/s, toward: 0}\n"
     for environment in ("", "environment: {}\n"):
-        assert not VALIDATOR.is_valid(plain(environment + line))
-        assert VALIDATOR.is_valid(plain(tow + environment + line))
+        assert not VALIDATOR.is_valid(loaded(environment + line))
+        assert VALIDATOR.is_valid(loaded(tow + environment + line))
 
 
 def test_fields_are_described() -> None:

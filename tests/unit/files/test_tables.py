@@ -144,7 +144,7 @@ def test_temperature_and_salinity() -> None:
         (
             ["depth m", "density kg/m^3"],
             ["0", "-3"],
-            "rows.0.1: `density: -3` must be more than 0 kg/m^3",
+            "rows.0.1: `density: -3` must be at least 900 kg/m^3",
         ),
         (
             ["depth m"],
@@ -204,7 +204,7 @@ def test_profile_of_one_quantity() -> None:
 
 
 def test_the_whole_circle_of_directions() -> None:
-    for toward in range(-360, 721, 15):
+    for toward in range(-360, 361, 15):
         table, _ = current(["depth m", "speed m/s", "toward deg"], ["0", "2", str(toward)])
         assert table is not None
         # 2 m/s, to the rounding of sine and cosine.

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from calm.physics.line import Water
-from calm.physics.profile import Profile
+from calm.physics.profile import Profile, distance_to_level, viscosity_at, water_at
 
 WATER = Water(
     depth=1000,
@@ -18,10 +18,11 @@ WATER = Water(
 
 @pytest.mark.parametrize("start", [0, 1, 2, 3])
 def test_agrees_with_linear_interpolation_wherever_the_search_starts(start):
-    profile = Profile(WATER)
+    sea = Profile(WATER).sea
     for depth in (-5.0, 0.0, 10.0, 57.3, 200.0, 640.0, 900.0, 1000.0):
         current, density = WATER.at(np.array(depth))
-        assert profile.at(depth, start) == pytest.approx((*current, density), rel=1e-14)
+        *found, _ = water_at(sea, depth, start)
+        assert found == pytest.approx((*current, density), rel=1e-14)
 
 
 def test_viscosity_is_linear_between_levels_of_its_own_and_held_outside():
@@ -29,23 +30,24 @@ def test_viscosity_is_linear_between_levels_of_its_own_and_held_outside():
         depth=1000, level=[0], u=[0], v=[0], w=[0], density=[1025],
         viscosity_level=[0, 100, 400], viscosity=[1.0e-6, 1.4e-6, 1.7e-6],
     )  # fmt: skip
-    profile, depths = Profile(water), np.array([-3.0, 0.0, 25.0, 100.0, 250.0, 400.0, 900.0])
+    sea, depths = Profile(water).sea, np.array([-3.0, 0.0, 25.0, 100.0, 250.0, 400.0, 900.0])
     expected = [1.0e-6, 1.0e-6, 1.1e-6, 1.4e-6, 1.55e-6, 1.7e-6, 1.7e-6]
-    assert [profile.viscosity(depth) for depth in depths] == pytest.approx(expected, rel=1e-14)
+    assert [viscosity_at(sea, depth) for depth in depths] == pytest.approx(expected, rel=1e-14)
     assert water.viscosity_at(depths) == pytest.approx(expected, rel=1e-14)
 
 
 def test_a_single_level_is_uniform():
-    profile = Profile(Water(depth=50, level=[0.0], u=[0.5], v=[0], w=[0], density=[1025]))
-    assert profile.at(-1, 0) == profile.at(0, 0) == profile.at(49, 1) == (0.5, 0, 0, 1025)
+    sea = Profile(Water(depth=50, level=[0.0], u=[0.5], v=[0], w=[0], density=[1025])).sea
+    assert water_at(sea, -1, 0) == (0.5, 0, 0, 1025, 0)
+    assert water_at(sea, 0, 0) == water_at(sea, 49, 1) == (0.5, 0, 0, 1025, 1)
 
 
 def test_distance_to_the_next_level_either_way():
-    profile = Profile(WATER)
-    assert profile.distance_to_level(100, 0.5, 0) == pytest.approx(200)
-    assert profile.distance_to_level(100, -0.9, 0) == pytest.approx(100)
-    assert profile.distance_to_level(100, 0.0, 0) == np.inf
-    assert profile.distance_to_level(950, 1.0, 0) == np.inf
+    levels = Profile(WATER).sea.levels
+    assert distance_to_level(levels, 100, 0.5, 0, 0.0) == pytest.approx(200)
+    assert distance_to_level(levels, 100, -0.9, 0, 0.0) == pytest.approx(100)
+    assert distance_to_level(levels, 100, 0.0, 0, 0.0) == np.inf
+    assert distance_to_level(levels, 950, 1.0, 0, 0.0) == np.inf
 
 
 def test_arrays_are_refused_when_they_cannot_be():

@@ -7,6 +7,7 @@ import pytest
 
 from calm.case import TowResult
 from calm.case.band import StrummingBand
+from calm.files import Place
 from calm.files.strumming import BourgetMarichalKeys
 
 NAN = float("nan")
@@ -27,6 +28,14 @@ def component(index, use, label, role, length, depth, x, tension, tilt, **figure
         y_top=0.0, y_bottom=0.0, tension_top=tension[0], tension_bottom=tension[1],
         tension=max(tension), tilt=tilt, **fields,
     )  # fmt: skip
+
+
+def _of_the_file(components, clamps, pieces):
+    """Tell every row what it is of."""
+    for row, piece in zip(components, pieces, strict=True):
+        row.part, row.place = piece, Place(row.index)
+    for row, clamp in zip(clamps, [c for piece in pieces for c in piece.clamps], strict=True):
+        row.part = clamp
 
 
 def build_result(**changes):
@@ -71,6 +80,7 @@ def build_result(**changes):
         Record(label="sbe37 1", component=plain),
         Record(label="adcp", component=adcp),
     )
+    _of_the_file(components, clamps, pieces)
     limits = Record(steel=3.0, synthetic=5.0, surface=5.0)
     file = Record(
         pieces=pieces, checks=Record(safety_factor=limits), environment=Record(depth=1100.0),
@@ -135,6 +145,7 @@ def build_tow_result(**changes):
         Record(component=wire, clamps=(Record(label="sbe37", component=ctd),)),
         Record(component=fish, clamps=()),
     )
+    _of_the_file(components, clamps, pieces)
     file = Record(
         name="Survey", pieces=pieces, environment=Record(depth=300.0, fluid="water"),
         checks=Record(safety_factor=Record(steel=3.0, synthetic=5.0, surface=5.0)),

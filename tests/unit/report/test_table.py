@@ -89,7 +89,7 @@ def test_safety_marks(make_result, index, mooring_type, factor, utilisation, mar
     record = result.components[index]
     record.safety_factor = float("nan") if factor is None else factor
     record.utilisation = float("nan") if utilisation is None else utilisation
-    assert safety_mark(result, result.mooring.file.pieces[index].component, record) is mark
+    assert safety_mark(result, record) is mark
 
 
 def test_draft_where_the_hull_is_known(make_result):

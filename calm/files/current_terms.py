@@ -1,0 +1,53 @@
+"""What must be known besides a file to take a current from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import hypot, inf
+
+from calm.files.current_place import Place
+
+DEEPEST = 11_000.0
+"""No sea is deeper [m]."""
+
+
+@dataclass(frozen=True)
+class Terms:
+    """How a person wants the currents of a file to be taken.
+
+    Attributes
+    ----------
+    water_depth : places heights above the seabed [m]; inf where it is not known
+    place : whose column is wanted, where a file holds several
+    declination : of magnetic north from true north, positive to the east [degrees]; turns what
+        the file says is magnetic
+    maximum_speed : a faster current is a mistake of the file [m/s]
+    """
+
+    water_depth: float = inf
+    place: Place | None = None
+    declination: float | None = None
+    maximum_speed: float = inf
+
+
+def too_fast(u: float, v: float, w: float, maximum_speed: float) -> str | None:
+    """What is wrong with a current faster than the greatest that is plausible; None if it is not.
+
+    Parameters
+    ----------
+    u, v, w : [m/s]
+    """
+    speed = hypot(u, v, w)
+    if not speed > maximum_speed:
+        return None
+    return (
+        f"{speed:.5g} m/s is faster than `maximum_speed`, {maximum_speed:g} m/s: a fill value, or "
+        "another unit? (`maximum_speed` of the environment allows it if it is true)"
+    )
+
+
+def too_deep(depth: float) -> str | None:
+    """What is wrong with a depth [m] below that of any sea; None if it is not."""
+    if not depth > DEEPEST:
+        return None
+    return f"depth {depth:g} m is deeper than any sea, {DEEPEST:g} m"

@@ -1,0 +1,153 @@
+"""The laws compiled by numba: the same source, made fast for whoever solves many lines.
+
+A law is a function over floats, named tuples and sequences of them that CPython runs as it
+stands. Compiled, it is the same function of the same code, whose globals hold the compiled laws
+in place of those it calls; sequences become arrays, those of named tuples arrays of records. No
+liberty is taken with the arithmetic, so that both give the same digits.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+import tempfile
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from types import FunctionType
+from typing import Any, get_args, get_type_hints
+
+import numpy as np
+
+Law = Callable[..., Any]
+
+
+@cache
+def compiled(law: Law) -> Any:
+    """A law and all that it calls, compiled when first called, and kept for the next process."""
+    import numba
+
+    return kept(numba.njit, clone(law, called), cache_folder(), nogil=True, error_model="python")
+
+
+@cache
+def called(law: Law) -> Any:
+    """A law compiled into those that call it."""
+    import numba
+
+    njit: Any = numba.njit
+    return njit(
+        clone(law, called),
+        nogil=True,
+        error_model="python",
+        no_cpython_wrapper=True,
+        no_cfunc_wrapper=True,
+    )
+
+
+def clone(law: Law, called: Callable[[Law], Any]) -> Law:
+    """The function, with what it calls as `called` has it, and arrays of its tables."""
+    assert isinstance(law, FunctionType)
+    names = {**law.__globals__}
+    for name in law.__code__.co_names:
+        value = names.get(name)
+        if isinstance(value, FunctionType) and value.__module__.startswith("calm."):
+            names[name] = called(value)
+        elif isinstance(value, tuple) and value and all(type(x) is float for x in value):
+            names[name] = np.array(value)
+    clone = FunctionType(law.__code__, names, law.__name__, law.__defaults__, law.__closure__)
+    clone.__module__, clone.__qualname__ = law.__module__, law.__qualname__
+    return clone
+
+
+def kept(compiler: Callable[..., Any], law: Law, folder: Path | None, **options: Any) -> Any:
+    """A law compiled, and kept in a folder if there is one."""
+    import numba
+
+    if folder is None:
+        return compiler(law, **options)
+    settings: Any = numba.config
+    chosen = settings.CACHE_DIR
+    settings.CACHE_DIR = str(folder)  # read as the function is decorated
+    try:
+        return compiler(law, cache=True, **options)
+    finally:
+        settings.CACHE_DIR = chosen
+
+
+def packed(value: Any) -> Any:
+    """A named tuple as compiled laws take it: its sequences as arrays."""
+    named: Any = type(value)
+    kinds = _fields(named)
+    return named(*(_packed(part, kind) for part, kind in zip(value, kinds, strict=True)))
+
+
+def _packed(part: Any, kind: Any) -> Any:
+    if kind in (int, float):
+        return kind(part)
+    if not get_args(kind):
+        return packed(part)
+    (item,) = get_args(kind)
+    return np.array(list(part), item if item is float else record_type(item))
+
+
+@cache
+def _fields(named: Any) -> tuple[Any, ...]:
+    return tuple(get_type_hints(named).values())
+
+
+@cache
+def record_type(named: type) -> np.dtype[Any]:
+    """The numpy type of a named tuple of numbers."""
+    return np.dtype(
+        [
+            (name, np.int64 if kind is int else np.float64)
+            for name, kind in get_type_hints(named).items()
+        ]
+    )
+
+
+@cache
+def cache_folder(name: str = "laws", *rooms: Path) -> Path | None:
+    """Where compiled code is kept; None where no such folder can be written.
+
+    `NUMBA_CACHE_DIR`, or else CALM's folder in the user's cache. What is compiled from other
+    sources has another folder, as numba itself looks at one file alone.
+
+    Parameters
+    ----------
+    name : of what is compiled
+    rooms : folders of the sources, besides those of the laws
+    """
+    given = os.environ.get("NUMBA_CACHE_DIR")
+    folder = (Path(given) if given else _user_cache() / "calm") / f"{name}-{fingerprint(*rooms)}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return folder
+    except OSError:
+        return None
+
+
+def is_kept() -> bool:
+    """Whether compiled laws are there already, from an earlier process."""
+    folder = cache_folder()
+    return folder is not None and next(folder.rglob("*.nbi"), None) is not None
+
+
+def _user_cache() -> Path:
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Caches"
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+
+
+def fingerprint(*rooms: Path) -> str:
+    """Of the sources of everything that may be compiled: the laws, and those in more folders."""
+    digest = hashlib.sha256()
+    for room in (Path(__file__).parent, *rooms):
+        for source in sorted(room.glob("*.py")):
+            digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
