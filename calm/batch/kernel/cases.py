@@ -7,7 +7,7 @@ looked for clear of the seabed: there, where it carries its lower end all the wa
 from __future__ import annotations
 
 from calm.batch.kernel.bends import as_planned
-from calm.batch.kernel.closing import March, Shapes, close_all, find_roots
+from calm.batch.kernel.closing import CloseAll, FindRoots, March, Shapes
 from calm.batch.kernel.contact import LIKELY, NEVER
 from calm.batch.kernel.endings import (
     HEAP,
@@ -64,8 +64,8 @@ def as_on_seabed(seek: Searches, c: int, aim: Aim) -> int:
 
 
 def look_on_seabed(
-    march: March, desk: Desk, clear: Way, lying: Way, contact: int, seek: Searches,
-    shapes: Shapes, ends: Integers, start: int, results: Results,
+    find: FindRoots, close: CloseAll, march: March, desk: Desk, clear: Way, lying: Way,
+    contact: int, seek: Searches, shapes: Shapes, ends: Integers, start: int, results: Results,
 ) -> None:  # fmt: skip
     """Look on the seabed for the cases that have not been closed clear of it."""
     there, again = desk.there[: ends.size], desk.again[: ends.size]
@@ -78,11 +78,11 @@ def look_on_seabed(
             there[c], case.tried = SOLVED, 1
             begin(seek, c, seek[c].growth, seek[c].speed, lying)
             as_planned(desk.own, c, lying)
-    find_roots(march, desk, lying, seek, there)
+    find(march, desk, lying, seek, there)
     for c in range(ends.size):
         if there[c] == SOLVED and seek[c].lying < 0.0:
             there[c] = LIFTED
-    close_all(march, desk, lying, seek, shapes, there, start, results)
+    close(march, desk, lying, seek, shapes, there, start, results)
     limit, margin = lying.aim.barely, EITHER_WAY * lying.aim.span
     for c in range(ends.size):
         if seek[c].tried == 0:
@@ -101,7 +101,7 @@ def look_on_seabed(
             ends[c] = WRITTEN
         else:
             ends[c] = LIFTED if closed else there[c]
-    close_all(march, desk, clear, seek, shapes, again, start, results)
+    close(march, desk, clear, seek, shapes, again, start, results)
     for c in range(ends.size):
         if seek[c].tried == 2:
             lies = again[c] == ON_SEABED and there[c] == WRITTEN
@@ -109,8 +109,8 @@ def look_on_seabed(
 
 
 def solve_chunks(
-    march: March, clear: Way, lying: Way, contact: int, desk: Desk, shapes: Shapes,
-    seek: Searches, depth: Floats, u: Floats, v: Floats, w: Floats, results: Results,
+    find: FindRoots, close: CloseAll, march: March, clear: Way, lying: Way, contact: int,
+    desk: Desk, shapes: Shapes, seek: Searches, depth: Floats, u: Floats, v: Floats, w: Floats, results: Results,
     reasons: Integers,
 ) -> None:  # fmt: skip
     """Solve cases, as many at a time as there are slots: see `solve_cases`."""
@@ -121,13 +121,15 @@ def solve_chunks(
             case = start + c
             levels_at = depth[case if depth.shape[0] > 1 else 0]
             ends[c] = read_case(c, clear, desk, seek, levels_at, u[case], v[case], w[case])
-        find_roots(march, desk, clear, seek, ends)
+        find(march, desk, clear, seek, ends)
         if contact == LIKELY:
             for c in range(ends.size):
                 if ends[c] == SOLVED:
                     ends[c] = as_on_seabed(seek, c, clear.aim)
-        close_all(march, desk, clear, seek, shapes, ends, start, results)
+        close(march, desk, clear, seek, shapes, ends, start, results)
         if contact != NEVER:
-            look_on_seabed(march, desk, clear, lying, contact, seek, shapes, ends, start, results)
+            look_on_seabed(
+                find, close, march, desk, clear, lying, contact, seek, shapes, ends, start, results
+            )
         for c in range(ends.size):
             ends[c] = SOLVED if ends[c] == WRITTEN else ends[c]

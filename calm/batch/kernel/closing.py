@@ -61,7 +61,9 @@ COARSE = 0
 """How often cuts are halved where a root is looked for."""
 
 March = Callable[[Desk, Way, int], None]
-"""`calm.batch.kernel.march.march`, compiled by itself."""
+FindRoots = Callable[[March, Desk, Way, Searches, Integers], None]
+CloseAll = Callable[[March, Desk, Way, Searches, "Shapes", Integers, int, Results], None]
+"""`calm.batch.kernel.march.march`, and the two below, each compiled by itself."""
 
 
 class Shapes(NamedTuple):

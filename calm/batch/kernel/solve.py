@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from calm.batch.kernel.cases import CHUNK, solve_chunks
-from calm.batch.kernel.closing import Shapes
+from calm.batch.kernel.closing import Shapes, close_all, find_roots
 from calm.batch.kernel.compiled import by_address, entry
 from calm.batch.kernel.lane import LANES, SCRATCH, STATE, Desk, Tables
 from calm.batch.kernel.layout import Results
@@ -69,8 +69,13 @@ def solve_cases(
     shapes = Shapes(
         np.zeros((CHUNK, size)), np.zeros((CHUNK, size)), np.zeros(CHUNK), np.zeros(size)
     )
+    seek = np.zeros(CHUNK, record_type(Search))
     marching: Any = by_address(march, desk, plan.clear, 0)
+    find: Any = by_address(find_roots, marching, desk, plan.clear, seek, reasons)
+    close: Any = by_address(
+        close_all, marching, desk, plan.clear, seek, shapes, reasons, 0, results
+    )
     entry(solve_chunks)(
-        marching, plan.clear, plan.lying, plan.contact, desk, shapes,
-        np.zeros(CHUNK, record_type(Search)), depth, u, v, w, results, reasons,
+        find, close, marching, plan.clear, plan.lying, plan.contact, desk, shapes,
+        seek, depth, u, v, w, results, reasons,
     )  # fmt: skip
