@@ -23,7 +23,7 @@ from calm.batch.threads import processors
 from calm.case import Mooring
 from calm.case.measure import clamps_down, clamps_of, components_of
 from calm.errors import NoEquilibrium
-from calm.physics.line import Floats, Water
+from calm.physics.line import Floats
 from calm.solve import Status, expect_many
 
 BLOCK = 1024

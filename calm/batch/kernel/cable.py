@@ -11,6 +11,7 @@ from math import sqrt
 from calm.batch.kernel import lane
 from calm.batch.kernel.lane import (
     LANES,
+    SINGLY,
     Tables,
     exact_shares,
     look_up,
@@ -51,9 +52,9 @@ def pass_cable(
             set_cut(s, i, cuts[j] / parts)
         if packed:
             pass_packed(s, water, cable, parts)
-            continue
-        for _ in range(parts):
-            pass_singly(s, water, course, stage)
+        elif SINGLY:
+            for _ in range(parts):
+                pass_singly(s, water, course, stage)
 
 
 def cable_of(course: Course, stage: int) -> Cable:

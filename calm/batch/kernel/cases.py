@@ -110,8 +110,8 @@ def look_on_seabed(
 
 def solve_chunks(
     find: FindRoots, close: CloseAll, march: March, clear: Way, lying: Way, contact: int,
-    desk: Desk, shapes: Shapes, seek: Searches, depth: Floats, u: Floats, v: Floats, w: Floats, results: Results,
-    reasons: Integers,
+    desk: Desk, shapes: Shapes, seek: Searches, depth: Floats, u: Floats, v: Floats, w: Floats,
+    results: Results, reasons: Integers,
 ) -> None:  # fmt: skip
     """Solve cases, as many at a time as there are slots: see `solve_cases`."""
     chunk = seek.size

@@ -221,7 +221,7 @@ def close_all(
 
     The cuts are halved until that changes little. Those written end `WRITTEN`, or as refused.
     """
-    span, stages = way.aim.span, way.course.stages.size
+    span, stages = way.aim.span, len(way.course.stages)
     older, newer, earlier = shapes.older, shapes.newer, shapes.earlier
     pending = desk.pending
     for c in range(ends.size):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -23,10 +23,11 @@ Function = Callable[..., Any]
 
 
 @cache
-def called(function: Function) -> Any:
+def called(function: Function, singly: bool) -> Any:
     """A function compiled into those that call it."""
-    return numba.njit(
-        compiled.clone(function, called),
+    njit: Any = numba.njit
+    return njit(
+        _clone(function, singly),
         nogil=True,
         no_cpython_wrapper=True,
         no_cfunc_wrapper=True,
@@ -38,26 +39,37 @@ def called(function: Function) -> Any:
 def entry(function: Function) -> Any:
     """A function that is called from outside: compiled, and kept for the next process."""
     options = {"nogil": True, **OPTIONS}
-    return compiled.kept(numba.njit, compiled.clone(function, called), cache_folder(), **options)
+    return compiled.kept(numba.njit, _clone(function, False), cache_folder(False), **options)
 
 
-def by_address(function: Function, *arguments: Any) -> Any:
+def by_address(function: Function, *arguments: Any, singly: bool = False) -> Any:
     """A function for arguments of some types, compiled by itself and called by its address.
 
-    Those that call it are not compiled anew with it, which would take as long for each.
+    Those that call it are not compiled anew with it, which would take as long for each. `singly`:
+    with the laws that each lane takes by itself.
     """
-    types = tuple(numba.typeof(argument) for argument in arguments)
-    return _by_address(function, numba.void(*types))
+    typeof: Any = numba.typeof
+    types = tuple(typeof(argument) for argument in arguments)
+    return _by_address(function, numba.void(*types), singly)
 
 
 @cache
-def _by_address(function: Function, signature: Any) -> Any:
+def _by_address(function: Function, signature: Any, singly: bool) -> Any:
     def compiler(clone: Function, **options: Any) -> Any:
         return numba.cfunc(signature, **options)(clone)
 
-    return compiled.kept(compiler, compiled.clone(function, called), cache_folder(), **OPTIONS)
+    return compiled.kept(compiler, _clone(function, singly), cache_folder(singly), **OPTIONS)
 
 
-def cache_folder() -> Path | None:
+def _clone(function: Function, singly: bool) -> Function:
+    """The function with what it calls, and without what a mooring has no use for."""
+    clone = compiled.clone(function, partial(called, singly=singly))
+    if "SINGLY" in clone.__globals__:
+        clone.__globals__["SINGLY"] = singly
+    return clone
+
+
+def cache_folder(singly: bool = False) -> Path | None:
     """Where the compiled kernel is kept: see `calm.physics.compiled`."""
-    return compiled.cache_folder("kernel", Path(__file__).parent)
+    name = "kernel-singly" if singly else "kernel"
+    return compiled.cache_folder(name, Path(__file__).parent)

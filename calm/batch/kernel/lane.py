@@ -20,6 +20,10 @@ from calm.physics.state import State
 
 LANES = 16
 
+SINGLY = True
+"""Whether laws are compiled that each lane takes by itself: the compiler sets it False for moorings
+without any, where it is looked at as a bare name."""
+
 (
     # place, force above, axis: these are recorded
     X, Y, Z, FX, FY, FZ, TX, TY, TZ,

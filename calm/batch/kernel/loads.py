@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import sqrt
 
 from calm.batch.kernel import lane
-from calm.batch.kernel.lane import LANES, Tables, look_up, lost
+from calm.batch.kernel.lane import LANES, SINGLY, Tables, look_up, lost
 from calm.batch.kernel.layout import Way
 from calm.physics.line import REFERENCE_DENSITY, Floats
 from calm.physics.profile import viscosity_at
@@ -93,7 +93,7 @@ def pass_clamp(s: Floats, water: Tables, way: Way, stage: int) -> None:
         s[lane.DEPTH + i] = -s[lane.Z + i]
         s[lane.C + i] = 1.0
     look_up(s, water)
-    if load.diameter > 0.0:
+    if SINGLY and load.diameter > 0.0:
         for i in range(LANES):
             if s[lane.BUSY + i] > 0.0 and not lost(s, i):
                 viscosity = viscosity_at(water.sea, s[lane.DEPTH + i])

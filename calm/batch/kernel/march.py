@@ -24,7 +24,7 @@ def march(desk: Desk, way: Way, halvings: int) -> None:
     begin(s)
     note(s, nodes, 0)
     stages, landing = way.course.stages, way.course.landing
-    for n in range(stages.size):
+    for n in range(len(stages)):
         kind = stages[n].kind
         to_seabed = way.lands and n >= landing
         if to_seabed:

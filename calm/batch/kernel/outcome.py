@@ -76,7 +76,7 @@ def write_case(way: Way, shape: Floats, used: float, results: Results, case: int
     """Write a case's shape to its row of the results."""
     course, piece_length = way.course, way.lengths
     pieces, clamps, ends = results
-    stages = course.stages.size
+    stages = len(course.stages)
     written = -1
     ox = oy = oz = 0.0
     for n in range(stages):
@@ -135,7 +135,7 @@ def walk_rod(way: Way, shape: Floats, n: int, results: Results, case: int) -> in
     rod, loads = course.stages[n], course.loads
     end, length = rod.first + rod.size, rod.length
     a, b = n * STATE, (n + 1) * STATE
-    forces = (course.stages.size + 1) * STATE
+    forces = (len(course.stages) + 1) * STATE
     x, y, z = shape[a], shape[a + 1], shape[a + 2]
     fx, fy, fz = shape[a + 3], shape[a + 4], shape[a + 5]
     tx = ty = tz = 0.0

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from calm.assemble import assemble_water
+from calm.batch.kernel.cable import is_packed
 from calm.batch.kernel.contact import first_chain_of, grips_on, when_looked_for
 from calm.batch.kernel.cuts import cuts_of
 from calm.batch.kernel.layout import Aim, Ride, Rides, Seabed, Way
@@ -19,7 +20,7 @@ from calm.physics.hull import Floating
 from calm.physics.line import Floats, Integers, Line, Water
 from calm.physics.profile import Profile
 from calm.physics.state import MarchError
-from calm.physics.track import Course, Part, Rod, head_count
+from calm.physics.track import CABLE, Course, Part, Rod, head_count
 from calm.solve.closing import Closing
 from calm.solve.locate import SHARES, upright_depth
 from calm.solve.mooring import BARELY_LANDED
@@ -47,6 +48,8 @@ class Plan:
     strata : its viscosity, as in `Sea`
     clear, lying : the line looked for clear of the seabed, and lying on it
     contact : when the second: see `calm.batch.kernel.contact`
+    singly : whether it has laws that each lane takes by itself: an elongation or drag curve,
+        another friction than Berteaux's, a cable at its free end or without drag
     """
 
     water: Water
@@ -54,6 +57,7 @@ class Plan:
     clear: Way
     lying: Way
     contact: int
+    singly: bool
 
 
 def base_water(mooring: Mooring) -> Water:
@@ -74,7 +78,15 @@ def plan_of(mooring: Mooring) -> Plan:
         clear=clear,
         lying=lying,
         contact=when_looked_for(line, water, track),
+        singly=_takes_singly(track.course),
     )
+
+
+def _takes_singly(course: Course) -> bool:
+    """Whether a stage has a law that is not made for all lanes at once."""
+    cables = [n for n, stage in enumerate(course.stages) if stage.kind == CABLE]
+    curved = any(load.diameter > 0.0 for load in course.loads)
+    return curved or not all(is_packed(course, n) for n in cables)
 
 
 def _way(closing: Closing, first_chain: int, *, lands: bool) -> Way:
@@ -82,16 +94,16 @@ def _way(closing: Closing, first_chain: int, *, lands: bool) -> Way:
     line, water, track = closing.line, closing.water, closing.track
     unknown = closing.whole(lands)
     top = upright_depth(closing, unknown)
-    course = packed(track.course)
+    course, loads = track.course, packed(track.course).loads
     cuts = cuts_of(track, water.depth, lands)
     afloat = closing.floats[0] if closing.floats else -1
     head = track.stages[0]
     floats = isinstance(head, Rod) and afloat in head.pieces
-    clamped = course.loads["clamp"] >= 0
+    clamped = loads["clamp"] >= 0
     falls, step = _falls(closing, unknown, top)
     grips, holds = grips_on(track, water, closing.settings.seabed_friction)
     return Way(
-        course=course,
+        course=packed(course),
         cuts=np.concatenate([np.zeros(0), *cuts]),
         first_cut=np.cumsum([0, *map(len, cuts)], dtype=np.int64),
         lands=lands,
@@ -108,7 +120,7 @@ def _way(closing: Closing, first_chain: int, *, lands: bool) -> Way:
             barely=float(BARELY_LANDED * line.anchor_height),
         ),
         rides=_rides(head, afloat, line.floating if floats else None),
-        places=_places(line, course, afloat if floats else -1),
+        places=_places(line, loads, course.stages[0].size, afloat if floats else -1),
         shares=np.array(SHARES),
         falls=falls,
         fall_step=step,
@@ -119,12 +131,12 @@ def _way(closing: Closing, first_chain: int, *, lands: bool) -> Way:
     )
 
 
-def _places(line: Line, course: Course, afloat: int) -> Integers:
+def _places(line: Line, loads: Any, head: int, afloat: int) -> Integers:
     """Of every load of the head whether it is the float at the surface, or stands out above it."""
-    piece, clamp = course.loads["piece"], course.loads["clamp"]
-    head = np.arange(len(piece)) < course.stages["size"][0]
-    above = head & (piece < afloat) & (line.floating is not None)
-    itself = head & (piece == afloat) & (clamp < 0)
+    piece, clamp = loads["piece"], loads["clamp"]
+    at_head = np.arange(len(piece)) < head
+    above = at_head & (piece < afloat) & (line.floating is not None)
+    itself = at_head & (piece == afloat) & (clamp < 0)
     return np.where(itself, AFLOAT, np.where(above, ABOVE_FLOAT, IN_WATER))
 
 

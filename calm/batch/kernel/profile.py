@@ -40,7 +40,7 @@ def between(table: Floats, count: int, k: int, depth: float, c: int) -> float:
 
 
 def lay_profile(
-    read: Floats, count: int, fixed: Floats, levels: Floats, intervals: Any, joined: Floats
+    read: Floats, count: int, fixed: Floats, levels: Any, intervals: Any, joined: Floats
 ) -> int:
     """Join a profile with the fixed levels, and lay out levels and intervals as in `Sea`.
 
@@ -57,10 +57,8 @@ def lay_profile(
     total = i = j = 0
     given = fixed.shape[0]
     while i < count or j < given:
-        if j == given or (i < count and read[i, 0] <= fixed[j, 0]):
-            depth = read[i, 0]
-        else:
-            depth = fixed[j, 0]
+        of_profile = j == given or (i < count and read[i, 0] <= fixed[j, 0])
+        depth = read[i, 0] if of_profile else fixed[j, 0]
         if i < count and read[i, 0] == depth:
             i += 1
         if j < given and fixed[j, 0] == depth:
@@ -93,6 +91,7 @@ def lay_profile(
 
 
 def value_at(table: Floats, count: int, k: int, depth: float, c: int) -> float:
+    """As `between`; at the k-th level itself, what stands there."""
     if k < count and table[k, 0] == depth:
         return float(table[k, c])
     return between(table, count, k, depth, c)

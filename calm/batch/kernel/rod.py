@@ -11,6 +11,7 @@ from calm.batch.kernel import lane
 from calm.batch.kernel.lane import (
     LANES,
     MOST_PASSES,
+    SINGLY,
     Desk,
     Tables,
     exact_shares,
@@ -41,7 +42,7 @@ def pass_rod(desk: Desk, way: Way, stage: int) -> None:
     for i in range(LANES):
         s[lane.NX + i], s[lane.NY + i], s[lane.NZ + i] = 0.0, 0.0, s[lane.TZ + i]
         s[lane.TRIED + i], s[lane.CHANGE + i] = s[lane.TZ + i], inf
-    if curved:
+    if SINGLY and curved:
         turn_singly(desk, way, stage)
     elif rod.size == 1 and stage > 0:
         pass_piece(s, water, in_registers(loads[rod.first]), rod.length, way.near)
@@ -59,7 +60,7 @@ def pass_rod(desk: Desk, way: Way, stage: int) -> None:
             s[lane.LEAST_PULL + i] = -1.0
     for j in range(rod.first, rod.first + rod.size):
         load = in_registers(loads[j])
-        if curved:
+        if SINGLY and curved:
             add_singly(s, water, load, way.places[j])
         else:
             if rod.size > 1:

@@ -11,7 +11,7 @@ from math import inf, sqrt
 from calm.batch.kernel import lane
 from calm.batch.kernel.bends import DOWN
 from calm.batch.kernel.cable import cable_of, is_packed, pass_packed, pass_singly, set_cut
-from calm.batch.kernel.lane import EXTREMES, LANES, STATE, Tables
+from calm.batch.kernel.lane import EXTREMES, LANES, SINGLY, STATE, Tables
 from calm.batch.kernel.layout import Way
 from calm.physics.cable import strain_at
 from calm.physics.line import Floats
@@ -86,7 +86,7 @@ def pass_to_seabed(
                 s[lane.NZ + i], s[lane.CHANGE + i] = s[lane.TZ + i], s[lane.RESTING + i]
             if packed:
                 pass_packed(s, water, stretch, one)
-            else:
+            elif SINGLY:
                 pass_singly(s, water, course, stage)
             landing = False
             for i in range(LANES):

@@ -24,12 +24,14 @@ def desk_for(plan: Plan, levels: int, cases: int) -> Desk:
     course = plan.clear.course
     levels += len(plan.clear.fixed)
     most = len(plan.lying.cuts) + 1
+    numbers: Any = np.zeros(cases * (levels + 2))
+    intervals: Any = np.zeros(cases * (levels + 2), record_type(Interval))
     water = Tables(
         slot=np.zeros(LANES, np.int64),
         interval=np.zeros(LANES, np.int64),
         sea=Sea(
-            levels=np.zeros(cases * (levels + 2)),
-            intervals=np.zeros(cases * (levels + 2), record_type(Interval)),
+            levels=numbers,
+            intervals=intervals,
             gravity=plan.water.gravity,
             strata=plan.strata,
         ),
@@ -70,7 +72,7 @@ def solve_cases(
         np.zeros((CHUNK, size)), np.zeros((CHUNK, size)), np.zeros(CHUNK), np.zeros(size)
     )
     seek = np.zeros(CHUNK, record_type(Search))
-    marching: Any = by_address(march, desk, plan.clear, 0)
+    marching: Any = by_address(march, desk, plan.clear, 0, singly=plan.singly)
     find: Any = by_address(find_roots, marching, desk, plan.clear, seek, reasons)
     close: Any = by_address(
         close_all, marching, desk, plan.clear, seek, shapes, reasons, 0, results

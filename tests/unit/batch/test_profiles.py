@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from calm.batch import profiles
-from calm.batch.kernel.lanes import LANES
+from calm.batch.kernel.lane import LANES
 from calm.batch.profiles import Profiles, solve_profiles
 from calm.batch.statuses import STATUSES
 from calm.case import Mooring, load
