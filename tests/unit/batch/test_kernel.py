@@ -30,7 +30,7 @@ AVX = platform.machine() in ("x86_64", "AMD64") and any(
 
 @pytest.mark.slow  # it compiles the kernel anew
 @pytest.mark.skipif(not AVX, reason="packed square roots are told by their names on x86-64")
-@pytest.mark.parametrize("function", [cable.pass_segments, rod.pass_piece])
+@pytest.mark.parametrize("function", [cable.pass_packed, rod.pass_piece])
 def test_square_roots_are_packed(function: Any) -> None:
     mooring = load(shipped_folder("lines") / "cdms-1.yaml")
     assert isinstance(mooring, Mooring)
