@@ -1,14 +1,17 @@
 """How soon the line builder shows what an edit does.
 
-    python benchmarks/build.py [REPETITIONS]
+    python benchmarks/build.py [REPETITIONS] [--smoke]
 
 The deep current-meter mooring with shackles added up to 60 pieces is opened in a terminal of 80
 columns and 24 rows. Prints the wall time to the first picture, beside that of `calm run` and of a
 bare `python -c pass` in the same run; from a key to the first bytes of the screen that follows;
 and from a text to its verdict, of that the solving, after edits of a length, of the current and of
-a label. Needs a system with pseudo-terminals.
+a label. Then, in a terminal of 140 columns and 45 rows with 33 and with 200 rows of the line, what
+a key costs over a slow link: the bytes that are sent for it, the processor time it takes, and when
+the last byte of it has come. Needs a system with pseudo-terminals; `--smoke` takes seconds.
 """
 
+import os
 import statistics
 import subprocess
 import sys
@@ -34,14 +37,14 @@ QUIET = 0.2
 DOWN, UP = "\x1b[B", "\x1b[A"
 
 
-def sixty_pieces() -> str:
-    """The deep mooring with a shackle below its meters and ropes, as many as it takes."""
+def pieces(count: int) -> str:
+    """The deep mooring with shackles below its lowest ropes and meters, as many as it takes."""
     head, line = DEEP_LINE.read_text(encoding="utf-8").split("\nline:\n")
     rows = line.splitlines(keepends=True)
     items = [number for number, row in enumerate(rows) if row.startswith("  - ")]
-    lacking = PIECES - len(items)
-    for number in reversed(items[-2 - lacking : -2]):
-        rows.insert(number, "  - {use: shackle-13}\n")
+    lacking = count - len(items)
+    for turn in range(lacking):
+        rows.insert(items[-3 - turn % (len(items) - 4)], "  - {use: shackle-13}\n")
     return f"{head}\nline:\n{''.join(rows)}"
 
 
@@ -55,13 +58,13 @@ def seconds(action: Callable[[], object]) -> float:
 class Terminal:
     """`calm build` in a terminal, from its start to its first picture."""
 
-    def __init__(self, file: Path) -> None:
-        self.screen = pyte.Screen(COLUMNS, ROWS)
+    def __init__(self, file: Path, columns: int = COLUMNS, rows: int = ROWS) -> None:
+        self.screen = pyte.Screen(columns, rows)
         self.stream = pyte.ByteStream(self.screen)
         self.child = pexpect.spawn(
             sys.executable,
             ["-m", "calm", "build", str(file)],
-            dimensions=(ROWS, COLUMNS),
+            dimensions=(rows, columns),
             timeout=PATIENCE,
         )
         self.child.delaybeforesend = 0
@@ -86,6 +89,28 @@ class Terminal:
         taken = seconds(lambda: self.stream.feed(self.child.read_nonblocking(65536, PATIENCE)))
         self.settle()
         return taken
+
+    def cost(self, key: str, quiet: float) -> tuple[int, float, float]:
+        """Of a key the bytes that are sent, the time to the last [s], the processor's time [s].
+
+        It is over when nothing has come for a time [s]."""
+        self.child.send(key)
+        begun, busy = time.perf_counter(), self._busy()
+        count, last = 0, begun
+        try:
+            while True:
+                count += len(self.child.read_nonblocking(1 << 20, timeout=quiet))
+                last = time.perf_counter()
+        except pexpect.TIMEOUT:
+            return count, last - begun, self._busy() - busy
+
+    def _busy(self) -> float:
+        """The processor's time that the command has taken [s], as the system counts it."""
+        path = Path(f"/proc/{self.child.pid}/stat")
+        if not path.exists():
+            return 0.0
+        values = path.read_text(encoding="utf-8").rpartition(")")[2].split()
+        return (int(values[11]) + int(values[12])) / os.sysconf("SC_CLK_TCK")
 
     def close(self) -> None:
         """End it as a closed terminal does."""
@@ -123,6 +148,20 @@ def keys(file: Path, repetitions: int) -> dict[str, list[float]]:
     return {"cursor": cursor, "duplicate": [*duplicated], "undo": [*undone]}
 
 
+def links(file: Path, repetitions: int) -> Iterable[tuple[str, int, list[float], float]]:
+    """Of a cursor key and of an edit the most bytes, the times to the last, the processor's time.
+
+    An edit is followed for a second: launch, recovery and breaks are judged half a second after it.
+    """
+    terminal = Terminal(file, 140, 45)
+    terminal.cost(DOWN, 2.0)
+    for name, keys, quiet in (("cursor", (DOWN, UP), QUIET), ("duplicate, undo", ("d", "u"), 1.0)):
+        costs = [terminal.cost(key, quiet) for _ in range(repetitions) for key in keys]
+        counts, times, busy = zip(*costs, strict=True)
+        yield name, max(counts), [*times], sum(busy) / len(busy)
+    terminal.close()
+
+
 def edits(text: str, repetitions: int) -> Iterable[tuple[str, list[float], list[float]]]:
     """Of every kind of edit the times to its verdict, and those of its solving alone."""
     kinds: dict[str, Callable[[int], str]] = {
@@ -147,14 +186,15 @@ def edits(text: str, repetitions: int) -> Iterable[tuple[str, list[float], list[
 
 def main() -> None:
     """Print all figures."""
-    repetitions = int(sys.argv[1]) if len(sys.argv) > 1 else 20
+    given = [word for word in sys.argv[1:] if word != "--smoke"]
+    repetitions = 1 if "--smoke" in sys.argv else int(given[0]) if given else 20
     print(describe("calm-mooring", "textual", "rich", "numpy"))
-    text = sixty_pieces()
+    text = pieces(PIECES)
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "sixty.yaml"
         file.write_text(text, encoding="utf-8")
         print(f"\n{'whole process':32}{'median':>11}{'fastest':>11}{'to calm run':>13}")
-        wall = first_pictures(file, max(repetitions // 4, 3))
+        wall = first_pictures(file, repetitions // 4 or 1)
         for name, times in wall.items():
             ratio = min(times) / min(wall["calm run"])
             told = f"{name}, first picture" if name == "calm build" else name
@@ -162,6 +202,13 @@ def main() -> None:
         print(f"\n{'key to screen':32}{'median':>11}{'fastest':>11}")
         for name, times in keys(file, repetitions).items():
             print(f"{name:32}{_pair(times)}")
+        heads = "".join(f"{each:>11}" for each in ("most bytes", "median", "fastest", "processor"))
+        print(f"\n{'140 x 45, over a link':32}{heads}")
+        for rows in (33, 200):
+            file.write_text(pieces(rows), encoding="utf-8")
+            for name, count, times, busy in links(file, repetitions):
+                told = f"{name}, {rows} pieces"
+                print(f"{told:32}{count:11}{_pair(times)}{1e3 * busy:8.1f} ms")
     print(f"\n{'edit to verdict':32}{'median':>11}{'fastest':>11}{'to one solve':>13}")
     for kind, times, solving in edits(text, 2 * repetitions):
         print(f"{kind:32}{_pair(times)}{min(times) / min(solving):13.2f}")

@@ -49,7 +49,7 @@ def write_environments(folder: Path, count: int) -> list[str]:
         speed, toward = 0.2 + 0.5 * number / count, 36 * number
         file = folder / f"environment-{number}.yaml"
         text = ENVIRONMENT.format(
-            number=number, speed=speed, half=speed / 2, toward=toward, back=toward + 90
+            number=number, speed=speed, half=speed / 2, toward=toward, back=(toward + 90) % 360
         )
         file.write_text(text, encoding="utf-8")
         options += ["--environment", str(file)]

@@ -21,7 +21,9 @@ from tests.validation.families import FAMILIES
 from tests.validation.honesty import Honesty, honesty
 
 QUANTILES = 50, 90, 95, 99, 100
-MEASURES = "place", "tension", "place inside cables", "tension inside cables"
+MEASURES = (
+    "place", "tension", "place inside cables", "tension inside cables", "anchor", "needed weight",
+)  # fmt: skip
 
 
 def measure(family: str, cases: int, first: int) -> None:

@@ -58,8 +58,22 @@ def __getattr__(name: str) -> object:
     from importlib import import_module
 
     value = getattr(import_module(_HOMES[name]), name)
+    if _HOMES[name] == "calm.case":
+        _show_in_notebooks()
     globals()[name] = value
     return value
+
+
+def _show_in_notebooks() -> None:
+    """Tell results how a notebook shows them."""
+    from calm.case.result import Solved
+
+    def html(result: Result | TowResult) -> str:
+        from calm.report.notebook import to_html
+
+        return to_html(result)
+
+    Solved.notebook_form = staticmethod(html)
 
 
 def __dir__() -> list[str]:

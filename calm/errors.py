@@ -59,15 +59,20 @@ class NoEquilibrium(CalmError):
     message, advice : str
         What is wrong, with its figures, and what to change.
     piece : int, optional
-        Index of the piece it happens at, when the message names one.
+        Index of the piece it happens at, which stands in the message as ``{piece}``.
     """
 
     def __init__(self, status: str, message: str, advice: str, piece: int | None = None) -> None:
         self.status = status
-        self.message = message
+        self.wording = message
+        self.message = message if piece is None else message.format(piece=f"piece {piece + 1}")
         self.advice = advice
         self.piece = piece
-        super().__init__(f"{status}: {message} {advice}")
+        super().__init__(f"{status}: {self.message} {advice}")
+
+    def naming(self, piece: str) -> NoEquilibrium:
+        """The same, with the piece called by a name."""
+        return NoEquilibrium(self.status, self.wording.format(piece=piece), self.advice)
 
     def to_dict(self) -> dict[str, str]:
         """`status`, `message` and `advice`, as they stand in JSON in place of a result."""

@@ -145,6 +145,7 @@ _TABLE = (
         "Angle of the pull: on an anchor from the vertical, in a tow from the horizontal.",
         display="°",
     ),
+    Quantity("potential", "potential", "V", "Difference of two metals in sea water.", decimals=2),
     Quantity("body_tension", "tension at the body", "N", "Pull on the towed body.", decimals=0),
     Quantity("frequency", "frequency", "Hz", "Frequency at which the cable vibrates.", decimals=2),
     Quantity(

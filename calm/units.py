@@ -145,6 +145,7 @@ _COMMA = re.compile(r"([+-]?\d+),(\d+)(?=$|[^\d,])")
 _UNIT = re.compile(r"(?:[A-Za-zµ°%][A-Za-z_µ°%]*|[*/()]|\^-?[1-4](?!\d)|1(?=/))+")
 _SUPERSCRIPTS = str.maketrans("⁻¹²³⁴", "-1234")
 _LONGEST = 60
+_LARGEST = 1e30  # so that products of a few of them are numbers still
 
 
 class QuantityError(ValueError):
@@ -203,7 +204,7 @@ def _parsed(text: str, dimension: str, usual_unit: str | None) -> float:
         value = number
     else:
         raise QuantityError("needs a unit", f"{text} {usual_unit or wanted.unit}")
-    if not math.isfinite(value):
+    if not abs(value) <= _LARGEST:
         raise QuantityError("is too large a number")
     return value
 

@@ -42,6 +42,14 @@ def judged(path: Path, *environments: str) -> Assessment:
     return assessment_of(name, [stand_of(mooring, name) for mooring in moorings])
 
 
+def unaccepting(name: str, folder: Path) -> Path:
+    """A line of `lines/` without what it accepts: some of it fails, some is unknown."""
+    path = folder / name
+    text, _, _ = (LINES / name).read_text(encoding="utf-8").partition("\nchecks:\n")
+    path.write_text(text + "\n", encoding="utf-8")
+    return path
+
+
 def hostile_file(folder: Path) -> Path:
     """A mooring file whose every name is a trap."""
     names = {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -163,6 +164,31 @@ def _shape_drag(shape: SphereShape | CylinderShape) -> tuple[float, float, bool]
     if shape.inclination == "insensitive":
         return kn, kn, False
     return kn, kt, True
+
+
+def axial_drag_of(component: Component) -> float:
+    """K of what is clamped on a line in a flow along that line [N/(m/s)²].
+
+    Its tangential drag, or that of any flow where its drag does not depend on the axis.
+    """
+    kn, kt, directional = drag_of(component, getattr(component, "length", 0.0))
+    return kt if directional else kn
+
+
+def with_axial_clamps(line: Line, pieces: Sequence[Piece]) -> Line:
+    """The line with its clamps in a flow along it, as in a fall and a rise.
+
+    Parameters
+    ----------
+    line : as assembled from the pieces
+    """
+    clamps = [clamp.component for piece in pieces for clamp in piece.clamps]
+    axial = [drag_of(each, getattr(each, "length", 0.0))[2] for each in clamps]
+    curves = tuple(
+        None if along else curve for along, curve in zip(axial, line.clamp_drag_curve, strict=False)
+    )
+    drags = np.array([axial_drag_of(each) for each in clamps])
+    return replace(line, clamp_drag=drags, clamp_drag_curve=curves)
 
 
 def _clamped_drag(component: Component) -> float:

@@ -32,7 +32,6 @@ BLOCK = 1024
 _NO_CURRENT, _LEVELS_COINCIDE, _IMPLAUSIBLE = map(
     STATUSES.index, ("no-current", "levels-coincide", "implausible-current")
 )
-_NO_EQUILIBRIUM = STATUSES.index(Status.NO_EQUILIBRIUM.label)
 _ANCHOR_LIFTS = STATUSES.index(Status.ANCHOR_LIFTS.label)
 
 
@@ -149,7 +148,9 @@ class Batch:
         alone = np.zeros(count, np.bool_)
 
         def solve(block: slice) -> None:
-            mine = tuple(array if len(array) == 1 else array[block] for array in current)
+            depth, *others = current
+            levels = depth if len(depth) == 1 else depth[block]
+            mine = levels, *(array[block] for array in others)
             columns = Results(*(array[block] for array in rows))
             self._solve_block(mine, columns, status[block], alone[block])
 
@@ -177,7 +178,7 @@ class Batch:
         solve_cases(self.plan, depth, u, v, w, rows, ended)
         status[ended == NO_DATA] = _NO_CURRENT
         status[ended == LEVELS_COINCIDE] = _LEVELS_COINCIDE
-        status[ended == HEAP] = _NO_EQUILIBRIUM
+        status[ended == HEAP] = STATUSES.index(self.mooring.heaped("a piece").status)
         lifts = (ended == SOLVED) & (rows.ends[:, 1] > self.mooring.anchor_weight)
         status[lifts] = _ANCHOR_LIFTS
         alone[:] = (ended != SOLVED) & (status == 0)

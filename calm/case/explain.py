@@ -255,12 +255,9 @@ def _variations(mooring: Mooring) -> Iterator[tuple[str, Mooring]]:
     yield f"current −{percent}", _with(mooring, water=_with_current(water, 1.0 - CHANGE))
 
 
-def _with(mooring: Mooring, **arrays: Line | Water) -> Mooring:
+def _with(mooring: Mooring, line: Line | None = None, water: Water | None = None) -> Mooring:
     """The same mooring with another line or water than those of its file."""
-    other = Mooring(mooring.file)
-    # a cached property is what stands under its name in the instance
-    vars(other).update({"line": mooring.line, "water": mooring.water} | arrays)
-    return other
+    return Mooring(mooring.file, line=line or mooring.line, water=water or mooring.water)
 
 
 def _with_buoyancy(line: Line, factor: float) -> Line:

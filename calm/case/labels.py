@@ -24,6 +24,4 @@ def naming_the_piece(pieces: Sequence[Piece], *, towed: bool = False) -> Iterato
         if error.piece is None:
             raise
         piece = pieces[len(pieces) - 1 - error.piece if towed else error.piece]
-        counted = f"piece {error.piece + 1}"
-        message = error.message.replace(counted, f"{piece.label} (piece {piece.index + 1})")
-        raise NoEquilibrium(error.status, message, error.advice) from error
+        raise error.naming(f"{piece.label} (piece {piece.index + 1})") from error

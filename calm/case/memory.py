@@ -49,7 +49,7 @@ class Memory:
                 while len(self._outcomes) > MOST:
                     self._outcomes.popitem(last=False)
         if isinstance(outcome, NoEquilibrium):
-            raise NoEquilibrium(outcome.status, outcome.message, outcome.advice, outcome.piece)
+            raise NoEquilibrium(outcome.status, outcome.wording, outcome.advice, outcome.piece)
         solved: T = outcome
         return solved
 

@@ -38,7 +38,7 @@ def result_of(mooring: Mooring, solution: Solution, still: Solution | None) -> R
         segments=solution.segments,
         miss=solution.miss,
         closure=solution.closure,
-        accuracy=Accuracy(solution.depth_error, solution.tension_error),
+        accuracy=_accuracy(mooring, solution),
         top=Top(
             depth=float(components.depth_top[0]),
             x=float(components.x_top[0]),
@@ -94,17 +94,34 @@ def _with_anchor(above: Components, anchor: Piece, depth: float) -> Components:
 
 
 def _anchor_load(mooring: Mooring, solution: Solution) -> AnchorLoad:
-    anchor, checks = mooring.file.anchor, mooring.file.checks
-    force = solution.force[-1]
+    force, friction = solution.force[-1], _friction(mooring)
     vertical, horizontal = float(force[2]), float(np.hypot(force[0], force[1]))
-    friction = checks.anchor_friction if anchor.friction is None else anchor.friction
+    factor = mooring.file.checks.anchor_factor
     return AnchorLoad(
         tension=float(solution.tension[-1]),
         vertical=vertical,
         horizontal=horizontal,
         angle=float(np.degrees(np.arctan2(horizontal, vertical))),
-        required_weight=required_weight(vertical, horizontal, checks.anchor_factor, friction),
+        required_weight=max(required_weight(vertical, horizontal, factor, friction), 0.0),
         weight=mooring.anchor_weight,
         friction=friction,
         grounded_length=solution.grounded_length,
     )
+
+
+def _accuracy(mooring: Mooring, solution: Solution) -> Accuracy:
+    """What the solver states of its errors, and what follows for the weight of the anchor."""
+    lift, pull = solution.lift_error, solution.pull_error
+    factor = mooring.file.checks.anchor_factor
+    return Accuracy(
+        depth=solution.depth_error,
+        tension=solution.tension_error,
+        anchor=max(lift, pull),
+        required_weight=required_weight(lift, pull, factor, _friction(mooring)),
+    )
+
+
+def _friction(mooring: Mooring) -> float:
+    """Of the anchor on the bed: its own, or that of the checks."""
+    own = mooring.file.anchor.friction
+    return mooring.file.checks.anchor_friction if own is None else own

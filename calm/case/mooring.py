@@ -48,27 +48,42 @@ def load(
     return Mooring(file) if file.tow is None else Tow(file)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class Mooring:
     """A mooring as read from its file; `line` and `water` are what the solver takes.
 
-    `for_surface` tells whether it is meant to reach the surface, where that is known beforehand: a
-    mooring that is judged with something changed is meant for what it was meant for. `memory`
-    keeps what was solved for other states of the same file.
+    They follow from the file where they are not given. `for_surface` tells whether it is meant to
+    reach the surface, where that is known beforehand: a mooring that is judged with something
+    changed is meant for what it was meant for. `memory` keeps what was solved for other states of
+    the same file.
     """
 
     file: MooringFile
-    for_surface: bool | None = None
-    memory: Memory = field(default_factory=Forgetful, repr=False, compare=False)
+    for_surface: bool | None
+    memory: Memory = field(repr=False, compare=False)
+    _line: Line | None = field(repr=False, compare=False)
+    _water: Water | None = field(repr=False, compare=False)
 
-    def __reduce__(self) -> tuple[type[Mooring], tuple[MooringFile, bool | None]]:
+    def __init__(
+        self,
+        file: MooringFile,
+        for_surface: bool | None = None,
+        memory: Memory | None = None,
+        line: Line | None = None,
+        water: Water | None = None,
+    ) -> None:
+        memory = Forgetful() if memory is None else memory
+        fields = {"file": file, "for_surface": for_surface, "memory": memory}
+        vars(self).update(fields, _line=line, _water=water)
+
+    def __reduce__(self) -> tuple[type[Mooring], tuple[object, ...]]:
         """What another process needs: all else follows from these."""
-        return Mooring, (self.file, self.for_surface)
+        return Mooring, (self.file, self.for_surface, None, self._line, self._water)
 
     @cached_property
     def water(self) -> Water:
         """Depth, current and density by level."""
-        return assemble_water(self.file.environment)
+        return self._water or assemble_water(self.file.environment)
 
     @property
     def settings(self) -> Settings:
@@ -85,6 +100,8 @@ class Mooring:
         NoEquilibrium
             Where no length fits.
         """
+        if self._line is not None:
+            return self._line
         line = assemble_line(self.file.pieces, self.file.solver, self.water.gravity)
         if self.file.solver.buoy_drag == "immersed":
             floating = assemble_floating(self.file.pieces, self.file.environment, self.water)
@@ -141,10 +158,22 @@ class Mooring:
 
     def _refuse_a_heap(self, solution: Solution) -> None:
         """A sub-surface line is meant to stand: only chain may lie on the seabed below it."""
-        lying = set(solution.element_piece[solution.hanging :].tolist())
-        kinds = {self.file.pieces[piece].component.kind for piece in lying}
-        if not solution.surface and kinds - {"chain"}:
-            raise too_heavy(standing_lift(self.line, self.water))
+        if solution.surface:
+            return
+        pieces = self.file.pieces
+        for lying in sorted(set(solution.element_piece[solution.hanging :].tolist())):
+            if pieces[lying].component.kind != "chain":
+                raise self.heaped(pieces[lying].label)
+
+    def heaped(self, label: str) -> NoEquilibrium:
+        """Why a sub-surface line is refused of which more than chain lies on the seabed."""
+        lift = standing_lift(self.line, self.water)
+        if float(lift.sum()) <= 0.0:
+            return too_heavy(lift)
+        return Status.GROUNDED.because(
+            f"The current lays {label} on the seabed: of a line below the surface nothing but "
+            "chain may lie there."
+        )
 
     def _still(self, solution: Solution) -> Solution | None:
         """The same line without current; None where it has no unique shape."""

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from calm.case.band import StrummingBand, mooring_band
 from calm.case.columns import Clamps, Components, Shape
@@ -32,7 +33,7 @@ def document_of(result: Result | TowResult, ends: dict[str, Any]) -> dict[str, A
         "segments": result.segments,
         "miss": result.miss,
         "closure": result.closure,
-        "accuracy": asdict(result.accuracy),
+        "accuracy": {k: v for k, v in asdict(result.accuracy).items() if v is not None},
         **ends,
         "other_equilibrium": None if result.other_depth is None else {"depth": result.other_depth},
         "components": components,
@@ -49,10 +50,16 @@ def known(part: Strumming | StrummingBand | None) -> dict[str, Any] | None:
 
 @dataclass(frozen=True)
 class Accuracy:
-    """The solver's own estimate of the worst error of any depth or offset [m] and tension [N]."""
+    """The solver's own estimate of its errors.
+
+    Of the worst of any depth or offset [m], of any tension [N], of the vertical and the horizontal
+    pull on the anchor [N], and of the weight that it needs [N]; the last two None in a tow.
+    """
 
     depth: float
     tension: float
+    anchor: float | None = None
+    required_weight: float | None = None
 
 
 @dataclass(frozen=True)
@@ -106,21 +113,22 @@ class Strumming:
 
 
 class Solved:
-    """How a result shows its table, whatever was solved."""
+    """How a result shows its table, whatever was solved.
+
+    `notebook_form` makes HTML of a result; the rooms above set it.
+    """
 
     components: Components
+    notebook_form: ClassVar[Callable[[Any], str] | None] = None
 
     def to_dataframe(self) -> Any:
         """The components as a pandas data frame (pandas is not installed with CALM)."""
         return self.components.to_dataframe()
 
-    def _repr_html_(self) -> str:
-        """The table of the line, for notebooks."""
-        from importlib import import_module
-
-        # the report room stands above this one, so it is asked for by name at run time
-        html: str = import_module("calm.report.notebook").to_html(self)
-        return html
+    def _repr_html_(self) -> str | None:
+        """The table of the line, for notebooks; None where nothing makes it."""
+        form = type(self).notebook_form
+        return None if form is None else form(self)
 
 
 @dataclass(frozen=True)

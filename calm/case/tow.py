@@ -101,19 +101,27 @@ class TowResult(Solved):
         return document_of(self, ends)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class Tow:
     """A tow as read from its file; `line`, `water` and `towing` are what the solver takes.
 
-    `memory` keeps what was solved for other states of the same file.
+    The line follows from the file where it is not given. `memory` keeps what was solved for other
+    states of the same file.
     """
 
     file: MooringFile
-    memory: Memory = field(default_factory=Forgetful, repr=False, compare=False)
+    memory: Memory = field(repr=False, compare=False)
+    _line: Line | None = field(repr=False, compare=False)
 
-    def __reduce__(self) -> tuple[type[Tow], tuple[MooringFile]]:
+    def __init__(
+        self, file: MooringFile, memory: Memory | None = None, line: Line | None = None
+    ) -> None:
+        memory = Forgetful() if memory is None else memory
+        vars(self).update(file=file, memory=memory, _line=line)
+
+    def __reduce__(self) -> tuple[type[Tow], tuple[object, ...]]:
         """What another process needs: all else follows from it."""
-        return Tow, (self.file,)
+        return Tow, (self.file, None, self._line)
 
     @property
     def keys(self) -> TowKeys:
@@ -151,6 +159,8 @@ class Tow:
         NoEquilibrium
             Where no length reaches the depth.
         """
+        if self._line is not None:
+            return self._line
         line = assemble_line(self.file.pieces, self.file.solver, self.water.gravity)
         for piece in self.file.pieces:
             if piece.fit_body_depth is not None:
@@ -165,10 +175,7 @@ class Tow:
     def at_speed(self, speed: float) -> Tow:
         """The same tow at another speed of the ship [m/s], a fitted cable as long as at its own."""
         keys = self.keys.model_copy(update={"speed": speed})
-        other = Tow(replace(self.file, tow=keys))
-        # a cached property is what stands under its name in the instance
-        vars(other)["line"] = self.line
-        return other
+        return Tow(replace(self.file, tow=keys), line=self.line)
 
     def solve(self) -> TowResult:
         """Find the steady shape.

@@ -61,6 +61,14 @@ def _anchor_too_light(result: Result, _: Solution) -> Iterator[str]:
         )
 
 
+def _anchor_of_unknown_material(result: Result, _: Solution) -> Iterator[str]:
+    if not result.file.anchor.material_known:
+        yield (
+            f"{result.file.pieces[-1].label} gives its mass alone: its weight in water is that of "
+            "steel, 7850 kg/m³; of concrete it would be two thirds of that."
+        )
+
+
 def _tilted(result: Result | TowResult, _: Solution) -> Iterator[str]:
     leaning = [(row.label, row.tilt, row.part.component) for row in result.components]
     leaning += [(row.label, row.tilt, row.part.component) for row in result.clamps]
@@ -241,6 +249,7 @@ _WORRIES: tuple[Callable[[Result | TowResult, Solution], Iterator[str]], ...] = 
 )
 _MOORING_WORRIES: tuple[Callable[[Result, Solution], Iterator[str]], ...] = (
     _anchor_too_light,
+    _anchor_of_unknown_material,
     _bight,
     _on_the_seabed,
     _hull_unknown,

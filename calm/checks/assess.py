@@ -9,20 +9,19 @@ from datetime import date
 from calm.case import Mooring
 from calm.checks.acceptance import Acceptance
 from calm.checks.assessment import Assessment, Situation, Stand
-from calm.checks.backup import breaks_of
-from calm.checks.finding import AS_GIVEN, Finding, State
+from calm.checks.backup import breaks_of, losses_of
+from calm.checks.finding import AS_GIVEN, OWN, Finding, State
 from calm.checks.handling import Handling
 from calm.checks.inventory import inventory_of
 from calm.checks.launch import Launch, launch_of
+from calm.checks.limits import limits_used
+from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Recovery, recovery_of
 from calm.checks.rules import ONCE, STANDING, equilibrium
 from calm.checks.situations import SOLVES, STRUMMING, situations_of
 from calm.errors import NoEquilibrium
 from calm.files import MooringFile, Place
 from calm.solve import expect_many
-
-OWN = "own"
-"""Name of the environment that a mooring file gives itself."""
 
 
 def check(mooring: Mooring, /, *others: Mooring, day: date | None = None) -> Assessment:
@@ -81,7 +80,7 @@ def assessment_of(name: str, stands: Sequence[Stand], day: date | None = None) -
     handling = _handled(first)
     acceptance = _acceptance(first.mooring.file, day)
     findings = [
-        acceptance.of(rule.find(verdict, name, first.environment))
+        acceptance.of(rule.find(verdict, name, first.environment, rule.situation))
         for rule in ONCE
         for verdict in rule.judge(handling)
     ]
@@ -91,6 +90,8 @@ def assessment_of(name: str, stands: Sequence[Stand], day: date | None = None) -
         launch=None if isinstance(handling.launch, NoEquilibrium) else handling.launch,
         recovery=None if isinstance(handling.recovery, NoEquilibrium) else handling.recovery,
         backup=handling.backup,
+        losses=handling.losses,
+        limits=limits_used(first.mooring.file, reaches_the_surface(first.mooring)),
         inventory=inventory_of(first.mooring),
         findings=tuple(findings),
         notices=tuple(
@@ -169,4 +170,4 @@ def _handled(stand: Stand) -> Handling:
             recovery = recovery_of(mooring, result)
         except NoEquilibrium as failure:
             recovery = failure
-    return Handling(mooring, launch, recovery, breaks_of(mooring))
+    return Handling(mooring, launch, recovery, breaks_of(mooring), losses_of(mooring))

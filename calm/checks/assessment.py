@@ -10,11 +10,12 @@ from calm.checks.finding import Finding, State, worst_state
 
 if TYPE_CHECKING:
     from calm.case import Mooring, Result
-    from calm.checks.backup import Break
+    from calm.checks.backup import Break, Loss
     from calm.checks.inventory import Item
     from calm.checks.launch import Launch
     from calm.checks.recovery import Recovery
     from calm.errors import NoEquilibrium
+    from calm.files.checks import LimitKey
 
 
 @dataclass(frozen=True)
@@ -68,6 +69,8 @@ class Assessment:
     backup : a break at each connection above the release, from the top
     inventory : the pieces and clamps as they come to the deck
     findings : those of the launch, the recovery and the breaks
+    losses : of each buoyant element above the release, from the top
+    limits : all that it is judged by
     notices : what there is to say of accepts that have ended, or that no finding needs
     """
 
@@ -78,6 +81,8 @@ class Assessment:
     backup: tuple[Break, ...]
     inventory: tuple[Item, ...]
     findings: tuple[Finding, ...]
+    losses: tuple[Loss, ...] = ()
+    limits: tuple[LimitKey, ...] = ()
     notices: tuple[str, ...] = ()
 
     @property

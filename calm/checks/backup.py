@@ -6,16 +6,23 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from calm.assemble import net_buoyancy
 from calm.errors import NoEquilibrium
+from calm.files import Cable, Chain, Component
+from calm.files.definition import CATALOGUE_DENSITY, STEEL_DENSITY
 from calm.solve.standing import standing_lift
 
 if TYPE_CHECKING:
     from calm.case import Mooring
-    from calm.files import Piece
+    from calm.files import Piece, Place
     from calm.physics.line import Floats
 
 LEAST_MARGIN = 250.0
 """Net buoyancy that is asked for after any break, however little hangs on it [N]."""
+
+
+SHELLS = {"glass": 2230.0, "steel": STEEL_DENSITY, "aluminium": 2700.0, "titanium": 4500.0}
+"""Densities of what the shells of hollow floats are made of [kg/m³], by a word of `material`."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +46,77 @@ class Break:
     judged: bool
 
 
+@dataclass(frozen=True)
+class Loss:
+    """The loss of one buoyant element, such as a ball that is flooded; the line holds.
+
+    Attributes
+    ----------
+    index, label : the piece, or the piece that the clamp is on, and what is lost
+    margin : net buoyancy of what is left above the release, and of the release [N]
+    weight_lifted : weight in water of what of it is heavy [N]
+    required : what the margin should be [N]
+    place : of what is lost, in the line as read
+    """
+
+    index: int
+    label: str
+    margin: float
+    weight_lifted: float
+    required: float
+    place: Place
+
+
+def losses_of(mooring: Mooring) -> tuple[Loss, ...]:
+    """The loss of each buoyant piece or clamp above the lowest release, from the top.
+
+    What is lost lifts no more. One that fills with water, and gives its mass and a material of
+    `SHELLS`, weighs what that material does in water; another is taken to be gone, and a cable is
+    not lost. The others lift what they do where the line stands upright.
+    """
+    release = mooring.file.release
+    if release is None:
+        return ()
+    try:
+        lift = standing_lift(mooring.line, mooring.water)[: release + 1]
+    except NoEquilibrium:
+        return ()
+    gravity = mooring.water.gravity
+    weight = float(-lift[lift < 0.0].sum())
+    losses = []
+    for piece in mooring.file.pieces[: release + 1]:
+        own = () if isinstance(piece.component, Cable | Chain) else (piece,)
+        for part in (*own, *piece.clamps):
+            lifted = net_buoyancy(part.component, gravity)
+            if lifted <= 0.0:
+                continue
+            sunk = _weight_when_flooded(part.component, gravity)
+            losses.append(
+                Loss(
+                    index=piece.index,
+                    label=part.label,
+                    margin=float(lift.sum()) - lifted - sunk,
+                    weight_lifted=weight + sunk,
+                    required=_required(mooring, weight + sunk),
+                    place=part.place,
+                )
+            )
+    return tuple(losses)
+
+
+def _weight_when_flooded(component: Component, gravity: float) -> float:
+    """In water, of the shell of a float that is full of water [N]; 0 where that is not known."""
+    said = (component.material or "").casefold()
+    density = next((value for word, value in SHELLS.items() if word in said), None)
+    if density is None or component.mass is None:
+        return 0.0
+    return component.mass * gravity * (1.0 - CATALOGUE_DENSITY / density)
+
+
+def _required(mooring: Mooring, weight: float) -> float:
+    return max(mooring.file.checks.backup_margin * weight, LEAST_MARGIN)
+
+
 def breaks_of(mooring: Mooring) -> tuple[Break, ...]:
     """The breaks at every connection above the lowest release, from the top.
 
@@ -58,7 +136,6 @@ def breaks_of(mooring: Mooring) -> tuple[Break, ...]:
         lift = standing_lift(mooring.line, mooring.water)[: release + 1]
     except NoEquilibrium:
         return ()
-    share = mooring.file.checks.backup_margin
     beyond_help = _beyond_help(mooring.file.pieces[:release], lift[:release])
     judged = set(range(release)) - set(beyond_help) or {release - 1}
     breaks = []
@@ -71,7 +148,7 @@ def breaks_of(mooring: Mooring) -> tuple[Break, ...]:
                 label=piece.label,
                 margin=float(left.sum()),
                 weight_lifted=weight,
-                required=max(share * weight, LEAST_MARGIN),
+                required=_required(mooring, weight),
                 judged=piece.index in judged,
             )
         )

@@ -14,6 +14,9 @@ from calm.files.rules import RULES as RULE_TEXTS
 AS_GIVEN = "as given"
 """The situation of a mooring in its environment, with nothing changed."""
 
+OWN = "own"
+"""Name of the environment that a mooring file gives itself."""
+
 
 class State(StrEnum):
     """How a rule judges, the least grave first.
@@ -51,6 +54,7 @@ class Verdict:
     state : pass, accepted, warn, unknown or fail
     message : what was found, with both figures
     remedy : what to change; None where nothing need be
+    source : of the limit, where it is not that of the rule
     """
 
     component: str | None
@@ -61,6 +65,7 @@ class Verdict:
     message: str
     remedy: str | None = None
     place: Place | None = None
+    source: str = ""
 
     @property
     def share(self) -> float | None:
@@ -82,9 +87,10 @@ def at_most(
     message: str,
     remedy: str,
     beyond: State = State.FAIL,
+    source: str = "",
 ) -> Verdict:
     """The verdict on a value that may not pass a limit; `beyond` is its state where it does."""
-    return _verdict(part, value, limit, limit - value, message, remedy, beyond)
+    return _verdict(part, value, limit, limit - value, message, remedy, beyond, source)
 
 
 def at_least(
@@ -94,9 +100,10 @@ def at_least(
     message: str,
     remedy: str,
     beyond: State = State.FAIL,
+    source: str = "",
 ) -> Verdict:
     """The verdict on a value that may not fall short of a limit."""
-    return _verdict(part, value, limit, value - limit, message, remedy, beyond)
+    return _verdict(part, value, limit, value - limit, message, remedy, beyond, source)
 
 
 def told(part: Part | None, value: float, message: str) -> Verdict:
@@ -117,10 +124,11 @@ def verdict_on(
     value: float | None = None,
     limit: float | None = None,
     margin: float | None = None,
+    source: str = "",
 ) -> Verdict:
     """The verdict on a part of the line; None for the mooring as a whole."""
     label, place = (None, None) if part is None else (part.label, part.place)
-    return Verdict(label, value, limit, margin, state, message, remedy, place)
+    return Verdict(label, value, limit, margin, state, message, remedy, place, source)
 
 
 def _verdict(
@@ -131,10 +139,12 @@ def _verdict(
     message: str,
     remedy: str,
     beyond: State,
+    source: str,
 ) -> Verdict:
     kept = margin >= 0.0
     state = State.PASS if kept else beyond
-    return verdict_on(part, state, message, None if kept else remedy, value, limit, margin)
+    said = None if kept else remedy
+    return verdict_on(part, state, message, said, value, limit, margin, source)
 
 
 @dataclass(frozen=True)
@@ -149,6 +159,8 @@ class Rule:
     source : of the rule and of its default limit
     judge : from the evidence, a `Result` for most rules, to verdicts
     of_anchor : whether it judges the anchor, and nothing where a line has none
+    situation : of what it judges once of a mooring
+    criteria : from a `Mooring` to what is asked of it, where that can be counted in many profiles
     """
 
     name: str
@@ -157,29 +169,32 @@ class Rule:
     source: str
     judge: Callable[[Any], Iterator[Verdict]]
     of_anchor: bool = False
+    criteria: Callable[[Any], Iterator[Any]] | None = None
+    situation: str = AS_GIVEN
 
     def find(
         self, verdict: Verdict, mooring: str, environment: str, situation: str = AS_GIVEN
     ) -> Finding:
         """The verdict as a finding of this rule."""
         return Finding(
-            **vars(verdict),
+            **(vars(verdict) | {"source": verdict.source or self.source}),
             mooring=mooring,
             environment=environment,
             rule=self.name,
-            source=self.source,
             situation=situation,
         )
 
 
 def rule(
-    name: str, *, of_anchor: bool = False
+    name: str, *, of_anchor: bool = False, situation: str = AS_GIVEN
 ) -> Callable[[Callable[[Any], Iterator[Verdict]]], Rule]:
     """Make a function that judges into the `Rule` of that name in `calm.files.rules`."""
     text = RULE_TEXTS[name]
 
     def of(judge: Callable[[Any], Iterator[Verdict]]) -> Rule:
-        return Rule(name, text.title, text.quantity, text.source, judge, of_anchor)
+        return Rule(
+            name, text.title, text.quantity, text.source, judge, of_anchor, situation=situation
+        )
 
     return of
 
@@ -195,7 +210,6 @@ class Finding(Verdict):
     mooring: str
     environment: str
     rule: str
-    source: str
     situation: str = AS_GIVEN
     accept: Accept | None = None
 

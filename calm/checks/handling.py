@@ -11,6 +11,7 @@ import numpy as np
 
 from calm.checks.finding import State, Verdict, at_least, at_most, rule, told, unknown, verdict_on
 from calm.checks.launch import Launch
+from calm.checks.limits import Citing
 from calm.checks.recovery import Recovery
 from calm.checks.strength import lesser_load
 from calm.errors import NoEquilibrium
@@ -19,7 +20,8 @@ from calm.quantities import QUANTITIES, say
 
 if TYPE_CHECKING:
     from calm.case import Mooring
-    from calm.checks.backup import Break
+    from calm.checks.backup import Break, Loss
+    from calm.files import Part
 
 GREATEST_TOUCHDOWN_SPEED = 2.5
 """Above it an anchor may bury itself or break what stands on it [m/s]."""
@@ -35,14 +37,17 @@ class Handling:
     launch: Launch | NoEquilibrium
     recovery: Recovery | NoEquilibrium
     backup: tuple[Break, ...]
+    losses: tuple[Loss, ...] = ()
 
 
 @rule("backup")
 def backup(handling: Handling) -> Iterator[Verdict]:
-    """Net buoyancy of what holds the release after the worst break above the back-up floats.
+    """Net buoyancy of what holds the release after the worst break, or the worst loss of a float.
 
-    It should be a tenth of the weight it lifts, and 250 N.
+    Breaks are those above the back-up floats; lost is any one buoyant element. It should be a tenth
+    of the weight it lifts, and 250 N.
     """
+    cite = Citing.of(handling.mooring.file)
     if handling.mooring.file.release is None:
         yield unknown(
             None,
@@ -53,16 +58,29 @@ def backup(handling: Handling) -> Iterator[Verdict]:
     if not handling.backup:
         yield unknown(None, "What hangs on the release is not known.", "Let the line stand first.")
         return
-    judged = [one for one in handling.backup if one.judged]
-    worst = min(judged, key=lambda one: one.margin - one.required)
+    worst_break = min((one for one in handling.backup if one.judged), key=_room)
+    worst_loss = min(handling.losses, key=_room, default=None)
+    if worst_loss is not None and _room(worst_loss) < _room(worst_break):
+        worst: Break | Loss = worst_loss
+        part: Part = worst_loss
+        after = f"After the loss of {worst.label}"
+    else:
+        worst, part = worst_break, handling.mooring.file.pieces[worst_break.break_after]
+        after = f"After a break below {worst.label}"
     yield at_least(
-        handling.mooring.file.pieces[worst.break_after],
+        part,
         worst.margin,
         worst.required,
-        f"After a break below {worst.label} what holds the release has a buoyancy of "
-        f"{say('tension', worst.margin)}; {say('tension', worst.required)} bring it up.",
+        f"{after} what holds the release has a buoyancy of {say('tension', worst.margin)}; "
+        f"{say('tension', worst.required)} bring it up.",
         f"Add {say('tension', worst.required - worst.margin)} of buoyancy above the release.",
+        source=cite("backup_margin"),
     )
+
+
+def _room(one: Break | Loss) -> float:
+    """What is left beyond what is required [N]."""
+    return one.margin - one.required
 
 
 @rule("launch-strength")
@@ -74,6 +92,7 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
     """
     launch, checks = handling.launch, handling.mooring.file.checks
     factors = checks.launch_working_factor, checks.launch_safety_factor
+    cite = Citing.of(handling.mooring.file)
     if isinstance(launch, NoEquilibrium):
         yield _unsolved("fall", launch)
         return
@@ -93,14 +112,16 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
         if working is not None and limit == factors[0] * working:
             times = "" if factors[0] == 1.0 else f" times {factors[0]:g}"
             message = f"{bears}; its working load{times} is {say('tension', limit)}."
+            source = cite("launch_working_factor")
         else:
+            source = cite("launch_safety_factor")
             message = f"{bears}; its breaking load over {factors[1]:g} is {say('tension', limit)}."
         if tension > limit and not launch.anchor_drag_known:
             message += " The anchor's own drag is not known: this is the greatest."
             yield unknown(piece, message, "Give the anchor's `kt`.", tension)
             continue
         remedy = "Take a stronger one, or lower the anchor on a parachute or a wire."
-        yield at_most(piece, tension, limit, message, remedy)
+        yield at_most(piece, tension, limit, message, remedy, source=source)
 
 
 @rule("launch-speed")
@@ -117,6 +138,8 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
         f"drag along the line and of the anchor); {GREATEST_TOUCHDOWN_SPEED:g} m/s should not be "
         "passed"
     )
+    if launch.in_still_water:
+        message += " (in still water: in the current it finds no steady motion)"
     remedy = "Lower it, or add drag: a parachute, a wider anchor."
     if launch.anchor_drag_known:
         limit = GREATEST_TOUCHDOWN_SPEED
@@ -148,7 +171,8 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
     if rise.in_still_water:
         message += " That is in still water: in the current it finds no steady motion."
     remedy = "Add buoyancy above the release, or take weight off."
-    verdict = at_least(lowest, rise.rise_speed, limit, message, remedy)
+    source = Citing.of(handling.mooring.file)("minimum_rise_speed")
+    verdict = at_least(lowest, rise.rise_speed, limit, message, remedy, source=source)
     if verdict.state is State.PASS and rise.rise_speed < USUAL_RISE_SPEED:
         verdict = replace(verdict, state=State.WARN, remedy=remedy)
     yield verdict

@@ -123,7 +123,9 @@ def mass_in_air(component: Component) -> float | None:
     net = component.net_buoyancy / STANDARD_GRAVITY
     if component.displaced_volume is not None:
         return CATALOGUE_DENSITY * component.displaced_volume - net
-    density = component.density if isinstance(component, Cable | Chain | Anchor) else None
+    density = component.density if isinstance(component, Cable | Chain) else None
+    if isinstance(component, Anchor):
+        density = component.material_density
     if density is None and isinstance(component, Chain | Anchor):
         density = STEEL_DENSITY
     if density is None or density == CATALOGUE_DENSITY:

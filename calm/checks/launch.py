@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from calm.assemble import with_axial_clamps
 from calm.errors import NoEquilibrium
-from calm.physics.line import Floats, Line
+from calm.physics.line import Floats, Line, Water
 from calm.physics.track import head_count
 from calm.solve import FallingAnchor, FreeMotion, part_of, solve_fall
 
@@ -40,6 +41,8 @@ class Launch:
     anchor_drag_known : False where the anchor gives no `kt`: it is taken to have no drag, and the
         speed is the greatest there can be
     tangles : the pieces that have, or part of which has, been overtaken by what was above
+    in_still_water : whether the fall is that in still water, because a line that doubles back
+        finds no steady motion in this current
     """
 
     fall_speed: float
@@ -50,6 +53,7 @@ class Launch:
     tension_bottom: Floats
     anchor_drag_known: bool
     tangles: tuple[int, ...]
+    in_still_water: bool = False
 
     def components(self) -> list[dict[str, Any]]:
         """The pieces above the anchor, by name of figure."""
@@ -70,37 +74,43 @@ def launch_of(mooring: Mooring, result: Result) -> Launch:
     Raises
     ------
     NoEquilibrium
-        As `solve_fall`.
+        As `solve_fall`, in still water too.
     """
-    whole = mooring.line
+    whole = with_axial_clamps(mooring.line, mooring.file.pieces[:-1])
     count = len(whole.length)
     first = head_count(whole) if result.type == "surface" else 0
     line, kt = part_of(whole, first, count), mooring.file.anchor.kt
     anchor = FallingAnchor(mooring.anchor_weight, kt or 0.0)
 
-    def fall(drag: float) -> FreeMotion:
+    def fall(drag: float, water: Water) -> FreeMotion:
         changed: Line = replace(line, tangential_drag=drag * line.tangential_drag)
         return solve_fall(
-            changed, mooring.water, replace(anchor, drag=drag * anchor.drag), mooring.settings
+            changed, water, replace(anchor, drag=drag * anchor.drag), mooring.settings
         )
 
-    def speed(drag: float) -> float:
+    def speed(drag: float, water: Water) -> float:
         try:
-            return -float(fall(drag).velocity[2])
+            return -float(fall(drag, water).velocity[2])
         except NoEquilibrium:
             return nan
 
-    motion = fall(1.0)
+    water, still_water = mooring.water, False
+    try:
+        motion = fall(1.0, water)
+    except NoEquilibrium:
+        water, still_water = water.still(), True
+        motion = fall(1.0, water)
     top, bottom = motion.solution.tension[motion.solution.piece_nodes.T]
     still = np.zeros(first)
     east, north, up = motion.velocity.tolist()
     return Launch(
         fall_speed=-up,
-        fall_speed_band=(speed(AXIAL_DRAG_BAND), speed(1.0 / AXIAL_DRAG_BAND)),
+        fall_speed_band=(speed(AXIAL_DRAG_BAND, water), speed(1.0 / AXIAL_DRAG_BAND, water)),
         anchor_tension=float(motion.solution.tension[-1]),
         drift=(east, north),
         tension_top=np.concatenate([still, top]),
         tension_bottom=np.concatenate([still, bottom]),
         anchor_drag_known=kt is not None,
         tangles=tuple(first + piece for piece in motion.tangles),
+        in_still_water=still_water,
     )

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
-from math import hypot
+from functools import partial
+from math import isnan
 from typing import TYPE_CHECKING
 
-from calm.case.columns import ClampRow, ComponentRow
-from calm.checks.finding import State, Verdict, at_most, rule, unknown
+from calm.checks.criterion import AT_SURFACE, Criterion, Judged, criteria, parts_of, pieces_of
+from calm.checks.finding import State
+from calm.checks.limits import Citing
 from calm.quantities import say
 
 if TYPE_CHECKING:
     from calm.case import Mooring, Result
 
-AT_SURFACE = 0.1
-"""What comes so near to the surface is at it [m]."""
+LEAST_TOP_DEPTH = 10.0
+"""Depth that the top of a sub-surface line should have where the design gives none [m]."""
 
 MOST_OF_A_RATING = 0.5
 """Share of a rating that the margin takes at most: what is made for shallow water may be used."""
@@ -41,112 +42,127 @@ def reaches_the_surface(mooring: Mooring) -> bool:
     return -float(mooring.at_rest.position[0, 2]) <= AT_SURFACE
 
 
-@rule("tilt")
-def tilt(result: Result) -> Iterator[Verdict]:
+@criteria("tilt")
+def tilt(mooring: Mooring) -> Iterator[Criterion]:
     """Tilt of instruments and releases against their own limits and the design's.
 
     The makers': an Aanderaa RCM deviates by 27 degrees at most (BODC), a single-point Doppler by
     30, an ADCP by 20 and is doubtful from 15, a release by 45, a sediment trap by 10.
     """
-    design = result.file.checks.maximum_tilt
-    for row in _rows(result):
-        label, leaning, component = row.label, row.tilt, row.part.component
-        own, warned = component.max_tilt, component.warn_tilt
-        if own is warned is None and component.role not in ("instrument", "release"):
+    design = mooring.file.checks.maximum_tilt
+    for part in parts_of(mooring):
+        own, warned = part.component.max_tilt, part.component.warn_tilt
+        if own is warned is None and part.component.role not in ("instrument", "release"):
             continue
-        limits = [limit for limit in (own, design) if limit is not None]
-        remedy = "Add buoyancy above it, or move it where the line stands straighter."
-        leans = f"{label} leans {say('tilt', leaning)}"
-        if limits:
-            message = f"{leans}; {say('tilt', min(limits))} is its limit."
-            verdict = at_most(row, leaning, min(limits), message, remedy)
-        else:
-            message = f"{leans}; how far it may is not known."
-            verdict = unknown(row, message, "Give its `max_tilt`.", leaning)
-        if warned is not None and leaning > warned and verdict.state is not State.FAIL:
-            message = f"{leans}; from {say('tilt', warned)} on its data are doubtful."
-            verdict = replace(verdict, state=State.WARN, message=message, remedy=remedy)
-        yield verdict
+        limit = min((one for one in (own, design) if one is not None), default=None)
+        source = THE_DESIGNS if limit is not None and limit != own else ""
+        yield Criterion(part, "tilt", limit, partial(_tilt_words, part, limit), source=source)
+        if warned is not None and (limit is None or warned < limit):
+            words = partial(_doubtful_words, part, warned)
+            yield Criterion(part, "tilt", warned, words, beyond=State.WARN)
 
 
-@rule("depth-rating")
-def depth_rating(result: Result) -> Iterator[Verdict]:
+_STRAIGHTER = "Add buoyancy above it, or move it where the line stands straighter."
+THE_DESIGNS = "The design's own `maximum_tilt`"
+
+
+def _tilt_words(part: Judged, limit: float | None, leaning: float, _: Result) -> tuple[str, str]:
+    leans = f"{part.label} leans {say('tilt', leaning)}"
+    if limit is None:
+        return f"{leans}; how far it may is not known.", "Give its `max_tilt`."
+    return f"{leans}; {say('tilt', limit)} is its limit.", _STRAIGHTER
+
+
+def _doubtful_words(part: Judged, warned: float, leaning: float, _: Result) -> tuple[str, str]:
+    leans = f"{part.label} leans {say('tilt', leaning)}"
+    return f"{leans}; from {say('tilt', warned)} on its data are doubtful.", _STRAIGHTER
+
+
+@criteria("depth-rating")
+def depth_rating(mooring: Mooring) -> Iterator[Criterion]:
     """Depth in the current, and a margin, against the rating of floats and instruments.
 
     A float that is knocked down below its rating is crushed, and the line with it.
     """
-    margin = result.file.checks.rating_margin
-    for row, depth in _at_depth(result):
-        component = row.part.component
-        rating = component.depth_rating
-        stands = f"{row.label} is {say('depth', depth)} deep"
-        if rating is None:
-            if component.role in JUDGED_ROLES:
-                yield unknown(
-                    row,
-                    f"{stands}; what depth it stands is not known.",
-                    "Give its `depth_rating`.",
-                    depth,
-                )
+    margin, source = mooring.file.checks.rating_margin, Citing.of(mooring.file)("rating_margin")
+    for part in parts_of(mooring):
+        rating = part.component.depth_rating
+        if rating is None and part.component.role not in JUDGED_ROLES:
             continue
-        spare = min(margin, MOST_OF_A_RATING * rating)
-        yield at_most(
-            row,
-            depth,
-            rating - spare,
-            f"{stands}; it is rated to {say('depth_rating', rating)}, less a margin of "
-            f"{say('depth_rating', spare)}.",
-            "Take one that stands more depth, or add buoyancy against the knockdown.",
+        limit = None if rating is None else rating - min(margin, MOST_OF_A_RATING * rating)
+        words = partial(_rating_words, part, limit)
+        yield Criterion(part, "depth", limit, words, silent=True, source=source)
+
+
+def _rating_words(part: Judged, limit: float | None, depth: float, _: Result) -> tuple[str, str]:
+    stands, rating = f"{part.label} is {say('depth', depth)} deep", part.component.depth_rating
+    if limit is None or rating is None:
+        return f"{stands}; what depth it stands is not known.", "Give its `depth_rating`."
+    return (
+        f"{stands}; it is rated to {say('depth_rating', rating)}, less a margin of "
+        f"{say('depth_rating', rating - limit)}.",
+        "Take one that stands more depth, or add buoyancy against the knockdown.",
+    )
+
+
+@criteria("top-depth")
+def top_depth(mooring: Mooring) -> Iterator[Criterion]:
+    """Least depth of the top of a sub-surface line, clear of waves, hulls and nets.
+
+    Where the design gives no `minimum_top_depth` its default is a warning.
+    """
+    given, label = mooring.file.checks.minimum_top_depth, pieces_of(mooring)[0].label
+    if given is None and reaches_the_surface(mooring):
+        return
+    limit = LEAST_TOP_DEPTH if given is None else given
+    beyond = State.WARN if given is None else State.FAIL
+    source = Citing.of(mooring.file)("minimum_top_depth")
+
+    def words(depth: float, _: Result) -> tuple[str, str]:
+        return (
+            f"{label} is {say('depth', depth)} deep; {say('depth', limit)} keep it clear of waves, "
+            "hulls and nets.",
+            "Shorten the line, or mark it at the surface.",
         )
 
+    top = pieces_of(mooring)[0]
+    yield Criterion(top, "top_depth", limit, words, least=True, beyond=beyond, source=source)
 
-@rule("knockdown")
-def knockdown(result: Result) -> Iterator[Verdict]:
+
+@criteria("knockdown")
+def knockdown(mooring: Mooring) -> Iterator[Criterion]:
     """Knockdown of the top against the design's limit, where it gives one."""
-    limit, top = result.file.checks.maximum_knockdown, result.file.pieces[0]
+    limit = mooring.file.checks.maximum_knockdown
     if limit is None:
         return
-    if result.top.knockdown is None:
-        yield unknown(
-            top,
-            "The line has no unique shape in still water to measure a knockdown from.",
-            "Judge a slack line by its excursion: `maximum_excursion`.",
+
+    def words(sunk: float, _: Result) -> tuple[str, str]:
+        if isnan(sunk):
+            return (
+                "The line has no unique shape in still water to measure a knockdown from.",
+                "Judge a slack line by its excursion: `maximum_excursion`.",
+            )
+        return (
+            f"The top is knocked down by {say('knockdown', sunk)}; "
+            f"{say('knockdown', limit)} are allowed.",
+            "Add buoyancy at the top, or take drag off: `calm run --explain` tells which.",
         )
-        return
-    yield at_most(
-        top,
-        result.top.knockdown,
-        limit,
-        f"The top is knocked down by {say('knockdown', result.top.knockdown)}; "
-        f"{say('knockdown', limit)} are allowed.",
-        "Add buoyancy at the top, or take drag off: `calm run --explain` tells which.",
-    )
+
+    yield Criterion(pieces_of(mooring)[0], "knockdown", limit, words)
 
 
-@rule("excursion")
-def excursion(result: Result) -> Iterator[Verdict]:
+@criteria("excursion")
+def excursion(mooring: Mooring) -> Iterator[Criterion]:
     """Horizontal offset of the top against the design's limit, where it gives one."""
-    limit, offset = result.file.checks.maximum_excursion, hypot(result.top.x, result.top.y)
+    limit = mooring.file.checks.maximum_excursion
     if limit is None:
         return
-    yield at_most(
-        result.file.pieces[0],
-        offset,
-        limit,
-        f"The top is {say('offset', offset)} off the anchor; {say('offset', limit)} are allowed.",
-        "Add buoyancy, take drag off, or shorten the line.",
-    )
 
+    def words(offset: float, _: Result) -> tuple[str, str]:
+        return (
+            f"The top is {say('offset', offset)} off the anchor; "
+            f"{say('offset', limit)} are allowed.",
+            "Add buoyancy, take drag off, or shorten the line.",
+        )
 
-def _rows(result: Result) -> tuple[ComponentRow | ClampRow, ...]:
-    """The pieces above the anchor and the clamps."""
-    return (*list(result.components)[:-1], *result.clamps)
-
-
-def _at_depth(result: Result) -> Iterator[tuple[ComponentRow | ClampRow, float]]:
-    """What is under water above the anchor, and its greatest depth [m]."""
-    for row in _rows(result):
-        if isinstance(row, ClampRow):
-            yield row, row.depth
-        elif result.type != "surface" or row.depth_top > AT_SURFACE:
-            yield row, max(row.depth_top, row.depth_bottom)
+    yield Criterion(pieces_of(mooring)[0], "offset", limit, words)

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from calm.assemble import with_axial_clamps
 from calm.errors import NoEquilibrium
 from calm.physics.line import REFERENCE_DENSITY, Booleans, Floats, Line, Water
 from calm.physics.track import head_count
@@ -89,7 +90,8 @@ def recovery_of(mooring: Mooring, result: Result) -> Recovery:
     count, water = len(mooring.line.length), mooring.water
     release = mooring.file.release
     released = count - 1 if release is None else release
-    line = part_of(mooring.line, 0, released + 1)
+    whole = with_axial_clamps(mooring.line, mooring.file.pieces[:-1])
+    line = part_of(whole, 0, released + 1)
     lifts = _lifts(line, water, result)
     none = np.full(count, nan)
     at_rest = Recovery(released, 0.0, float(lifts.sum()), None, none, none, none, none, (), ())

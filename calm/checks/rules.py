@@ -6,11 +6,13 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from calm.checks.anchor import anchor_sliding, anchor_uplift, anchor_weight
+from calm.checks.arrangement import metals, release_present, swivel
+from calm.checks.clamps import clamp_grip, clamp_grip_on_the_way
 from calm.checks.finding import State, Verdict, rule, verdict_on
 from calm.checks.handling import backup, launch_speed, launch_strength, recovery, tangling
-from calm.checks.posture import depth_rating, excursion, knockdown, tilt
+from calm.checks.posture import depth_rating, excursion, knockdown, tilt, top_depth
 from calm.checks.slack import slack
-from calm.checks.strength import strength, strength_steps
+from calm.checks.strength import release_load, strength, strength_steps
 from calm.checks.surface import freeboard, reserve, scope, watch_circle
 
 if TYPE_CHECKING:
@@ -26,9 +28,12 @@ def equilibrium(failure: NoEquilibrium) -> Iterator[Verdict]:
 
 STANDING = (
     strength,
+    release_load,
+    clamp_grip,
     strength_steps,
     tilt,
     depth_rating,
+    top_depth,
     knockdown,
     excursion,
     anchor_weight,
@@ -42,7 +47,17 @@ STANDING = (
 )
 """What is judged of a `Result`, in every environment and situation."""
 
-ONCE = (backup, launch_strength, launch_speed, recovery, tangling)
+ONCE = (
+    release_present,
+    swivel,
+    metals,
+    backup,
+    launch_strength,
+    launch_speed,
+    recovery,
+    tangling,
+    clamp_grip_on_the_way,
+)
 """What is judged once of a mooring: its breaks, its launch and its recovery."""
 
 RULES = {each.name: each for each in (equilibrium, *STANDING, *ONCE)}

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from math import isnan
 from typing import Any
 
 from calm.case import Mooring, Result
 from calm.case.band import FACTOR
 from calm.checks.assessment import Situation
 from calm.checks.finding import AS_GIVEN
+from calm.checks.growth import grown
 from calm.checks.posture import meant_for_the_surface
 from calm.errors import NoEquilibrium
-from calm.files import Cable, CurrentTable, Fouling, MooringFile, Piece, StrummingFactor
+from calm.files import Cable, CurrentTable, MooringFile, StrummingFactor
 from calm.solve import Status
 
 STILL, STILL_LOW = "still water", "still low water"
@@ -69,7 +69,7 @@ def _changed(mooring: Mooring, given: Result) -> Iterator[tuple[str, Mooring]]:
         yield HIGH, changed(high)
         yield LOW, changed(low)
     if environment.fouling is not None:
-        yield FOULED, changed(pieces=_grown(file.pieces, given, environment.fouling))
+        yield FOULED, changed(pieces=grown(file.pieces, given, environment.fouling))
     if file.solver.strumming is None and any(isinstance(p.component, Cable) for p in file.pieces):
         solver = file.solver.model_copy(update={"strumming": StrummingFactor(factor=FACTOR)})
         yield STRUMMING, changed(solver=solver)
@@ -97,41 +97,3 @@ def _shapeless(situation: Situation) -> bool:
     failure = situation.failure
     still = situation.name in (STILL, STILL_LOW)
     return still and failure is not None and failure.status == Status.SLACK.label
-
-
-def _grown(pieces: tuple[Piece, ...], given: Result, fouling: Fouling) -> tuple[Piece, ...]:
-    """The pieces with growth on their cables down to the depth of it in still water.
-
-    The growth thickens what the water drags at; as heavy as water, it weighs nothing in it. A
-    cable that reaches deeper is parted there, both parts under its label.
-    """
-    grown: list[Piece] = []
-    sunk = given.components.knockdown
-    for row, piece in zip(given.components, pieces, strict=True):
-        rise = 0.0 if isnan(sunk[0]) else row.knockdown
-        top, bottom = row.depth_top - rise, row.depth_bottom - rise
-        if not isinstance(piece.component, Cable) or top >= fouling.depth:
-            grown.append(piece)
-            continue
-        assert piece.length is not None
-        share = 1.0 if bottom <= fouling.depth else (fouling.depth - top) / (bottom - top)
-        diameter = piece.component.diameter + 2.0 * fouling.thickness
-        thick = piece.component.model_copy(update={"diameter": diameter})
-        upper, lower = _parted(piece, share * piece.length)
-        grown.append(replace(upper, component=thick))
-        if lower is not None:
-            grown.append(lower)
-    return tuple(replace(piece, index=index) for index, piece in enumerate(grown))
-
-
-def _parted(piece: Piece, at: float) -> tuple[Piece, Piece | None]:
-    """A piece above and below a cut [m from its top], with their clamps; None for nothing below."""
-    assert piece.length is not None
-    if at >= piece.length:
-        return piece, None
-    above = tuple(clamp for clamp in piece.clamps if clamp.at <= at)
-    below = tuple(replace(c, at=c.at - at) for c in piece.clamps if c.at > at)
-    return (
-        replace(piece, length=at, clamps=above),
-        replace(piece, length=piece.length - at, clamps=below),
-    )

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 from calm.case.warnings import is_synthetic
-from calm.checks.finding import State, Verdict, at_least, at_most, rule, unknown
-from calm.checks.posture import meant_for_the_surface
+from calm.checks.criterion import Criterion, Judged, criteria, pieces_of
+from calm.checks.finding import State, Verdict, at_least, rule
+from calm.checks.limits import Citing
+from calm.checks.posture import meant_for_the_surface, reaches_the_surface
 from calm.files import Cable, Component, Piece
 from calm.quantities import say
 
 if TYPE_CHECKING:
-    from calm.case import Result
+    from calm.case import Mooring, Result
     from calm.files import SafetyFactors
 
 WEAK_LINK = 0.5
@@ -40,44 +43,96 @@ def lesser_load(component: Component, working_factor: float, factor: float) -> f
 
 def safety_factor(component: Component, factors: SafetyFactors, surface: bool) -> float:
     """The safety factor asked on the breaking load of a component."""
+    factor: float = getattr(factors, safety_factor_name(component, surface))
+    return factor
+
+
+def safety_factor_name(component: Component, surface: bool) -> str:
+    """Which of the `safety_factor` is asked of a component."""
     if surface:
-        return factors.surface
-    return factors.synthetic if is_synthetic(component) else factors.steel
+        return "surface"
+    return "synthetic" if is_synthetic(component) else "steel"
 
 
-@rule("strength")
-def strength(result: Result) -> Iterator[Verdict]:
+@criteria("strength")
+def strength(mooring: Mooring) -> Iterator[Criterion]:
     """The greatest tension in every piece against working load, and breaking load / factor.
 
     UFC 4-159-03 table 3-7 asks for 3 on new breaking strength of chain and wire; oceanographic
     practice for 3 to 5, synthetics and surface moorings at the upper end.
     """
-    factors, surface = result.file.checks.safety_factor, meant_for_the_surface(result)
-    for row, piece in zip(result.components, result.file.pieces, strict=True):
-        component = piece.component
+    factors, surface = mooring.file.checks.safety_factor, reaches_the_surface(mooring)
+    cite = Citing.of(mooring.file)
+    for part in pieces_of(mooring):
+        component = part.component
         limit = allowable_load(component, factors, surface)
-        bears = f"{row.label} bears {say('tension', row.tension)}"
-        if limit is None:
-            yield unknown(
-                row,
-                f"{bears}; neither its working nor its breaking load is known.",
-                "Give its `working_load` or `breaking_load`.",
-                row.tension,
-            )
-            continue
-        factor = safety_factor(component, factors, surface)
-        if limit == component.working_load:
-            allowed = f"its working load is {say('tension', limit)}"
-        else:
-            allowed = (
-                f"its breaking load of {say('tension', component.breaking_load)} "
-                f"over {factor:g} allows {say('tension', limit)}"
-            )
-        remedy = (
-            f"Take one with a working load of {say('tension', row.tension)} and a breaking load "
-            f"of {say('tension', factor * row.tension)} or more."
+        name = safety_factor_name(component, surface)
+        of_factor = limit is not None and limit != component.working_load
+        source = cite(f"safety_factor.{name}") if of_factor else ""
+        words = partial(_strength_words, part, limit, getattr(factors, name))
+        yield Criterion(part, "tension", limit, words, source=source)
+
+
+def _strength_words(
+    part: Judged, limit: float | None, factor: float, tension: float, _: Result
+) -> tuple[str, str]:
+    component, bears = part.component, f"{part.label} bears {say('tension', tension)}"
+    if limit is None:
+        return (
+            f"{bears}; neither its working nor its breaking load is known.",
+            "Give its `working_load` or `breaking_load`.",
         )
-        yield at_most(row, row.tension, limit, f"{bears}; {allowed}.", remedy)
+    if limit == component.working_load:
+        allowed = f"its working load is {say('tension', limit)}"
+    else:
+        allowed = (
+            f"its breaking load of {say('tension', component.breaking_load)} "
+            f"over {factor:g} allows {say('tension', limit)}"
+        )
+    return f"{bears}; {allowed}.", (
+        f"Take one with a working load of {say('tension', tension)} and a breaking load "
+        f"of {say('tension', factor * tension)} or more."
+    )
+
+
+@criteria("release-load")
+def release_load(mooring: Mooring) -> Iterator[Criterion]:
+    """What every release bears as long as it stands, and as it opens, against its own loads.
+
+    As it opens it bears the pull below it, against its `opening_load`; where the maker gives none,
+    what it may bear as long as it stands has to do, and the message says so.
+    """
+    factors, surface = mooring.file.checks.safety_factor, reaches_the_surface(mooring)
+    for part in pieces_of(mooring):
+        if part.component.role == "release":
+            stands = allowable_load(part.component, factors, surface)
+            opens = part.component.opening_load
+            words = partial(_release_words, part, "bears", stands)
+            yield Criterion(part, "tension", stands, words)
+            limit = stands if opens is None else opens
+            words = partial(_release_words, part, "opens under", limit)
+            yield Criterion(part, "tension_bottom", limit, words)
+
+
+def _release_words(
+    part: Judged, does: str, limit: float | None, tension: float, _: Result
+) -> tuple[str, str]:
+    bears, given = f"{part.label} {does} {say('tension', tension)}", part.component.opening_load
+    if limit is None:
+        return (
+            f"{bears}; neither its working load nor its opening load is known.",
+            "Give its `working_load` and its `opening_load`.",
+        )
+    if does == "bears":
+        allowed = f"what it may bear is {say('tension', limit)}"
+    elif given is None:
+        allowed = f"its opening load is not given; what it may bear is {say('tension', limit)}"
+    else:
+        allowed = f"its opening load is {say('tension', limit)}"
+    return (
+        f"{bears}; {allowed}.",
+        f"Take a release made for {say('tension', tension)}, or two side by side.",
+    )
 
 
 @rule("strength-steps")

@@ -6,36 +6,39 @@ from collections.abc import Iterator
 from math import sqrt
 from typing import TYPE_CHECKING
 
+from calm.checks.criterion import Criterion, criteria, pieces_of
 from calm.checks.finding import Verdict, at_least, at_most, rule, told, unknown
-from calm.checks.posture import meant_for_the_surface
+from calm.checks.limits import Citing
+from calm.checks.posture import meant_for_the_surface, reaches_the_surface
 from calm.quantities import say
 
 if TYPE_CHECKING:
-    from calm.case import Result
+    from calm.case import Mooring, Result
 
 
-@rule("reserve")
-def reserve(result: Result) -> Iterator[Verdict]:
+@criteria("reserve")
+def reserve(mooring: Mooring) -> Iterator[Criterion]:
     """Share of the surface float's buoyancy that is left: what it could still take on.
 
     The 0.3 that are asked for by default cover waves, which a static solution does not see.
     """
-    if not meant_for_the_surface(result):
+    if not reaches_the_surface(mooring):
         return
-    limit = result.file.checks.minimum_reserve
-    left = 1.0 - result.top.used_buoyancy
-    if result.type == "surface":
-        message = f"{100 * left:.0f} % of the float's buoyancy is left"
-    else:
-        left = 0.0
-        message = f"The float is {say('depth', result.top.depth)} under water: 0 % is left"
-    yield at_least(
-        result.file.pieces[0],
-        left,
-        limit,
-        f"{message}; {100 * limit:.0f} % should be.",
-        "Take a larger float, a lighter line, or more length.",
-    )
+    limit = mooring.file.checks.minimum_reserve
+
+    def words(left: float, result: Result) -> tuple[str, str]:
+        if result.type == "surface":
+            message = f"{100 * left:.0f} % of the float's buoyancy is left"
+        else:
+            message = f"The float is {say('depth', result.top.depth)} under water: 0 % is left"
+        return (
+            f"{message}; {100 * limit:.0f} % should be.",
+            "Take a larger float, a lighter line, or more length.",
+        )
+
+    source = Citing.of(mooring.file)("minimum_reserve")
+    top = pieces_of(mooring)[0]
+    yield Criterion(top, "reserve", limit, words, least=True, source=source)
 
 
 @rule("freeboard")

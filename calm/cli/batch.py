@@ -15,7 +15,7 @@ from cyclopts import Parameter
 from calm.cli.batch_progress import Teller, grouped
 from calm.cli.exit_codes import ExitCode
 from calm.cli.options import quantities
-from calm.cli.streams import narrate, show_rich
+from calm.cli.streams import narrate, show_parts
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
@@ -132,12 +132,12 @@ def batch(
 
 def _summarized(output: Path, mooring: Mooring) -> bool:
     """Show what the result says, and write it beside the result; whether that was possible."""
+    from calm.report.batch.brief import summary_part
     from calm.report.batch.files import write_summary
-    from calm.report.batch.table import summary_table
 
     try:
         with _stopped_by_a_signal():
-            show_rich(summary_table(write_summary(output, mooring)))
+            show_parts(summary_part(write_summary(output, mooring)))
     except (UsageError, OSError, MemoryError, KeyboardInterrupt) as error:
         reason = "interrupted" if isinstance(error, KeyboardInterrupt) else str(error)
         narrate(

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 from cyclopts import App
 
 from calm.cli.exit_codes import ExitCode
-from calm.cli.streams import narrate, show, show_rich
+from calm.cli.streams import narrate, show, show_parts
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
@@ -97,7 +97,7 @@ def show_components(ids: list[str], /, *, json: bool = False) -> ExitCode:
         return _show(catalogue, chosen, json)
     from calm.report.catalogue import to_card
 
-    show_rich(*(to_card(each, definition, catalogue) for each, definition in chosen.items()))
+    show_parts(*(to_card(each, definition, catalogue) for each, definition in chosen.items()))
     return ExitCode.DONE
 
 
@@ -154,7 +154,7 @@ def _show(catalogue: Catalogue, definitions: Mapping[str, Definition], as_json: 
     if as_json:
         show(_json(to_documents(catalogue, definitions)))
     elif definitions:
-        show_rich(to_list(catalogue, definitions))
+        show_parts(to_list(catalogue, definitions))
     return ExitCode.DONE
 
 

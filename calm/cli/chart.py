@@ -103,7 +103,7 @@ def solve(
         Write the answer as JSON, - to print it.
     """
     from calm.analytic.chart import chart_solve
-    from calm.report.chart_answer import answer_document, answer_table
+    from calm.report.chart_answer import answer_document, answer_part
 
     outputs = Outputs(json=json)
     outputs.check()
@@ -128,9 +128,7 @@ def solve(
     for name in known.keys() & {"phi_a", "phi_b"}:
         known[name] = math.radians(known[name])
     answer = chart_solve(_drag_over_weight(cable), cable["weight"], **known)
-    outputs.write_answer(
-        answer_document(answer), answer_table(answer) if answer.solutions else None
-    )
+    outputs.write_answer(answer_document(answer), answer_part(answer) if answer.solutions else None)
     if not answer.solutions:
         narrate(f"calm: {answer.status}: {answer.message} {answer.advice}")
         return ExitCode.NO_EQUILIBRIUM

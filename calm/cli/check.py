@@ -71,7 +71,9 @@ def check(
     if report is not None:
         given = [*files, *map(Path, environment or ()), *(catalog or ())]
         _check_report(report, json, given)
-    designs = read_designs(files, environment, catalog or [], workers)
+    designs, tows = read_designs(files, environment, catalog or [], workers)
+    if tows:
+        narrate(f"not checked, since towed: {', '.join(map(str, tows))}")
     assessments = _assessed(designs, workers)
     for design, assessment in zip(designs, assessments, strict=True):
         of_files = (notice for one in design.moorings for notice in one.file.notices)
@@ -133,10 +135,10 @@ def _assess(task: tuple[str, tuple[Stand, ...], date]) -> Assessment:
 
 
 def _show(assessments: Sequence[Assessment], outputs: Outputs) -> None:
+    from calm.report.check.brief import check_part
     from calm.report.check.document import check_document
-    from calm.report.check.terminal import check_table
 
-    outputs.write_answer(check_document(assessments), check_table(assessments))
+    outputs.write_answer(check_document(assessments), check_part(assessments))
 
 
 def _write(folder: Path, assessments: Sequence[Assessment], workers: int | None) -> None:

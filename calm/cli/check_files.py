@@ -29,8 +29,8 @@ def read_designs(
     environments: Sequence[str] | None,
     catalogs: Sequence[Path],
     workers: int | None,
-) -> list[Design]:
-    """Every mooring in every environment.
+) -> tuple[list[Design], list[Path]]:
+    """Every mooring in every environment, and which of the files are tows, which have no check.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def read_designs(
     InputError
         With the mistakes of all files.
     UsageError
-        A tow; a file given twice; two environments of one name.
+        Nothing but tows; a file given twice; two environments of one name.
     """
     given = Counter([*map(str, files), *(environments or ())])
     twice = [word for word, count in given.items() if count > 1]
@@ -50,15 +50,19 @@ def read_designs(
         raise UsageError(f"given twice: {', '.join(twice)}")
     names: Sequence[str | None] = environments or [None]
     asked = [(file, name) for file in files for name in names]
-    read = _loaded(asked, catalogs, workers)
+    read, tows = _loaded(asked, catalogs, workers)
+    moored = [file for file in files if file not in tows]
+    if not moored:
+        raise UsageError(f"calm check is for moorings; towed: {', '.join(map(str, tows))}")
     if environments is None:
-        others = [(file, name) for file in files for name in read[file, None].file.variants]
-        read |= _loaded(others, catalogs, workers)
-    stands = {file: [one for (path, _), one in read.items() if path == file] for file in files}
+        others = [(file, name) for file in moored for name in read[file, None].file.variants]
+        read |= _loaded(others, catalogs, workers)[0]
+    stands = {file: [one for (path, _), one in read.items() if path == file] for file in moored}
     for its in stands.values():
         _refuse_one_name(its)
     called = _told_apart({path: its[0].file.name for path, its in stands.items()})
-    return [Design(path, called[path], _cut_alike(its)) for path, its in stands.items()]
+    designs = [Design(path, called[path], _cut_alike(its)) for path, its in stands.items()]
+    return designs, tows
 
 
 def _told_apart(names: dict[Path, str]) -> dict[Path, str]:
@@ -86,24 +90,24 @@ def _cut_alike(moorings: Sequence[Mooring]) -> tuple[Mooring, ...]:
 
 def _loaded(
     asked: Sequence[tuple[Path, str | None]], catalogs: Sequence[Path], workers: int | None
-) -> dict[tuple[Path, str | None], Mooring]:
+) -> tuple[dict[tuple[Path, str | None], Mooring], list[Path]]:
+    """The moorings, and which of the files are tows."""
     from calm.case import Mooring
 
     tasks = [(file, name, catalogs) for file, name in asked]
     problems: dict[Problem, None] = {}
-    moorings, tows = {}, []
+    moorings: dict[tuple[Path, str | None], Mooring] = {}
+    tows: dict[Path, None] = {}
     for (file, name), read in zip(asked, mapped(_load, tasks, workers, "files read"), strict=True):
         if isinstance(read, tuple):
             problems |= dict.fromkeys(read)  # what files share has its mistakes told once
         elif isinstance(read, Mooring):
             moorings[file, name] = read
         else:
-            tows.append(str(file))
+            tows[file] = None
     if problems:
         raise InputError(list(problems))
-    if tows:
-        raise UsageError(f"calm check is for moorings; towed: {', '.join(dict.fromkeys(tows))}")
-    return moorings
+    return moorings, list(tows)
 
 
 def _load(
@@ -121,8 +125,8 @@ def _load(
 
 def _refuse_one_name(moorings: Sequence[Mooring]) -> None:
     """Two environments of one name could not be told apart."""
-    from calm.checks.assess import OWN
-    from calm.report.section import ON_THE_WAY
+    from calm.checks.finding import OWN
+    from calm.report.blocks import ON_THE_WAY
 
     names = Counter(mooring.file.environment.name or OWN for mooring in moorings)
     names[ON_THE_WAY] += 1  # a column of its own

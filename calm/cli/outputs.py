@@ -12,15 +12,16 @@ from typing import TYPE_CHECKING, Annotated, Any, Protocol
 from cyclopts import Parameter
 
 from calm.cli.exit_codes import ExitCode
-from calm.cli.streams import narrate, show, show_rich
+from calm.cli.streams import narrate, show, show_parts
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
-
     from calm.case import Result, TowResult
     from calm.case.explain import Explanation
+    from calm.report.blocks import Part
     from calm.report.schematic.text import TerminalSchematic
+
+    Shows = Part | TerminalSchematic
 
 OutputPath = Annotated[Path | None, Parameter(allow_leading_hyphen=True)]
 """Type of an option that takes a path, or - for the standard output."""
@@ -43,7 +44,7 @@ class Shown(Protocol):
     def document(self) -> dict[str, Any]:
         """The JSON object."""
 
-    def tables(self) -> list[RenderableType]:
+    def parts(self) -> list[Shows]:
         """What a terminal shows; nothing where there is nothing to show."""
 
     def rendered(self, suffix: str) -> bytes | None:
@@ -83,20 +84,20 @@ class Outcome:
             document["explain"] = self.explanation.to_dict()
         return document
 
-    def tables(self) -> list[RenderableType]:
+    def parts(self) -> list[Shows]:
         """The table of the line, with its schematic and its explanation where asked for."""
-        tables: list[RenderableType] = []
+        parts: list[Shows] = []
         if self.schematic is not None:
-            tables.append(self.schematic)
+            parts.append(self.schematic)
         if self.result is not None:
-            from calm.report.table import result_table
+            from calm.report.sheet import result_part
 
-            tables.append(result_table(self.result))
+            parts.append(result_part(self.result))
         if self.explanation is not None:
-            from calm.report.explain import explanation_table
+            from calm.report.explain import explanation_part
 
-            tables.append(explanation_table(self.explanation))
-        return tables
+            parts.append(explanation_part(self.explanation))
+        return parts
 
     def rendered(self, suffix: str) -> bytes | None:
         """The line drawn, or its report."""
@@ -182,8 +183,8 @@ class Outputs:
             if path != STDOUT:
                 check_destination(path)
 
-    def write_answer(self, document: dict[str, Any], table: RenderableType | None) -> None:
-        """Write what a command without files answers: `json`, and the table unless that is shown.
+    def write_answer(self, document: dict[str, Any], part: Part | None) -> None:
+        """Write what a command without files answers: `json`, and the part unless that is shown.
 
         Raises
         ------
@@ -197,8 +198,8 @@ class Outputs:
         if self.json == STDOUT:
             show(text)
             return
-        if table is not None:
-            show_rich(table)
+        if part is not None:
+            show_parts(part)
         if self.json is not None:
             write_file(self.json, text.encode())
 
@@ -236,7 +237,7 @@ class Outputs:
         if STDOUT in texts:
             show(texts[STDOUT])
         else:
-            show_rich(*(table for each in shown for table in each.tables()))
+            show_parts(*(part for each in shown for part in each.parts()))
         if self.csv == STDOUT:
             for each in shown:
                 for warning in each.warnings:

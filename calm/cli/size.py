@@ -68,14 +68,14 @@ def size(
     import calm
     from calm.case import Tow
     from calm.case.size import size as sized
-    from calm.report.size import refusal, sizing_table
+    from calm.report.size import refusal, sizing_part
 
     mooring = calm.load(file, environment=environment, catalogs=catalog or [])
     if isinstance(mooring, Tow):
         raise UsageError(f"{file} is a tow; calm size changes moorings")
     sizing = sized(mooring, target, change, between)
     if sizing.after is not None:
-        outputs.write_answer(sizing.to_dict(), sizing_table(sizing))
+        outputs.write_answer(sizing.to_dict(), sizing_part(sizing))
         return ExitCode.DONE
     outputs.write_answer(sizing.to_dict(), None)
     narrate(f"{file}: {refusal(sizing)}")

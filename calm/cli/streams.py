@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import io
 import os
 import re
@@ -13,19 +14,30 @@ from typing import TYPE_CHECKING, TypeVar
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
+    from calm.cli.outputs import Shows
 
 _Item = TypeVar("_Item")
 _NARROWEST = 40  # columns: figures are no longer cut, but wrapped by the terminal
 _PATIENCE = 1.0  # seconds before progress is told
 _PACE = 0.1  # seconds between two tellings
+_WRITTEN_OUT = "calm-written-out"  # the handler of signs that a stream cannot carry
+_SIGNS = "°×–−→≤≥²³"  # those of the tables
 
 
 def prepare() -> None:
-    """Let no sign that the terminal cannot show stop a command: it becomes a question mark."""
+    """Let no sign that the terminal cannot show stop a command: it is written out, or becomes ?."""
+    codecs.register_error(_WRITTEN_OUT, _written_out)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")
+            stream.reconfigure(errors=_WRITTEN_OUT)
+
+
+def _written_out(error: UnicodeError) -> tuple[str, int]:
+    from calm.report.signs import in_ascii
+
+    assert isinstance(error, UnicodeEncodeError)
+    text = in_ascii(error.object[error.start : error.end])
+    return text.encode("ascii", "replace").decode(), error.end
 
 
 def show(text: str) -> None:
@@ -47,18 +59,23 @@ def show(text: str) -> None:
         raise UsageError(f"cannot write to the standard output: {error.strerror}") from None
 
 
-def show_rich(*renderables: RenderableType) -> None:
+def show_parts(*parts: Shows) -> None:
     """Write to the standard output as the terminal allows, a blank line between two things."""
     from rich.console import Console
+
+    from calm.report.blocks import Part
+    from calm.report.signs import encodable
+    from calm.report.terminal import shown
 
     text = io.StringIO()
     terminal = sys.stdout is not None and sys.stdout.isatty()
     console = Console(file=text, force_terminal=terminal or None, highlight=False)
     console.width = max(console.width, _NARROWEST)
-    for number, renderable in enumerate(renderables):
+    plain = not encodable(getattr(sys.stdout, "encoding", None), _SIGNS)
+    for number, part in enumerate(parts):
         if number:
             console.print()
-        console.print(renderable)
+        console.print(shown(part, plain=plain) if isinstance(part, Part) else part)
     # Tables are padded to full width, which only clutters a text that is kept.
     show(re.sub(" +$", "", text.getvalue(), flags=re.MULTILINE))
 

@@ -59,7 +59,7 @@ def strumming(
     json
         Write the answer as JSON, - to print it.
     """
-    from calm.report.bare_cable import bare_cable_document, bare_cable_table
+    from calm.report.bare_cable import bare_cable_document, bare_cable_part
 
     outputs = Outputs(json=json)
     outputs.check()
@@ -75,7 +75,7 @@ def strumming(
             }
         )
     )
-    outputs.write_answer(bare_cable_document(cable), bare_cable_table(cable))
+    outputs.write_answer(bare_cable_document(cable), bare_cable_part(cable))
     return ExitCode.DONE
 
 

@@ -17,9 +17,8 @@ from calm.cli.streams import narrate, progress
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
-
     from calm.case import Tow
+    from calm.cli.outputs import Shows
     from calm.report.tabulation import Tabulation
 
 TOW_EXAMPLES = """Examples:
@@ -108,10 +107,10 @@ class _Tabulated:
 
         return to_document(self.tabulation)
 
-    def tables(self) -> list[RenderableType]:
-        from calm.report.tabulation_table import tabulation_table
+    def parts(self) -> list[Shows]:
+        from calm.report.tabulation import tabulation_part
 
-        return [tabulation_table(self.tabulation)]
+        return [tabulation_part(self.tabulation)]
 
     def rendered(self, suffix: str) -> bytes:
         from calm.report.picture import image

@@ -35,7 +35,7 @@ def verify(words: list[str] | None = None, /, *, json: OutputPath = None) -> Exi
     json
         Write the figures, with the reason for each tolerance, as JSON, - to print it.
     """
-    from calm.report.verification import verification_document, verification_table
+    from calm.report.verification import verification_document, verification_part
     from calm.solve import expect_many
 
     outputs = Outputs(json=json)
@@ -44,7 +44,7 @@ def verify(words: list[str] | None = None, /, *, json: OutputPath = None) -> Exi
     expect_many(sum(len(source.cases) for source in chosen))
     findings = _checked(chosen)
     document = verification_document(findings)
-    outputs.write_answer(document, verification_table(findings))
+    outputs.write_answer(document, verification_part(findings))
     return ExitCode.FINDING if document["out"] else ExitCode.DONE
 
 

@@ -4,14 +4,13 @@ from calm.files.accept import Accept
 from calm.files.catalogue import Assembly, Catalogue
 from calm.files.checks import Checks, SafetyFactors
 from calm.files.components import Anchor, Body, Cable, Chain, Component, Cylinder, Sphere
-from calm.files.environment import Environment, Fouling, Wind
+from calm.files.environment import Environment, Fouling, Position, Wind
 from calm.files.mooring import (
     Clamp,
     MooringFile,
     Part,
     Piece,
     Place,
-    Position,
     Solver,
     TowKeys,
 )

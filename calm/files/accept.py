@@ -76,7 +76,7 @@ class Accept:
 
     rule: str
     component: str | None
-    labels: frozenset[str] | None
+    labels: tuple[str, ...] | None
     reason: str
     by: str | None
     date: str | None
@@ -125,7 +125,7 @@ def _accept(
         wrong("rule", unknown(f"no rule that can be accepted is called `{rule}`", rule, ACCEPTABLE))
     covered = None
     if keys.component is not None and labels is not None:
-        covered = frozenset(matching(keys.component, labels))
+        covered = tuple(matching(keys.component, labels))
         if not covered:
             wrong("component", _nothing_called(keys.component, labels))
     line = top.problem(("checks", "accept", number), "").line

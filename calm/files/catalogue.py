@@ -7,31 +7,20 @@ the components it uses.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from itertools import islice
 from pathlib import Path
 from typing import Any, Literal
 
 from calm.errors import InputError, Problem, UsageError
 from calm.files.components import KINDS, Component
 from calm.files.definition import Definition
-from calm.files.document import Document, read_document
+from calm.files.entries import FAMILY_ROLES, Entry, Level, UnreadLevel, entries_of, read_level
 from calm.files.explain import nearest, shown, unknown, validate
 from calm.files.section import Section
 from calm.files.unchanged import Unchanged
 from calm.shipped import shipped_folder
-
-FAMILY_ROLES = {
-    "floats": "float",
-    "instruments": "instrument",
-    "releases": "release",
-    "ropes": "line",
-    "chains": "line",
-    "connectors": "connector",
-    "anchors": "anchor",
-}
-"""The families of the catalogue, one file each, and what their components are for."""
 
 
 class Assembly(Definition):
@@ -39,24 +28,6 @@ class Assembly(Definition):
 
     kind: Literal["assembly"]
     parts: tuple[dict[str, Any], ...]
-
-
-@dataclass(frozen=True)
-class Entry:
-    """A definition as written, with the name of the family (the file) it belongs to."""
-
-    id: str
-    family: str | None
-    section: Section
-
-    @property
-    def place(self) -> str:
-        """Where the definition is, for people."""
-        place = self.section.problem((), "")
-        return f"{place.path}:{place.line}" if place.line else place.path
-
-
-Level = Mapping[str, Entry]
 
 
 @dataclass(frozen=True)
@@ -80,9 +51,9 @@ class Catalogue:
 
         def read() -> Catalogue:
             problems: list[Problem] = []
-            levels = [_read_level([path], problems) for path in reversed(given)]
+            levels = [read_level([path], problems) for path in reversed(given)]
             if own:
-                levels.append(_read_level(own, problems))
+                levels.append(read_level(own, problems))
             if problems:
                 raise InputError(problems)
             return cls((*levels, *cls.shipped().levels))
@@ -92,37 +63,35 @@ class Catalogue:
     @classmethod
     def shipped(cls) -> Catalogue:
         """The catalogue that comes with CALM."""
-        problems: list[Problem] = []
-        level = _read_level(_shipped_files(), problems)
-        if problems:
-            raise InputError(problems)
-        return cls((level,))
+        return cls((UnreadLevel(_shipped_files()),))
 
     def under(self, definitions: Section, problems: list[Problem]) -> Catalogue:
         """This catalogue under the `components:` of a mooring file."""
-        entries = _entries(definitions, None, problems)
+        entries = entries_of(definitions, None, problems)
         return Catalogue(({entry.id: entry for entry in entries}, *self.levels))
-
-    @cached_property
-    def _entries(self) -> dict[str, Entry]:
-        return {id: entry for level in reversed(self.levels) for id, entry in level.items()}
 
     def ids(self) -> list[str]:
         """Every id, in the order of the files."""
-        return list(self._entries)
+        return list(dict.fromkeys(id for level in reversed(self.levels) for id in level))
 
     def entry(self, id: str) -> Entry | None:
         """The definition of an id as written; None when there is none."""
-        return self._entries.get(id)
+        return next(self._of(id), None)
 
     def hidden(self, id: str) -> Entry | None:
         """The definition that a nearer one of the same id hides."""
-        found = [level[id] for level in self.levels if id in level]
-        return found[1] if len(found) > 1 else None
+        return next(islice(self._of(id), 1, None), None)
+
+    def _of(self, id: str) -> Iterator[Entry]:
+        """The definitions of an id, the nearest first."""
+        return (level[id] for level in self.levels if id in level)
+
+    def _all(self) -> dict[str, Entry]:
+        return {id: next(self._of(id)) for id in self.ids()}
 
     def nearest(self, id: str) -> str | None:
         """The id most like a text."""
-        return nearest(id, self._entries)
+        return nearest(id, self.ids())
 
     def get(self, id: str) -> Component | Assembly:
         """A component or assembly, validated.
@@ -136,7 +105,7 @@ class Catalogue:
         """
         entry = self.entry(id)
         if entry is None:
-            raise UsageError(unknown(f"no component is called `{id}`", id, self._entries))
+            raise UsageError(unknown(f"no component is called `{id}`", id, self.ids()))
         problems: list[Problem] = []
         definition = define(entry, entry.section, problems)
         if definition is None:
@@ -154,7 +123,7 @@ class Catalogue:
         problems: list[Problem] = []
         found = {
             id: definition
-            for id, entry in self._entries.items()
+            for id, entry in self._all().items()
             if (definition := define(entry, entry.section, problems)) is not None
         }
         if problems:
@@ -166,9 +135,7 @@ class Catalogue:
 
         Those are the id that it prefers and all that prefer the same.
         """
-        preferred = {
-            each: entry.section.data.get("prefer") for each, entry in self._entries.items()
-        }
+        preferred = {each: entry.section.data.get("prefer") for each, entry in self._all().items()}
         first = preferred.get(id) or id
         return [first, *(each for each, other in preferred.items() if other == first)]
 
@@ -177,7 +144,7 @@ class Catalogue:
         wanted = [word.casefold() for word in words]
         return [
             id
-            for id, entry in self._entries.items()
+            for id, entry in self._all().items()
             if all(word in _searchable(entry) for word in wanted)
         ]
 
@@ -231,40 +198,6 @@ def define(
 
 def _kinds() -> str:
     return ", ".join([*KINDS, "assembly"])
-
-
-def _read_level(paths: Iterable[Path], problems: list[Problem]) -> Level:
-    documents: list[Document] = []
-    for path in paths:
-        try:
-            documents.append(read_document(path))
-        except InputError as error:
-            problems.extend(error.problems)
-    return _level(documents, problems)
-
-
-def _level(documents: Iterable[Document], problems: list[Problem]) -> Level:
-    level: dict[str, Entry] = {}
-    for document in documents:
-        stem = Path(document.path).stem
-        family = stem if stem in FAMILY_ROLES else None
-        for entry in _entries(Section.of(document, (), document.data), family, problems):
-            if entry.id in level:
-                message = f"`{entry.id}` is defined already, in {level[entry.id].place}"
-                problems.append(document.problem((entry.id,), message, key=True))
-            else:
-                level[entry.id] = entry
-    return level
-
-
-def _entries(definitions: Section, family: str | None, problems: list[Problem]) -> list[Entry]:
-    entries = []
-    for id, fields in definitions.data.items():
-        if isinstance(fields, dict):
-            entries.append(Entry(id, family, definitions.child(id)))
-        else:
-            problems.append(definitions.problem((id,), f"`{id}` must hold `key: value` entries"))
-    return entries
 
 
 def _searchable(entry: Entry) -> str:

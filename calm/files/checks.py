@@ -97,6 +97,11 @@ class Checks(Model):
         Quantity("angle", above=0, at_most=180),
         Limit("of instruments and releases", THE_DESIGN),
     ] = None
+    minimum_top_depth: Annotated[
+        float | None,
+        LENGTH,
+        Limit("of a sub-surface line's top, at low water too", THIS_PROGRAM, default=10.0),
+    ] = None
     accept: tuple[AcceptKeys, ...] = ()
 
 

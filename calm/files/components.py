@@ -34,6 +34,15 @@ __all__ = [
 ]
 
 
+ANCHOR_DENSITIES = {
+    "steel": STEEL_DENSITY,
+    "cast iron": 7200.0,
+    "iron": 7200.0,
+    "concrete": 2400.0,
+}
+"""Densities of anchors that say what they are made of [kg/m³]."""
+
+
 class Anchor(Definition):
     """The lower end: stands on the seabed, carries no drag."""
 
@@ -52,8 +61,18 @@ class Anchor(Definition):
         if self.weight is not None:
             return -self.weight
         assert self.mass is not None
-        submerged = 1 - CATALOGUE_DENSITY / (self.density or STEEL_DENSITY)
+        submerged = 1 - CATALOGUE_DENSITY / (self.material_density or STEEL_DENSITY)
         return -submerged * self.mass * STANDARD_GRAVITY
+
+    @property
+    def material_known(self) -> bool:
+        """Whether its weight in water is given, or follows from what it is known to be made of."""
+        return self.weight is not None or self.material_density is not None
+
+    @property
+    def material_density(self) -> float | None:
+        """As given, or that of its material [kg/m³]; None of one that is not known."""
+        return self.density or ANCHOR_DENSITIES.get((self.material or "").strip().casefold())
 
     @property
     def displaced_volume(self) -> float | None:

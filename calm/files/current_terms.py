@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import hypot, inf
+from typing import TYPE_CHECKING
 
-from calm.files.current_place import Place
+if TYPE_CHECKING:
+    from calm.files.current_place import Place
 
 DEEPEST = 11_000.0
 """No sea is deeper [m]."""

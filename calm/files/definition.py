@@ -55,6 +55,8 @@ class Definition(Model):
     depth_rating: Annotated[float | None, POSITIVE_LENGTH] = None
     working_load: Annotated[float | None, POSITIVE_FORCE] = None
     breaking_load: Annotated[float | None, POSITIVE_FORCE] = None
+    opening_load: Annotated[float | None, POSITIVE_FORCE] = None
+    grip: Annotated[float | None, POSITIVE_FORCE] = None
     max_tilt: Annotated[float | None, TILT] = None
     warn_tilt: Annotated[float | None, TILT] = None
     slack: Literal["allowed"] | None = None

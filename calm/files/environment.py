@@ -6,13 +6,13 @@ import math
 import os.path
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Discriminator, Tag, model_validator
 
 from calm.errors import InputError, Problem
-from calm.files.current_file import read_current_file
 from calm.files.current_terms import DEEPEST, Terms, too_fast
+from calm.files.definition import DENSITY
 from calm.files.density import USUAL_DENSITY, Density, check_density, read_density
 from calm.files.explain import shown, validate
 from calm.files.fields import POSITIVE_LENGTH, Model, Quantity, Text
@@ -31,12 +31,16 @@ from calm.files.tables import (
 from calm.files.times import TimeChoiceError
 from calm.units import QuantityError
 
-if TYPE_CHECKING:
-    from calm.files.mooring import Position
-
 _SPEED = Quantity("speed", at_least=0)
 _WATER_DEPTH = Quantity("length", above=0, at_most=DEEPEST)
 _MAXIMUM_SPEED = 5.0
+
+
+class Position(Model):
+    """Where the mooring stands [degrees]."""
+
+    latitude: Annotated[float, Quantity("angle", at_least=-90, at_most=90)]
+    longitude: Annotated[float, Quantity("angle", at_least=-360, at_most=360)]
 
 
 @dataclass(frozen=True)
@@ -81,10 +85,14 @@ class Environment:
 
 
 class Fouling(Model):
-    """Growth on the cables [m]: how thick it is, from the surface down to a depth."""
+    """Growth on everything [m], from the surface down to a depth: how thick, and how dense.
+
+    Without a density [kg/m³] it is as heavy as water.
+    """
 
     depth: Annotated[float, POSITIVE_LENGTH]
     thickness: Annotated[float, Quantity("length", usual_unit="mm", above=0)]
+    density: Annotated[float | None, DENSITY] = None
 
 
 class Wind(Model):
@@ -285,6 +293,8 @@ def _current(
         maximum_speed=maximum_speed,
     )
     try:
+        from calm.files.current_file import read_current_file
+
         table, told = read_current_file(path, current.time, terms)
     except TimeChoiceError as error:
         problems.append(report(("time",), str(error)))

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import difflib
-import re
 from collections.abc import Iterable, Mapping
-from typing import Any, TypeVar, get_args
+from typing import Any, Literal, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
@@ -105,7 +104,7 @@ def _explain(
             found.append(section.problem(location, message, key=True))
         else:
             field = next((part for part in reversed(location) if isinstance(part, str)), "")
-            message = _about_value(details, field, value)
+            message = _about_value(details, field, value, model)
             lacks = f"no {field}" if value in (None, [], {}) else ""
             found.append(section.problem(location, message, lacks=lacks))
     # A required key that is there, misspelt, is one mistake and not two.
@@ -138,7 +137,7 @@ def _about_key(name: str, value: object, keys: list[str], kind: str | None) -> s
     return unknown(f"unknown key `{shown(name)}`{owner}", name, keys)
 
 
-def _about_value(details: Any, field: str, value: object) -> str:
+def _about_value(details: Any, field: str, value: object, model: type[BaseModel]) -> str:
     context = details.get("ctx", {})
     cause = context.get("error")
     if isinstance(cause, QuantityError):
@@ -148,10 +147,12 @@ def _about_value(details: Any, field: str, value: object) -> str:
     kind = details["type"]
     if value is None:
         return f"`{field}` is empty" if kind == "tuple_type" else f"`{field}` has no value"
-    if kind in ("literal_error", "union_tag_invalid"):
-        allowed = re.findall(r"'([^']*)'", context.get("expected", context.get("expected_tags")))
-        text = str(value.get("kind", "")) if isinstance(value, dict) else shown(value)
-        return not_among("kind" if isinstance(value, dict) else field, text, allowed)
+    form = _form(model, details["loc"])
+    if kind == "union_tag_invalid" and isinstance(value, dict):
+        kinds = [tag for one in _models_in(form) if (tag := _tag(one))]
+        return not_among("kind", shown(value.get("kind")), kinds)
+    if kind == "literal_error":
+        return not_among(field, shown(value), _values_in(form))
     return f"`{field}` {_SHAPES.get(kind, details['msg'])}"
 
 
@@ -170,20 +171,30 @@ _SHAPES: Mapping[str, str] = {
 
 def _keys(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
     """The keys allowed at a pydantic location."""
-    models = [model]
+    return [name for one in _models_in(_form(model, loc)) for name in one.model_fields]
+
+
+def _form(model: type[BaseModel], loc: tuple[int | str, ...]) -> Any:
+    """The type of what belongs at a pydantic location, in which tags of unions may stand."""
+    form: Any = model
     for part in loc:
-        fields = [m.model_fields[part] for m in models if part in m.model_fields]
-        if fields:
-            models = [inner for field in fields for inner in _models_in(field.annotation)]
-        else:
-            models = [m for m in models if part in (_tag(m), m.__name__)] or models
-    return [name for m in models for name in m.model_fields]
+        models = _models_in(form)
+        fields = [one.model_fields[part].annotation for one in models if part in one.model_fields]
+        tagged = [one for one in models if part in (_tag(one), one.__name__)]
+        form = fields[0] if fields else tagged[0] if tagged else form
+    return form
 
 
-def _models_in(annotation: Any) -> list[type[BaseModel]]:
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return [annotation]
-    return [model for argument in get_args(annotation) for model in _models_in(argument)]
+def _models_in(form: Any) -> list[type[BaseModel]]:
+    if isinstance(form, type) and issubclass(form, BaseModel):
+        return [form]
+    return [model for argument in get_args(form) for model in _models_in(argument)]
+
+
+def _values_in(form: Any) -> list[str]:
+    if get_origin(form) is Literal:
+        return list(get_args(form))
+    return [value for argument in get_args(form) for value in _values_in(argument)]
 
 
 def _tag(model: type[BaseModel]) -> str | None:

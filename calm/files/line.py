@@ -7,9 +7,10 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from calm.errors import Problem
-from calm.files.catalogue import Assembly, Catalogue, Entry, define
+from calm.files.catalogue import Assembly, Catalogue, define
 from calm.files.components import Anchor, Body, Cable, Chain, Component, Cylinder, Sphere
 from calm.files.definition import IN_AIR
+from calm.files.entries import Entry
 from calm.files.explain import about_quantity, shown, unknown
 from calm.files.fields import LENGTH, POSITIVE_LENGTH, Quantity
 from calm.files.labels import placed

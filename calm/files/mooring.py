@@ -11,16 +11,9 @@ from pydantic import AfterValidator
 from calm.files.accept import Accept
 from calm.files.checks import Checks
 from calm.files.components import Anchor, Component
-from calm.files.environment import Environment
+from calm.files.environment import Environment, Position
 from calm.files.fields import LENGTH, Model, Quantity
 from calm.files.strumming import Strumming
-
-
-class Position(Model):
-    """Where the mooring stands [degrees]."""
-
-    latitude: Annotated[float, Quantity("angle", at_least=-90, at_most=90)]
-    longitude: Annotated[float, Quantity("angle", at_least=-360, at_most=360)]
 
 
 class TowKeys(Model):

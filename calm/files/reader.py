@@ -14,12 +14,12 @@ from calm.files.catalogue import Catalogue
 from calm.files.checks import Checks
 from calm.files.components import Anchor
 from calm.files.document import compose, read_document
-from calm.files.environment import read_environment
+from calm.files.environment import Position, read_environment
 from calm.files.explain import validate
 from calm.files.fields import Model, Text
 from calm.files.labels import numbered
 from calm.files.line import LineReader
-from calm.files.mooring import MooringFile, Piece, Place, Position, Solver, TowKeys
+from calm.files.mooring import MooringFile, Piece, Place, Solver, TowKeys
 from calm.files.section import Section
 from calm.files.variants import choose_environment
 from calm.units import QuantityError

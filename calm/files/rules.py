@@ -50,6 +50,21 @@ RULES = {
         "The lesser of working load and breaking load over a factor: UFC 4-159-03 table 3-7 (3, "
         "chain and wire), oceanographic practice MBL/3 to MBL/5",
     ),
+    "release-load": RuleText(
+        "Load of the release",
+        "tension",
+        "greatest tension of every release, and the pull below it as it opens",
+        "what its loads allow as under `strength`, and its `opening_load`; without one, the same",
+        "The maker's static load, and the greatest under which it opens",
+    ),
+    "clamp-grip": RuleText(
+        "Grip of the clamps",
+        "tension",
+        "weight in water and drag of what is clamped, in the current, the fall and the rise",
+        "its `grip`, else its `breaking_load`; reported where neither is given",
+        "The maker's figures of the clamp",
+        "the result does not tell the current at each clamp",
+    ),
     "strength-steps": RuleText(
         "Strength steps",
         "tension",
@@ -72,6 +87,13 @@ RULES = {
         "depth in the current",
         "`depth_rating` less `rating_margin`, 100 m, or half of a rating below 200 m",
         "The maker's rating, less a margin for a stronger current than was thought of",
+    ),
+    "top-depth": RuleText(
+        "Depth of the top",
+        "depth",
+        "least depth of the top of a sub-surface line, at low water too",
+        "`minimum_top_depth`: a failure; where it is not given, 10 m: a warning",
+        "A default of this program: clear of waves, hulls and nets",
     ),
     "knockdown": RuleText(
         "Knockdown",
@@ -146,6 +168,32 @@ RULES = {
         "none: it is reported",
         "Reported, not judged",
         "it is reported, and has no limit",
+    ),
+    "release-present": RuleText(
+        "Release",
+        "",
+        "whether a piece of a sub-surface line has `role: release`",
+        "unknown where none has",
+        "Defaults of this program: a line that is to come up says what frees it",
+        _ONCE,
+    ),
+    "swivel": RuleText(
+        "Swivel",
+        "",
+        "steel wire that ends at a float with no chain or rope between",
+        "a swivel between them, or wire that its name, material or note calls torque-balanced: "
+        "a warning",
+        "A default of this program: wire that turns under load kinks as the load goes",
+        _ONCE,
+    ),
+    "metals": RuleText(
+        "Dissimilar metals",
+        "potential",
+        "pieces that touch, clamps and what they are on, where both give a metal as `material`",
+        "0.2 V apart in sea water: a warning",
+        "Galvanic series in sea water (Professional Boatbuilder 100, 2006); 0.15 to 0.2 V in harsh "
+        "surroundings (Pantaenius)",
+        _ONCE,
     ),
     "backup": RuleText(
         "Back-up buoyancy",

@@ -118,8 +118,8 @@ def pass_segment(
         strain = compliance * middle
         if end_knot > first_knot:  # of all tensions in it, so that it may be as long as others
             bx, by, bz = fx + qx, fy + qy, fz + qz
-            half = 0.5 * (sqrt(bx * bx + by * by + bz * bz) - tension)
-            strain = mean_curve_strain(knots, first_knot, end_knot, middle, half)
+            growth = sqrt(bx * bx + by * by + bz * bz) - tension
+            strain = mean_curve_strain(knots, first_knot, end_knot, middle, 0.5 * growth)
         change = abs(tz * (1.0 + strain) - rise)
         rise = tz * (1.0 + strain)
         if change < 1e-12 or change * change < 1e-12 * earlier < inf:

@@ -79,22 +79,24 @@ def kept(compiler: Callable[..., Any], law: Law, folder: Path | None, **options:
 def packed(value: Any) -> Any:
     """A named tuple as compiled laws take it: its sequences as arrays."""
     named: Any = type(value)
-    kinds = _fields(named)
-    return named(*(_packed(part, kind) for part, kind in zip(value, kinds, strict=True)))
-
-
-def _packed(part: Any, kind: Any) -> Any:
-    if kind in (int, float):
-        return kind(part)
-    if not get_args(kind):
-        return packed(part)
-    (item,) = get_args(kind)
-    return np.array(list(part), item if item is float else record_type(item))
+    return named(*[pack(part) for pack, part in zip(_packers(named), value, strict=True)])
 
 
 @cache
-def _fields(named: Any) -> tuple[Any, ...]:
-    return tuple(get_type_hints(named).values())
+def _packers(named: Any) -> tuple[Callable[[Any], Any], ...]:
+    """What packs each field of a named tuple."""
+    return tuple(map(_packer, get_type_hints(named).values()))
+
+
+def _packer(kind: Any) -> Callable[[Any], Any]:
+    if kind in (int, float):
+        number: Callable[[Any], Any] = kind
+        return number
+    if not get_args(kind):
+        return packed
+    (item,) = get_args(kind)
+    of = np.dtype(np.float64) if item is float else record_type(item)
+    return lambda part: np.array(list(part), of)
 
 
 @cache

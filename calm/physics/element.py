@@ -51,16 +51,21 @@ def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, 
             high = min(high, crest)
         else:
             low = min(trough, high)
-    c = min(max(target / sqrt(aa), low), high)
+    c = target / sqrt(aa)
+    if c > high:
+        c = high
+    elif c < low:
+        c = low
     for _ in range(100):
         excess, following = share_step(aa, av, vv, target, c)
         if excess > 0.0:
             high = c
         else:
             low = c
+        near = 1e-9  # whose square is what the next step of Newton's would be
         if not low <= following <= high:
-            following = 0.5 * (low + high)
-        if abs(following - c) <= 1e-14 * following:
+            following, near = 0.5 * (low + high), 1e-14
+        if abs(following - c) <= near * following:
             return following
         c = following
     return c

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 
 from calm.physics.friction import Friction
 from calm.physics.hull import Floating
+from calm.physics.reference import REFERENCE_DENSITY as REFERENCE_DENSITY
+from calm.physics.reference import REFERENCE_VISCOSITY as REFERENCE_VISCOSITY
 from calm.physics.strumming import BourgetMarichal
 
 if TYPE_CHECKING:
@@ -21,12 +23,6 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Booleans = NDArray[np.bool_]
-
-REFERENCE_DENSITY = 1025.0
-"""Density of the sea water [kg/m³] for which buoyancies and drags are given."""
-
-REFERENCE_VISCOSITY = 1.36e-6
-"""Kinematic viscosity of sea water of 10 °C and 35 [m²/s], where nothing else is known."""
 
 
 class _Arrays:

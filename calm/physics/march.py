@@ -160,12 +160,18 @@ def _marched(
             loads[place] = load
         course = course._replace(loads=loads)
     given = cuts is not None
-    lengths = np.empty(room) if cuts is None else cuts.lengths
-    counts = np.zeros(len(course.cables), np.int64) if cuts is None else cuts.counts
-    most = len(lengths) + 3 * len(course.loads) + 2 * len(course.stages) + 1 if recording else 0
-    record: Record = np.empty((COLUMNS, most))
-    if not fast:
-        lengths, counts, record = lengths.tolist(), counts.tolist(), record.tolist()
+    lengths: Any
+    counts: Any
+    if cuts is not None:
+        room = len(cuts.lengths)
+    most = room + 3 * len(course.loads) + 2 * len(course.stages) + 1 if recording else 0
+    if fast:
+        lengths, counts = cuts or (np.empty(room), np.zeros(len(course.cables), np.int64))
+        record: Record = np.empty((COLUMNS, most))
+    else:
+        lengths = [0.0] * room if cuts is None else cuts.lengths.tolist()
+        counts = [0] * len(course.cables) if cuts is None else cuts.counts.tolist()
+        record = [[0.0] * most for _ in range(COLUMNS)]
     end = paced(pass_line)(
         course, sea, depth, out, angle_step, reach, lands, given, lengths, counts, record, recording
     )

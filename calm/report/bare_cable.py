@@ -6,11 +6,9 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Group, RenderableType
-from rich.text import Text
-
+from calm.checks.finding import State
 from calm.physics.strumming import BourgetMarichal
-from calm.report.terminal import plain_table, warning
+from calm.report.blocks import Pairs, Part, Prose
 
 if TYPE_CHECKING:
     from calm.case.bare_cable import BareCable
@@ -31,19 +29,23 @@ def bare_cable_document(cable: BareCable) -> dict[str, Any]:
     }
 
 
-def bare_cable_table(cable: BareCable) -> RenderableType:
-    """The answer and what to think of it, for a rich console."""
+def bare_cable_part(cable: BareCable) -> Part:
+    """The answer and what to think of it."""
     cn, amplitude = cable.vibration
-    table = plain_table(header=False)
-    table.add_row("weight in water", f"{cable.weight:.3f} N/m")
-    table.add_row("drag coefficient C*", f"{cn:.3f}")
-    table.add_row("amplitude a/D", f"{amplitude:.3f}")
+    pairs = [
+        ("weight in water", f"{cable.weight:.3f} N/m"),
+        ("drag coefficient C*", f"{cn:.3f}"),
+        ("amplitude a/D", f"{amplitude:.3f}"),
+    ]
     if amplitude:
-        table.add_row("amplitude a", f"{1000.0 * amplitude * cable.diameter:.1f} mm")
-        table.add_row("frequency", f"{cable.frequency:.2f} Hz")
+        pairs += [
+            ("amplitude a", f"{1000.0 * amplitude * cable.diameter:.1f} mm"),
+            ("frequency", f"{cable.frequency:.2f} Hz"),
+        ]
+    notes = tuple(_notes(cable))
+    warned = (Prose(notes, State.WARN),) if notes else ()
     title = f"Bare cable at {cable.angle:g}° behind a ship at {cable.speed:.3g} m/s"
-    notes = [warning(note) for note in _notes(cable)]
-    return Group(Text(title, style="bold"), Text(), table, *([Text(), *notes] if notes else []))
+    return Part(title, (Pairs(tuple(pairs)), *warned))
 
 
 def _notes(cable: BareCable) -> Iterator[str]:

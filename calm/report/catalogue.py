@@ -8,13 +8,10 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel
-from rich.console import Group, RenderableType
-from rich.padding import Padding
-from rich.text import Text
 
 from calm.assemble.datasheet import Datasheet, datasheet
 from calm.quantities import QUANTITIES
-from calm.report.terminal import plain_table
+from calm.report.blocks import Cell, Column, Heading, Pairs, Part, Table
 
 if TYPE_CHECKING:
     from calm.files import Catalogue, Component
@@ -31,50 +28,42 @@ _AUTHOR = re.compile(r"[,;] (?![^()]*\))")
 _HEADING_OF_OTHERS = "other"
 
 
-def to_list(catalogue: Catalogue, definitions: Mapping[str, Definition]) -> RenderableType:
+def to_list(catalogue: Catalogue, definitions: Mapping[str, Definition]) -> Part:
     """One line for each definition, under the name of its family."""
-    table = plain_table(gap=1)
-    table.add_column("id", overflow="fold")
-    table.add_column("name", overflow="fold")
-    table.add_column("net force\nin water", justify="right", no_wrap=True)
-    table.add_column("breaking\nload", justify="right", no_wrap=True)
+    columns = (
+        Column("id"),
+        Column("name"),
+        Column("net force\nin water", numeric=True),
+        Column("breaking\nload", numeric=True),
+    )
+    rows: list[tuple[Cell, ...]] = []
     last = None
     for identifier, definition in definitions.items():
         family = _family(catalogue, identifier) or _HEADING_OF_OTHERS
         if family != last:
-            table.add_row(*[Text()] * (last is not None))
-            table.add_row(Text(family.upper(), style="bold"))
+            rows += [(Cell(),), (Cell(family.upper()),)]
             last = family
         net = _say(definition, "net_buoyancy") if definition.kind != "assembly" else ""
         breaking = "" if definition.breaking_load is None else _say(definition, "breaking_load")
         name = definition.name or ""
         if definition.prefer is not None:
             name += f" (use {definition.prefer})"
-        table.add_row(Text(identifier), Text(name), net, breaking)
-    return table
+        rows.append(tuple(map(Cell, (identifier, name, net, breaking))))
+    return Part("", (Table("", columns, tuple(rows), dense=True),))
 
 
-def to_card(
-    identifier: str, definition: Definition, catalogue: Catalogue | None = None
-) -> RenderableType:
+def to_card(identifier: str, definition: Definition, catalogue: Catalogue | None = None) -> Part:
     """Every figure that a definition gives, in the units people read, and where it comes from.
 
     What follows from the figures comes after them, then, where several definitions of the catalogue
     describe the same thing, how far they are apart and which to use.
     """
-    rows = plain_table(header=False)
-    for heading, text in _figures(definition):
-        rows.add_row(Text(heading), Text(text))
-    for heading, text in _following(datasheet(definition, catalogue), _per_metre(definition)):
-        rows.add_row(Text(heading), Text(text))
-    parts: list[RenderableType] = [
-        Text(identifier, style="bold"),
-        Padding(rows, (0, 0, 0, 2)),
-    ]
+    following = _following(datasheet(definition, catalogue), _per_metre(definition))
+    pairs = Pairs((*_figures(definition), *following))
     same = [] if catalogue is None else catalogue.same_thing(identifier)
-    if catalogue is not None and len(same) > 1:
-        parts.append(Padding(_comparison(catalogue, same), (1, 0, 0, 2)))
-    return Group(*parts)
+    if catalogue is None or len(same) < 2:
+        return Part("", (Heading(identifier), pairs))
+    return Part("", (Heading(identifier), pairs, _comparison(catalogue, same)))
 
 
 def to_documents(
@@ -124,34 +113,36 @@ def _following(sheet: Datasheet | None, per_metre: str) -> Iterator[tuple[str, s
     yield "Cd × area", QUANTITIES["cd_area"].figure(sheet.cd_area) + per_metre
 
 
-def _comparison(catalogue: Catalogue, same: Sequence[str]) -> RenderableType:
+def _comparison(catalogue: Catalogue, same: Sequence[str]) -> Table:
     """The definitions of one thing beside one another, and how far they are apart."""
-    table = plain_table()
-    table.add_column("the same thing", no_wrap=True)
-    table.add_column("")
-    table.add_column("net force in water", justify="right")
-    table.add_column("Cd × area", justify="right")
-    table.add_column("by", overflow="fold")
-    sheets = []
+    columns = (
+        Column("the same thing", share=0.0),
+        Column("", share=0.0),
+        Column("net force in water", numeric=True),
+        Column("Cd × area", numeric=True),
+        Column("by"),
+    )
+    rows, sheets = [], []
     for identifier in same:
         definition = catalogue.get(identifier)
         sheet = datasheet(definition, catalogue)
         if sheet is None:
             continue
         sheets.append(sheet)
-        table.add_row(
-            Text(identifier),
+        texts = (
+            identifier,
             "use this" if identifier == same[0] else "",
             _text("net_buoyancy", sheet.net_buoyancy) + _per_metre(definition),
             "" if sheet.cd_area is None else _text("cd_area", sheet.cd_area),
-            Text(_AUTHOR.split(definition.source or "", maxsplit=1)[0]),
+            _AUTHOR.split(definition.source or "", maxsplit=1)[0],
         )
+        rows.append(tuple(map(Cell, texts)))
     nets = [sheet.net_buoyancy for sheet in sheets]
     areas = [sheet.cd_area for sheet in sheets if sheet.cd_area is not None]
     for word, extreme in (("least", min), ("most", max)):
         area = _text("cd_area", extreme(areas)) if areas else ""
-        table.add_row(word, "", _text("net_buoyancy", extreme(nets)), area, style="dim")
-    return table
+        rows.append(tuple(map(Cell, (word, "", _text("net_buoyancy", extreme(nets)), area, ""))))
+    return Table("", columns, tuple(rows))
 
 
 def _per_metre(definition: Definition) -> str:

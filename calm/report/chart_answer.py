@@ -5,10 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Group, RenderableType
-from rich.text import Text
-
-from calm.report.terminal import plain_table
+from calm.report.blocks import Cell, Column, Note, Part, Table
 
 if TYPE_CHECKING:
     from calm.analytic.chart import ChartAnswer, ChartSolution
@@ -38,28 +35,29 @@ def answer_document(answer: ChartAnswer) -> dict[str, Any]:
     return document
 
 
-def answer_table(answer: ChartAnswer) -> RenderableType:
-    """A column for each cable, for a rich console."""
-    table = plain_table()
-    table.add_column()
-    table.add_column()
-    for number, _ in enumerate(answer.solutions, start=1):
-        table.add_column(str(number) if len(answer.solutions) > 1 else "", justify="right")
+def answer_part(answer: ChartAnswer) -> Part:
+    """A column for each cable."""
     figures = [_figures(solution) for solution in answer.solutions]
-    for name, heading, unit, decimals in _ROWS:
-        table.add_row(heading, unit, *(f"{cable[name]:z.{decimals}f}" for cable in figures))
+    several = len(figures) > 1
+    columns = (
+        Column(""),
+        Column("", share=0.0),
+        *(
+            Column(str(number) if several else "", numeric=True)
+            for number, _ in enumerate(figures, start=1)
+        ),
+    )
+    rows = tuple(
+        (Cell(heading), Cell(unit), *(Cell(f"{cable[name]:z.{decimals}f}") for cable in figures))
+        for name, heading, unit, decimals in _ROWS
+    )
     notes = [_NOTE]
-    if len(figures) > 1:
+    if several:
         notes.append("Each of these cables fits what is given.")
     if any(min(cable["phi_a"], cable["phi_b"]) < 0.0 for cable in figures):
         notes.append("A negative angle: the cable goes down there, beyond the level of that end.")
-    return Group(
-        Text(f"Uniform current, K = {answer.k:.6g}", style="bold"),
-        Text(),
-        table,
-        Text(),
-        Text("\n".join(notes), style="dim"),
-    )
+    title = f"Uniform current, K = {answer.k:.6g}"
+    return Part(title, (Table("", columns, rows), Note(tuple(notes))))
 
 
 def _figures(solution: ChartSolution) -> dict[str, float]:

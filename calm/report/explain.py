@@ -1,4 +1,4 @@
-"""What causes a knockdown and what would change it, as a person reads it in a terminal."""
+"""What causes a knockdown and what would change it, as a person reads it."""
 
 from __future__ import annotations
 
@@ -6,15 +6,12 @@ from dataclasses import dataclass
 from math import floor, log10
 from typing import TYPE_CHECKING
 
-from rich.console import Group, RenderableType
-from rich.table import Table
-from rich.text import Text
-
+from calm.checks.finding import State
 from calm.quantities import QUANTITIES
-from calm.report.terminal import plain_table, warning
+from calm.report.blocks import Block, Cell, Column, Part, Prose, Span, Table
 
 if TYPE_CHECKING:
-    from calm.case.explain import Explanation
+    from calm.case.explain import Causes, Explanation
     from calm.case.figures import Figures
 
 SMALLEST_SHARE = 0.005
@@ -55,8 +52,8 @@ _COLUMNS = {
 _ANCHOR = ("tension", "vertical", "horizontal", "required_weight")
 
 
-def explanation_table(explanation: Explanation) -> RenderableType:
-    """The shares of the drags and what a change would do, for a rich console.
+def explanation_part(explanation: Explanation) -> Part:
+    """The shares of the drags and what a change would do.
 
     Drags that cause next to nothing share a row; a JSON document has each of them. It fits 80
     columns.
@@ -66,23 +63,20 @@ def explanation_table(explanation: Explanation) -> RenderableType:
         for name in explanation.quantities
         if name != "used_buoyancy"
     ]
-    parts: list[RenderableType] = [
-        Text(f"What makes the {' and '.join(wholes)} of {explanation.label}", style="bold"),
-        Text(),
-        *(Text(note) for note in explanation.notes),
-    ]
+    title = f"What makes the {' and '.join(wholes)} of {explanation.label}"
+    blocks: list[Block] = [Prose(explanation.notes)] if explanation.notes else []
     if explanation.causes is not None and len(explanation.causes):
-        parts += [Text()] * bool(explanation.notes) + [_causes(explanation), Text()]
-    parts += [_changes(explanation), Text()]
+        blocks.append(_causes(explanation, explanation.causes))
+    blocks.append(_changes(explanation))
     failures = [change for change in explanation.changes if change.failure is not None]
-    parts += [warning(f"{change.name}: {change.failure}") for change in failures]
-    told = f"{_SHARES}\n{_CHANGES}" if explanation.causes is not None else _CHANGES
-    return Group(*parts, Text(told, style="dim"))
+    if failures:
+        told = tuple(f"{change.name}: {change.failure}" for change in failures)
+        blocks.append(Prose(told, State.WARN))
+    lines = (_SHARES, _CHANGES) if explanation.causes is not None else (_CHANGES,)
+    return Part(title, (*blocks, Prose(tuple((Span(line, quiet=True),) for line in lines))))
 
 
-def _causes(explanation: Explanation) -> Table:
-    causes = explanation.causes
-    assert causes is not None
+def _causes(explanation: Explanation, causes: Causes) -> Table:
     columns = [_COLUMNS[name] for name in explanation.quantities]
     wholes = [getattr(explanation.figures, column.name) for column in columns]
     start = [explanation.without_drag[column.name] for column in columns]
@@ -92,22 +86,22 @@ def _causes(explanation: Explanation) -> Table:
     largest = sorted(rows, key=lambda row: -abs(row[2][0]))
     told = [row for row in largest if _matters(row[2], wholes)]
     rest = [row for row in largest if not _matters(row[2], wholes)]
-    table = _table()
-    table.add_column("drag\nN", justify="right")
+    heads = [Column(""), Column("drag", "N", numeric=True)]
     for column in columns:
-        table.add_column(f"{column.heading}\n{column.unit}", justify="right")
+        heads.append(Column(column.heading, column.unit, numeric=True))
         if column.unit != "%":
-            table.add_column("\n\n%", justify="right")
-    if any(start):
-        table.add_row("without drag", "", *_cells(columns, start, wholes))
-    for label, drag, shares in told:
-        table.add_row(label, f"{drag:.0f}", *_cells(columns, shares, wholes))
+            heads.append(Column("\n", "%", numeric=True))
+    lines = [("without drag", "", start)] if any(start) else []
+    lines += [(label, f"{drag:.0f}", shares) for label, drag, shares in told]
     if rest:
         sums = [sum(row[2][i] for row in rest) for i in range(len(columns))]
-        name = rest[0][0] if len(rest) == 1 else f"{len(rest)} others"
-        table.add_row(name, "", *_cells(columns, sums, wholes))
-    table.add_row("all", "", *_cells(columns, wholes, wholes), style="bold")
-    return table
+        lines.append((rest[0][0] if len(rest) == 1 else f"{len(rest)} others", "", sums))
+    lines.append(("all", "", wholes))
+    cells = tuple(
+        (Cell(label), Cell(drag), *map(Cell, _cells(columns, shares, wholes)))
+        for label, drag, shares in lines
+    )
+    return Table("", tuple(heads), cells, totals=1)
 
 
 def _matters(shares: list[float], wholes: list[float]) -> bool:
@@ -126,18 +120,19 @@ def _cells(columns: list[_Column], shares: list[float], wholes: list[float]) -> 
 
 def _changes(explanation: Explanation) -> Table:
     columns = [_COLUMNS[name] for name in (*explanation.quantities, *_ANCHOR)]
-    table = _table()
-    for column in columns:
-        table.add_column(f"{column.heading}\n{column.unit}", justify="right")
+    heads = (Column(""), *(Column(each.heading, each.unit, numeric=True) for each in columns))
     now = explanation.figures
-    table.add_row("as it is", *(_figure(column, now) for column in columns), style="bold")
+    as_it_is = (Cell(_figure(column, now), strong=True) for column in columns)
+    rows = [(Cell("as it is", strong=True), *as_it_is)]
     for change in explanation.changes:
         if change.figures is None:
             assert change.failure is not None
-            table.add_row(change.name, change.failure.status)
+            nothing = (Cell() for _ in columns[1:])
+            rows.append((Cell(change.name), Cell(change.failure.status), *nothing))
         else:
-            table.add_row(change.name, *(_growth(c, now, change.figures) for c in columns))
-    return table
+            growths = (_growth(each, now, change.figures) for each in columns)
+            rows.append((Cell(change.name), *map(Cell, growths)))
+    return Table("", heads, tuple(rows))
 
 
 def _figure(column: _Column, figures: Figures) -> str:
@@ -159,9 +154,3 @@ def _decimals(column: _Column, whole: float) -> int:
     if whole == 0.0:
         return usual
     return max(usual, min(2 - floor(log10(abs(whole * column.scale))), 4))
-
-
-def _table() -> Table:
-    table = plain_table()
-    table.add_column(overflow="fold")
-    return table

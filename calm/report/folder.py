@@ -36,10 +36,10 @@ def check_folder(folder: Path) -> None:
 
 
 def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
-    """Write the files of a report, making the folder where it is missing.
+    """Write the files of a report as a set, making the folder where it is missing.
 
-    All are written under temporary names before the first takes its place, so that a full disk
-    leaves the report that was there as it was.
+    All are written under temporary names before the first takes its place. Where one cannot take
+    it, or the program is interrupted meanwhile, the report that was there stands again, whole.
 
     Parameters
     ----------
@@ -52,6 +52,7 @@ def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
         The system refuses: which file, and why. No temporary file is left behind.
     """
     parts = {name: folder / f".{name}-{os.getpid()}.part" for name in files}
+    kept = {name: folder / f".{name}-{os.getpid()}.old" for name in files}
     target, made = folder, not folder.exists()
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -60,15 +61,30 @@ def write_report(folder: Path, files: Mapping[str, bytes]) -> None:
             if target.is_dir():
                 raise IsADirectoryError(None, "it is a folder")
             parts[name].write_bytes(content)
-        for name in files:
-            target = folder / name
-            os.replace(parts[name], target)
+        try:
+            for name in files:
+                target = folder / name
+                if os.path.lexists(target):
+                    os.replace(target, kept[name])
+                os.replace(parts[name], target)
+        except BaseException:
+            _restore(folder, parts, kept)
+            raise
     except OSError as error:
         raise UsageError(f"cannot write {target}: {error.strerror}") from None
     finally:
-        for part in parts.values():
+        for path in (*parts.values(), *kept.values()):
             with contextlib.suppress(OSError):
-                part.unlink()
+                path.unlink()
         if made:
             with contextlib.suppress(OSError):
                 folder.rmdir()  # which the system does only where nothing was written
+
+
+def _restore(folder: Path, parts: Mapping[str, Path], kept: Mapping[str, Path]) -> None:
+    """Take away the new files that have taken their place, and put the old ones back."""
+    for name, part in parts.items():
+        if not part.exists():
+            (folder / name).unlink(missing_ok=True)
+        if os.path.lexists(kept[name]):
+            os.replace(kept[name], folder / name)

@@ -8,11 +8,12 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from calm.report.blocks import Section
 from calm.report.provenance import moment
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
-    from calm.report.section import Report, Section
+    from calm.report.blocks import Report
 
 
 def report_pdf(sections: Sequence[Section]) -> bytes:
@@ -52,5 +53,7 @@ def printed(report: Report) -> bytes:
 
 
 def _members(part: Any) -> dict[str, Any]:
-    """A part of the report with its kind, by which the template knows it."""
+    """A part of the report with its kind, which the template goes by; of a section its parts."""
+    if isinstance(part, Section):
+        return {"name": part.name, "parts": part.parts}
     return {"kind": type(part).__name__, **vars(part)}

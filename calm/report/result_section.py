@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from calm.case import TowResult
 from calm.checks.finding import State
-from calm.report.plot import draw
-from calm.report.provenance import date
-from calm.report.result_tables import (
+from calm.report.blocks import Figure, Part, Prose, Report, Section
+from calm.report.inputs import (
     UNSEEN,
     current_listing,
     environments_table,
     file_listing,
-    line_table,
     origin,
-    said_below,
 )
-from calm.report.section import Figure, Part, Prose, Report, Section
+from calm.report.plot import draw
+from calm.report.provenance import date
 from calm.report.sheet import sheet
 from calm.report.vector import figure_svg
 
@@ -34,9 +33,9 @@ def result_report(result: Result | TowResult) -> Report:
     environment = file.environment.name or "own"
     described = (Prose((file.description,)),) if file.description else ()
     parts = (
-        Part("Result", (*described, *said_below(said))),
+        Part("Result", (*described, *said.summary, Prose((said.convergence,)))),
         Part("The line", (Figure("Schematic", schematic_svg(file, result), tall=True),
-                          line_table(said, "Table of the line"))),
+                          replace(said.table, title="Table of the line"))),
         Part("Shape", (Figure("Elevation, current and plan", figure_svg(draw(result))),)),
         Part("What is not judged", (Prose(UNSEEN, State.UNKNOWN),)),
         Part(

@@ -1,15 +1,17 @@
-"""The words around the rows: of a mooring, and of a tow."""
+"""What a result says: the table of its line, and the words around it."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from calm.case import TowResult
+from calm.checks.finding import State
 from calm.files.strumming import BourgetMarichalKeys
 from calm.quantities import say
-from calm.report.limits import Mark
-from calm.report.rows import Phrase, Sheet, convergence, rows
+from calm.report.blocks import Line, Note, Part, Prose, Span, Table
+from calm.report.line import Mark, line_table
 from calm.solve import Status
 
 if TYPE_CHECKING:
@@ -31,25 +33,55 @@ _NOTE = "of the upper end. Tension: the greatest in the piece. ~ near a limit, !
 _TYPES = {"subsurface": "sub-surface mooring", "surface": "surface mooring"}
 
 
+@dataclass(frozen=True)
+class Sheet:
+    """Everything a result says.
+
+    Attributes
+    ----------
+    title : name and kind
+    table : a row for each component and each clamped instrument, in file order
+    summary : the two ends of the line in words, the warnings below them
+    convergence : how the solution was reached and how good it is
+    """
+
+    title: str
+    table: Table
+    summary: tuple[Prose, ...]
+    convergence: str
+
+
 def sheet(result: Result | TowResult) -> Sheet:
-    """What the table of a mooring or a tow says."""
+    """What a mooring or a tow says."""
     return _tow(result) if isinstance(result, TowResult) else _mooring(result)
+
+
+def result_part(result: Result | TowResult) -> Part:
+    """A result in short: it fits 80 columns, where long labels wrap.
+
+    A figure beyond its limit carries ``!`` and one near it ``~``, so that nothing hangs on colour.
+    """
+    said = sheet(result)
+    note = Note((said.table.note, said.convergence))
+    return Part(said.title, (replace(said.table, note=""), *said.summary, note))
+
+
+def _summary(result: Result | TowResult, *lines: Line) -> tuple[Prose, ...]:
+    warned = (Prose(result.warnings, State.WARN),) if result.warnings else ()
+    return (Prose(lines), *warned)
 
 
 def _mooring(result: Result) -> Sheet:
     depth = say("depth", result.file.environment.depth)
     return Sheet(
         title=f"{result.name}: {_TYPES[result.type]}, {depth} of water",
-        columns=_MOORING_COLUMNS,
-        rows=tuple(rows(result, _MOORING_COLUMNS)),
+        table=line_table(result, _MOORING_COLUMNS, f"Depth, height and offset: {_NOTE}"),
         summary=_mooring_summary(result),
-        warnings=result.warnings,
-        note=f"Depth, height and offset: {_NOTE}",
-        convergence=convergence(result, "anchor"),
+        convergence=_convergence(result, "anchor"),
     )
 
 
-def _mooring_summary(result: Result) -> tuple[Phrase, ...]:
+def _mooring_summary(result: Result) -> tuple[Prose, ...]:
     """The top, and the loads on the anchor."""
     top, anchor = result.top, result.anchor
     offset = f"{say('offset', math.hypot(top.x, top.y))} off the anchor"
@@ -69,11 +101,12 @@ def _mooring_summary(result: Result) -> tuple[Phrase, ...]:
     weighs = f"{say('required_weight', anchor.weight)} in water, {needed} needed"
     mark = Mark.BEYOND if anchor.weight < anchor.required_weight else Mark.NONE
     hull = f"Hull: draft {say('draft', top.draft)}, freeboard {say('freeboard', top.freeboard)}"
-    return (
-        Phrase(f"Top {at}"),
-        *([Phrase(hull)] if top.draft is not None else []),
-        Phrase(f"Anchor pulled by {pull}"),
-        Phrase(f"Anchor weighs {weighs}", mark),
+    return _summary(
+        result,
+        f"Top {at}",
+        *([hull] if top.draft is not None else []),
+        f"Anchor pulled by {pull}",
+        (Span(f"Anchor weighs {weighs} {mark}".rstrip(), mark.state),),
         *_strumming(result),
     )
 
@@ -81,26 +114,24 @@ def _mooring_summary(result: Result) -> tuple[Phrase, ...]:
 def _tow(result: TowResult) -> Sheet:
     return Sheet(
         title=f"{result.name}: tow at {say('speed', result.speed)} towards {result.toward:.0f}°",
-        columns=_TOW_COLUMNS,
-        rows=tuple(rows(result, _TOW_COLUMNS)),
+        table=line_table(result, _TOW_COLUMNS, f"Depth and layback: {_NOTE}"),
         summary=_tow_summary(result),
-        warnings=result.warnings,
-        note=f"Depth and layback: {_NOTE}",
-        convergence=convergence(result, "tow point"),
+        convergence=_convergence(result, "tow point"),
     )
 
 
-def _tow_summary(result: TowResult) -> tuple[Phrase, ...]:
+def _tow_summary(result: TowResult) -> tuple[Prose, ...]:
     """The loads at the ship, and where the body is."""
     point, body = result.tow_point, result.body
     way = "down" if point.vertical >= 0.0 else "up"
-    return (
-        Phrase(
+    return _summary(
+        result,
+        (
             f"Tow point pulled by {_pull(point.tension, point.angle)}: "
             f"{say('vertical', abs(point.vertical))} {way}, "
             f"{say('horizontal', point.horizontal)} back"
         ),
-        Phrase(
+        (
             f"Body {_level(result, body.depth)}, layback {say('layback', body.layback)}; "
             f"pulled by {_pull(body.tension, body.angle)}"
         ),
@@ -108,16 +139,16 @@ def _tow_summary(result: TowResult) -> tuple[Phrase, ...]:
     )
 
 
-def _strumming(result: Result | TowResult) -> tuple[Phrase, ...]:
+def _strumming(result: Result | TowResult) -> tuple[str, ...]:
     """How fast the cables vibrate and what that makes of their drag; or what it would make."""
     strumming, band = result.strumming, result.strumming_band
     if strumming is not None:
         together = isinstance(result.file.solver.strumming, BourgetMarichalKeys)
         frequency = f"{'' if together else 'up to '}{say('frequency', strumming.frequency)}"
         least, greatest = say("cn", strumming.cn_min), say("cn", strumming.cn_max)
-        return (Phrase(f"Strumming at {frequency}, Cn from {least} to {greatest}"),)
+        return (f"Strumming at {frequency}, Cn from {least} to {greatest}",)
     if band is not None:
-        return (Phrase(f"If the cables strum, Cn × {band.factor:g}: {_with(result, band)}"),)
+        return (f"If the cables strum, Cn × {band.factor:g}: {_with(result, band)}",)
     return ()
 
 
@@ -146,3 +177,14 @@ def _level(result: TowResult, depth: float) -> str:
     if result.file.environment.fluid == "air":
         return f"{say('depth', depth + result.tow.keys.height)} below the tow point"
     return f"{say('depth', depth)} deep" if depth >= 0.0 else f"{say('depth', -depth)} in the air"
+
+
+def _convergence(result: Result | TowResult, end: str) -> str:
+    """How the solution was reached and how good it is; `end` is where the line is held."""
+    accuracy = result.accuracy
+    pull = "" if accuracy.anchor is None else f", at the anchor {accuracy.anchor:.2g} N"
+    return (
+        f"{result.status.capitalize()} in {result.iterations} marches of {result.segments} "
+        f"segments, good to {accuracy.depth:.2g} m and {accuracy.tension:.2g} N{pull}; {end} "
+        f"missed by {abs(result.miss):.1g} m, forces closed to {result.closure:.1g}."
+    )

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rich.console import Group, RenderableType
-from rich.table import Table
-from rich.text import Text
-
+from calm.checks.finding import State
 from calm.quantities import QUANTITIES
-from calm.report.terminal import plain_table, warning
+from calm.report.blocks import Cell, Column, Line, Part, Prose, Span, Table
 from calm.units import with_unit
 
 if TYPE_CHECKING:
@@ -28,28 +25,22 @@ _ROWS = (
 """Rows: name in `Figures`, quantity, words."""
 
 
-def sizing_table(sizing: Sizing) -> RenderableType:
-    """What to change so that the target is met, and what else that changes, for a rich console.
+def sizing_part(sizing: Sizing) -> Part:
+    """What to change so that the target is met, and what else that changes.
 
     Parameters
     ----------
     sizing : one whose target is met; of the others there is only a reason to tell
     """
     assert sizing.after is not None
-    file = sizing.change.file
-    parts: list[RenderableType] = [
-        Text(f"{file.name}: {sizing.target.text}", style="bold"),
-        Text(),
-        Text(_answer(sizing)),
-        Text(),
-        _comparison(sizing, sizing.before, sizing.after),
-        Text(),
-    ]
+    lines: list[Line] = []
     if sizing.before.failure is not None:
-        parts.append(Text(f"As it is: {sizing.before.failure}", style="yellow"))
-    parts += [warning(text) for text in _new_warnings(sizing)]
-    parts += [Text(note) for note in sizing.notes]
-    return Group(*parts, Text(_effort(sizing), style="dim"))
+        lines.append((Span(f"As it is: {sizing.before.failure}", State.WARN),))
+    lines += [(Span(f"! {text}", State.FAIL),) for text in _new_warnings(sizing)]
+    lines += [*sizing.notes, (Span(_effort(sizing), quiet=True),)]
+    table = _comparison(sizing, sizing.before, sizing.after)
+    title = f"{sizing.change.file.name}: {sizing.target.text}"
+    return Part(title, (Prose((_answer(sizing),)), table, Prose(tuple(lines))))
 
 
 def refusal(sizing: Sizing) -> str:
@@ -76,25 +67,27 @@ def _each(sizing: Sizing) -> str:
 
 
 def _comparison(sizing: Sizing, before: Trial, after: Trial) -> Table:
-    table = plain_table()
-    table.add_column(overflow="fold")
-    table.add_column()
-    table.add_column("before", justify="right")
-    table.add_column("after", justify="right")
     target, both = sizing.target, (before, after)
     words_of = {field: words for field, _, words in _ROWS}
     name = words_of.get(target.quantity, f"{target.quantity} of the top")
     if target.label is not None:
         name = f"{target.quantity} of {target.label}"
     measured = ("-" if one.measured is None else f"{one.measured:.6g}" for one in both)
-    table.add_row(name, _sign(target.unit), *measured, style="bold")
+    aimed = (name, _sign(target.unit), *measured)
+    rows = [tuple(Cell(text, strong=True) for text in aimed)]
     for field, quantity, words in _ROWS:
         if words == name or (field == "used_buoyancy" and not _at_the_surface(after)):
             continue
         shown = QUANTITIES[quantity]
         figures = (getattr(one.figures, field, None) for one in both)
-        table.add_row(words, shown.display_unit, *map(shown.format, figures))
-    return table
+        rows.append((Cell(words), Cell(shown.display_unit), *map(Cell, map(shown.format, figures))))
+    columns = (
+        Column(""),
+        Column("", share=0.0),
+        Column("before", numeric=True),
+        Column("after", numeric=True),
+    )
+    return Table("", columns, tuple(rows))
 
 
 def _at_the_surface(trial: Trial) -> bool:

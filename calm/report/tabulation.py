@@ -6,10 +6,13 @@ import csv
 import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import floor, log10
 from typing import TYPE_CHECKING, Any
 
+from calm.checks.finding import State
 from calm.errors import NoEquilibrium
-from calm.quantities import QUANTITIES
+from calm.quantities import QUANTITIES, Quantity
+from calm.report.blocks import Cell, Column, Part, Prose, Span, Table
 from calm.units import KNOT
 
 if TYPE_CHECKING:
@@ -19,6 +22,10 @@ if TYPE_CHECKING:
 FIGURES = ("depth", "layback", "tension", "angle", "body_tension", "frequency")
 """What a row tells of a result: depth and layback of the body, tension and angle at the ship."""
 
+_HEADINGS = {"body_tension": "tension\nat body"}
+_NOTE = "Depth and layback: of the body. Tension and angle: at the tow point, from the horizontal."
+_DIGITS = 4
+_WARNED = "!: with warnings, told by --json."
 _KNOTS = replace(QUANTITIES["speed"], display="knot", scale=1.0 / KNOT)
 
 
@@ -166,3 +173,48 @@ def _row_document(tabulation: Tabulation, row: TabulationRow) -> dict[str, Any]:
     if isinstance(row.outcome, NoEquilibrium):
         return document | row.outcome.to_dict()
     return document | {"warnings": list(row.outcome.warnings)}
+
+
+def tabulation_part(tabulation: Tabulation) -> Part:
+    """A line for each row; it fits 80 columns.
+
+    A row without equilibrium shows its status, one with warnings of its own a mark; warnings that
+    all rows share stand below.
+    """
+    names = [name for name in FIGURES if name != "frequency" or tabulation.strumming]
+    columns = (
+        *(Column(heading, numeric=True) for heading in tabulation.headings),
+        *(Column(_HEADINGS.get(name, QUANTITIES[name].heading), QUANTITIES[name].display_unit,
+                 numeric=True) for name in names),
+        Column("", share=0.0),
+    )  # fmt: skip
+    quantities = [_fine(name, tabulation) for name in names]
+    remarks = [_remark(tabulation, row) for row in tabulation.rows]
+    rows = tuple(
+        (
+            *map(Cell, row.shown),
+            *(Cell(quantity.format(row.figures[quantity.name])) for quantity in quantities),
+            Cell(remark, state=State.FAIL if remark else None),
+        )
+        for row, remark in zip(tabulation.rows, remarks, strict=True)
+    )
+    note = f"{_NOTE} {_WARNED}" if "!" in remarks else _NOTE
+    warned = (Prose(tabulation.warnings, State.WARN),) if tabulation.warnings else ()
+    quiet = Prose(((Span(note, quiet=True),),))
+    return Part(tabulation.title, (Table("", columns, rows), *warned, quiet))
+
+
+def _fine(name: str, tabulation: Tabulation) -> Quantity:
+    """The quantity with `_DIGITS` digits at least: rows differ little, and a tow may be small."""
+    quantity = QUANTITIES[name]
+    greatest = max((abs(row.figures[name] or 0.0) for row in tabulation.rows), default=0.0)
+    if greatest == 0.0:
+        return quantity
+    decimals = _DIGITS - 1 - floor(log10(greatest * quantity.scale))
+    return replace(quantity, decimals=max(quantity.decimals, decimals))
+
+
+def _remark(tabulation: Tabulation, row: TabulationRow) -> str:
+    if isinstance(row.outcome, NoEquilibrium):
+        return row.outcome.status
+    return "!" if set(row.outcome.warnings) - set(tabulation.warnings) else ""

@@ -1,19 +1,155 @@
-"""The look of what a terminal shows: tables without rules, and warnings that need no colour."""
+"""What CALM says on a terminal: tables without rules, and nothing that hangs on colour alone."""
 
 from __future__ import annotations
 
-from rich.table import Table
+from collections.abc import Iterable, Iterator
+
+from rich import table
+from rich.console import Group, RenderableType
+from rich.padding import Padding
 from rich.text import Text
 
-WARNED = "bold red"
-"""The style of what a person must not overlook."""
+from calm.checks.finding import State
+from calm.report.blocks import (
+    Block,
+    Cell,
+    Column,
+    Heading,
+    Line,
+    Note,
+    Pairs,
+    Part,
+    Prose,
+    Table,
+)
+from calm.report.signs import in_ascii, printable
+
+_STYLES = {
+    State.PASS: "green",
+    State.ACCEPTED: "",
+    State.WARN: "yellow",
+    State.UNKNOWN: "bold",
+    State.FAIL: "bold red",
+}
+"""How a state looks; its word or its mark tells it without colour."""
+_QUIET = "dim"
+_WARNED = _STYLES[State.FAIL]
 
 
-def plain_table(*, gap: int = 2, header: bool = True) -> Table:
+def shown(part: Part, *, plain: bool = False) -> RenderableType:
+    """A part for a rich console; its figures are left to what draws them there.
+
+    Parameters
+    ----------
+    part : title, tables and sentences
+    plain : with the signs of ASCII alone
+    """
+    return Group(*_Printer(plain).part(part))
+
+
+class _Printer:
+    """Prints blocks with all signs, or with those of ASCII."""
+
+    def __init__(self, plain: bool) -> None:
+        self._sign = in_ascii if plain else str
+
+    def part(self, part: Part) -> Iterator[RenderableType]:
+        """Title and blocks, a blank line between two that do not belong together."""
+        if part.title:
+            yield self._text(part.title, "bold")
+            yield Text()
+        before: Block | None = None
+        for block in part.blocks:
+            if before is not None and not _together(before, block):
+                yield Text()
+            if isinstance(before, Heading) and isinstance(block, Pairs):
+                yield Padding(self._pairs(block), (0, 0, 0, 2))
+            else:
+                yield from self._block(block)
+            before = block
+
+    def _block(self, block: Block) -> Iterable[RenderableType]:
+        if isinstance(block, Table):
+            return self._table(block)
+        if isinstance(block, Pairs):
+            return [self._pairs(block)]
+        if isinstance(block, Prose):
+            return [self._line(line, block.state) for line in block.lines]
+        if isinstance(block, Note):
+            return [self._text(line, _QUIET) for line in block.lines]
+        if isinstance(block, Heading):
+            return [self._text(block.text, "bold")]
+        raise TypeError(f"a terminal shows no {type(block).__name__}")
+
+    def _table(self, block: Table) -> Iterator[RenderableType]:
+        if block.title:
+            yield self._text(block.title, "bold")
+        rows = _grid(gap=1 if block.dense else 2)
+        chosen = [number for number, column in enumerate(block.columns) if column.narrow]
+        for number in chosen:
+            self._add_column(rows, block.columns[number])
+        for count, row in enumerate(block.rows, 1):
+            style = "bold" if count > len(block.rows) - block.totals else ""
+            if len(row) < len(block.columns):
+                rows.add_row(*(self._text(cell.text, "bold") for cell in row), style=style)
+                continue
+            cells = (self._cell(row[number], block.columns[number]) for number in chosen)
+            rows.add_row(*cells, style=style)
+        yield rows
+        if block.note:
+            yield self._text(block.note, _QUIET)
+
+    def _add_column(self, rows: table.Table, column: Column) -> None:
+        lines = [column.heading if column.short is None else column.short]
+        lines += [column.unit] * bool(column.unit)
+        # room behind the digits of a column that may carry marks, so that digits stay aligned
+        heading = "\n".join(f"{line} " for line in "\n".join(lines).split("\n"))
+        heading = heading if column.marked else "\n".join(lines)
+        rows.add_column(
+            self._text(heading),
+            justify="right" if column.numeric else "left",
+            no_wrap=column.numeric or column.share == 0.0,
+            overflow="fold",
+            vertical="top",
+        )
+
+    def _cell(self, cell: Cell, column: Column) -> Text:
+        text = f"{cell.text}{cell.mark or ' '}" if column.marked else cell.text + cell.mark
+        style = _STYLES[cell.state] if cell.state else "bold" if cell.strong else ""
+        said = self._text(f"  {text}" if cell.indented else text, style)
+        if cell.detail:
+            said.append_text(self._text(f"\n{cell.detail}", _QUIET))
+        return said
+
+    def _pairs(self, block: Pairs) -> RenderableType:
+        rows = table.Table.grid(padding=(0, 2, 0, 0))
+        for name, value in block.pairs:
+            rows.add_row(self._text(name), self._text(value))
+        return rows
+
+    def _line(self, line: Line, state: State | None) -> Text:
+        if isinstance(line, str):
+            if state is None:
+                return self._text(line)
+            return self._text(f"! {line}" if state is State.WARN else line, _WARNED)
+        said = Text()
+        for span in line:
+            style = _STYLES[span.state] if span.state else _QUIET if span.quiet else ""
+            said.append_text(self._text(span.text, style))
+        return said
+
+    def _text(self, text: str, style: str = "") -> Text:
+        """A text as it is: never markup, and nothing in it that steers a terminal."""
+        return Text(self._sign(printable(text)), style=style)
+
+
+def _together(block: Block, following: Block) -> bool:
+    """Whether nothing stands between two blocks."""
+    if isinstance(following, Prose):
+        return isinstance(block, Prose | Heading)
+    return isinstance(block, Heading)
+
+
+def _grid(*, gap: int) -> table.Table:
     """A table without rules, `gap` blanks between its columns."""
-    return Table(box=None, show_header=header, padding=(0, 0, 0, gap), pad_edge=False)
-
-
-def warning(text: str) -> Text:
-    """A line that begins with ``!``, so that nothing hangs on its colour."""
-    return Text(f"! {text}", style=WARNED)
+    return table.Table(box=None, padding=(0, 0, 0, gap), pad_edge=False)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from math import ceil, isnan, log10
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Group, RenderableType
-from rich.text import Text
-
-from calm.report.terminal import WARNED, plain_table, warning
+from calm.checks.finding import State
+from calm.report.blocks import Block, Cell, Column, Heading, Part, Prose, Span, Table
 
 if TYPE_CHECKING:
     from calm.verification import Outcome, Source
@@ -45,9 +43,10 @@ def verification_document(findings: Findings) -> dict[str, Any]:
     }
 
 
-def verification_table(findings: Findings) -> RenderableType:
-    """A table for each source, what is out marked with ``!``, for a rich console."""
-    return Group(*(_of_source(source, outcomes) for source, outcomes in findings), _sum(findings))
+def verification_part(findings: Findings) -> Part:
+    """A table for each source, what is out marked with ``!``."""
+    of_sources = (block for source, outcomes in findings for block in _of_source(source, outcomes))
+    return Part("", (*of_sources, _sum(findings)))
 
 
 def figures(outcome: Outcome) -> tuple[str, ...]:
@@ -98,31 +97,29 @@ def _case(source: Source, outcome: Outcome) -> dict[str, Any]:
     }
 
 
-def _of_source(source: Source, outcomes: Sequence[Outcome]) -> RenderableType:
-    table = plain_table()
-    for name in COLUMNS:
-        if name in ("case", "unit"):
-            table.add_column(name, overflow="fold")
-        else:
-            table.add_column(name, justify="right", no_wrap=True)
+def _of_source(source: Source, outcomes: Sequence[Outcome]) -> Iterator[Block]:
+    columns = tuple(Column(name, numeric=name not in ("case", "unit")) for name in COLUMNS)
+    rows = []
     for outcome in outcomes:
         name, *others = figures(outcome)
+        out = None if outcome.within else State.FAIL
         label = name if outcome.within else f"! {name}"
-        table.add_row(*map(Text, (label, *others)), style="" if outcome.within else WARNED)
-    reasons = (
-        warning(f"{outcome.case.name}: {outcome.reason}") for outcome in outcomes if outcome.reason
-    )
-    return Group(Text(source.title, style="bold"), table, *reasons, Text())
+        rows.append(tuple(Cell(text, state=out) for text in (label, *others)))
+    yield Heading(source.title)
+    yield Table("", columns, tuple(rows))
+    reasons = [f"{outcome.case.name}: {outcome.reason}" for outcome in outcomes if outcome.reason]
+    if reasons:
+        yield Prose(tuple(reasons), State.WARN)
 
 
 def _count(things: Sequence[object], name: str) -> str:
     return f"{len(things)} {name}{'s' if len(things) != 1 else ''}"
 
 
-def _sum(findings: Findings) -> Text:
+def _sum(findings: Findings) -> Prose:
     outcomes = [outcome for _, each in findings for outcome in each]
     out = sum(not outcome.within for outcome in outcomes)
     checked = f"Checked {_count(outcomes, 'figure')} of {_count(findings, 'source')}"
     if out:
-        return Text(f"{checked}: {out} out of tolerance", style=WARNED)
-    return Text(f"{checked}: all within tolerance")
+        return Prose(((Span(f"{checked}: {out} out of tolerance", State.FAIL),),))
+    return Prose((f"{checked}: all within tolerance",))

@@ -17,7 +17,7 @@ from calm.physics.friction import Friction
 from calm.physics.line import REFERENCE_DENSITY, Floats, Integers, Water
 from calm.physics.reynolds import DragCurve
 from calm.physics.track import head_count
-from calm.solve.solution import Solution
+from calm.solve.solution import Solution, sizes
 
 LARGEST_CLOSURE = 1e-6
 LARGEST_MOMENT = 1e-8
@@ -38,14 +38,14 @@ def loads(solution: Solution) -> Floats:
     depth = -0.5 * (top + bottom)[:, 2]
     current, density = water.at(depth)
     chord = bottom - top
-    size = np.linalg.norm(chord, axis=1, keepdims=True)
+    size = sizes(chord)[:, None]
     axis = np.divide(chord, size, out=np.zeros_like(chord), where=size > 0)
     axis[rigid] = _rigid_axes(solution)[piece[rigid]]
     along = np.sum(current * axis, axis=1, keepdims=True) * axis
     normal = current - along
 
     def squared(v: Floats) -> Floats:
-        result: Floats = np.linalg.norm(v, axis=1, keepdims=True) * v
+        result: Floats = sizes(v)[:, None] * v
         return result
 
     # a rigid piece's load is spread over its elements by length; without length the last has it
@@ -97,9 +97,9 @@ def _rigid_axes(solution: Solution) -> Floats:
         nodes[:head] = nodes[0, 0], nodes[head - 1, 1]
     first, last = nodes.T
     axis = solution.position[last] - solution.position[first]
-    plumb = np.linalg.norm(axis, axis=1) == 0.0
+    plumb = sizes(axis) == 0.0
     axis[plumb] = -(solution.force[first] + solution.force[last])[plumb]
-    size = np.linalg.norm(axis, axis=1, keepdims=True)
+    size = sizes(axis)[:, None]
     unit: Floats = np.divide(axis, size, out=np.zeros_like(axis), where=size > 0)
     return unit
 
@@ -131,8 +131,8 @@ def _stretched(solution: Solution, length: Floats) -> Floats:
 def _expected_stretch(solution: Solution, above: Floats) -> Floats:
     """(k,) strain that the forces at the ends of every element (k+1, 3) ask for."""
     line, piece = solution.line, solution.element_piece
-    middle = np.linalg.norm(0.5 * (above[:-1] + above[1:]), axis=1)
-    half = 0.5 * np.diff(np.linalg.norm(above, axis=1))
+    middle = sizes(0.5 * (above[:-1] + above[1:]))
+    half = 0.5 * np.diff(sizes(above))
     expected: Floats = line.compliance[piece] * middle
     for index, curve in enumerate(line.elongation):
         if curve is not None:
@@ -148,7 +148,7 @@ def amplification(solution: Solution) -> Floats:
     if law is None or solution.frequency == 0.0:
         return factor
     current, _ = _flow(solution)
-    speed, across = np.linalg.norm(current, axis=1), flow_across(solution)
+    speed, across = sizes(current), flow_across(solution)
     for element in np.flatnonzero((diameter > 0.0) & (across > 0.0)):
         angle = asin(min(across[element] / speed[element], 1.0))
         beat = solution.frequency * diameter[element] / speed[element]
@@ -159,7 +159,7 @@ def amplification(solution: Solution) -> Floats:
 def flow_across(solution: Solution) -> Floats:
     """(k,) speed of the current across the axis of every element [m/s]; 0 without length."""
     chord = np.diff(solution.position, axis=0)
-    size = np.linalg.norm(chord, axis=1)
+    size = sizes(chord)
     across = np.linalg.norm(np.cross(_flow(solution)[0], chord), axis=1)
     speed: Floats = np.divide(across, size, out=np.zeros(len(size)), where=size > 0)
     return speed
@@ -248,7 +248,7 @@ def moment_residual(solution: Solution, load: Floats) -> float:
     angles = _angles(chord[single], mean[single])
     # the ends of a very short segment are rounded by more than the limit
     rounding = 32.0 * np.finfo(float).eps * np.abs(solution.position).max()
-    length = np.linalg.norm(chord, axis=1)
+    length = sizes(chord)
     angles = np.maximum(angles - rounding / np.maximum(length[single], rounding), 0.0)
     expected = _expected_stretch(solution, above)
     strained = np.abs(_stretched(solution, length) - 1.0 - expected)[cable]
@@ -275,7 +275,7 @@ def _rod_residual(solution: Solution, load: Floats, above: Floats, rod: list[int
 
 def _angles(axes: Floats, forces: Floats) -> Floats:
     """Angles between the axes and the reversed forces; 0 where either vanishes."""
-    sizes = np.linalg.norm(axes, axis=1) * np.linalg.norm(forces, axis=1)
-    cross = np.linalg.norm(np.cross(axes, forces), axis=1)
-    along = -np.sum(axes * forces, axis=1)
-    return np.where(sizes > 0.0, np.arctan2(cross, along), 0.0)
+    (x, y, z), (u, v, w) = axes.T, forces.T
+    cross = np.sqrt((y * w - z * v) ** 2 + (z * u - x * w) ** 2 + (x * v - y * u) ** 2)
+    along = -(x * u + y * v + z * w)
+    return np.where(sizes(axes) * sizes(forces) > 0.0, np.arctan2(cross, along), 0.0)

@@ -9,7 +9,7 @@ from math import degrees, radians
 
 import numpy as np
 
-from calm.physics.line import Line, Water
+from calm.physics.line import Floats, Line, Water
 from calm.physics.march import Cuts, End, march
 from calm.physics.profile import Profile
 from calm.physics.seabed import lie_down
@@ -17,6 +17,7 @@ from calm.physics.state import Trace
 from calm.physics.track import Cable, Track
 from calm.solve.root import bracketed_root, root_near
 from calm.solve.solution import Settings
+from calm.solve.standing import standing_lift
 from calm.solve.status import Status
 from calm.solve.unknown import Afloat, Unknown
 
@@ -113,6 +114,11 @@ class Closing:
         """The same root for the line hanging clear of the seabed, to be sought again from there."""
         goal = self.line.anchor_height - self.water.depth
         return replace(root, unknown=replace(root.unknown, goal=goal, lands=False))
+
+    @cached_property
+    def lift(self) -> Floats:
+        """`standing_lift` of the line."""
+        return standing_lift(self.line, self.water)
 
     @property
     def at_rest(self) -> bool:

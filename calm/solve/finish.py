@@ -65,6 +65,7 @@ def finished(
     used, reserve = _buoyancy_in_use(closing, fine)
     afloat = tuple(unknown.shares(fine.root.x))
     unclosed = abs(fine.miss) / closing.span + UNSEEN
+    unseen = _greatest_force(closing, fine, force) * unclosed
     solution = Solution(
         line=closing.line,
         water=closing.water,
@@ -87,7 +88,9 @@ def finished(
         segments=len(fine.end.cuts.lengths),
         miss=fine.miss,
         depth_error=refined.depth_error + closing.span * unclosed,
-        tension_error=refined.tension_error + _greatest_force(closing, fine, force) * unclosed,
+        tension_error=refined.tension_error + unseen,
+        lift_error=refined.lift_error + unseen,
+        pull_error=refined.pull_error + unseen,
         other_depth=other_depth,
         frequency=closing.frequency,
     )

@@ -34,8 +34,9 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
         clamped on the piece sits too low, or too little holds the line up; ``slack`` where the
         line would fold.
     """
-    refuse_unsupported(line, water.still())
-    still, goal = Profile(water.still()), line.anchor_height - water.depth
+    still_water = water.still()
+    refuse_unsupported(line, still_water, standing_lift(line, still_water))
+    still, goal = Profile(still_water), line.anchor_height - water.depth
     room = water.depth - line.anchor_height - top_depth
 
     def miss(length: float) -> float:
@@ -70,7 +71,7 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
             raise too_heavy(lift)
         clamped = f" and its own {shortest:.2f} m down to the lowest clamp" if shortest else ""
         raise Status.NO_EQUILIBRIUM.because(
-            f"No length of piece {piece + 1} puts the top of the line at {top_depth:g} m: the "
+            f"No length of {{piece}} puts the top of the line at {top_depth:g} m: the "
             f"other pieces, {others:.2f} m uncut{clamped}, have {room:.2f} m of water to stand in.",
             piece,
         )
@@ -117,7 +118,7 @@ def fit_tow_length(
         short = lacking(shortest)
         out, lack = (shortest, short) if short < 0.0 else (longest, lacking(longest))
         raise Status.NO_EQUILIBRIUM.because(
-            f"No length of piece {piece + 1} brings its lower end to {depth:g} m at this speed: "
+            f"No length of {{piece}} brings its lower end to {depth:g} m at this speed: "
             f"with {out:g} m out it runs at {depth - lack:.2f} m.",
             piece,
             "Choose another depth or speed, or change what the cable or its body weighs.",

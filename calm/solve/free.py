@@ -137,6 +137,8 @@ def _recorded(moving: Moving, place: Place, cuts: Cuts, settings: Settings) -> F
         miss=meeting.gap,
         depth_error=nan,
         tension_error=nan,
+        lift_error=nan,
+        pull_error=nan,
     )
     left = audit.loads(solution).sum(axis=0) + moving.anchor_force(flow)
     closure = float(np.linalg.norm(left)) / moving.weight

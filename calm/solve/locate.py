@@ -12,13 +12,16 @@ import numpy as np
 from calm.physics.hull import AWASH
 from calm.physics.profile import Profile
 from calm.solve.closing import Closing, Root
-from calm.solve.standing import standing_length, standing_lift
+from calm.solve.standing import standing_length
 from calm.solve.status import Status
 from calm.solve.unknown import Afloat, Unknown
 
 SCAN = 16
 """Depths tried between the upright line and its deepest conceivable knockdown where the current
 grows or turns with depth: the resolution at which separate equilibria are told apart."""
+NEAR = (0.02, 0.2)
+"""Shares of the first of these steps at which the miss is looked at, too: a line whose top is in a
+weak current may fall short there, and reach the anchor again where more current pulls it up."""
 DIP = 8
 """Depths tried to see whether the miss changes sign between three of those."""
 GOLDEN = 0.381966
@@ -64,7 +67,7 @@ def locate(closing: Closing, lands: bool) -> tuple[Root, Root | None]:
 
 def upright_depth(closing: Closing, unknown: Unknown) -> float:
     """Depth of the free end of the line standing in still water, with its stretch [m]."""
-    return max(-standing_length(closing.line, closing.water) - unknown.goal, 0.0)
+    return max(-standing_length(closing.line, closing.lift) - unknown.goal, 0.0)
 
 
 def _below_surface(
@@ -83,8 +86,9 @@ def _below_surface(
         fall = _largest_fall(closing, unknown, top)
         if fall * growth > 0.25:
             last = min(depth + 1.02 * fall, deepest)
-            steps = np.linspace(depth, last, SCAN + 1)[1:].tolist()
-            samples += [(lower, miss(lower)) for lower in steps]
+            steps = np.linspace(0.0, last - depth, SCAN + 1)[1:]
+            near = [share * steps[0] for share in NEAR]
+            samples += [(depth + step, miss(depth + step)) for step in (*near, *steps.tolist())]
             if last < deepest:
                 samples.append((deepest, miss(deepest)))
             return _falls(miss, samples)
@@ -140,8 +144,8 @@ def _growth(closing: Closing, depth: float) -> float:
 
     A current that only weakens does not grow; one that turns does, by what is new in it.
     """
-    levels = closing.water.level
-    current, _ = closing.water.at(levels)
+    water, levels = closing.water, closing.water.level
+    current = np.column_stack([water.u, water.v, water.w])
     upper, lower = current[:-1], current[1:]
     square = np.maximum(np.sum(upper**2, axis=1), 1e-300)
     left = np.clip(np.sum(upper * lower, axis=1) / square, 0.0, 1.0)
@@ -154,7 +158,7 @@ def _growth(closing: Closing, depth: float) -> float:
 def _largest_fall(closing: Closing, unknown: Unknown, depth: float) -> float:
     """Knockdown if the greatest current ran at every level [m]."""
     water = closing.water
-    current, _ = water.at(water.level)
+    current = np.column_stack([water.u, water.v, water.w])
     greatest = current[int(np.argmax(np.linalg.norm(current, axis=1)))]
     u, v, w = (np.full(len(water.level), component) for component in greatest)
     even = Profile(replace(water, u=u, v=v, w=w))
@@ -246,6 +250,6 @@ def _slack_at_rest(closing: Closing, unknown: Unknown) -> bool:
     """In still water: whether the line stands too deep however little buoyancy is used."""
     piece = unknown.afloat
     assert piece is not None
-    spare = float(np.cumsum(standing_lift(closing.line, closing.water))[piece:].min())
+    spare = float(np.cumsum(closing.lift)[piece:].min())
     least = 1.0 - spare / float(closing.line.buoyancy[piece])
     return closing.coarse_miss(unknown)(min(max(least, 0.0) * (1.0 + 1e-9) + 1e-9, 1.0)) < 0.0

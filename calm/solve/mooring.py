@@ -16,7 +16,7 @@ from calm.solve.finish import finished
 from calm.solve.locate import locate
 from calm.solve.refine import Polish, refine
 from calm.solve.solution import Settings, Solution
-from calm.solve.standing import refuse_unsupported, standing_lift, too_heavy
+from calm.solve.standing import refuse_unsupported, too_heavy
 from calm.solve.status import Status
 
 BARELY_LANDED = 4.0
@@ -43,7 +43,7 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
         With one of the statuses of `Status`: nothing is returned that does not pass every check.
     """
     closing = Closing(line, water, settings or Settings())
-    refuse_unsupported(line, water)
+    refuse_unsupported(line, water, closing.lift)
     try:
         return _solve(closing)
     except MarchError as error:
@@ -73,9 +73,8 @@ Way = Callable[[Closing, Root], Solution]
 def _highest(closing: Closing, way: Way) -> Solution:
     """The highest solution of a kind, with the depth of the deepest where that is another."""
     lands = way is _on_the_seabed
-    lift = standing_lift(closing.line, closing.water)
-    if not lands and float(lift.sum()) <= 0.0:
-        raise too_heavy(lift)
+    if not lands and float(closing.lift.sum()) <= 0.0:
+        raise too_heavy(closing.lift)
     root, deeper = locate(closing, lands)
     solution = way(closing, root)
     if deeper is None:
@@ -124,7 +123,7 @@ def _refuse_deep_below(closed: Closed, depth: float) -> None:
 
 def _grounded(piece: int, below: float) -> NoEquilibrium:
     return Status.GROUNDED.because(
-        f"The line would touch the seabed: piece {piece + 1} comes {below:.2f} m below it.", piece
+        f"The line would touch the seabed: {{piece}} comes {below:.2f} m below it.", piece
     )
 
 
@@ -146,7 +145,7 @@ def _refuse_out_of_the_water(solution: Solution) -> None:
     if height[highest] > margin + standing:
         piece = solution.piece_at(highest)
         raise Status.ABOVE_SURFACE.because(
-            f"The line would rise out of the water: piece {piece + 1} comes "
+            f"The line would rise out of the water: {{piece}} comes "
             f"{height[highest]:.2f} m above the surface.",
             piece,
         )

@@ -20,7 +20,7 @@ import numpy as np
 from calm.physics.line import Floats, Line
 from calm.physics.march import Cuts
 from calm.solve.closing import Closed, Closing, Root
-from calm.solve.solution import nodes_of
+from calm.solve.solution import nodes_of, sizes
 
 DEPTH_TARGET = 4e-5
 TENSION_TARGET = 1.6e-4
@@ -34,11 +34,14 @@ AT_A_LEVEL = 0.05
 
 @dataclass(frozen=True)
 class Refined:
-    """A closed line with the error of its depths and offsets [m] and of its tensions [N]."""
+    """A closed line and its errors: of depths and offsets [m], of tensions [N], and of the upward
+    and the horizontal force at its end [N]."""
 
     closed: Closed
     depth_error: float
     tension_error: float
+    lift_error: float
+    pull_error: float
 
 
 Polish = Callable[[Root, Cuts], Closed]
@@ -74,13 +77,14 @@ def refine(closing: Closing, root: Root, polish: Polish | None = None) -> Refine
             break
         root, step = fine.root, step * max(0.8 / sqrt(excess), 0.2)
     strayed, lost = _abrupt(closing.line, fine, closing.water.level)
-    return Refined(fine, depth_error + strayed, tension_error + lost)
+    lift, pull = _errors_at_the_end(coarse, fine)
+    return Refined(fine, depth_error + strayed, tension_error + lost, lift + lost, pull + lost)
 
 
 def _errors(line: Line, coarse: Closed, fine: Closed) -> tuple[float, float, float]:
     """Error of the finer shape: of depths and offsets [m], of tensions [N] and relative.
 
-    From the nodes both have: those above the touchdown, where there is one.
+    From the nodes both have: all but those around the touchdown, where there is one.
     """
     pieces, clamps = coarse.trace.piece[: coarse.hanging], coarse.trace.clamp[: coarse.hanging]
     halves = np.where(line.flexible[pieces] & (clamps < 0), 2, 1)
@@ -89,15 +93,31 @@ def _errors(line: Line, coarse: Closed, fine: Closed) -> tuple[float, float, flo
         same = same[:-1]
     same = same[same <= fine.hanging]
     position, force = nodes_of(fine.trace)
-    before, pulled = (array[: len(same)] for array in nodes_of(coarse.trace))
-    tension = np.linalg.norm(force[same], axis=1)
-    change = np.abs(np.linalg.norm(pulled, axis=1) - tension) / 3.0
+    before, pulled = nodes_of(coarse.trace)
+    place = float(np.abs(before[: len(same)] - position[same]).max()) / 3.0
+    there = np.arange(len(same))
+    lying = len(before) - 1 - coarse.hanging
+    if coarse.end.landed and lying == len(position) - 1 - fine.hanging:
+        there = np.concatenate([there, np.arange(coarse.hanging + 1, len(before))])
+        same = np.concatenate([same, np.arange(fine.hanging + 1, len(position))])
+    tension = sizes(force[same])
+    change = np.abs(sizes(pulled[there]) - tension) / 3.0
     floor = 1e-3 * float(tension.max())
     return (
-        float(np.abs(before - position[same]).max()) / 3.0,
+        place,
         float(change.max()),
         float((change / np.maximum(tension, max(floor, 1e-300))).max()),
     )
+
+
+def _errors_at_the_end(coarse: Closed, fine: Closed) -> tuple[float, float]:
+    """Error of the upward and of the horizontal force at the end of the finer shape [N].
+
+    A third of the change is their error where the shape is smooth; a little more is stated, as
+    these are two figures and no worst of many.
+    """
+    change = (coarse.trace.force[-1] - fine.trace.force[-1]) / 2.5
+    return abs(float(change[2])), float(np.hypot(change[0], change[1]))
 
 
 def _abrupt(line: Line, fine: Closed, levels: Floats) -> tuple[float, float]:
@@ -124,7 +144,7 @@ def _abrupt(line: Line, fine: Closed, levels: Floats) -> tuple[float, float]:
     def excess(nodes: Floats) -> Floats:
         slope = np.diff(np.diff(nodes, axis=0) / length[:, None], axis=0) / apart[:, None]
         bend = np.diff(slope, axis=0) * length[1:-1, None] ** 2 / 8.0
-        size = np.linalg.norm(bend, axis=1)
+        size = sizes(bend)
         around = np.pad(np.where(between, size, -1.0), 2, constant_values=-1.0)
         usual = np.maximum(around[:-4], around[4:])
         abrupt = between & (usual >= 0.0) & (size > usual)
@@ -134,7 +154,7 @@ def _abrupt(line: Line, fine: Closed, levels: Floats) -> tuple[float, float]:
 
     # what a force adds to the tension there, and where the line hangs from in the end
     lost = excess(force)
-    tension = np.linalg.norm(force[1:], axis=1, keepdims=True)
+    tension = sizes(force[1:])[:, None]
     axis = np.divide(force[1:], tension, out=np.zeros_like(force[1:]), where=tension > 0.0)
     along = np.maximum(np.abs((lost * axis[1:-1]).sum(axis=1)), np.abs(lost @ axis[-1]))
-    return float(np.linalg.norm(excess(position), axis=1).max()), float(along.max())
+    return float(sizes(excess(position)).max()), float(along.max())

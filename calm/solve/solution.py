@@ -68,6 +68,7 @@ class Solution:
     moment_residual : worst departure of an element's axis from its moment balance [rad]
     depth_error, tension_error : own estimate of the worst error of any depth or offset [m] and
         of any tension [N]
+    lift_error, pull_error : of the upward and of the horizontal force at the line's end [N]
     other_depth : depth of the free end in another equilibrium that the scan came upon [m]
     frequency : of the cables that strum [Hz]; 0 where none does
     """
@@ -93,6 +94,8 @@ class Solution:
     miss: float
     depth_error: float
     tension_error: float
+    lift_error: float
+    pull_error: float
     other_depth: float | None = None
     frequency: float = 0.0
     riding: Riding | None = None
@@ -127,6 +130,12 @@ class Solution:
     def piece_at(self, node: int) -> int:
         """The piece that ends at a node, or passes it."""
         return int(self.element_piece[max(node - 1, 0)])
+
+
+def sizes(vectors: Floats) -> Floats:
+    """(n,) lengths of vectors (n, 3)."""
+    lengths: Floats = np.sqrt(np.einsum("ij,ij->i", vectors, vectors))
+    return lengths
 
 
 def nodes_of(trace: Trace) -> tuple[Floats, Floats]:

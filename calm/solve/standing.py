@@ -21,10 +21,10 @@ def standing_lift(line: Line, water: Water) -> Floats:
     return line.net_force((density - REFERENCE_DENSITY) * water.gravity)
 
 
-def standing_length(line: Line, water: Water) -> float:
+def standing_length(line: Line, lift: Floats) -> float:
     """Length of the line standing upright in still water, each piece stretched by its mean
-    tension [m]; where a clamp hangs on a piece makes no difference here."""
-    lift = standing_lift(line, water)
+    tension [m]; where a clamp hangs on a piece makes no difference here. `lift` is the
+    `standing_lift`."""
     tension = np.maximum(np.cumsum(lift) - 0.5 * lift, 0.0)
     strain: Floats = line.compliance * tension
     for piece, curve in enumerate(line.elongation):
@@ -33,17 +33,16 @@ def standing_length(line: Line, water: Water) -> float:
     return float(((1.0 + strain) * line.length).sum())
 
 
-def refuse_unsupported(line: Line, water: Water) -> None:
+def refuse_unsupported(line: Line, water: Water, lift: Floats) -> None:
     """Refuse a line that nothing holds up or, in still water, one that folds.
 
-    Once held up it must stay so, down to its lowest float.
+    Once held up it must stay so, down to its lowest float. `lift` is the `standing_lift`.
 
     Raises
     ------
     NoEquilibrium
         ``slack``, or ``no-equilibrium`` where too little holds the line up.
     """
-    lift = standing_lift(line, water)
     above = np.cumsum(lift)
     if not (above > 0.0).any():
         raise too_heavy(lift)
@@ -56,7 +55,7 @@ def refuse_unsupported(line: Line, water: Water) -> None:
     if len(short):
         piece = first + int(short[0])
         raise Status.SLACK.because(
-            f"In still water the line is slack below piece {piece + 1}: {-above[piece]:.0f} N are "
+            f"In still water the line is slack below {{piece}}: {-above[piece]:.0f} N are "
             "lacking to hold up what is above.",
             piece,
         )

@@ -25,7 +25,7 @@ class Status(Enum):
     )
     GROUNDED = (
         "grounded",
-        "Shorten, lighten or buoy up the lower part: nothing buoyant may lie on the seabed.",
+        "Shorten, lighten or buoy up the lower part, or add buoyancy at the top.",
     )
     ANCHOR_LIFTS = (
         "anchor-lifts",

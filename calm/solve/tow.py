@@ -247,7 +247,7 @@ def _refuse_misplaced(solution: Solution, towing: Towing) -> None:
     if height[lowest] < -depth - margin:
         piece = solution.piece_at(lowest)
         raise Status.GROUNDED.because(
-            f"The towed line would touch the seabed: piece {piece + 1} comes "
+            f"The towed line would touch the seabed: {{piece}} comes "
             f"{-depth - height[lowest]:.2f} m below it.",
             piece,
             "Pay out less line, tow faster, or take weight off.",
@@ -260,7 +260,7 @@ def _refuse_misplaced(solution: Solution, towing: Towing) -> None:
     if not len(wetted) or height[out] > margin:
         piece = solution.piece_at(out)
         raise Status.ABOVE_SURFACE.because(
-            f"The towed line would rise out of the water: piece {piece + 1} comes "
+            f"The towed line would rise out of the water: {{piece}} comes "
             f"{height[out]:.2f} m above the surface.",
             piece,
             STAY_BELOW,

@@ -169,9 +169,9 @@ ACTIONS: tuple[Action, ...] = (
         "Speed and course of a tow; makes the line one, which hangs from a ship.",
     ),
     Action("anywhere", "text", "t", "text", "The file as text, with its mistakes."),
-    Action("anywhere", "save", "ctrl+s,s", "save", "Save the file.", 9),
-    Action("anywhere", "save_as", "S", "save as", "Save it under another name."),
-    Action("anywhere", "help", "question_mark,f1", "help", "All keys.", 2),
+    Action("anywhere", "app.save", "ctrl+s,s", "save", "Save the file.", 9),
+    Action("anywhere", "app.save_as", "S", "save as", "Save it under another name."),
+    Action("anywhere", "app.help", "question_mark,f1", "help", "All keys.", 2),
     Action(
         "anywhere",
         "app.command_palette",
@@ -180,11 +180,30 @@ ACTIONS: tuple[Action, ...] = (
         "Find any of these by its name.",
         palette=False,
     ),
-    Action("anywhere", "leave", "q,ctrl+q", "quit", "Leave; unsaved work is asked about.", 11),
+    Action(
+        "anywhere", "app.repaint", "ctrl+l", "repaint", "Send the terminal all of the screen again."
+    ),
+    Action("anywhere", "app.quit", "q,ctrl+q", "quit", "Leave; unsaved work is asked about.", 11),
     # a value in place
     Action("cell", "done", "enter", "done", "Take the value.", 0, palette=False),
     Action(
-        "cell", "next_cell", "tab", "next", "Take it and edit the next value.", 1, palette=False
+        "cell",
+        "done('edit next')",
+        "tab",
+        "next",
+        "Take it and edit the next value.",
+        1,
+        palette=False,
+    ),
+    Action("cell", "done('up')", "up", "take, up", "Take it and go up.", palette=False),
+    Action("cell", "done('down')", "down", "take, down", "Take it and go down.", palette=False),
+    Action(
+        "cell",
+        "right",
+        "right",
+        "take, right",
+        "At the end of what is typed: take it and go to the right.",
+        palette=False,
     ),
     Action("cell", "abandon", "escape", "leave it", "Leave the value as it was.", 2, palette=False),
     # the catalogue
@@ -202,11 +221,29 @@ ACTIONS: tuple[Action, ...] = (
     Action("water", "load_current", "ctrl+o", "read a file", "A current from CSV or NetCDF.", 1),
     Action("water", "undo", "ctrl+z", "undo", "Undo the last change."),
     Action("water", "redo", "ctrl+y", "redo", "Do it again."),
-    Action("water", "save", "ctrl+s", "save", "Save the file."),
-    Action("water", "help", "f1", "help", "All keys.", 5),
+    Action("water", "app.save", "ctrl+s", "save", "Save the file."),
+    Action("water", "app.help", "f1", "help", "All keys.", 5),
     Action("water", "back", "escape", "back", "Back to the line.", 0),
-    Action("grid", "move_row(-1)", "up", "up", "To the row above.", palette=False),
-    Action("grid", "move_row(1)", "down", "down", "To the row below.", palette=False),
+    Action(
+        "grid",
+        "move_row(-1)",
+        "up",
+        "up",
+        "To the row above; from the first one to what is before.",
+        palette=False,
+    ),
+    Action(
+        "grid",
+        "move_row(1)",
+        "down",
+        "down",
+        "To the row below; from the last one on to what follows.",
+        palette=False,
+    ),
+    Action(
+        "grid", "move_cell(1)", "tab", "next cell", "To the next value of the table.", palette=False
+    ),
+    Action("grid", "move_cell(-1)", "shift+tab", "last cell", "To the one before.", palette=False),
     Action("grid", "move_column(-1)", "left", "left", "To the left.", palette=False),
     Action("grid", "move_column(1)", "right", "right", "To the right.", palette=False),
     Action(
@@ -224,15 +261,15 @@ ACTIONS: tuple[Action, ...] = (
         "grid", "drop_row", "delete,backspace", "delete row", "Take the row out.", 2, palette=False
     ),
     # the text
-    Action("text", "save", "ctrl+s", "save", "Save the file as it stands.", 1),
+    Action("text", "app.save", "ctrl+s", "save", "Save the file as it stands.", 1),
     Action("text", "next_problem", "f8", "next mistake", "To the next mistake.", 2),
     Action("text", "back", "escape", "to the line", "To the line, once the text can be read.", 0),
-    Action("text", "help", "f1", "help", "All keys.", 3),
+    Action("text", "app.help", "f1", "help", "All keys.", 3),
     Action("area", "indent", "tab", "indent", "Blanks to the next even column.", palette=False),
     # a component of one's own
     Action("form", "accept", "ctrl+s", "keep it", "Write the component into the file.", 0),
     Action("form", "cancel", "escape", "leave", "Leave without it.", 1),
-    Action("form", "help", "f1", "help", "All keys.", 2),
+    Action("form", "app.help", "f1", "help", "All keys.", 2),
     Action("form", "app.focus_next", "down", "next", "To the next figure.", palette=False),
     Action("form", "app.focus_previous", "up", "last", "To the one before.", palette=False),
     # what is put over a screen, or beside a name

@@ -5,35 +5,38 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterable, Mapping, Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
+from rich.console import RenderableType
 from textual import on, work
-from textual.app import App, SystemCommand
+from textual._compositor import CompositorUpdate
+from textual.app import SystemCommand
 from textual.filter import LineFilter, NoColor
 from textual.screen import Screen
+from textual.timer import Timer
 
 from calm.errors import CalmError
 from calm.files.editing import Kept, WorkingFile
 from calm.tui import recovery
+from calm.tui.judging import Judging
 from calm.tui.line.builder import BuilderScreen
 from calm.tui.messages import CatalogueRead, Edited, Judged, JudgingFailed
+from calm.tui.painted import Painted
 from calm.tui.palette import Actions
 from calm.tui.plain import PlainSigns, shows_all_signs
 from calm.tui.saving import Saving
+from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
 from calm.tui.theme import PICTURE_DARK, PICTURE_LIGHT, choose_theme, themes
+from calm.tui.turns import InTurn
+from calm.tui.workspace import Workspace
 
-if TYPE_CHECKING:
-    from calm.tui.live import View
-
-_FULLY_AFTER = 0.5  # seconds without a change before launch, recovery and breaks are judged
 _AUTOSAVED_AFTER = 0.3  # seconds
 _LOOKED_AT_DISK = 2.0  # seconds between two looks
 _COLOURLESS = NoColor()
 
 
-class BuildApp(Saving):
+class BuildApp(InTurn):
     """The line builder.
 
     Parameters
@@ -48,7 +51,7 @@ class BuildApp(Saving):
     """
 
     TITLE = "calm build"
-    COMMANDS: ClassVar[set[Any]] = {*App.COMMANDS, Actions}
+    COMMANDS: ClassVar[set[Any]] = {*InTurn.COMMANDS, Actions}
     CSS = """
     * { scrollbar-size: 1 1; }
     Input:nocolor > .input--cursor, Input:nocolor > .input--selection,
@@ -66,36 +69,38 @@ class BuildApp(Saving):
     ) -> None:
         super().__init__()
         self.session = session
-        self.builder = BuilderScreen(session)
+        self.workspace = Workspace(session, self.tell, lambda: self.post_message(Edited()))
+        self.judging = Judging(self, self.workspace, self._show_views)
+        self.saving = Saving(self, self.workspace)
+        self.builder = BuilderScreen(self.workspace)
         self.not_kept = ""
+        self._painted = Painted()
         self._offered = kept
-        self._environ = environ
         self._plain = [] if shows_all_signs(environ, sys.__stderr__) else [PlainSigns()]
-        self._view: View | None = None
-        self._read = False
-        self._judging = False
-        self._stale = False
-        self._wanted = False
-        self._checked: View | None = None
-        self._fully: Any = None
-        self._autosaving: Any = None
+        self._is_catalogue_read = False
+        self._autosaving: Timer | None = None
         self._is_left = False
         self._lost: str | None = None
 
-    def on_mount(self) -> None:
-        """Show the line; the first solution and the catalogue follow."""
         for theme in themes():
             self.register_theme(theme)
         self.ansi_theme_dark, self.ansi_theme_light = PICTURE_DARK, PICTURE_LIGHT
-        self.theme = choose_theme(self._environ)
-        self.push_screen(self.builder)
+        self.theme = choose_theme(environ)
+
+    def get_default_screen(self) -> Screen[Any]:
+        """The line, with none below it: what is below is painted too."""
+        return self.builder
+
+    def on_mount(self) -> None:
+        """The first solution and the catalogue follow what is shown."""
+        self.app_resume_signal.subscribe(self, lambda _: self.action_repaint())
         self.call_after_refresh(self._begin)
-        self.set_interval(_LOOKED_AT_DISK, self.look_at_disk)
+        self.set_interval(_LOOKED_AT_DISK, self.saving.look_at_disk)
 
     def _begin(self) -> None:
         """Once the line is on the screen: read the catalogue, solve, tell what was found."""
         self._read_catalogue()
-        self._ask()
+        self.judging.ask()
         if self._offered is not None:
             self._offer(self._offered)
         else:
@@ -112,32 +117,86 @@ class BuildApp(Saving):
         filters = [_COLOURLESS] if self.no_color else super().get_line_filters()
         return [*filters, *self._plain]
 
+    def _display(self, screen: Screen[Any], renderable: RenderableType | None) -> None:
+        """Send the terminal what it does not show yet."""
+        if isinstance(renderable, CompositorUpdate):
+            renderable = self._painted.update(renderable)
+        super()._display(screen, renderable)
+
+    def action_repaint(self) -> None:
+        """Send the terminal all of the screen."""
+        self._painted.forget()
+        self.screen.refresh()
+
+    # the screens
+
+    def tell(self, text: str, *, wrong: bool = False) -> None:
+        """Say something in the last line of the screen."""
+        screen = self.screen if isinstance(self.screen, DraftScreen) else self.builder
+        screen.tell(text, wrong=wrong)
+
+    def draft_screens(self) -> list[DraftScreen]:
+        """Those that are open, the one on top last."""
+        return [each for each in self.screen_stack if isinstance(each, DraftScreen)]
+
+    def is_settled(self) -> bool:
+        """Whether nothing is being typed any more; a bad value has been told."""
+        return not isinstance(self.screen, DraftScreen) or self.screen.part.settle()
+
+    def taken_over(self, told: str) -> None:
+        """Another text has taken the place of the draft: every screen reads it again."""
+        for screen in self.draft_screens():
+            screen.replaced()
+        self.tell(told)
+        self.post_message(Edited())
+
+    def action_save(self) -> None:
+        """Save, and ask for a name where there is none."""
+        self.saving.save()
+
+    def action_save_as(self) -> None:
+        """Save under another name."""
+        self.saving.save_as()
+
+    async def action_quit(self) -> None:
+        """Leave; unsaved work is asked about."""
+        self.saving.quit()
+
+    def action_help(self) -> None:
+        """All keys."""
+        from calm.tui.help_screen import HelpScreen
+
+        self.push_screen(HelpScreen())
+
     # judging
 
     @property
     def is_idle(self) -> bool:
         """Whether the line that is shown has been solved, and nothing else is under way."""
-        busy = self._judging or self._stale or self._checked is not None
-        return not busy and self._view is not None and self._read
+        return self.judging.is_idle and self._is_catalogue_read
 
     @on(Edited)
     def _after_an_edit(self) -> None:
-        self._stale = True
+        self._show_views()
         self._tell_lost_environment()
-        self.call_after_refresh(self._ask)  # what was typed is seen first
+        self.judging.after_an_edit()
         if self._autosaving is None:
             self._autosaving = self.set_timer(_AUTOSAVED_AFTER, self._autosave)
         self._mend()
 
+    def _show_views(self) -> None:
+        for screen in self.draft_screens():
+            screen.show_view()
+
     def _tell_lost_environment(self) -> None:
-        before, self._lost = self._lost, self.session.lost_environment
+        before, self._lost = self._lost, self.session.standing.lost_environment
         if self._lost not in (None, before):
             told = f"There is no environment {self._lost} now; the line stands in the file's own"
             self.tell(told)
 
     def _mend(self, *, as_judged: bool = False) -> None:
         """Open the text where the draft cannot be read; or, `as_judged`, has mistakes."""
-        judged = self._view if as_judged and self.screen is self.builder else None
+        judged = self.workspace.view if as_judged and self.screen is self.builder else None
         if (judged and judged.problems) or self.session.draft.problems:
             self.call_later(self._open_text)
 
@@ -151,81 +210,20 @@ class BuildApp(Saving):
             await self.pop_screen()
         self.builder.action_text()
 
-    def _ask(self) -> None:
-        """Have the file judged, now or when the worker comes back; only its last state counts."""
-        self._stale = False
-        if self._fully is not None:
-            self._fully.stop()
-            self._fully = None
-        if self._judging:
-            self._wanted = True
-        else:
-            self._judging, self._wanted = True, False
-            session = self.session
-            path, environment = session.file.path, session.environment
-            self._judge(session.draft.text, path, environment, session.catalogs)
-
-    @work(thread=True, group="judging", exit_on_error=False)
-    def _judge(
-        self, text: str, path: Path | None, environment: str | None, catalogs: Sequence[Path]
-    ) -> None:
-        from calm.tui.live import judge
-
-        try:
-            view = judge(text, path, environment, catalogs, keep=self._view)
-        except Exception as error:
-            self.post_message(JudgingFailed(f"{type(error).__name__}: {error}"))
-        else:
-            self.post_message(Judged(view, fully=False))
-
-    @work(thread=True, group="judging", exit_on_error=False)
-    def _judge_fully(self, view: View) -> None:
-        from calm.tui.live import judge_fully
-
-        try:
-            full = judge_fully(view)
-        except Exception as error:
-            self.post_message(JudgingFailed(f"{type(error).__name__}: {error}"))
-        else:
-            self.post_message(Judged(full, fully=True))
-
     @on(Judged)
     def _take_view(self, event: Judged) -> None:
         if not self.is_running:
             return  # on the way out: the screens are being taken apart
-        is_first = self._view is None
-        if event.fully:
-            is_late, self._checked = self._checked is not self._view, None
-        else:
-            is_late, self._judging = False, False
-        if not is_late:
-            self._view = event.view
-            for screen in self.draft_screens():
-                screen.show_view(event.view)
+        is_first = self.workspace.view is None
+        if self.judging.take(event):
+            self._show_views()
             self._mend(as_judged=is_first)
-        if self._wanted:
-            self._ask()
-        elif (is_late or not event.fully) and not (self._judging or self._fully):
-            self._fully = self.set_timer(_FULLY_AFTER, self.ask_fully)
 
     @on(JudgingFailed)
     def _tell_failure(self, event: JudgingFailed) -> None:
-        if not self.is_running:
-            return
-        self._judging, self._checked = False, None
-        self.tell(f"internal error ({event.reason}); please report it", wrong=True)
-        if self._wanted:
-            self._ask()
-
-    def ask_fully(self) -> None:
-        """Have the launch, the recovery and the breaks judged, too."""
-        if self._fully is not None:
-            self._fully.stop()
-            self._fully = None
-        view = self._view
-        if not self._judging and self._checked is None and view is not None and not view.complete:
-            self._checked = view
-            self._judge_fully(view)
+        if self.is_running:
+            self.tell(f"internal error ({event.reason}); please report it", wrong=True)
+            self.judging.failed()
 
     # the catalogue
 
@@ -242,11 +240,12 @@ class BuildApp(Saving):
     def _take_catalogue(self, event: CatalogueRead) -> None:
         if not self.is_running:
             return
-        self._read = True
+        self._is_catalogue_read = True
         if event.catalogue is None:
             self.tell(event.reason, wrong=True)
         else:
-            self.builder.take_catalogue(event.catalogue)
+            self.workspace.take_catalogue(event.catalogue)
+            self.builder.body.show_catalogue()
 
     # what is kept, and the way out
 

@@ -100,7 +100,7 @@ class KeyBar(Static):
 
 
 def _pressed(action: Action, key: str) -> Content:
-    """A key and what it does, which the mouse does too."""
-    target = action.name if action.name.startswith("app.") else f"screen.{action.name}"
-    press = Style.from_meta({"@click": target})
+    """A key and what it does, which the mouse presses too."""
+    pressed = action.keys.split(",")[0]
+    press = Style.from_meta({"@click": f"app.simulate_key({pressed!r})"})
     return Content.assemble((key, press + Style(bold=True)), (f" {action.title}", press))

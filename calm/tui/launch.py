@@ -55,8 +55,8 @@ def open_session(
 def _refuse_other_files(session: Session) -> None:
     """Refuse mistakes in files other than that which is built: they cannot be mended here."""
     Catalogue.load(session.catalogs)
-    here, names = session.environment, session.environments
-    if (lost := session.lost_environment) is not None:
+    here, names = session.standing.environment, session.standing.environments
+    if (lost := session.standing.lost_environment) is not None:
         what = f"--environment {lost}: neither a file nor an environment of {session.name}"
         raise UsageError(unknown(what, lost, filter(None, names)))
     given = {str(each) for each in session.catalogs}

@@ -24,7 +24,7 @@ class Listing(ScrollView):
     BEYOND: ClassVar[int] = 0
     """Rows kept in sight beyond the cursor."""
 
-    cursor: reactive[int] = reactive(0, init=False)
+    cursor: reactive[int] = reactive(0, init=False, repaint=False)
     rows: Sequence[Any] = ()
 
     class Moved(Message):

@@ -8,57 +8,27 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
 from calm.case import Mooring, Result, Tow, TowResult
 from calm.case.memory import Memory
-from calm.case.parts import parts_of
-from calm.checks.assess import OWN, assessment_of, findings_of, stand_of
-from calm.checks.assessment import Situation
-from calm.checks.finding import AS_GIVEN, Finding, State
+from calm.checks.assess import assessment_of, findings_of, stand_of
+from calm.checks.assessment import Situation, Stand
+from calm.checks.finding import AS_GIVEN, OWN, Finding
 from calm.checks.lacking import lacking
+from calm.checks.situations import cut_like
 from calm.errors import InputError, NoEquilibrium, Problem, internal_failure
-from calm.files import MooringFile, Piece, Place, read_mooring
+from calm.files import MooringFile, read_mooring
 from calm.files.document import Document, compose
 from calm.files.editing import Draft, Item
 from calm.files.reader import STAND_IN
+from calm.tui.found import Row, rows_of
 
 UNNAMED = "unnamed.yaml"
 """The path of a text that belongs to no file yet."""
-
-_Figures = tuple[float | None, float | None, float | None, float | None]
-_NOTHING: tuple[float | None, State | None] = (None, None)
-_GRAVITY = {state: state.severity for state in State}
-
-
-@dataclass(frozen=True)
-class Row:
-    """A piece, or an instrument clamped on the piece above it.
-
-    Attributes
-    ----------
-    place : in the line as read
-    use, label : as in results
-    length : stretched, cut where nothing is solved [m]; None of a clamp, or to be cut to fit
-    depth : of the upper end [m], None like all below where nothing is solved
-    tension : the greatest [N]
-    tilt : [degrees]
-    margin : the least that a finding leaves, as a share of its limit; None where none is known
-    state : the gravest of its findings; None where there is none
-    """
-
-    place: Place
-    use: str
-    label: str
-    length: float | None
-    depth: float | None = None
-    tension: float | None = None
-    tilt: float | None = None
-    margin: float | None = None
-    state: State | None = None
 
 
 @dataclass(frozen=True)
@@ -79,7 +49,10 @@ class View:
     seconds : that it took
     environments : the names of those that the file gives besides its own
     rows : down the file, clamps below their piece
-    complete : whether the findings are all that `calm check` has, see `judge_fully`
+    complete : whether the findings are all that `calm check` has, see `judge_fully`; a tow's, which
+        has none, are
+    stands : the line in each of its environments, once they are judged
+    elsewhere : what is wrong with environments other than that which the line stands in
     memory : what was solved, for the next text
     """
 
@@ -97,6 +70,8 @@ class View:
     environments: tuple[str, ...] = ()
     rows: tuple[Row, ...] = ()
     complete: bool = False
+    stands: tuple[Stand, ...] = ()
+    elsewhere: tuple[Problem, ...] = ()
     memory: Memory = field(default_factory=Memory, repr=False, compare=False)
 
     def is_of(self, text: str, path: Path | None, environment: str | None) -> bool:
@@ -153,27 +128,47 @@ def _placed(path: str | Path | None) -> Path:
     return Path.cwd() / UNNAMED if path is None else Path(path)
 
 
-def judge_fully(view: View) -> View:
-    """The same with all that `calm check` finds: in other situations, at launch and at recovery.
+def judge_fully(view: View, catalogs: Sequence[str | Path] = ()) -> View:
+    """The same with all that `calm check` finds: in every environment and situation, at launch and
+    at recovery, and where a part breaks.
 
     A tow, and a line without an anchor of its own or without equilibrium, is returned as it is.
     """
     if view.complete or not view.anchored or not isinstance(view.result, Result):
         return view
     started = time.perf_counter()
-    mooring = view.result.mooring
-    try:
-        assessment = assessment_of(mooring.file.name, [stand_of(mooring, mooring.file.name)])
-    except Exception:
-        if os.environ.get("CALM_DEBUG") == "1":
-            raise
-        return view
+    file = view.result.file
+    moorings, problems = _in_all_environments(view, view.result.mooring, catalogs)
+    assessment = assessment_of(file.name, [stand_of(each, file.name) for each in moorings])
     findings, tighter = tuple(assessment.all_findings()), tuple(assessment.tighter_findings())
-    seconds = view.seconds + time.perf_counter() - started
-    rows = tuple(_rows(mooring.file, view.result, (*findings, *tighter)))
+    rows = tuple(rows_of(file, view.result, (*findings, *tighter)))
     return replace(
-        view, findings=findings, tighter=tighter, rows=rows, seconds=seconds, complete=True
-    )
+        view, findings=findings, tighter=tighter, rows=rows, stands=assessment.stands,
+        elsewhere=tuple(problems), seconds=view.seconds + time.perf_counter() - started,
+        complete=True,
+    )  # fmt: skip
+
+
+def _in_all_environments(
+    view: View, here: Mooring, catalogs: Sequence[str | Path]
+) -> tuple[list[Mooring], list[Problem]]:
+    """The mooring in each of its environments, as long in all as here; what is wrong with them."""
+    names: list[str | None] = [None, *view.environments]
+    if view.environment not in names:
+        names.append(view.environment)
+    found: list[Mooring] = []
+    problems: list[Problem] = []
+    for name in names:
+        if name == view.environment:
+            found.append(here)
+            continue
+        try:
+            file = read_mooring(view.path, environment=name, catalogs=catalogs, text=view.text)
+        except InputError as error:
+            problems += error.problems
+        else:
+            found.append(Mooring(cut_like(file, here), memory=view.memory))
+    return found, problems
 
 
 def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
@@ -191,7 +186,7 @@ def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
         return _wrong(view, error.problems)
     view = replace(view, file=file, missing=tuple(lacking(file)))
     if "no float" in view.missing:
-        return replace(view, rows=tuple(_rows(file, None)))
+        return replace(view, rows=tuple(rows_of(file, None)))
     return _solved(view, file)
 
 
@@ -202,8 +197,11 @@ def _solved(view: View, file: MooringFile) -> View:
     except NoEquilibrium as error:
         result, failure = None, error
     findings = () if isinstance(result, TowResult) else tuple(_found(view, file, result, failure))
-    rows = tuple(_rows(file, result, findings))
-    return replace(view, result=result, failure=failure, findings=findings, rows=rows)
+    rows = tuple(rows_of(file, result, findings))
+    return replace(
+        view, result=result, failure=failure, findings=findings, rows=rows,
+        complete=isinstance(result, TowResult),
+    )  # fmt: skip
 
 
 def _found(
@@ -226,40 +224,3 @@ def _wrong(view: View, problems: Sequence[Problem]) -> View:
 def _variants(document: Document) -> tuple[str, ...]:
     named = document.data.get("environments")
     return tuple(named) if isinstance(named, dict) else ()
-
-
-def _rows(
-    file: MooringFile,
-    result: Result | TowResult | None,
-    findings: Iterable[Finding] = (),
-) -> Iterator[Row]:
-    """Down the file; with figures where there is a result, and what the findings say of each."""
-    figures: dict[Place, _Figures] = {}
-    if result is not None:
-        for clamp in result.clamps:
-            figures[clamp.place] = (None, clamp.depth, clamp.tension, clamp.tilt)
-        for row in result.components:
-            figures[row.place] = (row.length, row.depth_top, row.tension, row.tilt)
-    said = _said(findings)
-    for piece in file.pieces:
-        if piece.use == STAND_IN:
-            continue
-        for part in parts_of([piece]):
-            length = part.length if isinstance(part, Piece) else None
-            solved = figures.get(part.place, (length, None, None, None))
-            yield Row(part.place, part.use, part.label, *solved, *said.get(part.place, _NOTHING))
-
-
-def _said(findings: Iterable[Finding]) -> dict[Place, tuple[float | None, State | None]]:
-    """By place the least margin, as a share of its limit, and the gravest state."""
-    found: dict[Place, list[Finding]] = {}
-    for finding in findings:
-        if finding.place is not None:
-            found.setdefault(finding.place, []).append(finding)
-    return {
-        place: (
-            min((each.share for each in own if each.share is not None), default=None),
-            max((each.state for each in own), key=_GRAVITY.__getitem__),
-        )
-        for place, own in found.items()
-    }

@@ -37,8 +37,11 @@ class Actions(Provider):
                 title = matcher.highlight(_shown(action))
                 yield Hit(score, title, self._run(action), help=action.meaning)
 
-    def _run(self, action: Action) -> Callable[[], Awaitable[None]]:
-        return partial(self.screen.run_action, action.name)
+    def _run(self, action: Action) -> Callable[[], Awaitable[bool]]:
+        from calm.tui.line.pane import LinePane
+
+        owner = self.screen.query_one(LinePane) if action.place == "line" else self.screen
+        return partial(self.app.run_action, action.name, owner)
 
 
 def _shown(action: Action) -> str:

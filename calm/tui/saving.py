@@ -5,16 +5,17 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from calm.errors import CalmError
 from calm.tui.checking import Reading
 from calm.tui.dialogs import Answer, Asked, Question, Sheet
-from calm.tui.line.builder import BuilderScreen
-from calm.tui.messages import Edited
 from calm.tui.recovery import moment
 from calm.tui.screen import DraftScreen
-from calm.tui.session import Session
-from calm.tui.turns import InTurn
+from calm.tui.workspace import Workspace
+
+if TYPE_CHECKING:
+    from calm.tui.app import BuildApp
 
 _SUFFIX = ".yaml"
 _CHANGED = "The file was changed by another program; saving will ask"
@@ -24,49 +25,31 @@ _READ_AGAIN = "Read again: another program has changed it"
 Then = Callable[[], object]
 
 
-class Saving(InTurn):
-    """An application that saves the file of its `session`, keeps what is not saved, and leaves."""
+class Saving:
+    """Writes the file of a workspace, asks where something stands against it, and watches the disk.
 
-    session: Session
-    builder: BuilderScreen
+    Parameters
+    ----------
+    app : whose screens show the file
+    workspace : the file
+    """
 
-    _told: tuple[object] | None = None
-    """The state of the file on the disk that was told of."""
+    def __init__(self, app: BuildApp, workspace: Workspace) -> None:
+        self._app, self._workspace, self._session = app, workspace, workspace.session
+        self._told: tuple[object] | None = None  # the state of the file on the disk, told already
 
-    def tell(self, text: str, *, wrong: bool = False) -> None:
-        """Say something in the last line of the screen."""
-        screen = self.screen if isinstance(self.screen, DraftScreen) else self.builder
-        screen.tell(text, wrong=wrong)
-
-    def draft_screens(self) -> list[DraftScreen]:
-        """Those that are open, the one on top last."""
-        return [each for each in self.screen_stack if isinstance(each, DraftScreen)]
-
-    def taken_over(self, told: str) -> None:
-        """Another text has taken the place of the draft: every screen reads it again."""
-        for screen in self.draft_screens():
-            screen.replaced()
-        self.tell(told)
-        self.post_message(Edited())
-
-    # saving
-
-    def action_save(self) -> None:
+    def save(self) -> None:
         """Save, and ask for a name where there is none."""
-        if self._is_settled():
+        if self._app.is_settled():
             self._save()
 
-    def action_save_as(self) -> None:
+    def save_as(self) -> None:
         """Save under another name."""
-        if self._is_settled():
+        if self._app.is_settled():
             self._ask_for_name()
 
-    def _is_settled(self) -> bool:
-        """Whether nothing is being typed any more; a bad value has been told."""
-        return not isinstance(self.screen, DraftScreen) or self.screen.settle()
-
     def _save(self, then: Then | None = None) -> None:
-        file = self.session.file
+        file = self._session.file
         if file.path is None:
             self._ask_for_name(then)
         elif file.stamp is not None and file.changed_on_disk():
@@ -74,24 +57,23 @@ class Saving(InTurn):
         elif file.is_protected:
             self._ask_to_overwrite(file.path, then)
         else:
-            self._write(self.session.save, then)
+            self._write(self._session.save, then)
 
     def _write(self, write: Callable[[], str], then: Then | None) -> None:
         try:
             lost = write()
         except (CalmError, OSError) as error:
             # the folder is known, and the reason must not be cut off behind it
-            folder = "" if self.session.file.path is None else f"{self.session.file.path.parent}/"
-            self.tell(f"Not saved: {str(error).replace(folder, '')}", wrong=True)
+            folder = "" if self._session.file.path is None else f"{self._session.file.path.parent}/"
+            self._workspace.tell(f"Not saved: {str(error).replace(folder, '')}", wrong=True)
             return
-        self.builder.refresh_rows()
-        self.tell(f"{self.session.name} saved" + (f", but {lost}" if lost else ""))
-        self.post_message(Edited())  # what it names may be another file in another folder
+        self._workspace.tell(f"{self._session.name} saved" + (f", but {lost}" if lost else ""))
+        self._workspace.edited()  # what it names may be another file in another folder
         if then is not None:
             then()
 
     def _ask_for_name(self, then: Then | None = None, begin: Path | None = None) -> None:
-        path = self.session.file.path
+        path = self._session.file.path
 
         def take(texts: dict[str, str] | None) -> None:
             if texts is None:
@@ -102,19 +84,21 @@ class Saving(InTurn):
             elif chosen.exists():
                 self._ask_to_overwrite(chosen, then)
             else:
-                self._write(lambda: self.session.save_as(chosen), then)
+                self._write(lambda: self._session.save_as(chosen), then)
 
         text = str(begin or path or "")
         asked = [Asked("path", "File", text, _is_writable, placeholder="iroise-2026.yaml")]
-        self.push_screen(Sheet("Save as", f"In {Path.cwd()}, unless told otherwise.", asked), take)
+        self._app.push_screen(
+            Sheet("Save as", f"In {Path.cwd()}, unless told otherwise.", asked), take
+        )
 
     def _ask_to_overwrite(self, path: Path, then: Then | None) -> None:
         """Of another file that is there, or of one's own that is protected."""
-        is_own = path == self.session.file.path
+        is_own = path == self._session.file.path
 
         def take(answer: str | None) -> None:
             if answer == "overwrite":
-                write = self.session.save if is_own else lambda: self.session.save_as(path)
+                write = self._session.save if is_own else lambda: self._session.save_as(path)
                 self._write(write, then)
             elif answer == "other":
                 self._ask_for_name(then, _free_name(path))
@@ -126,15 +110,15 @@ class Saving(InTurn):
             Answer("o", "overwrite it", "overwrite"),
             Answer("n", "save under another name", "other"),
         ]
-        self.push_screen(Question(title, text, answers), take)
+        self._app.push_screen(Question(title, text, answers), take)
 
     def _ask_of_change(self, then: Then | None) -> None:
-        path, stamp = self.session.file.path, self.session.file.stamp
+        path, stamp = self._session.file.path, self._session.file.stamp
         assert path is not None
 
         def take(answer: str | None) -> None:
             if answer == "overwrite":
-                self._write(self.session.save, then)
+                self._write(self._session.save, then)
             elif answer == "theirs":
                 self._take_theirs()
             elif answer == "other":
@@ -146,15 +130,15 @@ class Saving(InTurn):
             Answer("t", "take theirs; undo brings back what is here", "theirs"),
         ]
         when = f" It was written {moment(stamp[0] / 1e9)}." if stamp else ""
-        title = f"{self.session.name} was changed by another program"
+        title = f"{self._session.name} was changed by another program"
         text = f"The file is not what is built here.{when}"
-        self.push_screen(Question(title, text, answers), take)
+        self._app.push_screen(Question(title, text, answers), take)
 
     # the file on the disk
 
     def look_at_disk(self) -> None:
         """Take a file that another program has changed; tell of it where that would lose work."""
-        session, screen = self.session, self.screen
+        session, screen = self._session, self._app.screen
         if not isinstance(screen, DraftScreen):
             return  # a question is open: later
         if not session.file.changed_on_disk():
@@ -165,56 +149,51 @@ class Saving(InTurn):
         if now[0] is None:
             if is_new:
                 session.lost_file()
-                self.builder.show_title()
-                self.tell(_GONE, wrong=True)
-                self.post_message(Edited())  # what is here is kept like every change
-        elif not (session.changed or screen.is_typing):
+                self._workspace.tell(_GONE, wrong=True)
+                self._workspace.edited()  # what is here is kept like every change
+        elif not (session.changed or screen.part.is_typing):
             self._take_theirs(quietly=not is_new)
         elif is_new:
-            self.tell(_CHANGED, wrong=True)
+            self._workspace.tell(_CHANGED, wrong=True)
 
     def _take_theirs(self, *, quietly: bool = False) -> None:
         try:
-            text = self.session.file.read()
+            text = self._session.file.read()
         except (CalmError, OSError) as error:
             if not quietly:
-                self.tell(f"The file cannot be read any more: {error}", wrong=True)
+                self._workspace.tell(f"The file cannot be read any more: {error}", wrong=True)
             return
-        self.session.take_saved(text)
-        self.taken_over(_READ_AGAIN)
+        self._session.take_saved(text)
+        self._app.taken_over(_READ_AGAIN)
 
     # the way out
 
-    async def action_quit(self) -> None:
+    def quit(self) -> None:
         """Leave; unsaved work is asked about."""
-        if not self._is_settled():
+        if not self._app.is_settled():
             return
         self.look_at_disk()
-        if not self.session.changed:
-            self.leave()
+        if not self._session.changed:
+            self._app.leave()
             return
-        if isinstance(self.screen, Question):
+        if isinstance(self._app.screen, Question):
             return  # that one first
 
         def take(answer: str | None) -> None:
             if answer == "save":
-                self._save(self.leave)
+                self._save(self._app.leave)
             elif answer == "discard":
-                self.session.file.forget()
-                self.leave()
+                self._session.file.forget()
+                self._app.leave()
 
         answers = [
             Answer("s", "save and leave", "save"),
             Answer("d", "leave without saving", "discard"),
         ]
-        name, file = self.session.name, self.session.file
+        name, file = self._session.name, self._session.file
         is_gone = file.stamp is None and file.changed_on_disk()
         told = "is gone from the disk" if is_gone else "has changes that are not saved"
-        self.push_screen(Question("Not saved", f"{name} {told}.", answers), take)
-
-    def leave(self) -> None:
-        """Leave; nothing is to be kept."""
-        raise NotImplementedError
+        self._app.push_screen(Question("Not saved", f"{name} {told}.", answers), take)
 
 
 def chosen_path(text: str) -> Path:

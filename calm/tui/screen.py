@@ -1,113 +1,113 @@
-"""What every screen of the line builder that shows the draft can be asked for."""
+"""A screen that shows the draft: title, the part that shows and edits it, keys."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import Protocol
 
+from textual.app import ComposeResult
 from textual.screen import Screen
+from textual.widget import Widget
 
-from calm.tui.bars import KeyBar
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from calm.tui.live import View
-    from calm.tui.session import Session
+from calm.tui.bars import KeyBar, TitleBar
+from calm.tui.workspace import Workspace
 
 
-class DraftScreen(Screen[None]):
-    """A screen that shows the draft, and where it may be changed.
+class Part(Protocol):
+    """What shows and edits the draft of a workspace.
 
-    The application settles the screen on top before it saves or leaves, and has every one of
-    them read the draft again when that was replaced from outside.
-
-    Attributes
-    ----------
-    session : the file that is shown
+    The application settles the part on top before it saves or leaves, and has every one of them
+    read the draft again when that was replaced from outside.
     """
 
-    session: Session
-
-    def is_fresh(self, view: View | None) -> bool:
-        """Whether a view is of what is edited: the text, the file's place and the environment.
-
-        The figures of any other are shown dimmed.
-        """
-        session = self.session
-        return view is not None and view.is_of(
-            session.draft.text, session.file.path, session.environment
-        )
+    @property
+    def is_typing(self) -> bool:
+        """Whether something is typed that is not in the draft yet."""
 
     def settle(self) -> bool:
         """Take over what is being typed: the draft holds it when this returns True.
 
-        False where the value is bad: it stays to be corrected, and the screen has told why.
+        False where the value is bad: it stays to be corrected, and the reason was told.
         """
-        raise NotImplementedError
 
-    @property
-    def is_typing(self) -> bool:
-        """Whether a field holds something that is not in the draft yet."""
-        raise NotImplementedError
+    def show_draft(self) -> None:
+        """Show the draft as it is now, some steps further or back."""
 
     def replaced(self) -> None:
-        """Read the draft again, another one having taken its place.
+        """Show the draft, another one: what is typed and marked was of the one before.
 
-        An open cell editor closes without taking its value over, and marks are taken off. The
-        draft may be one that cannot be read: the application then opens the text view.
+        It may be one that cannot be read: the application then opens the text view.
         """
-        raise NotImplementedError
 
-    def show_view(self, view: View) -> None:
+    def show_view(self) -> None:
         """Show what a worker made of the draft."""
-        raise NotImplementedError
+
+    def title(self) -> tuple[str, str]:
+        """What the first line says at its left and at its right end."""
+
+
+class DraftScreen(Screen[None]):
+    """A frame for a part.
+
+    Parameters
+    ----------
+    workspace : the file that is shown
+    part, body : what shows it, as what it is asked for and as the widget that it is
+    """
+
+    def __init__(self, workspace: Workspace, part: Part, body: Widget) -> None:
+        super().__init__()
+        self.workspace, self.part, self._body = workspace, part, body
+
+    def compose(self) -> ComposeResult:
+        """Title, what is shown, keys."""
+        yield TitleBar()
+        yield self._body
+        yield KeyBar()
+
+    def on_mount(self) -> None:
+        """Say what is shown."""
+        self.show_title()
+
+    def show_view(self) -> None:
+        """Show what a worker made of the draft."""
+        if self.is_mounted and self.is_attached:  # it is there, and not on the way out
+            self.part.show_view()
+            self.show_title()
+
+    def show_draft(self) -> None:
+        """Show the draft as it is now."""
+        self.part.show_draft()
+        self.show_title()
+
+    def replaced(self) -> None:
+        """Show another draft."""
+        self.part.replaced()
+        self.show_title()
+
+    def show_title(self) -> None:
+        """Say again what is shown and how it stands, dimmed where that is of an earlier draft."""
+        self.query_one(TitleBar).show(*self.part.title(), old=not self.workspace.is_fresh)
 
     def tell(self, text: str, *, wrong: bool = False) -> None:
         """Say something in the last line, until the next key."""
         self.query_one(KeyBar).tell(text, wrong=wrong)
 
-    @property
-    def called(self) -> str:
-        """The name of the file, and that it is not saved where it is not."""
-        return self.session.name + (" (not saved)" if self.session.changed else "")
-
-    @property
-    def environments(self) -> list[str | None]:
-        """The environments of the file; None is its own, the first."""
-        return self.session.environments
-
-    def next_environment(self) -> str | None:
-        """The environment after the one that is shown, the own one after the last."""
-        names, here = self.environments, self.session.environment
-        return names[(names.index(here) + 1) % len(names)] if here in names else None
-
     def action_undo(self) -> None:
         """Take the last change back, once what is typed is taken."""
-        self._go("undone", self.session.history.undo)
+        self._go("undone", self.workspace.session.history.undo)
 
     def action_redo(self) -> None:
         """Make it again."""
-        self._go("done again", self.session.history.redo)
+        self._go("done again", self.workspace.session.history.redo)
 
     def _go(self, what: str, step: Callable[[], str | None]) -> None:
-        if not self.settle():
+        if not self.part.settle():
             return
         label = step()
         if label is None:
             self.tell(f"Nothing is left to be {what}")
         else:
-            self.changed(told=f"{what}: {label}")
-
-    def changed(self, *, told: str = "") -> None:
-        """Show the draft anew, and have it judged: it is another one now."""
-        raise NotImplementedError
-
-    async def action_save(self) -> None:
-        """Save the file."""
-        await self.app.run_action("save")
-
-    def action_help(self) -> None:
-        """All keys."""
-        from calm.tui.help_screen import HelpScreen
-
-        self.app.push_screen(HelpScreen())
+            self.show_draft()
+            self.tell(f"{what}: {label}")
+            self.workspace.edited()

@@ -15,6 +15,9 @@ from calm.tui.standing import Standing
 
 Location = tuple[str | int, ...]
 
+_OF_THE_ROW = frozenset({"use", "label", "count", "at", "clamps"})
+"""Keys of a row that hold whatever component is there."""
+
 
 @dataclass(frozen=True)
 class Copied:
@@ -27,7 +30,7 @@ class Copied:
         return len(self.items) or len(self.clamps)
 
 
-class Session(Standing):
+class Session:
     """A mooring or tow file on its way.
 
     Parameters
@@ -40,6 +43,7 @@ class Session(Standing):
     ----------
     catalogs : catalogue files given with the command
     copied : what `paste` puts in
+    standing : the environment that the line stands in
 
     Raises
     ------
@@ -62,7 +66,7 @@ class Session(Standing):
         self.file = file
         self.catalogs = tuple(catalogs)
         self.copied = Copied()
-        super().__init__(environment)
+        self.standing = Standing(self.history, environment)
 
     @property
     def draft(self) -> Draft:
@@ -127,6 +131,18 @@ class Session(Standing):
             else:
                 draft = draft.put(spot.item, key, value)
         self.do(draft, label)
+
+    def replace(self, spot: Place, values: Mapping[str, str]) -> list[str]:
+        """Another component on a row; what the row said of the one before and still says."""
+        place = ("line", spot.item, *(("clamps", spot.clamp) if spot.is_clamp else ()))
+        written = self.draft.value(place)
+        kept = [
+            f"{key} {value}" if isinstance(value, str) else key
+            for key, value in (written if isinstance(written, dict) else {}).items()
+            if key not in _OF_THE_ROW
+        ]
+        self.put(spot, values, f"use {values['use']}")
+        return kept
 
     def delete(self, spots: Iterable[Place]) -> Place | None:
         """Take rows out, a piece with its clamps; the row to go to, None where none is left."""

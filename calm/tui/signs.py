@@ -36,6 +36,7 @@ ROLES = {
 """What stands for a component in front of its row."""
 
 UNKNOWN_ROLE = "?"
+UNKNOWN_MARGIN = "?"
 CLAMP = "├"
 CURSOR = "▸"
 MARK = "*"

@@ -4,30 +4,26 @@ from __future__ import annotations
 
 import os.path
 
-from calm.files.editing import Draft
+from calm.files.editing import History
 
 
 class Standing:
-    """A `draft` whose line stands in its own environment, in a named one or in that of a file.
+    """A line that stands in its file's own environment, in a named one or in that of a file.
 
     Parameters
     ----------
+    history : of the file
     environment : the name of one of its environments, or an environment file; None of its own
     """
 
-    def __init__(self, environment: str | None) -> None:
-        self._environment = environment
+    def __init__(self, history: History, environment: str | None) -> None:
+        self._history, self._environment = history, environment
         self._is_file = environment not in self.environments and os.path.isfile(environment or "")
-
-    @property
-    def draft(self) -> Draft:
-        """The file as it is now."""
-        raise NotImplementedError
 
     @property
     def environments(self) -> list[str | None]:
         """Those of the file; None is its own, the first."""
-        named = self.draft.value(("environments",))
+        named = self._history.draft.value(("environments",))
         return [None, *(named if isinstance(named, dict) else ())]
 
     @property
@@ -43,5 +39,11 @@ class Standing:
     def lost_environment(self) -> str | None:
         """The environment that was chosen where the file, as far as it can be read, has it not."""
         here = self._environment
-        is_there = self._is_file or self.draft.problems or here in self.environments
+        is_there = self._is_file or self._history.draft.problems or here in self.environments
         return None if is_there else here
+
+    @property
+    def next_environment(self) -> str | None:
+        """The one after that, the own one after the last."""
+        names, here = self.environments, self.environment
+        return names[(names.index(here) + 1) % len(names)] if here in names else None

@@ -4,25 +4,22 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from textual import on
 from textual.app import ComposeResult
 from textual.binding import BindingType
-from textual.containers import VerticalScroll
+from textual.containers import Vertical, VerticalScroll
 from textual.content import Content
 from textual.widgets import Static, TextArea
 
 from calm.errors import Problem
 from calm.files.editing.retyped import retyped
 from calm.tui.actions import bindings, hints
-from calm.tui.bars import KeyBar, TitleBar
-from calm.tui.messages import Edited, is_elsewhere, mistakes, said
+from calm.tui.bars import KeyBar
+from calm.tui.messages import is_elsewhere, mistakes, said
 from calm.tui.screen import DraftScreen
-from calm.tui.session import Session
-
-if TYPE_CHECKING:
-    from calm.tui.live import View
+from calm.tui.workspace import Workspace
 
 _INDENT = 2
 _LINE_BREAK = re.compile(r"\r\n?|\n")
@@ -54,12 +51,11 @@ class YamlArea(TextArea):
         self.refresh()
 
 
-class TextScreen(DraftScreen):
+class TextPart(Vertical):
     """The text, judged at each pause; lines that are not touched keep their line breaks."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("text")]
     DEFAULT_CSS = """
-    TextScreen {
+    TextPart {
         & TextArea, & TextArea:focus { height: 1fr; border: none; padding: 0; }
         & #mistakes {
             height: auto; max-height: 40%; min-height: 2; padding: 0 1;
@@ -68,45 +64,36 @@ class TextScreen(DraftScreen):
     }
     """
 
-    def __init__(self, session: Session, view: View | None) -> None:
+    def __init__(self, workspace: Workspace) -> None:
         super().__init__()
-        self.session = session
+        self.workspace, self.session = workspace, workspace.session
         self._problems: tuple[Problem, ...] = ()
-        self._view = view
         self._next = 0
-        self._begun = session.draft.text
+        self._begun = self.session.draft.text
         self._edited = False
 
     def compose(self) -> ComposeResult:
-        """Title, text, mistakes, keys."""
-        yield TitleBar()
+        """Text and mistakes."""
         yield YamlArea(self.session.draft.text, show_line_numbers=True, compact=True)
         with VerticalScroll(id="mistakes", can_focus=False):
             yield Static(id="mistakes-text")
-        yield KeyBar()
 
     def on_mount(self) -> None:
         """The cursor to the first mistake."""
-        self.query_one(KeyBar).show_keys(hints("text"))
-        self._show()
+        self.show_view()
         self.text_area.focus()
         if self._here:
-            self.action_next_problem()
+            self.next_problem()
 
     @property
     def text_area(self) -> TextArea:
         """Where one writes."""
         return self.query_one(TextArea)
 
-    def show_view(self, view: View) -> None:
+    def show_view(self) -> None:
         """List the mistakes that a worker has found."""
-        self._view = view
-        if self.is_mounted:
-            self._show()
-
-    def _show(self) -> None:
-        view, draft = self._view, self.session.draft
-        known = self.is_fresh(view)
+        view, draft = self.workspace.view, self.session.draft
+        known = self.workspace.is_fresh
         self._problems = tuple(draft.problems) or (view.problems if known and view else ())
         if self._problems:
             lines = [said(each, self._path) for each in self._problems]
@@ -117,8 +104,10 @@ class TextScreen(DraftScreen):
         else:
             lines = [Content("…")]
         self.query_one("#mistakes-text", Static).update(Content("\n").join(lines))
-        told = mistakes(self._problems, self._path)
-        self.query_one(TitleBar).show(f"The text of {self.called}", told)
+
+    def title(self) -> tuple[str, str]:
+        """What is shown, and how many mistakes it has."""
+        return f"The text of {self.workspace.called}", mistakes(self._problems, self._path)
 
     @property
     def _here(self) -> list[Problem]:
@@ -128,7 +117,7 @@ class TextScreen(DraftScreen):
     @property
     def _path(self) -> Path:
         """That of the file, as its problems have it."""
-        return Path() if self._view is None else self._view.path
+        return Path() if self.workspace.view is None else self.workspace.view.path
 
     @on(TextArea.Changed)
     def _take(self) -> None:
@@ -137,8 +126,7 @@ class TextScreen(DraftScreen):
             self.session.write(text, further=self._edited)
             self._edited = self.session.draft.text != self._begun
             self._next = 0
-            self._show()
-            self.post_message(Edited())
+            self.workspace.edited()
 
     def settle(self) -> bool:
         """Take the text as it stands."""
@@ -162,12 +150,14 @@ class TextScreen(DraftScreen):
         with self.prevent(TextArea.Changed):
             area.load_text(text)
         area.move_cursor((min(row, area.document.line_count - 1), column))
-        self._show()
+        self.show_view()
 
-    def action_next_problem(self) -> None:
+    show_draft = replaced
+
+    def next_problem(self) -> None:
         """Put the cursor on the next mistake."""
         if self._problems and not self._here:
-            self.tell(f"There are no mistakes in {self.session.name} itself")
+            self.workspace.tell(f"There are no mistakes in {self.session.name} itself")
         placed = [each for each in self._here if each.line]
         if placed:
             problem = placed[self._next % len(placed)]
@@ -176,9 +166,27 @@ class TextScreen(DraftScreen):
             last = self.text_area.document.line_count - 1
             self.text_area.move_cursor((min(row, last), max(problem.column - 1, 0)))
 
+
+class TextScreen(DraftScreen):
+    """The text of the file, over the whole screen."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings("text")]
+
+    def __init__(self, workspace: Workspace) -> None:
+        self.text = TextPart(workspace)
+        super().__init__(workspace, self.text, self.text)
+
+    def on_mount(self) -> None:
+        """Its keys."""
+        self.query_one(KeyBar).show_keys(hints("text"))
+
+    def action_next_problem(self) -> None:
+        """Put the cursor on the next mistake."""
+        self.text.next_problem()
+
     def action_back(self) -> None:
         """To the line, if the text has one."""
-        if self.session.draft.problems:
+        if self.workspace.session.draft.problems:
             self.tell("The line cannot be shown before the text can be read", wrong=True)
         else:
             self.dismiss()

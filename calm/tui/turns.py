@@ -55,9 +55,12 @@ class InTurn(App[int]):
             self._go_round(before)
 
     def _listeners(self) -> list[MessagePump]:
-        """All that a key may set going: what has the focus and what is around it, the screens."""
+        """All that a key may set going: what has the focus and what is around it, the screen.
+
+        Not the screens below it: each message makes them have all of the screen painted anew.
+        """
         around = [] if self.focused is None else list(self.focused.ancestors_with_self)
-        return list(dict.fromkeys([*around, *reversed(self.screen_stack), self]))
+        return list(dict.fromkeys([*around, *self.screen_stack[-1:], self]))
 
     def _go_round(self, listeners: list[MessagePump]) -> None:
         """Wait for one after the other; one that is gone handles nothing any more."""

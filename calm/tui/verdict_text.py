@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from calm.checks.finding import AS_GIVEN, Finding, Rule, State
+from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State
 from calm.quantities import QUANTITIES
 from calm.tui.messages import mistakes, place_of
 from calm.tui.signs import ELLIPSIS, LOOKS, worst
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
+    from calm.checks.assessment import Stand
     from calm.tui.live import View
 
 _MOST_PROBLEMS = 6
@@ -22,16 +23,22 @@ _MOST_NAMED = 2
 
 @dataclass(frozen=True)
 class Saying:
-    """A line of the verdict: a sign in front, a heading, the text, and the state it tells of."""
+    """A line of the verdict: a sign in front, a heading, the text, and the state it tells of.
+
+    `pending` where the state may yet become another one.
+    """
 
     text: str
     heading: str = ""
     state: State | None = None
     faint: bool = False
+    pending: bool = False
 
     @property
     def sign(self) -> str:
         """What stands in front."""
+        if self.pending:
+            return ELLIPSIS
         return " " if self.state is None else LOOKS[self.state].sign
 
 
@@ -45,14 +52,24 @@ def headline(view: View | None) -> Saying:
         return Saying(f"incomplete: {view.missing[0]}", state=State.UNKNOWN)
     if view.failure is not None:
         return Saying(f"does not stand: {view.failure.status}", state=State.FAIL)
-    return _judged(view.findings)
+    if view.elsewhere:
+        return Saying("environments that cannot be read", state=State.FAIL)
+    said = _judged(view.findings)
+    if view.complete or view.missing:
+        return said
+    told = said.text if said.state in (State.FAIL, State.WARN) else "nothing fails"
+    return Saying(f"{told} so far", pending=True)
 
 
-def _judged(findings: tuple[Finding, ...]) -> Saying:
-    counts = Counter(finding.state for finding in findings)
+def _judged(findings: Sequence[Finding]) -> Saying:
+    """What is counted is a rule of a component in a situation, in whichever environments."""
+    states: dict[tuple[str, str | None, str], State] = {}
+    for each in sorted(findings, key=lambda each: each.rank):
+        states.setdefault((each.rule, each.component, each.situation), each.state)
+    counts = Counter(states.values())
     state = worst(list(counts))
     if state is None:
-        return Saying("solved", state=State.PASS)
+        return Saying("solved")
     told = [
         f"{counts[each]} {word}{'s' * (counts[each] != 1)}"
         for each, word in ((State.FAIL, "failure"), (State.WARN, "warning"))
@@ -79,11 +96,42 @@ def sayings(view: View | None) -> Iterator[Saying]:
     if view.failure is not None:
         yield Saying(view.failure.message, state=State.FAIL)
         yield Saying(view.failure.advice, faint=True)
-    yield from _figures(view.result, (*view.findings, *view.tighter))
-    yield from _found(view.findings)
+    findings = [_placed(each, view) for each in view.findings]
+    tighter = [_placed(each, view) for each in view.tighter]
+    yield from _figures(view.result, [*findings, *tighter])
+    for problem in view.elsewhere:
+        yield Saying(problem.message, place_of(problem, view.path), State.FAIL)
+    if len(view.stands) > 1:
+        yield from map(_stand, view.stands)
+    yield from _found(findings)
     if view.result is not None:
         for text in view.result.warnings:
             yield Saying(text, state=State.WARN)
+
+
+def _placed(finding: Finding, view: View) -> Finding:
+    """A finding whose situation names its environment too, where the line stands in another."""
+    here = OWN if view.file is None else view.file.environment.name or OWN
+    if finding.environment == here:
+        return finding
+    there = _environment(finding.environment)
+    given = finding.situation == AS_GIVEN
+    return replace(finding, situation=there if given else f"{there}, {finding.situation}")
+
+
+def _environment(name: str) -> str:
+    return "own environment" if name == OWN else name
+
+
+def _stand(stand: Stand) -> Saying:
+    """How the line does in one environment, in one line."""
+    said, result = _judged(stand.findings), stand.result
+    figures = ""
+    if result is not None and result.type != "surface":
+        figures = f"top at {_say('depth', result.top.depth)}, "
+    elif result is not None:
+        figures = f"{_say('reserve', result.top.reserve)} in reserve, "
+    return Saying(f"{figures}{said.text}", f"In {_environment(stand.environment)}", said.state)
 
 
 def _mistakes(view: View) -> Iterator[Saying]:
@@ -178,7 +226,7 @@ def _tow(result: TowResult) -> Iterator[Saying]:
     )
 
 
-def _found(findings: tuple[Finding, ...]) -> Iterator[Saying]:
+def _found(findings: Sequence[Finding]) -> Iterator[Saying]:
     """Failures and warnings with reason and remedy; what passes and is unknown in short."""
     for finding in sorted(findings, key=lambda each: each.rank):
         if finding.state in (State.FAIL, State.WARN):

@@ -107,10 +107,11 @@ def test_there_is_one_version(capsys: pytest.CaptureFixture[str]) -> None:
     assert versions == {calm.__version__}
 
 
-def test_extra_and_dependency_group_are_one_list() -> None:
+def test_development_dependencies_are_listed_once() -> None:
+    """As an extra, which every pip knows."""
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    extra = settings["project"]["optional-dependencies"]["dev"]
-    assert extra == settings["dependency-groups"]["dev"]
+    assert settings["project"]["optional-dependencies"]["dev"]
+    assert "dependency-groups" not in settings
 
 
 def test_constraints_name_every_direct_dependency() -> None:
@@ -118,7 +119,7 @@ def test_constraints_name_every_direct_dependency() -> None:
     wanted = [
         *settings["build-system"]["requires"],
         *settings["project"]["dependencies"],
-        *settings["dependency-groups"]["dev"],
+        *settings["project"]["optional-dependencies"]["dev"],
     ]
     pinned = {
         line.partition("==")[0].lower()

@@ -129,7 +129,7 @@ components:
     assert done.code == 0
     assert json.loads(done.out)["state"] == "pass"
     assert {finding["state"] for finding in findings(done)} == {"pass"}
-    assert len({finding["rule"] for finding in findings(done)}) == 11
+    assert len({finding["rule"] for finding in findings(done)}) == 14
 
 
 def test_what_is_unknown_ends_with_1_unless_it_is_allowed(calm, write_mooring, heavy):
@@ -154,6 +154,20 @@ def test_an_unknown_ranks_above_a_pass_in_every_table(calm, write_mooring):
     assert states["strength"] == "unknown" and states["anchor-weight"] == "pass"
 
 
+def test_the_verdict_counts_each_figure_of_each_mooring_once(calm, write_mooring):
+    one, two = write_mooring("one.yaml", name="One"), write_mooring("two.yaml", name="Two")
+
+    def verdict(*files):
+        done = calm("check", *files, "--json", "-")
+        unknown = {
+            (f["mooring"], f["rule"], f["component"]) for f in findings(done, state="unknown")
+        }
+        assert f"\n? nothing fails, {len(unknown)} figures unknown" in calm("check", *files).out
+        return len(unknown)
+
+    assert verdict(one, two) == 2 * verdict(one) > 0
+
+
 def file_with(file, name, addition):
     with open(file, encoding="utf-8") as read, open(name, "w", encoding="utf-8") as written:
         written.write(read.read() + addition)
@@ -167,6 +181,20 @@ def test_a_tow_is_refused(calm, folder):
     done = calm("check", "tow.yaml")
     assert (done.code, done.out) == (2, "")
     assert "calm check is for moorings; towed: tow.yaml" in done.err
+
+
+def test_moorings_among_tows_are_judged(calm, folder, write_mooring):
+    text = "tow: {speed: 1 m/s, toward: 0 deg}\nline: [{use: fish}]\ncomponents:\n"
+    text += "  fish: {kind: sphere, diameter: 1 m, buoyancy: -10 N}\n"
+    for name in ("a.yaml", "z.yaml"):
+        (folder / name).write_text(text)
+    alone = calm("check", write_mooring(), "--json", "-")
+    among = calm("check", "a.yaml", "m.yaml", "z.yaml", "--json", "-")
+    assert (among.code, among.out) == (alone.code, alone.out)
+    assert among.err == "not checked, since towed: a.yaml, z.yaml\n"
+    # a mistake in a mooring is not hidden by a tow beside it
+    (folder / "bad.yaml").write_text("line: 5\n")
+    assert calm("check", "a.yaml", "bad.yaml").code == 2
 
 
 @pytest.mark.parametrize(
@@ -300,3 +328,70 @@ def test_names_move_no_cursor_and_are_no_formula(calm, write_mooring, folder):
         out = calm(*words).out
         assert "\x1b" not in out and "\u202e" not in out
     assert ",'=cmd|\ufffd[31m\ufffd," in out
+
+
+def limits(document):
+    return {one["name"]: one for one in document["limits"]}
+
+
+def test_limits_are_told_as_used_with_default_and_source(calm, write_mooring):
+    file = write_mooring()
+    plain = limits(json.loads(calm("check", file, "--json", "-").out))
+    assert plain["safety_factor.steel"] == {
+        "mooring": "Test", "name": "safety_factor.steel", "value": 3.0, "default": 3.0,
+        "source": "UFC 4-159-03, table 3-7: 3 on new breaking strength of chain and wire",
+        "departs": False,
+    }  # fmt: skip
+    assert not any(one["departs"] for one in plain.values())
+    assert (plain["minimum_top_depth"]["value"], plain["minimum_top_depth"]["default"]) == (10, 10)
+    assert "maximum_knockdown" not in plain  # which is not judged
+    own = "checks: {safety_factor: {steel: 1.2}, maximum_knockdown: 9 m, minimum_top_depth: 10 m}\n"
+    document = json.loads(calm("check", file_with(file, "own.yaml", own), "--json", "-").out)
+    used = limits(document)
+    assert [name for name, one in used.items() if one["departs"]] == ["safety_factor.steel"]
+    assert (used["safety_factor.steel"]["value"], used["safety_factor.steel"]["default"]) == (
+        1.2,
+        3,
+    )
+    assert (used["maximum_knockdown"]["value"], used["maximum_knockdown"]["default"]) == (9.0, None)
+    cited = {(f["rule"], f["component"]): f["source"] for f in document["findings"]}
+    assert cited["strength", "rope"] == (
+        "The design's own `safety_factor.steel`, 1.2 in place of 3"
+    )
+    assert "UFC" in cited["strength", "weight"]  # nothing is known of it
+    assert "UFC" not in cited["strength", "rope"]
+
+
+@pytest.mark.parametrize(
+    ("checks", "rule", "name"),
+    [
+        ("{anchor_factor: 1}", "anchor-weight", "anchor_factor"),
+        ("{anchor_factor: 1}", "anchor-uplift", "anchor_factor"),
+        ("{anchor_friction: 0.9}", "anchor-sliding", "anchor_friction"),
+        ("{minimum_tension: {wire: 1 N}}", "slack", "minimum_tension.wire"),
+        ("{minimum_top_depth: 1 m}", "top-depth", "minimum_top_depth"),
+        ("{minimum_rise_speed: 0.1 m/s}", "recovery", "minimum_rise_speed"),
+        ("{launch_safety_factor: 1.1}", "launch-strength", "launch_safety_factor"),
+    ],
+)
+def test_who_departs_from_a_default_cites_nobody_for_it(calm, write_mooring, checks, rule, name):
+    file = write_mooring()
+    document = json.loads(
+        calm("check", file_with(file, "own.yaml", f"checks: {checks}\n"), "--json", "-").out
+    )
+    (departing,) = (one for one in document["limits"] if one["departs"])
+    assert departing["name"] == name
+    sources = {f["source"] for f in document["findings"] if f["rule"] == rule and f["limit"]}
+    assert all(source.startswith(f"The design's own `{name}`") for source in sources), sources
+    assert sources
+
+
+def test_an_anchor_that_clings_departs_from_the_default(calm, write_mooring, folder):
+    file = write_mooring()
+    text = (folder / file).read_text().replace("weight: 5000 N", "weight: 5000 N, friction: 3")
+    (folder / file).write_text(text)
+    document = json.loads(calm("check", file, "--json", "-").out)
+    used = limits(document)["anchor_friction"]
+    assert (used["value"], used["default"], used["departs"]) == (3.0, 0.6, True)
+    (finding,) = (f for f in document["findings"] if f["rule"] == "anchor-sliding")
+    assert finding["source"] == "The design's own `anchor_friction`, 3 in place of 0.6"

@@ -124,7 +124,7 @@ class Driver:
 
     @property
     def view(self):
-        return self.builder.view
+        return self.app.workspace.view
 
     @property
     def screen(self):

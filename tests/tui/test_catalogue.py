@@ -21,7 +21,7 @@ def test_what_a_person_wrote_is_no_markup(drive, small):
         assert "[@click=quit]" in driver.screen
         text = driver.text.replace(MOORING[MOORING.index("  ball:") :].splitlines()[0], broken)
         driver.session.write(text)
-        driver.builder.changed()
+        driver.builder.show_draft()
         await driver.settle()
         await driver.press("ctrl+u")
         await driver.type("ball")

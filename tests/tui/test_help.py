@@ -10,13 +10,14 @@ from calm.tui.dialogs import Question, Sheet
 from calm.tui.help_screen import HelpScreen
 from calm.tui.line.builder import BuilderScreen
 from calm.tui.line.cell_editor import CellEditor
+from calm.tui.line.pane import LinePane
 from calm.tui.text_screen import TextScreen, YamlArea
 from calm.tui.water.cells import Cells
 from calm.tui.water.form_choice import FormChoice
 from calm.tui.water.screen import WaterScreen
 
 OWNERS = {
-    "line": BuilderScreen,
+    "line": LinePane,
     "anywhere": BuilderScreen,
     "cell": CellEditor,
     "catalogue": CataloguePane,

@@ -9,6 +9,7 @@ from calm.case import Mooring, Result
 from calm.checks.assess import assessment_of, stand_of
 from calm.checks.finding import AS_GIVEN, State
 from calm.checks.rules import RULES
+from calm.cli.check_files import read_designs
 from calm.errors import NoEquilibrium
 from calm.files import Place
 from calm.tui.live import judge, judge_fully
@@ -59,7 +60,10 @@ def test_findings_are_those_of_check(name: str) -> None:
     assert view.findings == tuple(each for each in stand.findings if each.situation == AS_GIVEN)
     assert not view.complete
     fully = judge_fully(view)
-    assessment = assessment_of(mooring.file.name, [stand])
+    (design,), _ = read_designs([path], None, [], 1)  # in each of its environments
+    stands = [stand_of(each, design.name) for each in design.moorings]
+    assessment = assessment_of(design.name, stands)
+    assert [each.environment for each in fully.stands] == [each.environment for each in stands]
     assert fully.complete and fully.findings == tuple(assessment.all_findings())
     assert judge_fully(fully) is fully
 

@@ -4,6 +4,7 @@ import pytest
 
 from calm.files.fields import Quantity
 from calm.tui.checking import number, quantity
+from calm.tui.water.columns import check_of
 from calm.tui.water.pasted import NoRows, pasted_rows
 
 NUMBERS = (number, number, number)
@@ -41,3 +42,19 @@ def test_values_of_a_column_without_a_unit_have_their_own():
         ("0", "2 m/s"),
         ("9", "3 m/s"),
     )
+
+
+@pytest.mark.parametrize(
+    "column, good, bad",
+    [
+        ("density kg/m^3", "1025", "90"),
+        ("density", "1025 kg/m^3", "90 kg/m^3"),
+        ("speed m/s", "0.4", "-0.4"),
+        ("u m/s", "-0.4", "1 m"),
+        ("toward deg", "-90", "500"),
+        ("temperature degC", "4", "90"),
+    ],
+)
+def test_values_of_a_column_are_as_plausible_as_in_files(column, good, bad):
+    check = check_of(column)
+    assert check(good).is_good and not check(bad).is_good

@@ -23,6 +23,8 @@ def test_every_screen_has_only_signs_that_the_terminal_has(drive, small):
             await driver.press(*keys)
             await driver.settle()
             assert driver.screen.isascii(), keys
+        driver.app.judging.ask_fully()
+        await driver.settle()
         assert "+ passes" in driver.screen or "! " in driver.screen
         assert "Boue ? ?" in driver.screen
         assert driver.text == text

@@ -42,7 +42,7 @@ async def theirs(driver, path, old="60 m", new="55 m"):
     """Another program changes the file, and the application looks."""
     text = path.read_text().replace(old, new)
     path.write_text(text)
-    driver.app.look_at_disk()
+    driver.app.saving.look_at_disk()
     await driver.settle()
     return text
 
@@ -360,7 +360,7 @@ def test_a_signal_leaves_the_work_that_is_offered(drive, small, of_another, end,
 
     async def story(driver):
         small.write_text(small.read_text() + "# theirs\n")
-        driver.app.look_at_disk()
+        driver.app.saving.look_at_disk()
         await driver.settle()
         end(driver.app, number, terminal=True)
         await until(driver, lambda: driver.app._exit)
@@ -444,9 +444,9 @@ def test_a_file_that_is_read_again_closes_the_editor_of_another_text(drive, smal
         await driver.press("end", "n")  # nothing typed yet
         line = small.read_text().partition("line:")[0] + "line: []\n"
         small.write_text(line)
-        driver.app.look_at_disk()
+        driver.app.saving.look_at_disk()
         await driver.settle()
-        assert driver.text == line and not driver.builder.editor.is_open
+        assert driver.text == line and not driver.builder.body.line.editor.is_open
         await driver.press("x", "enter")
         assert driver.text == line
 
@@ -459,7 +459,7 @@ def test_a_change_is_told_once(drive, small):
         await theirs(driver, small)
         assert "changed by another program" in driver.screen
         await driver.press("down")
-        driver.app.look_at_disk()
+        driver.app.saving.look_at_disk()
         await driver.settle()
         assert "changed by another program" not in driver.screen
         await theirs(driver, small, "55 m", "554 m")
@@ -473,7 +473,7 @@ def test_a_file_that_is_gone_is_not_saved_any_more(drive, small):
 
     async def story(driver):
         small.unlink()
-        driver.app.look_at_disk()
+        driver.app.saving.look_at_disk()
         await driver.settle()
         assert "gone from the disk" in driver.screen and "not saved" in driver.screen
         await driver.press("q")
@@ -489,7 +489,7 @@ def test_the_last_copy_of_a_file_that_is_gone_is_kept(drive, small):
 
     async def story(driver):
         small.unlink()
-        driver.app.look_at_disk()
+        driver.app.saving.look_at_disk()
         await driver.settle()
         await until(driver, lambda: copies(small))
         assert kept(small) == before
@@ -539,7 +539,7 @@ def test_a_changed_file_is_not_overwritten_unasked(drive, small):
         await rename(driver)
         theirs = small.read_text().replace("60 m", "55 m")
         small.write_text(theirs)
-        driver.app.look_at_disk()
+        driver.app.saving.look_at_disk()
         await driver.pilot.pause()
         assert "changed by another program" in driver.screen
         await driver.press("ctrl+s")
@@ -722,23 +722,23 @@ def test_an_edit_does_not_wait_for_the_full_check(drive, small, monkeypatch):
     going_on, begun = threading.Event(), threading.Event()
     really = live.judge_fully
 
-    def slowly(view):
+    def slowly(view, catalogs):
         begun.set()
         assert going_on.wait(60)
-        return really(view)
+        return really(view, catalogs)
 
     async def story(driver):
         monkeypatch.setattr(live, "judge_fully", slowly)
         await driver.press("n", "a", "enter")
         await until(driver, lambda: driver.view.text == driver.text)
-        driver.app.ask_fully()
+        driver.app.judging.ask_fully()
         await until(driver, begun.is_set)
         await driver.press("n", "b", "enter")
         await until(driver, lambda: driver.view.text == driver.text)  # the check is under way
         going_on.set()
         await driver.settle()
         assert driver.view.text == driver.text and not driver.view.complete
-        driver.app.ask_fully()
+        driver.app.judging.ask_fully()
         await driver.settle()
         assert driver.view.complete
 

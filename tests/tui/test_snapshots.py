@@ -34,7 +34,7 @@ def test_the_screen_looks_as_it_was_kept(drive, name):
 
     async def story(driver):
         await driver.press(*keys)
-        driver.app.ask_fully()
+        driver.app.judging.ask_fully()
         await driver.settle()
         driver.app.screen.query("Input").set(disabled=True)  # no blinking cursor
         await driver.settle()

@@ -37,7 +37,7 @@ def test_an_environment_that_another_program_takes_out(drive, stormy):
     async def story(driver):
         await driver.press("w")
         stormy.write_text(without)
-        driver.app.look_at_disk()
+        driver.app.saving.look_at_disk()
         await driver.settle()
         assert "[own]" in driver.screen and "no environment storm now" in driver.screen
         assert driver.view.environment is None and not driver.view.problems
@@ -51,7 +51,7 @@ def test_a_text_that_cannot_be_read_changes_no_environment(drive, stormy):
         assert isinstance(driver.app.screen, TextScreen)
         await driver.press("[", "space")
         await driver.settle()
-        assert driver.session.draft.problems and driver.session.environment == "storm"
+        assert driver.session.draft.problems and driver.session.standing.environment == "storm"
 
     drive(story, stormy, environment="storm")
 
@@ -59,6 +59,6 @@ def test_a_text_that_cannot_be_read_changes_no_environment(drive, stormy):
 def test_an_environment_file_stays(small, folder):
     (folder / "env.yaml").write_text("environment: {depth: 90 m}\n")
     session, _ = open_session(small, "env.yaml")
-    assert session.environment == "env.yaml" and session.lost_environment is None
-    session.environment = None
-    assert session.environment is None
+    assert session.standing.environment == "env.yaml" and session.standing.lost_environment is None
+    session.standing.environment = None
+    assert session.standing.environment is None

@@ -146,7 +146,7 @@ def test_build_the_deep_mooring_from_nothing(tmp_path):
     terminal.wait("density kg/m^3")
     fill_table(terminal, DENSITY)
     terminal.wait("1047")
-    terminal.press(TAB, RIGHT, RIGHT, ENTER)
+    terminal.press(DOWN, RIGHT, RIGHT, ENTER)
     terminal.wait("speed m/s")
     fill_table(terminal, CURRENT)
     terminal.wait("0.06")

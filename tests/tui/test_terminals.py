@@ -35,6 +35,8 @@ def test_without_colours_none_is_sent_and_signs_tell_the_same(drive, small, monk
     monkeypatch.setenv("NO_COLOR", "1")
 
     async def story(driver):
+        driver.app.judging.ask_fully()
+        await driver.settle()
         assert "✓ passes" in driver.screen or "! " in driver.screen
         for keys in (*SCREENS, ["ctrl+p"]):
             await driver.press(*keys)

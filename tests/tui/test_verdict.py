@@ -1,13 +1,17 @@
 """What the verdict says at its head is the worst of what it says below."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from calm.checks.finding import State
+from calm.files.editing import Draft
+from calm.tui.line.rows import table_rows
 from calm.tui.live import judge, judge_fully
-from calm.tui.verdict_text import sayings
+from calm.tui.verdict_text import headline, sayings
+from tests.tui.conftest import MOORING
 
 LINES = Path(__file__).resolve().parents[2] / "lines"
 BUOY = (LINES / "braconnot-buoy.yaml").read_text(encoding="utf-8")
@@ -69,3 +73,64 @@ def test_the_margin_of_a_row_is_the_least_of_any_situation():
 def test_a_line_without_an_anchor_is_told_what_one_is_to_weigh():
     told = list(sayings(judge(BUOY.replace("  - {use: block}\n", ""))))
     assert the(told, "needs").text == "needs 720 N in water"
+
+
+def test_nothing_is_said_to_pass_before_all_is_judged():
+    view = judge((LINES / "s1000.yaml").read_text(encoding="utf-8"))
+    assert headline(view).sign == "…" and headline(view).state is None
+    assert "so far" in headline(view).text
+    fully = judge_fully(view)
+    assert headline(fully).sign != "…"
+
+
+def test_what_is_unknown_does_not_pass():
+    view = judge_fully(judge(BUOY))
+    kept = tuple(e for e in view.findings if e.state in (State.PASS, State.UNKNOWN))
+    assert any(each.state is State.UNKNOWN for each in kept)
+    head = headline(replace(view, findings=kept))
+    assert "unknown" in head.text and head.sign == "?"
+
+
+def test_the_margin_of_unknown_strength_is_a_question():
+    view = judge_fully(judge(BUOY))
+    rows = table_rows(Draft(BUOY), view, None)
+    lacking = [row.texts.get("margin") for row in rows if row.spot.item == len(view.rows) - 1]
+    assert lacking == ["?"]
+    assert view.rows[-1].lacks_strength
+
+
+STORM = """
+environments:
+  storm:
+    current: {speed: 1.5 m/s, toward: 90 deg}
+"""
+
+
+def test_all_environments_are_judged_and_the_worst_is_named():
+    text = MOORING.replace("breaking_load: 20 kN", "breaking_load: 12 kN") + STORM
+    view = judge_fully(judge(text))
+    assert [each.environment for each in view.stands] == ["own", "storm"]
+    told = list(sayings(view))
+    lines = {each.heading: each for each in told}
+    assert lines["In storm"].state is State.FAIL
+    assert lines["In own environment"].state is not State.FAIL
+    assert headline(view).state is State.FAIL
+    grave = [each.heading for each in told if each.state is State.FAIL and each.heading]
+    assert any("(storm" in heading for heading in grave)
+
+
+def test_seen_from_the_storm_the_own_environment_is_named():
+    text = MOORING + STORM
+    here, there = (judge_fully(judge(text, environment=name)) for name in (None, "storm"))
+    assert {each.environment for each in there.stands} == {"own", "storm"}
+    count = [sum(f.state is State.FAIL for f in each.findings) for each in (here, there)]
+    assert count[0] == count[1] > 0
+
+
+def test_an_environment_that_cannot_be_read_is_named(tmp_path):
+    text = MOORING + "environments: {neap: {current: {file: none.csv}}}\n"
+    view = judge(text, tmp_path / "m.yaml")
+    if not view.problems:  # the file of another environment is looked for when that is judged
+        view = judge_fully(view)
+        assert view.elsewhere and headline(view).state is State.FAIL
+        assert any("none.csv" in each.text for each in sayings(view))

@@ -392,7 +392,7 @@ def test_what_is_changed_in_a_named_environment_has_the_rest_of_the_files_own(
         await driver.press("w", "f5")
         await enter(driver, id, text)
         await driver.settle()
-        assert driver.session.environment == "storm"
+        assert driver.session.standing.environment == "storm"
         key = id.partition("-")[0]
         assert driver.session.draft.value(("environments", "storm", key)) == expected
         assert driver.view.problems == ()
@@ -424,14 +424,14 @@ def test_what_is_being_typed_is_taken_before_anything_else(drive, small):
         await driver.press("w", "ctrl+u")
         await driver.type("130")
         screen = driver.app.screen
-        assert screen.is_typing
-        assert screen.settle() and not screen.is_typing
+        assert screen.part.is_typing
+        assert screen.part.settle() and not screen.part.is_typing
         assert value(driver, "depth") == "130 m"
         await driver.press("ctrl+u")
         await driver.type("140 kg")
         await driver.press("f6")
         assert driver.app.screen is screen and "Not taken yet, depth: is" in driver.screen
-        assert not screen.settle() and screen.is_typing
+        assert not screen.part.settle() and screen.part.is_typing
         await driver.press("ctrl+u")
         await driver.type("140")
         await driver.press("f6")
@@ -448,9 +448,9 @@ def test_what_is_typed_in_a_table_is_taken_before_anything_else(drive, small):
         cells(driver).focus()
         await driver.press("right", "1", "x")
         screen = driver.app.screen
-        assert not screen.settle() and screen.is_typing
+        assert not screen.part.settle() and screen.part.is_typing
         await driver.press("backspace", "full_stop", "5")
-        assert screen.settle() and not screen.is_typing
+        assert screen.part.settle() and not screen.part.is_typing
         assert value(driver, "current", "rows")[0] == ["0", "1.5", "90"]
         await driver.pilot.pause()
         assert cells(driver).has_focus
@@ -459,7 +459,7 @@ def test_what_is_typed_in_a_table_is_taken_before_anything_else(drive, small):
         await driver.press("1")
         driver.session.write(driver.text.replace("1.5", "1.7"))
         screen.replaced()
-        assert not screen.is_typing and cells(driver).rows[0] == ("0", "1.7", "90")
+        assert not screen.part.is_typing and cells(driver).rows[0] == ("0", "1.7", "90")
 
     drive(story, small)
 
@@ -502,7 +502,7 @@ def test_a_draft_that_cannot_be_read_is_shown_as_one_that_says_nothing(drive, sm
         screen = driver.app.screen
         screen.replaced()
         assert field(driver, "depth").input.value == ""
-        assert not screen.change(lambda water: water.put(("depth",), "9 m"), "the depth")
+        assert not screen.pane.change(lambda water: water.put(("depth",), "9 m"), "the depth")
         assert driver.text == "line: ["
 
     drive(story, small)
@@ -636,7 +636,7 @@ def test_named_environments_are_added_switched_and_dropped(drive, small):
         await driver.type("storm")
         await driver.press("enter")
         await driver.settle()
-        assert driver.session.environment == "storm"
+        assert driver.session.standing.environment == "storm"
         await enter(driver, "current-speed", "1.1 m/s")
         await driver.settle()
         assert driver.view.file.environment.name == "storm"
@@ -646,7 +646,7 @@ def test_named_environments_are_added_switched_and_dropped(drive, small):
         in_storm = driver.view.result.top.knockdown
         await driver.press("escape", "e")
         await driver.settle()
-        assert driver.session.environment is None
+        assert driver.session.standing.environment is None
         assert driver.view.result.top.knockdown < in_storm
         await driver.press("e", "w", "f7")
         assert driver.session.draft.value(("environments",)) is None
@@ -698,3 +698,54 @@ def test_mistakes_of_the_water_are_told_where_they_are_mended(drive, small):
         assert message not in driver.screen and driver.view.problems == ()
 
     drive(story, small)
+
+
+def test_tab_goes_through_a_table_and_never_out_of_its_end(drive, folder):
+    path = folder / "m.yaml"
+    rows = "rows: [[0, 0.5, 90], [100, 0.1, 90]]"
+    table = f"  current: {{columns: [depth m, speed m/s, toward deg], {rows}}}"
+    old = "  current: {speed: 0.5 m/s, toward: 90 deg}"
+    path.write_text(MOORING.replace(old, table), encoding="utf-8")
+
+    async def story(driver):
+        await driver.press("w")
+        grid = cells(driver)
+        grid.focus()
+        await driver.press("tab", "tab", "tab", "tab")
+        assert (grid.cursor, grid.column) == (1, 1) and driver.app.focused is grid
+        await driver.type("0.2")
+        await driver.press("tab")  # takes it and edits the direction
+        await driver.type("100")
+        await driver.press("tab", "tab")
+        assert "The table ends here" in driver.screen and driver.app.focused is grid
+        await driver.press("tab")
+        await driver.type("0.9")  # of the table, not of the wind
+        await driver.press("escape", "shift+tab", "shift+tab")
+        assert (grid.cursor, grid.column) == (1, 0)
+        await driver.press("down")
+        assert driver.app.focused is not grid
+        assert "[100, 0.2, 100]" in driver.text and "wind" not in driver.text
+
+    drive(story, path)
+
+
+def test_an_arrow_takes_what_is_typed_as_in_a_spreadsheet(drive, folder):
+    path = folder / "m.yaml"
+    table = "  current: {columns: [depth m, u m/s, v m/s], rows: [[0, 0.5, 0], [100, 0.1, 0]]}"
+    old = "  current: {speed: 0.5 m/s, toward: 90 deg}"
+    path.write_text(MOORING.replace(old, table), encoding="utf-8")
+
+    async def story(driver):
+        await driver.press("w")
+        grid = cells(driver)
+        grid.focus()
+        await driver.press("right")
+        await driver.type("0.7")
+        await driver.press("down")
+        assert "[0, 0.7, 0]" in driver.text and (grid.cursor, grid.column) == (1, 1)
+        await driver.press("left")
+        await driver.type("90")
+        await driver.press("right")
+        assert "[90, 0.1, 0]" in driver.text and (grid.cursor, grid.column) == (1, 1)
+
+    drive(story, path)

@@ -16,6 +16,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from calm.errors import NoEquilibrium
+from calm.physics.anchor import required_weight
 from calm.physics.line import Floats, Integers
 from calm.solve import Settings, Solution
 from tests.validation.agreement import clamp_nodes
@@ -30,13 +31,16 @@ class Honesty:
     """True over stated error: of the worst depth or offset, and of the worst tension.
 
     `place` and `tension` are those at the ends of all pieces and at all clamps; `shape` and
-    `pull` those at the nodes inside the cables.
+    `pull` those at the nodes inside the cables. `anchor` is that of the worse of its vertical and
+    horizontal pull, `weight` that of the weight that it needs.
     """
 
     place: float
     tension: float
     shape: float
     pull: float
+    anchor: float
+    weight: float
 
 
 def honesty(family: str, number: int) -> Honesty | str:
@@ -64,7 +68,20 @@ def honesty(family: str, number: int) -> Honesty | str:
     return Honesty(
         float(place / depth_error), float(tension / tension_error),
         float(shape / depth_error), float(pull / tension_error),
+        *_at_the_anchor(solution, fine),
     )  # fmt: skip
+
+
+def _at_the_anchor(solution: Solution, fine: Solution) -> tuple[float, float]:
+    """True over stated error of the pull on the anchor and of its needed weight; 0 of a tow."""
+    if solution.line.towed:
+        return 0.0, 0.0
+    lift = abs(float(solution.force[-1, 2] - fine.force[-1, 2]))
+    ours, theirs = (float(np.hypot(*one.force[-1, :2])) for one in (solution, fine))
+    pull = abs(ours - theirs)
+    stated = max(solution.lift_error, solution.pull_error)
+    needed = required_weight(solution.lift_error, solution.pull_error, 1.5, 0.6)
+    return max(lift, pull) / stated, required_weight(lift, pull, 1.5, 0.6) / needed
 
 
 def _ends(solution: Solution) -> Integers:

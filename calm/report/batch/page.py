@@ -16,10 +16,10 @@ from calm.report.batch.tables import (
     statistics_tables,
     worst_tables,
 )
+from calm.report.blocks import Block, Figure, Listing, Part, Prose, Report, Section
 from calm.report.html import page
+from calm.report.inputs import UNSEEN
 from calm.report.provenance import date, versions
-from calm.report.result_tables import UNSEEN
-from calm.report.section import Block, Figure, Listing, Part, Prose, Report, Section
 
 if TYPE_CHECKING:
     from calm.batch.statistics.summary import Summary

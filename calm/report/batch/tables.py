@@ -12,8 +12,8 @@ from calm.batch.statistics.summary import WORST
 from calm.checks.finding import State
 from calm.quantities import QUANTITIES
 from calm.report.batch.labels import QUANTITY, TITLES, grouped, percent, refusals, when
-from calm.report.result_tables import figure_cell, quantity_column
-from calm.report.section import Cell, Column, Prose, Table
+from calm.report.blocks import Cell, Column, Prose, Table
+from calm.report.line import figure_cell, quantity_column
 
 if TYPE_CHECKING:
     from calm.batch.statistics.distribution import Distribution
@@ -78,7 +78,7 @@ def statistics_tables(summary: Summary) -> Iterator[Table]:
         columns = (Column("component"), *numbers, Column("maximum reached", share=0.0))
         rows = tuple(
             (
-                Cell(f"\u2003{part.label}" if part.clamped else part.label),
+                Cell(part.label, indented=part.clamped),
                 *_figures(name, getattr(part, name)),
             )
             for part in summary.parts

@@ -10,6 +10,7 @@ from calm.checks.finding import worst_state
 
 if TYPE_CHECKING:
     from calm.checks.assessment import Assessment, Situation
+    from calm.checks.backup import Loss
     from calm.checks.finding import Finding
 
 
@@ -34,6 +35,18 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
             for each in assessments
             for finding in each.accepted_findings()
         ],
+        "limits": [
+            {
+                "mooring": each.name,
+                "name": key.name,
+                "value": key.value,
+                "default": key.default,
+                "source": key.source,
+                "departs": key.departs,
+            }
+            for each in assessments
+            for key in each.limits
+        ],
         "findings": [finding.to_dict() for each in assessments for finding in each.all_findings()],
         "tighter": [
             finding.to_dict() for each in assessments for finding in each.tighter_findings()
@@ -49,6 +62,7 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
         "launch": {each.name: _launch(each) for each in assessments},
         "recovery": {each.name: _recovery(each) for each in assessments},
         "backup": {each.name: [asdict(one) for one in each.backup] for each in assessments},
+        "losses": {each.name: [_loss(one) for one in each.losses] for each in assessments},
         "inventory": {each.name: [asdict(one) for one in each.inventory] for each in assessments},
     }
 
@@ -65,6 +79,12 @@ def _accepted(mooring: str, finding: Finding) -> dict[str, Any]:
         "date": accept.date,
         "until": accept.until,
     }
+
+
+def _loss(loss: Loss) -> dict[str, Any]:
+    values = asdict(loss)
+    del values["place"]
+    return values
 
 
 def _situation(situation: Situation) -> dict[str, Any]:
@@ -95,6 +115,7 @@ def _launch(assessment: Assessment) -> dict[str, Any] | None:
         "fall_speed_band": list(launch.fall_speed_band),
         "anchor_tension": launch.anchor_tension,
         "anchor_drag_known": launch.anchor_drag_known,
+        "in_still_water": launch.in_still_water,
         "drift": list(launch.drift),
         "components": launch.components(),
     }

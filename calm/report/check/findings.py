@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
 from calm.checks.rules import RULES
+from calm.report.blocks import Cell, Column, Prose, Table
 from calm.report.check.summary import margin_of, place_of, say_in_unit, worst_by_part
-from calm.report.result_tables import figure_cell, quantity_column
-from calm.report.section import Cell, Column, Prose, Table
+from calm.report.line import figure_cell, quantity_column
 
 if TYPE_CHECKING:
     from calm.checks.assessment import Stand

@@ -7,8 +7,8 @@ from math import isnan
 from typing import TYPE_CHECKING
 
 from calm.quantities import QUANTITIES, say
-from calm.report.result_tables import figure_cell
-from calm.report.section import Cell, Column, Table
+from calm.report.blocks import Cell, Column, Table
+from calm.report.line import figure_cell
 
 if TYPE_CHECKING:
     from calm.checks.assessment import Assessment

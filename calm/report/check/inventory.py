@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from calm.quantities import QUANTITIES
-from calm.report.result_tables import figure_cell, quantity_column
-from calm.report.section import Cell, Column, Table
+from calm.report.blocks import Cell, Column, Table
+from calm.report.line import figure_cell, quantity_column
 
 if TYPE_CHECKING:
     from calm.checks.inventory import Item
@@ -18,7 +18,7 @@ def deck_table(items: Sequence[Item]) -> Table:
     rows = tuple(
         (
             Cell("" if item.clamped_on else str(item.index)),
-            Cell(f"\u2003{item.label}" if item.clamped_on else item.label),
+            Cell(item.label, indented=item.clamped_on is not None),
             Cell(item.name or item.use),
             figure_cell("cut_length", item.cut_length),
             figure_cell("mass", item.dry_mass),
@@ -57,6 +57,8 @@ def inventory_table(items: Sequence[Item]) -> Table:
         Column("spares"),
     )
     note = "Cut length: of wires, ropes and chains. Spares: by hand."
+    if any(item.dry_mass is None for item in items):
+        note += " ≥: a lower bound, since masses in air are missing: no lift may rely on it."
     return Table("Inventory", columns, tuple(rows), note, totals=1)
 
 
@@ -74,9 +76,11 @@ def _stock(name: str, use: str, items: Sequence[Item]) -> tuple[Cell, ...]:
 
 
 def _sum(name: str, values: Sequence[float | None]) -> Cell:
-    """The sum of what is known, and how much is not."""
+    """The sum of what is known, and how much is not; of masses that is the least there can be."""
     known = [value for value in values if value is not None]
     missing = len(values) - len(known)
     if not known:
         return Cell("-")
-    return Cell(QUANTITIES[name].format(sum(known)), f"{missing} unknown" if missing else "")
+    least = "≥ " if missing and name == "dry_mass" else ""
+    text = f"{least}{QUANTITIES[name].format(sum(known))}"
+    return Cell(text, f"{missing} unknown" if missing else "")

@@ -3,9 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
+from calm.report.blocks import (
+    ON_THE_WAY,
+    Block,
+    Figure,
+    Part,
+    Prose,
+    Report,
+    Section,
+    Signatures,
+)
 from calm.report.check.figures import check_figure
 from calm.report.check.findings import checks_table, results_table
 from calm.report.check.handling import breaks_table, handling_summary, handling_table
@@ -17,26 +28,15 @@ from calm.report.check.summary import (
     worst_by_rule,
     worst_table,
 )
-from calm.report.provenance import date
-from calm.report.result_tables import (
+from calm.report.check.verdict import accepted_table, limits_table, unknown_table, verdict_prose
+from calm.report.inputs import (
     UNSEEN,
     current_listing,
     environments_table,
     file_listing,
-    line_table,
     origin,
-    said_below,
 )
-from calm.report.section import (
-    ON_THE_WAY,
-    Block,
-    Figure,
-    Part,
-    Prose,
-    Report,
-    Section,
-    Signatures,
-)
+from calm.report.provenance import date
 from calm.report.sheet import sheet
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def mooring_section(assessment: Assessment) -> Section:
         Part("Judgement", tuple(_judgement(assessment, columns))),
         Part("The line", tuple(_line(assessment))),
         Part("Shape, tension and breaks", tuple(_drawn(assessment))),
-        Part("Checks", tuple(checks_table(assessment.all_findings()))),
+        Part("Checks", tuple(_checks(assessment))),
         Part("Launch, recovery, breaks", tuple(_on_the_way(assessment))),
         Part(
             "Inventory",
@@ -59,7 +59,15 @@ def mooring_section(assessment: Assessment) -> Section:
         ),
         Part("Inputs", tuple(_inputs(assessment))),
     )
-    return Section(assessment.name, parts, columns, worst)
+    return Section(
+        assessment.name,
+        parts,
+        columns,
+        worst,
+        tuple(assessment.all_findings()),
+        tuple(assessment.accepted_findings()),
+        assessment.limits,
+    )
 
 
 def check_report(sections: Sequence[Section]) -> Report:
@@ -72,13 +80,24 @@ def check_report(sections: Sequence[Section]) -> Report:
         title="Design check",
         subtitle=f"{moorings}, {in_all}",
         front=(
-            Part("Summary", (*matrix_tables(sections), failures(sections), worst_table(sections))),
+            Part("Summary", tuple(_summary(sections))),
+            Part("Limits", (limits_table([(each.name, each.limits) for each in sections]),)),
             Part("What is not judged", (Prose(UNSEEN, State.UNKNOWN),)),
             Part("Signatures", (Signatures(("Designed by", "Checked by", "Approved by")),)),
         ),
         sections=tuple(sections),
         date=date(),
     )
+
+
+def _summary(sections: Sequence[Section]) -> Iterator[Block]:
+    yield verdict_prose(finding for each in sections for finding in each.findings)
+    accepted = accepted_table([(each.name, each.accepted) for each in sections])
+    if accepted is not None:
+        yield accepted
+    yield from matrix_tables(sections)
+    yield failures(sections)
+    yield worst_table(sections)
 
 
 def _judgement(assessment: Assessment, columns: Sequence[str]) -> Iterator[Block]:
@@ -99,8 +118,8 @@ def _line(assessment: Assessment) -> Iterator[Block]:
     yield Figure(title, schematic_svg(assessment.mooring.file, result), tall=True)
     if stand is not None and result is not None:
         said = sheet(result)
-        yield line_table(said, f"Table of the line, environment: {stand.environment}")
-        yield from said_below(said)
+        yield replace(said.table, title=f"Table of the line, environment: {stand.environment}")
+        yield from (*said.summary, Prose((said.convergence,)))
 
 
 def _drawn(assessment: Assessment) -> Iterator[Block]:
@@ -110,6 +129,14 @@ def _drawn(assessment: Assessment) -> Iterator[Block]:
     title = "Elevation, current, tension, plan and breaks"
     yield Figure(title, check_figure(assessment))
     yield Prose((_FIGURE_NOTE,))
+
+
+def _checks(assessment: Assessment) -> Iterator[Block]:
+    findings = [*assessment.all_findings()]
+    unknown = unknown_table(findings)
+    if unknown is not None:
+        yield unknown
+    yield from checks_table(findings)
 
 
 def _on_the_way(assessment: Assessment) -> Iterator[Block]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from calm.checks.finding import AS_GIVEN, Finding, State
 from calm.checks.rules import RULES
 from calm.quantities import QUANTITIES
-from calm.report.section import ON_THE_WAY, Cell, Column, Prose, Section, Table, Worst
+from calm.report.blocks import ON_THE_WAY, Cell, Column, Prose, Section, Table, Worst
 
 if TYPE_CHECKING:
     from calm.checks.assessment import Assessment

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
     from calm.case import Result, TowResult
-    from calm.report.section import Report, Section
+    from calm.report.blocks import Report, Section
 
 _LONG_WORD = re.compile(r"(\S{20,})")
 _STEP = 10  # signs after which a long word may break

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -12,6 +11,7 @@ from calm.quantities import QUANTITIES, say
 from calm.report.labels import alike, together
 from calm.report.schematic.levels import Levels, levels_of
 from calm.report.schematic.sign import BALLS, Sign, Symbol, sign_of
+from calm.report.signs import printable
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
@@ -25,8 +25,6 @@ HEADINGS = {
 """The quantities beside each part, with the two lines of their headings."""
 
 _JOINED = (*BALLS, Symbol.SHACKLE, Symbol.SWIVEL, Symbol.LINK)
-# Signs that XML has no place for, that command a terminal, or that turn other signs around.
-_UNPRINTABLE = re.compile("[\x00-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]")
 
 
 @dataclass(frozen=True)
@@ -121,7 +119,7 @@ def schematic_of(file: MooringFile, result: Result | TowResult | None = None) ->
     parts = [_part(cells, levels, *piece) for piece in pieces]
     sea = Row("sea surface", "", cells.at(0.0))
     return Schematic(
-        title=printable(file.name),
+        title=one_line(file.name),
         subtitle=_subtitle(file),
         note=levels.note,
         columns=cells.columns,
@@ -133,9 +131,9 @@ def schematic_of(file: MooringFile, result: Result | TowResult | None = None) ->
     )
 
 
-def printable(text: str) -> str:
+def one_line(text: str) -> str:
     """A text in one line, what XML or a terminal cannot carry replaced by a mark."""
-    return _UNPRINTABLE.sub("\ufffd", " ".join(text.split()))
+    return printable(" ".join(text.split()))
 
 
 class _Cells:
@@ -172,8 +170,8 @@ def _part(cells: _Cells, levels: Levels, piece: Piece, length: float, depth: flo
 
 
 def _row(of: Piece | Clamp, cells: tuple[str, ...]) -> Row:
-    name = printable(of.component.name or of.use)
-    return Row(printable(of.label), name, cells, strong=of.component.role == "instrument")
+    name = one_line(of.component.name or of.use)
+    return Row(one_line(of.label), name, cells, strong=of.component.role == "instrument")
 
 
 def _joined(parts: list[Part], pieces: Sequence[Piece]) -> Iterator[Part]:

@@ -14,6 +14,7 @@ from calm.quantities import QUANTITIES
 from calm.report.schematic.parts import HEADINGS, Row, Schematic, schematic_of
 from calm.report.schematic.sign import BALLS, LINES, Sign, Symbol
 from calm.report.schematic.widths import ELLIPSIS
+from calm.report.signs import encodable
 
 if TYPE_CHECKING:
     from rich.console import Console, ConsoleOptions, RenderResult
@@ -95,11 +96,7 @@ def schematic_text(
 
 def can_carry(encoding: str | None) -> bool:
     """Whether an output of this encoding has all signs of the picture."""
-    try:
-        _SIGNS.encode(encoding or "ascii")
-    except (UnicodeEncodeError, LookupError):
-        return False
-    return True
+    return encodable(encoding, _SIGNS)
 
 
 @dataclass(frozen=True)

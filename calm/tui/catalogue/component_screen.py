@@ -135,6 +135,7 @@ class ComponentScreen(Screen[Defined | None]):
         from rich.text import Text
 
         from calm.report.catalogue import to_card
+        from calm.report.terminal import shown
 
         id, values = self._given()
         component, problems = defined(id or "component", values)
@@ -148,7 +149,7 @@ class ComponentScreen(Screen[Defined | None]):
         elif component is not None:
             parts.append(Text("✓ It can be used.", style="green"))
         if component is not None:
-            parts.append(to_card(id or "component", component))
+            parts.append(shown(to_card(id or "component", component)))
         self.query_one("#outcome-text", Static).update(Group(*parts))
 
     def action_accept(self) -> None:
@@ -168,9 +169,3 @@ class ComponentScreen(Screen[Defined | None]):
     def action_cancel(self) -> None:
         """Give nothing."""
         self.dismiss(None)
-
-    def action_help(self) -> None:
-        """All keys."""
-        from calm.tui.help_screen import HelpScreen
-
-        self.app.push_screen(HelpScreen())

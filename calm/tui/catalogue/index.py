@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 from calm.errors import InputError
-from calm.files.catalogue import FAMILY_ROLES, Catalogue, Entry
+from calm.files.catalogue import Catalogue
 from calm.files.document import compose
+from calm.files.entries import FAMILY_ROLES, Entry
 from calm.files.section import Section
 
 _ROLES = {"cable": "line", "chain": "line", "anchor": "anchor"}
@@ -96,7 +97,7 @@ def _listed(entry: Entry, shipped: object) -> Listed:
         return " ".join(value.split()) if isinstance(value, str) else ""
 
     role = text("role") or FAMILY_ROLES.get(entry.family or "", "")
-    own = not (isinstance(shipped, dict) and shipped.get(entry.id) is entry)
+    own = not (isinstance(shipped, Mapping) and shipped.get(entry.id) is entry)
     return Listed(
         id=entry.id,
         name=text("name"),

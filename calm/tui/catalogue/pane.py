@@ -141,10 +141,11 @@ class CataloguePane(Vertical):
             card.update("Nothing has all these words.")
             return
         from calm.report.catalogue import to_card
+        from calm.report.terminal import shown
 
         try:
             catalogue = self.index.catalogue
-            card.update(to_card(chosen.id, catalogue.get(chosen.id), catalogue))
+            card.update(shown(to_card(chosen.id, catalogue.get(chosen.id), catalogue)))
         except CalmError as error:
             card.update(str(error))
         self.query_one("#catalogue-card", VerticalScroll).scroll_home(animate=False)

@@ -5,27 +5,24 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import on
-from textual.app import ComposeResult
 from textual.binding import BindingType
-from textual.containers import Horizontal, Vertical
 from textual.events import DescendantFocus, Key
 
 from calm.tui.actions import Place, bindings, hints
-from calm.tui.bars import KeyBar, TitleBar
+from calm.tui.bars import KeyBar
 from calm.tui.catalogue.pane import CataloguePane
+from calm.tui.line.body import LineBody
 from calm.tui.line.cell_editor import CellEditor
-from calm.tui.line.cell_verbs import CellVerbs
-from calm.tui.line.row_verbs import RowVerbs
-from calm.tui.line.table import LineTable
-from calm.tui.pictures import Picture, Pictures, Tab
-from calm.tui.verdict_pane import VerdictPane
+from calm.tui.pictures import Picture, Tab
+from calm.tui.screen import DraftScreen
+from calm.tui.workspace import Workspace
 
 if TYPE_CHECKING:
     from calm.tui.dialogs import Sheet
 
 
-class BuilderScreen(RowVerbs, CellVerbs):
-    """The line in the middle."""
+class BuilderScreen(DraftScreen):
+    """The line in the middle, and the ways to all other screens."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("anywhere")]
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (112, "-wide"), (176, "-huge")]  # noqa: RUF012
@@ -33,7 +30,6 @@ class BuilderScreen(RowVerbs, CellVerbs):
     DEFAULT_CSS = """
     BuilderScreen {
         & #body { height: 1fr; }
-        & #line-pane { width: 3fr; height: 1fr; layers: table over; }
         & #study { width: 2fr; height: 1fr; border-left: vkey $panel; }
         & #catalogue { width: 2fr; height: 1fr; border-left: vkey $panel; }
         &.-searching #study { display: none; }
@@ -60,18 +56,9 @@ class BuilderScreen(RowVerbs, CellVerbs):
     }
     """
 
-    def compose(self) -> ComposeResult:
-        """Title, line beside picture and verdict (or the catalogue), keys."""
-        yield TitleBar()
-        with Horizontal(id="body"):
-            with Vertical(id="line-pane"):
-                yield LineTable(id="line")
-                yield CellEditor(id="cell")
-            yield CataloguePane(id="catalogue")
-            with Vertical(id="study"):
-                yield Pictures(id="pictures")
-                yield VerdictPane(id="verdict-pane")
-        yield KeyBar()
+    def __init__(self, workspace: Workspace) -> None:
+        self.body = LineBody(workspace)
+        super().__init__(workspace, self.body, self.body)
 
     def on_resize(self) -> None:
         """The title says as much as there is room for."""
@@ -79,12 +66,12 @@ class BuilderScreen(RowVerbs, CellVerbs):
 
     def on_mount(self) -> None:
         """The keys go to the line."""
-        self.refresh_rows()
-        self.table.focus()
+        self.body.line.show_rows()
+        self.body.line.table.focus()
 
     def on_key(self, event: Key) -> None:
         """What was told is read."""
-        if not self.editor.is_open:
+        if not self.body.line.editor.is_open:
             self.tell("")
 
     @on(DescendantFocus)
@@ -94,70 +81,89 @@ class BuilderScreen(RowVerbs, CellVerbs):
         place: Place = "line"
         if isinstance(focused, CellEditor):
             place = "cell"
-        elif focused is not None and self.catalogue in focused.ancestors_with_self:
+        elif focused is not None and self.query_one(CataloguePane) in focused.ancestors_with_self:
             place = "catalogue"
         self.query_one(KeyBar).show_keys(hints(place))
 
     def action_picture(self, tab: Tab) -> None:
         """Show another picture."""
-        self.query_one(Pictures).tab = tab
+        self.body.pictures.tab = tab
 
     def action_zoom(self) -> None:
         """Give the picture the screen, or take it back."""
         self.remove_class("-searching")
         self.toggle_class("-zoomed")
-        (self.query_one(Picture) if self.has_class("-zoomed") else self.table).focus()
+        is_zoomed = self.has_class("-zoomed")
+        (self.query_one(Picture) if is_zoomed else self.body.line.table).focus()
 
     def action_next_environment(self) -> None:
         """Stand the line in the next of its environments."""
-        if len(self.environments) == 1:
+        standing = self.workspace.session.standing
+        if len(standing.environments) == 1:
             self.tell("The file has one environment; add others on the screen of the water (w)")
             return
-        self.session.environment = name = self.next_environment()
+        standing.environment = name = standing.next_environment
+        self.show_draft()
         told = f"environment {name}" if name else "own `environment:`"
-        self.changed(self.table.spot, f"The line stands in the file's {told}")
+        self.tell(f"The line stands in the file's {told}")
+        self.workspace.edited()
+
+    def action_search(self) -> None:
+        """Search the catalogue for a piece below."""
+        self.body.search("below")
+
+    def action_define(self) -> None:
+        """Define a component of one's own, and put it into the line."""
+        from calm.tui.catalogue.component_screen import ComponentScreen
+
+        def take(defined: tuple[str, dict[str, str]] | None) -> None:
+            if defined is not None:
+                self.body.put_component(*defined)
+
+        index = self.workspace.index
+        defined = self.workspace.session.draft.value(("components",))
+        listed = () if index is None else tuple(index.catalogue.ids())
+        own = tuple(defined) if isinstance(defined, dict) else ()
+        self.app.push_screen(ComponentScreen(listed, own), take)
 
     def action_water(self) -> None:
         """Depth, density, current, wind."""
         from calm.tui.water.screen import WaterScreen
 
-        self.app.push_screen(WaterScreen(self.session, self.view), lambda _: self.changed())
-
-    def action_mooring(self) -> None:
-        """Name, description, position."""
-        from calm.tui.line.mooring_sheet import mooring_sheet
-
-        self._ask(mooring_sheet(self.session.draft), "name and place")
-
-    def action_tow(self) -> None:
-        """Speed and course of a tow; a mooring becomes one."""
-        from calm.tui.line.mooring_sheet import tow_sheet
-
-        self._ask(tow_sheet(self.session.draft), "the tow")
-
-    def _ask(self, sheet: Sheet, label: str) -> None:
-        from calm.tui.line.mooring_sheet import changes
-
-        def take(texts: dict[str, str] | None) -> None:
-            if texts is not None:
-                changed = changes(self.session.draft, texts)
-                self.attempt(lambda: self.session.put_all(changed, label))
-
-        self.app.push_screen(sheet, take)
+        self.app.push_screen(WaterScreen(self.workspace), self._back)
 
     def action_text(self) -> None:
         """The file as text."""
         from calm.tui.text_screen import TextScreen
 
-        def take(_: None) -> None:
-            self.changed(self.table.spot)
+        self.app.push_screen(TextScreen(self.workspace), self._back)
 
-        self.app.push_screen(TextScreen(self.session, self.view), take)
+    def _back(self, _: None) -> None:
+        """Another screen may have changed the draft."""
+        self.show_draft()
+        self.tell("")
+        self.workspace.edited()
 
-    async def action_save_as(self) -> None:
-        """Save it under another name."""
-        await self.app.run_action("save_as")
+    def action_mooring(self) -> None:
+        """Name, description, position."""
+        from calm.tui.line.mooring_sheet import mooring_sheet
 
-    async def action_leave(self) -> None:
-        """Leave."""
-        await self.app.run_action("quit")
+        self._ask(mooring_sheet(self.workspace.session.draft), "name and place")
+
+    def action_tow(self) -> None:
+        """Speed and course of a tow; a mooring becomes one."""
+        from calm.tui.line.mooring_sheet import tow_sheet
+
+        self._ask(tow_sheet(self.workspace.session.draft), "the tow")
+
+    def _ask(self, sheet: Sheet, label: str) -> None:
+        from calm.tui.line.mooring_sheet import changes
+
+        session = self.workspace.session
+
+        def take(texts: dict[str, str] | None) -> None:
+            if texts is not None:
+                changed = changes(session.draft, texts)
+                self.body.line.attempt(lambda: session.put_all(changed, label))
+
+        self.app.push_screen(sheet, take)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 from textual import events
 from textual.binding import BindingType
@@ -13,6 +13,9 @@ from textual.widgets import Input
 
 from calm.tui.actions import bindings
 from calm.tui.checking import Check, Reading, anything
+
+Then = Literal["stay", "edit next", "right", "up", "down"]
+"""Where the cursor goes from a value that was taken."""
 
 
 class CellEditor(Input):
@@ -36,10 +39,10 @@ class CellEditor(Input):
 
     @dataclass
     class Done(Message):
-        """A good text was entered, None where it is as it was; `onward` to edit the next value."""
+        """A good text was entered, None where it is as it was; and where to go then."""
 
         text: str | None
-        onward: bool
+        then: Then
 
     @dataclass
     class Abandoned(Message):
@@ -118,22 +121,25 @@ class CellEditor(Input):
         self.post_message(self.Judged(reading))
         return reading
 
-    def action_done(self) -> None:
-        """Take the text."""
-        self._finish(onward=False)
-
-    def action_next_cell(self) -> None:
+    def action_done(self, then: Then = "stay") -> None:
         """Take the text and go on."""
-        self._finish(onward=True)
+        self._finish(then)
+
+    def action_right(self) -> None:
+        """Go on where something was typed up to here, as in a spreadsheet; else move the cursor."""
+        if self.is_typing and self.cursor_position == len(self.value) and self.selection.is_empty:
+            self._finish("right")
+        else:
+            self.action_cursor_right()
 
     def action_abandon(self) -> None:
         """Leave the value as it was."""
         self.post_message(self.Abandoned())
 
-    def _finish(self, *, onward: bool) -> None:
+    def _finish(self, then: Then) -> None:
         reading = self._judge(self.value)
         if reading.is_good:
-            self.post_message(self.Done(self.text, onward))
+            self.post_message(self.Done(self.text, then))
         elif reading.offer:
             self.value = reading.offer
             self.cursor_position = len(self.value)
@@ -150,6 +156,6 @@ class CellEditor(Input):
         if not self.is_typing:
             self.post_message(self.Abandoned())
         elif reading.is_good:
-            self._finish(onward=False)
+            self._finish("stay")
         else:
             self.post_message(self.Abandoned(f"`{self.value}` is not taken: {reading.note}"))

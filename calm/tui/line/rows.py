@@ -13,10 +13,11 @@ from calm.quantities import QUANTITIES
 from calm.tui.catalogue.index import Index
 from calm.tui.checking import length_text
 from calm.tui.line.table_row import TableRow
-from calm.tui.signs import CLAMP, ROLES, UNKNOWN_ROLE, worst
+from calm.tui.signs import CLAMP, ROLES, UNKNOWN_MARGIN, UNKNOWN_ROLE, worst
 
 if TYPE_CHECKING:
-    from calm.tui.live import Row, View
+    from calm.tui.found import Row
+    from calm.tui.live import View
 
 _MOST_MARGIN = 9.99
 
@@ -112,7 +113,9 @@ def _told(found: Sequence[Row]) -> dict[str, str]:
         texts["tension"] = QUANTITIES["tension"].format(max(tensions))
     if tilts:
         texts["tilt"] = QUANTITIES["tilt"].format(max(tilts))
-    if margins:
+    if any(row.lacks_strength for row in found):
+        texts["margin"] = UNKNOWN_MARGIN
+    elif margins:
         texts["margin"] = _margin(min(margins))
     return texts
 

@@ -9,14 +9,12 @@ from rich.cells import cell_len, set_cell_size
 from rich.segment import Segment
 from rich.style import Style
 from textual import events
-from textual.binding import BindingType
 from textual.geometry import Region
 from textual.message import Message
 from textual.reactive import reactive
 from textual.strip import Strip
 
 from calm.files import Place
-from calm.tui.actions import bindings
 from calm.tui.line.table_row import (
     EDITABLE,
     HEADINGS,
@@ -35,7 +33,6 @@ _TAIL = 4
 class LineTable(Listing, can_focus=True):
     """Rows of the line with a cursor on one cell of them."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("line", "screen.")]
     COMPONENT_CLASSES: ClassVar[set[str]] = {
         "line-table--heading",
         "line-table--row",
@@ -69,7 +66,7 @@ class LineTable(Listing, can_focus=True):
 
     HEADING, BEYOND = 1, 2
 
-    column: reactive[int] = reactive(0, init=False)
+    column: reactive[int] = reactive(0, init=False, repaint=False)
 
     class Moved(Listing.Moved):
         """The cursor is on another cell."""

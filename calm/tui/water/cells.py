@@ -42,7 +42,7 @@ class Cells(Listing, can_focus=True):
 
     HEADING = 1
 
-    column: reactive[int] = reactive(0, init=False)
+    column: reactive[int] = reactive(0, init=False, repaint=False)
 
     @dataclass
     class Wanted(Message):
@@ -56,6 +56,9 @@ class Cells(Listing, can_focus=True):
 
         rows: Rows
         label: str
+
+    class AtTheEnd(Message):
+        """There is no value after the last."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -98,9 +101,32 @@ class Cells(Listing, can_focus=True):
         self.post_message(self.Changed(tuple(rows), label))
         self.show(self.columns, rows)
 
+    def go_on(self, by: int) -> bool:
+        """Go to the next value or the one before, over the rows; whether there is one."""
+        row, column = divmod(self.cursor * len(self.columns) + self.column + by, len(self.columns))
+        if is_there := 0 <= row < len(self.rows):
+            self.cursor, self.column = row, column
+        return is_there
+
     def action_move_row(self, by: int) -> None:
-        """Go up or down."""
-        self.cursor += by
+        """Go up or down, at the ends out of the table."""
+        if 0 <= self.cursor + by < len(self.rows):
+            self.cursor += by
+        elif by > 0:
+            self.screen.focus_next()
+        else:
+            self.screen.focus_previous()
+
+    def action_move_cell(self, by: int) -> None:
+        """Go to the next value; what is typed after the last goes into no other field."""
+        if self.columns and self.go_on(by):
+            return
+        if by < 0:
+            self.screen.focus_previous()
+        elif self.columns:
+            self.post_message(self.AtTheEnd())
+        else:
+            self.screen.focus_next()
 
     def action_move_column(self, by: int) -> None:
         """Go left or right."""

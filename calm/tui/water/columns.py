@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from calm.files.fields import Quantity
-from calm.tui.checking import Check, number, quantity
+from calm.files.tables import DIRECTION, SALINITY, TEMPERATURE, WATER_DENSITY
+from calm.tui.checking import Check, Reading, number, quantity
 from calm.units import QuantityError, unit_factor
 
-_DIMENSIONS = {
-    "depth": "length",
-    "speed": "speed",
-    "u": "speed",
-    "v": "speed",
-    "w": "speed",
-    "toward": "angle",
-    "density": "density",
-    "temperature": "temperature",
-    "salinity": "salinity",
+_KINDS = {
+    "depth": Quantity("length"),
+    "speed": Quantity("speed", at_least=0),
+    "u": Quantity("speed"),
+    "v": Quantity("speed"),
+    "w": Quantity("speed"),
+    "toward": DIRECTION,
+    "density": WATER_DENSITY,
+    "temperature": TEMPERATURE,
+    "salinity": SALINITY,
 }
 _TURN = 360.0
 
@@ -29,8 +32,19 @@ def named(column: str) -> tuple[str, str]:
 def check_of(column: str) -> Check:
     """What judges the values of a column: numbers where it gives its unit, else quantities."""
     name, unit = named(column)
-    dimension = _DIMENSIONS.get(name)
-    return number if unit or dimension is None else quantity(Quantity(dimension))
+    kind = _KINDS.get(name)
+    if kind is None:
+        return number
+    judged = quantity(kind)
+    if not unit:
+        return judged
+
+    def check(text: str) -> Reading:
+        reading = number(text)
+        complaint = judged(f"{reading.text} {unit}").complaint if reading.is_good else ""
+        return replace(reading, complaint=complaint) if complaint else reading
+
+    return check
 
 
 def half_way(column: str, one: float, other: float) -> float:

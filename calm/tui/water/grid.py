@@ -135,12 +135,11 @@ class Grid(Vertical):
         self._put()
         if not is_here:
             return  # it was left for another place
-        if cells.column + 1 < len(cells.columns):
+        if event.then in ("up", "down"):
+            cells.cursor += 1 if event.then == "down" else -1
+        elif event.then == "right":
             cells.column += 1
-        elif cells.cursor + 1 < len(cells.rows):
-            cells.column = 0
-            cells.cursor += 1
-        if event.onward:
+        elif cells.go_on(1) and event.then == "edit next":
             cells.action_edit()
 
     @on(CellEditor.Abandoned)
@@ -149,6 +148,10 @@ class Grid(Vertical):
         self.drop()
         if event.reason:
             self.post_message(self.Refused(event.reason))
+
+    @on(Cells.AtTheEnd)
+    def _tell_the_end(self) -> None:
+        self.post_message(self.Refused("The table ends here: a adds a row, ↓ leaves it"))
 
     @on(Cells.Changed)
     def _changed(self, event: Cells.Changed) -> None:

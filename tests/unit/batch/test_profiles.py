@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from calm.batch import profiles
+from calm.batch.kernel import compiled
+from calm.batch.kernel.cases import solve_chunks
 from calm.batch.kernel.lane import LANES
 from calm.batch.profiles import Profiles, solve_profiles
 from calm.batch.statuses import STATUSES
@@ -167,7 +169,7 @@ def test_it_is_compiled_for_one_kind_of_arrays(subsurface: Mooring) -> None:
     u.setflags(write=False)
     solve_profiles(subsurface, u, v, depth)
     solve_profiles(subsurface, np.asfortranarray(u), v.astype(np.float32), depth, w)
-    assert len(profiles.solve_cases.signatures) == 1
+    assert len(compiled.entry(solve_chunks).signatures) == 1
 
 
 @pytest.mark.parametrize(

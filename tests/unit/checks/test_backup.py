@@ -3,7 +3,8 @@
 import pytest
 
 import calm
-from calm.checks.backup import breaks_of
+from calm.checks.assess import check
+from calm.checks.backup import breaks_of, losses_of
 
 FILE = """
 name: By hand
@@ -61,6 +62,59 @@ def test_buoyancy_is_that_where_the_line_stands(breaks):
     text = FILE.replace("buoyancy: 8 kN", "buoyancy: 8 kN, volume: 1 m^3")
     plain, lifted = breaks(text), breaks(text.replace("depth: 500 m", dense))
     assert lifted[1].margin - plain[1].margin == pytest.approx(5.0 * 9.80665)
+
+
+@pytest.fixture
+def load(tmp_path):
+    def of(text):
+        path = tmp_path / "m.yaml"
+        path.write_text(text)
+        return calm.load(path)
+
+    return of
+
+
+def test_the_loss_of_each_float_and_clamped_ball(load):
+    """The line holds: all that is above the release has to come up without the one that is lost."""
+    balls = "{use: ball, at: 30 m, label: clamped, buoyancy: 1500 N}"
+    text = FILE.replace("{use: logger, at: 10 m}", "{use: logger, at: 10 m}, " + balls)
+    whole = 2000.0 + 1500.0 + 8000.0 - 3020.0 - 1500.0 - 900.0
+    losses = losses_of(load(text))
+    assert [(each.index, each.label) for each in losses] == [
+        (0, "top"), (1, "clamped"), (2, "back-up"),
+    ]  # fmt: skip
+    margins = [whole - 2000.0, whole - 1500.0, whole - 8000.0]
+    assert [each.margin for each in losses] == pytest.approx(margins)
+    # 3020 N of wire and logger less the 1500 N of the ball on it, 1500 N and 900 N are lifted
+    assert [each.weight_lifted for each in losses] == pytest.approx([3920.0] * 3)
+    assert [each.required for each in losses] == pytest.approx([392.0] * 3)
+
+
+def test_a_float_that_floods_weighs_what_its_shell_does(load):
+    figures = "label: top, mass: 20 kg, material: borosilicate glass"
+    lost, *_ = losses_of(load(FILE.replace("label: top", figures)))
+    shell = 20.0 * 9.80665 * (1.0 - 1025.0 / 2230.0)
+    assert lost.margin == pytest.approx(8000.0 - 3020.0 - 1500.0 - 900.0 - shell)
+    assert lost.weight_lifted == pytest.approx(3020.0 + 1500.0 + 900.0 + shell)
+    foam, *_ = losses_of(
+        load(FILE.replace("label: top", "label: top, mass: 20 kg, material: foam"))
+    )
+    assert foam.margin == pytest.approx(8000.0 - 3020.0 - 1500.0 - 900.0)
+
+
+def test_the_worse_of_breaks_and_losses_is_judged(load):
+    def found(text):
+        return next(one for one in check(load(text)).findings if one.rule == "backup")
+
+    sound = FILE.replace("  - {use: thin, label: tail, length: 100 m}\n", "")
+    one = found(sound)  # 2000 + 8000 - 3020 - 900 = 6080 N, 8000 N less by the loss
+    assert one.message.startswith("After the loss of back-up")
+    assert (one.value, one.state) == (pytest.approx(-1920.0), "fail")
+    # four floats of 2 kN in place of one of 8 kN: any of them may be lost
+    balls = "  - {use: ball, label: back-up, count: 4}\n"
+    split = found(sound.replace("  - {use: ball, label: back-up, buoyancy: 8 kN}\n", balls))
+    assert split.state == "pass"
+    assert split.value == pytest.approx(4080.0)
 
 
 def test_without_a_release_nothing_is_asked(breaks):

@@ -37,6 +37,7 @@ AT_LEAST = (
     "freeboard",
     "backup",
     "recovery",
+    "top-depth",
 )
 """Rules whose values may not fall short of their limits; those of the others may not pass them."""
 TOLD = ("scope",)
@@ -45,11 +46,11 @@ TOLD = ("scope",)
 UNDER = (
     ("[0, 0.70, 290]", "[0, 2.9, 290]"),
     ("[80, 0.60, 285]", "[80, 2.5, 285]"),
-    ("label: four wheels}", "label: four wheels, weight: 60 kN}"),
+    ("label: five wheels, weight: 17.16 kN}", "label: five wheels, weight: 60 kN}"),
 )
 """A current that takes a buoy under whose anchor holds."""
 
-CDMS, SLOPE, NYLON = "cdms-1", "upward-adcp-300m", "taut-nylon-surface"
+CDMS, SLOPE, NYLON, FIT = "cdms-1", "upward-adcp-300m", "taut-nylon-surface", "fit-top-depth"
 
 FLAWS = (
     Flaw(
@@ -232,7 +233,7 @@ FLAWS = (
     Flaw(
         "a buoy with little in reserve",
         NYLON,
-        (("line:\n", "checks: {minimum_reserve: 0.9}\nline:\n"),),
+        (("checks:\n", "checks:\n  minimum_reserve: 0.9\n"),),
         "reserve",
         "buoy",
         "fail",
@@ -241,7 +242,7 @@ FLAWS = (
     Flaw(
         "a watch circle beyond the chart's",
         "chain-and-rope-surface",
-        (("line:\n", "checks: {maximum_excursion: 5 m}\nline:\n"),),
+        (("checks:\n", "checks:\n  maximum_excursion: 5 m\n"),),
         "watch-circle",
         None,
         "fail",
@@ -388,6 +389,92 @@ FLAWS = (
         "warn",
         "13.0 m are allowed",
         "strumming",
+    ),
+    Flaw(
+        "a top that hulls and nets reach",
+        FIT,
+        (
+            ("top_depth: 105 m", "top_depth: 2 m"),
+            ("[0, 0.80, 90]", "[0, 0.2, 90]"),
+            ("[200, 0.35, 80]", "[200, 0.1, 80]"),
+        ),
+        "top-depth",
+        None,
+        "warn",
+        "10.0 m keep it clear",
+    ),
+    Flaw(
+        "a top less deep than the design says",
+        SLOPE,
+        (("maximum_knockdown: 25 m", "minimum_top_depth: 400 m"),),
+        "top-depth",
+        "ADCP float",
+        "fail",
+        "400.0 m keep it clear",
+    ),
+    Flaw(
+        "a release that the line overloads",
+        FIT,
+        (("{use: release-ar861", "{use: release-ar861, working_load: 1 kN"),),
+        "release-load",
+        None,
+        "fail",
+        "what it may bear is 1000 N",
+    ),
+    Flaw(
+        "a release that does not open under its load",
+        FIT,
+        (
+            (
+                "{use: release-ar861",
+                "{use: release-ar861, working_load: 25 kN, opening_load: 1 kN",
+            ),
+        ),
+        "release-load",
+        None,
+        "fail",
+        "its opening load is 1000 N",
+    ),
+    Flaw(
+        "a sub-surface line without a release",
+        CDMS,
+        (("    role: release\n", ""),),
+        "release-present",
+        None,
+        "unknown",
+        "how the line is freed of its anchor is not known",
+    ),
+    Flaw(
+        "a clamp that slips",
+        SLOPE,
+        (("at: 399 m, label: CTD 900 m}", "at: 399 m, label: CTD 900 m, grip: 1 N}"),),
+        "clamp-grip",
+        "CTD 900 m",
+        "fail",
+        "it grips with 1 N",
+    ),
+    Flaw(
+        "a wire that winds up its float",
+        FIT,
+        (("{use: swivel-miller-c212, label: swivel}", "{use: shackle-16, label: swivel}"),),
+        "swivel",
+        "wire",
+        "warn",
+        "without a swivel between them",
+    ),
+    Flaw(
+        "a noble shackle on steel",
+        FIT,
+        (
+            (
+                "  - {use: shackle-13}\n  - {use: rcm11",
+                "  - {use: shackle-13, material: titanium}\n  - {use: rcm11",
+            ),
+        ),
+        "metals",
+        "wire",
+        "warn",
+        "0.66 V nobler in sea water",
     ),
     Flaw(
         "a current that no line stands",

@@ -87,7 +87,7 @@ def test_what_is_cut_to_fit_keeps_its_length_when_the_tide_comes(tmp_path: Path)
     assert still == pytest.approx([30.0, 34.0, 27.0], abs=1e-4)
 
 
-def test_growth_thickens_the_cable_down_to_its_depth(tmp_path: Path) -> None:
+def test_growth_thickens_everything_down_to_its_depth(tmp_path: Path) -> None:
     one = mooring(tmp_path, "  fouling: {depth: 50 m, thickness: 20 mm}\n")
     found = results(one)
     given, fouled = found["as given"], found["fouling"]
@@ -97,12 +97,18 @@ def test_growth_thickens_the_cable_down_to_its_depth(tmp_path: Path) -> None:
     top = given.components.depth_top[1] - given.components.knockdown[1]
     bottom = given.components.depth_bottom[1] - given.components.knockdown[2]
     upper = float(60.0 * (50.0 - top) / (bottom - top))
+    # areas of the logger of 62 mm and 0.63 m, and of the sphere of 1.25 m, with 20 mm around them
+    cn, cx = 1.3 * 0.102 * 0.67 / (0.062 * 0.63), 0.5 * (1.29 / 1.25) ** 2
     by_hand = (
         f"  - {{use: wire-jacketed-8, length: {upper!r} m, diameter: {wire.diameter + 0.04!r} m, "
-        f"label: grown, clamps: [{{use: sbe37, at: 12 m}}]}}\n"
+        f"label: grown, clamps: [{{use: sbe37, at: 12 m, cn: {cn!r}}}]}}\n"
         f"  - {{use: wire-jacketed-8, length: {60.0 - upper!r} m, label: clean}}\n"
     )
-    expected = mooring(tmp_path, wire=by_hand).solve()
+    path = tmp_path / "grown.yaml"
+    text = LINE.format(environment="", wire=by_hand)
+    path.write_text(text.replace("label: top float", f"label: top float, cx: {cx!r}"), "utf-8")
+    expected = load(path).solve()
+    assert isinstance(expected, Result)
     assert expected.top.knockdown is not None and given.top.knockdown is not None
     assert fouled.top.knockdown == pytest.approx(expected.top.knockdown, rel=1e-3)
     assert fouled.top.knockdown > 1.5 * given.top.knockdown

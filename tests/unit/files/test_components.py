@@ -6,10 +6,11 @@ import pytest
 
 from calm.errors import Problem
 from calm.files import Anchor, Body, Cable, Chain, Cylinder, Sphere
-from calm.files.catalogue import Assembly, Entry, define
+from calm.files.catalogue import Assembly, define
 from calm.files.components import Component
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.files.document import Document
+from calm.files.entries import Entry
 from calm.files.section import Section
 from calm.physics.line import REFERENCE_DENSITY
 
@@ -196,6 +197,11 @@ def test_body_gives_its_drag_in_one_way(drag: dict[str, Any]) -> None:
             "`kt` has no meaning with `made_of`",
         ),
         ({"made_of": [{"kind": "cone"}]}, "`kind: cone` must be one of sphere, cylinder"),
+        ({"made_of": [{"kind": ["cone"]}]}, "`kind: …` must be one of sphere, cylinder"),
+        (
+            {"role": {"a": "1"}},
+            "`role: …` must be one of float, instrument, release, connector, line, anchor",
+        ),
         ({"made_of": [{"diameter": "1 m"}]}, "`made_of` needs a `kind`"),
         ({"made_of": "sphere"}, "`made_of` must be a list"),
         (

@@ -79,6 +79,14 @@ def test_finite_cylinder_in_both_columns_of_its_table(slenderness, below, above)
     assert reynolds.finite_length_factor_above(slenderness) == pytest.approx(above, rel=1e-12)
 
 
+@pytest.mark.parametrize(("re", "way"), [(1.8e5, 0.0), (1.9e5, 0.26943), (2.2e5, 1.0)])
+def test_a_finite_cylinder_goes_from_the_lower_column_to_the_upper(re, way):
+    """κ from 0.62 below Re 1.8e5 to 0.80 above 2.2e5, linear in log Re in between:
+    ln(1.9/1.8)/ln(2.2/1.8) = 0.26943."""
+    kappa = DragCurve(0.1, 5.0).factor(re) * 1.2 * 0.62 / reynolds.cylinder_coefficient(re)
+    assert kappa == pytest.approx(0.62 + way * (0.80 - 0.62), rel=1e-6)
+
+
 def test_where_the_curves_end():
     assert DragCurve(1.0).largest_reynolds == 1e6
     assert DragCurve(1.0, 3.0).largest_reynolds == 4.94e6

@@ -15,12 +15,13 @@ from calm.batch.statistics.summary import RANKED, RESPONSES, summarize
 from calm.case import Mooring
 from calm.errors import UsageError
 from calm.report import write
+from calm.report.batch.brief import summary_part
 from calm.report.batch.document import summary_document
 from calm.report.batch.files import summary_paths, write_summary
 from calm.report.batch.labels import percent
 from calm.report.batch.page import summary_html
-from calm.report.batch.table import summary_table
 from calm.report.document import to_json
+from calm.report.terminal import shown
 from calm.shipped import shipped_folder
 from tests.judged import hostile_file
 from tests.unit.batch.made_result import make_result, stormy
@@ -63,7 +64,7 @@ def nothing(mooring):
 
 def table(summary, width=80):
     stream = io.StringIO()
-    Console(file=stream, width=width).print(summary_table(summary))
+    Console(file=stream, width=width).print(shown(summary_part(summary)))
     return stream.getvalue()
 
 

@@ -46,6 +46,32 @@ def test_a_full_disk_leaves_the_old_report_whole(tmp_path, monkeypatch):
     assert contents(tmp_path) == old
 
 
+@pytest.mark.parametrize("failing", [1, 2, 3, 4])
+@pytest.mark.parametrize("old", [{"report.html": b"old page", "report.json": b"old data"}, {}])
+@pytest.mark.parametrize("error", [OSError(errno.EIO, "Input/output error"), KeyboardInterrupt()])
+def test_a_report_is_replaced_as_a_set_or_not_at_all(tmp_path, monkeypatch, old, failing, error):
+    """Whichever of the moves fails; of a new report there are two, of one replaced four."""
+    folder = tmp_path / "report"
+    if old:
+        write_report(folder, old)
+    moves, replace = [], os.replace
+
+    def failing_once(source, target):
+        moves.append(target)
+        if len(moves) == failing:
+            raise error
+        replace(source, target)
+
+    monkeypatch.setattr(os, "replace", failing_once)
+    fails = failing <= (4 if old else 2)
+    if fails:
+        with pytest.raises(UsageError if isinstance(error, OSError) else KeyboardInterrupt):
+            write_report(folder, REPORT)
+    else:
+        write_report(folder, REPORT)
+    assert (contents(folder) if folder.exists() else {}) == (old if fails else REPORT)
+
+
 def test_a_folder_in_a_files_place_is_named(tmp_path):
     (tmp_path / "report.json").mkdir()
     with pytest.raises(UsageError, match=r"report\.json: it is a folder"):

@@ -18,14 +18,25 @@ from calm.report.check.section import mooring_section
 from calm.report.html import report_html, result_html
 from calm.report.provenance import input_hash
 from calm.report.vector import set_apart
-from tests.judged import FORMULA, LINES, LONG, QUOTES, RIGHT_TO_LEFT, SCRIPT, judged, judged_hostile
+from tests.judged import (
+    FORMULA,
+    LINES,
+    LONG,
+    QUOTES,
+    RIGHT_TO_LEFT,
+    SCRIPT,
+    judged,
+    judged_hostile,
+    unaccepting,
+)
 
 ROOT = Path(__file__).resolve().parents[3]
 
 
 @pytest.fixture(scope="module")
-def assessment():
-    return judged(LINES / "tidal-adcp.yaml", "ebb", "neaps")
+def assessment(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("unaccepting")
+    return judged(unaccepting("tidal-adcp.yaml", folder), "ebb", "neaps")
 
 
 @pytest.fixture(scope="module")
@@ -85,6 +96,23 @@ def test_every_part_of_the_report_is_there(section):
     assert page.elements.count("svg") == 2
 
 
+def test_page_one_says_what_is_accepted_and_why():
+    text = Page(report_html([mooring_section(judged(LINES / "tidal-adcp.yaml"))])).text
+    assert "? nothing fails, 1 figure unknown" in text
+    accepted = text.index("Accepted with a reason")
+    assert text.index("? nothing fails") < accepted < text.index("Moorings by environment")
+    reason = "no maker prints it; proof-loaded to 10 kN before each cruise"
+    assert accepted < text.index(reason) < text.index("Moorings by environment")
+    assert "Unknown, piece by piece" in text
+
+
+def test_limits_as_used_stand_with_their_sources(assessment, section):
+    text = Page(report_html([section])).text
+    for key in assessment.limits:
+        assert key.name in text and key.source in text
+    assert "departs" not in text[text.index("Limits as used") :][:200]
+
+
 def test_the_figures_are_those_of_the_findings(assessment, section):
     text = Page(report_html([section])).text
     failed = next(each for each in assessment.all_findings() if each.state is State.FAIL)
@@ -103,9 +131,9 @@ def test_states_are_told_in_words(section):
     assert ("fail", "fail") in shown
 
 
-def test_the_mooring_file_stands_in_it(section):
+def test_the_mooring_file_stands_in_it(assessment, section):
     listing = re.search(r"<pre>(.*?)</pre>", report_html([section]), re.DOTALL)
-    source = (LINES / "tidal-adcp.yaml").read_text(encoding="utf-8")
+    source = Path(assessment.mooring.file.path).read_text(encoding="utf-8")
     assert unescape(listing[1]) == source.rstrip()
 
 

@@ -2,8 +2,9 @@ import pypdfium2
 import pytest
 
 import calm
+from calm.report.blocks import Part, Prose, Report, Section
 from calm.report.check.section import mooring_section
-from calm.report.pdf import report_pdf, result_pdf
+from calm.report.pdf import printed, report_pdf, result_pdf
 from tests.judged import FORMULA, LINES, judged, judged_hostile
 
 
@@ -85,3 +86,10 @@ def test_a_single_result_has_pages(name, pages):
     assert result.name in text
     assert result.components.label[-1] in text
     assert "SHA-256 of the inputs" in text
+
+
+def test_what_is_accepted_can_be_printed():
+    """Findings of a section hold dates and models, which no printer looks at."""
+    accepted = Section("M", (Part("Said", (Prose(("plain",)),)),), worst=(object(),))
+    report = Report("T", "S", (), (accepted,))
+    assert printed(report).startswith(b"%PDF")

@@ -6,15 +6,16 @@ from rich.console import Console
 
 from calm.case.band import StrummingBand
 from calm.case.result import Strumming
-from calm.report.limits import Mark, safety_mark, tilt_mark
-from calm.report.table import result_table
+from calm.report.line import Mark, safety_mark, tilt_mark
+from calm.report.sheet import result_part
+from calm.report.terminal import shown
 
 GOLDEN = Path(__file__).parent / "golden"
 
 
 def text(result, width, **console):
     stream = io.StringIO()
-    Console(file=stream, width=width, **console).print(result_table(result))
+    Console(file=stream, width=width, **console).print(shown(result_part(result)))
     return "\n".join(line.rstrip() for line in stream.getvalue().splitlines()) + "\n"
 
 

@@ -8,15 +8,21 @@ from rich.console import Console
 from calm.case.sweep import Variation
 from calm.errors import NoEquilibrium
 from calm.report.plot_sweep import draw_sweep
-from calm.report.tabulation import by_coefficient, by_speed, to_csv, to_document
-from calm.report.tabulation_table import tabulation_table
+from calm.report.tabulation import (
+    by_coefficient,
+    by_speed,
+    tabulation_part,
+    to_csv,
+    to_document,
+)
+from calm.report.terminal import shown
 
 NONE = NoEquilibrium("grounded", "It lies on the bed.", "Steam faster.")
 
 
 def text(tabulation, width=80):
     stream = io.StringIO()
-    Console(file=stream, width=width).print(tabulation_table(tabulation))
+    Console(file=stream, width=width).print(shown(tabulation_part(tabulation)))
     return [line.rstrip() for line in stream.getvalue().splitlines()]
 
 

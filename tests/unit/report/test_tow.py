@@ -12,7 +12,8 @@ from calm.case.band import StrummingBand
 from calm.report.csv import to_csv
 from calm.report.notebook import to_html
 from calm.report.plot import draw, picture
-from calm.report.table import result_table
+from calm.report.sheet import result_part
+from calm.report.terminal import shown
 
 GOLDEN = Path(__file__).parent / "golden"
 
@@ -21,7 +22,7 @@ def text(result, width=80):
     from rich.console import Console
 
     stream = io.StringIO()
-    Console(file=stream, width=width).print(result_table(result))
+    Console(file=stream, width=width).print(shown(result_part(result)))
     return "\n".join(line.rstrip() for line in stream.getvalue().splitlines()) + "\n"
 
 

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from calm.errors import NoEquilibrium
+from calm.physics.line import Line, Water
+from calm.physics.stretch import ElongationCurve
 from calm.solve import Settings, solve_mooring
 from tests.unit.solve.simple import line, rigid, rope, water
 
@@ -196,3 +198,18 @@ def test_a_tolerance_is_kept():
     taut = line(FLOAT, rope(80, weight=2.0, stiffness=1e5))
     solution = solve_mooring(taut, water(200, (0, 0.9, 0, 0), (200, 0.1, 0, 0)), tight)
     assert abs(solution.miss) <= 1e-11 * 200
+
+
+def test_a_segment_in_shear_is_in_balance_with_a_curve_too() -> None:
+    """Its current is that of its middle, whatever its tensions are."""
+    current = [1.0, 0.2]
+    water = Water(100.0, [0.0, 100.0], current, [0.0, 0.0], [0.0, 0.0], [1025.0, 1025.0])
+    curve = ElongationCurve([(0.05, 0.05), (0.1, 0.08), (0.2, 0.12)], 3e4, 0.04)
+    line = Line(
+        length=[0.0, 60.0], flexible=[False, True], buoyancy=[3000.0, -0.5], volume=[0.0, 0.0],
+        normal_drag=[200.0, 8.0], tangential_drag=[200.0, 0.1], directional=[False, True],
+        compliance=[0.0, 0.0], thinning=[0.0, 0.5], clamp_piece=[], clamp_at=[],
+        clamp_buoyancy=[], clamp_volume=[], clamp_drag=[], elongation=(None, curve),
+    )  # fmt: skip
+    solution = solve_mooring(line, water)  # which refuses loads that do not sum to 1e-6
+    assert solution.closure < 1e-9

@@ -122,3 +122,32 @@ def test_a_line_that_lies_at_rest_lies_until_the_current_has_lifted_it():
     assert (np.diff(lying) <= 1e-6).all()
     offset = np.array([solution.position[0, 0] for solution in solutions])
     assert (np.diff(offset) > 0).all()
+
+
+@pytest.mark.parametrize(
+    ("length", "anchor_height", "lies"), [(78.0, 2.0, False), (80.0, 2.0, True), (74.4, 0.2, True)]
+)
+def test_what_has_barely_landed_hangs_instead(length, anchor_height, lies):
+    """Up to four heights of its anchor on the seabed a line is tried hanging first.
+
+    With 4.66 m there it hangs, below the limit of 8 m; with 6.66 m nothing hangs clear of the
+    seabed; and with 1.06 m, above the limit of 0.8 m, it lies though it could hang.
+    """
+    slack = line(FLOAT, rope(length, weight=20, cn=0.2), anchor_height=anchor_height)
+    solution = solve_mooring(slack, water(70, CURRENT))
+    assert solution.landed is lies
+    assert solution.grounded_length == pytest.approx(
+        {80.0: 6.66, 74.4: 1.06}.get(length, 0.0), abs=0.01
+    )
+
+
+def test_only_what_the_pull_reaches_into_is_stretched_on_the_seabed():
+    """Friction μw holds a pull H back within H/μw of the touchdown, of which H²/(2 μ w EA) is
+    stretch; the rest of the chain lies as long as it is."""
+    solution = landed(
+        line(FLOAT, rope(40, weight=0.5), CHAIN), water(70, CURRENT), seabed_friction=0.6
+    )
+    pull, cut = solution.tension[solution.hanging], solution.cut[solution.hanging :]
+    assert pull / (0.6 * 60) < 0.5 * solution.grounded_length
+    stretch = solution.strain[solution.hanging :] @ cut
+    assert stretch == pytest.approx(pull**2 / (2 * 0.6 * 60 * 1e7), rel=1e-9)

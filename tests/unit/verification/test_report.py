@@ -5,7 +5,8 @@ import io
 import pytest
 from rich.console import Console
 
-from calm.report.verification import figures, verification_document, verification_table
+from calm.report.terminal import shown
+from calm.report.verification import figures, verification_document, verification_part
 from tests.unit.verification.fakes import BAD, GOOD, case, failing
 
 
@@ -13,9 +14,9 @@ def findings(*sources):
     return [(source, [each.check() for each in source.cases]) for source in sources]
 
 
-def printed(renderable) -> str:
+def printed(part) -> str:
     text = io.StringIO()
-    Console(file=text, width=100).print(renderable)
+    Console(file=text, width=100).print(shown(part))
     return text.getvalue()
 
 
@@ -52,9 +53,9 @@ def test_the_document_has_every_case():
 
 
 def test_the_table_marks_what_is_out():
-    text = printed(verification_table(findings(GOOD, BAD)))
+    text = printed(verification_part(findings(GOOD, BAD)))
     assert "! length" in text
     assert "! tension: ArithmeticError: no such line" in text
     assert text.count("!") == 3
     assert text.rstrip().endswith("Checked 5 figures of 2 sources: 2 out of tolerance")
-    assert printed(verification_table(findings(GOOD))).rstrip().endswith("all within tolerance")
+    assert printed(verification_part(findings(GOOD))).rstrip().endswith("all within tolerance")

@@ -365,6 +365,7 @@ file = WorkingFile(path)
 file.save("#\\n" * 20_000)
 wait = random.Random(7)
 for _ in range(40):
+    kept, tell = os.pipe()
     child = os.fork()
     number = 0
     while not child:
@@ -372,6 +373,9 @@ for _ in range(40):
         file.save(f"# {number}\\n" * 20_000)
         file.unsaved = f"# {number} and more\\n" * 20_000
         file.keep()
+        os.write(tell, b".") if number == 1 else None
+    os.read(kept, 1)
+    os.close(kept), os.close(tell)
     time.sleep(wait.uniform(0.0, 0.03))
     os.kill(child, signal.SIGKILL)
     os.waitpid(child, 0)
@@ -385,7 +389,10 @@ for _ in range(40):
 
 
 def test_a_kill_leaves_whole_files(path: Path) -> None:
-    """A session is killed at random while it saves and autosaves without a pause."""
+    """A session is killed at random while it saves and autosaves without a pause.
+
+    It has done both once before, however busy the machine is.
+    """
     subprocess.run([sys.executable, "-c", KILLS, str(path)], cwd=ROOT, check=True)
     assert WorkingFile(path).left_behind() is not None
 

@@ -1,15 +1,12 @@
-"""The statistics of a batch for a terminal."""
+"""The statistics of a batch in short."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from rich.console import Group, RenderableType
-from rich.table import Table
-from rich.text import Text
-
 from calm.batch.statistics.extremes import Fit, Level
+from calm.checks.finding import State
 from calm.quantities import QUANTITIES
 from calm.report.batch.labels import (
     METHODS_IN_SHORT,
@@ -22,7 +19,7 @@ from calm.report.batch.labels import (
     standing,
     when,
 )
-from calm.report.terminal import WARNED, plain_table, warning
+from calm.report.blocks import Block, Cell, Column, Heading, Part, Prose, Span, Table
 
 if TYPE_CHECKING:
     from calm.batch.statistics.distribution import Distribution
@@ -34,42 +31,43 @@ _PERIODS = (10, 50, 100)
 _ALL = "All percentiles, limits and profiles are in the JSON and on the page."
 
 
-def summary_table(summary: Summary) -> RenderableType:
-    """What a summary says, for a rich console; it fits 80 columns, long labels wrap.
+def summary_part(summary: Summary) -> Part:
+    """What a summary says; it fits 80 columns, where long labels wrap.
 
     Components and clamps with the 99 % percentile and the maximum of each quantity, how often
     each rule fails, the worst profile by each response, and return levels.
     """
     lost, note = summary.count - summary.solved, left_out(summary)
-    return Group(
-        Text(summary.name, style="bold"),
-        Text(extent(summary)),
-        Text(standing(summary), style=WARNED if lost else ""),
-        Text(),
+    ended = Span(standing(summary), State.FAIL if lost else None)
+    missing = tuple(refusals(summary))
+    blocks: tuple[Block, ...] = (
+        Heading(summary.name),
+        Prose((extent(summary), (ended,))),
         _parts(summary),
-        Text(),
         _rules(summary),
-        Text(),
-        *([warning(note), Text()] if note else []),
+        *([Prose((note,), State.WARN)] if note else []),
         _worst(summary),
-        Text(),
         *_levels(summary),
-        *map(warning, refusals(summary)),
-        Text(_ALL, style="dim"),
+        *([Prose(missing, State.WARN)] if missing else []),
+        Prose(((Span(_ALL, quiet=True),),)),
     )
+    return Part("", blocks)
 
 
 def _parts(summary: Summary) -> Table:
-    table = plain_table()
-    table.add_column(overflow="fold")
+    columns = [Column("")]
     for name in _QUANTITIES:
         quantity = QUANTITIES[name]
-        table.add_column(f"{quantity.heading}\n99 %", justify="right", no_wrap=True)
-        table.add_column(f"{quantity.display_unit}\nmaximum", justify="right", no_wrap=True)
-    for part in summary.parts:
-        cells = (cell for name in _QUANTITIES for cell in _extremes(name, getattr(part, name)))
-        table.add_row(Text(f"  {part.label}" if part.clamped else part.label), *cells)
-    return table
+        columns.append(Column(f"{quantity.heading}\n99 %", numeric=True))
+        columns.append(Column(f"{quantity.display_unit}\nmaximum", numeric=True))
+    rows = tuple(
+        (
+            Cell(part.label, indented=part.clamped),
+            *(Cell(text) for name in _QUANTITIES for text in _extremes(name, getattr(part, name))),
+        )
+        for part in summary.parts
+    )
+    return Table("", tuple(columns), rows)
 
 
 def _extremes(name: str, one: Distribution | None) -> tuple[str, str]:
@@ -80,17 +78,24 @@ def _extremes(name: str, one: Distribution | None) -> tuple[str, str]:
 
 
 def _rules(summary: Summary) -> Table:
-    table = plain_table()
-    table.add_column("rule")
-    table.add_column("fails\n% of profiles", justify="right", no_wrap=True)
-    table.add_column("at most\n%", justify="right", no_wrap=True)
-    table.add_column("warns\n%", justify="right", no_wrap=True)
-    table.add_column("most often broken by", overflow="fold")
-    for rule in summary.rules:
-        style = WARNED if rule.fails else ""
-        shares = (percent(rule.fails_at_most), percent(rule.warns), Text(_broken(rule)))
-        table.add_row(rule.title, Text(percent(rule.fails), style=style), *shares)
-    return table
+    columns = (
+        Column("rule"),
+        Column("fails\n% of profiles", numeric=True),
+        Column("at most\n%", numeric=True),
+        Column("warns\n%", numeric=True),
+        Column("most often broken by"),
+    )
+    rows = tuple(
+        (
+            Cell(rule.title),
+            Cell(percent(rule.fails), state=State.FAIL if rule.fails else None),
+            Cell(percent(rule.fails_at_most)),
+            Cell(percent(rule.warns)),
+            Cell(_broken(rule)),
+        )
+        for rule in summary.rules
+    )
+    return Table("", columns, rows)
 
 
 def _broken(rule: RuleShare) -> str:
@@ -104,26 +109,23 @@ def _broken(rule: RuleShare) -> str:
 
 
 def _worst(summary: Summary) -> Table:
-    table = plain_table()
-    table.add_column("worst profile by")
-    table.add_column("time", no_wrap=True)
+    columns = [Column("worst profile by"), Column("time", share=0.0)]
     for name in TITLES:
-        quantity = QUANTITIES[QUANTITY[name]]
-        heading = f"{name.replace('_', ' ')}\n{quantity.display_unit}"
-        table.add_column(heading, justify="right", no_wrap=True)
+        unit = QUANTITIES[QUANTITY[name]].display_unit
+        columns.append(Column(name.replace("_", " "), unit, numeric=True))
+    rows = []
     for name, profiles in summary.worst.items():
         for profile in profiles[:1]:
             figures = (QUANTITIES[QUANTITY[one]].format(getattr(profile, one)) for one in TITLES)
-            table.add_row(name.replace("_", " "), when(profile.time), *figures)
-    return table
+            rows.append(tuple(map(Cell, (name.replace("_", " "), when(profile.time), *figures))))
+    return Table("", tuple(columns), tuple(rows))
 
 
 def _levels(summary: Summary) -> Iterator[Table]:
     """Return levels, where there are any."""
-    table = plain_table()
-    table.add_column("return level, and 95 % interval")
-    for period in _PERIODS:
-        table.add_column(f"{period} years", justify="right", no_wrap=True)
+    columns = [Column("return level, and 95 % interval")]
+    columns += [Column(f"{period} years", numeric=True) for period in _PERIODS]
+    rows = []
     for response in summary.responses:
         quantity = QUANTITIES[QUANTITY[response.name]]
         for fit in response.return_levels:
@@ -131,9 +133,9 @@ def _levels(summary: Summary) -> Iterator[Table]:
                 levels = {level.period: level for level in fit.levels}
                 said = (_level(response.name, levels.get(period)) for period in _PERIODS)
                 of = f"{TITLES[response.name]} [{quantity.display_unit}]"
-                table.add_row(Text(f"{of}, {METHODS_IN_SHORT[fit.method]}"), *said)
-    if table.row_count:
-        yield table
+                rows.append(tuple(map(Cell, (f"{of}, {METHODS_IN_SHORT[fit.method]}", *said))))
+    if rows:
+        yield Table("", tuple(columns), tuple(rows))
 
 
 def _level(name: str, level: Level | None) -> str:

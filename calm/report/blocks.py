@@ -1,6 +1,6 @@
-"""What a report says, whatever it is printed on: an HTML page and a PDF show the same content.
+"""What CALM says, whatever it is said on: a terminal, a page, a PDF and a notebook print the same.
 
-Every text is plain: a printer escapes it in its own way.
+Every text is plain: a printer escapes it in its own way, and nothing in a text is markup.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from calm.checks.finding import State
 
 if TYPE_CHECKING:
     from calm.checks.finding import Finding
+    from calm.files.checks import LimitKey
 
 ON_THE_WAY = "launch, recovery, breaks"
 """The column of a summary for what is judged of a mooring outside its environments."""
@@ -22,29 +23,41 @@ class Column:
     """Head of a column: title, unit below it, and whether its cells are numbers.
 
     `share` is that of the width which numbers and short words leave: 0 of a column of short words,
-    1 of names, more of sentences.
+    1 of names, more of sentences. `short` is the title, in lines, where there is little room; a
+    column that is not `narrow` is left out there. In one that is `marked` cells may carry a mark.
     """
 
     heading: str
     unit: str = ""
     numeric: bool = False
     share: float = 1.0
+    short: str | None = None
+    narrow: bool = True
+    marked: bool = False
 
 
 @dataclass(frozen=True)
 class Cell:
-    """A cell: its text, a smaller line below it, and the state it tells in colour and word."""
+    """A cell: its text, a smaller line below it, and the state it tells in colour and word.
+
+    `mark` is the sign behind a figure that is near a limit or beyond it. A cell may be indented
+    below the row above it, and `strong` where the reader looks for it.
+    """
 
     text: str = ""
     detail: str = ""
     state: State | None = None
+    mark: str = ""
+    indented: bool = False
+    strong: bool = False
 
 
 @dataclass(frozen=True)
 class Table:
     """Rows under columns; the last `totals` of the rows are sums.
 
-    The rows of a table that is `sortable` may be put in another order and chosen from.
+    A row of a single cell heads those below it. The rows of a table that is `sortable` may be put
+    in another order and chosen from; a `dense` one has more columns than fit with room to spare.
     """
 
     title: str
@@ -53,6 +66,14 @@ class Table:
     note: str = ""
     totals: int = 0
     sortable: bool = False
+    dense: bool = False
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """What is said of each of several things: name and value, which may have several lines."""
+
+    pairs: tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True)
@@ -65,11 +86,38 @@ class Figure:
 
 
 @dataclass(frozen=True)
+class Span:
+    """Words of a sentence that look as a state does, or `quiet` as what is read last."""
+
+    text: str
+    state: State | None = None
+    quiet: bool = False
+
+
+Line = str | tuple[Span, ...]
+"""A sentence, as it is or in spans."""
+
+
+@dataclass(frozen=True)
 class Prose:
     """Sentences, each a line of its own; `state` marks those that must not be overlooked."""
 
-    lines: tuple[str, ...]
+    lines: tuple[Line, ...]
     state: State | None = None
+
+
+@dataclass(frozen=True)
+class Note:
+    """Sentences about how to read the figures above."""
+
+    lines: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Heading:
+    """A title over the blocks that follow."""
+
+    text: str
 
 
 @dataclass(frozen=True)
@@ -87,12 +135,17 @@ class Signatures:
     roles: tuple[str, ...]
 
 
-Block = Table | Figure | Prose | Listing | Signatures
+@dataclass(frozen=True)
+class PageBreak:
+    """What follows begins a page, where there are pages."""
+
+
+Block = Table | Pairs | Figure | Prose | Note | Heading | Listing | Signatures | PageBreak
 
 
 @dataclass(frozen=True)
 class Part:
-    """Blocks under a heading."""
+    """Blocks under a heading; what a command shows of one thing is a part of its own."""
 
     title: str
     blocks: tuple[Block, ...]
@@ -121,12 +174,17 @@ class Section:
     parts : what is printed
     columns : the environments and what else was judged, in order; none of a single result
     worst : for each column and rule that applies there
+    findings, accepted : of a design check; what of it is accepted
+    limits : by which it is judged
     """
 
     name: str
     parts: tuple[Part, ...]
     columns: tuple[str, ...] = ()
     worst: tuple[Worst, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    accepted: tuple[Finding, ...] = ()
+    limits: tuple[LimitKey, ...] = ()
 
 
 @dataclass(frozen=True)

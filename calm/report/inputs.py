@@ -1,65 +1,31 @@
-"""The tables of a solved line, and of what it was solved from."""
+"""What a line was solved from, and what no report judges."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from math import hypot
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calm.checks.finding import State
 from calm.quantities import QUANTITIES
-from calm.report.limits import Mark
+from calm.report.blocks import Cell, Column, Listing, Prose, Table
 from calm.report.provenance import input_hash, source_text, versions
-from calm.report.section import Cell, Column, Listing, Prose, Table
 
 if TYPE_CHECKING:
     from calm.files import MooringFile
     from calm.physics.line import Water
-    from calm.report.rows import Phrase, Sheet
 
 UNSEEN = (
     "A static calculation does not see waves and the tensions they cause; snap loads on a line "
-    "that falls slack; fatigue, by waves and by vortices; creep, corrosion and wear.",
+    "that falls slack; fatigue, by waves and by vortices; creep, corrosion and wear; the jerk at "
+    "the end of the launch and the swing of the line before it; hauling and lifts on recovery.",
     "No margin in this report covers them. They decide the life of surface moorings in harsh "
     "weather, and no factor on a static tension replaces looking at them.",
 )
 """What is printed in every report."""
 
-_STATES = {Mark.NONE: None, Mark.NEAR: State.WARN, Mark.BEYOND: State.FAIL}
 _MOST_LEVELS = 40
-
-
-def quantity_column(name: str) -> Column:
-    """The head of a column of a quantity in the unit that people read."""
-    quantity = QUANTITIES[name]
-    return Column(quantity.heading, quantity.display_unit, numeric=True)
-
-
-def figure_cell(name: str, value: float | None) -> Cell:
-    """A value of a quantity under its `quantity_column`."""
-    return Cell(QUANTITIES[name].format(value))
-
-
-def line_table(said: Sheet, title: str) -> Table:
-    """The line from its first-listed end; a clamped instrument stands indented below its piece."""
-    rows, index = [], -1
-    for row in said.rows:
-        index += not row.clamped
-        name = Cell(f"\u2003{row.label}") if row.clamped else Cell(row.label)
-        number = Cell("" if row.clamped else str(index))
-        rows.append((number, name, *map(_marked, row.cells)))
-    columns = (Column("no.", numeric=True), Column("piece"), *map(quantity_column, said.columns))
-    return Table(title, columns, tuple(rows), said.note)
-
-
-def said_below(said: Sheet) -> Iterator[Prose]:
-    """The ends of the line in words, the warnings, and how good the solution is."""
-    yield Prose(tuple(f"{phrase.text} {phrase.mark}".rstrip() for phrase in said.summary))
-    if said.warnings:
-        yield Prose(said.warnings, State.WARN)
-    yield Prose((said.convergence,))
 
 
 def environments_table(names: Sequence[str], waters: Sequence[Water]) -> Table:
@@ -116,7 +82,3 @@ def origin(files: Sequence[MooringFile]) -> Prose:
     """The hash of the inputs of one mooring, and the versions that computed."""
     made_by = ", ".join(f"{name} {number}" for name, number in versions())
     return Prose((f"SHA-256 of the inputs: {input_hash(files)}", f"Computed with {made_by}"))
-
-
-def _marked(phrase: Phrase) -> Cell:
-    return Cell(f"{phrase.text} {phrase.mark}".rstrip(), state=_STATES[phrase.mark])

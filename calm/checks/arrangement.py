@@ -1,0 +1,148 @@
+"""How a line is put together: its release, its swivels, its metals."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from calm.case.warnings import is_synthetic
+from calm.checks.finding import State, Verdict, rule, unknown, verdict_on
+from calm.checks.posture import reaches_the_surface
+from calm.files import Cable, Chain, Component
+
+if TYPE_CHECKING:
+    from calm.checks.handling import Handling
+    from calm.files import Clamp, Piece
+
+POTENTIALS = {
+    "stainless": -0.05,
+    "titanium": 0.0,
+    "bronze": -0.35,
+    "brass": -0.35,
+    "copper": -0.44,
+    "galvani": -0.66,
+    "steel": -0.66,
+    "iron": -0.66,
+    "aluminium": -0.88,
+    "aluminum": -0.88,
+    "zinc": -1.0,
+}
+"""Middle of the corrosion potential of metals in sea water [V], by a word of their `material`, the
+nobler words before those they hold: stainless steel is no steel, aluminium bronze no aluminium.
+Galvanised steel counts as steel, which its zinc protects."""
+
+GREATEST_DIFFERENCE = 0.2
+"""Beyond it two metals that touch corrode each other in sea water [V]."""
+
+_INSULATED = ("plastic", "jacket", "sheath", "coated", "insulat")
+
+
+@rule("release-present")
+def release_present(handling: Handling) -> Iterator[Verdict]:
+    """Whether a sub-surface line says what lets go of its anchor."""
+    mooring = handling.mooring
+    if reaches_the_surface(mooring):
+        return
+    release = mooring.file.release
+    if release is None:
+        yield unknown(
+            None,
+            "No piece has the role of a release: how the line is freed of its anchor is not known.",
+            "Give the release `role: release`.",
+        )
+        return
+    piece = mooring.file.pieces[release]
+    yield verdict_on(piece, State.PASS, f"{piece.label} frees the line of what is below it.")
+
+
+@rule("swivel")
+def swivel(handling: Handling) -> Iterator[Verdict]:
+    """A swivel between every wire that bears torque and a float that leans and turns with it.
+
+    A wire rope that is not torque-balanced turns under load and back as the load goes, and a float
+    in the current holds it: it kinks. Chain and synthetic rope between them bear no torque.
+    """
+    pieces = handling.mooring.file.pieces
+    for index, piece in enumerate(pieces):
+        if not _bears_torque(piece.component):
+            continue
+        for way in (pieces[:index][::-1], pieces[index + 1 :]):
+            held = _held_by(way)
+            if held is None:
+                continue
+            beside, has_swivel = held
+            ends = f"{piece.label} bears torque and ends at {beside.label}"
+            if has_swivel:
+                yield verdict_on(piece, State.PASS, f"{ends}, with a swivel between them.")
+            else:
+                message = f"{ends}, which leans in the current, without a swivel between them."
+                remedy = "Put a swivel there, or take torque-balanced wire and say so in its name."
+                yield verdict_on(piece, State.WARN, message, remedy)
+
+
+def _bears_torque(component: Component) -> bool:
+    if not isinstance(component, Cable) or is_synthetic(component):
+        return False
+    said = _words(component.material, component.name, component.note)
+    balanced = any(word in said for word in ("torque-balanced", "torque balanced", "rotation-res"))
+    return "steel" in _words(component.material) and not balanced
+
+
+def _held_by(way: Sequence[Piece]) -> tuple[Piece, bool] | None:
+    """The float at which a wire ends that way, and whether a swivel is between; None for none."""
+    has_swivel = False
+    for piece in way:
+        if isinstance(piece.component, Cable | Chain):
+            return None
+        if piece.component.role == "float" and piece.component.net_buoyancy > 0.0:
+            return piece, has_swivel
+        words = _words(piece.use, piece.component.name)
+        has_swivel = has_swivel or "swivel" in words
+    return None
+
+
+@rule("metals")
+def metals(handling: Handling) -> Iterator[Verdict]:
+    """Metals far apart in the galvanic series that touch, wherever both materials are known."""
+    pieces = handling.mooring.file.pieces
+    pairs: list[tuple[Piece | Clamp, Piece | Clamp]] = [*pairwise(pieces)]
+    for piece in pieces:
+        if not _has(piece, _INSULATED):
+            pairs += [(piece, clamp) for clamp in piece.clamps]
+    warned: set[str] = set()
+    for one, other in pairs:
+        first, second = potential_of(one.component), potential_of(other.component)
+        if first is None or second is None or abs(first - second) <= GREATEST_DIFFERENCE:
+            continue
+        base, noble = (one, other) if first < second else (other, one)
+        if base.label not in warned:
+            warned.add(base.label)
+            yield _corrodes(base, noble, abs(first - second))
+
+
+def potential_of(component: Component) -> float | None:
+    """Of the metal of a component in sea water [V]; None where it is not known or insulated."""
+    said = _words(component.material)
+    if any(word in said for word in _INSULATED):
+        return None
+    return next((volts for word, volts in POTENTIALS.items() if word in said), None)
+
+
+def _corrodes(base: Piece | Clamp, noble: Piece | Clamp, volts: float) -> Verdict:
+    message = (
+        f"{base.label} ({base.component.material}) touches {noble.label} "
+        f"({noble.component.material}), {volts:.2f} V nobler in sea water, and corrodes."
+    )
+    remedy = "Insulate them from each other, or give an anode."
+    return verdict_on(base, State.WARN, message, remedy, volts, GREATEST_DIFFERENCE,
+                      GREATEST_DIFFERENCE - volts)  # fmt: skip
+
+
+def _has(piece: Piece, words: Sequence[str]) -> bool:
+    said = _words(piece.use, piece.component.name, piece.component.material)
+    return any(word in said for word in words)
+
+
+def _words(*texts: str | None) -> str:
+    return " ".join(text for text in texts if text).casefold()

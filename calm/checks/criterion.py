@@ -1,0 +1,165 @@
+"""A criterion: what a part of the line may not pass, or fall short of; each stands once.
+
+The design check puts it into words for one result, the statistics of a batch count it in every
+profile.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from itertools import groupby
+from math import hypot, isnan, nan
+from typing import TYPE_CHECKING
+
+from calm.case.measure import clamps_down
+from calm.checks.finding import Rule, State, Verdict, rule, unknown, verdict_on
+
+if TYPE_CHECKING:
+    from calm.case import Mooring, Result
+    from calm.files import Component, Place
+
+AT_SURFACE = 0.1
+"""What comes so near to the surface is at it [m]."""
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A piece of the line, or a clamp on one.
+
+    Attributes
+    ----------
+    label, place : unlike any other of the line
+    component : its definition
+    index : of the piece from the top, of a clamp that of the piece it is on
+    clamp : place among all clamps down the line, as in results; None of a piece
+    """
+
+    label: str
+    place: Place
+    component: Component
+    index: int
+    clamp: int | None = None
+
+
+def pieces_of(mooring: Mooring) -> list[Judged]:
+    """The pieces from the top to the anchor."""
+    return [
+        Judged(each.label, each.place, each.component, each.index) for each in mooring.file.pieces
+    ]
+
+
+def parts_of(mooring: Mooring) -> list[Judged]:
+    """The pieces above the anchor, then the clamps, each from the top."""
+    pieces = mooring.file.pieces[:-1]
+    on = [piece.index for piece in pieces for _ in piece.clamps]
+    clamps = [
+        Judged(each.label, each.place, each.component, index, number)
+        for number, (index, each) in enumerate(zip(on, clamps_down(pieces), strict=True))
+    ]
+    return pieces_of(mooring)[:-1] + clamps
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """What a rule allows a part of the line, or the line as a whole.
+
+    Attributes
+    ----------
+    part : that is judged; the top or the anchor for the line as a whole
+    quantity : a name of `READINGS`
+    limit : SI units and degrees; None where a figure that it takes is missing
+    words : message and remedy for a value, NaN where it is not known
+    least : whether values may not fall short of the limit, rather than not pass it
+    beyond : state of a value that does: fail or warn
+    silent : whether a value that is NaN is nothing to judge, rather than unknown
+    source : of the limit; "" for that of the rule
+    told : value and limit as people state them, of the same margin, where not these
+    """
+
+    part: Judged
+    quantity: str
+    limit: float | None
+    words: Callable[[float, Result], tuple[str, str]]
+    least: bool = False
+    beyond: State = State.FAIL
+    silent: bool = False
+    source: str = ""
+    told: Callable[[float, Result], tuple[float, float]] | None = None
+
+    def verdict(self, result: Result) -> Verdict | None:
+        """On the part in a result; None where there is nothing to judge."""
+        value = READINGS[self.quantity](result, self.part)
+        if isnan(value) and self.silent:
+            return None
+        message, remedy = self.words(value, result)
+        if isnan(value) or self.limit is None:
+            return unknown(self.part, message, remedy, None if isnan(value) else value)
+        margin = value - self.limit if self.least else self.limit - value
+        kept = margin >= 0.0
+        shown, limit = (value, self.limit) if self.told is None else self.told(value, result)
+        state = State.PASS if kept else self.beyond
+        said = None if kept else remedy
+        return verdict_on(self.part, state, message, said, shown, limit, margin, self.source)
+
+
+def verdicts(criteria: Iterable[Criterion], result: Result) -> Iterator[Verdict]:
+    """The gravest verdict on each part, from criteria that follow one another part by part."""
+    for _, group in groupby(criteria, key=lambda criterion: criterion.part):
+        found = [verdict for each in group if (verdict := each.verdict(result)) is not None]
+        if found:
+            yield max(found, key=lambda verdict: verdict.state.severity)
+
+
+def criteria(
+    name: str, *, of_anchor: bool = False
+) -> Callable[[Callable[[Mooring], Iterator[Criterion]]], Rule]:
+    """Make a function that says what is asked of a mooring into the `Rule` of that name."""
+
+    def of(asked: Callable[[Mooring], Iterator[Criterion]]) -> Rule:
+        def judge(result: Result) -> Iterator[Verdict]:
+            return verdicts(asked(result.mooring), result)
+
+        return replace(rule(name, of_anchor=of_anchor)(judge), criteria=asked)
+
+    return of
+
+
+def _tilt(result: Result, part: Judged) -> float:
+    rows = result.components if part.clamp is None else result.clamps
+    return float(rows.tilt[part.index if part.clamp is None else part.clamp])
+
+
+def _depth(result: Result, part: Judged) -> float:
+    """The greatest of a part; NaN of a piece that is at the surface."""
+    if part.clamp is not None:
+        return float(result.clamps.depth[part.clamp])
+    top, bottom = (
+        float(ends[part.index])
+        for ends in (result.components.depth_top, result.components.depth_bottom)
+    )
+    return nan if result.type == "surface" and top <= AT_SURFACE else max(top, bottom)
+
+
+def _reserve(result: Result, _: Judged) -> float:
+    return 1.0 - result.top.used_buoyancy if result.type == "surface" else 0.0
+
+
+READINGS: dict[str, Callable[[Result, Judged], float]] = {
+    "tension": lambda result, part: float(result.components.tension[part.index]),
+    "tension_bottom": lambda result, part: float(result.components.tension_bottom[part.index]),
+    "least_tension": lambda result, part: float(result.components.least_tension[part.index]),
+    "tilt": _tilt,
+    "depth": _depth,
+    "top_depth": lambda result, _: result.top.depth,
+    "knockdown": lambda result, _: nan if result.top.knockdown is None else result.top.knockdown,
+    "offset": lambda result, _: hypot(result.top.x, result.top.y),
+    "required_weight": lambda result, _: result.anchor.required_weight,
+    "vertical": lambda result, _: result.anchor.vertical,
+    "slide": lambda result, _: (
+        result.anchor.horizontal + result.anchor.friction * result.anchor.vertical
+    ),
+    "reserve": _reserve,
+}
+"""What is read of a part in a result: a tension of the whole piece is the greatest on it, that of a
+least tension leaves out what lies on the seabed, a slide is H + friction × V."""

@@ -1,0 +1,168 @@
+"""Growth on a line: what it adds to the drag and to the weight of all that it reaches.
+
+It is a layer of one thickness around everything from the surface down to a depth in still water.
+The diameter of a cable grows by twice the thickness; the drags of a rigid piece grow as the areas
+that they are of; of a body without a size, as that of a sphere of the same area, which is its
+`drag_area`, or what its drag comes to with a coefficient of 1. The growth displaces water; what it
+weighs in it follows from its density, and is nothing where none is given.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from math import isnan, pi, sqrt
+from typing import Any
+
+from calm.assemble import drag_of, net_buoyancy
+from calm.case import Result
+from calm.files import (
+    Anchor,
+    Body,
+    Cable,
+    Chain,
+    Clamp,
+    Component,
+    Cylinder,
+    Fouling,
+    Piece,
+    Sphere,
+)
+from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
+from calm.physics import drag
+from calm.physics.line import REFERENCE_DENSITY
+
+CHAIN_BREADTH = 1.8
+"""Diameter of the cylinder that displaces what a chain does, over that of its bar: OrcaFlex."""
+
+
+def grown(pieces: Sequence[Piece], given: Result, fouling: Fouling) -> tuple[Piece, ...]:
+    """The pieces with growth on all that is above a depth in still water.
+
+    A cable or chain that reaches deeper is parted there, both parts under its label.
+
+    Parameters
+    ----------
+    given : the line without growth
+    """
+    gravity = given.mooring.water.gravity
+    return tuple(
+        replace(piece, index=index)
+        for index, piece in enumerate(_grown_pieces(pieces, given, fouling, gravity))
+    )
+
+
+def _grown_pieces(
+    pieces: Sequence[Piece], given: Result, fouling: Fouling, gravity: float
+) -> Iterator[Piece]:
+    sunk = given.components.knockdown
+    for row, piece in zip(given.components, pieces, strict=True):
+        rise = 0.0 if isnan(sunk[0]) else row.knockdown
+        top, bottom = row.depth_top - rise, row.depth_bottom - rise
+        along = (bottom - top) / piece.length if piece.length else 0.0
+        clamps = tuple(
+            replace(clamp, component=grown_component(clamp.component, fouling, gravity))
+            if top + along * clamp.at < fouling.depth
+            else clamp
+            for clamp in piece.clamps
+        )
+        whole = replace(piece, clamps=clamps)
+        if top >= fouling.depth:
+            yield whole
+            continue
+        share = 1.0
+        if isinstance(piece.component, Cable | Chain) and bottom > fouling.depth:
+            share = (fouling.depth - top) / (bottom - top)
+        upper, lower = _parted(whole, share)
+        yield replace(upper, component=grown_component(piece.component, fouling, gravity))
+        if lower is not None:
+            yield lower
+
+
+def grown_component(component: Component, fouling: Fouling, gravity: float) -> Component:
+    """A component with growth all over it; an anchor has none.
+
+    Parameters
+    ----------
+    gravity : [m/s²]
+    """
+    if isinstance(component, Anchor):
+        return component
+    thickness = fouling.thickness
+    drags, volume = _larger(component, thickness)
+    if fouling.density is None:
+        return component.model_copy(update=drags)
+    weight = (fouling.density - REFERENCE_DENSITY) * gravity * volume
+    net = net_buoyancy(component, gravity) - weight
+    force: dict[str, Any] = {"weight": -net} if isinstance(component, Chain) else {"buoyancy": net}
+    if component.displaced_volume is not None:
+        held = CATALOGUE_DENSITY * component.displaced_volume
+        bare = held - component.net_buoyancy / STANDARD_GRAVITY
+        force["mass"] = bare + fouling.density * volume
+    displaced = getattr(component, "volume", None)
+    if displaced is not None:
+        force["volume"] = displaced + volume
+    return component.model_copy(update=drags | force)
+
+
+def _larger(component: Component, t: float) -> tuple[dict[str, Any], float]:
+    """The figures of drag that growth changes, and its volume [m³, per metre of line]."""
+    if isinstance(component, Cable):
+        d = component.diameter
+        return {"diameter": d + 2.0 * t}, pi * t * (d + t)
+    if isinstance(component, Chain):
+        wider = (component.diameter + 2.0 * t) / component.diameter
+        cn = drag.CHAIN_CN if component.cn is None else component.cn
+        ct = drag.CHAIN_CT if component.ct is None else component.ct
+        volume = pi * t * (CHAIN_BREADTH * component.diameter + t)
+        return {"cn": wider * cn, "ct": wider * ct}, volume
+    kn, kt, directional = drag_of(component, getattr(component, "length", 0.0))
+    across, along, volume = _scales(component, kn, t)
+    update: dict[str, Any] = {}
+    if isinstance(component, Sphere):
+        update["cx"] = across * (drag.SPHERE_CX if component.cx is None else component.cx)
+    elif isinstance(component, Cylinder):
+        d, length = component.diameter, component.length
+        if length > 0.0:
+            update["cn"] = across * kn / (0.5 * REFERENCE_DENSITY * d * length)
+        update["ct"] = along * kt / (0.5 * REFERENCE_DENSITY * pi * d**2 / 4.0)
+    elif isinstance(component, Body):
+        update = dict.fromkeys(("drag_area", "cd", "drag_measurements", "made_of", "inclination"))
+        update |= {"kn": across * kn, "kt": along * kt if directional else None}
+    k_surface = getattr(component, "k_surface", None)
+    return update | ({} if k_surface is None else {"k_surface": across * k_surface}), volume
+
+
+def _scales(component: Component, kn: float, t: float) -> tuple[float, float, float]:
+    """By how much the areas across and along the axis grow, and the volume of the growth [m³]."""
+    if isinstance(component, Cylinder):
+        d, length = component.diameter, component.length
+        wide, long = d + 2.0 * t, length + 2.0 * t
+        across = wide * long / (d * length) if length > 0.0 else 1.0
+        return across, (wide / d) ** 2, pi / 4.0 * (wide**2 * long - d**2 * length)
+    if isinstance(component, Sphere):
+        d = component.diameter
+    else:
+        area = getattr(component, "drag_area", None)
+        d = sqrt(4.0 / pi * (kn / (0.5 * REFERENCE_DENSITY) if area is None else area))
+    if d == 0.0:
+        return 1.0, 1.0, 0.0
+    wide = d + 2.0 * t
+    return (wide / d) ** 2, (wide / d) ** 2, pi / 6.0 * (wide**3 - d**3)
+
+
+def _parted(piece: Piece, share: float) -> tuple[Piece, Piece | None]:
+    """A piece above and below a share of its length, with their clamps; None for nothing below."""
+    if share >= 1.0 or piece.length is None:
+        return piece, None
+    at = share * piece.length
+
+    def lowered(clamp: Clamp) -> Clamp:
+        return replace(clamp, at=clamp.at - at)
+
+    above = tuple(clamp for clamp in piece.clamps if clamp.at <= at)
+    below = tuple(lowered(clamp) for clamp in piece.clamps if clamp.at > at)
+    return (
+        replace(piece, length=at, clamps=above),
+        replace(piece, length=piece.length - at, clamps=below),
+    )

@@ -1,0 +1,155 @@
+"""The line beside its picture and verdict, or beside the catalogue."""
+
+from __future__ import annotations
+
+from textual import on
+from textual.app import ComposeResult
+from textual.containers import Horizontal, Vertical
+
+from calm.files import Place
+from calm.tui.catalogue.pane import CataloguePane, Purpose
+from calm.tui.line.pane import LinePane
+from calm.tui.line.table import LineTable
+from calm.tui.pictures import Pictures
+from calm.tui.verdict_pane import VerdictPane, state_sign, state_word
+from calm.tui.workspace import Workspace
+
+
+class LineBody(Horizontal):
+    """What the first screen shows of the line of a workspace."""
+
+    def __init__(self, workspace: Workspace) -> None:
+        super().__init__(id="body")
+        self.workspace, self.session = workspace, workspace.session
+        self.line = LinePane(workspace)
+        self.catalogue = CataloguePane(id="catalogue")
+        self.pictures, self.verdict = Pictures(id="pictures"), VerdictPane(id="verdict-pane")
+
+    def compose(self) -> ComposeResult:
+        """The line; picture and verdict, in whose place the catalogue may be."""
+        yield self.line
+        yield self.catalogue
+        with Vertical(id="study"):
+            yield self.pictures
+            yield self.verdict
+
+    @property
+    def is_typing(self) -> bool:
+        """Whether a value is typed in place that is not in the draft yet."""
+        return self.line.editor.is_typing
+
+    def settle(self) -> bool:
+        """Take what is typed in a cell; a bad value stays to be corrected."""
+        return self.line.settle()
+
+    def show_draft(self) -> None:
+        """Show the draft as it is now."""
+        self.line.show_draft()
+        self._show_beside()
+
+    replaced = show_draft
+
+    def show_view(self) -> None:
+        """Show what a worker made of it; dim what is of an earlier one."""
+        if self.workspace.is_fresh or self.workspace.is_old:
+            self.line.show_rows()
+        self._show_beside()
+
+    def show_catalogue(self) -> None:
+        """Search the catalogue that was read."""
+        self.line.show_rows()
+        self._show_beside()
+
+    def _show_beside(self) -> None:
+        index = self.workspace.index
+        if index is not None and self.catalogue.index is not index:
+            self.catalogue.take_index(index)
+        self._show_study()
+
+    def _show_study(self) -> None:
+        """The picture and the verdict of the last view, dimmed until they are of the draft."""
+        view, fresh = self.workspace.view, self.workspace.is_fresh
+        last = None if view is None or view.result is not None else self.workspace.good
+        if fresh:
+            self.pictures.show(last or view, "as it last stood" if last else "")
+            note = "The picture shows the line as it last stood." if last else ""
+            self.verdict.show(view, note)
+        self.pictures.set_class(self.workspace.is_old or last is not None, "-old")
+        self.verdict.set_class(self.workspace.is_old, "-old")
+
+    def title(self) -> tuple[str, str]:
+        """Name, file, what is not saved; environment and verdict."""
+        name = " ".join(self.session.draft.text_at(("name",)).split())
+        standing, parts = self.session.standing, []
+        here = standing.environment
+        if here is not None or len(standing.environments) > 1:
+            parts.append(f"environment {here}" if here else "own environment")
+        is_narrow = self.screen.has_class("-narrow") and not self.screen.has_class("-flat")
+        state = state_sign if is_narrow else state_word
+        parts.append(state(self.workspace.view, old=not self.workspace.is_fresh))
+        return f"{self.workspace.called}  {name}".rstrip(), "   ".join(parts)
+
+    # components from the catalogue
+
+    @on(LinePane.ComponentWanted)
+    def _want_component(self, event: LinePane.ComponentWanted) -> None:
+        self.search(event.purpose)
+
+    def search(self, purpose: Purpose) -> None:
+        """Search the catalogue for a component for the row under the cursor."""
+        self.screen.remove_class("-zoomed")
+        self.screen.add_class("-searching")
+        spot = self.line.table.spot
+        is_on_line = purpose == "clamp" or (
+            purpose == "replace" and spot is not None and spot.is_clamp
+        )
+        target, towed = self._target(purpose), self.session.draft.is_tow
+        self.catalogue.open(purpose, target, clampable=is_on_line, towed=towed)
+
+    def _target(self, purpose: Purpose) -> str:
+        """What the row is called that the component is for."""
+        spot = self.line.table.spot
+        if spot is None:
+            return ""
+        values = self.session.item(spot if purpose == "replace" else Place(spot.item)).values
+        return values.get("label") or values.get("use", "")
+
+    @on(CataloguePane.Taken)
+    def _take_component(self, event: CataloguePane.Taken) -> None:
+        spot, values, purpose = self.line.table.spot, event.values, event.purpose
+        session, use = self.session, event.values["use"]
+        if purpose == "replace" and spot is not None:
+            kept: list[str] = []
+            if self.line.attempt(lambda: kept.extend(session.replace(spot, values))):
+                told = f"; kept from the one before: {', '.join(kept)}" if kept else ""
+                self.workspace.tell(f"now {use}{told}")
+            self._close_catalogue()
+            return
+        if purpose == "clamp" and spot is not None:
+            self.line.attempt(lambda: session.clamp(spot, values), f"{use} clamped on")
+        else:
+            below = purpose != "above"
+            self.line.attempt(lambda: session.insert(spot, values, below=below), f"{use} added")
+            if not below:  # the next one comes below it: a line is listed downwards
+                self.catalogue.purpose = "below"
+        self.catalogue.retitle(self._target(self.catalogue.purpose))
+
+    @on(CataloguePane.Closed)
+    def _close_catalogue(self) -> None:
+        self.screen.remove_class("-searching")
+        self.line.table.focus()
+
+    @on(LineTable.Moved)
+    def _retarget(self) -> None:
+        if self.screen.has_class("-searching"):
+            self.catalogue.retitle(self._target(self.catalogue.purpose))
+
+    def put_component(self, id: str, values: dict[str, str]) -> None:
+        """Define a component in the file, and show it in the catalogue."""
+        session = self.session
+        if self.line.attempt(
+            lambda: session.do(session.draft.put_component(id, values), f"define {id}"),
+            f"{id} is defined in the file; the catalogue has it",
+        ):
+            self.search("below")
+            self.catalogue.search.value = id

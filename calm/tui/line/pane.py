@@ -1,0 +1,280 @@
+"""The line: its rows and what is done with them, and the values that are edited in place."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import ClassVar
+
+from textual import on
+from textual.app import ComposeResult
+from textual.binding import BindingType
+from textual.containers import Vertical
+from textual.message import Message
+
+from calm.files import Place
+from calm.tui.actions import bindings
+from calm.tui.catalogue.pane import Purpose
+from calm.tui.line.cell import Cell
+from calm.tui.line.cell_editor import CellEditor
+from calm.tui.line.rows import table_rows
+from calm.tui.line.table import LineTable
+from calm.tui.line.table_row import EDITABLE, Column
+from calm.tui.workspace import Workspace
+
+_MIXED = "Pieces are marked, and clamps of other pieces; mark pieces only, or clamps only"
+
+
+class LinePane(Vertical):
+    """The table of the line with the line of input that edits its cells."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings("line")]
+    DEFAULT_CSS = "LinePane { width: 3fr; height: 1fr; layers: table over; }"
+
+    @dataclass
+    class ComponentWanted(Message):
+        """A component is to be chosen for the row under the cursor."""
+
+        purpose: Purpose
+
+    def __init__(self, workspace: Workspace) -> None:
+        super().__init__(id="line-pane")
+        self.workspace, self.session = workspace, workspace.session
+        self.table, self.editor = LineTable(id="line"), CellEditor(id="cell")
+        self._editing: Cell | None = None
+
+    def compose(self) -> ComposeResult:
+        """The rows, and over them what is edited."""
+        yield self.table
+        yield self.editor
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """The keys of the rows are not those of a value that is typed."""
+        return not self.editor.is_open
+
+    def show_rows(self) -> None:
+        """Show the rows as they are now, with the figures that are known of them."""
+        workspace, view = self.workspace, self.workspace.view
+        workspace.refresh_index()
+        figures = view if view is not None and (view.rows or view.problems) else workspace.good
+        rows = table_rows(self.session.draft, figures, workspace.index)
+        self.table.show_rows(rows, old=workspace.is_old)
+
+    def show_draft(self, spot: Place | None = None) -> None:
+        """Show the draft, another one now; the cursor goes to a row, or stays where it is."""
+        here = self.table.spot if spot is None else spot
+        self.forget()
+        self.show_rows()
+        self.table.go_to(here)
+
+    def forget(self) -> None:
+        """The piece that is marked or edited may be another one now."""
+        self._leave_editor()
+        self.table.mark(frozenset())
+
+    def attempt(self, change: Callable[[], object], told: str = "") -> bool:
+        """Make a change, after what is typed in place is taken. Whether it was made."""
+        if not self.settle():
+            return False
+        is_made, spot = self.workspace.attempt(change)
+        if is_made:
+            self.show_draft(spot)
+            self.workspace.tell(told)
+            self.workspace.edited()
+        return is_made
+
+    # the cursor and the marks
+
+    def action_move_cursor(self, by: int) -> None:
+        """Go up or down."""
+        self.table.cursor += by
+
+    def action_move_page(self, by: int) -> None:
+        """Go a page up or down."""
+        self.table.cursor += by * max(self.table.size.height - 2, 1)
+
+    def action_move_to_end(self, way: int) -> None:
+        """Go to the top or the bottom."""
+        self.table.cursor = 0 if way < 0 else len(self.table.rows) - 1
+
+    def action_move_column(self, by: int) -> None:
+        """Go to the left or the right."""
+        self.table.column += by
+
+    def action_mark(self, by: int) -> None:
+        """Mark the row or not, and go on."""
+        spot = self.table.spot
+        if spot is not None:
+            self.table.mark(self.table.marked ^ {spot} if by == 0 else self.table.marked | {spot})
+            self.table.cursor += by
+            if by and self.table.spot is not None:
+                self.table.mark(self.table.marked | {self.table.spot})
+
+    def action_mark_all(self) -> None:
+        """Mark all pieces, or none where all are."""
+        pieces = frozenset(row.spot for row in self.table.rows if not row.spot.is_clamp)
+        self.table.mark(frozenset() if self.table.marked >= pieces else pieces)
+
+    # rows
+
+    def action_add(self, below: int) -> None:
+        """Add a piece below, or above."""
+        self.post_message(self.ComponentWanted("below" if below else "above"))
+
+    def action_clamp(self) -> None:
+        """Clamp an instrument on the piece."""
+        if self.table.spot is None:
+            self.workspace.tell("There is no piece yet to clamp it on")
+        else:
+            self.post_message(self.ComponentWanted("clamp"))
+
+    def action_replace(self) -> None:
+        """Use another component."""
+        if self.table.spot is not None:
+            self.post_message(self.ComponentWanted("replace"))
+
+    def action_duplicate(self) -> None:
+        """Repeat what is chosen."""
+        chosen = self._chosen_of_a_kind()
+        if chosen:
+            self.attempt(lambda: self.session.duplicate(chosen))
+
+    def action_delete(self) -> None:
+        """Take out what is chosen."""
+        chosen = self.table.chosen
+        if chosen:
+            count = f"{len(chosen)} rows" if len(chosen) > 1 else "deleted"
+            self.attempt(lambda: self.session.delete(chosen), f"{count}; u brings it back")
+
+    def action_move_piece(self, by: int) -> None:
+        """Move what is chosen up or down."""
+        marked, chosen = self.table.marked, self._chosen_of_a_kind()
+        if not chosen:
+            return
+        moved: list[Place] = []
+
+        def move() -> Place | None:
+            moved.extend(self.session.move(chosen, by))
+            return moved[0] if moved else None
+
+        if self.attempt(move) and marked:
+            self.table.mark(frozenset(moved))
+
+    def action_copy(self) -> None:
+        """Keep what is chosen for pasting."""
+        copied = self.session.copy(self._chosen_of_a_kind())
+        if copied:
+            self.table.mark(frozenset())
+            self.workspace.tell(f"{copied} row{'s' * (copied != 1)} copied; v pastes below")
+
+    def action_cut(self) -> None:
+        """Take out what is chosen, for pasting."""
+        chosen = self._chosen_of_a_kind()
+        if self.session.copy(chosen):
+            self.attempt(lambda: self.session.delete(chosen), "cut; v pastes below")
+
+    def action_paste(self, below: int) -> None:
+        """Put in what was copied."""
+        if not len(self.session.copied):
+            self.workspace.tell("Nothing was copied yet")
+        else:
+            self.attempt(lambda: self.session.paste(self.table.spot, below=bool(below)))
+
+    def _chosen_of_a_kind(self) -> tuple[Place, ...]:
+        """What is chosen; nothing, and that is told, where clamps of other pieces are with pieces.
+
+        They have no place of their own among pieces that are pasted or moved.
+        """
+        chosen = self.table.chosen
+        pieces = {spot.item for spot in chosen if not spot.is_clamp}
+        if pieces and any(spot.is_clamp and spot.item not in pieces for spot in chosen):
+            self.workspace.tell(_MIXED, wrong=True)
+            return ()
+        return chosen
+
+    # a value in place
+
+    def action_edit(self) -> None:
+        """Edit the value under the cursor."""
+        self.action_edit_column(self.table.cell)
+
+    @on(LineTable.Activated)
+    def _pressed(self) -> None:
+        self.action_edit()
+
+    def action_edit_column(self, column: Column) -> None:
+        """Edit a value of the row under the cursor."""
+        if self.table.spot is None:
+            self.action_add(1)
+        elif column == "component":
+            self.action_replace()
+        else:
+            self._edit(Cell(self.workspace, self.table.spot, column))
+
+    def _edit(self, cell: Cell) -> None:
+        if refused := cell.refused:
+            self.workspace.tell(refused)
+        if refused or not self.settle():
+            return
+        self.table.column = EDITABLE.index(cell.column)
+        self._editing = cell
+        region = self.table.cell_region(cell.column)
+        least = 16 if cell.column == "length" else 6
+        self.editor.open(cell.text, cell.check, region, least_width=least)
+
+    @on(CellEditor.Judged)
+    def _tell_reading(self, event: CellEditor.Judged) -> None:
+        reading = event.reading
+        if self.editor.is_open:
+            completed = reading.text if reading.text != self.editor.value.strip() else ""
+            note = reading.note or (f"= {completed}" if completed and reading.is_good else "")
+            self.workspace.tell(note, wrong=not reading.is_good)
+
+    @on(CellEditor.Done)
+    def _take_value(self, event: CellEditor.Done) -> None:
+        cell = self._editing
+        if cell is not None:
+            self._put(event.text)
+            onward = cell.onward() if event.then == "edit next" else None
+            if onward is not None:
+                self._edit(onward)
+            self.table.column += event.then == "right"
+            self.table.cursor += (event.then == "down") - (event.then == "up")
+
+    def settle(self) -> bool:
+        """Take what is typed in a cell; a bad value stays to be corrected."""
+        if self._editing is None or not self.editor.is_open:
+            return True
+        reading = self.editor.settle()
+        if reading.is_good:
+            self._put(self.editor.text)
+        else:
+            self.editor.focus()
+            self.workspace.tell(f"Not taken yet: {reading.note}", wrong=True)
+        return reading.is_good
+
+    def _put(self, text: str | None) -> None:
+        """Put a text into the cell that is edited; None leaves it as it was."""
+        cell = self._editing
+        assert cell is not None
+        self._leave_editor()
+        before = self.session.draft
+        is_put = text is not None and self.workspace.attempt(lambda: cell.put(text))[0]
+        if is_put and self.session.draft is not before:
+            self.show_draft()
+            self.workspace.edited()
+
+    @on(CellEditor.Abandoned)
+    def _abandon(self, event: CellEditor.Abandoned) -> None:
+        self._leave_editor()
+        if event.reason:
+            self.workspace.tell(event.reason, wrong=True)
+
+    def _leave_editor(self) -> None:
+        if self.editor.is_open:
+            self._editing = None
+            had_focus = self.editor.has_focus
+            self.editor.close()
+            self.workspace.tell("")
+            if had_focus:
+                self.table.focus()

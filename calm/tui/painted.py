@@ -1,0 +1,140 @@
+"""What the terminal shows, cell by cell, so that only cells that change are sent to it.
+
+Textual sends a part of the screen again as soon as one cell of it may have changed, and all of it
+where something has another size: 38 kB for a screen of 140 columns and 45 rows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import chain
+
+from rich.cells import cell_len
+from rich.console import Console
+from rich.segment import Segment
+from rich.style import Style
+from textual._compositor import ChopsUpdate, CompositorUpdate, LayoutUpdate
+from textual.strip import Strip
+
+Cell = tuple[str, Style | None]
+"""A sign and its style; the second cell of a wide sign is empty."""
+
+_UNKNOWN: Cell = ("\0", None)
+_GAP = 8
+"""Cells that have not changed are sent where fewer lie between others: to skip them costs more."""
+
+
+class Painted:
+    """The cells of a terminal."""
+
+    def __init__(self) -> None:
+        self._rows: list[list[Cell]] = []
+
+    def forget(self) -> None:
+        """Something else may have written to the terminal: all is to be sent again."""
+        self._rows = []
+
+    def update(self, update: CompositorUpdate) -> CompositorUpdate:
+        """Of an update what differs from what is shown, found out when it is sent."""
+        return _Changes(self, update)
+
+    def put(self, y: int, x: int, cells: list[Cell], console: Console) -> str:
+        """What is to be sent to have cells in a row, from a column on."""
+        while len(self._rows) <= y:
+            self._rows.append([])
+        row = self._rows[y]
+        if len(row) < x + len(cells):
+            row.extend([_UNKNOWN] * (x + len(cells) - len(row)))
+        sent = [
+            f"\x1b[{y + 1};{x + begin + 1}H{_rendered(cells[begin:end], console)}"
+            for begin, end in _changed(row[x : x + len(cells)], cells)
+        ]
+        row[x : x + len(cells)] = cells
+        return "".join(sent)
+
+    def fit(self, width: int, height: int) -> None:
+        """Forget what was shown in a terminal of another size."""
+        if len(self._rows) != height or any(len(row) != width for row in self._rows):
+            self._rows = [[_UNKNOWN] * width for _ in range(height)]
+
+
+class _Changes(CompositorUpdate):
+    """What of an update is to be sent."""
+
+    def __init__(self, painted: Painted, update: CompositorUpdate) -> None:
+        self._painted, self._update = painted, update
+
+    def render_segments(self, console: Console) -> str:
+        """The signs to be sent; they are taken to be shown then."""
+        painted, update = self._painted, self._update
+        if isinstance(update, LayoutUpdate):
+            region = update.region
+            painted.fit(region.width, region.height)
+            return "".join(
+                painted.put(y, region.x, [*_cells(chain.from_iterable(line))], console)
+                for y, line in enumerate(update.strips, region.y)
+            )
+        if isinstance(update, ChopsUpdate):
+            return "".join(painted.put(y, x, cells, console) for y, x, cells in _parts(update))
+        painted.forget()
+        return update.render_segments(console)
+
+
+def _parts(update: ChopsUpdate) -> Iterator[tuple[int, int, list[Cell]]]:
+    """The cells of an update of some spans, by row and column."""
+    for y, begin, end in update.spans:
+        for x, strip in update.chops[y].items():
+            if strip is not None and x < end and x + strip.cell_length > begin:
+                first = max(begin - x, 0)
+                yield y, x + first, [*_cells(strip)][first : end - x]
+
+
+def _cells(segments: Iterable[Segment]) -> Iterator[Cell]:
+    for text, style, _ in segments:
+        if text.isascii():
+            yield from ((sign, style) for sign in text)
+            continue
+        for sign in text:
+            width = cell_len(sign)
+            if width:
+                yield sign, style
+            if width == 2:
+                yield "", style
+
+
+def _changed(shown: list[Cell], wanted: list[Cell]) -> Iterator[tuple[int, int]]:
+    """Begin and end of each run of cells that differ, those near each other as one.
+
+    No run begins or ends within a wide sign, shown or wanted: half of one cannot be written.
+    """
+    if shown == wanted:
+        return
+    begin = end = 0
+    for number in range(len(wanted)):
+        if shown[number] == wanted[number]:
+            continue
+        if number - end > _GAP and end > 0:
+            yield _around(begin, end, shown, wanted)
+        if number - end > _GAP or end == 0:
+            begin = number
+        end = number + 1
+    yield _around(begin, end, shown, wanted)
+
+
+def _around(begin: int, end: int, shown: list[Cell], wanted: list[Cell]) -> tuple[int, int]:
+    while begin > 0 and not (shown[begin][0] and wanted[begin][0]):
+        begin -= 1
+    while end < len(wanted) and not (shown[end][0] and wanted[end][0]):
+        end += 1
+    return begin, end
+
+
+def _rendered(cells: list[Cell], console: Console) -> str:
+    segments: list[Segment] = []
+    text, last = "", cells[0][1]
+    for sign, style in cells:
+        if style is not last and style != last:
+            segments.append(Segment(text, last))
+            text, last = "", style
+        text += sign
+    return Strip([*segments, Segment(text, last)]).render(console)

@@ -1,0 +1,98 @@
+"""Currents to begin with, and those of files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from textual.app import App
+
+from calm.errors import CalmError
+from calm.tui.dialogs import Answer, Question
+from calm.tui.water.form import CURRENT_COLUMNS, USUAL_DEPTH
+from calm.tui.water.pane import WaterPane
+from calm.tui.water.presets import PRESETS
+
+
+@dataclass(frozen=True)
+class _File:
+    """A file whose profile is read for an environment."""
+
+    variant: str | None
+    path: str
+    time: str
+    depth: float
+
+
+class Currents:
+    """What puts a whole current into the environment that a form of the water shows."""
+
+    def __init__(self, app: App[Any], pane: WaterPane) -> None:
+        self._app, self._pane, self._workspace = app, pane, pane.workspace
+
+    def offer_presets(self) -> None:
+        """A profile to begin with."""
+
+        def take(key: str | None) -> None:
+            chosen = next((preset for preset in PRESETS if preset.key == key), None)
+            if chosen is not None:
+                rows = chosen.rows(self._pane.water.depth or USUAL_DEPTH)
+                self._pane.put_table(CURRENT_COLUMNS, rows, "a preset current")
+
+        if self._pane.settle():
+            depth = self._pane.water.depth
+            down = f"{USUAL_DEPTH:g} m, as no depth is given" if depth is None else f"{depth:g} m"
+            answers = [Answer(preset.key, preset.name, preset.key) for preset in PRESETS]
+            text = f"As a table down to {down}, towards the east; then change its figures."
+            self._app.push_screen(Question("A current to begin with", text, answers), take)
+
+    def ask_for_file(self) -> None:
+        """A current from CSV or NetCDF: referred to, or its profile copied."""
+        from calm.tui.water.current_import import ImportSheet
+
+        def take(texts: dict[str, str] | None) -> None:
+            if texts is None:
+                self._pane.show_draft()
+                return
+            path, time, water = texts["file"], texts["time"], self._pane.water
+            if texts["how"] == "refer":
+                given = {"file": path} | ({"time": time} if time else {})
+                told = f"current of {path}"
+                self._pane.change(lambda water: water.put_form(("current",), given), told)
+                return
+            self._workspace.tell(f"Reading {path} …")
+            file = _File(water.variant, path, time, water.depth or USUAL_DEPTH)
+            self._pane.run_worker(lambda: self._read(file), thread=True, exit_on_error=False)
+
+        if self._pane.settle():
+            self._app.push_screen(ImportSheet(self._folder), take)
+
+    def _read(self, file: _File) -> None:
+        """Read a file in a thread; what comes of it is taken by the form."""
+        from calm.tui.water.current_import import imported
+
+        tell, later = self._workspace.tell, self._pane.call_later
+        try:
+            columns, rows = imported(self._folder / file.path, file.time, file.depth)
+        except CalmError as error:
+            later(tell, str(error).partition("\n")[0], wrong=True)
+        except Exception as error:  # the libraries that read NetCDF raise whatever they like
+            reason = f"{type(error).__name__}: {error}"
+            later(tell, f"{file.path} cannot be read: {reason}", wrong=True)
+        else:
+            later(self._take, file, columns, rows)
+
+    def _take(self, file: _File, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+        if file.variant != self._pane.water.variant:
+            told = f"{file.path} was read for another environment; read it again"
+            self._workspace.tell(told, wrong=True)
+        else:
+            self._pane.put_table(columns, rows, f"current of {file.path}")
+            self._workspace.tell(f"The current of {file.path} is in the table")
+
+    @property
+    def _folder(self) -> Path:
+        path = self._pane.session.file.path
+        return Path.cwd() if path is None else path.absolute().parent

@@ -1,0 +1,292 @@
+"""The water of one environment as a form, with the profile of the current beside."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from textual import on
+from textual.app import ComposeResult
+from textual.containers import Horizontal, Vertical, VerticalScroll
+from textual.content import Content
+from textual.message import Message
+from textual.widget import Widget
+from textual.widgets import Static
+
+from calm.files.editing import Draft, Value
+from calm.files.fields import POSITIVE_LENGTH, Quantity
+from calm.files.tables import DIRECTION, SALINITY, TEMPERATURE, WATER_DENSITY
+from calm.tui.checking import needed, quantity
+from calm.tui.field import Field
+from calm.tui.messages import said
+from calm.tui.profile import Profile
+from calm.tui.verdict_pane import state_word
+from calm.tui.water.form import (
+    CURRENT_FORMS,
+    DENSITY_FORMS,
+    PROFILE_FORMS,
+    USUAL_DEPTH,
+    Place,
+    Water,
+)
+from calm.tui.water.form_choice import FormChoice
+from calm.tui.water.grid import Grid
+from calm.tui.workspace import Workspace
+
+if TYPE_CHECKING:
+    from calm.errors import Problem
+
+_DEPTH = quantity(POSITIVE_LENGTH, optional=True)
+_DENSITY = quantity(WATER_DENSITY, optional=True)
+_SPEED = quantity(Quantity("speed", at_least=0))
+_WIND = quantity(Quantity("speed", at_least=0), optional=True)
+_ANGLE = quantity(DIRECTION)
+_TOWARD = quantity(DIRECTION, optional=True)
+_ELSEWHERE = (
+    "The line stands in {0}: the profile and the verdict are of that. Below is the file's own "
+    "environment; what {0} gives takes its place."
+)
+_INHERITED = "as in the file's own environment"
+
+
+class WaterPane(Horizontal):
+    """A form at the left, the profile of the current at the right."""
+
+    DEFAULT_CSS = """
+    WaterPane {
+        & #water-form { width: 3fr; padding: 1 1 0 1; scrollbar-size-vertical: 1; }
+        & #water-profile { width: 2fr; border-left: vkey $panel; padding: 0 1; }
+        & .gone { display: none; }
+        & Grid { margin-left: 16; }
+        & Field > Input { width: 20; }
+    }
+    """
+
+    class FileWanted(Message):
+        """The current is to be that of a file."""
+
+    def __init__(self, workspace: Workspace) -> None:
+        super().__init__()
+        self.workspace, self.session = workspace, workspace.session
+        # what was written in forms that others took the place of, to be had back
+        self._left: dict[tuple[str | None, Place, str], Value | None] = {}
+
+    def compose(self) -> ComposeResult:
+        """Form and profile."""
+        with VerticalScroll(id="water-form", can_focus=False):
+            yield Static(id="environment-names", markup=False)
+            yield Static(id="water-notes")
+            yield from self._parts()
+        with Vertical(id="water-profile"):
+            yield Profile()
+
+    def _parts(self) -> Iterator[Widget]:
+        """The parts of the form; the id of each tells its place, as `_place` reads it."""
+        yield Field("depth", "Depth", _DEPTH, id="depth", placeholder="1100 m")
+        yield FormChoice("Density", DENSITY_FORMS, id="density-form")
+        yield Field("density", "", _DENSITY, id="density", placeholder="1025 kg/m^3")
+        yield Grid(id="density-table")
+        for name, kind in (("temperature", TEMPERATURE), ("salinity", SALINITY)):
+            yield FormChoice(f"  {name}", PROFILE_FORMS, id=f"density-{name}-form")
+            yield Field(name, "", quantity(kind), id=f"density-{name}")
+            yield Grid(id=f"density-{name}-table")
+        yield FormChoice("Current", CURRENT_FORMS, id="current-form")
+        yield Field("speed", "  speed", _SPEED, id="current-speed")
+        yield Field("toward", "  towards", _ANGLE, id="current-toward")
+        yield Field("file", "  file", needed("a file"), id="current-file")
+        yield Field("time", "  time", id="current-time", placeholder="2026-03-01T06:00")
+        yield Grid(id="current-table")
+        yield Field("speed", "Wind", _WIND, id="wind-speed", placeholder="none")
+        yield Field("toward", "  towards", _TOWARD, id="wind-toward", placeholder="where it blows")
+
+    def on_mount(self) -> None:
+        """Show what the file says."""
+        self.show_draft()
+        self.query_one("#depth", Field).focus_input()
+
+    @property
+    def water(self) -> Water:
+        """The environment that is shown, as the file has it now."""
+        standing = self.session.standing
+        here = standing.environment
+        return Water(self.session.draft, here if here in standing.environments else None)
+
+    @property
+    def environment_file(self) -> str | None:
+        """The environment file that the line stands in, given with the command; None where not."""
+        standing, draft = self.session.standing, self.session.draft
+        here = standing.environment
+        return None if here in standing.environments or draft.problems else here
+
+    def title(self) -> tuple[str, str]:
+        """What is shown, and the verdict."""
+        state = state_word(self.workspace.view, old=not self.workspace.is_fresh)
+        return f"The water of {self.workspace.called}", state
+
+    def show_view(self) -> None:
+        """The profile of a line as judged, dimmed where it is of what is edited no more."""
+        view, fresh = self.workspace.view, self.workspace.is_fresh
+        self._show_notes(view.problems if view is not None and fresh else ())
+        self.query_one(Profile).show(view, old=self.workspace.is_old)
+
+    def _show_notes(self, problems: Sequence[Problem]) -> None:
+        """What keeps the line from standing in the water that the form shows."""
+        file, path = self.environment_file, Path()
+        if self.workspace.view is not None:
+            path = self.workspace.view.path
+        notes = [Content.styled(_ELSEWHERE.format(file), "$text-warning")] if file else []
+        notes += [said(each, path) for each in problems]
+        shown = self.query_one("#water-notes", Static)
+        shown.set_class(not notes, "gone")
+        shown.update(Content("\n").join(notes))
+
+    def show_draft(self) -> None:
+        """Show what the file says now, but where something is being typed."""
+        self.show_view()
+        water = self.water
+        file = self.environment_file
+        names = ["own" if name is None else name for name in self.session.standing.environments]
+        names += [file] if file else []
+        here = file or water.variant or "own"
+        told = "   ".join(f"[{name}]" if name == here else name for name in names)
+        self.query_one("#environment-names", Static).update(f"Environment     {told}", layout=False)
+        for choice in self.query(FormChoice):
+            place = _place(choice)
+            choice.set_class(not self._is_shown(place), "gone")
+            choice.show(water.form(*place))
+        for field in self.query(Field):
+            place = _place(field)
+            field.set_class(not self._is_shown(place, "constant"), "gone")
+            if not field.is_typing:
+                field.reset(water.text(*place))
+            is_lacking = place == ("wind", "toward") and water.lacks_direction
+            note = "is needed: where the wind blows" if is_lacking else ""
+            field.tell(note if water.is_own(place[0]) else _INHERITED)
+        for grid in self.query(Grid):
+            place = _place(grid)
+            grid.set_class(not self._is_shown(place, "table"), "gone")
+            grid.show(*water.table(*place))
+
+    def _is_shown(self, place: Place, form: str = "") -> bool:
+        """Whether a part of the form is of use as the water is given, in this form of its own."""
+        match place:
+            case ("density", _) if self.water.form("density") != DENSITY_FORMS[2]:
+                return False
+            case ("current", "speed" | "toward"):
+                return self.water.form("current") == "uniform"
+            case ("current", "file" | "time"):
+                return self.water.form("current") == "file"
+            case ("density",) | ("density", _) | ("current",):
+                return not form or self.water.form(*place) == form
+        return True
+
+    def replaced(self) -> None:
+        """Show another draft; what is typed, and what other forms held, was of the one before."""
+        self._left.clear()
+        self.drop_typing()
+        self.show_draft()
+
+    # changes
+
+    def change(self, make: Callable[[Water], Draft], label: str, told: str = "") -> bool:
+        """Change the file; what refuses is told. Whether it was changed."""
+        is_made, _ = self.workspace.attempt(lambda: self.session.do(make(self.water), label))
+        self.show_draft()
+        if is_made:
+            self.workspace.tell(told)
+            self.workspace.edited()
+        return is_made
+
+    def put_table(self, columns: Sequence[str], rows: Sequence[Sequence[str]], label: str) -> None:
+        """Make the current a table of these rows."""
+        self.change(lambda water: water.put_rows(("current",), columns, rows), label)
+
+    def give_in_form(self, place: Place, form: str) -> None:
+        """Give the current or the density in another form: as it was in it, or begun anew."""
+        if not self.settle():
+            return
+        water = self.water
+        self._left[water.variant, place, water.form(*place)] = water.own(*place)
+        key = (water.variant, place, form)
+        is_new = key not in self._left
+        value = water.begun(place, form) if is_new else self._left[key]
+        told = ""
+        if is_new and value is not None:
+            told = "Begun with figures to be replaced"
+            if water.depth is None:
+                told += f"; no depth is given, so tables go down to {USUAL_DEPTH:g} m"
+        self.change(lambda water: water.put_form(place, value), f"{place[-1]}: {form}", told)
+
+    # what is typed
+
+    @property
+    def is_typing(self) -> bool:
+        """Whether something is typed that is not in the draft yet."""
+        return any(part.is_typing for part in (*self.query(Field), *self.query(Grid)))
+
+    def settle(self) -> bool:
+        """Take what is typed; the first bad value stays to be corrected, and is told."""
+        for grid in self.query(Grid):
+            typed = grid.is_typing
+            reading = grid.settle()
+            if not reading.is_good:
+                self.workspace.tell(f"Not taken yet: {reading.note}", wrong=True)
+                return False
+            if typed:
+                self._take_rows(grid, "a value")
+        for field in self.query(Field):
+            if not field.is_typing:
+                continue
+            reading = field.reading
+            with field.prevent(Field.Committed):
+                if not field.settle():
+                    field.focus_input()
+                    self.workspace.tell(f"Not taken yet, {field.key}: {reading.note}", wrong=True)
+                    return False
+            self._take(field, reading.text)
+        return True
+
+    def drop_typing(self) -> None:
+        """Take away what is typed and not in the draft."""
+        for field in self.query(Field):
+            field.reset(field.begun)
+        for grid in self.query(Grid):
+            grid.drop()
+
+    @on(Field.Committed)
+    def _commit(self, event: Field.Committed) -> None:
+        self._take(event.field, event.text)
+
+    def _take(self, field: Field, text: str) -> None:
+        place = _place(field)
+        self.change(lambda water: water.put(place, text), f"the {place[0]}")
+
+    @on(Field.Entered)
+    def _onward(self) -> None:
+        self.screen.focus_next()
+
+    @on(Grid.Changed)
+    def _commit_table(self, event: Grid.Changed) -> None:
+        self._take_rows(event.grid, event.label)
+
+    def _take_rows(self, grid: Grid, label: str) -> None:
+        place, cells = _place(grid), grid.cells
+        self.change(lambda water: water.put_rows(place, cells.columns, cells.rows), label)
+
+    @on(Grid.Refused)
+    def _tell_refusal(self, event: Grid.Refused) -> None:
+        self.workspace.tell(event.reason, wrong=True)
+
+    @on(FormChoice.Taken)
+    def _take_form(self, event: FormChoice.Taken) -> None:
+        place = _place(event.choice)
+        if event.form == "file":
+            self.post_message(self.FileWanted())
+        else:
+            self.give_in_form(place, event.form)
+
+
+def _place(part: Widget) -> Place:
+    """Where in an environment the value of a part of the form is written."""
+    return tuple((part.id or "").removesuffix("-form").removesuffix("-table").split("-"))

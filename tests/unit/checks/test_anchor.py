@@ -1,0 +1,66 @@
+"""What an anchor weighs in water, and what is said where that is not known."""
+
+import pytest
+
+import calm
+from calm.checks.assess import check
+
+FILE = """
+name: By hand
+environment: {depth: 200 m, current: {speed: 0.3 m/s, toward: 90 deg}}
+line:
+  - {use: ball, label: top}
+  - {use: thin, label: wire, length: 100 m}
+  - {use: block}
+components:
+  ball: {kind: sphere, diameter: 1 m, role: float, buoyancy: 3000 N}
+  thin: {kind: cable, diameter: 8 mm, weight: 1 N/m, ct: 0}
+  block: {kind: anchor, mass: 1000 kg, FIGURES}
+"""
+G = 9.80665
+RULES = ("anchor-weight", "anchor-uplift", "anchor-sliding")
+
+
+@pytest.fixture
+def load(tmp_path):
+    def of(figures):
+        path = tmp_path / "m.yaml"
+        path.write_text(FILE.replace(", FIGURES", figures), encoding="utf-8")
+        return calm.load(path)
+
+    return of
+
+
+@pytest.mark.parametrize(
+    ("figures", "density", "known"),
+    [
+        ("", 7850.0, False),
+        (", material: granite", 7850.0, False),
+        (", material: steel and concrete", 7850.0, False),
+        (", material: steel", 7850.0, True),
+        (", material: Concrete", 2400.0, True),
+        (", material: cast iron", 7200.0, True),
+        (", density: 2600 kg/m^3", 2600.0, True),
+        (", density: 2600 kg/m^3, material: steel", 2600.0, True),
+        (", weight: 5000 N", None, True),
+    ],
+)
+def test_an_anchor_is_judged_where_what_it_weighs_in_water_is_known(load, figures, density, known):
+    mooring = load(figures)
+    weight = 5000.0 if density is None else 1000.0 * G * (1.0 - 1025.0 / density)
+    assert mooring.anchor_weight == pytest.approx(weight)
+    result = mooring.solve()
+    warned = [each for each in result.warnings if "that of steel, 7850 kg/m³" in each]
+    assert len(warned) == (not known)
+    found = {one.rule: one for one in check(mooring).stands[0].findings if one.rule in RULES}
+    assert set(found) == set(RULES)
+    for finding in found.values():
+        assert (finding.state == "unknown") is not known
+        assert (finding.limit is None) is not known
+    if known:
+        anchor = result.anchor
+        assert found["anchor-weight"].value == pytest.approx(weight)
+        assert found["anchor-weight"].limit == pytest.approx(anchor.required_weight)
+        assert found["anchor-sliding"].limit == pytest.approx(
+            0.6 * (weight / 1.5 - anchor.vertical)
+        )
