@@ -16,7 +16,7 @@ from calm.batch.kernel.layout import Results
 from calm.batch.kernel.outcome import OF_CLAMP, OF_ENDS, OF_PIECE
 from calm.batch.kernel.plan import Plan, plan_of
 from calm.batch.kernel.solve import solve_cases
-from calm.batch.kernel.stragglers import known_levels, solve_one, water_of
+from calm.batch.kernel.stragglers import solve_one, water_of
 from calm.batch.plausible import implausible
 from calm.batch.statuses import STATUSES
 from calm.batch.threads import processors
@@ -187,11 +187,6 @@ class Batch:
             profile = [
                 np.asarray(array[0 if len(array) == 1 else case], np.float64) for array in current
             ]
-            levels = profile[0][known_levels(*profile)]
-            if not len(levels) or (np.diff(levels) == 0.0).any():
-                status[case] = _LEVELS_COINCIDE if len(levels) else _NO_CURRENT
-                alone[case] = False
-                continue
             own = Results(*(array[case] for array in rows))
             try:
                 solve_one(self.mooring, water_of(self.plan.water, *profile), own)

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from calm.batch.records.record import Levels, Record
 
 FIRST, FEWEST = 256, 8
-"""Profiles that are solved before anybody is told, or may stop it: at first, and where each is
-solved by itself. `SLICE` then sets how many."""
+"""Profiles that are solved before anybody is told, or may stop it: at first, and at least, where
+each is solved by itself. `SLICE` sets how many."""
 
 SLICE = 0.5
 """Seconds that the next slice should take."""

@@ -130,7 +130,7 @@ def find_roots(march: March, desk: Desk, way: Way, seek: Searches, reasons: Inte
             if task[i] != DONE:
                 c = slot[i]
                 miss = s[lane.Z + i] - way.aim.goal
-                task[i], reasons[c] = advance(seek, c, task[i], miss, way.aim, way.shares)
+                task[i], reasons[c] = advance(seek, c, task[i], miss, way)
                 seek[c].least_carried, seek[c].lying = s[lane.LIGHTEST + i], s[lane.RESTING + i]
                 marches[i] += 1
                 if marches[i] == MOST_MARCHES and task[i] != DONE:

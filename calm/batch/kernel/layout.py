@@ -77,6 +77,7 @@ class Way(NamedTuple):
     seabed, aim, rides : see there
     places : of every load whether it is the float at the surface, see `calm.batch.kernel.loads`
     shares : of its buoyancy in use, at which a float is tried that may be under water
+    scanned : shares of the depths to be scanned at which the miss is looked at
     falls, fall_step : how deep even currents of growing speed push the line [m], and the step of
         the speed [m/s]
     clamp_row : of every load its row among the clamps down the line; -1 for a piece
@@ -95,6 +96,7 @@ class Way(NamedTuple):
     rides: Rides
     places: Integers
     shares: Floats
+    scanned: Floats
     falls: Floats
     fall_step: float
     clamp_row: Integers

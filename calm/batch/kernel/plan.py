@@ -22,7 +22,8 @@ from calm.physics.profile import Profile
 from calm.physics.state import MarchError
 from calm.physics.track import CABLE, Course, Part, Rod, head_count
 from calm.solve.closing import Closing
-from calm.solve.locate import SHARES, upright_depth
+from calm.solve.locate import NEAR as NEAR_TOP
+from calm.solve.locate import SCAN, SHARES, upright_depth
 from calm.solve.mooring import BARELY_LANDED
 from calm.solve.unknown import Unknown
 
@@ -122,6 +123,7 @@ def _way(closing: Closing, first_chain: int, *, lands: bool) -> Way:
         rides=_rides(head, afloat, line.floating if floats else None),
         places=_places(line, loads, course.stages[0].size, afloat if floats else -1),
         shares=np.array(SHARES),
+        scanned=np.array([*NEAR_TOP, *range(1, SCAN + 1)]) / SCAN,
         falls=falls,
         fall_step=step,
         clamp_row=np.where(clamped, np.cumsum(clamped) - 1, -1),

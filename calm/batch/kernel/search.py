@@ -17,7 +17,6 @@ from calm.batch.kernel.endings import (
 )
 from calm.batch.kernel.layout import Aim, Way
 from calm.physics.hull import AWASH as GOING_UNDER
-from calm.physics.line import Floats
 
 Searches = Any
 """Of every case a record of `Search`."""
@@ -32,8 +31,8 @@ class Search(NamedTuple):
     above, below : ends of the bracket; above, the miss is not negative
     last : where the last march was, older_miss the miss before that
     slope : of the miss
-    fall, step, turn : knockdown that is scanned, by steps; 0 where there is no scan; which step,
-        or correction, it is
+    fall, reach, turn : the largest knockdown, 0 where there is no scan; how far down from its
+        beginning is scanned; which step, or correction, it is
     stuck : how many steps have not halved the miss
     found : the coarse root
     upper, lower : where the scan has seen the miss change its sign
@@ -58,7 +57,7 @@ class Search(NamedTuple):
     older_miss: float
     slope: float
     fall: float
-    step: float
+    reach: float
     turn: int
     stuck: int
     found: float
@@ -84,7 +83,6 @@ class Search(NamedTuple):
 DONE, FIRST, UNLOADED, TOP, AWASH, SCAN, ROOT = range(7)
 """What a lane is about to learn from its next march."""
 
-SCANNED = 16
 MOST_CORRECTIONS = 12
 SMALL, SMALL_SHARE = 5e-7, 3e-6
 """The miss of a closed line, as a share of the span; and how well a share in use is found."""
@@ -103,7 +101,7 @@ def begin(seek: Searches, c: int, growth: float, speed: float, way: Way) -> None
     """Set out on a case: from the depth of the line standing in still water."""
     case, falls = seek[c], way.falls
     case.above = case.above_miss = case.below = case.below_miss = nan
-    case.last = case.last_miss = case.older_miss = case.step = case.found = nan
+    case.last = case.last_miss = case.older_miss = case.reach = case.found = nan
     case.upper = case.upper_miss = case.lower = case.lower_miss = nan
     case.growth, case.speed = growth, speed
     case.unknown, case.slope, case.turn, case.stuck = way.aim.upright, -1.0, 0, 0
@@ -115,11 +113,9 @@ def begin(seek: Searches, c: int, growth: float, speed: float, way: Way) -> None
     case.fall = fall if fall * growth > 0.25 else 0.0
 
 
-def advance(
-    seek: Searches, c: int, task: int, m: float, aim: Aim, shares: Floats
-) -> tuple[int, int]:
+def advance(seek: Searches, c: int, task: int, m: float, way: Way) -> tuple[int, int]:
     """The next task of a case whose unknown leads to the miss m, and how its search ended."""
-    span, y = aim.span, seek[c].unknown
+    aim, shares, y = way.aim, way.shares, seek[c].unknown
     if not isfinite(m):
         return DONE, UNCLOSED
     if task == FIRST:
@@ -128,7 +124,7 @@ def advance(
             if aim.upright == 0.0 and aim.rides:
                 seek[c].unknown = shares[0] - 1.0
                 return AWASH, SOLVED
-            return go_down(seek, c, span), SOLVED
+            return go_down(seek, c, way), SOLVED
         seek[c].below, seek[c].below_miss = y, m
         if aim.upright > 0.0:
             seek[c].unknown = 0.0
@@ -153,19 +149,19 @@ def advance(
         if m <= 0.0:
             return DONE, TURNS_BACK
         seek[c].unknown = 0.0
-        return go_down(seek, c, span), SOLVED
+        return go_down(seek, c, way), SOLVED
     if task == SCAN:
-        return scan(seek, c, m, span)
-    return narrow(seek, c, m, span)
+        return scan(seek, c, m, way)
+    return narrow(seek, c, m, aim.span)
 
 
-def go_down(seek: Searches, c: int, span: float) -> int:
+def go_down(seek: Searches, c: int, way: Way) -> int:
     """Begin the search below the surface, from above."""
-    y, m = seek[c].above, seek[c].above_miss
+    span, y, m = way.aim.span, seek[c].above, seek[c].above_miss
     seek[c].last, seek[c].last_miss, seek[c].older_miss = y, m, nan
     if m > 1e-7 * span and seek[c].fall > 0.0:
-        seek[c].step, seek[c].turn = (min(y + 1.02 * seek[c].fall, span) - y) / SCANNED, 1
-        seek[c].unknown = y + seek[c].step
+        seek[c].reach, seek[c].turn = min(1.02 * seek[c].fall, span - y), 0
+        seek[c].unknown = y + way.scanned[0] * seek[c].reach
         return SCAN
     seek[c].unknown = min(y + max(m, 1e-7 * span), span)
     return ROOT
@@ -181,9 +177,9 @@ def bracket(seek: Searches, c: int) -> int:
     return ROOT
 
 
-def scan(seek: Searches, c: int, m: float, span: float) -> tuple[int, int]:
+def scan(seek: Searches, c: int, m: float, way: Way) -> tuple[int, int]:
     """Go down until the miss is negative."""
-    y, before = seek[c].unknown, seek[c].last_miss
+    span, y, before = way.aim.span, seek[c].unknown, seek[c].last_miss
     if m < 0.0:
         seek[c].above, seek[c].above_miss = seek[c].last, before
         seek[c].below, seek[c].below_miss = y, m
@@ -194,7 +190,10 @@ def scan(seek: Searches, c: int, m: float, span: float) -> tuple[int, int]:
         return DONE, LOST
     seek[c].older_miss, seek[c].last_miss, seek[c].last = before, m, y
     seek[c].turn += 1
-    seek[c].unknown = min(y + seek[c].step, span) if seek[c].turn <= SCANNED else span
+    following = span
+    if seek[c].turn < way.scanned.size:
+        following = min(seek[c].above + way.scanned[seek[c].turn] * seek[c].reach, span)
+    seek[c].unknown = following
     return SCAN, SOLVED
 
 
