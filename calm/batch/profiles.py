@@ -261,13 +261,22 @@ def _measured(
         name: np.hstack([pieces[:, i], ends_at.get(name, nothing)])
         for i, name in enumerate(OF_PIECE)
     }
-    columns |= {f"clamp_{name}": clamps[:, i] for i, name in enumerate(OF_CLAMP)}
+    on_anchor = clamps_down(mooring.file.pieces[-1:])
+    ends_at |= {
+        "depth": ends_at["depth_top"] + [clamp.at for clamp in on_anchor],
+        "tension": np.repeat(pull, len(on_anchor), axis=1),
+    }
+    standing = np.repeat(nothing, len(on_anchor), axis=1)
+    columns |= {
+        f"clamp_{name}": np.hstack([clamps[:, i], ends_at.get(name, standing)])
+        for i, name in enumerate(OF_CLAMP)
+    }
     columns |= {name: ends[:, i] for i, name in enumerate(OF_ENDS) if name != "end_depth"}
     return Profiles(
         component_label=tuple(piece.label for piece in mooring.file.pieces),
-        clamp_label=tuple(clamp.label for clamp in clamps_down(above)),
+        clamp_label=tuple(clamp.label for clamp in clamps_down(mooring.file.pieces)),
         knockdown=np.hstack([columns["depth_top"][:, :-1] - depth_top, nothing]),
-        clamp_knockdown=columns["clamp_depth"] - clamp_depth,
+        clamp_knockdown=np.hstack([clamps[:, OF_CLAMP.index("depth")] - clamp_depth, standing]),
         status=status,
         alone=alone,
         **columns,

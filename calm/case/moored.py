@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calm.case.columns import ComponentRow, Components
-from calm.case.measure import clamps_of, components_of, shape_of
+from calm.case.columns import ClampRow, ComponentRow, Components
+from calm.case.measure import clamps_down, clamps_of, components_of, shape_of
 from calm.case.result import Accuracy, AnchorLoad, Result, Top
 from calm.case.strumming import strumming_of
 from calm.case.warnings import warnings_of
-from calm.files import Piece
+from calm.files import Clamp, Piece
 from calm.physics.anchor import required_weight
 from calm.solve import Solution, Status
 
@@ -26,6 +26,9 @@ def result_of(mooring: Mooring, solution: Solution, still: Solution | None) -> R
     pieces = mooring.file.pieces
     above = components_of(pieces[:-1], solution, still)
     components = _with_anchor(above, pieces[-1], mooring.water.depth)
+    clamps = clamps_of(pieces[:-1], solution, still)
+    for clamp in clamps_down(pieces[-1:]):
+        clamps = clamps.with_row(_on_anchor(clamp, components[-1]))
     knockdown, riding = float(components.knockdown[0]), solution.riding
     shape = shape_of(solution)
     still_shape = shape if still is solution else None if still is None else shape_of(still)
@@ -52,10 +55,11 @@ def result_of(mooring: Mooring, solution: Solution, still: Solution | None) -> R
         anchor=_anchor_load(mooring, solution),
         strumming=strumming_of(mooring.file.solver, solution),
         components=components,
-        clamps=clamps_of(pieces[:-1], solution, still),
+        clamps=clamps,
         shape=shape,
         still_shape=still_shape,
         other_depth=solution.other_depth,
+        other_grounded_length=solution.other_grounded_length,
     )
     return replace(result, warnings=warnings_of(result, solution))
 
@@ -91,6 +95,22 @@ def _with_anchor(above: Components, anchor: Piece, depth: float) -> Components:
         reynolds=nan,
     )
     return above.with_row(row)
+
+
+def _on_anchor(clamp: Clamp, anchor: ComponentRow) -> ClampRow:
+    """What is clamped on the anchor stands still with it, and is held with the line's pull."""
+    return ClampRow(
+        part=clamp,
+        index=anchor.index,
+        use=clamp.use,
+        label=clamp.label,
+        depth=anchor.depth_top + clamp.at,
+        x=anchor.x_bottom,
+        y=anchor.y_bottom,
+        tension=anchor.tension,
+        tilt=anchor.tilt,
+        knockdown=anchor.knockdown,
+    )
 
 
 def _anchor_load(mooring: Mooring, solution: Solution) -> AnchorLoad:

@@ -13,6 +13,7 @@ from calm.assemble import assemble_floating, assemble_line, assemble_water, net_
 from calm.case.labels import naming_the_piece
 from calm.case.memory import Forgetful, Memory
 from calm.case.moored import result_of
+from calm.case.parts import parts_of
 from calm.case.result import Result
 from calm.case.tow import Tow
 from calm.errors import NoEquilibrium
@@ -118,11 +119,15 @@ class Mooring:
 
     @cached_property
     def anchor_weight(self) -> float:
-        """Weight of the anchor in the water at the seabed [N]."""
-        anchor, water = self.file.anchor, self.water
+        """Weight in the water at the seabed of the anchor with what is clamped on it [N]."""
+        water = self.water
         _, density = water.at(np.array(water.depth))
         excess = (float(density) - REFERENCE_DENSITY) * water.gravity
-        return -(net_buoyancy(anchor, water.gravity) + excess * (anchor.displaced_volume or 0.0))
+        return -sum(
+            net_buoyancy(part.component, water.gravity)
+            + excess * (part.component.displaced_volume or 0.0)
+            for part in parts_of(self.file.pieces[-1:])
+        )
 
     def solve(self) -> Result:
         """Find the static equilibrium.

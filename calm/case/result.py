@@ -35,7 +35,7 @@ def document_of(result: Result | TowResult, ends: dict[str, Any]) -> dict[str, A
         "closure": result.closure,
         "accuracy": {k: v for k, v in asdict(result.accuracy).items() if v is not None},
         **ends,
-        "other_equilibrium": None if result.other_depth is None else {"depth": result.other_depth},
+        "other_equilibrium": result.other_equilibrium,
         "components": components,
         "clamps": result.clamps.to_dicts(),
         "shape": {name: column.tolist() for name, column in vars(result.shape).items()},
@@ -139,7 +139,7 @@ class Result(Solved):
     of the line's end above the anchor's top, `closure` the relative force residual recomputed
     from the final coordinates. `still_shape` is the same line without current, None where that
     has no unique shape. `other_depth` is that of the free end in another equilibrium that was
-    found.
+    found, `other_grounded_length` what lies on the seabed there.
     """
 
     mooring: Mooring = field(repr=False)
@@ -159,7 +159,15 @@ class Result(Solved):
     shape: Shape = field(repr=False)
     still_shape: Shape | None = field(repr=False)
     other_depth: float | None = None
+    other_grounded_length: float = 0.0
     warnings: tuple[str, ...] = ()
+
+    @property
+    def other_equilibrium(self) -> dict[str, float] | None:
+        """Where the free end is in another equilibrium, and what lies on the seabed there [m]."""
+        if self.other_depth is None:
+            return None
+        return {"depth": self.other_depth, "grounded_length": self.other_grounded_length}
 
     @property
     def file(self) -> MooringFile:

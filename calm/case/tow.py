@@ -79,6 +79,11 @@ class TowResult(Solved):
     warnings: tuple[str, ...] = ()
 
     @property
+    def other_equilibrium(self) -> dict[str, float] | None:
+        """Depth of the free end in another equilibrium [m]."""
+        return None if self.other_depth is None else {"depth": self.other_depth}
+
+    @property
     def file(self) -> MooringFile:
         """The file as read."""
         return self.tow.file

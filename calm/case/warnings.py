@@ -184,9 +184,12 @@ def _on_the_seabed(result: Result, solution: Solution) -> Iterator[str]:
 
 def _other_equilibrium(_: Result | TowResult, solution: Solution) -> Iterator[str]:
     if solution.other_depth is not None:
+        lying = solution.other_grounded_length
+        both = lying != solution.grounded_length
+        on_the_bed = f" and {lying:.1f} m of line on the seabed" if both else ""
         yield (
             "Another equilibrium exists, with the free end at a depth of "
-            f"{solution.other_depth:.1f} m."
+            f"{solution.other_depth:.1f} m{on_the_bed}."
         )
 
 

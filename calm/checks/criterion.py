@@ -50,8 +50,8 @@ def pieces_of(mooring: Mooring) -> list[Judged]:
 
 
 def parts_of(mooring: Mooring) -> list[Judged]:
-    """The pieces above the anchor, then the clamps, each from the top."""
-    pieces = mooring.file.pieces[:-1]
+    """The pieces above the anchor, then the clamps, those on the anchor too, each from the top."""
+    pieces = mooring.file.pieces
     on = [piece.index for piece in pieces for _ in piece.clamps]
     clamps = [
         Judged(each.label, each.place, each.component, index, number)

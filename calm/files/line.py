@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from calm.errors import Problem
 from calm.files.catalogue import Assembly, Catalogue, define
-from calm.files.components import Anchor, Body, Cable, Chain, Component, Cylinder, Sphere
+from calm.files.components import Body, Cable, Chain, Component, Cylinder, Sphere
 from calm.files.definition import IN_AIR
 from calm.files.entries import Entry
 from calm.files.explain import about_quantity, shown, unknown
@@ -122,8 +122,6 @@ class LineReader:
             need = "a cable or chain needs it"
             length = self._quantity(item, "length", POSITIVE_LENGTH, need) or math.nan
         fit_depth = self._fit_depth(item, fits=length is None)
-        if isinstance(component, Anchor) and "clamps" in item.data:
-            self._refuse(item, ("clamps",), "nothing can be clamped on an anchor", key=True)
         clamps = self._clamps(item, length)
         place = item.problem((), "")
         use = item.data["use"]

@@ -20,8 +20,10 @@ from calm.solve.standing import refuse_unsupported, too_heavy
 from calm.solve.status import Status
 
 BARELY_LANDED = 4.0
-"""Length on the seabed, in heights of the anchor, up to which the line may as well hang between
-the seabed and the top of its anchor: that is then tried first."""
+"""Length on the seabed, in heights of the anchor, up to which a line that can as well hang between
+the seabed and the top of its anchor is taken to hang there."""
+PERHAPS_LANDED = 20.0
+"""The same, up to which it is looked whether it could hang: the other shape is then reported."""
 
 
 def solve_mooring(line: Line, water: Water, settings: Settings | None = None) -> Solution:
@@ -86,7 +88,7 @@ def _highest(closing: Closing, way: Way) -> Solution:
     fall = solution.position[0, 2] - other.position[0, 2]
     if fall <= 2.0 * (solution.depth_error + other.depth_error):
         return solution
-    return replace(solution, other_depth=-float(other.position[0, 2]))
+    return _beside(solution, other)
 
 
 def _clear_of_it(closing: Closing, root: Root) -> Solution:
@@ -104,12 +106,22 @@ def _on_the_seabed(closing: Closing, root: Root) -> Solution:
     landed = _solution(closing, root)
     if not landed.landed:
         raise Status.GROUNDED.because("The line does not lie on the seabed.")
-    if landed.grounded_length > BARELY_LANDED * closing.line.anchor_height:
+    height = closing.line.anchor_height
+    if landed.grounded_length > PERHAPS_LANDED * height:
         return landed
     try:
-        return _solution(closing, closing.clear_of_seabed(root))
+        hanging = _solution(closing, closing.clear_of_seabed(root))
     except NoEquilibrium:
         return landed
+    if landed.grounded_length > BARELY_LANDED * height:
+        return _beside(landed, hanging)
+    return _beside(hanging, landed)
+
+
+def _beside(solution: Solution, other: Solution) -> Solution:
+    """The solution, with where the free end is and how much lies on the seabed in another one."""
+    depth, grounded = -float(other.position[0, 2]), other.grounded_length
+    return replace(solution, other_depth=depth, other_grounded_length=grounded)
 
 
 def _refuse_deep_below(closed: Closed, depth: float) -> None:

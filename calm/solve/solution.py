@@ -69,7 +69,8 @@ class Solution:
     depth_error, tension_error : own estimate of the worst error of any depth or offset [m] and
         of any tension [N]
     lift_error, pull_error : of the upward and of the horizontal force at the line's end [N]
-    other_depth : depth of the free end in another equilibrium that the scan came upon [m]
+    other_depth, other_grounded_length : depth of the free end in another equilibrium that the
+        solver came upon, and its unstretched length on the seabed [m]
     frequency : of the cables that strum [Hz]; 0 where none does
     """
 
@@ -97,6 +98,7 @@ class Solution:
     lift_error: float
     pull_error: float
     other_depth: float | None = None
+    other_grounded_length: float = 0.0
     frequency: float = 0.0
     riding: Riding | None = None
     closure: float = nan

@@ -54,6 +54,7 @@ class BuildApp(InTurn):
     COMMANDS: ClassVar[set[Any]] = {*InTurn.COMMANDS, Actions}
     CSS = """
     * { scrollbar-size: 1 1; }
+    Input > .input--placeholder { text-style: italic dim; }
     Input:nocolor > .input--cursor, Input:nocolor > .input--selection,
     TextArea:nocolor .text-area--cursor, TextArea:nocolor .text-area--selection {
         text-style: reverse;
@@ -273,6 +274,11 @@ class BuildApp(InTurn):
     def on_unmount(self) -> None:
         """Keep what is not saved whatever has ended the application, a closed page or a failure."""
         self.keep_at_the_end()
+
+    def take_typed(self) -> None:
+        """Take a good value that is being typed, nobody being asked any more."""
+        if self.is_running and self.screen_stack and isinstance(self.screen, DraftScreen):
+            self.screen.part.settle()
 
     def keep_at_the_end(self) -> None:
         """Keep what is not saved, unless the person has left; `not_kept` tells what hinders it."""

@@ -106,7 +106,10 @@ def end(app: BuildApp, number: int, _frame: object) -> None:
     The loop of the application is not waited for: it may itself wait for a terminal that is gone,
     for ever. Of a closed terminal nothing is to be put right, and the process ends at once.
     """
-    app.keep_at_the_end()
+    try:
+        app.take_typed()
+    finally:  # whatever the screen is at just then
+        app.keep_at_the_end()
     signal.signal(number, signal.SIG_DFL)
     if not (app.is_running and os.isatty(0)):
         os.kill(os.getpid(), number)

@@ -35,6 +35,10 @@ class YamlArea(TextArea):
         _, column = self.cursor_location
         self.insert(" " * (_INDENT - column % _INDENT))
 
+    def action_end(self, way: int) -> None:
+        """To the beginning or the end of the text."""
+        self.move_cursor(self.document.end if way > 0 else (0, 0))
+
     def undo(self) -> None:
         """Take back what was typed last."""
         super().undo()
@@ -168,7 +172,7 @@ class TextPart(Vertical):
 
 
 class TextScreen(DraftScreen):
-    """The text of the file, over the whole screen."""
+    """The text of the file over the whole screen."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("text")]
 

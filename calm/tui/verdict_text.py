@@ -15,6 +15,7 @@ from calm.tui.signs import ELLIPSIS, LOOKS, worst
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
     from calm.checks.assessment import Stand
+    from calm.files import Place
     from calm.tui.live import View
 
 _MOST_PROBLEMS = 6
@@ -237,6 +238,20 @@ def _found(findings: Sequence[Finding]) -> Iterator[Saying]:
     kept = [each for each in passed if all(_title(f) != each for f in findings if _graver(f))]
     if kept:
         yield Saying(", ".join(kept), heading="Pass", state=State.PASS)
+
+
+def why(view: View, row: Place) -> list[Saying]:
+    """All that was found of a row of the file, the gravest first, with what would mend it."""
+    found = [_placed(each, view) for each in (*view.findings, *view.tighter)]
+    own = [each for each in found if each.place is not None and each.place.row == row]
+    return [
+        Saying(
+            f"{each.message} {each.remedy or ''}".rstrip(),
+            f"{_title(each)}{_situation(each)}",
+            each.state,
+        )
+        for each in sorted(own, key=lambda each: each.rank)
+    ]
 
 
 def _graver(finding: Finding) -> bool:

@@ -223,6 +223,19 @@ def test_a_closed_terminal_keeps_the_work(tmp_path):
     assert b"label: kept" in copy_of(file).read_bytes()
 
 
+@pytest.mark.parametrize("number", [signal.SIGHUP, signal.SIGTERM])
+def test_a_value_half_typed_survives_the_end(tmp_path, number):
+    file = tmp_path / "m.yaml"
+    file.write_bytes((shipped_folder("lines") / "s1000.yaml").read_bytes())
+    terminal = Terminal(file)
+    terminal.wait("m.yaml", "a add", "Anchor")
+    terminal.press("n", "half a na")
+    terminal.wait("half a na")
+    terminal.child.kill(number)
+    terminal.end()
+    assert b"label: half a na" in copy_of(file).read_bytes()
+
+
 @pytest.mark.parametrize("pressed", ["", "w" + 40 * DOWN])
 def test_a_terminal_that_is_gone_ends_it(tmp_path, pressed):
     """The end of the terminal's window; what is drawn then can be written nowhere."""

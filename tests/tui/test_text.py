@@ -112,3 +112,15 @@ def test_a_line_that_was_typed_is_taken_back(drive, small):
         assert driver.text == MOORING.replace("logue.\n", "logue.\ny\n")
 
     drive(story, small)
+
+
+def test_the_text_goes_to_its_ends(drive, small):
+    async def story(driver):
+        await driver.press("t")
+        area = driver.app.screen.text.text_area
+        await driver.press("ctrl+end")
+        assert area.cursor_location == area.document.end
+        await driver.press("ctrl+home")
+        assert area.cursor_location == (0, 0)
+
+    drive(story, small)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import pairwise
+from random import Random
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from scipy.optimize import brentq
 
 from calm.physics.line import Line, Water
 from calm.solve import Settings, solve_mooring
+from tests.property.strategies import mooring
 from tests.validation.closing import COARSE, FINE
 from tests.validation.continuous import March
 from tests.validation.pieces import cable, line_of, point, profile
@@ -90,3 +92,14 @@ def test_the_other_is_as_good_as_the_first() -> None:
     highest, deepest = stays(THREAD, water, 150)
     assert -tight.position[0, 2] == pytest.approx(highest, abs=1e-7)
     assert tight.other_depth == pytest.approx(deepest, abs=1e-7)
+
+
+def test_of_hanging_and_lying_the_line_lies_and_the_other_shape_is_told() -> None:
+    """Seed 66: it could hang as well between the seabed and the top of its anchor."""
+    line, water = mooring(Random(66))
+    solution = solve_mooring(line, water)
+    assert solution.landed
+    assert solution.grounded_length == pytest.approx(5.301, abs=0.01)
+    assert (solution.other_depth, solution.other_grounded_length) == (0.0, 0.0)
+    flat = replace(line, anchor_height=0.0)
+    assert solve_mooring(flat, water).other_depth is None

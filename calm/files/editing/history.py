@@ -26,6 +26,11 @@ class History:
         """Whether the draft differs from what was saved."""
         return self.draft.text != self._saved
 
+    @property
+    def saved_text(self) -> str:
+        """What was saved."""
+        return self._saved
+
     def do(self, draft: Draft, label: str) -> None:
         """A new state, and what it came of; an equal one is none."""
         if draft.text == self.draft.text:

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rich.cells import set_cell_size
+from rich.cells import cell_len, set_cell_size
 from rich.segment import Segment
 from textual import events
 from textual.message import Message
 from textual.strip import Strip
 
-from calm.tui.catalogue.index import Listed
+from calm.tui.catalogue.figures import COLUMNS, Column
+from calm.tui.catalogue.index import Index, Listed
 from calm.tui.listing import Listing
 from calm.tui.signs import CURSOR, ROLES
+
+_LEAD, _FIGURE = 4, 8
 
 
 class ComponentList(Listing, can_focus=False):
@@ -28,6 +31,7 @@ class ComponentList(Listing, can_focus=False):
         & > .component-list--own { color: $text-accent; }
     }
     """
+    HEADING = 1
     COMPONENT_CLASSES = {  # noqa: RUF012 - textual reads the class attribute
         "component-list--cursor",
         "component-list--id",
@@ -45,14 +49,17 @@ class ComponentList(Listing, can_focus=False):
         super().__init__()
         self.rows: Sequence[Listed] = ()
         self._longest = 0
+        self._index: Index | None = None
+        self._by: str | None = None
 
     @property
     def chosen(self) -> Listed | None:
         """The component under the cursor."""
         return self.rows[self.cursor] if self.rows else None
 
-    def show(self, found: Sequence[Listed]) -> None:
-        """List other components, the cursor on the first."""
+    def show(self, found: Sequence[Listed], index: Index, by: str | None = None) -> None:
+        """List other components, the cursor on the first; `by` which figure they are sorted."""
+        self._index, self._by = index, by
         self._longest = max((len(each.id) for each in found), default=0)
         self.set_reactive(Listing.cursor, 0)
         self.take_rows(found)
@@ -70,26 +77,42 @@ class ComponentList(Listing, can_focus=False):
         else:
             self.cursor = number
 
+    def _columns(self, width: int) -> tuple[int, list[Column], int]:
+        """Cells of the ids, the figures that have room beside them, cells left for the names."""
+        id_width = max(min(self._longest, width - _LEAD), 0)
+        room, shown = width - _LEAD - id_width - 1, []
+        for column in sorted(COLUMNS, key=lambda each: each.key != self._by):
+            if room >= _FIGURE + 1:
+                shown.append(column)
+                room -= _FIGURE + 1
+        return id_width, [each for each in COLUMNS if each in shown], max(room, 0)
+
     def render_line(self, y: int) -> Strip:
         """A row of the screen."""
         width = self.scrollable_content_region.width
-        number = self.row_at(y)
-        if number is None:
-            return Strip.blank(width, self.rich_style)
+        number, style = self.row_at(y), self.rich_style
+        id_width, columns, name_width = self._columns(width)
+        name_style = style + self.get_component_rich_style("component-list--name", partial=True)
+        if y == 0:
+            heads = [f"{each.heading:>{_FIGURE}} " for each in columns]
+            text = f"{'':{_LEAD}}{'component':{id_width}.{id_width}} {''.join(heads)}"
+            return Strip([Segment(text, name_style)]).adjust_cell_length(width, style)
+        if number is None or self._index is None:
+            return Strip.blank(width, style)
         each: Listed = self.rows[number]
         here = number == self.cursor
-        style = self.rich_style
         if here:
             style += self.get_component_rich_style("component-list--cursor", partial=True)
+            name_style += self.get_component_rich_style("component-list--cursor", partial=True)
         look = "own" if each.own else "id"
         id_style = style + self.get_component_rich_style(f"component-list--{look}", partial=True)
-        name_style = style + self.get_component_rich_style("component-list--name", partial=True)
-        lead = f"{CURSOR if here else ' '} {ROLES.get(each.role, ' ')} "
-        id_width = max(min(self._longest, width - len(lead)), 0)
+        figures = self._index.figures(each.id)
+        cells = [f"{column.shown(figures.get(column.key)):>{_FIGURE}} " for column in columns]
         segments = [
-            Segment(lead, style),
+            Segment(f"{CURSOR if here else ' '} {ROLES.get(each.role, ' ')} ", style),
             Segment(set_cell_size(each.id, id_width), id_style),
-            Segment(" ", style),
-            Segment(each.name, name_style),
+            Segment(f" {''.join(cells)}", style),
         ]
+        if cell_len(each.name) <= name_width:  # whole, or in the card alone
+            segments.append(Segment(each.name, name_style))
         return Strip(segments).adjust_cell_length(width, style)

@@ -6,12 +6,15 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import inf
 
 from calm.errors import InputError
 from calm.files.catalogue import Catalogue
 from calm.files.document import compose
 from calm.files.entries import FAMILY_ROLES, Entry
 from calm.files.section import Section
+from calm.tui.catalogue.figures import Figures, figures_of, wanted
+from calm.tui.catalogue.synonyms import with_synonyms
 
 _ROLES = {"cable": "line", "chain": "line", "anchor": "anchor"}
 CLAMPABLE = frozenset({"sphere", "cylinder", "body"})
@@ -33,7 +36,8 @@ class Listed:
     @cached_property
     def searched(self) -> str:
         """All that the words are looked for in."""
-        return " ".join((self.id, self.name, self.maker, self.kind, self.role)).casefold()
+        own = " ".join((self.id, self.name, self.maker, self.kind, self.role)).casefold()
+        return with_synonyms(own.replace("-", " ")) + f" {own}"
 
 
 class Index:
@@ -46,6 +50,7 @@ class Index:
             _listed(entry, shipped) for id in catalogue.ids() if (entry := catalogue.entry(id))
         ]
         self._listed = {each.id: each for each in sorted(found, key=lambda each: not each.own)}
+        self._figures: dict[str, Figures] = {}
 
     @classmethod
     def of(cls, catalogue: Catalogue, text: str) -> Index:
@@ -63,24 +68,58 @@ class Index:
         """One component; None where there is none of that id."""
         return self._listed.get(id)
 
-    def search(self, text: str, kinds: Iterable[str] | None = None) -> list[Listed]:
-        """Those that hold every word of a text; first those whose id begins with it.
+    def figures(self, id: str) -> Figures:
+        """The figures of a component, by the keys of their columns."""
+        if id not in self._figures:
+            self._figures[id] = figures_of(self.catalogue, id)
+        return self._figures[id]
+
+    def search(
+        self,
+        text: str,
+        kinds: Iterable[str] | None = None,
+        *,
+        recent: Sequence[str] = (),
+        by: str | None = None,
+    ) -> list[Listed]:
+        """Those that have every word of a text and keep every limit in it, as ``breaking>50kN``.
 
         Hyphens part words as blanks do: makers, catalogues and people set them differently.
+
+        Parameters
+        ----------
+        recent : ids used lately, which come before others that fit as well
+        by : the key of a column: the greatest first, what is not known last
         """
-        words = [word for word in _BETWEEN.split(text.casefold()) if word]
-        wanted = None if kinds is None else frozenset(kinds)
+        asked = [(word.casefold(), wanted(word)) for word in text.split()]
+        limits = [limit for _, limit in asked if limit is not None]
+        plain = " ".join(word for word, limit in asked if limit is None)
+        words = [word for word in _BETWEEN.split(plain) if word]
+        only = None if kinds is None else frozenset(kinds)
         hits = [
             each
             for each in self._listed.values()
-            if (wanted is None or each.kind in wanted)
+            if (only is None or each.kind in only)
             and all(word in each.searched for word in words)
+            and all(limit.holds(self.figures(each.id)) for limit in limits)
         ]
-        return sorted(hits, key=lambda each: _rank(each, words)) if words else hits
+        if by is not None:
+            return sorted(hits, key=lambda each: self._least_first(each.id, by))
+        lately = {id: number for number, id in enumerate(recent)}
+        return sorted(
+            hits,
+            key=lambda each: (_rank(each, words), lately.get(each.id, len(lately))),
+        )
+
+    def _least_first(self, id: str, by: str) -> float:
+        value = self.figures(id).get(by)
+        return inf if value is None else -abs(value)
 
 
 def _rank(each: Listed, words: Sequence[str]) -> int:
     """How well a component fits: its id, the beginning of it, all words in it, elsewhere."""
+    if not words:
+        return 0
     joined, id = "".join(words), _BETWEEN.sub("", each.id)
     if id == joined:
         return 0

@@ -15,6 +15,7 @@ from textual.widgets import Input, Static
 from calm.errors import CalmError
 from calm.tui.actions import bindings
 from calm.tui.catalogue.component_list import ComponentList
+from calm.tui.catalogue.figures import COLUMNS
 from calm.tui.catalogue.index import CLAMPABLE, WITH_LENGTH, Index, Listed
 from calm.tui.checking import anything, distance, length
 from calm.tui.field import Field
@@ -67,6 +68,8 @@ class CataloguePane(Vertical):
         self.purpose: Purpose = "below"
         self.clampable = False
         self.towed = False
+        self.recent: list[str] = []
+        self._by: str | None = None
         self._asked: Listed | None = None
         self._target = ""
 
@@ -76,7 +79,7 @@ class CataloguePane(Vertical):
         yield Input(
             id="catalogue-search",
             compact=True,
-            placeholder="words of its id, name, maker or kind",
+            placeholder="words: id, name, maker, kind, role; breaking>50kN",
         )
         with Vertical(id="catalogue-ask"):
             yield Field("length", "Length", id="ask-length")
@@ -107,13 +110,20 @@ class CataloguePane(Vertical):
                 self.listing.cursor = ids.index(chosen.id)
 
     def open(
-        self, purpose: Purpose, target: str, *, clampable: bool = False, towed: bool = False
+        self,
+        purpose: Purpose,
+        target: str,
+        recent: list[str],
+        *,
+        clampable: bool = False,
+        towed: bool = False,
     ) -> None:
         """Look for a component for the row called `target`, empty in an empty line.
 
-        `clampable` where only what can be clamped on a line will do.
+        What was used lately comes first. With `clampable`, only what can be clamped on a line.
         """
         self.purpose, self.clampable, self.towed = purpose, clampable, towed
+        self.recent = recent
         self._leave_asking()
         self.retitle(target)
         self._search()
@@ -124,6 +134,8 @@ class CataloguePane(Vertical):
         """Say beside which row the next one comes."""
         self._target = target
         text = f"{_WHAT_FOR[self.purpose]} {target}" if target else "The top of the line"
+        if self._by is not None:
+            text += f"   sorted by {self._by}"
         self.query_one("#catalogue-title", Static).update(text, layout=False)
 
     @on(Input.Changed, "#catalogue-search")
@@ -131,7 +143,8 @@ class CataloguePane(Vertical):
         if self.index is None:
             return
         kinds = CLAMPABLE if self.clampable else None
-        self.listing.show(self.index.search(self.search.value, kinds))
+        found = self.index.search(self.search.value, kinds, recent=self.recent, by=self._by)
+        self.listing.show(found, self.index, self._by)
 
     @on(ComponentList.Moved)
     def _show_card(self) -> None:
@@ -149,6 +162,13 @@ class CataloguePane(Vertical):
         except CalmError as error:
             card.update(str(error))
         self.query_one("#catalogue-card", VerticalScroll).scroll_home(animate=False)
+
+    def action_sort(self) -> None:
+        """Sort by the next of the figures, or by how well the words fit."""
+        keys = [None, *(column.key for column in COLUMNS)]
+        self._by = keys[(keys.index(self._by) + 1) % len(keys)]
+        self.retitle(self._target)
+        self._search()
 
     def action_choose(self, by: int) -> None:
         """Move the cursor of the list."""

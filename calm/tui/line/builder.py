@@ -11,8 +11,10 @@ from textual.events import DescendantFocus, Key
 from calm.tui.actions import Place, bindings, hints
 from calm.tui.bars import KeyBar
 from calm.tui.catalogue.pane import CataloguePane
+from calm.tui.line.advising import Advising
 from calm.tui.line.body import LineBody
 from calm.tui.line.cell_editor import CellEditor
+from calm.tui.line.comparing import Comparing
 from calm.tui.pictures import Picture, Tab
 from calm.tui.screen import DraftScreen
 from calm.tui.workspace import Workspace
@@ -34,6 +36,8 @@ class BuilderScreen(DraftScreen):
         & #catalogue { width: 2fr; height: 1fr; border-left: vkey $panel; }
         &.-searching #study { display: none; }
         &.-searching #catalogue { display: block; }
+        &.-wide.-searching #line-pane { width: 2fr; }
+        &.-wide.-searching #catalogue { width: 3fr; }
         &.-huge.-searching #study { display: block; }
         &.-huge #catalogue { width: 1fr; }
         &.-huge #line-pane { width: 2fr; }
@@ -107,6 +111,14 @@ class BuilderScreen(DraftScreen):
         told = f"environment {name}" if name else "own `environment:`"
         self.tell(f"The line stands in the file's {told}")
         self.workspace.edited()
+
+    def action_advise(self) -> None:
+        """Offer changes that mend what was found."""
+        Advising(self.app, self.body.line).offer()
+
+    def action_compare(self) -> None:
+        """Show what has changed since the file was saved."""
+        Comparing(self.app, self.body.line).with_saved()
 
     def action_search(self) -> None:
         """Search the catalogue for a piece below."""

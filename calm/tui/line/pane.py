@@ -12,14 +12,17 @@ from textual.binding import BindingType
 from textual.containers import Vertical
 from textual.message import Message
 
+from calm.checks.finding import State
 from calm.files import Place
 from calm.tui.actions import bindings
 from calm.tui.catalogue.pane import Purpose
+from calm.tui.dialogs import Answer, Question
 from calm.tui.line.cell import Cell
 from calm.tui.line.cell_editor import CellEditor
 from calm.tui.line.rows import table_rows
 from calm.tui.line.table import LineTable
 from calm.tui.line.table_row import EDITABLE, Column
+from calm.tui.verdict_text import why
 from calm.tui.workspace import Workspace
 
 _MIXED = "Pieces are marked, and clamps of other pieces; mark pieces only, or clamps only"
@@ -114,6 +117,41 @@ class LinePane(Vertical):
         """Mark all pieces, or none where all are."""
         pieces = frozenset(row.spot for row in self.table.rows if not row.spot.is_clamp)
         self.table.mark(frozenset() if self.table.marked >= pieces else pieces)
+
+    # what was found
+
+    def action_next_finding(self) -> None:
+        """Go to the next row that a failure, a warning or a missing figure is found of."""
+        rows, here = self.table.rows, self.table.cursor
+        grave = (State.FAIL, State.WARN, State.UNKNOWN)
+        around = [*range(here + 1, len(rows)), *range(here + 1)]
+        for state in grave:
+            if any(rows[number].state is state for number in around):
+                number = next(each for each in around if rows[each].state is state)
+                self.table.cursor = number
+                self._tell_why(rows[number].spot)
+                return
+        self.workspace.tell("Nothing is found of any row")
+
+    def _tell_why(self, spot: Place) -> None:
+        view = self.workspace.view
+        found = why(view, spot) if view is not None and self.workspace.is_fresh else []
+        if found:
+            told = f"{found[0].sign} {found[0].heading}: {found[0].text}"
+            self.workspace.tell(told, wrong=found[0].state is State.FAIL)
+
+    def action_why(self) -> None:
+        """Show all that was found of the row under the cursor."""
+        spot, row, view = self.table.spot, self.table.row, self.workspace.view
+        if spot is None or row is None:
+            return
+        found = why(view, spot) if view is not None and self.workspace.is_fresh else []
+        if not found:
+            self.workspace.tell("Nothing is found of this row, or it is not judged yet")
+            return
+        text = "\n".join(f"{each.sign} {each.heading}  {each.text}" for each in found)
+        called = row.texts.get("label") or row.texts["component"]
+        self.app.push_screen(Question(called, text, [Answer("b", "back to the row", "back")]))
 
     # rows
 

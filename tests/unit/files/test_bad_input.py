@@ -208,9 +208,13 @@ ONE_MISTAKE = {
         changed("use: meter", "use: rope-16"),
         (11, 50, "a component of kind cable cannot be clamped on a line"),
     ),
-    "clamp on the anchor": (
-        changed("{use: deadweight}", "{use: deadweight, clamps: [{use: meter, at: 0}]}"),
-        (13, 23, "nothing can be clamped on an anchor"),
+    "clamp below the anchor": (
+        changed("{use: deadweight}", "{use: deadweight, clamps: [{use: meter, at: 9 m}]}"),
+        (13, 49, "`at: 9 m` is beyond the piece, 0.4 m long"),
+    ),
+    "clamp above the anchor": (
+        changed("{use: deadweight}", "{use: deadweight, clamps: [{use: meter, at: -1 m}]}"),
+        (13, 49, "`at: -1 m` must be at least 0 m"),
     ),
     "decimal comma": (
         changed("1100 m", "1100,5 m"),

@@ -1,0 +1,235 @@
+"""What would mend what the design check finds, as changes of the file.
+
+Nothing here knows of the screen. What has to be solved for is found by `calm size`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from math import ceil, floor, log10
+from typing import TYPE_CHECKING
+
+from calm.case import Result
+from calm.case.changes import parse_change
+from calm.case.size import NOT_MET, size
+from calm.case.targets import parse_target
+from calm.checks.finding import Finding, State
+from calm.errors import CalmError, UsageError
+from calm.files import Anchor, Catalogue, Piece
+from calm.files.editing import Draft
+from calm.quantities import QUANTITIES, say
+from calm.solve import Status
+from calm.tui.live import View, judge
+
+if TYPE_CHECKING:
+    from calm.case import Mooring
+
+_DIGITS = 3
+_ANCHOR = ("anchor-weight", "anchor-uplift", "anchor-sliding")
+_GRAVE = (State.FAIL, State.WARN)
+
+
+@dataclass(frozen=True)
+class Offer:
+    """A change that is offered.
+
+    Attributes
+    ----------
+    title : what it is for and what it does
+    label : in the history
+    make : the file with it; it may solve for it, and raise a `CalmError` where nothing helps
+    """
+
+    title: str
+    label: str
+    make: Callable[[Draft], Draft]
+
+
+def offers(view: View, catalogue: Catalogue | None) -> list[Offer]:
+    """What mends the failures and warnings of a line that was judged, the gravest first."""
+    if not isinstance(view.result, Result):
+        return [*_against_lifting(view, catalogue)]
+    mooring = view.result.mooring
+    grave = sorted((e for e in view.findings if e.state in _GRAVE), key=lambda each: each.rank)
+    found: dict[str, Offer] = {}
+    for finding in grave:
+        for offer in _for(finding, mooring, view.result, grave, catalogue):
+            found.setdefault(offer.title, offer)
+    return [*found.values()]
+
+
+def _against_lifting(view: View, catalogue: Catalogue | None) -> Iterator[Offer]:
+    """A heavier anchor, for a line that lifts its own: what one that holds anything would need."""
+    if view.failure is None or view.failure.status != Status.ANCHOR_LIFTS.label:
+        return
+    draft = Draft(view.text)
+    held = judge(draft.delete([len(draft.items) - 1]).text, view.path, view.environment)
+    if view.file is not None and isinstance(held.result, Result):
+        needed = held.result.anchor.required_weight
+        yield from _anchors(view.file.pieces[-1], needed, catalogue)
+
+
+def sized(mooring: Mooring, target: str, change: str) -> Offer:
+    """The smallest change that meets a target, both as `calm size` reads them.
+
+    Raises
+    ------
+    UsageError
+        They cannot be understood.
+    """
+    adjustment = parse_change(change, mooring.file)
+    parse_target(target, mooring.file.pieces)
+    item = adjustment.parts[0].place.item
+    key, unit = change.rpartition(".")[2], f" {adjustment.unit}" if adjustment.unit else ""
+    clamps = (f"clamps.{part.place.clamp}" for part in adjustment.parts if part.place.is_clamp)
+    if any(clamps):
+        raise UsageError(f"{change}: only pieces of the line are changed here")
+
+    def make(draft: Draft) -> Draft:
+        sizing = size(mooring, target, change)
+        if sizing.status == NOT_MET:
+            raise UsageError(f"{sizing.message} {sizing.advice}".strip())
+        if sizing.after is None or sizing.after.value == adjustment.now:
+            raise UsageError(f"{target} is met as it is")
+        value = sizing.after.value
+        rounded = value if adjustment.whole else _rounded(value, up=value > adjustment.now)
+        return draft.put(item, key, f"{rounded:.10g}{unit}")
+
+    return Offer(f"{change} so that {target}", f"{change} for {target}", make)
+
+
+def _for(
+    finding: Finding,
+    mooring: Mooring,
+    result: Result,
+    grave: Sequence[Finding],
+    catalogue: Catalogue | None,
+) -> Iterator[Offer]:
+    if finding.rule in _ANCHOR:
+        yield from _anchors(mooring.file.pieces[-1], _needed_weight(result, grave), catalogue)
+    elif finding.rule == "backup" and finding.limit is not None and finding.value is not None:
+        yield from _floats(mooring, finding, finding.limit - finding.value)
+    elif finding.rule in ("knockdown", "excursion", "tilt", "depth-rating") and finding.limit:
+        yield from _buoyancy(mooring, finding)
+
+
+def _needed_weight(result: Result, grave: Sequence[Finding]) -> float:
+    """What the anchor is to weigh in water for all that is found of it [N]."""
+    factor = result.file.checks.anchor_factor
+    needed = [result.anchor.required_weight]
+    for finding in grave:
+        if finding.rule == "anchor-weight" and finding.limit is not None:
+            needed.append(finding.limit)
+        if finding.rule == "anchor-uplift" and finding.value is not None:
+            needed.append(factor * finding.value)
+        if finding.rule == "anchor-sliding" and finding.value is not None:
+            vertical = result.anchor.vertical
+            needed.append(factor * (vertical + finding.value / result.anchor.friction))
+    return max(needed)
+
+
+def _anchors(last: Piece, needed: float, catalogue: Catalogue | None) -> Iterator[Offer]:
+    """The lightest anchor of the catalogue that is heavy enough, or the same one made heavier."""
+    item = last.place.item
+    heavy = [] if catalogue is None else [*_heavy_enough(catalogue, needed)]
+    if heavy:
+        weight, id = min(heavy)
+        title = f"anchor: {id}, {say('tension', weight)} in water; {say('tension', needed)} needed"
+        yield Offer(title, f"use {id}", _put(item, "use", id))
+    weight = _rounded(needed, up=True)
+    title = f"anchor: {last.use} made to weigh {say('tension', weight)} in water"
+    yield Offer(title, "a heavier anchor", _put(item, "weight", f"{weight:g} N"))
+
+
+def _heavy_enough(catalogue: Catalogue, needed: float) -> Iterator[tuple[float, str]]:
+    for id in catalogue.ids():
+        entry = catalogue.entry(id)
+        if entry is None or entry.section.data.get("kind") != "anchor":
+            continue
+        try:
+            component = catalogue.get(id)
+        except CalmError:
+            continue  # one of the person's own with a mistake in it
+        if isinstance(component, Anchor) and -component.net_buoyancy >= needed:
+            yield -component.net_buoyancy, id
+
+
+def _floats(mooring: Mooring, finding: Finding, lacking: float) -> Iterator[Offer]:
+    """More of the floats between a break and the release."""
+    file, release = mooring.file, mooring.file.release
+    broken = next((p.index for p in file.pieces if p.place == finding.place), -1)
+    if release is None:
+        return
+    below = [piece for piece in file.pieces[broken + 1 : release] if _is_float(piece)]
+    for item in dict.fromkeys(piece.place.item for piece in below):
+        own = [piece for piece in file.pieces if piece.place.item == item]
+        count = len(own) + ceil(lacking / own[0].component.net_buoyancy)
+        yield Offer(
+            f"back-up: {count} {own[0].use} in place of {len(own)}",
+            f"{count} {own[0].use}",
+            _put(item, "count", str(count)),
+        )
+
+
+def _put(item: int, key: str, value: str) -> Callable[[Draft], Draft]:
+    """Writes a value; of another component the figures of the one before go."""
+
+    def make(draft: Draft) -> Draft:
+        made = draft.put(item, key, value)
+        if key == "use" and "weight" in draft.items[item].values:
+            made = made.put(item, "weight", None)
+        return made
+
+    return make
+
+
+def _is_float(piece: Piece) -> bool:
+    is_one = piece.component.kind in ("sphere", "cylinder", "body") and piece.place.part < 0
+    return is_one and piece.component.role == "float" and piece.component.net_buoyancy > 0.0
+
+
+def _buoyancy(mooring: Mooring, finding: Finding) -> Iterator[Offer]:
+    """More buoyancy of the highest float against a knockdown, an excursion or a tilt."""
+    floats = [piece for piece in mooring.file.pieces if _is_float(piece)]
+    if not floats:
+        return
+    quantity = "depth" if finding.rule == "depth-rating" else finding.rule
+    unit = "deg" if quantity == "tilt" else "m"
+    label = finding.component
+    part = f"({label})" if quantity in ("tilt", "depth") and label else ""
+    target = f"{quantity}{part} <= {finding.limit:g} {unit}"
+    yield sized(mooring, target, f"{floats[0].label}.buoyancy")
+
+
+def differences(before: View, after: View) -> list[str]:
+    """What a change does to the figures and to the findings, each as ``from → to``."""
+    told = []
+    one, other = before.result, after.result
+    if isinstance(one, Result) and isinstance(other, Result):
+        figures = [
+            ("top", "depth", one.top.depth, other.top.depth),
+            ("knockdown", "knockdown", one.top.knockdown, other.top.knockdown),
+            ("anchor needs", "required_weight", one.anchor.required_weight,
+             other.anchor.required_weight),
+            ("anchor weighs", "required_weight", one.anchor.weight, other.anchor.weight),
+        ]  # fmt: skip
+        for name, quantity, old, new in figures:
+            texts = [QUANTITIES[quantity].say(value) for value in (old, new)]
+            if texts[0] != texts[1]:
+                told.append(f"{name} {texts[0]} → {texts[1]}")
+    elif after.failure is not None:
+        told.append(f"it does not stand: {after.failure.message}")
+    for state, word in ((State.FAIL, "failures"), (State.WARN, "warnings")):
+        counts = [sum(each.state is state for each in view.findings) for view in (before, after)]
+        if counts[0] != counts[1]:
+            told.append(f"{word} {counts[0]} → {counts[1]}")
+    return told or ["nothing that is shown here changes"]
+
+
+def _rounded(value: float, *, up: bool) -> float:
+    """A value of three digits, not less (or not more) than another."""
+    if value == 0.0:
+        return 0.0
+    step = 10.0 ** (floor(log10(abs(value))) - _DIGITS + 1)
+    return float(f"{step * (ceil if up else floor)(value / step):.12g}")
