@@ -65,7 +65,8 @@ def pass_to_seabed(
     cable = course.stages[stage].first
     packed, stretch = is_packed(course, stage), cable_of(course, stage)
     may_land = stage >= course.landing
-    parts, one = 1 << halvings, may_land * 0 + 1
+    parts = 1 << halvings
+    one = min(parts, 1)  # a constant would have the compiler make a segment of its own for it
     for i in range(LANES):
         s[lane.PASSED + i] = 0.0
     for j in range(way.first_cut[cable], way.first_cut[cable + 1]):
