@@ -2,6 +2,7 @@
 
     python benchmarks/batch.py                 # 100 000 and 262 980 profiles
     python benchmarks/batch.py 1000000         # these many too
+    python benchmarks/batch.py --smoke         # 2000 alone, in seconds: whether it runs
 
 A deep mooring of twelve components in made currents at twenty levels, hourly: eddies, a tide and
 noise. The command is timed whole, from its start to the page of its statistics, and without them;
@@ -22,11 +23,12 @@ from machine import describe
 
 import calm
 from calm.batch.profiles import Batch, Profiles
-from calm.batch.records.record import open_record
+from calm.batch.records.opening import open_record
 from calm.batch.run import BLOCK, run_batch
 from calm.batch.statuses import Ending
 
 COUNTS = (100_000, 262_980)
+SMOKE = 2000
 SIZES = (10**7, 10**8, 10**9)
 PARTS = 16  # of a record, each with a process of its own
 SAMPLE = 65_536  # profiles for the solver alone
@@ -160,7 +162,8 @@ def whole_command(file: Path, path: Path, output: Path, workers: int) -> tuple[f
 def main() -> None:
     """Print a table a count."""
     print(describe("calm-mooring", "numpy", "numba", "h5py"))
-    counts = (*COUNTS, *map(int, sys.argv[1:]))
+    words = sys.argv[1:]
+    counts = (SMOKE,) if words == ["--smoke"] else (*COUNTS, *map(int, words))
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         file = folder / "mooring.yaml"

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Generator, Iterator
 from functools import lru_cache
 from itertools import islice
-from time import monotonic, sleep
+from threading import Event
+from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 from calm.batch.profiles import Batch, Profiles
@@ -31,6 +32,7 @@ def solved_on(
     mooring: Mooring,
     blocks: Iterator[tuple[int, Levels]],
     tell: Callable[[str], None],
+    stop: Event,
 ) -> Generator[tuple[int, Profiles]]:
     """The blocks solved, as they are ready; those of a worker that is lost are solved by another.
 
@@ -41,6 +43,7 @@ def solved_on(
     address : of the scheduler, such as ``tcp://10.0.0.1:8786``
     blocks : numbers with their profiles; no more are taken than the workers have use for
     tell : called when there is no worker
+    stop : looked at every `ASKED_ANEW` seconds; once it is set no more are given
 
     Raises
     ------
@@ -51,7 +54,7 @@ def solved_on(
     """
     try:
         import dask
-        from distributed import CancelledError, Client, KilledWorker, as_completed
+        from distributed import CancelledError, Client, KilledWorker, wait
     except ImportError:
         raise UsageError(
             "--scheduler needs dask: pip install 'calm-mooring[cluster]', here, for the scheduler "
@@ -67,38 +70,48 @@ def solved_on(
             workers = _Workers(client)
             numbers: dict[Any, int] = {}
 
-            def more() -> list[Any]:
-                """Tasks for the workers there are, beside those under way.
-
-                All at once: while `as_completed` takes them it holds up the loop that answers.
-                """
-                tasks = []
+            def more() -> set[Any]:
+                """Tasks for the workers there are, beside those under way."""
+                tasks = set()
                 for number, levels in islice(blocks, max(AHEAD * workers.count - len(numbers), 0)):
                     task = client.submit(solve_there, mooring, levels, pure=False, retries=3)
                     numbers[task.key] = number
-                    tasks.append(task)
+                    tasks.add(task)
                 return tasks
 
             if not workers.count:
                 tell(f"the scheduler at {address} has no worker yet: waiting for the first")
-                workers.wait()
-            under_way = as_completed(more(), loop=client.loop)
-            for task in under_way:
+                workers.wait(stop)
+            under_way = more()
+            while under_way and not stop.is_set():
                 try:
-                    profiles = task.result()
-                except (CancelledError, KilledWorker, OSError) as error:
-                    message = f"the scheduler or its workers were lost: {error}"
-                    raise ConnectionError(message) from None
-                except (ImportError, AttributeError, RuntimeError) as error:
-                    # what dask makes of modules that are not there
-                    raise UsageError(
-                        f"the scheduler or a worker cannot take the work: {error}; "
-                        f"calm-mooring {__version__} is needed there too"
-                    ) from None
-                number = numbers.pop(task.key)
-                task.release()
-                under_way.update(more())  # so that no worker waits for what is done with this one
-                yield number, profiles
+                    with client.as_current():  # `wait` asks whose the tasks are
+                        done = wait(under_way, ASKED_ANEW, "FIRST_COMPLETED").done
+                except TimeoutError:
+                    under_way |= more()
+                    continue
+                except CancelledError as error:
+                    raise _lost(error) from None
+                under_way -= done
+                for task in done:
+                    try:
+                        profiles = task.result()
+                    except (CancelledError, KilledWorker, OSError) as error:
+                        raise _lost(error) from None
+                    except (ImportError, AttributeError, RuntimeError) as error:
+                        # what dask makes of modules that are not there
+                        raise UsageError(
+                            f"the scheduler or a worker cannot take the work: {error}; "
+                            f"calm-mooring {__version__} is needed there too"
+                        ) from None
+                    number = numbers.pop(task.key)
+                    task.release()
+                    under_way |= more()  # so that no worker waits for what is done with this one
+                    yield number, profiles
+
+
+def _lost(error: Exception) -> ConnectionError:
+    return ConnectionError(f"the scheduler or its workers were lost: {error}")
 
 
 class _Workers:
@@ -116,9 +129,9 @@ class _Workers:
             self._due = now + ASKED_ANEW
         return self._known
 
-    def wait(self) -> None:
-        while not self.count:
-            sleep(ASKED_ANEW / 4)
+    def wait(self, stop: Event) -> None:
+        while not self.count and not stop.wait(ASKED_ANEW / 4):
+            pass
 
 
 def solve_there(mooring: Mooring, levels: Levels) -> Profiles:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,13 +23,62 @@ _ROWS = 65536  # profiles read at a time
 
 
 def open_result(path: Path) -> Dataset:
-    """A result of `calm batch`, a .nc file or a .zarr folder, of which nothing is loaded yet."""
+    """A result of `calm batch`, a .nc file or a .zarr folder, of which nothing is loaded yet.
+
+    Raises
+    ------
+    UsageError
+        It cannot be read.
+    """
     import xarray as xr
 
+    with readable(path):
+        if path.suffix == ".zarr":
+            stored: Dataset = xr.open_zarr(path, chunks=None)
+            return stored
+        return xr.open_dataset(path, engine="h5netcdf")
+
+
+@contextmanager
+def readable(path: Path) -> Iterator[None]:
+    """Says what to do where a finished result cannot be read.
+
+    Raises
+    ------
+    UsageError
+        In place of what the libraries raise, whatever that is.
+    """
+    try:
+        yield
+    except (UsageError, MemoryError):
+        raise
+    # damaged files leave the libraries by exceptions of many kinds
+    except Exception as error:
+        reason = str(error).partition("\n")[0] or type(error).__name__
+        raise UsageError(
+            f"{path} is finished, and cannot be read: {reason}. Remove it, and the same command "
+            "makes it anew"
+        ) from None
+
+
+def attributes_of(path: Path) -> Mapping[str, Any]:
+    """Of a result as a whole; none where it is something else, or cannot be read."""
     if path.suffix == ".zarr":
-        stored: Dataset = xr.open_zarr(path, chunks=None)
-        return stored
-    return xr.open_dataset(path, engine="h5netcdf")
+        try:
+            content = json.loads((path / ".zattrs").read_bytes())
+        except (OSError, ValueError):
+            return {}
+        return content if isinstance(content, dict) else {}
+    import h5py
+
+    try:
+        with h5py.File(path, "r") as file:
+            return {
+                name: value.decode() if isinstance(value, bytes) else value
+                for name, value in file.attrs.items()
+            }
+    except (OSError, RuntimeError, ValueError):
+        return {}
 
 
 def labels_of(dataset: Dataset, name: str) -> tuple[str, ...]:

@@ -7,13 +7,13 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from threading import Timer
+from threading import Event, Timer
 from typing import TYPE_CHECKING
 
 from calm.batch.compiling import compile_kernel
 from calm.batch.dataset import layout_of
 from calm.batch.profiles import Batch
-from calm.batch.result import open_result, statuses_of
+from calm.batch.result import open_result, readable, statuses_of
 from calm.batch.shape import shape_of
 from calm.batch.statuses import Ending, endings
 from calm.batch.store.identity import identity_of, to_text
@@ -27,7 +27,7 @@ from calm.batch.store.result import (
     store_folder,
 )
 from calm.batch.store.store import open_store
-from calm.batch.threads import processors
+from calm.batch.threads import Stopped, go_on, processors
 from calm.batch.work import Progress, Work
 from calm.case import Mooring
 from calm.errors import UsageError
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from calm.batch.records.record import Record
 
 BLOCK = 8192
-"""Profiles to a block: what is written at once, and lost where a process is killed."""
+"""Profiles to a block: what is written at once, and lost where a process is stopped."""
 
 MOST_BLOCKS, LARGEST_BLOCK = 2048, 65536
 """Longer records have larger blocks, up to a size, as each makes a file for every variable."""
@@ -83,6 +83,7 @@ def run_batch(
     scheduler: str | None = None,
     progress: Callable[[Progress], None] | None = None,
     tell: Callable[[str], None] | None = None,
+    stop: Event | None = None,
 ) -> Outcome:
     """Solve a mooring in every profile of a record, and write the result.
 
@@ -99,12 +100,13 @@ def run_batch(
     scheduler : address of a dask scheduler, whose workers then solve the blocks
     progress : called before the first block, and after each part of one
     tell : called with what is worth knowing meanwhile
+    stop : set from outside, it ends the work with what is done kept, as Ctrl-C does
 
     Raises
     ------
     UsageError
-        The output is there already, from another input; another batch is at work on it; there
-        is nobody at the address of the scheduler.
+        The output is there already, from another input, or cannot be read; another batch is at
+        work on it; there is nobody at the address of the scheduler.
     NoEquilibrium
         Where a piece is to be cut to fit, and no length does.
     """
@@ -112,16 +114,16 @@ def run_batch(
         raise UsageError(f"cannot write {output}: the name of a result ends in .nc or .zarr")
     if record.count == 0:
         raise UsageError("the record has no profile in the time that was asked for")
-    say = tell or (lambda _: None)
+    say, stop = tell or (lambda _: None), stop or Event()
     nodes = shape_of(mooring) if shape else None
     batch = Batch(nodes.mooring if nodes else mooring)
     if block is None:
         block = _block_for(record.count)
     folder = store_folder(output)
-    identity, work = "", None
+    identity, work, options = "", None, {"shape": shape, "block": block}
     try:
         with _told_when_long("reading the record through, to know it again", say):
-            identity = to_text(identity_of(mooring, record, {"shape": shape, "block": block}))
+            identity = to_text(identity_of(mooring, record, options, stop))
         if is_finished(output, identity):
             if left_behind(output):
                 with suppress(UsageError), locked(folder, say):
@@ -132,10 +134,10 @@ def run_batch(
                 clear(output)
                 return _found(output)
             store = open_store(folder, layout_of(mooring, record, nodes), block, identity)
-            work = Work(batch, record, store, nodes, progress)
+            work = Work(batch, record, store, nodes, progress, stop)
             _complete(work, output, workers or processors(), scheduler, say)
             clear(output)
-    except (KeyboardInterrupt, OSError) as error:
+    except (KeyboardInterrupt, Stopped, OSError, MemoryError) as error:
         if work is None:
             return Outcome({}, False, _reason(error))
         if not is_finished(output, identity):
@@ -159,7 +161,8 @@ def _complete(
                 if not work.counts:
                     clear(output)
                 raise
-        damaged = finish(work.store, work.flags, output)
+        go_on(work.stop)
+        damaged = finish(work.store, output, lambda: go_on(work.stop))
         if not damaged:
             return
         work.forget(damaged)
@@ -169,7 +172,7 @@ def _complete(
 
 def _found(output: Path) -> Outcome:
     """Of a finished result."""
-    with open_result(output) as result:
+    with open_result(output) as result, readable(output):
         return Outcome(statuses_of(result), True)
 
 
@@ -194,4 +197,6 @@ def _told_when_long(what: str, tell: Callable[[str], None]) -> Iterator[None]:
 def _reason(error: BaseException) -> str:
     if isinstance(error, OSError):
         return os.strerror(error.errno) if error.errno else str(error)
+    if isinstance(error, MemoryError):
+        return "not enough memory; fewer --workers take less"
     return "interrupted"

@@ -7,6 +7,22 @@ from collections.abc import Callable, Iterable
 from threading import Event, Lock, Thread
 
 
+class Stopped(Exception):
+    """Work was asked to stop, by an event, and does so where it loses nothing."""
+
+
+def go_on(stop: Event) -> None:
+    """Stop here where that is asked for.
+
+    Raises
+    ------
+    Stopped
+        See above.
+    """
+    if stop.is_set():
+        raise Stopped
+
+
 def processors() -> int:
     """How many processors this process may use."""
     if hasattr(os, "sched_getaffinity"):
@@ -20,7 +36,7 @@ def in_threads(
     """Do a job for every number, each thread taking the next.
 
     What a job raises, or Ctrl-C, sets `stop` and is raised once every thread has ended: those under
-    way have to look at it. A second Ctrl-C changes nothing.
+    way have to look at it. A second Ctrl-C changes nothing. Set from outside, it ends them as well.
     """
     remaining = iter(numbers)
     taking = Lock()

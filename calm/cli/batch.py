@@ -7,7 +7,7 @@ import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from threading import current_thread, main_thread
+from threading import Event, current_thread, main_thread
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
@@ -95,7 +95,8 @@ def batch(
     if workers is not None and workers < 1:
         raise UsageError(f"--workers: {workers} is not 1 or more")
     from calm.batch.records.choice import parse_period, parse_place
-    from calm.batch.records.record import RULES, open_record
+    from calm.batch.records.opening import open_record
+    from calm.batch.records.record import RULES
     from calm.batch.run import run_batch
 
     period = None if time is None else parse_period(time)
@@ -107,45 +108,54 @@ def batch(
     seabed = float(mooring.water.depth)
     teller = Teller()
     turned = quantities({"declination": (declination, "angle")}).get("declination")
-    with open_record(
-        currents, seabed=seabed, at=place, declination=turned, time=period, every=every
-    ) as record:
-        for notice in (*mooring.file.notices, *record.notes):
-            if notice not in RULES:
-                narrate(f"{currents}: {notice}")
-        try:
-            with _stopped_by_a_signal():
+    with _stopped_by_a_signal() as stop:
+        with open_record(
+            currents, seabed=seabed, at=place, declination=turned, time=period, every=every
+        ) as record:
+            for notice in (*mooring.file.notices, *record.notes):
+                if notice not in RULES:
+                    narrate(f"{currents}: {notice}")
+            try:
                 outcome = run_batch(
                     mooring, record, output,
                     workers=workers, shape=shape, scheduler=scheduler,
-                    progress=teller, tell=teller.note,
+                    progress=teller, tell=teller.note, stop=stop,
                 )  # fmt: skip
-        finally:
-            teller.clear()
-        if outcome.counts.get("implausible-current"):
-            narrate(f"{currents}: {_implausible(outcome, mooring, record)}")
-    code = _ended(outcome, output, record.count)
-    if outcome.done and not no_statistics and not _summarized(output, mooring):
-        return ExitCode.INCOMPLETE
+            finally:
+                teller.clear()
+            if outcome.counts.get("implausible-current"):
+                narrate(f"{currents}: {_implausible(outcome, mooring, record)}")
+            total = record.count
+        code = _ended(outcome, output, total)
+        if outcome.done and not no_statistics and not _summarized(output, mooring, stop):
+            return ExitCode.INCOMPLETE
     return code
 
 
-def _summarized(output: Path, mooring: Mooring) -> bool:
-    """Show what the result says, and write it beside the result; whether that was possible."""
+def _summarized(output: Path, mooring: Mooring, stop: Event) -> bool:
+    """Show what the result says, and write it beside the result; whether that was possible.
+
+    Raises
+    ------
+    UsageError
+        The result cannot be read.
+    """
+    from calm.batch.threads import Stopped, go_on
     from calm.report.batch.brief import summary_part
     from calm.report.batch.files import write_summary
 
     try:
-        with _stopped_by_a_signal():
-            show_parts(summary_part(write_summary(output, mooring)))
-    except (UsageError, OSError, MemoryError, KeyboardInterrupt) as error:
-        reason = "interrupted" if isinstance(error, KeyboardInterrupt) else str(error)
-        narrate(
-            f"{output} is done; its statistics are not: {reason or 'not enough memory'}. "
-            "The same command gathers them"
-        )
-        return False
-    return True
+        show_parts(summary_part(write_summary(output, mooring, lambda: go_on(stop))))
+    except (Stopped, KeyboardInterrupt):
+        reason = "interrupted"
+    except MemoryError:
+        reason = "not enough memory"
+    except OSError as error:
+        reason = error.strerror or str(error)
+    else:
+        return True
+    narrate(f"{output} is done; its statistics are not: {reason}. The same command gathers them")
+    return False
 
 
 def _implausible(outcome: Outcome, mooring: Mooring, record: Record) -> str:
@@ -217,24 +227,29 @@ def _check_output(output: Path, *inputs: Path) -> None:
     UsageError
         See above.
     """
-    folder = output.resolve().parent
-    if not folder.is_dir():
+    # unlike `Path.resolve`, it takes links that lead round in a circle
+    place = os.path.realpath(output)
+    if output.is_symlink() and not output.exists():
+        raise UsageError(f"cannot write {output}: it is a symbolic link that leads nowhere")
+    folder = os.path.dirname(place)
+    if not os.path.isdir(folder):
         raise UsageError(f"cannot write {output}: there is no folder {folder}")
     if not os.access(folder, os.W_OK):
         raise UsageError(f"cannot write {output}: permission denied")
     for path in inputs:
-        if output.resolve() == path.resolve():
+        if place == os.path.realpath(path):
             raise UsageError(f"{output} is an input; it is kept")
 
 
 @contextmanager
-def _stopped_by_a_signal() -> Iterator[None]:
-    """Let a batch system's request to stop be what Ctrl-C is."""
+def _stopped_by_a_signal() -> Iterator[Event]:
+    """An event that a batch system's request to stop sets: it is heeded where nothing is lost."""
+    stop = Event()
     if current_thread() is not main_thread():
-        yield
+        yield stop
         return
-    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    before = signal.signal(signal.SIGTERM, lambda *_: stop.set())
     try:
-        yield
+        yield stop
     finally:
         signal.signal(signal.SIGTERM, before)

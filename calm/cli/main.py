@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import traceback
+import warnings
 from collections.abc import Sequence
 
 from cyclopts import App, CycloptsError, Parameter, UnusedCliTokensError
@@ -80,6 +81,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         CALM_DEBUG is 1.
     """
     prepare()
+    if arguments is None and not sys.warnoptions:
+        warnings.simplefilter("ignore")  # what libraries say to programmers
     words = sys.argv[1:] if arguments is None else list(arguments)
     try:
         code = app(words, exit_on_error=False, print_error=False)
@@ -98,6 +101,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         narrate("calm: interrupted")
         return ExitCode.INTERRUPTED
+    except MemoryError:
+        narrate("calm: not enough memory")
+        return ExitCode.BAD_INPUT
     except Exception as error:
         if os.environ.get("CALM_DEBUG") == "1":
             traceback.print_exc()

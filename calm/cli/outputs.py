@@ -111,6 +111,10 @@ class Outcome:
             from calm.report.pdf import result_pdf
 
             return result_pdf(self.result)
+        if suffix == ".nc":
+            from calm.report.netcdf import result_netcdf
+
+            return result_netcdf(self.result)
         from calm.report.plot import picture
 
         return picture(self.result, suffix)
@@ -126,8 +130,8 @@ class Outputs:
         The files the outputs are made from; none where the question is in the options.
     json, csv : Path or None
         One JSON document, one CSV table.
-    plot, html, pdf : Path or None
-        A picture, a page, a report for each file.
+    plot, html, pdf, netcdf : Path or None
+        A picture, a page, a report, a dataset for each file.
     """
 
     files: tuple[Path, ...] = ()
@@ -136,11 +140,12 @@ class Outputs:
     plot: Path | None = None
     html: Path | None = None
     pdf: Path | None = None
+    netcdf: Path | None = None
 
     @property
     def drawn_paths(self) -> tuple[tuple[Path, ...], ...]:
         """Of each kind asked for, a path for each file; of several, with the file's name added."""
-        asked = [path for path in (self.plot, self.html, self.pdf) if path is not None]
+        asked = [path for path in (self.plot, self.html, self.pdf, self.netcdf) if path is not None]
         return tuple(tuple(self._for_each(path)) for path in asked)
 
     def _for_each(self, path: Path) -> Iterator[Path]:
@@ -168,7 +173,8 @@ class Outputs:
             from calm.report.picture import check_format
 
             check_format(self.plot)
-        for report, ending in ((self.html, ".html"), (self.pdf, ".pdf")):
+        ends = (self.html, ".html"), (self.pdf, ".pdf"), (self.netcdf, ".nc")
+        for report, ending in ends:
             if report is not None and report.suffix != ending:
                 raise UsageError(f"cannot write {report}: the name of this report ends in {ending}")
         if self.drawn_paths:

@@ -35,6 +35,7 @@ def run(
     catalog: list[Path] | None = None,
     json: OutputPath = None,
     csv: OutputPath = None,
+    netcdf: Path | None = None,
     plot: Path | None = None,
     html: Path | None = None,
     pdf: Path | None = None,
@@ -59,6 +60,9 @@ def run(
         Write the result as JSON, - to print it; several files give an array.
     csv
         Write the components as CSV, units in the header, - to print it.
+    netcdf
+        Write the result as NetCDF, with the names of `calm batch`; for several files one
+        each, as with --plot.
     plot
         Draw it, as .png or .svg; for several files p.png becomes p-FILE.png for each.
     html
@@ -73,7 +77,7 @@ def run(
         Draw the line, part by part and not to scale, above its table; where there is no
         equilibrium, in its place.
     """
-    outputs = Outputs(tuple(files), json, csv, plot, html, pdf)
+    outputs = Outputs(tuple(files), json, csv, plot, html, pdf, netcdf)
     outputs.check()
     lines = read_files(files, environment, catalog or [])
     if explain:

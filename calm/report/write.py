@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 from pathlib import Path
 
 from calm.errors import UsageError
+from calm.whole_file import put
 
 
 def check_destination(path: Path) -> None:
@@ -40,17 +40,6 @@ def write_file(path: Path, content: bytes) -> None:
         if os.path.exists(path) and not os.path.isfile(path):
             path.write_bytes(content)
         else:
-            _replace(Path(os.path.realpath(path)), content)
+            put(Path(os.path.realpath(path)), content)
     except OSError as error:
         raise UsageError(f"cannot write {path}: {error.strerror}") from None
-
-
-def _replace(target: Path, content: bytes) -> None:
-    temporary = target.with_name(f".calm-{os.getpid()}.part")
-    try:
-        temporary.write_bytes(content)
-        os.replace(temporary, target)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            temporary.unlink()
-        raise

@@ -21,7 +21,6 @@ from calm.batch.statuses import Ending
 from calm.batch.work import Progress
 from calm.cli import main
 from calm.cli.batch_progress import Teller, bar, duration, state
-from calm.errors import UsageError
 
 ROOT = Path(__file__).parents[2]
 HEADER = "time,depth[m],u[m/s],v[m/s]\n"
@@ -261,7 +260,7 @@ def test_statistics_that_fail_leave_the_result_and_say_so(
     calm, write_mooring, record, folder, monkeypatch
 ):
     for error, words in (
-        (UsageError("no room for them"), "no room for them"),
+        (OSError("no room for them"), "no room for them"),
         (MemoryError(), "not enough memory"),
         (KeyboardInterrupt(), "interrupted"),
     ):

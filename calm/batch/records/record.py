@@ -4,17 +4,12 @@ from __future__ import annotations
 
 import hashlib
 from abc import ABC, abstractmethod
-from pathlib import Path
+from collections.abc import Callable
 from types import TracebackType
 
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.records.choice import Period
-from calm.errors import InputError, Problem
-from calm.files.current_file import holds_arrays
-from calm.files.current_place import Place
-from calm.files.current_terms import Terms
 from calm.physics.line import Floats
 
 Levels = tuple[Floats, Floats, Floats, Floats | None]
@@ -69,11 +64,17 @@ class Record(ABC):
     def close(self) -> None:
         """Leave the file."""
 
-    def digest(self) -> str:
-        """SHA-256 of the times, depths and currents as they are read; the name does not count."""
+    def digest(self, check: Callable[[], None] = lambda: None) -> str:
+        """SHA-256 of the times, depths and currents as they are read; the name does not count.
+
+        Parameters
+        ----------
+        check : called before each part is read
+        """
         digest = hashlib.sha256()
         digest.update(np.ascontiguousarray(self.time, "<M8[ns]").view("<i8").data)
         for start in range(0, self.count, DIGEST_BLOCK):
+            check()
             for values in self.profiles(start, min(start + DIGEST_BLOCK, self.count)):
                 if values is not None:
                     digest.update(str(values.shape).encode())
@@ -90,43 +91,3 @@ class Record(ABC):
         trace: TracebackType | None,
     ) -> None:
         self.close()
-
-
-def open_record(
-    path: Path,
-    *,
-    seabed: float,
-    at: Place | None = None,
-    declination: float | None = None,
-    time: Period | None = None,
-    every: int = 1,
-) -> Record:
-    """A record in NetCDF, in zarr, or in CSV.
-
-    Parameters
-    ----------
-    seabed : depth of the water [m], where heights above the seabed begin
-    at : latitude and longitude whose column is wanted, where there are several
-    declination : turns what the record says counts from magnetic north [degrees], east positive
-    time : first and last time, see `parse_period`
-    every : take one profile in so many
-
-    Raises
-    ------
-    InputError
-        It cannot be understood: why, and what it holds.
-    UsageError
-        No profile of it is asked for.
-    """
-    if not path.exists():
-        raise InputError([Problem(str(path), 0, 0, "no such file")])
-    if not (path.is_file() or path.is_dir()):
-        raise InputError([Problem(str(path), 0, 0, "is not a regular file")])
-    terms = Terms(water_depth=seabed, place=at, declination=declination)
-    if holds_arrays(path):
-        from calm.batch.records.arrays import ArrayRecord
-
-        return ArrayRecord(path, terms, time, every)
-    from calm.batch.records.csv import CsvRecord
-
-    return CsvRecord(path, terms, time, every)

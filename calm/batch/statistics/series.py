@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from tempfile import TemporaryFile
 from types import TracebackType
@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.result import labels_of, statuses_of
-from calm.errors import UsageError
+from calm.batch.result import labels_of, readable, statuses_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -40,6 +39,7 @@ class Series:
     ----------
     dataset : the result, opened without loading it
     folder : for the temporary file; the system's unless given
+    check : called now and then while it is turned; what it raises ends that
 
     Attributes
     ----------
@@ -49,12 +49,18 @@ class Series:
 
     Raises
     ------
-    UsageError
+    OSError
         There is no room for the temporary file.
+    UsageError
+        The result cannot be read.
     """
 
-    def __init__(self, dataset: Dataset, folder: Path | None = None) -> None:
+    def __init__(
+        self, dataset: Dataset, folder: Path | None = None, check: Callable[[], None] = lambda: None
+    ) -> None:
         self.dataset = dataset
+        self._source = Path(str(dataset.encoding.get("source", "the result")))
+        self._check = check
         self.time: Times = dataset["time"].values.astype("datetime64[ns]", copy=False)
         self.statuses = statuses_of(dataset)
         self.component_label = labels_of(dataset, "component_label")
@@ -65,7 +71,7 @@ class Series:
             self._turn()
         except OSError as error:
             place = folder or "the folder for temporary files"
-            raise UsageError(f"cannot gather the statistics in {place}: {error.strerror}") from None
+            raise OSError(f"cannot gather the statistics in {place}: {error.strerror}") from None
 
     def __enter__(self) -> Self:
         return self
@@ -163,7 +169,9 @@ class Series:
             columns = range(first, first + (variable.shape[1] if variable.ndim > 1 else 1))
             self._columns[name] = columns
             for begin in range(0, len(self), _ROWS):
-                block = variable[begin : begin + _ROWS].values.astype(_FIGURE, copy=False)
+                self._check()
+                with readable(self._source):
+                    block = variable[begin : begin + _ROWS].values.astype(_FIGURE, copy=False)
                 by_column = np.ascontiguousarray(block.T).reshape(len(columns), -1)
                 for column, values in zip(columns, by_column, strict=True):
                     self._turned.seek((column * len(self) + begin) * _FIGURE.itemsize)

@@ -118,7 +118,12 @@ class Summary:
         return self.count - self.solved - self.endings[Ending.NO_DATA]
 
 
-def summarize(dataset: Dataset, mooring: Mooring, folder: Path | None = None) -> Summary:
+def summarize(
+    dataset: Dataset,
+    mooring: Mooring,
+    folder: Path | None = None,
+    check: Callable[[], None] = lambda: None,
+) -> Summary:
     """Gather what a finished result says.
 
     Parameters
@@ -127,6 +132,7 @@ def summarize(dataset: Dataset, mooring: Mooring, folder: Path | None = None) ->
     mooring : that it was solved for: its limits are judged
     folder : for a temporary file, as large as the result is without compression; the system's
         unless given
+    check : called now and then while the result is read; what it raises ends that
 
     Profiles that were not solved are left out, and counted. All shares are of profiles: shares of
     time where the record is even. It takes some 35 bytes of memory a profile, however many
@@ -134,10 +140,12 @@ def summarize(dataset: Dataset, mooring: Mooring, folder: Path | None = None) ->
 
     Raises
     ------
+    OSError
+        There is no room for the temporary file.
     UsageError
-        There is no room for the temporary file, or the dataset is no result of `calm batch`.
+        The dataset is no result of `calm batch`, or cannot be read.
     """
-    with Series(dataset, folder) as series:
+    with Series(dataset, folder, check) as series:
         ended = endings(series.statuses)
         equilibrium = equilibrium_share(ended)
         unsolved = ended[Ending.NO_EQUILIBRIUM] + ended[Ending.NOT_CONVERGED]

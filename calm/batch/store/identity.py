@@ -6,10 +6,12 @@ import hashlib
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
+from threading import Event
 from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel
 
+from calm.batch.threads import go_on
 from calm.case import Mooring
 from calm.version import __version__
 
@@ -26,8 +28,16 @@ _NO_MATTER = frozenset(
 """What of a mooring file changes no figure of its results: every profile has its own current."""
 
 
-def identity_of(mooring: Mooring, record: Record, options: Mapping[str, Any]) -> dict[str, Any]:
-    """All that the figures of a result follow from, as JSON has it."""
+def identity_of(
+    mooring: Mooring, record: Record, options: Mapping[str, Any], stop: Event
+) -> dict[str, Any]:
+    """All that the figures of a result follow from, as JSON has it.
+
+    Raises
+    ------
+    calm.batch.threads.Stopped
+        While the record is read through, which may take long.
+    """
     ends = (record.time[0], record.time[-1])
     identity = {
         "calm": __version__,
@@ -36,7 +46,7 @@ def identity_of(mooring: Mooring, record: Record, options: Mapping[str, Any]) ->
             "profiles": record.count,
             "from": str(ends[0].astype("datetime64[s]")),
             "to": str(ends[1].astype("datetime64[s]")),
-            "sha256": record.digest(),
+            "sha256": record.digest(lambda: go_on(stop)),
         },
         "options": dict(options),
     }

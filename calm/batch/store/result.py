@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-import json
 import os
 import shutil
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
-from calm.batch.store.chunks import to_json
-from calm.batch.store.disk import settle, write_whole
+from calm.batch.result import attributes_of
 from calm.batch.store.lock import lock_file
-from calm.batch.store.netcdf import write_netcdf
-from calm.batch.store.store import IDENTITY, WORK, Flag, Store, refuse_another
+from calm.batch.store.store import IDENTITY, WORK, Store, refuse_another
+from calm.dataset.netcdf import write_netcdf
 from calm.errors import UsageError
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
+from calm.whole_file import settle
 
 ENDINGS = (".nc", ".zarr")
 """Of the results that can be written."""
@@ -38,9 +34,12 @@ def is_finished(output: Path, identity: str) -> bool:
     """
     if not output.exists():
         return False
-    before = _attributes(output).get(IDENTITY)
+    before = attributes_of(output).get(IDENTITY)
     if not isinstance(before, str):
-        raise UsageError(f"{output} is there already, and no result of calm batch; it is kept")
+        raise UsageError(
+            f"{output} is there already, and no result of calm batch that can be read; it is kept. "
+            "Give another name to the result, or remove it"
+        )
     refuse_another(output, before, identity)
     return True
 
@@ -70,73 +69,31 @@ def clear(output: Path) -> None:
         shutil.rmtree(output / WORK, ignore_errors=True)
 
 
-def finish(store: Store, flags: Mapping[int, Flag], output: Path) -> list[int]:
-    """Make the result of a store, on the disk itself.
-
-    It has its name only once it is whole; the memory that it takes is that of one chunk.
+def finish(store: Store, output: Path, check: Callable[[], None]) -> list[int]:
+    """Make the result of a store, on the disk itself; it has its name only once it is whole.
 
     Blocks that are not as they were written are returned: they are missing again, and there is no
     result then.
 
     Parameters
     ----------
-    flags : of the blocks, by their numbers
+    check : called now and then; what it raises ends the making
 
     Raises
     ------
     OSError
         There is no room for it.
     """
-    if output.suffix == ".zarr":
-        damaged = sorted({number for _, number, data in store.chunks(flags) if data is None})
-        ready = store.folder
-    else:
-        ready = store.work / output.name
-        damaged = write_netcdf(store, flags, ready)
+    damaged = store.forget_damaged(check)
     if damaged:
-        for number in damaged:
-            store.forget(number)
         return damaged
     if output.suffix == ".zarr":
-        _consolidate(store)
+        ready = store.folder
         settle(path for path in store.folder.rglob("*") if WORK not in path.parts)
+    else:
+        ready = store.work / output.name
+        write_netcdf(store.layout, store.block, store.chunks(), ready, check)
     settle([ready])
     os.replace(ready, output)
     settle([output.parent])
     return []
-
-
-def _attributes(output: Path) -> dict[str, Any]:
-    """Of a result as a whole; none where it is something else."""
-    if output.suffix == ".zarr":
-        try:
-            content: dict[str, Any] = json.loads((output / ".zattrs").read_bytes())
-        except (OSError, ValueError):
-            return {}
-        return content
-    import h5py
-
-    try:
-        with h5py.File(output, "r") as file:
-            return {
-                name: value.decode() if isinstance(value, bytes) else value
-                for name, value in file.attrs.items()
-            }
-    except OSError:
-        return {}
-
-
-def _consolidate(store: Store) -> None:
-    """Write the metadata of all arrays into one file, which readers ask for first."""
-    folder = store.folder
-    files = [
-        folder / ".zgroup",
-        folder / ".zattrs",
-        *folder.glob("*/.zarray"),
-        *folder.glob("*/.zattrs"),
-    ]
-    metadata = {
-        file.relative_to(folder).as_posix(): json.loads(file.read_bytes()) for file in files
-    }
-    document: dict[str, Any] = {"zarr_consolidated_format": 1, "metadata": metadata}
-    write_whole(folder / ".zmetadata", to_json(document), store.work)

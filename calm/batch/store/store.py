@@ -1,30 +1,35 @@
 """The work store of a batch: a zarr folder that grows block by block, and survives anything.
 
-Beside the arrays it has a folder of its own, `.batch`: the identity of what is solved; a flag for
-every block that is done, written after the block's data, with the size and the checksum of each
-chunk; and what is done of blocks that take long.
+Beside the arrays it has a folder of its own, `.batch`: the identity of what is solved, and a flag
+for every block that is done, which is made after the block's data. What the data have come to
+since is for the codecs of zarr to find out: zlib has a checksum.
 """
 
 from __future__ import annotations
 
 import json
+import os
+import shutil
 import zlib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
-from dataclasses import dataclass
-from io import BytesIO
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
-from typing import Any, cast
-from zipfile import BadZipFile
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.dataset import Layout, Variable
-from calm.batch.store.chunks import array_metadata, to_json
-from calm.batch.store.disk import UNFINISHED, settle, write_whole
 from calm.batch.store.identity import differences, sha256_of
+from calm.dataset.netcdf import LEVEL, Chunk, chunk_shape
+from calm.dataset.variables import Layout
 from calm.errors import UsageError
+from calm.whole_file import put, settle
+
+if TYPE_CHECKING:
+    import zarr
 
 WORK = ".batch"
 """The folder of a store that its result is without."""
@@ -34,20 +39,6 @@ IDENTITY = "input_resolved"
 
 Arrays = Mapping[str, NDArray[Any]]
 """Values of some profiles, by the names of the variables that go with time."""
-
-
-@dataclass(frozen=True)
-class Flag:
-    """What is known of a block that is done.
-
-    Attributes
-    ----------
-    chunks : size and CRC-32 of each, by the name of its variable
-    statuses : how many profiles there are of each of `calm.batch.statuses.STATUSES`
-    """
-
-    chunks: Mapping[str, tuple[int, int]]
-    statuses: tuple[int, ...]
 
 
 @dataclass(frozen=True)
@@ -75,91 +66,91 @@ class Store:
         """How many blocks there are."""
         return -(-self.layout.sizes["time"] // self.block)
 
-    @property
-    def in_blocks(self) -> list[Variable]:
-        """The variables that go with time."""
-        return [variable for variable in self.layout.variables if variable.values is None]
+    @cached_property
+    def arrays(self) -> Mapping[str, zarr.Array[Any]]:
+        """Those that go with time, by their names."""
+        import zarr
+
+        with zarr.config.set({"array.write_empty_chunks": True}):
+            group = zarr.open_group(self.folder, mode="r+", zarr_format=2)
+            return {
+                variable.name: cast("zarr.Array[Any]", group[variable.name])
+                for variable in self.layout.in_blocks
+            }
 
     def span(self, number: int) -> tuple[int, int]:
-        """First profile of a block, and the one behind its last."""
+        """First profile of a block, and the one after its last."""
         start = number * self.block
         return start, min(start + self.block, self.layout.sizes["time"])
 
-    def chunk_shape(self, variable: Variable) -> tuple[int, ...]:
-        """Of the chunks of a variable that goes with time: all are whole, the last one too."""
-        length = min(self.block, self.layout.sizes["time"])
-        return length, *(self.layout.sizes[name] for name in variable.dimensions[1:])
+    def write(self, number: int, arrays: Arrays) -> None:
+        """Write a block, then its flag."""
+        start, stop = self.span(number)
+        for name, array in self.arrays.items():
+            array[start:stop] = arrays[name]
+        self._flag(number).touch()
 
-    def chunk_file(self, variable: Variable, number: int) -> Path:
-        """Where a chunk is."""
-        place = ".".join([str(number), *("0" for _ in variable.dimensions[1:])])
-        return self.folder / variable.name / place
-
-    def write(self, number: int, chunks: Mapping[str, bytes], statuses: Iterable[int]) -> Flag:
-        """Write a block: its chunks by the names of their variables, then its flag."""
-        for variable in self.in_blocks:
-            write_whole(self.chunk_file(variable, number), chunks[variable.name], self.work)
-        told = {name: (len(data), zlib.crc32(data)) for name, data in chunks.items()}
-        flag = Flag(told, tuple(int(count) for count in statuses))
-        write_whole(self._flag(number), to_json(vars(flag)), self.work)
-        with suppress(FileNotFoundError):
-            self._begun(number).unlink()
-        return flag
-
-    def flag(self, number: int) -> Flag | None:
-        """The flag of a block that is done; None where it is not, or not as its flag has it."""
+    def statuses(self, number: int) -> NDArray[np.int8] | None:
+        """The statuses of a block that is done; None where it is not."""
+        if not self._flag(number).exists():
+            return None
         try:
-            content = json.loads(self._flag(number).read_bytes())
-            chunks = {name: (size, crc) for name, (size, crc) in content["chunks"].items()}
-            sizes = {
-                variable.name: self.chunk_file(variable, number).stat().st_size
-                for variable in self.in_blocks
-            }
-        except (FileNotFoundError, ValueError, KeyError, TypeError):
+            return self._read("status", number)
+        except _DAMAGED:
             return None
-        if sizes != {name: size for name, (size, _) in chunks.items()}:
-            return None
-        return Flag(chunks, tuple(content["statuses"]))
 
-    def chunks(self, flags: Mapping[int, Flag]) -> Iterator[tuple[Variable, int, bytes | None]]:
-        """Every chunk; None in place of one that is not there, or not as it was written."""
-        for variable in self.in_blocks:
-            for number in range(self.count):
-                flag = flags.get(number)
-                yield variable, number, None if flag is None else self.chunk(variable, number, flag)
+    def chunks(self) -> list[Chunk]:
+        """The files of all blocks."""
+        return [
+            (name, (number * self.block, *(0 for _ in array.shape[1:])), self._file(name, number))
+            for name, array in self.arrays.items()
+            for number in range(self.count)
+        ]
 
-    def chunk(self, variable: Variable, number: int, flag: Flag) -> bytes | None:
-        """A chunk of a block that is done; None where it is not as it was written."""
+    def forget_damaged(self, check: Callable[[], None]) -> list[int]:
+        """The blocks that are not as they were written: they are missing again.
+
+        Parameters
+        ----------
+        check : called before each block is read again
+        """
+
+        def is_whole(number: int) -> bool:
+            check()
+            return self._is_whole(number)
+
+        with ThreadPoolExecutor() as pool:
+            whole = list(pool.map(is_whole, range(self.count)))
+        damaged = [number for number, good in enumerate(whole) if not good]
+        for number in damaged:
+            self._flag(number).unlink(missing_ok=True)
+        return damaged
+
+    def _is_whole(self, number: int) -> bool:
         try:
-            data = self.chunk_file(variable, number).read_bytes()
-        except FileNotFoundError:
-            return None
-        return data if flag.chunks[variable.name] == (len(data), zlib.crc32(data)) else None
+            for name in self.arrays:
+                self._read(name, number)
+        except _DAMAGED:
+            return False
+        return True
 
-    def forget(self, number: int) -> None:
-        """Let a block be missing again."""
-        with suppress(FileNotFoundError):
-            self._flag(number).unlink()
+    def _read(self, name: str, number: int) -> NDArray[Any]:
+        if not self._file(name, number).stat().st_size:  # zarr takes what is not there for NaN
+            raise ValueError("an empty file")
+        start, stop = self.span(number)
+        return np.asarray(self.arrays[name][start:stop])
 
-    def put_by(self, number: int, arrays: Arrays) -> None:
-        """Keep the first profiles of a block that is not done."""
-        content, save = BytesIO(), cast(Any, np.savez)  # whose types know of no names
-        save(content, **arrays)
-        write_whole(self._begun(number), content.getvalue(), self.work)
-
-    def begun(self, number: int) -> Arrays | None:
-        """What was kept of a block by `put_by`; None where there is nothing, or not all of it."""
-        try:
-            with np.load(BytesIO(self._begun(number).read_bytes()), allow_pickle=False) as kept:
-                return {variable.name: kept[variable.name] for variable in self.in_blocks}
-        except (FileNotFoundError, BadZipFile, ValueError, KeyError, EOFError, zlib.error):
-            return None
+    def _file(self, name: str, number: int) -> Path:
+        array = self.arrays[name]
+        place = (number, *(0 for _ in array.shape[1:]))
+        return self.folder / name / array.metadata.encode_chunk_key(place)
 
     def _flag(self, number: int) -> Path:
         return self.work / str(number)
 
-    def _begun(self, number: int) -> Path:
-        return self.work / f"{number}.begun"
+
+_DAMAGED = (OSError, ValueError, RuntimeError, zlib.error)
+"""By which codecs leave."""
 
 
 def open_store(folder: Path, layout: Layout, block: int, identity: str) -> Store:
@@ -173,22 +164,24 @@ def open_store(folder: Path, layout: Layout, block: int, identity: str) -> Store
     Raises
     ------
     UsageError
-        The folder is no store, or that of another input.
+        The folder is no store, or that of another input, or its identity is damaged.
     """
-    store = Store(folder, layout, block)
+    attributes = {**layout.attributes, IDENTITY: identity, "input_sha256": sha256_of(identity)}
+    store = Store(folder, replace(layout, attributes=attributes), block)
     if folder.exists() and any(folder.iterdir()) and not store.work.is_dir():
         raise UsageError(f"{folder} is in the way: the work would be kept there")
     store.work.mkdir(parents=True, exist_ok=True)
-    for path in store.work.glob(f"*{UNFINISHED}"):
-        path.unlink(missing_ok=True)
     kept = store.work / "identity"
     if kept.exists():
-        refuse_another(folder, kept.read_text(encoding="utf-8"), identity)
+        refuse_another(folder, kept.read_bytes().decode("utf-8", "replace"), identity)
+    for pattern in ("*.partial", "*.calm-part"):  # of killed processes
+        for path in folder.rglob(pattern):
+            path.unlink(missing_ok=True)
     # anew each time: after a power cut it may be there in part
-    _lay_out(store, identity)
+    _lay_out(store)
     if not kept.exists():
-        write_whole(kept, identity.encode(), store.work)
-        settle([kept, store.work])
+        put(kept, identity.encode(), settled=True)
+        settle([store.work])
     return store
 
 
@@ -198,31 +191,54 @@ def refuse_another(path: Path, before: str, now: str) -> None:
     Raises
     ------
     UsageError
-        Where the two identities are not the same.
+        Where the two identities are not the same, or the first cannot be read.
     """
-    if before != now:
+    if before == now:
+        return
+    try:
         told = differences(json.loads(before), json.loads(now))
+    except ValueError:
         raise UsageError(
-            f"{path} was made from another input: {told}. "
-            "It is kept; give another name to the result, or remove it"
-        )
+            f"{path} is damaged: it no longer tells what it was made from. Remove it, and the same "
+            "command begins anew"
+        ) from None
+    raise UsageError(
+        f"{path} was made from another input: {told}. "
+        "It is kept; give another name to the result, or remove it"
+    )
 
 
-def _lay_out(store: Store, identity: str) -> None:
-    """Write all that does not go with time."""
-    folder, layout = store.folder, store.layout
-    attributes = {**layout.attributes, IDENTITY: identity, "input_sha256": sha256_of(identity)}
-    (folder / ".zgroup").write_bytes(to_json({"zarr_format": 2}))
-    (folder / ".zattrs").write_bytes(to_json(attributes))
+def _lay_out(store: Store) -> None:
+    """All but the blocks: made apart, then put in place file by file."""
+    import zarr
+    from numcodecs import Shuffle, Zlib
+
+    layout, apart = store.layout, store.work / "layout"
+    shutil.rmtree(apart, ignore_errors=True)
+    group = zarr.open_group(apart, mode="w", zarr_format=2, attributes=layout.attributes)
     for variable in layout.variables:
-        shape = [layout.sizes[name] for name in variable.dimensions]
-        chunks = None if variable.values is not None else store.chunk_shape(variable)
-        array = folder / variable.name
-        array.mkdir(exist_ok=True)
-        (array / ".zarray").write_bytes(to_json(array_metadata(variable.dtype, shape, chunks)))
-        (array / ".zattrs").write_bytes(
-            to_json({**variable.attributes, "_ARRAY_DIMENSIONS": variable.dimensions})
+        kind, values = np.dtype(variable.dtype), variable.values
+        in_blocks = values is None
+        shape = tuple(layout.sizes[name] for name in variable.dimensions)
+        array = group.create_array(
+            variable.name,
+            shape=shape,
+            chunks=chunk_shape(layout, variable, store.block) if in_blocks else shape,
+            dtype=variable.dtype,
+            filters=[Shuffle(kind.itemsize)] if in_blocks and kind.itemsize > 1 else None,
+            compressors=Zlib(LEVEL) if in_blocks else None,
+            fill_value=np.nan if kind.kind == "f" else None,
+            attributes={**variable.attributes, "_ARRAY_DIMENSIONS": list(variable.dimensions)},
+            config={"write_empty_chunks": True},
         )
-        if variable.values is not None:
-            whole = np.ascontiguousarray(variable.values, variable.dtype).tobytes()
-            (array / ".".join("0" * max(len(shape), 1))).write_bytes(whole)
+        if values is not None:
+            array[...] = values
+    zarr.consolidate_metadata(apart, zarr_format=2)
+    for path in sorted(apart.rglob("*")):
+        place = store.folder / path.relative_to(apart)
+        if path.is_dir():
+            place.mkdir(exist_ok=True)
+        else:
+            os.replace(path, place)
+    with suppress(OSError):
+        shutil.rmtree(apart)

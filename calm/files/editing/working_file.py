@@ -12,8 +12,8 @@ from threading import RLock
 from calm.errors import CalmError, InputError
 from calm.files.document import decoded, read_content
 from calm.files.editing.kept_work import Kept, digest, kept_in, place_of, with_record
-from calm.files.editing.whole_file import lost, replace, status, sweep
 from calm.files.unchanged import GRAIN
+from calm.whole_file import put, sweep
 
 _UNREADABLE = b"\0"
 """Stands for the content of what is there and cannot be read; no text has it."""
@@ -65,7 +65,7 @@ class WorkingFile:
         content = read_content(self.path)
         text = decoded(self.path, content)
         self._see(content)
-        sweep(Path(os.path.realpath(self.path)))
+        sweep(Path(os.path.realpath(self.path)).parent)
         return text
 
     def save(self, text: str) -> str:
@@ -85,25 +85,25 @@ class WorkingFile:
         assert self.path is not None
         content = text.encode()
         target = Path(os.path.realpath(self.path))
-        before = status(target)
+        before = _status(target)
         try:
-            replace(target, content, before)
+            _replace(target, content, before)
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or error
             raise NotWritten(f"cannot write {self.path}: {reason}") from None
         self._see(content)
-        return lost(before, status(target))
+        return _lost(before, _status(target))
 
     @property
     def is_protected(self) -> bool:
         """Whether the file is there and may not be written."""
         path = self.path
-        return path is not None and status(path) is not None and not os.access(path, os.W_OK)
+        return path is not None and _status(path) is not None and not os.access(path, os.W_OK)
 
     @property
     def stamp(self) -> Stamp | None:
         """Tells one state of the file on the disk from another; None where there is none."""
-        told = None if self.path is None else status(self.path)
+        told = None if self.path is None else _status(self.path)
         return told and (told.st_mtime_ns, told.st_size, told.st_ino)
 
     def changed_on_disk(self) -> bool:
@@ -185,12 +185,12 @@ class WorkingFile:
         self._seen, self._looked = content, None
 
     def _content(self) -> bytes | None:
-        if self.path is None or status(self.path) is None:
+        if self.path is None or _status(self.path) is None:
             return None
         try:
             return read_content(self.path)
         except InputError:
-            return _UNREADABLE if status(self.path) else None
+            return _UNREADABLE if _status(self.path) else None
 
     def _folders(self) -> list[tuple[Path, str]]:
         """Where the copy goes and how its name begins, the best place first."""
@@ -207,12 +207,12 @@ class WorkingFile:
 
     def _keep(self, text: str) -> Path:
         content = with_record(text, digest(self._seen))
-        like = None if self.path is None else status(self.path)
+        like = None if self.path is None else _status(self.path)
         reasons = []
         for place in self._places:
             try:
                 place.parent.mkdir(parents=True, exist_ok=True)
-                replace(place, content, like)
+                _replace(place, content, like)
             except (OSError, ValueError) as error:
                 reasons.append(f"{place}: {getattr(error, 'strerror', None) or error}")
             else:
@@ -228,3 +228,29 @@ class WorkingFile:
 def _state_folder() -> Path:
     state = os.environ.get("XDG_STATE_HOME") or os.path.expanduser("~/.local/state")
     return Path(state) / "calm"
+
+
+def _replace(target: Path, content: bytes, like: os.stat_result | None) -> None:
+    if target.exists() and not target.is_file():
+        raise ValueError("it is not a regular file")
+    put(target, content, like=like, settled=True)
+
+
+def _lost(before: os.stat_result | None, after: os.stat_result | None) -> str:
+    """What a file could not take over from the one that it replaced; empty as a rule."""
+    if before is None or after is None:
+        return ""
+    told = []
+    if (before.st_uid, before.st_gid) != (after.st_uid, after.st_gid):
+        told.append("its owner or group could not be kept")
+    if before.st_nlink > 1:
+        told.append("its other hard links keep the old text")
+    return "; ".join(told)
+
+
+def _status(path: Path) -> os.stat_result | None:
+    """What the system says of a file; None where it is not there."""
+    try:
+        return path.stat()
+    except (OSError, ValueError):
+        return None

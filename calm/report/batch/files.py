@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,14 +11,16 @@ from calm.batch.statistics.summary import summarize
 from calm.report.batch.document import summary_document
 from calm.report.batch.page import summary_html
 from calm.report.document import to_json
-from calm.report.write import write_file
+from calm.whole_file import put
 
 if TYPE_CHECKING:
     from calm.batch.statistics.summary import Summary
     from calm.case import Mooring
 
 
-def write_summary(result: Path, mooring: Mooring) -> Summary:
+def write_summary(
+    result: Path, mooring: Mooring, check: Callable[[], None] = lambda: None
+) -> Summary:
     """Gather what a finished result says, and write it beside it, as JSON and as a page.
 
     The result is only read: this can be done, and done again, at any time after it is finished.
@@ -27,18 +30,21 @@ def write_summary(result: Path, mooring: Mooring) -> Summary:
     result : the .nc file or .zarr folder; RESULT.nc has RESULT.summary.json, RESULT.summary.html,
         which would be those of a RESULT.zarr beside it too: the later summary takes their place
     mooring : that it was solved for
+    check : called now and then while the result is read; what it raises ends that
 
     Raises
     ------
-    UsageError
+    OSError
         A file cannot be written, or there is no room for a temporary one as large as the result
         is without compression.
+    UsageError
+        The result cannot be read.
     """
     with open_result(result) as dataset:
-        summary = summarize(dataset, mooring, result.parent)
+        summary = summarize(dataset, mooring, result.parent, check)
     document, page = summary_paths(result)
-    write_file(document, to_json([summary_document(summary)]).encode())
-    write_file(page, summary_html(summary).encode())
+    put(document, to_json([summary_document(summary)]).encode())
+    put(page, summary_html(summary).encode())
     return summary
 
 

@@ -103,7 +103,7 @@ def test_workers_that_come_late_get_their_share(tmp_path, started, monkeypatch):
                 client.wait_for_workers(2, timeout=60)
 
     record.profiles = lambda start, stop: taken.append(start) or read(start, stop)
-    record.digest = lambda: "the same"
+    record.digest = lambda check: "the same"
 
     def tell(text):
         told.append(text)
@@ -169,7 +169,7 @@ def test_without_dask_it_says_what_to_install(tmp_path):
         "from calm.batch.cluster import solved_on\n"
         "from calm.errors import UsageError\n"
         "try:\n"
-        "    next(solved_on('tcp://127.0.0.1:9', None, iter(()), print))\n"
+        "    next(solved_on('tcp://127.0.0.1:9', None, iter(()), print, None))\n"
         "except UsageError as error:\n"
         "    print(error)\n"
     )

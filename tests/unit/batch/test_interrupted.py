@@ -18,7 +18,7 @@ from calm.batch import work as work_module
 from calm.batch.run import Outcome, run_batch
 from calm.batch.statuses import Ending
 from calm.batch.work import Progress
-from tests.unit.batch.made import MOORING, MadeRecord, content, made_mooring
+from tests.unit.batch.made import MadeRecord, content, made_mooring
 
 KILLED = Path(__file__).with_name("killed.py")
 
@@ -83,38 +83,28 @@ def undisturbed(folder, mooring, record, ending=".nc", block=4):
 
 
 @pytest.mark.parametrize("ending", [".nc", ".zarr"])
-@pytest.mark.parametrize("room", [0, 1, 20, 45, 60, 200, 330])
+@pytest.mark.parametrize("room", [0, 1, 20, 45, 60, 200, 270])
 def test_a_full_disk_stops_it_and_keeps_what_is_done(
     tmp_path, mooring, record, monkeypatch, room, ending
 ):
-    """Folders and files from the first on; the last figure is behind all blocks."""
+    """Files from the first on: the metadata are some 60, and the chunks of a block 23."""
     output = tmp_path / f"r{ending}"
-    written, made, left = Path.write_bytes, os.mkdir, [room]
+    opened, left = Path.open, [room]
 
-    def full():
-        left[0] -= 1
-        if left[0] < 0:
-            raise OSError(errno.ENOSPC, "as the system has it")
-
-    def write(path, data):
-        try:
-            full()
-        except OSError:
-            written(path, data[:3])
-            raise
-        return written(path, data)
-
-    def make(*arguments):
-        full()
-        return made(*arguments)
+    def full(path, mode="r", *arguments, **options):
+        if "w" in mode:
+            left[0] -= 1
+            if left[0] < 0:
+                with opened(path, mode, *arguments, **options) as file:
+                    file.write(b"abc")
+                raise OSError(errno.ENOSPC, "as the system has it")
+        return opened(path, mode, *arguments, **options)
 
     with monkeypatch.context() as patched:
-        patched.setattr(Path, "write_bytes", write)
-        patched.setattr(os, "mkdir", make)
+        patched.setattr(Path, "open", full)
         outcome = run_batch(mooring, record, output, workers=1, block=4)
-    done = left[0] >= 0  # a NetCDF file is written by HDF5
-    assert outcome.done is done
-    assert outcome.reason == ("" if done else "No space left on device")
+    assert not outcome.done
+    assert outcome.reason == "No space left on device"
     kept = sum(outcome.counts.values())
     assert kept == 0 if room <= 60 else kept > 0
     assert run_batch(mooring, record, output, block=4).done
@@ -161,14 +151,13 @@ def test_a_block_damaged_at_the_last_moment_is_solved_again(
     undamaged = undisturbed(tmp_path, mooring, record, ending)
     finish = run_module.finish
 
-    def damaged(store, flags, output):
+    def damaged(store, output, check):
         if not told:
-            for number, name in ((0, "tilt/0.0"), (5, "status/5")):
+            for name in ("tilt/0.0", "status/5"):
                 chunk = store.folder / name
                 data = chunk.read_bytes()
                 chunk.write_bytes(data[:-2] if size else data[:-1] + bytes([data[-1] ^ 1]))
-                assert number in flags
-        return finish(store, flags, output)
+        return finish(store, output, check)
 
     monkeypatch.setattr(run_module, "finish", damaged)
     outcome = run_batch(mooring, record, output, block=4, tell=told.append)
@@ -179,7 +168,7 @@ def test_a_block_damaged_at_the_last_moment_is_solved_again(
 
 
 def test_a_disk_that_keeps_nothing_is_given_up(tmp_path, mooring, record, monkeypatch):
-    monkeypatch.setattr(run_module, "finish", lambda store, flags, output: [0])
+    monkeypatch.setattr(run_module, "finish", lambda *_: [0])
     outcome = run_batch(mooring, record, tmp_path / "r.nc", block=8)
     assert not outcome.done
     assert "does not keep what is written" in outcome.reason
@@ -229,52 +218,6 @@ def test_the_lock_is_held_until_the_last_thread_has_ended(tmp_path, mooring, rec
     assert alive == [False, False]
     # the block under way is kept
     assert sum(outcome.counts.values()) == 8
-
-
-@pytest.mark.parametrize("ending", [".nc", ".zarr"])
-def test_part_of_a_block_is_kept_when_it_is_stopped(tmp_path, record, monkeypatch, ending):
-    """Where every profile goes alone a block takes minutes: the second run has half of it."""
-    mooring = made_mooring(tmp_path, f"{MOORING}solver: {{friction: hoerner}}\n")
-    monkeypatch.setattr(work_module, "SLICE", 0.0)  # slices of eight
-    output, asked = tmp_path / f"r{ending}", []
-
-    def stop(progress):
-        if progress.done >= 16:
-            raise KeyboardInterrupt
-
-    monkeypatch.setattr(work_module, "PUT_BY", -1.0)
-    first = run_batch(mooring, record, output, workers=1, block=40, progress=stop)
-    assert (first.done, sum(first.counts.values())) == (False, 8)
-    assert first.alone == 15  # of sixteen, one had no current
-    read = record.profiles
-    record.profiles = lambda start, stop: asked.append(start) or read(start, stop)
-    told = []
-    second = run_batch(mooring, record, output, workers=3, block=40, progress=told.append)
-    assert second.done
-    assert asked == [8]
-    assert (told[0].found, [progress.done for progress in told]) == (8, [8, 16, 24, 32, 40])
-    assert content(output) == undisturbed(tmp_path, mooring, record, ending, 40)
-
-
-def test_half_a_state_of_a_block_is_no_state(tmp_path, mooring, record, monkeypatch):
-    output = tmp_path / "r.nc"
-    kept = output.with_name("r.nc.part") / ".batch" / "0.begun"
-
-    def stop(progress):
-        raise KeyboardInterrupt
-
-    run_batch(mooring, record, output, progress=stop)
-    for content_of_it in (b"", b"PK", b"PK\x03\x04" + bytes(40)):
-        kept.write_bytes(content_of_it)
-        told = []
-
-        def stop_again(progress, told=told):
-            told.append(progress)
-            raise KeyboardInterrupt
-
-        run_batch(mooring, record, output, progress=stop_again)
-        assert told[0].found == 0
-    assert run_batch(mooring, record, output).done
 
 
 def test_another_number_of_workers_goes_on_with_it(tmp_path, mooring, record):
@@ -349,8 +292,28 @@ def test_a_result_of_somebody_else_in_the_meantime_is_taken(tmp_path, mooring, r
 
 
 def test_ctrl_c_while_the_record_is_read_through(tmp_path, mooring, record):
-    def digest():
+    def digest(check):
         raise KeyboardInterrupt
 
     record.digest = digest
     assert run_batch(mooring, record, tmp_path / "r.nc") == Outcome({}, False, "interrupted")
+
+
+def test_an_event_ends_it_wherever_it_is(tmp_path, mooring, record):
+    """While the record is read through, in a block, and as the result is made."""
+    output, stop = tmp_path / "r.nc", Event()
+    record.digest = lambda check: (stop.set(), check())
+    assert run_batch(mooring, record, output, stop=stop) == Outcome({}, False, "interrupted")
+    del record.digest
+    for limit in (0, 16, 40):
+        stop.clear()
+
+        def tell(progress, limit=limit):
+            if progress.done >= limit:
+                stop.set()
+
+        outcome = run_batch(mooring, record, output, workers=1, block=8, progress=tell, stop=stop)
+        assert (outcome.done, outcome.reason) == (False, "interrupted")
+        assert sum(outcome.counts.values()) == limit
+    assert run_batch(mooring, record, output, block=8).done
+    assert content(output) == undisturbed(tmp_path, mooring, record, block=8)

@@ -7,7 +7,8 @@ import pytest
 import xarray as xr
 
 from calm.batch.records.choice import parse_period, shown
-from calm.batch.records.record import Record, open_record
+from calm.batch.records.opening import open_record
+from calm.batch.records.record import Record
 from calm.errors import InputError, UsageError
 from calm.files import CurrentTable
 from calm.files.current_file import read_current_file

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from calm.batch.records import csv as record_csv
-from calm.batch.records.record import open_record
+from calm.batch.records.opening import open_record
 from calm.errors import InputError
 from calm.files.current_csv import MOST_PROBLEMS
 from tests.unit.batch.records import COUNT, SEABED, write

@@ -4,7 +4,7 @@ from pathlib import Path
 import numpy as np
 
 from calm.batch.records.made import DEPTHS, LATITUDE, LONGITUDE, made_record
-from calm.batch.records.record import open_record
+from calm.batch.records.opening import open_record
 
 
 def test_made_record_is_the_same_everywhere() -> None:

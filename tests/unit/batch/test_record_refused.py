@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from calm.batch.records.record import open_record
+from calm.batch.records.opening import open_record
 from calm.errors import InputError
 from tests.unit.batch.records import HERE, SEABED, adcp, adcp_by_distance, curvilinear, glorys
 

@@ -103,7 +103,7 @@ def test_a_long_reading_is_told(tmp_path, mooring, record, monkeypatch):
         told.append(text)
         heard.set()
 
-    record.digest = lambda: heard.wait(60) and digest()
+    record.digest = lambda check: heard.wait(60) and digest()
     assert run_batch(mooring, record, tmp_path / "r.nc", tell=tell).done
     assert told == ["reading the record through, to know it again"]
 
@@ -140,7 +140,7 @@ def test_memory_does_not_grow_with_the_record(tmp_path, mooring):
     peaks = []
     for count in (4000, 40_000):
         record = MadeRecord(count)
-        record.digest = lambda: "the same"
+        record.digest = lambda check: "the same"
         tracemalloc.start()
         run_batch(mooring, record, tmp_path / f"{count}.nc", workers=1, block=1000)
         peaks.append(tracemalloc.get_traced_memory()[1])
@@ -203,6 +203,41 @@ def test_what_is_no_result_is_left_alone(tmp_path, mooring, record):
     assert (tmp_path / "r.nc").read_text() == (tmp_path / "s.nc.part" / "mine").read_text()
     with pytest.raises(UsageError, match=r"ends in \.nc or \.zarr"):
         run_batch(mooring, record, tmp_path / "r.txt")
+
+
+@pytest.mark.parametrize("ending", [".nc", ".zarr"])
+def test_a_finished_result_that_cannot_be_read_says_what_to_do(tmp_path, mooring, record, ending):
+    output = tmp_path / f"r{ending}"
+    run_batch(mooring, record, output, block=8)
+    if ending == ".nc":
+        output.write_bytes(output.read_bytes()[:2000])
+    else:
+        (output / "status" / "2").write_bytes(b"\0" * 40)
+    with pytest.raises(UsageError, match=r"remove it|Remove it"):
+        run_batch(mooring, record, output, block=8)
+
+
+def test_a_damaged_identity_says_what_to_do(tmp_path, mooring, record):
+    output, stop = tmp_path / "r.nc", Event()
+    outcome = run_batch(mooring, record, output, progress=lambda _: stop.set(), stop=stop)
+    assert (outcome.done, outcome.reason) == (False, "interrupted")
+    identity = tmp_path / "r.nc.part" / ".batch" / "identity"
+    for content_of_it in (b"", b"\0\0\xff", b'{"calm":'):
+        identity.write_bytes(content_of_it)
+        with pytest.raises(UsageError, match=r"r\.nc\.part is damaged.* Remove it"):
+            run_batch(mooring, record, output)
+
+
+def test_too_little_memory_is_said_and_can_be_resumed(tmp_path, mooring, record, monkeypatch):
+    def fail(*_, **__):
+        raise MemoryError
+
+    with monkeypatch.context() as patched:
+        patched.setattr(Batch, "_solve_block", fail)
+        outcome = run_batch(mooring, record, tmp_path / "r.nc", block=8)
+    assert not outcome.done
+    assert outcome.reason.startswith("not enough memory")
+    assert run_batch(mooring, record, tmp_path / "r.nc", block=8).done
 
 
 def test_two_batches_do_not_work_on_one_result(tmp_path, mooring, record):

@@ -1,0 +1,1 @@
+"""Results as datasets by the CF conventions: their variables, and the NetCDF files they fill."""
