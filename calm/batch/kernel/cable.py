@@ -20,7 +20,7 @@ from calm.batch.kernel.lane import (
     take,
 )
 from calm.physics.cable import pass_segment, segment_area, segment_drag, segment_lift
-from calm.physics.element import axis_along, few_steps_share
+from calm.physics.element import axis_against, few_steps_share
 from calm.physics.friction import BERTEAUX
 from calm.physics.line import Floats
 from calm.physics.track import Cable, Course
@@ -95,8 +95,8 @@ def pass_packed(s: Floats, water: Tables, cable: Cable, times: int) -> None:
             u, v, w = s[lane.GX + i], s[lane.GY + i], s[lane.GZ + i]
             area, cut, each = s[lane.AREA + i], s[lane.CUT + i], s[lane.PER_METRE + i]
             fx, fy, fz = s[lane.FX + i], s[lane.FY + i], s[lane.FZ + i]
-            az = s[lane.AZ + i]
-            tx, ty, tz = axis_along(s[lane.AX + i], s[lane.AY + i], az, s[lane.C + i], u, v, w)
+            az, c = s[lane.AZ + i], s[lane.C + i]
+            tx, ty, tz = axis_against(s[lane.AX + i] + c * u, s[lane.AY + i] + c * v, az + c * w)
             kn, kt = cable.normal_drag * area, cable.tangential_drag * area
             qx, qy, qz = segment_drag(BERTEAUX, kn, kt, u, v, w, tx, ty, tz)
             qz += 2.0 * (az - fz)

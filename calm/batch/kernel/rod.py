@@ -26,7 +26,7 @@ from calm.batch.kernel.loads import (
     in_registers,
     load_in_lane,
 )
-from calm.physics.element import axis_along, few_steps_share
+from calm.physics.element import axis_against, few_steps_share
 from calm.physics.line import Floats
 from calm.physics.rod import force_at, load_force, load_lift, next_axis, speed_across
 from calm.physics.track import Load, Stage
@@ -156,10 +156,12 @@ def bring_to_waterline(s: Floats, i: int, tz: float) -> None:
 
 def axis_in_lane(s: Floats, i: int) -> tuple[float, float, float]:
     """Axis along what turns a lane's element."""
-    return axis_along(
-        s[lane.AX + i], s[lane.AY + i], s[lane.AZ + i], s[lane.C + i],
-        s[lane.GX + i], s[lane.GY + i], s[lane.GZ + i],
-    )  # fmt: skip
+    c = s[lane.C + i]
+    return axis_against(
+        s[lane.AX + i] + c * s[lane.GX + i],
+        s[lane.AY + i] + c * s[lane.GY + i],
+        s[lane.AZ + i] + c * s[lane.GZ + i],
+    )
 
 
 def all_settled(s: Floats, near: float) -> bool:
