@@ -213,4 +213,4 @@ def main(profiles: str = "8192", checked: str = "24", checkout: str = "") -> Non
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main(*(["256", "2"] if sys.argv[1:] == ["--smoke"] else sys.argv[1:]))

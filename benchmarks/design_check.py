@@ -1,9 +1,11 @@
 """How long a design check of many moorings in many environments takes, report included.
 
     python benchmarks/design_check.py [MOORINGS] [ENVIRONMENTS]
+    python benchmarks/design_check.py --smoke
 
 Copies of the shipped moorings under names of their own, in currents of growing speed that turn;
 prints the wall time of the whole process with one worker and with two, and the size of the report.
+`--smoke` checks two moorings in two environments.
 """
 
 import itertools
@@ -58,7 +60,8 @@ def write_environments(folder: Path, count: int) -> list[str]:
 
 def main() -> None:
     """Print all figures."""
-    moorings, environments = (int(word) for word in (*sys.argv[1:], 20, 10)[:2])
+    words = ["2", "2"] if sys.argv[1:] == ["--smoke"] else sys.argv[1:]
+    moorings, environments = (int(word) for word in (*words, 20, 10)[:2])
     print(describe("calm-mooring", "numpy", "matplotlib", "typst"))
     print(f"\n{moorings} moorings in {environments} environments, whole process with its report")
     with tempfile.TemporaryDirectory() as name:

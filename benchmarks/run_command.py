@@ -1,9 +1,10 @@
 """How long the commands take, from the shell's point of view.
 
-    python benchmarks/run_command.py [REPETITIONS]
+    python benchmarks/run_command.py [REPETITIONS | --smoke]
 
 Prints the median and the fastest wall time of whole processes, warm disk, the time of a bare
-`python -c pass` beside them, and the imports that cost most in `calm run`.
+`python -c pass` beside them, and the imports that cost most in `calm run`. `--smoke` starts each
+command twice only.
 """
 
 import statistics
@@ -59,7 +60,8 @@ def dearest_imports(arguments: list[str], count: int) -> list[tuple[float, str]]
 
 def main() -> None:
     """Print all figures."""
-    repetitions = int(sys.argv[1]) if len(sys.argv) > 1 else 10
+    words = sys.argv[1:]
+    repetitions = 1 if words == ["--smoke"] else int(*words or [10])
     print(describe("calm-mooring", "numpy", "pydantic", "cyclopts", "rich"))
     print(f"\n{'whole process, warm':40}{'median':>9}{'fastest':>9}")
     for name, arguments in COMMANDS.items():

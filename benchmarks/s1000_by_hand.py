@@ -1,8 +1,13 @@
 """The mooring of `lines/s1000.yaml` by scipy alone: what one writes in an hour without CALM.
 
+    python benchmarks/s1000_by_hand.py [--smoke]
+
 `solve_ivp` carries position and force from the float down the cable, `brentq` finds the depth of
-the float at which the cable's end meets the anchor.
+the float at which the cable's end meets the anchor. Prints the float and the anchor's load at
+three tolerances, with `--smoke` at the coarsest alone.
 """
+
+import sys
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -66,3 +71,15 @@ def solve(tolerance: float) -> tuple[float, float, float]:
     )
     x, _, east, up = march(depth, tolerance)
     return depth, -x, float(np.hypot(east, up))
+
+
+def main() -> None:
+    """Print a row a tolerance."""
+    print(f"{'tolerance':>10}{'depth':>12}{'offset':>12}{'tension':>12}")
+    for tolerance in (1e-4,) if sys.argv[1:] == ["--smoke"] else (1e-4, 1e-8, 1e-12):
+        depth, offset, tension = solve(tolerance)
+        print(f"{tolerance:10.0e}{depth:10.4f} m{offset:10.4f} m{tension:10.3f} N")
+
+
+if __name__ == "__main__":
+    main()

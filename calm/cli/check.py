@@ -12,12 +12,13 @@ from calm.cli.check_files import Design, read_designs
 from calm.cli.exit_codes import ExitCode, gravest
 from calm.cli.outputs import OutputPath, Outputs
 from calm.cli.streams import narrate
-from calm.cli.workers import mapped
+from calm.cli.workers import FEW, mapped
 from calm.errors import UsageError, internal_failure
 
 if TYPE_CHECKING:
     from calm.case import Mooring
     from calm.checks.assessment import Assessment, Stand
+    from calm.report.blocks import Section
 
 CHECK_EXAMPLES = """Examples:
 
@@ -74,14 +75,15 @@ def check(
     designs, tows = read_designs(files, environment, catalog or [], workers)
     if tows:
         narrate(f"not checked, since towed: {', '.join(map(str, tows))}")
-    assessments = _assessed(designs, workers)
+    judged = _judged(designs, workers, drawn=report is not None)
+    assessments = [assessment for assessment, _ in judged]
     for design, assessment in zip(designs, assessments, strict=True):
         of_files = (notice for one in design.moorings for notice in one.file.notices)
         for notice in dict.fromkeys((*of_files, *assessment.notices)):
             narrate(f"{design.path}: {notice}")
     _show(assessments, outputs)
     if report is not None:
-        _write(report, assessments, workers)
+        _write(report, assessments, [section for _, section in judged if section is not None])
     return gravest(_code(each, allow_unknown) for each in assessments)
 
 
@@ -101,18 +103,48 @@ def _check_report(folder: Path, json: Path | None, given: Sequence[Path]) -> Non
                 raise UsageError(f"{path} is read here; the report would take its place")
 
 
-def _assessed(designs: Sequence[Design], workers: int | None) -> list[Assessment]:
-    """All of them on one day: that of the report, today where it has none."""
+def _judged(
+    designs: Sequence[Design], workers: int | None, drawn: bool
+) -> list[tuple[Assessment, Section | None]]:
+    """All of them on one day: that of the report, today where it has none.
+
+    Many moorings are shared out whole, each judged and drawn where it was solved; of a few, their
+    environments are.
+    """
     from calm.checks.situations import SOLVES
     from calm.report.provenance import moment
     from calm.solve import expect_many
 
     day = (moment() or datetime.now()).date()
-    tasks = [(design.name, mooring, day) for design in designs for mooring in design.moorings]
-    expect_many(SOLVES * len(tasks))
-    stands = iter(mapped(_stand, tasks, workers, "moorings solved"))
-    together = [(each.name, tuple(next(stands) for _ in each.moorings), day) for each in designs]
-    return mapped(_assess, together, workers, "moorings judged")
+    stands = [(design.name, mooring, day) for design in designs for mooring in design.moorings]
+    expect_many(SOLVES * len(stands))
+    if len(designs) > FEW:
+        whole = [(design, day, drawn) for design in designs]
+        return mapped(_solve_and_conclude, whole, workers, "moorings judged")
+    solved = iter(mapped(_stand, stands, workers, "environments solved"))
+    return [
+        _concluded(design.name, [next(solved) for _ in design.moorings], day, drawn)
+        for design in designs
+    ]
+
+
+def _solve_and_conclude(
+    task: tuple[Design, date, bool],
+) -> tuple[Assessment, Section | None]:
+    design, day, drawn = task
+    stands = [_stand((design.name, mooring, day)) for mooring in design.moorings]
+    return _concluded(design.name, stands, day, drawn)
+
+
+def _concluded(
+    name: str, stands: Sequence[Stand], day: date, drawn: bool
+) -> tuple[Assessment, Section | None]:
+    """What is judged of a mooring as a whole, and its section of the report where that is drawn."""
+    from calm.checks.assess import assessment_of
+    from calm.report.check.section import mooring_section
+
+    assessment = assessment_of(name, stands, day)
+    return assessment, mooring_section(assessment) if drawn else None
 
 
 def _stand(task: tuple[str, Mooring, date]) -> Stand:
@@ -128,12 +160,6 @@ def _stand(task: tuple[str, Mooring, date]) -> Stand:
         return failed_stand(mooring, name, internal_failure(error))
 
 
-def _assess(task: tuple[str, tuple[Stand, ...], date]) -> Assessment:
-    from calm.checks.assess import assessment_of
-
-    return assessment_of(*task)
-
-
 def _show(assessments: Sequence[Assessment], outputs: Outputs) -> None:
     from calm.report.check.brief import check_part
     from calm.report.check.document import check_document
@@ -141,16 +167,14 @@ def _show(assessments: Sequence[Assessment], outputs: Outputs) -> None:
     outputs.write_answer(check_document(assessments), check_part(assessments))
 
 
-def _write(folder: Path, assessments: Sequence[Assessment], workers: int | None) -> None:
+def _write(folder: Path, assessments: Sequence[Assessment], sections: Sequence[Section]) -> None:
     from calm.report.check.csv import checks_csv, inventory_csv
     from calm.report.check.document import check_document
-    from calm.report.check.section import mooring_section
     from calm.report.document import to_json
     from calm.report.folder import write_report
     from calm.report.html import report_html
     from calm.report.pdf import report_pdf
 
-    sections = mapped(mooring_section, assessments, workers, "moorings drawn")
     texts = {
         "report.html": report_html(sections),
         "report.json": to_json([check_document(assessments)]),

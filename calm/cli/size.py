@@ -42,7 +42,7 @@ def size(
 
     The changed mooring is solved as calm run solves it. A change of buoyancy
     leaves size and drag as they are. The exit code is 3 when the target cannot be
-    met; why not, and how near it comes, is then told.
+    met; why not, and how near it comes, is then reported.
 
     Parameters
     ----------

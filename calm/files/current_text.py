@@ -65,10 +65,10 @@ def _is_number(cell: str) -> bool:
     return _NUMBER.fullmatch(cell) is not None
 
 
-def _alike(separator: re.Pattern[str], lines: Sequence[str]) -> tuple[int, int]:
+def _alike(separator: re.Pattern[str], lines: Sequence[str]) -> int:
     """How many lines a separator takes into as many cells as the last line, if into several."""
     counts = [len(_split(separator, line)) for line in lines]
-    return (counts.count(counts[-1]), counts[-1]) if counts[-1] > 1 else (0, 0)
+    return counts.count(counts[-1]) if counts[-1] > 1 else 0
 
 
 def _split(separator: re.Pattern[str], line: str) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ from pydantic.json_schema import models_json_schema
 
 from calm.files.catalogue import Assembly
 from calm.files.components import KINDS
-from calm.files.environment import EnvironmentKeys, TowEnvironmentKeys
+from calm.files.environment import EnvironmentKeys, TowEnvironmentKeys, UniformCurrent
 from calm.files.fields import LENGTH
 from calm.files.line import MOST_PIECES
 from calm.files.reader import MooringKeys
@@ -92,6 +92,7 @@ def mooring_schema() -> Schema:
     """The JSON Schema (draft 2020-12) of a mooring file."""
     models: list[type[BaseModel]] = [MooringKeys, EnvironmentKeys, TowEnvironmentKeys, Assembly]
     models += KINDS.values()
+    UniformCurrent.model_rebuild()  # a default is written by its model, which pydantic builds late
     names, definitions = models_json_schema(
         [(model, "validation") for model in models], ref_template="#/$defs/{model}"
     )

@@ -206,10 +206,7 @@ def bracketed_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) ->
             east, north = tx / across, ty / across
         if abs(tz - rise) < 1e-14:
             return tx, ty, tz
-        if tz > rise:
-            low = rise
-        else:
-            high = rise
+        low, high = (rise, high) if tz > rise else (low, rise)
     across = sqrt(max(1.0 - low * low, 0.0))
     tx, ty, tz = across * east, across * north, low
     if _turning(rod, loads, sea, state, tx, ty, tz) > _NOTHING:
@@ -248,10 +245,7 @@ def _axis_in_water_at(
 def _turning(
     rod: Stage, loads: Sequence[Load], sea: Sea, state: State, tx: float, ty: float, tz: float
 ) -> float:
-    """The force that turns a rod of axis t about its middle, as a share of its weights and lifts.
-
-    A float that lends nothing of its buoyancy in water at rest is turned by nothing.
-    """
+    """The force that turns a rod of axis t about its middle, as a share of its lifts and drags."""
     _, _, z, fx, fy, fz, _, level = state
     own = 0.0
     for i in range(rod.first, rod.first + rod.size):

@@ -7,7 +7,10 @@ from typing import TYPE_CHECKING
 
 from calm.case import TowResult
 from calm.checks.finding import State
+from calm.checks.limits import limits_used
+from calm.checks.posture import reaches_the_surface
 from calm.report.blocks import Figure, Part, Prose, Report, Section
+from calm.report.check.verdict import limits_table
 from calm.report.inputs import (
     UNSEEN,
     current_listing,
@@ -37,6 +40,7 @@ def result_report(result: Result | TowResult) -> Report:
         Part("The line", (Figure("Schematic", schematic_svg(file, result), tall=True),
                           replace(said.table, title="Table of the line"))),
         Part("Shape", (Figure("Elevation, current and plan", figure_svg(draw(result))),)),
+        *_limits(result),
         Part("What is not judged", (Prose(UNSEEN, State.UNKNOWN),)),
         Part(
             "Inputs",
@@ -50,3 +54,11 @@ def result_report(result: Result | TowResult) -> Report:
     )  # fmt: skip
     subtitle = said.title.removeprefix(f"{result.name}: ")
     return Report(result.name, subtitle, (), (Section(result.name, parts),), date())
+
+
+def _limits(result: Result | TowResult) -> tuple[Part, ...]:
+    """By what the margins of a mooring's table are judged; a tow has no such limits."""
+    if isinstance(result, TowResult):
+        return ()
+    keys = limits_used(result.file, reaches_the_surface(result.mooring))
+    return (Part("Limits", (limits_table([(result.name, keys)]),)),)

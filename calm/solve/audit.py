@@ -8,14 +8,18 @@ positions.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from math import asin
+from typing import Any
 
 import numpy as np
 
-from calm.physics.friction import Friction
-from calm.physics.line import REFERENCE_DENSITY, Floats, Integers, Water
+from calm.physics.compiled import packed
+from calm.physics.line import Floats, Integers, Line
+from calm.physics.pace import is_fast, paced
+from calm.physics.referee import Body, Moored, Shape, element_loads, strumming, worst_moment
+from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.reynolds import DragCurve
+from calm.physics.stretch import Knot
+from calm.physics.strumming import AT_REST
 from calm.physics.track import head_count
 from calm.solve.solution import Solution, sizes
 
@@ -25,134 +29,111 @@ LARGEST_MOMENT = 1e-8
 
 def loads(solution: Solution) -> Floats:
     """(k, 3) buoyancy and drag of every element [N]; a rigid piece's at its own middle."""
-    line, water = solution.carried, solution.water
-    piece, clamp = solution.element_piece, solution.element_clamp
-    top, bottom = solution.position[:-1].copy(), solution.position[1:].copy()
-    rigid = ~line.flexible[piece] & (clamp < 0)
-    ends = solution.piece_nodes[piece[rigid]]
-    top[rigid], bottom[rigid] = (
-        solution.position[ends[:, 0]],
-        solution.position[ends[:, 1]],
+    written = _taken(np.zeros((3, len(solution.cut))))
+    paced(element_loads)(_moored(solution, solution.carried), _shape(solution), written)
+    return np.array(written).T
+
+
+def _taken(columns: Floats | Integers) -> Any:
+    """Columns of numbers as laws take them: compiled an array, else lists."""
+    return columns if is_fast() else columns.tolist()
+
+
+def _moored(solution: Solution, line: Line) -> Moored:
+    water = solution.water
+    bodies, knots = bodies_of(line)
+    law = line.strumming
+    moored = Moored(
+        bodies,
+        knots,
+        len(line.length),
+        head_count(line),
+        line.friction.law,
+        AT_REST if law is None else law.vibration(0.0),
+        0.0 if law is None else solution.frequency,
+        water.level.tolist(),
+        water.u.tolist(),
+        water.v.tolist(),
+        water.w.tolist(),
+        water.density.tolist(),
+        water.gravity,
+        water.viscosity_level.tolist(),
+        water.viscosity.tolist(),
     )
-
-    depth = -0.5 * (top + bottom)[:, 2]
-    current, density = water.at(depth)
-    chord = bottom - top
-    size = sizes(chord)[:, None]
-    axis = np.divide(chord, size, out=np.zeros_like(chord), where=size > 0)
-    axis[rigid] = _rigid_axes(solution)[piece[rigid]]
-    along = np.sum(current * axis, axis=1, keepdims=True) * axis
-    normal = current - along
-
-    def squared(v: Floats) -> Floats:
-        result: Floats = sizes(v)[:, None] * v
-        return result
-
-    # a rigid piece's load is spread over its elements by length; without length the last has it
-    last = solution.piece_nodes[piece, 1] - 1 == np.arange(len(piece))
-    whole = np.where(last, 1.0, 0.0)
-    np.divide(solution.cut, line.length[piece], out=whole, where=line.length[piece] > 0)
-    amount = np.where(line.flexible[piece], solution.cut, whole)
-    grown = amount * _stretched(solution, size[:, 0]) ** line.thinning[piece]
-    directional = line.directional[piece][:, None]
-    opposed = np.where(directional, normal, current)
-    varied = _on_curves(line.drag_curve, piece, opposed, depth, water)
-    normal_drag = line.normal_drag[piece] * amplification(solution) * varied
-    tangential_drag = np.where(directional, line.tangential_drag[piece][:, None], 0.0)
-    drag = normal_drag[:, None] * squared(opposed) + tangential_drag * squared(along)
-    cables = line.flexible[piece] & (clamp < 0)
-    if line.friction is not Friction.BERTEAUX:
-        otherwise = squared(current)
-        if line.friction is Friction.CONSTANT:
-            way = np.sign(np.sum(current * axis, axis=1, keepdims=True))
-            otherwise = np.sum(current**2, axis=1, keepdims=True) * way * axis
-        change = line.tangential_drag[piece][:, None] * (otherwise - squared(along))
-        drag[cables] += change[cables]
-    drag *= (grown * density / REFERENCE_DENSITY)[:, None]
-    excess = (density - REFERENCE_DENSITY) * water.gravity
-    lift = amount * (line.buoyancy[piece] + excess * line.volume[piece])
-    raised = np.sum(current**2, axis=1) * density / REFERENCE_DENSITY
-    lift += np.where(line.flexible[piece], 0.0, amount * line.lift[piece] * raised)
-
-    here = clamp >= 0
-    which = clamp[here]
-    flow = current[here]
-    varied = _on_curves(line.clamp_drag_curve, which, flow, depth[here], water)
-    resistance = line.clamp_drag[which] * varied
-    drag[here] = squared(flow) * (resistance * density[here] / REFERENCE_DENSITY)[:, None]
-    lift[here] = line.clamp_buoyancy[which] + excess[here] * line.clamp_volume[which]
-    lift[here] += line.clamp_lift[which] * raised[here]
-    drag[:, 2] += lift
-    rigid_own = np.where(line.flexible[piece] | (clamp >= 0), 0.0, amount)
-    drag[:, 0] += rigid_own * line.push_east[piece]
-    drag[:, 1] += rigid_own * line.push_north[piece]
-    return drag
+    return packed(moored) if is_fast() else moored
 
 
-def _rigid_axes(solution: Solution) -> Floats:
-    """(n, 3) axes of the rigid pieces; one without length lies along the mean force at its ends."""
-    nodes = solution.piece_nodes.copy()
-    head = head_count(solution.line)
-    if head:
-        nodes[:head] = nodes[0, 0], nodes[head - 1, 1]
-    first, last = nodes.T
-    axis = solution.position[last] - solution.position[first]
-    plumb = sizes(axis) == 0.0
-    axis[plumb] = -(solution.force[first] + solution.force[last])[plumb]
-    size = sizes(axis)[:, None]
-    unit: Floats = np.divide(axis, size, out=np.zeros_like(axis), where=size > 0)
-    return unit
+def bodies_of(line: Line) -> tuple[list[Body], list[Knot]]:
+    """The pieces of a line and its clamps, and the knots of its elongation curves."""
+    rows: Any = zip(*(getattr(line, name).tolist() for name in _COLUMNS), strict=True)
+    knots: list[Knot] = []
+    bodies = []
+    for piece, row in enumerate(rows):
+        smooth = line.drag_curve[piece] if line.drag_curve else None
+        stretch = line.elongation[piece] if line.elongation else None
+        first = len(knots)
+        knots += () if stretch is None else stretch.knots
+        diameter, lengthening = _followed(smooth)
+        bodies.append(Body._make((*row, diameter, lengthening, first, len(knots))))
+    for clamp in range(len(line.clamp_at)):
+        smooth = line.clamp_drag_curve[clamp] if line.clamp_drag_curve else None
+        diameter, lengthening = _followed(smooth)
+        bodies.append(
+            _RIGID._replace(
+                buoyancy=float(line.clamp_buoyancy[clamp]),
+                volume=float(line.clamp_volume[clamp]),
+                normal_drag=float(line.clamp_drag[clamp]),
+                lift=float(line.clamp_lift[clamp]),
+                smooth=diameter,
+                lengthening=lengthening,
+            )
+        )
+    return bodies, knots
 
 
-def _on_curves(
-    curves: Sequence[DragCurve | None], which: Integers, flow: Floats, depth: Floats, water: Water
-) -> Floats:
-    """How many times its constant drag each element has, by `which` of the curves it follows.
-
-    In a flow across it (k, 3) [m/s], at a depth (k,) [m].
-    """
-    varied = np.ones(len(which))
-    for index, curve in enumerate(curves):
-        if curve is not None:
-            for element in np.flatnonzero(which == index):
-                viscosity = float(water.viscosity_at(depth[element]))
-                speed = float(np.linalg.norm(flow[element]))
-                varied[element] = curve.factor(speed * curve.diameter / viscosity)
-    return varied
+def _followed(curve: DragCurve | None) -> tuple[float, float]:
+    """Diameter [m] and lengthening of a drag curve; 0 without."""
+    return (0.0, 0.0) if curve is None else (curve.diameter, curve.lengthening)
 
 
-def _stretched(solution: Solution, length: Floats) -> Floats:
-    """(k,) length of every element [m] over its cut length; 1 of what is rigid or has no length."""
-    cut = solution.cut
-    cable = solution.line.flexible[solution.element_piece] & (cut > 0.0)
-    return np.divide(length, cut, out=np.ones(len(cut)), where=cable)
+_COLUMNS = (
+    "flexible", "length", "buoyancy", "volume", "normal_drag", "tangential_drag", "directional",
+    "compliance", "thinning", "lift", "push_east", "push_north", "diameter",
+)  # fmt: skip
+_RIGID = Body(0, 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0)
 
 
-def _expected_stretch(solution: Solution, above: Floats) -> Floats:
-    """(k,) strain that the forces at the ends of every element (k+1, 3) ask for."""
-    line, piece = solution.line, solution.element_piece
-    middle = sizes(0.5 * (above[:-1] + above[1:]))
-    half = 0.5 * np.diff(sizes(above))
-    expected: Floats = line.compliance[piece] * middle
-    for index, curve in enumerate(line.elongation):
-        if curve is not None:
-            for element in np.flatnonzero(piece == index):
-                expected[element] = curve.mean_strain(middle[element], half[element])
-    return expected
+def _shape(solution: Solution) -> Shape:
+    columns = (
+        *np.ascontiguousarray(solution.position.T),
+        *np.ascontiguousarray(solution.force.T),
+        solution.element_piece,
+        solution.element_clamp,
+        solution.cut,
+        *np.ascontiguousarray(solution.piece_nodes.T),
+    )
+    return Shape(*map(_taken, columns))
 
 
 def amplification(solution: Solution) -> Floats:
     """(k,) how much strumming raises the normal drag of every element above that at rest."""
     line, factor = solution.line, np.ones(len(solution.cut))
-    law, diameter = line.strumming, line.diameter[solution.element_piece]
-    if law is None or solution.frequency == 0.0:
+    diameter = line.diameter[solution.element_piece]
+    if line.strumming is None or solution.frequency == 0.0:
         return factor
-    current, _ = _flow(solution)
-    speed, across = sizes(current), flow_across(solution)
-    for element in np.flatnonzero((diameter > 0.0) & (across > 0.0)):
-        angle = asin(min(across[element] / speed[element], 1.0))
-        beat = solution.frequency * diameter[element] / speed[element]
-        factor[element] = law.factor(angle, beat)
+    vibration, flow = line.strumming.vibration(0.0), _flow(solution)
+    across = flow_across(solution)
+    for element in np.flatnonzero(diameter > 0.0):
+        u, v, w = flow[element].tolist()
+        factor[element] = strumming(
+            vibration,
+            solution.frequency,
+            float(diameter[element]),
+            u,
+            v,
+            w,
+            float(across[element]),
+        )
     return factor
 
 
@@ -160,14 +141,15 @@ def flow_across(solution: Solution) -> Floats:
     """(k,) speed of the current across the axis of every element [m/s]; 0 without length."""
     chord = np.diff(solution.position, axis=0)
     size = sizes(chord)
-    across = np.linalg.norm(np.cross(_flow(solution)[0], chord), axis=1)
+    across = np.linalg.norm(np.cross(_flow(solution), chord), axis=1)
     speed: Floats = np.divide(across, size, out=np.zeros(len(size)), where=size > 0)
     return speed
 
 
-def _flow(solution: Solution) -> tuple[Floats, Floats]:
-    """Current (k, 3) [m/s] and density (k,) [kg/m³] at the middle of every element."""
-    return solution.water.at(-0.5 * (solution.position[:-1] + solution.position[1:])[:, 2])
+def _flow(solution: Solution) -> Floats:
+    """Current (k, 3) at the middle of every element [m/s]."""
+    current, _ = solution.water.at(-0.5 * (solution.position[:-1] + solution.position[1:])[:, 2])
+    return current
 
 
 def closure(solution: Solution, load: Floats) -> float:
@@ -224,58 +206,7 @@ def moment_residual(solution: Solution, load: Floats) -> float:
     The forces follow from the recomputed `loads`. Or, where that is larger, departure of a cable's
     strain from what these forces ask for. Both beyond the rounding of the coordinates.
     """
-    above = np.vstack([np.zeros(3), np.cumsum(load, axis=0)])
-    chord = np.diff(solution.position, axis=0)
-    worst = 0.0
-    cable = solution.line.flexible[solution.element_piece] & (solution.element_clamp < 0)
-    single = cable.copy()  # elements that balance by themselves
-    head = head_count(solution.line)
-    rods = [
-        list(range(head)),
-        *([p] for p in range(head, len(solution.line.length)) if not solution.line.flexible[p]),
-    ]
-    for rod in rods:
-        if not rod or not solution.line.length[rod].sum() > 0.0:
-            continue
-        first, last = solution.piece_nodes[rod[0], 0], solution.piece_nodes[rod[-1], 1]
-        if last - first == 1:
-            single[first] = True
-        elif last <= solution.hanging:
-            worst = max(worst, _rod_residual(solution, load, above, rod))
-    hanging = (solution.cut > 0) & (np.arange(len(cable)) < solution.hanging)
-    cable, single = cable & hanging, single & hanging
-    mean = above[:-1] + 0.5 * load
-    angles = _angles(chord[single], mean[single])
-    # the ends of a very short segment are rounded by more than the limit
-    rounding = 32.0 * np.finfo(float).eps * np.abs(solution.position).max()
-    length = sizes(chord)
-    angles = np.maximum(angles - rounding / np.maximum(length[single], rounding), 0.0)
-    expected = _expected_stretch(solution, above)
-    strained = np.abs(_stretched(solution, length) - 1.0 - expected)[cable]
-    strained = np.maximum(strained - rounding / solution.cut[cable], 0.0)
-    return max(worst, float(np.max(angles, initial=0.0)), float(np.max(strained, initial=0.0)))
-
-
-def _rod_residual(solution: Solution, load: Floats, above: Floats, rod: list[int]) -> float:
-    first, last = solution.piece_nodes[rod[0], 0], solution.piece_nodes[rod[-1], 1]
-    origin = solution.position[first]
-    chord = solution.position[last] - origin
-    length = float(np.linalg.norm(chord))
-    mean = above[first].copy()
-    for element in range(first, last):
-        piece = solution.element_piece[element]
-        place = solution.position[element]
-        if solution.element_clamp[element] < 0:
-            ends = solution.piece_nodes[piece]
-            place = 0.5 * (solution.position[ends[0]] + solution.position[ends[1]])
-        at = float(np.linalg.norm(place - origin))
-        mean += (1.0 - at / length) * load[element]
-    return float(_angles(chord[None, :], mean[None, :])[0])
-
-
-def _angles(axes: Floats, forces: Floats) -> Floats:
-    """Angles between the axes and the reversed forces; 0 where either vanishes."""
-    (x, y, z), (u, v, w) = axes.T, forces.T
-    cross = np.sqrt((y * w - z * v) ** 2 + (z * u - x * w) ** 2 + (x * v - y * u) ** 2)
-    along = -(x * u + y * v + z * w)
-    return np.where(sizes(axes) * sizes(forces) > 0.0, np.arctan2(cross, along), 0.0)
+    rounding = 32.0 * float(np.finfo(float).eps * np.abs(solution.position).max())
+    forces = _taken(np.ascontiguousarray(load.T))
+    moored, shape = _moored(solution, solution.line), _shape(solution)
+    return float(paced(worst_moment)(moored, shape, forces, solution.hanging, rounding))

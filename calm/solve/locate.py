@@ -25,6 +25,8 @@ weak current may fall short there, and reach the anchor again where more current
 DIP = 8
 """Depths tried to see whether the miss changes sign between three of those."""
 GOLDEN = 0.381966
+ROUNDING = 1e-12
+"""Share of a current that is no growth of it: what a weaker one of the same direction leaves."""
 SHARES = (0.0, 0.4, 0.7, 0.85, 0.94, 1.0 - AWASH, 0.995)
 """Shares of its buoyancy in use at which a float that would be under water is tried afloat."""
 
@@ -150,6 +152,7 @@ def _growth(closing: Closing, depth: float) -> float:
     square = np.maximum(np.sum(upper**2, axis=1), 1e-300)
     left = np.clip(np.sum(upper * lower, axis=1) / square, 0.0, 1.0)
     new = np.linalg.norm(lower - left[:, None] * upper, axis=1)
+    new[new <= ROUNDING * np.linalg.norm(lower, axis=1)] = 0.0
     rise = (new / np.diff(levels))[levels[1:] > depth]
     speed = float(np.linalg.norm(current, axis=1).max())
     return float(rise.max(initial=0.0)) / max(speed, 1e-300)

@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from calm.physics import pace
-from calm.physics.line import REFERENCE_DENSITY, Water
-from calm.physics.march import march
-from calm.physics.profile import Profile
-from calm.physics.track import Load, Track
+from calm.physics.line import Line, Water
+from calm.physics.reference import REFERENCE_DENSITY
+from calm.solve.mooring import solve_mooring
 
 
 def expect_many(solves: float) -> None:
     """Let so many solves be fast, if that pays: see `calm.physics.pace`.
 
-    The march is then compiled here, or fetched, before other processes begin.
+    What a solve takes is then compiled here, or fetched, before other processes begin.
     """
     pace.expect(solves)
     if pace.is_fast():
-        still, top = np.zeros(1), np.zeros(1)
-        water = Water(1.0, top, still, still, still, np.array([REFERENCE_DENSITY]))
-        nothing = Load(*[0] * len(Load._fields))
-        march(Track((nothing,)), Profile(water), 0.5, angle_step=1.0, reach=1.0)
+        none: Any = np.zeros(1)
+        one: Any = np.ones(1)
+        clamps: Any = (np.zeros(0),) * 5
+        float_alone = Line(one, none, one, none, none, none, none, none, none, *clamps)
+        solve_mooring(float_alone, Water(2.0, none, none, none, none, REFERENCE_DENSITY * one))

@@ -16,7 +16,7 @@ from textual.reactive import reactive
 from textual.scroll_view import ScrollView
 
 
-class Listing(ScrollView):
+class Listing(ScrollView, inherit_bindings=False):
     """Rows, drawn by `render_line` of the one that is made of it."""
 
     HEADING: ClassVar[int] = 0

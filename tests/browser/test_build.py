@@ -22,7 +22,7 @@ pytest.importorskip("textual_serve")
 CHROMIUM = next(
     filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
 )
-PATIENCE = 60.0  # seconds
+PATIENCE = 600.0  # seconds
 
 
 @pytest.fixture

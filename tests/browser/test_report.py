@@ -15,7 +15,17 @@ import pytest
 import calm
 from calm.report.check.section import mooring_section
 from calm.report.html import report_html, result_html
-from tests.judged import FORMULA, LINES, LONG, QUOTES, RIGHT_TO_LEFT, SCRIPT, judged, judged_hostile
+from tests.judged import (
+    FORMULA,
+    LINES,
+    LONG,
+    QUOTES,
+    RIGHT_TO_LEFT,
+    SCRIPT,
+    judged,
+    judged_hostile,
+    unaccepting,
+)
 
 CHROMIUM = next(
     filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
@@ -92,8 +102,9 @@ def opened(browser, tmp_path):
 
 
 @pytest.fixture(scope="module")
-def section():
-    return mooring_section(judged(LINES / "tidal-adcp.yaml", "ebb", "neaps"))
+def section(tmp_path_factory):
+    path = unaccepting("tidal-adcp.yaml", tmp_path_factory.mktemp("unaccepting"))
+    return mooring_section(judged(path, "ebb", "neaps"))
 
 
 def test_the_page_is_silent_and_alone(opened, section):
@@ -150,7 +161,7 @@ def test_everything_is_read_without_script(opened, section):
     html = report_html([section])
     with opened(html) as page:
         rows = page.locator("td:visible").count()
-        assert page.locator(".controls").count() == 2
+        assert page.locator(".controls").count() == 3
     with opened(html, java_script_enabled=False) as page:
         assert page.locator("td:visible").count() == rows
         assert page.locator(".controls").count() == 0
@@ -158,8 +169,9 @@ def test_everything_is_read_without_script(opened, section):
 
 def test_the_checks_are_chosen_and_sorted(opened, section):
     with opened(report_html([section])) as page:
-        table = page.locator("table.sortable").last
-        controls = page.locator(".controls").last
+        judged = page.locator("td .state")
+        table = page.locator("table.sortable", has=judged).last
+        controls = page.locator(".controls", has=page.locator("select")).last
         rows = table.locator("tbody tr")
         controls.locator("select").select_option("fail")
         shown = rows.locator("visible=true")
@@ -177,7 +189,7 @@ def test_the_checks_are_chosen_and_sorted(opened, section):
         assert names[0] <= names[-1]
         heads.nth(0).click()
         states = rows.locator(".state").all_inner_texts()
-        order = ["unknown", "pass", "warn", "fail"]
+        order = ["pass", "accepted", "warn", "unknown", "fail"]
         ranks = [order.index(state) for state in states]
         assert all(one <= other for one, other in pairwise(ranks))
 

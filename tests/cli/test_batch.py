@@ -185,6 +185,20 @@ def test_a_tow_and_an_input_as_output_are_refused(calm, write_mooring, record, f
     assert "it is kept" in done.err
 
 
+def test_links_that_lead_nowhere_are_refused(calm, write_mooring, record, folder):
+    for link, target in (("a.nc", "b.nc"), ("b.nc", "a.nc"), ("d.nc", "absent"), ("f", "f")):
+        (folder / link).symlink_to(target)
+    for words, name in (
+        ("leads nowhere", "a.nc"),
+        ("leads nowhere", "d.nc"),
+        ("no folder", "f/r.nc"),
+    ):
+        done = calm("batch", write_mooring(), "--currents", record, "-o", name)
+        assert (done.code, words in done.err) == (2, True)
+    done = calm("batch", write_mooring(), "--currents", "a.nc", "-o", "r.nc")
+    assert (done.code, "no such file" in done.err) == (2, True)
+
+
 def test_stopped_and_taken_up_again(calm, write_mooring, record, folder, monkeypatch):
     monkeypatch.setitem(batch_run.run_batch.__kwdefaults__, "block", 8)
 
@@ -235,7 +249,7 @@ def test_signals_leave_what_can_be_resumed(write_mooring, folder, number):
         time.sleep(0.05)
     time.sleep(2.0)
     os.kill(process.pid, number)
-    told = process.communicate(timeout=60)[1]
+    told = process.communicate(timeout=600)[1]
     assert process.returncode == 75, told
     # a block of these takes a while; how far it comes is for the machine to say
     assert re.search(r"interrupted; \d[\d ]* of 6 000 profiles are done", told)

@@ -107,7 +107,7 @@ def test_reader_that_stops_early_is_no_error(write_mooring):
         executable="/bin/bash",
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=600,
         check=False,
     )
     assert (done.returncode, done.stderr) == (0, "")

@@ -47,6 +47,25 @@ def test_add_a_cable_below_with_its_length_and_label(drive, small):
     drive(story, small)
 
 
+def test_the_cursor_goes_on_where_the_line_is_longer_than_the_screen(drive, small):
+    """What a table scrolls by where it overflows would take these keys."""
+
+    async def story(driver):
+        await driver.press(*["d"] * 40)
+        rows = len(driver.table.rows)
+        assert rows > driver.table.size.height
+        await driver.press("home")
+        assert driver.table.cursor == 0
+        await driver.press("down", "down", "up")
+        assert driver.table.cursor == 1
+        await driver.press("end")
+        assert driver.table.cursor == rows - 1
+        await driver.press("pageup")
+        assert driver.table.cursor == rows - 1 - (driver.table.size.height - 2)
+
+    drive(story, small)
+
+
 def test_add_above_and_go_on_below(drive, small):
     async def story(driver):
         await driver.press("A")

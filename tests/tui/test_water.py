@@ -141,9 +141,12 @@ def test_what_is_no_number_is_not_taken_in_a_table(drive, small):
     drive(story, small)
 
 
-async def paste(driver, text):
+async def paste(driver, text, *keys):
     cells(driver).post_message(Paste(text))
     await driver.settle()
+    if keys:
+        await driver.press(*keys)
+        await driver.settle()
     return value(driver, "current", "rows")
 
 
@@ -153,15 +156,34 @@ def test_rows_of_a_spreadsheet_are_pasted(drive, small):
         await turn(driver, "current-form")
         cells(driver).focus()
         await driver.pilot.pause()
-        rows = await paste(driver, "depth\tspeed\ttoward\n0\t0.9\t70\n100\t0.1\t60\n")
+        rows = await paste(driver, "depth m\tspeed m/s\ttoward deg\n0\t0.9\t70\n100\t0.1\t60\n")
         assert rows == [["0", "0.9", "70"], ["100", "0.1", "60"]]
-        assert await paste(driver, "0,0.8,70\n\n90,0.1,60") == [
-            ["0", "0.8", "70"], ["90", "0.1", "60"],
-        ]  # fmt: skip
+        rows = await paste(driver, "Depth (m);Speed (knot);From (deg)\n0;1;250\n100;0.5;240\n")
+        assert rows == [["0", "0.514444444", "70"], ["100", "0.257222222", "60"]]
+        cells(driver).focus()
         before = driver.text
         await paste(driver, "0\t0.9\t70\n50\tn/a\t70\n100\t0.1\t60")
         assert "Nothing is pasted: row 2: `n/a` is not a plain number" in driver.screen
         assert driver.text == before
+
+    drive(story, small)
+
+
+def test_columns_without_headings_are_asked_for(drive, small):
+    async def story(driver):
+        await driver.press("w")
+        await turn(driver, "current-form")
+        cells(driver).focus()
+        await driver.pilot.pause()
+        before = value(driver, "current", "rows")
+        assert await paste(driver, "0,0.8,70\n\n90,0.1,60") == before
+        assert "It has no headings" in driver.screen
+        await driver.press("enter")
+        await driver.settle()
+        rows = [["0", "0.8", "70"], ["90", "0.1", "60"]]
+        assert value(driver, "current", "rows") == rows
+        cells(driver).focus()
+        assert await paste(driver, "depth,u,v\n0,0.5,0\n90,0,0.1", "escape") == rows
 
     drive(story, small)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import ceil
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,13 +10,14 @@ import numpy as np
 from calm.checks.posture import meant_for_the_surface
 from calm.checks.strength import allowable_load
 from calm.quantities import QUANTITIES
+from calm.report.check.panels import panels
 from calm.report.drawing import SEABED_COLOUR, WATER_COLOUR, along, mark_parts
 from calm.report.plot_mooring import plane_of
 from calm.report.vector import figure_svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
     from calm.case import Result
     from calm.checks.assessment import Assessment
@@ -25,12 +25,6 @@ if TYPE_CHECKING:
 
     Solved = Sequence[tuple[str, Result]]
 
-_WIDTH, _HEIGHT = 7.4, 8.0  # inches: an A4 page between its margins
-_LEGEND_ROW = 0.19  # inches
-_LEGEND_COLUMNS = 4
-_OTHER_ENTRIES = 6  # still water, limit, and the roles that are marked
-_LONGEST_NAME = 22  # signs in the legend
-_FONT_SIZE = 7.0  # points
 _LEAST_SPAN = 0.1  # of the depth: a line that hardly leans is not drawn as if it did
 _FURTHEST_LIMIT = 4.0  # times the greatest tension; what is beyond is drawn at the edge
 _COLOURS = ("#0b3c5d", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#a6761d", "#332288")
@@ -46,36 +40,30 @@ def check_figure(assessment: Assessment) -> str:
     excursion. Tension is drawn over the distance along the line, with the load that each piece may
     bear. The breaks are drawn where the mooring has a release.
     """
-    from matplotlib.figure import Figure
-
     solved = [(stand.environment, stand.result) for stand in assessment.stands if stand.result]
-    rows = ceil((len(solved) + _OTHER_ENTRIES) / _LEGEND_COLUMNS)
-    height = _HEIGHT + rows * _LEGEND_ROW
-    figure = Figure(figsize=(_WIDTH, height))
+    with panels() as sheet:
+        _draw_elevation(sheet.elevation, solved)
+        _draw_current(sheet.current, solved)
+        _draw_tension(sheet.tension, solved)
+        _draw_plan(sheet.plan, solved)
+        sheet.breaks.set_visible(bool(assessment.backup))
+        if assessment.backup:
+            _draw_breaks(sheet.breaks, assessment.backup)
+        sheet.write_legend(_legend(sheet.elevation, [name for name, _ in solved]))
+        return figure_svg(sheet.figure)
 
-    def panel(left: float, bottom: float, width: float, tall: float, **shared: Any) -> Axes:
-        """Axes placed in inches."""
-        place = (left / _WIDTH, bottom / height, width / _WIDTH, tall / height)
-        axes = figure.add_axes(place, **shared)
-        axes.tick_params(labelsize=_FONT_SIZE)
-        axes.locator_params(axis="x", nbins=5)
-        return axes
 
-    elevation = panel(0.55, 3.55, 2.6, 4.3)
-    current = panel(3.3, 3.55, 1.0, 4.3, sharey=elevation)
-    tension = panel(5.0, 3.55, 2.3, 4.3)
-    plan = panel(0.55, 0.45, 2.6, 2.4)
-    _draw_elevation(elevation, solved)
-    _draw_current(current, solved)
-    _draw_tension(tension, solved)
-    _draw_plan(plan, solved)
-    if assessment.backup:
-        _draw_breaks(panel(4.0, 0.45, 3.3, 2.4), assessment.backup)
-    for axes in figure.axes:
-        axes.xaxis.label.set_fontsize(_FONT_SIZE)
-        axes.yaxis.label.set_fontsize(_FONT_SIZE)
-    _write_legend(figure, elevation, [name for name, _ in solved])
-    return figure_svg(figure)
+def _legend(elevation: Axes, names: Sequence[str]) -> list[tuple[Line2D, str]]:
+    """A line and a name for each environment, and for what else the panels show."""
+    from matplotlib.lines import Line2D
+
+    environments = [(Line2D([], [], **_style(number)), name) for number, name in enumerate(names)]
+    limit = Line2D([], [], color=_LIMIT["colors"], linewidth=_LIMIT["linewidth"])
+    lines, labels = elevation.get_legend_handles_labels()
+    others = [
+        (line, label) for line, label in zip(lines, labels, strict=True) if isinstance(line, Line2D)
+    ]
+    return [*environments, *others, (limit, "limit")]
 
 
 def _style(number: int) -> dict[str, Any]:
@@ -115,7 +103,6 @@ def _draw_current(axes: Axes, solved: Solved) -> None:
         u, v = (np.interp(depth, water.level, speed) for speed in (water.u, water.v))
         axes.plot(np.hypot(u, v), depth, **_style(number))
     axes.tick_params(labelleft=False)
-    axes.locator_params(axis="x", nbins=3)
     axes.set_xlim(left=0.0)
     axes.set_xlabel(f"current [{QUANTITIES['speed'].display_unit}]")
 
@@ -136,7 +123,6 @@ def _draw_tension(axes: Axes, solved: Solved) -> None:
     axes.vlines(np.minimum(loads, edge), ends[:-1], ends[1:], **_LIMIT)
     axes.set_xlim(0.0, 1.04 * edge)
     axes.set_ylim(1.02 * float(ends[-1]), -0.02 * float(ends[-1]))
-    axes.locator_params(axis="x", nbins=4)
     axes.set_xlabel(QUANTITIES["tension"].label)
     axes.set_ylabel("distance along the line [m]")
 
@@ -176,30 +162,3 @@ def _colour(one: Break) -> str:
     if not one.judged:
         return "#b8bec4"
     return "#8fb3cf" if one.margin >= one.required else "#d98880"
-
-
-def _write_legend(figure: Figure, elevation: Axes, names: Sequence[str]) -> None:
-    """One legend above all panels; the texts are set when it stands, since they may be anything."""
-    from matplotlib.lines import Line2D
-
-    handles = [Line2D([], [], **_style(number)) for number in range(len(names))]
-    texts = [_short(name) for name in names]
-    others, labels = elevation.get_legend_handles_labels()
-    limit = Line2D([], [], color=_LIMIT["colors"], linewidth=_LIMIT["linewidth"])
-    legend = figure.legend(
-        [*handles, *others, limit],
-        ["·"] * (len(names) + len(others) + 1),
-        loc="upper left",
-        ncols=_LEGEND_COLUMNS,
-        fontsize=_FONT_SIZE,
-        frameon=False,
-    )
-    for entry, text in zip(legend.get_texts(), [*texts, *labels, "limit"], strict=True):
-        entry.set_text(text)
-        entry.set_parse_math(False)
-
-
-def _short(name: str) -> str:
-    """A name on one line that fits its column of the legend."""
-    line = " ".join(name.split())
-    return line if len(line) <= _LONGEST_NAME else f"{line[: _LONGEST_NAME - 1]}…"

@@ -158,8 +158,11 @@ class Cells(Listing, can_focus=True):
             event.stop()
             self.post_message(self.Wanted(event.character))
 
-    def on_click(self, event: events.Click) -> None:
-        """Go where the mouse is; edit where it was already."""
+    def on_mouse_down(self, event: events.MouseDown) -> None:
+        """Go where the mouse is; edit where the cursor was already.
+
+        At once, as what is typed elsewhere is taken now, and the table is laid out anew.
+        """
         place = event.get_content_offset(self)
         row = None if place is None else self.row_at(place.y)
         if place is None or row is None:

@@ -29,6 +29,11 @@ def named(column: str) -> tuple[str, str]:
     return name, unit.strip()
 
 
+def dimension_of(name: str) -> str:
+    """The dimension of the quantity that a column holds."""
+    return _KINDS[name].dimension
+
+
 def check_of(column: str) -> Check:
     """What judges the values of a column: numbers where it gives its unit, else quantities."""
     name, unit = named(column)

@@ -10,11 +10,13 @@ from textual.app import ComposeResult
 from textual.containers import Vertical
 from textual.message import Message
 
+from calm.files.current_text import CopiedTable, NoTableError, copied_table
 from calm.tui.checking import Check, Reading
+from calm.tui.dialogs import Asked, Sheet
 from calm.tui.line.cell_editor import CellEditor
 from calm.tui.water.cells import Cells
 from calm.tui.water.columns import check_of
-from calm.tui.water.pasted import NoRows, Rows, pasted_rows
+from calm.tui.water.pasted import NoRows, Rows, UnknownColumns, offered_headings, rows_in
 
 
 class Grid(Vertical):
@@ -98,14 +100,50 @@ class Grid(Vertical):
                 self.cells.focus()
 
     def on_paste(self, event: events.Paste) -> None:
-        """Rows from a spreadsheet or a text take the place of all rows."""
+        """Rows from a spreadsheet or a text take the place of all rows.
+
+        They are read by their headings; where these are missing or unknown the columns are asked.
+        """
         event.stop()
+        columns = self.cells.columns
         try:
-            rows = pasted_rows(event.text, [check_of(column) for column in self.cells.columns])
-        except NoRows as error:
+            copied = copied_table(event.text)
+            headings = offered_headings(copied.headings, columns)
+            rows = rows_in(columns, headings, copied.rows)
+        except UnknownColumns:
+            self._ask_for_columns(copied, headings)
+        except (NoTableError, NoRows) as error:
             self.post_message(self.Refused(f"Nothing is pasted: {error}"))
         else:
-            self.cells.change(rows, "rows pasted")
+            if copied.headings is None or headings != list(copied.headings):
+                self._ask_for_columns(copied, headings)
+            else:
+                self._take_copied(rows, headings)
+
+    def _ask_for_columns(self, copied: CopiedTable, headings: Sequence[str]) -> None:
+        """Let the person say what the columns are; they are judged as they are typed."""
+        columns = self.cells.columns
+
+        def check(text: str) -> Reading:
+            try:
+                rows_in(columns, [one.strip() for one in text.split(",")], copied.rows)
+            except NoRows as error:
+                return Reading(text, str(error))
+            return Reading(text)
+
+        def take(answers: dict[str, str] | None) -> None:
+            if answers is not None:
+                chosen = [one.strip() for one in answers["columns"].split(",")]
+                self._take_copied(rows_in(columns, chosen, copied.rows), chosen)
+
+        first = "   ".join(copied.rows[0])
+        had = "Its headings are not all known" if copied.headings else "It has no headings"
+        text = f"{had}. What are its {len(copied.rows[0])} columns, with units? First row: {first}"
+        asked = Asked("columns", "Columns", ", ".join(headings), check)
+        self.app.push_screen(Sheet("A table is pasted", text, [asked]), take)
+
+    def _take_copied(self, rows: Rows, headings: Sequence[str]) -> None:
+        self.cells.change(rows, f"{len(rows)} rows pasted: {', '.join(headings)}")
 
     @on(Cells.Wanted)
     def _edit(self, event: Cells.Wanted) -> None:

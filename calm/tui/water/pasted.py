@@ -1,67 +1,134 @@
-"""Rows of numbers out of a text that was copied from a spreadsheet, a CSV file or a page."""
+"""Rows of numbers out of a text that was copied from a spreadsheet, a CSV file or a page.
+
+The text is read as files are: by its headings, their units, and which way a direction points.
+"""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 
-from calm.tui.checking import Check, number
-
-_SEPARATORS = tuple(map(re.compile, (r"\t", ";", ",", r"\s+")))
+from calm.errors import Problem
+from calm.files.tables import (
+    CurrentTable,
+    DepthTable,
+    SeaWater,
+    heading,
+    read_current,
+    read_profile,
+    read_water,
+    speed_and_direction,
+)
+from calm.tui.water.columns import check_of, dimension_of, named
+from calm.units import DIMENSIONS, QuantityError, unit_factor
 
 Rows = tuple[tuple[str, ...], ...]
+
+_OF_A_CURRENT = {"u", "v", "w", "speed", "toward"}
 
 
 class NoRows(ValueError):
     """A text is not the rows of a table; says which row, and what is wrong with it."""
 
 
-def pasted_rows(text: str, checks: Sequence[Check]) -> Rows:
-    """The rows of a text, its values between tabs, semicolons, commas or blanks.
+class UnknownColumns(NoRows):
+    """The headings do not tell what the columns are; says what is wrong with them."""
 
-    A first row without a number is a heading, and left out; so are empty lines.
 
-    Parameters
-    ----------
-    text : str
-    checks : what judges the values, one for each column
+def offered_headings(headings: Sequence[str] | None, columns: Sequence[str]) -> list[str]:
+    """Headings for what was copied: its own, with units where it gives none; else the table's."""
+    if headings is None:
+        return list(columns)
+    units = {name: unit for name, unit in map(named, columns)}
+    offered = []
+    for column in headings:
+        name, unit = heading(column)
+        usual = "" if unit else units.get(name.lower(), "")
+        offered.append(f"{name.lower()} {usual}" if usual else column)
+    return offered
+
+
+def rows_in(columns: Sequence[str], headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Rows:
+    """Copied rows under their headings as rows of a table with other columns.
+
+    Where both are the same the values stay as they were written.
 
     Raises
     ------
+    UnknownColumns
+        The headings are not those of such a table.
     NoRows
-        A row has more or fewer values than there are columns, or one that is not good, or there
-        is no row.
+        A row has a value that is none.
     """
-    lines = [(row, line) for row, line in enumerate(text.splitlines(), 1) if line.strip()]
-    if lines and _is_heading(lines[0][1]):
-        del lines[0]
-    if not lines:
-        raise NoRows("there are no numbers in it")
-    separator = max(_SEPARATORS, key=lambda each: _fitting(each, lines, len(checks)))
-    return tuple(_row(row, _split(separator, line), checks) for row, line in lines)
+    if [heading(one) for one in headings] == [named(one) for one in columns]:
+        return tuple(_as_written(i, row, columns) for i, row in enumerate(rows, 1))
+    values = _by_name(columns, headings, rows)
+    try:
+        return tuple(zip(*(_column(column, values) for column in columns), strict=True))
+    except KeyError as absent:
+        raise UnknownColumns(f"there is no column for {absent.args[0]}") from None
 
 
-def _is_heading(line: str) -> bool:
-    return not any(
-        number(value).is_good for separator in _SEPARATORS for value in _split(separator, line)
-    )
-
-
-def _row(row: int, values: Sequence[str], checks: Sequence[Check]) -> tuple[str, ...]:
-    if len(values) != len(checks):
-        many = f"{len(values)} value{'s' * (len(values) != 1)}"
-        raise NoRows(f"row {row} has {many}, and the table {len(checks)} columns")
-    readings = [check(value) for check, value in zip(checks, values, strict=True)]
-    for value, reading in zip(values, readings, strict=True):
+def _as_written(number: int, row: Sequence[str], columns: Sequence[str]) -> tuple[str, ...]:
+    if len(row) != len(columns):
+        many = f"{len(row)} value{'s' * (len(row) != 1)}"
+        raise NoRows(f"row {number} has {many}, and the table {len(columns)} columns")
+    readings = [check_of(column)(value) for column, value in zip(columns, row, strict=True)]
+    for value, reading in zip(row, readings, strict=True):
         if not reading.is_good:
-            raise NoRows(f"row {row}: `{value}` {reading.note}")
+            raise NoRows(f"row {number}: `{value}` {reading.note}")
     return tuple(reading.text for reading in readings)
 
 
-def _fitting(separator: re.Pattern[str], lines: Sequence[tuple[int, str]], columns: int) -> int:
-    """How many lines a separator takes into as many values as there are columns."""
-    return sum(len(_split(separator, line)) == columns for _, line in lines)
+def _by_name(
+    columns: Sequence[str], headings: Sequence[str], rows: Sequence[Sequence[str]]
+) -> dict[str, Sequence[float]]:
+    """The copied values in SI by the names that the table's columns may have."""
+    problems: list[tuple[bool, str]] = []
+
+    def report(location: Sequence[str | int], message: str) -> Problem:
+        row = location[1] if location[0] == "rows" and len(location) > 1 else None
+        number = int(row) + 1 if row is not None else 0
+        problems.append((number == 0, f"row {number}: {message}" if number else message))
+        return Problem("", 0, 0, message)
+
+    names = {named(column)[0] for column in columns}
+    kept: list[Problem] = []
+    table: CurrentTable | DepthTable | SeaWater | None
+    if names & _OF_A_CURRENT:
+        table = read_current(headings, rows, report, kept)
+    elif names == {"depth", "density"} or {"temperature", "salinity"} <= names:
+        table = read_water(headings, rows, report, kept)
+    else:
+        table = read_profile(next(iter(names - {"depth"})), headings, rows, report, kept)
+    if table is None:
+        of_the_headings, message = min(problems, key=lambda one: not one[0])
+        raise (UnknownColumns if of_the_headings else NoRows)(message)
+    if isinstance(table, SeaWater):
+        depth = table.temperature.depth
+        return {
+            "depth": depth,
+            "temperature": table.temperature.value,
+            "salinity": table.salinity.value,
+        }
+    if isinstance(table, DepthTable):
+        return {"depth": table.depth, next(iter(names - {"depth"})): table.value}
+    if "w" not in names and any(table.w):
+        raise UnknownColumns("the current has an upward speed `w`, and the table no column for it")
+    flows = [speed_and_direction(u, v) for u, v in zip(table.u, table.v, strict=True)]
+    speed = [flow for flow, _ in flows]
+    toward = [round(way, 9) % 360.0 for _, way in flows]
+    return {"depth": table.depth, "u": table.u, "v": table.v, "w": table.w,
+            "speed": speed, "toward": toward}  # fmt: skip
 
 
-def _split(separator: re.Pattern[str], line: str) -> tuple[str, ...]:
-    return tuple(value.strip() for value in separator.split(line.strip(" ")))
+def _column(column: str, values: dict[str, Sequence[float]]) -> list[str]:
+    """The values of a column in its unit; each with its own where the column has none."""
+    name, unit = named(column)
+    dimension = dimension_of(name)
+    usual = DIMENSIONS[dimension].unit
+    try:
+        factor = unit_factor(unit or usual, dimension) if unit or usual else 1.0
+    except QuantityError as error:
+        raise UnknownColumns(f"`{column}` {error.complaint}") from None
+    plain = [f"{round(value / factor, 9) + 0.0:.9g}" for value in values[name]]
+    return plain if unit or not usual else [f"{text} {usual}" for text in plain]

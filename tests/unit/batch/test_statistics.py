@@ -250,5 +250,5 @@ def test_no_room_for_the_temporary_file_is_said(mooring, tmp_path, monkeypatch):
         raise OSError(errno.ENOSPC, "No space left on device")
 
     monkeypatch.setattr(series, "TemporaryFile", full)
-    with pytest.raises(UsageError, match=r"cannot gather the statistics in .*No space left"):
+    with pytest.raises(OSError, match=r"cannot gather the statistics in .*No space left"):
         summarize(make_result(5), mooring, tmp_path)

