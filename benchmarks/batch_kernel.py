@@ -29,7 +29,7 @@ from calm.batch.kernel.closing import FEWEST_HALVINGS
 from calm.batch.kernel.layout import Results
 from calm.batch.kernel.outcome import OF_CLAMP, OF_ENDS, OF_PIECE
 from calm.batch.kernel.plan import Plan
-from calm.batch.kernel.solve import solve_cases
+from calm.batch.kernel.solve import Kernel
 from calm.batch.kernel.stragglers import water_of
 from calm.batch.profiles import Batch, Profiles
 from calm.case import Mooring, load
@@ -78,9 +78,10 @@ def kernel(mooring: Mooring, plan: Plan, current: Arrays) -> Callable[[], np.nda
         np.empty((count, len(OF_ENDS))),
     )
     ended = np.empty(count, np.int64)
+    lanes = Kernel(plan)
 
     def solve() -> np.ndarray:
-        solve_cases(plan, depth[None], u, v, w, rows, ended)
+        lanes.solve(depth[None], u, v, w, rows, ended)
         return ended
 
     return solve

@@ -15,7 +15,7 @@ from calm.batch.kernel.endings import HEAP, LEVELS_COINCIDE, NO_DATA, NOT_TRIED,
 from calm.batch.kernel.layout import Results
 from calm.batch.kernel.outcome import OF_CLAMP, OF_ENDS, OF_PIECE
 from calm.batch.kernel.plan import Plan, plan_of
-from calm.batch.kernel.solve import solve_cases
+from calm.batch.kernel.solve import Kernel
 from calm.batch.kernel.stragglers import solve_one, water_of
 from calm.batch.plausible import implausible
 from calm.batch.statuses import STATUSES
@@ -122,6 +122,11 @@ class Batch:
         """The mooring as the lanes take it."""
         return plan_of(self.mooring)
 
+    @cached_property
+    def kernel(self) -> Kernel:
+        """The lanes, compiled."""
+        return Kernel(self.plan)
+
     def solve(
         self,
         u: ArrayLike,
@@ -175,7 +180,7 @@ class Batch:
         if false.any():
             u[false] = np.nan
         current = depth, u, v, w
-        solve_cases(self.plan, depth, u, v, w, rows, ended)
+        self.kernel.solve(depth, u, v, w, rows, ended)
         status[ended == NO_DATA] = _NO_CURRENT
         status[ended == LEVELS_COINCIDE] = _LEVELS_COINCIDE
         status[ended == HEAP] = STATUSES.index(self.mooring.heaped("a piece").status)

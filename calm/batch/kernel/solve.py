@@ -13,7 +13,7 @@ from calm.batch.kernel.lane import LANES, SCRATCH, STATE, Desk, Tables
 from calm.batch.kernel.layout import Results
 from calm.batch.kernel.march import march
 from calm.batch.kernel.plan import Plan
-from calm.batch.kernel.search import Search
+from calm.batch.kernel.search import Search, Searches
 from calm.physics.compiled import record_type
 from calm.physics.line import Floats, Integers
 from calm.physics.profile import Interval, Sea
@@ -55,29 +55,52 @@ def desk_for(plan: Plan, levels: int, cases: int) -> Desk:
     )
 
 
-def solve_cases(
-    plan: Plan, depth: Floats, u: Floats, v: Floats, w: Floats, results: Results, reasons: Integers
-) -> None:
-    """Solve cases; what they lead to goes to their rows of the results, how they ended to reasons.
+class Kernel:
+    """The lanes made ready for a mooring: compiled for it, or fetched.
 
-    Parameters
-    ----------
-    depth : (1 or n, k) of the levels [m]
-    u, v, w : (n, k) current [m/s]; NaN where there is none
-    reasons : (n,) see `calm.batch.kernel.endings`
+    Numba takes milliseconds to name the types of a plan, in which hundreds of cases are solved:
+    here it does so once.
     """
-    desk = desk_for(plan, depth.shape[1], CHUNK)
-    size = (desk.nodes.size + desk.forces.size) // LANES
-    shapes = Shapes(
-        np.zeros((CHUNK, size)), np.zeros((CHUNK, size)), np.zeros(CHUNK), np.zeros(size)
-    )
-    seek = np.zeros(CHUNK, record_type(Search))
-    marching: Any = by_address(march, desk, plan.clear, 0, singly=plan.singly)
-    find: Any = by_address(find_roots, marching, desk, plan.clear, seek, reasons)
-    close: Any = by_address(
-        close_all, marching, desk, plan.clear, seek, shapes, reasons, 0, results
-    )
-    entry(solve_chunks)(
-        find, close, marching, plan.clear, plan.lying, plan.contact, desk, shapes,
-        seek, depth, u, v, w, results, reasons,
-    )  # fmt: skip
+
+    def __init__(self, plan: Plan) -> None:
+        desk, shapes, seek = desk_for(plan, 1, 1), shapes_for(plan, 1), searches(1)
+        reasons = np.zeros(1, np.int64)
+        results = Results(np.zeros((1, 1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1)))
+        clear = plan.clear
+        self.plan = plan
+        self.march: Any = by_address(march, desk, clear, 0, singly=plan.singly)
+        self.find: Any = by_address(find_roots, self.march, desk, clear, seek, reasons)
+        self.close: Any = by_address(
+            close_all, self.march, desk, clear, seek, shapes, reasons, 0, results
+        )
+
+    def solve(
+        self, depth: Floats, u: Floats, v: Floats, w: Floats, results: Results, reasons: Integers
+    ) -> None:
+        """Solve cases; what they lead to goes to their rows of the results, how they ended to
+        reasons.
+
+        Parameters
+        ----------
+        depth : (1 or n, k) of the levels [m]
+        u, v, w : (n, k) current [m/s]; NaN where there is none
+        reasons : (n,) see `calm.batch.kernel.endings`
+        """
+        plan, chunk = self.plan, CHUNK
+        entry(solve_chunks)(
+            self.find, self.close, self.march, plan.clear, plan.lying, plan.contact,
+            desk_for(plan, depth.shape[1], chunk), shapes_for(plan, chunk), searches(chunk),
+            depth, u, v, w, results, reasons,
+        )  # fmt: skip
+
+
+def shapes_for(plan: Plan, cases: int) -> Shapes:
+    """Room for the shapes of so many cases."""
+    course = plan.clear.course
+    size = STATE * (len(course.stages) + 1) + 3 * len(course.loads)
+    return Shapes(np.zeros((cases, size)), np.zeros((cases, size)), np.zeros(cases), np.zeros(size))
+
+
+def searches(cases: int) -> Searches:
+    """Room for the search of so many cases."""
+    return np.zeros(cases, record_type(Search))
