@@ -52,7 +52,7 @@ def result_of(mooring: Mooring, solution: Solution, still: Solution | None) -> R
             draft=None if riding is None or isnan(riding.draft) else riding.draft,
             freeboard=None if riding is None or isnan(riding.freeboard) else riding.freeboard,
         ),
-        anchor=_anchor_load(mooring, solution),
+        anchor=anchor_load(mooring, solution),
         strumming=strumming_of(mooring.file.solver, solution),
         components=components,
         clamps=clamps,
@@ -113,7 +113,8 @@ def _on_anchor(clamp: Clamp, anchor: ComponentRow) -> ClampRow:
     )
 
 
-def _anchor_load(mooring: Mooring, solution: Solution) -> AnchorLoad:
+def anchor_load(mooring: Mooring, solution: Solution) -> AnchorLoad:
+    """What the line of a mooring does to its anchor."""
     force, friction = solution.force[-1], _friction(mooring)
     vertical, horizontal = float(force[2]), float(np.hypot(force[0], force[1]))
     factor = mooring.file.checks.anchor_factor

@@ -138,7 +138,7 @@ class Mooring:
             With status, message and advice, where there is none that passes every check.
         """
         solution = self.equilibrium(self.water)
-        return result_of(self, solution, self._still(solution))
+        return result_of(self, solution, self.still_beside(solution))
 
     def equilibrium(self, water: Water) -> Solution:
         """The line solved in some water, and accepted for what it is and how it is held.
@@ -180,7 +180,7 @@ class Mooring:
             "chain may lie there."
         )
 
-    def _still(self, solution: Solution) -> Solution | None:
+    def still_beside(self, solution: Solution) -> Solution | None:
         """The same line without current; None where it has no unique shape."""
         floating = self.line.floating
         blown = solution.riding is not None and floating is not None and floating.blown

@@ -18,6 +18,7 @@ from calm.errors import NoEquilibrium, UsageError
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
     from calm.case.explain import Explanation
+    from calm.case.uncertain import Uncertain
     from calm.report.blocks import Part
     from calm.report.schematic.text import TerminalSchematic
 
@@ -61,6 +62,7 @@ class Outcome:
     failure: NoEquilibrium | None = None
     explanation: Explanation | None = None
     schematic: TerminalSchematic | None = None
+    uncertain: Uncertain | None = None
 
     @property
     def code(self) -> ExitCode:
@@ -82,6 +84,8 @@ class Outcome:
         document = self.result.to_dict()
         if self.explanation is not None:
             document["explain"] = self.explanation.to_dict()
+        if self.uncertain is not None:
+            document["uncertainty"] = self.uncertain.to_dict()
         return document
 
     def parts(self) -> list[Shows]:
@@ -97,6 +101,10 @@ class Outcome:
             from calm.report.explain import explanation_part
 
             parts.append(explanation_part(self.explanation))
+        if self.uncertain is not None:
+            from calm.report.uncertain import uncertainty_part
+
+            parts.append(uncertainty_part(self.uncertain))
         return parts
 
     def rendered(self, suffix: str) -> bytes | None:
@@ -106,18 +114,18 @@ class Outcome:
         if suffix == ".html":
             from calm.report.html import result_html
 
-            return result_html(self.result).encode("utf-8", "replace")
+            return result_html(self.result, self.uncertain).encode("utf-8", "replace")
         if suffix == ".pdf":
             from calm.report.pdf import result_pdf
 
-            return result_pdf(self.result)
+            return result_pdf(self.result, self.uncertain)
         if suffix == ".nc":
             from calm.report.netcdf import result_netcdf
 
             return result_netcdf(self.result)
         from calm.report.plot import picture
 
-        return picture(self.result, suffix)
+        return picture(self.result, suffix, self.uncertain)
 
 
 @dataclass(frozen=True)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from calm.cli.exit_codes import ExitCode, gravest
 from calm.cli.outputs import Outcome, OutputPath, Outputs
@@ -22,6 +22,7 @@ RUN_EXAMPLES = """Examples:
   calm run mooring.yaml --environment storm --plot storm.png
   calm run mooring.yaml --csv components.csv --json result.json
   calm run mooring.yaml --explain
+  calm run mooring.yaml --uncertainty --plot band.png
   calm run mooring.yaml --schematic
   calm run mooring.yaml --html mooring.html --pdf mooring.pdf
   calm run spring.yaml neap.yaml tow.yaml --json -"""
@@ -41,6 +42,9 @@ def run(
     pdf: Path | None = None,
     explain: bool = False,
     schematic: bool = False,
+    uncertainty: bool = False,
+    samples: int = 2048,
+    seed: int = 0,
 ) -> ExitCode:
     """Solve moorings and tows, and print the table of each line.
 
@@ -76,13 +80,39 @@ def run(
     schematic
         Draw the line, part by part and not to scale, above its table; where there is no
         equilibrium, in its place.
+    uncertainty
+        Solve each mooring for many draws of what its file gives under uncertainty (current,
+        drags, buoyancy, lengths, depth), and show the 5, 50 and 95 % of its figures and
+        where their spread comes from; in the JSON, the picture and the reports too.
+    samples
+        How many draws, a power of two.
+    seed
+        Of the draws; the same seed gives the same figures.
     """
     outputs = Outputs(tuple(files), json, csv, plot, html, pdf, netcdf)
     outputs.check()
+    if uncertainty:
+        check_draws(samples, seed)
     lines = read_files(files, environment, catalog or [])
-    if explain:
-        _refuse_tows(files, lines)
-    return solve_and_show(lines, outputs, explain=explain, schematic=schematic)
+    for option, is_asked in (("--explain", explain), ("--uncertainty", uncertainty)):
+        if is_asked:
+            _refuse_tows(option, files, lines)
+    draws = (samples, seed) if uncertainty else None
+    return solve_and_show(lines, outputs, explain=explain, schematic=schematic, draws=draws)
+
+
+def check_draws(samples: int, seed: int) -> None:
+    """Refuse a number of samples that is no power of two, and a seed below zero.
+
+    Raises
+    ------
+    UsageError
+    """
+    from calm.case.uncertain import checked_samples
+
+    checked_samples(samples)
+    if seed < 0:
+        raise UsageError(f"--seed: {seed} is below 0")
 
 
 def read_files(
@@ -110,6 +140,7 @@ def solve_and_show(
     *,
     explain: bool = False,
     schematic: bool = False,
+    draws: tuple[int, int] | None = None,
 ) -> ExitCode:
     """Solve what was read from the files of the outputs, and write those.
 
@@ -117,10 +148,14 @@ def solve_and_show(
     ----------
     explain, schematic : bool
         Explain what was solved; draw each line for the terminal.
+    draws : pair of int, optional
+        Samples and seed by which to say how sure the figures are.
     """
     outcomes = [_solve(file, line) for file, line in zip(outputs.files, lines, strict=True)]
     if explain:
         outcomes = [_explained(outcome) for outcome in outcomes]
+    if draws is not None:
+        outcomes = [_drawn_often(outcome, *draws) for outcome in outcomes]
     if schematic:
         outcomes = [_drawn(*pair) for pair in zip(outcomes, lines, strict=True)]
 
@@ -143,12 +178,12 @@ def _solve(file: Path, line: Mooring | Tow) -> Outcome:
         return Outcome(file, line.file.name, failure=failure)
 
 
-def _refuse_tows(files: Sequence[Path], lines: Sequence[Mooring | Tow]) -> None:
+def _refuse_tows(option: str, files: Sequence[Path], lines: Sequence[Mooring | Tow]) -> None:
     from calm.case import Tow
 
     tows = [str(file) for file, line in zip(files, lines, strict=True) if isinstance(line, Tow)]
     if tows:
-        raise UsageError(f"--explain is for moorings; towed: {', '.join(tows)}")
+        raise UsageError(f"{option} is for moorings; towed: {', '.join(tows)}")
 
 
 def _explained(outcome: Outcome) -> Outcome:
@@ -159,6 +194,21 @@ def _explained(outcome: Outcome) -> Outcome:
     if not isinstance(outcome.result, Result):
         return outcome
     return replace(outcome, explanation=explain(outcome.result))
+
+
+def _drawn_often(outcome: Outcome, samples: int, seed: int) -> Outcome:
+    """The outcome with how sure its figures are, where there is a mooring that stands."""
+    from calm.case import Result
+    from calm.case.uncertain import uncertain
+    from calm.cli.workers import mapped
+
+    if not isinstance(outcome.result, Result):
+        return outcome
+
+    def solved(function: Callable[[Any], Any], blocks: Sequence[Any]) -> list[Any]:
+        return mapped(function, blocks, None, "blocks of samples solved")
+
+    return replace(outcome, uncertain=uncertain(outcome.result, samples, seed, solved))
 
 
 def _drawn(outcome: Outcome, line: Mooring | Tow) -> Outcome:

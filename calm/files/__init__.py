@@ -24,6 +24,7 @@ from calm.files.strumming import (
     StrummingFactor,
 )
 from calm.files.tables import CurrentTable, DepthTable, SeaWater
+from calm.files.uncertainty import Spread, Uncertainty
 
 __all__ = [
     "Accept",
@@ -53,9 +54,11 @@ __all__ = [
     "SeaWater",
     "Solver",
     "Sphere",
+    "Spread",
     "Strumming",
     "StrummingFactor",
     "TowKeys",
+    "Uncertainty",
     "Wind",
     "mooring_schema",
     "read_mooring",

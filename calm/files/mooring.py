@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated, Literal, Protocol
 
 from pydantic import AfterValidator
@@ -14,6 +14,7 @@ from calm.files.components import Anchor, Component
 from calm.files.environment import Environment, Position
 from calm.files.fields import LENGTH, Model, Quantity
 from calm.files.strumming import Strumming
+from calm.files.uncertainty import Uncertainty
 
 
 class TowKeys(Model):
@@ -136,7 +137,8 @@ class MooringFile:
     `pieces` lead from the top of a mooring to its anchor; in a tow, where `tow` is not None, from
     the ship to the towed body. `notices` tell what a person may want to know: a catalogue entry
     hidden by a nearer one, levels dropped from a measured current. `variants` are the names of
-    the environments it gives besides its own, `accepts` what it accepts of the design check.
+    the environments it gives besides its own, `accepts` what it accepts of the design check,
+    `uncertainty` how sure what it stands on is.
     """
 
     path: str
@@ -151,6 +153,7 @@ class MooringFile:
     notices: tuple[str, ...]
     variants: tuple[str, ...] = ()
     accepts: tuple[Accept, ...] = ()
+    uncertainty: Uncertainty = field(default_factory=Uncertainty)
 
     @property
     def release(self) -> int | None:

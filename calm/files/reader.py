@@ -21,6 +21,7 @@ from calm.files.labels import numbered
 from calm.files.line import LineReader
 from calm.files.mooring import MooringFile, Piece, Place, Solver, TowKeys
 from calm.files.section import Section
+from calm.files.uncertainty import Uncertainty
 from calm.files.variants import choose_environment
 from calm.units import QuantityError
 
@@ -47,6 +48,7 @@ class MooringKeys(Model):
     environments: dict[str, dict[str, Any]] | None = None
     solver: Solver | None = None
     checks: Checks | None = None
+    uncertainty: Uncertainty | None = None
 
 
 def read_mooring(
@@ -123,6 +125,7 @@ def read_mooring(
         pieces=pieces,
         solver=keys.solver or Solver(),
         checks=checks,
+        uncertainty=keys.uncertainty or Uncertainty(),
         notices=tuple(notices),
         variants=tuple(keys.environments or ()),
         accepts=accepts,

@@ -87,7 +87,7 @@ class ElongationCurve:
     Attributes
     ----------
     tensions, strains : the points of the table, from (0, 0) on [N], [-]
-    permanent : as given [-]
+    breaking_load, permanent : as given [N], [-]
     knots : the curve as the march takes it, permanent elongation included
     limit : tension beyond which an answer deserves a warning [N]: that of the last point, and at
         most 80 % of the breaking load
@@ -102,7 +102,7 @@ class ElongationCurve:
     slopes at the points.
     """
 
-    __slots__ = ("knots", "limit", "permanent", "strains", "tensions")
+    __slots__ = ("breaking_load", "knots", "limit", "permanent", "strains", "tensions")
 
     def __init__(
         self,
@@ -114,6 +114,7 @@ class ElongationCurve:
             raise ValueError("the breaking load must be positive")
         if not (isfinite(permanent) and permanent >= 0.0):
             raise ValueError("the permanent elongation must not be negative")
+        self.breaking_load = breaking_load
         loads, self.strains = _checked(points)
         self.tensions = [load * breaking_load for load in loads]
         self.permanent = permanent
@@ -128,6 +129,14 @@ class ElongationCurve:
     def strain(self, tension: float) -> float:
         """Strain at a tension ≥ 0 [N], permanent elongation included [-]."""
         return curve_strain(self.knots, 0, len(self.knots), tension)
+
+    def stiffer(self, factor: float) -> ElongationCurve:
+        """The curve of a rope whose strain at every tension is less by a factor."""
+        loads = (tension / self.breaking_load for tension in self.tensions)
+        strains = (strain / factor for strain in self.strains)
+        return ElongationCurve(
+            zip(loads, strains, strict=True), self.breaking_load, self.permanent / factor
+        )
 
     def mean_strain(self, tension: float, half: float) -> float:
         """Mean strain where the tension goes evenly from `tension` - `half` to `tension` + `half`,

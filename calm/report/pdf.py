@@ -13,6 +13,7 @@ from calm.report.provenance import moment
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
+    from calm.case.uncertain import Uncertain
     from calm.report.blocks import Report
 
 
@@ -27,11 +28,11 @@ def report_pdf(sections: Sequence[Section]) -> bytes:
     return printed(check_report(sections))
 
 
-def result_pdf(result: Result | TowResult) -> bytes:
-    """The report of one solved mooring or tow."""
+def result_pdf(result: Result | TowResult, uncertain: Uncertain | None = None) -> bytes:
+    """The report of one solved mooring or tow, and of how sure its figures are."""
     from calm.report.result_section import result_report
 
-    return printed(result_report(result))
+    return printed(result_report(result, uncertain))
 
 
 def printed(report: Report) -> bytes:

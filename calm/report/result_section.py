@@ -21,25 +21,29 @@ from calm.report.inputs import (
 from calm.report.plot import draw
 from calm.report.provenance import date
 from calm.report.sheet import sheet
+from calm.report.uncertain import uncertainty_part
 from calm.report.vector import figure_svg
 
 if TYPE_CHECKING:
     from calm.case import Result
+    from calm.case.uncertain import Uncertain
 
 
-def result_report(result: Result | TowResult) -> Report:
-    """Schematic, table, drawing and inputs of one result."""
+def result_report(result: Result | TowResult, uncertain: Uncertain | None = None) -> Report:
+    """Schematic, table, drawing and inputs of one result, and how sure its figures are."""
     from calm.report.schematic import schematic_svg
 
     said, file = sheet(result), result.file
     water = result.tow.water if isinstance(result, TowResult) else result.mooring.water
     environment = file.environment.name or "own"
+    drawing = figure_svg(draw(result, uncertain))
     described = (Prose((file.description,)),) if file.description else ()
     parts = (
         Part("Result", (*described, *said.summary, Prose((said.convergence,)))),
         Part("The line", (Figure("Schematic", schematic_svg(file, result), tall=True),
                           replace(said.table, title="Table of the line"))),
-        Part("Shape", (Figure("Elevation, current and plan", figure_svg(draw(result))),)),
+        Part("Shape", (Figure("Elevation, current and plan", drawing),)),
+        *(() if uncertain is None else (uncertainty_part(uncertain),)),
         *_limits(result),
         Part("What is not judged", (Prose(UNSEEN, State.UNKNOWN),)),
         Part(

@@ -140,10 +140,16 @@ def _grounded(piece: int, below: float) -> NoEquilibrium:
 
 
 def _solution(closing: Closing, root: Root, polish: Polish | None = None) -> Solution:
-    return finished(closing, refine(closing, root, polish), None, _refuse_out_of_the_water)
+    return finished(closing, refine(closing, root, polish), None, refuse_out_of_the_water)
 
 
-def _refuse_out_of_the_water(solution: Solution) -> None:
+def refuse_out_of_the_water(solution: Solution) -> None:
+    """Refuse a shape that comes below the seabed or above the surface.
+
+    Raises
+    ------
+    NoEquilibrium
+    """
     height: Floats = solution.position[:, 2]
     depth = solution.water.depth
     margin = max(solution.depth_error, 1e-6 * depth)

@@ -13,12 +13,15 @@ import numpy as np
 
 from calm.errors import NoEquilibrium
 from calm.physics.line import Floats, Line, Water
+from calm.physics.march import Cuts
 from calm.physics.state import MarchError
 from calm.physics.track import Track
 from calm.solve.closing import Closed, Closing
+from calm.solve.finish import finished
 from calm.solve.locate import locate
-from calm.solve.mooring import solve_mooring
-from calm.solve.solution import Settings, nodes_of
+from calm.solve.mooring import refuse_out_of_the_water, solve_mooring
+from calm.solve.refine import Refined
+from calm.solve.solution import Settings, Solution, nodes_of
 from calm.solve.status import Status
 
 
@@ -29,6 +32,10 @@ class Nearby:
     ----------
     line, water, settings : as of `solve_mooring`; a tight `tolerance` lets small changes be seen
 
+    Attributes
+    ----------
+    solution : of the line itself
+
     Raises
     ------
     NoEquilibrium
@@ -36,7 +43,8 @@ class Nearby:
     """
 
     def __init__(self, line: Line, water: Water, settings: Settings) -> None:
-        lands = solve_mooring(line, water, settings).landed
+        self.solution = solve_mooring(line, water, settings)
+        lands = self.solution.landed
         self._water, self._settings = water, settings
         closing = Closing(line, water, settings)
         try:
@@ -53,8 +61,14 @@ class Nearby:
             return int(np.argmax(self._trace.clamp == clamp))
         return int(np.argmax(self._trace.piece == piece))
 
-    def shape(self, line: Line) -> tuple[Floats, float]:
-        """Nodes of a line that differs in its forces alone, and its buoyancy in use.
+    def shape(
+        self, line: Line, water: Water | None = None, track: Track | None = None
+    ) -> tuple[Floats, float]:
+        """Nodes of a line that differs a little, and its buoyancy in use.
+
+        Parameters
+        ----------
+        line, water, track : as of `solved`
 
         Returns
         -------
@@ -66,14 +80,52 @@ class Nearby:
         NoEquilibrium
             ``not-converged`` or ``slack``.
         """
-        closing = Closing(line, self._water, self._settings)
-        unknown = replace(self._root.unknown, track=Track.of(line))
-        try:
-            closed = closing.polish(replace(self._root, unknown=unknown), self._cuts)
-        except MarchError as error:
-            raise _stopped(error) from error
+        _, closed = self._closed(line, water or self._water, track)
         position, _ = nodes_of(closed.trace)
         return position, _used(closed, line)
+
+    def solved(self, line: Line, water: Water, track: Track | None = None) -> Solution:
+        """The solution of a line that differs, on the cuts of this one.
+
+        Its errors are stated as those of this one, whose cuts it has.
+
+        Parameters
+        ----------
+        line : of the same pieces, all cables longer by one factor
+        water : this one where not given
+        track : the line laid out, where it is known
+
+        Raises
+        ------
+        NoEquilibrium
+            Where there is none that passes every check, or none of the same kind near by.
+        """
+        closing, closed = self._closed(line, water, track)
+        base = self.solution
+        if closed.end.landed != base.landed:
+            raise Status.NOT_CONVERGED.because("It lies on the seabed, or hangs, unlike the other.")
+        errors = (base.depth_error, base.tension_error, base.lift_error, base.pull_error)
+        return finished(closing, Refined(closed, *errors), None, refuse_out_of_the_water)
+
+    def _closed(self, line: Line, water: Water, track: Track | None) -> tuple[Closing, Closed]:
+        closing = Closing(line, water, self._settings)
+        root, deeper = self._root, water.depth - self._water.depth
+        unknown = replace(
+            root.unknown,
+            track=track or Track.of(line),
+            goal=root.unknown.goal - deeper,
+            floating=None if root.unknown.floating is None else line.floating,
+        )
+        if unknown.afloat is None:
+            root = replace(root, x=max(root.x + deeper, 0.0))
+        given = self.solution.line
+        cables = line.flexible
+        longer = line.length[cables].sum() / given.length[cables].sum() if cables.any() else 1.0
+        cuts = Cuts(longer * self._cuts.lengths, self._cuts.counts)
+        try:
+            return closing, closing.polish(replace(root, unknown=unknown), cuts)
+        except MarchError as error:
+            raise _stopped(error) from error
 
 
 def _stopped(error: MarchError) -> NoEquilibrium:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from calm.files import Place
-from calm.files.editing import Draft, History, Item, Kept, WorkingFile
+from calm.files.editing import LINE, Draft, History, Item, Kept, WorkingFile, clamps_of
 from calm.tui.standing import Standing
 
 Location = tuple[str | int, ...]
@@ -119,23 +119,21 @@ class Session:
     def clamp(self, spot: Place, values: Mapping[str, str]) -> Place:
         """A new instrument on the piece of a row, below the other ones."""
         index = spot.clamp + 1 if spot.is_clamp else len(self.draft.items[spot.item].clamps)
-        self.do(self.draft.insert_clamp(spot.item, index, dict(values)), f"clamp {values['use']}")
+        draft = self.draft.insert(index, dict(values), clamps_of(spot.item))
+        self.do(draft, f"clamp {values['use']}")
         return Place(spot.item, clamp=index)
 
     def put(self, spot: Place, values: Mapping[str, str | None], label: str) -> None:
         """Set keys of a row; None takes one away."""
-        draft = self.draft
+        draft, (rows, index) = self.draft, _listed(spot)
         for key, value in values.items():
-            if spot.is_clamp:
-                draft = draft.put_clamp(spot.item, spot.clamp, key, value)
-            else:
-                draft = draft.put(spot.item, key, value)
+            draft = draft.put(index, key, value, rows)
         self.do(draft, label)
 
     def replace(self, spot: Place, values: Mapping[str, str]) -> list[str]:
         """Another component on a row; what the row said of the one before and still says."""
-        place = ("line", spot.item, *(("clamps", spot.clamp) if spot.is_clamp else ()))
-        written = self.draft.value(place)
+        rows, index = _listed(spot)
+        written = self.draft.value((*rows, index))
         kept = [
             f"{key} {value}" if isinstance(value, str) else key
             for key, value in (written if isinstance(written, dict) else {}).items()
@@ -165,9 +163,9 @@ class Session:
         if items:
             self.do(self.draft.duplicate(items), label)
             return Place(items[-1] + 1)
-        below = Place(chosen[-1].item, clamp=chosen[-1].clamp + 1)
-        self.do(self.draft.paste_clamps(below.item, below.clamp, self._clamps(chosen)), label)
-        return below
+        rows, last = _listed(chosen[-1])
+        self.do(self.draft.paste(last + 1, self._clamps(chosen), rows), label)
+        return Place(chosen[-1].item, clamp=last + 1)
 
     def move(self, spots: Iterable[Place], by: int) -> tuple[Place, ...]:
         """Move rows up (-1) or down (1); where they are then. At the end of the line they stay."""
@@ -193,7 +191,7 @@ class Session:
         to = spot.clamp + by
         if not 0 <= to < len(self.draft.items[spot.item].clamps):
             return (spot,)
-        draft = self.draft.move_clamp(spot.item, spot.clamp, to)
+        draft = self.draft.move(spot.clamp, to, clamps_of(spot.item))
         self.do(draft, f"move {_label(self.item(spot))}")
         return (Place(spot.item, clamp=to),)
 
@@ -218,21 +216,20 @@ class Session:
         if not self.copied.clamps or spot is None:
             return None
         first = spot.clamp + below if spot.is_clamp else len(self.draft.items[spot.item].clamps)
-        self.do(self.draft.paste_clamps(spot.item, first, self.copied.clamps), label)
+        self.do(self.draft.paste(first, self.copied.clamps, clamps_of(spot.item)), label)
         return Place(spot.item, clamp=first)
 
     def _clamps(self, chosen: Sequence[Place]) -> tuple[str, ...]:
         """The text of clamps, of one piece or of several."""
-        copied = (self.draft.copy_clamps(spot.item, [spot.clamp]) for spot in chosen)
+        copied = (self.draft.copy([spot.clamp], clamps_of(spot.item)) for spot in chosen)
         return tuple(text for texts in copied for text in texts)
 
     def _without(self, chosen: Sequence[Place]) -> Draft:
         draft = self.draft
         for spot in reversed(chosen):
             if spot.is_clamp:
-                draft = draft.delete_clamp(spot.item, spot.clamp)
-        items = [spot.item for spot in chosen if not spot.is_clamp]
-        return draft.delete(items) if items else draft
+                draft = draft.delete([spot.clamp], clamps_of(spot.item))
+        return draft.delete(spot.item for spot in chosen if not spot.is_clamp)
 
     def _called(self, chosen: Sequence[Place]) -> str:
         return _label(self.item(chosen[0])) if len(chosen) == 1 else f"{len(chosen)} rows"
@@ -296,6 +293,11 @@ def _whole(spots: Iterable[Place]) -> list[Place]:
     chosen = sorted(set(spots))
     pieces = {spot.item for spot in chosen if not spot.is_clamp}
     return [spot for spot in chosen if not spot.is_clamp or spot.item not in pieces]
+
+
+def _listed(spot: Place) -> tuple[Location, int]:
+    """The list of the file that a row stands in, and its index there."""
+    return (clamps_of(spot.item), spot.clamp) if spot.is_clamp else (LINE, spot.item)
 
 
 def _label(item: Item) -> str:

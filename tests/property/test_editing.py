@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from calm.files.editing import Draft, History
+from calm.files.editing import Draft, History, clamps_of
 from tests.property.ugly_files import UGLY
 
 LINES = Path(__file__).resolve().parents[2] / "lines"
@@ -132,21 +132,23 @@ class Editor:
         match choice:
             case 0:
                 values = self.draw(VALUES)
-                new = self.draft.insert_clamp(index, at, values)
+                new = self.draft.insert(at, values, clamps_of(index))
                 assert new.items[index].clamps[at].values == values
             case 1 if at < count:
-                new = self.draft.delete_clamp(index, at)
+                new = self.draft.delete([at], clamps_of(index))
                 assert len(new.items[index].clamps) == count - 1
             case 2 if at < count:
                 key, value = self.draw(KEYS), self.draw(WORDS)
-                new = self.draft.put_clamp(index, at, key, value)
+                new = self.draft.put(at, key, value, clamps_of(index))
                 assert new.items[index].clamps[at].values[key] == value
             case 3 if at < count:
                 to = self.draw(st.integers(0, count - 1))
-                new = self.draft.move_clamp(index, at, to)
+                new = self.draft.move(at, to, clamps_of(index))
                 assert new.items[index].clamps[to].values == item.clamps[at].values
             case 4 if at < count:
-                new = self.draft.paste_clamps(index, at + 1, self.draft.copy_clamps(index, [at]))
+                new = self.draft.paste(
+                    at + 1, self.draft.copy([at], clamps_of(index)), clamps_of(index)
+                )
                 assert new.items[index].clamps[at + 1].values == item.clamps[at].values
             case _:
                 return

@@ -1,11 +1,22 @@
 """Mooring and tow files as text that is edited: text in, text out. Nothing is computed here."""
 
 from calm.files.editing.changes import EditError
-from calm.files.editing.draft import Draft
+from calm.files.editing.draft import LINE, Draft, clamps_of
 from calm.files.editing.history import History
 from calm.files.editing.items import Item
 from calm.files.editing.kept_work import Kept
 from calm.files.editing.layout import Value
 from calm.files.editing.working_file import NotWritten, WorkingFile
 
-__all__ = ["Draft", "EditError", "History", "Item", "Kept", "NotWritten", "Value", "WorkingFile"]
+__all__ = [
+    "LINE",
+    "Draft",
+    "EditError",
+    "History",
+    "Item",
+    "Kept",
+    "NotWritten",
+    "Value",
+    "WorkingFile",
+    "clamps_of",
+]

@@ -19,8 +19,9 @@ from calm.files.editing.lists import items_of
 from calm.files.editing.spans import Patch, patched
 from calm.files.nodes import Node
 
-LINE = "line"
-CLAMPS = "clamps"
+LINE: Location = ("line",)
+"""Where the items of the line stand."""
+
 KEPT = "environment"
 VARIANTS = "environments"
 """They are needed even where they say nothing."""
@@ -38,6 +39,11 @@ environment:
 
 line: []                              # top to bottom
 """
+
+
+def clamps_of(item: int) -> Location:
+    """Where the clamps of an item of the line stand."""
+    return (*LINE, item, "clamps")
 
 
 @dataclass(frozen=True)
@@ -112,62 +118,63 @@ class Draft:
         value = self.value(location)
         return value if isinstance(value, str) else ""
 
-    def insert(self, index: int, values: Mapping[str, Value]) -> Draft:
-        """A new item above the one of an index, or below the last."""
-        return self._add((LINE,), index, [values])
+    def insert(self, index: int, values: Mapping[str, Value], rows: Location = LINE) -> Draft:
+        """A new item above the one of an index, or below the last.
 
-    def delete(self, indices: Iterable[int]) -> Draft:
-        """The line without some items."""
-        return self._drop((LINE,), indices)
+        `rows`, here and below, is the list meant: the line, or `clamps_of` one of its items.
+        """
+        self._stands(rows)
+        return self._add(rows, index, [values])
 
-    def move(self, index: int, to: int) -> Draft:
+    def delete(self, indices: Iterable[int], rows: Location = LINE) -> Draft:
+        """The list without some items."""
+        known = self._page.known(rows, indices)
+        if not known:
+            return self
+        page = self._page
+        data = [one for i, one in enumerate(self.value(rows)) if i not in known]
+        if not data and rows != LINE:
+            return self.put_at(rows, None)
+        if not data:
+            return self._changed(page.put(rows, []), with_value(self._data, rows, data))
+        items = page.items(rows)
+        for index in reversed(known):
+            items.remove(index)
+        return self._changed([items.patch()], with_value(self._data, rows, data))
+
+    def move(self, index: int, to: int, rows: Location = LINE) -> Draft:
         """An item taken to another place, `to` being its index then."""
-        return self._move((LINE,), index, to)
+        self._page.known(rows, [index, to])
+        if index == to:
+            return self
+        items = self._page.items(rows)
+        items.insert(to, items.remove(index))
+        data = list(self.value(rows))
+        data.insert(to, data.pop(index))
+        return self._changed([items.patch()], with_value(self._data, rows, data))
+
+    def copy(self, indices: Iterable[int], rows: Location = LINE) -> tuple[str, ...]:
+        """The text of items by themselves, with their comments."""
+        return self._page.copy(rows, indices)
+
+    def paste(self, index: int, snippets: Iterable[str], rows: Location = LINE) -> Draft:
+        """Items as `copy` gives them above the one of an index, or below the last."""
+        self._stands(rows)
+        wordings = [read_snippet(snippet) for snippet in snippets]
+        if None in wordings:
+            raise EditError("what is to be pasted is no list of items")
+        worded = Worded(one for one in wordings if one is not None)
+        return self._add(rows, index, worded) if worded else self
 
     def duplicate(self, indices: Iterable[int]) -> Draft:
-        """The same items again, below the last of them."""
-        known = self._page.known((LINE,), indices)
+        """The same items of the line again, below the last of them."""
+        known = self._page.known(LINE, indices)
         return self.paste(known[-1] + 1, self.copy(known)) if known else self
 
-    def copy(self, indices: Iterable[int]) -> tuple[str, ...]:
-        """The text of items by themselves, with their comments."""
-        return self._page.copy((LINE,), indices)
-
-    def paste(self, index: int, snippets: Iterable[str]) -> Draft:
-        """Items as `copy` gives them above the one of an index, or below the last."""
-        return self._paste((LINE,), index, snippets)
-
-    def put(self, index: int, key: str, value: Value | None) -> Draft:
+    def put(self, index: int, key: str, value: Value | None, rows: Location = LINE) -> Draft:
         """A value of an item; None takes the key out."""
-        self._page.known((LINE,), [index])
-        return self.put_at((LINE, index, key), value)
-
-    def insert_clamp(self, item: int, index: int, values: Mapping[str, Value]) -> Draft:
-        """A new clamp on an item, above the one of an index, or below the last."""
-        self._page.known((LINE,), [item])
-        return self._add((LINE, item, CLAMPS), index, [values])
-
-    def delete_clamp(self, item: int, clamp: int) -> Draft:
-        """An item without one of its clamps."""
-        return self._drop((LINE, item, CLAMPS), [clamp])
-
-    def move_clamp(self, item: int, clamp: int, to: int) -> Draft:
-        """A clamp taken to another place of its item, `to` being its index then."""
-        return self._move((LINE, item, CLAMPS), clamp, to)
-
-    def copy_clamps(self, item: int, clamps: Iterable[int]) -> tuple[str, ...]:
-        """The text of clamps of an item by themselves, with their comments."""
-        return self._page.copy((LINE, item, CLAMPS), clamps)
-
-    def paste_clamps(self, item: int, index: int, snippets: Iterable[str]) -> Draft:
-        """Clamps as `copy_clamps` gives them above the one of an index, or below the last."""
-        self._page.known((LINE,), [item])
-        return self._paste((LINE, item, CLAMPS), index, snippets)
-
-    def put_clamp(self, item: int, clamp: int, key: str, value: Value | None) -> Draft:
-        """A value of a clamp; None takes the key out."""
-        self._page.known((LINE, item, CLAMPS), [clamp])
-        return self.put_at((LINE, item, CLAMPS, clamp, key), value)
+        self._page.known(rows, [index])
+        return self.put_at((*rows, index, key), value)
 
     def put_at(self, location: Location, value: Value | None) -> Draft:
         """A value anywhere in the file, with the mappings that lead to it.
@@ -215,12 +222,10 @@ class Draft:
         """A definition of a component used only here, in place of one of that id."""
         return self.put_at((NAMED[0], id), values)
 
-    def _paste(self, location: Location, index: int, snippets: Iterable[str]) -> Draft:
-        wordings = [read_snippet(snippet) for snippet in snippets]
-        if None in wordings:
-            raise EditError("what is to be pasted is no list of items")
-        worded = Worded(one for one in wordings if one is not None)
-        return self._add(location, index, worded) if worded else self
+    def _stands(self, rows: Location) -> None:
+        """Raise where there is no item whose clamps a list is to be."""
+        if rows != LINE:
+            self._page.known(LINE, [int(rows[1])])
 
     def _add(self, location: Location, index: int, values: Sequence[Value]) -> Draft:
         """New items in a list that may not exist yet."""
@@ -234,31 +239,6 @@ class Draft:
         patches = page.add(location, index, values)
         data[index:index] = data_of(values)
         return self._changed(patches, with_value(self._data, location, data))
-
-    def _move(self, location: Location, index: int, to: int) -> Draft:
-        self._page.known(location, [index, to])
-        if index == to:
-            return self
-        items = self._page.items(location)
-        items.insert(to, items.remove(index))
-        data = list(self.value(location))
-        data.insert(to, data.pop(index))
-        return self._changed([items.patch()], with_value(self._data, location, data))
-
-    def _drop(self, location: Location, indices: Iterable[int]) -> Draft:
-        known = self._page.known(location, indices)
-        if not known:
-            return self
-        page = self._page
-        data = [one for i, one in enumerate(self.value(location)) if i not in known]
-        if not data and location[-1] == CLAMPS:
-            return self.put_at(location, None)
-        if not data:
-            return self._changed(page.put(location, []), with_value(self._data, location, data))
-        items = page.items(location)
-        for index in reversed(known):
-            items.remove(index)
-        return self._changed([items.patch()], with_value(self._data, location, data))
 
     def _changed(self, patches: Iterable[Patch], data: Any) -> Draft:
         """The draft with its text patched, which then says `data` and nothing else."""
@@ -290,5 +270,5 @@ class Draft:
 
     @property
     def _line(self) -> Node | None:
-        node = self._page.node((LINE,)) if self._root is not None else None
+        node = self._page.node(LINE) if self._root is not None else None
         return node if node is not None and node.kind == "sequence" else None

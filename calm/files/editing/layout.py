@@ -41,13 +41,15 @@ class Worded(list[Value]):
         super().__init__(one.value for one in self.wordings)
 
 
-SECTIONS = frozenset({"environment", "line", "components", "environments", "solver", "checks"})
+SECTIONS = frozenset(
+    {"environment", "line", "components", "environments", "solver", "checks", "uncertainty"}
+)
 """Keys whose values are written below them, a line each."""
 
 _ORDERS: tuple[tuple[str, ...], ...] = (
     (
         *("name", "description", "position", "tow", "environment", "line", "components"),
-        *("environments", "solver", "checks"),
+        *("environments", "solver", "checks", "uncertainty"),
     ),
     ("fluid", "depth", "depth_range", "density", "gravity", "current", "wind", "fouling"),
     ("use", "at", "label", "count", "length", "top_depth", "body_depth"),

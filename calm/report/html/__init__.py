@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
     from calm.case import Result, TowResult
+    from calm.case.uncertain import Uncertain
     from calm.report.blocks import Report, Section
 
 _LONG_WORD = re.compile(r"(\S{20,})")
@@ -31,11 +32,11 @@ def report_html(sections: Sequence[Section]) -> str:
     return page(check_report(sections))
 
 
-def result_html(result: Result | TowResult) -> str:
-    """The report of one solved mooring or tow."""
+def result_html(result: Result | TowResult, uncertain: Uncertain | None = None) -> str:
+    """The report of one solved mooring or tow, and of how sure its figures are."""
     from calm.report.result_section import result_report
 
-    return page(result_report(result))
+    return page(result_report(result, uncertain))
 
 
 def page(report: Report) -> str:

@@ -384,6 +384,48 @@ ONE_MISTAKE = {
         GOOD + "checks: {safety_factor: {steal: 3}}\n",
         (14, 26, "unknown key `steal`; did you mean `steel`?"),
     ),
+    "cause misspelt": (
+        GOOD + "uncertainty: {curent: 5 %}\n",
+        (14, 15, "unknown key `curent`; did you mean `current`?"),
+    ),
+    "deviation too wide": (
+        GOOD + "uncertainty: {current: 60 %}\n",
+        (
+            14,
+            24,
+            "`current: 60 %` is too wide for a deviation, 25 % at most; give a pair, "
+            "its 5 and 95 %",
+        ),
+    ),
+    "deviation without percent": (
+        GOOD + "uncertainty: {length: 5}\n",
+        (
+            14,
+            23,
+            "`length: 5` is too wide for a deviation, 25 % at most; give a pair, its 5 and 95 %; "
+            "did you mean `length: 5 %`?",
+        ),
+    ),
+    "deviation below nothing": (
+        GOOD + "uncertainty: {depth: -1 %}\n",
+        (14, 22, "`depth: -1 %` must be at least 0"),
+    ),
+    "direction of no unit": (
+        GOOD + "uncertainty: {direction: 5}\n",
+        (14, 26, "`direction: 5` needs a unit; did you mean `direction: 5 deg`?"),
+    ),
+    "pair the wrong way round": (
+        GOOD + "uncertainty: {cable_drag: [30 %, -15 %]}\n",
+        (14, 27, "`cable_drag: …` is a pair, but its 5 % is not below its 95 %"),
+    ),
+    "pair of three": (
+        GOOD + "uncertainty: {cable_drag: [1 %, 2 %, 3 %]}\n",
+        (14, 27, "`cable_drag: …` is neither one deviation nor a pair, its 5 and 95 %"),
+    ),
+    "pair below nothing": (
+        GOOD + "uncertainty: {cable_drag: [-150 %, 10 %]}\n",
+        (14, 27, "`cable_drag: …` has an end, `-150 %`, which must be more than -1"),
+    ),
 }
 
 

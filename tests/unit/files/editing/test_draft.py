@@ -2,7 +2,7 @@
 
 import pytest
 
-from calm.files.editing import Draft, EditError
+from calm.files.editing import Draft, EditError, clamps_of
 
 TEXT = """\
 name: Old   # of the line
@@ -138,19 +138,19 @@ def test_clamps() -> None:
     draft = Draft(TEXT)
     clamp = {"use": "meter", "at": "7 m"}
     below = "# upper\n"
-    assert draft.insert_clamp(1, 1, clamp).text == edited(
+    assert draft.insert(1, clamp, clamps_of(1)).text == edited(
         below, below + "      - {use: meter, at: 7 m}\n"
     )
-    assert draft.insert_clamp(2, 0, clamp).text == edited(
+    assert draft.insert(0, clamp, clamps_of(2)).text == edited(
         "{use: dead}", "{use: dead, clamps: [{use: meter, at: 7 m}]}"
     )
-    assert draft.put_clamp(1, 0, "at", "6 m").text == edited("at: 5 m", "at: 6 m")
-    one = draft.delete_clamp(1, 1)
+    assert draft.put(0, "at", "6 m", clamps_of(1)).text == edited("at: 5 m", "at: 6 m")
+    one = draft.delete([1], clamps_of(1))
     assert one.text == edited("      - {use: meter, at: 9 m}\n", "")
-    none = one.delete_clamp(1, 0)
+    none = one.delete([0], clamps_of(1))
     assert "clamps" not in none.text and "length: 80 m   # cut\n\n  - {use: dead}" in none.text
     with pytest.raises(EditError, match="no clamp 2 among 2"):
-        draft.delete_clamp(1, 2)
+        draft.delete([2], clamps_of(1))
 
 
 def test_put_at_makes_the_mappings_that_lead_there() -> None:
@@ -293,13 +293,13 @@ def test_a_copied_clamp_is_worded_as_the_one_it_was_copied_from() -> None:
     draft = Draft(NESTED)
     upper = NESTED[NESTED.index("      # b") : NESTED.index("      - {use: meter")]
     lower = '      - {use: meter, at: "9 m"}\n'
-    copied = draft.copy_clamps(0, [0, 1])
-    twice = draft.paste_clamps(0, 2, copied)
+    copied = draft.copy([0, 1], clamps_of(0))
+    twice = draft.paste(2, copied, clamps_of(0))
     assert twice.text == NESTED.replace(upper + lower, (upper + lower) * 2)
-    one_line = draft.paste_clamps(1, 0, copied[1:])
+    one_line = draft.paste(0, copied[1:], clamps_of(1))
     assert one_line.text == NESTED.replace("5 m}", '5 m, clamps: [{use: meter, at: "9 m"}]}')
     with pytest.raises(EditError, match="no clamp 0 among 0"):
-        draft.copy_clamps(1, [0])
+        draft.copy([0], clamps_of(1))
 
 
 def test_a_copy_in_brackets_keeps_its_quotes_and_comments() -> None:
@@ -317,7 +317,7 @@ def test_a_value_of_a_text_with_mistakes_is_none() -> None:
 def test_a_clamp_moves_with_what_is_said_of_it() -> None:
     upper = "      - {use: meter, at: 5 m}   # upper\n"
     lower = "      - {use: meter, at: 9 m}\n"
-    assert Draft(TEXT).move_clamp(1, 0, 1).text == edited(upper + lower, lower + upper)
+    assert Draft(TEXT).move(0, 1, clamps_of(1)).text == edited(upper + lower, lower + upper)
 
 
 @pytest.mark.parametrize("label", ["a\x07b", "\x1b[31mred", "a\x85b", "\u202eb"])

@@ -1,0 +1,118 @@
+"""`uncertainty:` of a mooring file: how sure its figures are, each with its default and source."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from pydantic import GetJsonSchemaHandler
+from pydantic_core import CoreSchema, core_schema
+
+from calm.files.checks import THIS_PROGRAM
+from calm.files.fields import Model, Quantity
+from calm.units import QuantityError
+
+MOST_DEVIATION = 0.25
+"""Of a share: a normal distribution wider than this would often pass below nothing."""
+_SHARE = Quantity("number", at_least=0.0)
+_TOO_WIDE = "is too wide for a deviation, 25 % at most; give a pair, its 5 and 95 %"
+
+
+@dataclass(frozen=True)
+class Spread:
+    """How far a figure may be off: of a share that of 1, of an angle in degrees.
+
+    Attributes
+    ----------
+    deviation : standard deviation of a normal distribution; None where `between` is given
+    between : its 5 and 95 %
+    """
+
+    deviation: float | None = None
+    between: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class SpreadOf:
+    """Annotation of a key of `uncertainty:`.
+
+    Attributes
+    ----------
+    one : what a standard deviation may be
+    end : what the 5 and the 95 % may be
+    meaning, source : of the key, and of its default
+    """
+
+    one: Quantity
+    end: Quantity
+    meaning: str
+    source: str = THIS_PROGRAM
+
+    def read(self, value: object) -> Spread:
+        """Of one text with a unit, or of two in a list."""
+        if not isinstance(value, list | tuple):
+            return Spread(self._deviation(value))
+        if len(value) != 2:
+            raise QuantityError("is neither one deviation nor a pair, its 5 and 95 %")
+        low, high = map(self._end, value)
+        if not low < high:
+            raise QuantityError("is a pair, but its 5 % is not below its 95 %")
+        return Spread(between=(low, high))
+
+    def _deviation(self, value: object) -> float:
+        deviation = self.one.read(value)
+        if self.one is _SHARE and deviation > MOST_DEVIATION:
+            bare = isinstance(value, int | float) or "%" not in str(value)
+            meant = f"{value} %" if bare and deviation <= 100.0 * MOST_DEVIATION else None
+            raise QuantityError(_TOO_WIDE, meant)
+        return deviation
+
+    def _end(self, value: object) -> float:
+        try:
+            return self.end.read(value)
+        except QuantityError as error:
+            raise QuantityError(f"has an end, `{value}`, which {error}") from None
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        pair = {"type": "array", "items": self.end.json_schema(), "minItems": 2, "maxItems": 2}
+        return {"description": self.meaning, "anyOf": [self.one.json_schema(), pair]}
+
+
+_SHARES = (_SHARE, Quantity("number", above=-1.0, at_most=10.0))
+_ANGLES = (
+    Quantity("angle", at_least=0.0, at_most=180.0),
+    Quantity("angle", at_least=-180.0, at_most=180.0),
+)
+
+
+class Uncertainty(Model):
+    """How sure what a design stands on is: one draw of each a mooring."""
+
+    current: Annotated[Spread, SpreadOf(*_SHARES, "of the speed at all depths alike")] = Spread(0.1)
+    direction: Annotated[
+        Spread, SpreadOf(*_ANGLES, "of the current's direction at all depths alike")
+    ] = Spread(5.0)
+    cable_drag: Annotated[
+        Spread, SpreadOf(*_SHARES, "of the drag of cables and chains, strumming aside")
+    ] = Spread(between=(-0.15, 0.30))
+    rigid_drag: Annotated[
+        Spread, SpreadOf(*_SHARES, "of the drag of rigid pieces and of what is clamped on")
+    ] = Spread(0.15)
+    buoyancy: Annotated[
+        Spread, SpreadOf(*_SHARES, "of the net buoyancy of what is rigid and floats")
+    ] = Spread(0.02)
+    cable_weight: Annotated[
+        Spread, SpreadOf(*_SHARES, "of the net force of cables and chains in water")
+    ] = Spread(0.03)
+    length: Annotated[Spread, SpreadOf(*_SHARES, "of the cut lengths of cables and chains")] = (
+        Spread(0.003)
+    )
+    stiffness: Annotated[Spread, SpreadOf(*_SHARES, "of the force that stretches a cable")] = (
+        Spread(0.2)
+    )
+    depth: Annotated[Spread, SpreadOf(*_SHARES, "of the water's depth")] = Spread(0.01)

@@ -1,0 +1,114 @@
+"""How sure the figures of a mooring are, as a person reads it."""
+
+from __future__ import annotations
+
+from math import isnan
+from typing import TYPE_CHECKING
+
+from calm.checks.finding import State
+from calm.files.uncertainty import Spread
+from calm.report.blocks import Block, Cell, Column, Line, Part, Prose, Span, Table
+
+if TYPE_CHECKING:
+    from calm.case.uncertain import Uncertain
+    from calm.files import Uncertainty
+
+_ENDS = ("5 %", "50 %", "95 %")
+
+
+def uncertainty_part(uncertain: Uncertain) -> Part:
+    """The line's ends and pieces at 5, 50 and 95 %, and what their spread comes from.
+
+    It fits 80 columns.
+    """
+    blocks: list[Block] = [_ends(uncertain), _pieces(uncertain)]
+    if uncertain.contributions:
+        blocks.append(_contributions(uncertain))
+    if uncertain.failed:
+        each = ", ".join(f"{count} {status}" for status, count in uncertain.failures.items())
+        said = f"{uncertain.failed} of {uncertain.samples} samples have no equilibrium ({each})"
+        blocks.append(Prose((f"{said}; the figures are of the others.",), State.WARN))
+    blocks.append(Prose((_quiet(_basis(uncertain)),)))
+    return Part("How sure these figures are", tuple(blocks))
+
+
+def _quiet(text: str) -> Line:
+    return (Span(text, quiet=True),)
+
+
+def _basis(uncertain: Uncertain) -> str:
+    drawn = drawn_text(uncertain.result.file.uncertainty)
+    return f"{uncertain.samples} samples, seed {uncertain.seed}; drawn: {drawn}."
+
+
+def drawn_text(uncertainty: Uncertainty) -> str:
+    """What is drawn, and how far: ``current ±10 %, cable drag −15 to +30 %``."""
+    said = []
+    for name in type(uncertainty).model_fields:
+        spread: Spread = getattr(uncertainty, name)
+        unit, scale = ("°", 1.0) if name == "direction" else (" %", 100.0)
+        if spread.between is not None:
+            low, high = (scale * end for end in spread.between)
+            said.append(f"{_words(name)} {low:+.3g} to {high:+.3g}{unit}".replace("-", "−"))
+        elif spread.deviation:
+            said.append(f"{_words(name)} ±{scale * spread.deviation:.3g}{unit}")
+    return ", ".join(said) or "nothing"
+
+
+def _words(name: str) -> str:
+    return name.replace("_", " ")
+
+
+def _ends(uncertain: Uncertain) -> Table:
+    rows = [
+        ("depth of the top", "m", uncertain.depth_top[:, 0], 1),
+        ("knockdown", "m", uncertain.knockdown[:, 0], 1),
+        ("excursion of the top", "m", uncertain.offset[:, 0], 1),
+        ("pull on the anchor", "N", uncertain.anchor_tension, 0),
+        ("weight needed", "N", uncertain.required_weight, 0),
+    ]
+    columns = (Column(""), *(Column(end, numeric=True) for end in _ENDS), Column("unit", share=0.0))
+    cells = tuple(
+        (Cell(name), *(Cell(_figure(value, decimals)) for value in values), Cell(unit))
+        for name, unit, values, decimals in rows
+    )
+    return Table("", columns, cells)
+
+
+def _pieces(uncertain: Uncertain) -> Table:
+    heads = [Column("component")]
+    for quantity, unit, ends in (("depth", "m", _ENDS), ("tilt", "°", _ENDS[1:]),
+                                 ("tension", "N", _ENDS[1:])):  # fmt: skip
+        heads += [Column(f"{quantity}\n{end}", unit, numeric=True) for end in ends]
+    rows = []
+    for row, label in enumerate(uncertain.result.components.label):
+        figures = [_figure(value, 1) for value in uncertain.depth_top[:, row]]
+        figures += [_figure(value, 1) for value in uncertain.tilt[1:, row]]
+        figures += [_figure(value, 0) for value in uncertain.tension[1:, row]]
+        rows.append((Cell(label), *map(Cell, figures)))
+    return Table("", tuple(heads), tuple(rows))
+
+
+def _contributions(uncertain: Uncertain) -> Table:
+    quantity = uncertain.contributions[0].quantity
+    heads = (
+        Column(f"the spread of the {quantity} comes from"),
+        Column("alone", "%", numeric=True),
+        Column("in all", "%", numeric=True),
+    )
+    rows = tuple(
+        (Cell(_words(each.cause)), Cell(_share(each.first)), Cell(_share(each.total)))
+        for each in uncertain.contributions
+    )
+    note = ""
+    if uncertain.unexplained > 0.05:
+        note = f"{uncertain.unexplained:.0%} of it no index explains: the line answers unevenly."
+    return Table("", heads, rows, note=note)
+
+
+def _share(share: float) -> str:
+    return f"{100.0 * share:.0f}" if share >= 0.005 else "<1"
+
+
+def _figure(value: float, decimals: int) -> str:
+    return "-" if isnan(value) else f"{value:z.{decimals}f}"
