@@ -113,7 +113,7 @@ def solve_chunks(
     desk: Desk, shapes: Shapes, seek: Searches, depth: Floats, u: Floats, v: Floats, w: Floats,
     results: Results, reasons: Integers,
 ) -> None:  # fmt: skip
-    """Solve cases, as many at a time as there are slots: see `solve_cases`."""
+    """Solve cases, as many at a time as there are slots: see `calm.batch.kernel.solve.Kernel`."""
     chunk = seek.size
     for start in range(0, reasons.size, chunk):
         ends = reasons[start : start + chunk]
