@@ -1,9 +1,12 @@
 """Every run of the tests tries the same examples and sees no catalogue but the shipped one."""
 
 import os
+from collections.abc import Iterator
 
 import pytest
 from hypothesis import settings
+
+from calm.physics import pace
 
 settings.register_profile("ci", derandomize=True, deadline=None, database=None)
 settings.register_profile("explore", deadline=None, max_examples=2000)
@@ -14,3 +17,16 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci"))
 def without_the_users_catalogue(tmp_path_factory: pytest.TempPathFactory) -> None:
     """Whoever runs the tests may have a catalogue of their own."""
     os.environ["CALM_CATALOG_DIR"] = str(tmp_path_factory.mktemp("catalogue") / "none")
+
+
+@pytest.fixture(autouse=True)
+def march_as_it_stands() -> Iterator[None]:
+    """A test that has the march compiled leaves it as it stands for the next."""
+    yield
+    pace.march_fast(False)
+
+
+@pytest.fixture
+def march_compiled() -> None:
+    """The march compiled, where numba is there: the same digits, sooner."""
+    pace.expect(pace.COLD)

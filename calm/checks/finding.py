@@ -34,7 +34,10 @@ class State(StrEnum):
     @property
     def severity(self) -> int:
         """0 for what passes, more the graver."""
-        return list(State).index(self)
+        return _SEVERITIES[self]
+
+
+_SEVERITIES = {state: severity for severity, state in enumerate(State)}
 
 
 def worst_state(states: Iterable[State]) -> State:

@@ -128,7 +128,8 @@ def solve(
     for name in known.keys() & {"phi_a", "phi_b"}:
         known[name] = math.radians(known[name])
     answer = chart_solve(_drag_over_weight(cable), cable["weight"], **known)
-    outputs.write_answer(answer_document(answer), answer_part(answer) if answer.solutions else None)
+    part = answer_part(answer) if answer.solutions else None
+    outputs.write_answer(lambda: answer_document(answer), part)
     if not answer.solutions:
         narrate(f"calm: {answer.status}: {answer.message} {answer.advice}")
         return ExitCode.NO_EQUILIBRIUM

@@ -5,8 +5,9 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from datetime import date, datetime
+from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from calm.cli.check_files import Design, read_designs
 from calm.cli.exit_codes import ExitCode, gravest
@@ -81,9 +82,8 @@ def check(
         of_files = (notice for one in design.moorings for notice in one.file.notices)
         for notice in dict.fromkeys((*of_files, *assessment.notices)):
             narrate(f"{design.path}: {notice}")
-    _show(assessments, outputs)
-    if report is not None:
-        _write(report, assessments, [section for _, section in judged if section is not None])
+    sections = [section for _, section in judged if section is not None]
+    _answer(assessments, sections, outputs, report)
     return gravest(_code(each, allow_unknown) for each in assessments)
 
 
@@ -160,30 +160,48 @@ def _stand(task: tuple[str, Mooring, date]) -> Stand:
         return failed_stand(mooring, name, internal_failure(error))
 
 
-def _show(assessments: Sequence[Assessment], outputs: Outputs) -> None:
+def _answer(
+    assessments: Sequence[Assessment],
+    sections: Sequence[Section],
+    outputs: Outputs,
+    folder: Path | None,
+) -> None:
+    """Print what was found, and write the report if it is asked for.
+
+    Its PDF is set meanwhile: typst does not hold Python up.
+    """
+    from concurrent.futures import ThreadPoolExecutor
+
     from calm.report.check.brief import check_part
     from calm.report.check.document import check_document
-
-    outputs.write_answer(check_document(assessments), check_part(assessments))
-
-
-def _write(folder: Path, assessments: Sequence[Assessment], sections: Sequence[Section]) -> None:
-    from calm.report.check.csv import checks_csv, inventory_csv
-    from calm.report.check.document import check_document
-    from calm.report.document import to_json
     from calm.report.folder import write_report
-    from calm.report.html import report_html
     from calm.report.pdf import report_pdf
+
+    document = cache(lambda: check_document(assessments))
+    with ThreadPoolExecutor(1) as beside:
+        pdf = None if folder is None else beside.submit(report_pdf, sections)
+        outputs.write_answer(document, check_part(assessments))
+        if folder is not None and pdf is not None:
+            files = _report_files(assessments, sections, document())
+            write_report(folder, files | {"report.pdf": pdf.result()})
+            narrate(f"the report is in {folder}")
+
+
+def _report_files(
+    assessments: Sequence[Assessment], sections: Sequence[Section], document: dict[str, Any]
+) -> dict[str, bytes]:
+    """What the folder of a report has, but for its PDF."""
+    from calm.report.check.csv import checks_csv, inventory_csv
+    from calm.report.document import to_json
+    from calm.report.html import report_html
 
     texts = {
         "report.html": report_html(sections),
-        "report.json": to_json([check_document(assessments)]),
+        "report.json": to_json([document]),
         "checks.csv": checks_csv(assessments),
         "inventory.csv": inventory_csv(assessments),
     }
-    files = {name: text.encode("utf-8", "replace") for name, text in texts.items()}
-    write_report(folder, files | {"report.pdf": report_pdf(sections)})
-    narrate(f"the report is in {folder}")
+    return {name: text.encode("utf-8", "replace") for name, text in texts.items()}
 
 
 def _code(assessment: Assessment, allow_unknown: bool) -> ExitCode:

@@ -197,8 +197,13 @@ class Outputs:
             if path != STDOUT:
                 check_destination(path)
 
-    def write_answer(self, document: dict[str, Any], part: Part | None) -> None:
+    def write_answer(self, document: Callable[[], dict[str, Any]], part: Part | None) -> None:
         """Write what a command without files answers: `json`, and the part unless that is shown.
+
+        Parameters
+        ----------
+        document : callable
+            Makes the JSON object; called only where it was asked for.
 
         Raises
         ------
@@ -208,14 +213,13 @@ class Outputs:
         from calm.report.document import to_json
         from calm.report.write import write_file
 
-        text = to_json([document])
         if self.json == STDOUT:
-            show(text)
+            show(to_json([document()]))
             return
         if part is not None:
             show_parts(part)
         if self.json is not None:
-            write_file(self.json, text.encode())
+            write_file(self.json, to_json([document()]).encode())
 
     def write(self, shown: Sequence[Shown], to_csv: Callable[[], str]) -> None:
         """Write the files, then the standard output: what was asked for there, or the tables.

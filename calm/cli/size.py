@@ -75,8 +75,8 @@ def size(
         raise UsageError(f"{file} is a tow; calm size changes moorings")
     sizing = sized(mooring, target, change, between)
     if sizing.after is not None:
-        outputs.write_answer(sizing.to_dict(), sizing_part(sizing))
+        outputs.write_answer(sizing.to_dict, sizing_part(sizing))
         return ExitCode.DONE
-    outputs.write_answer(sizing.to_dict(), None)
+    outputs.write_answer(sizing.to_dict, None)
     narrate(f"{file}: {refusal(sizing)}")
     return ExitCode.NO_EQUILIBRIUM

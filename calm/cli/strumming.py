@@ -75,7 +75,7 @@ def strumming(
             }
         )
     )
-    outputs.write_answer(bare_cable_document(cable), bare_cable_part(cable))
+    outputs.write_answer(lambda: bare_cable_document(cable), bare_cable_part(cable))
     return ExitCode.DONE
 
 

@@ -44,7 +44,7 @@ def verify(words: list[str] | None = None, /, *, json: OutputPath = None) -> Exi
     expect_many(sum(len(source.cases) for source in chosen))
     findings = _checked(chosen)
     document = verification_document(findings)
-    outputs.write_answer(document, verification_part(findings))
+    outputs.write_answer(lambda: document, verification_part(findings))
     return ExitCode.FINDING if document["out"] else ExitCode.DONE
 
 

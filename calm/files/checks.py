@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cache
 from typing import Annotated
 
 from pydantic import Field
+from pydantic.fields import FieldInfo
 
 from calm.files.accept import AcceptKeys
 from calm.files.fields import LENGTH, POSITIVE_LENGTH, Model, Quantity
@@ -136,15 +138,25 @@ def limit_keys(checks: Checks) -> Iterator[LimitKey]:
 
 
 def _limit_keys(model: Model, prefix: str) -> Iterator[LimitKey]:
-    for name, field in type(model).model_fields.items():
+    for name, default in _defaults(type(model)):
         value = getattr(model, name)
         if isinstance(value, Model):
             yield from _limit_keys(value, f"{prefix}{name}.")
-            continue
-        limit = next((one for one in field.metadata if isinstance(one, Limit)), None)
-        quantity = next((one for one in field.metadata if isinstance(one, Quantity)), None)
-        if limit is None or quantity is None:
-            continue
-        default = limit.default if field.default is None else field.default
-        used = default if value is None else value
-        yield LimitKey(prefix + name, quantity.dimension, used, default, limit.source)
+        elif default is not None:
+            used = default.value if value is None else value
+            yield replace(default, name=prefix + name, value=used)
+
+
+@cache
+def _defaults(model: type[Model]) -> tuple[tuple[str, LimitKey | None], ...]:
+    """Of each field the limit that it is unless given; None of one that is no limit."""
+    return tuple((name, _default(name, field)) for name, field in model.model_fields.items())
+
+
+def _default(name: str, field: FieldInfo) -> LimitKey | None:
+    limit = next((one for one in field.metadata if isinstance(one, Limit)), None)
+    quantity = next((one for one in field.metadata if isinstance(one, Quantity)), None)
+    if limit is None or quantity is None:
+        return None
+    default = limit.default if field.default is None else field.default
+    return LimitKey(name, quantity.dimension, default, default, limit.source)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 from calm.errors import NoEquilibrium
@@ -34,15 +36,38 @@ def to_json(documents: list[dict[str, Any]]) -> str:
     no terminal or pipe can spoil it.
     """
     content = documents[0] if len(documents) == 1 else documents
-    return json.dumps(_finite(content), indent=2, allow_nan=False) + "\n"
+    return _indented(content, "\n") + "\n"
+
+
+def _indented(value: Any, line: str) -> str:
+    """What `json.dumps` writes with an indent of two; `line` is what begins a line at this depth.
+
+    Its encoder is fast only without an indent: so it writes all that has no further level in it.
+    """
+    if not isinstance(value, _NESTED) or not value:
+        return _encoder(",")(_finite(value))
+    below = line + "  "
+    members = [*value.values()] if isinstance(value, dict) else value
+    if not any(isinstance(member, _NESTED) for member in members):
+        finite = [*map(_finite, members)]
+        flat = dict(zip(value, finite, strict=True)) if isinstance(value, dict) else finite
+        text = _encoder("," + below)(flat)
+        return text[0] + below + text[1:-1] + line + text[-1]
+    texts = [_indented(member, below) for member in members]
+    if isinstance(value, dict):
+        named = (f"{json.dumps(name)}: {text}" for name, text in zip(value, texts, strict=True))
+        return "{" + below + f",{below}".join(named) + line + "}"
+    return "[" + below + f",{below}".join(texts) + line + "]"
+
+
+@cache
+def _encoder(between: str) -> Callable[[Any], str]:
+    return json.JSONEncoder(separators=(between, ": "), allow_nan=False).encode
 
 
 def _finite(value: Any) -> Any:
-    """The same value with every number that is not finite replaced by None, at any depth."""
-    if isinstance(value, dict):
-        return {key: _finite(member) for key, member in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(member) for member in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value
+    """None in place of a number that is not finite."""
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+_NESTED = (dict, list, tuple)

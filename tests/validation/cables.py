@@ -76,6 +76,7 @@ def follow(
     if bare:
         _leave_free_end(cable, way, profile)
     band = profile.band(-float(way.position[2]), rising=way.force[2] < 0.0)
+    load, strain, thinning = cable.load, cable.strain, cable.thinning
     evaluations = 0
 
     def slope(_: float, state: Vector) -> Vector:
@@ -83,12 +84,12 @@ def follow(
         evaluations += 1
         if evaluations > MOST_EVALUATIONS:
             raise Folded("a cable is too slack over too long a way to be followed")
-        tension = sqrt(state[3] ** 2 + state[4] ** 2 + state[5] ** 2)
-        stretched = 1.0 + cable.strain(tension)
-        axis = state[3:] / -tension
-        flow = profile.flow(-state[2], band)
-        pull = cable.load.force(flow, axis, stretched**cable.thinning)
-        return np.concatenate((stretched * axis, pull))
+        _, _, height, east, north, up = state.tolist()
+        tension = sqrt(east * east + north * north + up * up)
+        stretched = 1.0 + strain(tension)
+        x, y, z = east / -tension, north / -tension, up / -tension
+        pull = load.pull(profile.flow(-height, band), x, y, z, stretched**thinning)
+        return np.array((stretched * x, stretched * y, stretched * z, *pull))
 
     def leaves_upward(_: float, state: Vector) -> float:
         return float(-state[2] - profile.limits(band)[0])

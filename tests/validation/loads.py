@@ -41,8 +41,13 @@ class Load:
 
     def force(self, flow: Flow, axis: Vector, swelling: float = 1.0) -> Vector:
         """Buoyancy, lift, drag and wind [N] with the axis along the unit vector `axis`."""
+        return np.array(self.pull(flow, *axis.tolist(), swelling))
+
+    def pull(
+        self, flow: Flow, x: float, y: float, z: float, swelling: float = 1.0
+    ) -> tuple[float, float, float]:
+        """The same of plain numbers, the unit vector's parts one by one: it is asked for often."""
         u, v, w, density = flow
-        x, y, z = axis
         speed = sqrt(u * u + v * v + w * w)
         # Drag is `normal` times the flow and `tangential` times the axis.
         varied = self.smooth.factor if self.smooth else lambda _: 1.0
@@ -63,12 +68,10 @@ class Load:
         scale = density / 1025.0 * swelling
         lift = density / 1025.0 * self.lift * speed * speed
         lift += self.buoyancy + (density - 1025.0) * self.gravity * self.volume
-        return np.array(
-            (
-                scale * (normal * u + tangential * x) + self.push[0],
-                scale * (normal * v + tangential * y) + self.push[1],
-                scale * (normal * w + tangential * z) + lift,
-            )
+        return (
+            scale * (normal * u + tangential * x) + self.push[0],
+            scale * (normal * v + tangential * y) + self.push[1],
+            scale * (normal * w + tangential * z) + lift,
         )
 
 

@@ -8,6 +8,7 @@ With the force F above and loads q at distances a from the upper end of a rod of
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from math import sqrt
 
 import numpy as np
 from scipy.optimize import root
@@ -27,13 +28,17 @@ def rod_axis(
     `loads` are (distance from the upper end, load); those of a rod without length turn it by half.
     """
 
+    height, above = float(position[2]), force.tolist()
+
     def lever(axis: Vector, drag: float) -> Vector:
-        total = force.copy()
+        x, y, z = axis.tolist()
+        east, north, up = above
         for at, load in loads:
-            u, v, w, density = profile.at(-float(position[2] + at * axis[2]))
+            u, v, w, density = profile.at(-(height + at * z))
             arm = 1.0 - at / length if length else 0.5
-            total += arm * load.force((drag * u, drag * v, drag * w, density), axis)
-        return total
+            pull = load.pull((drag * u, drag * v, drag * w, density), x, y, z)
+            east, north, up = east + arm * pull[0], north + arm * pull[1], up + arm * pull[2]
+        return np.array((east, north, up))
 
     # The drag is raised in steps, one if one will do: each axis starts the search for the next.
     for steps in (1, 4, 16, 64):
@@ -49,8 +54,8 @@ def rod_axis(
 
 def against(force: Vector) -> Vector:
     """The unit vector against a force; plumb where there is none."""
-    size = float(np.linalg.norm(force))
-    return -force / size if size > 0.0 else DOWN
+    size = sqrt(force @ force)
+    return force / -size if size > 0.0 else DOWN
 
 
 def balance(lever: Callable[[Vector], Vector], guess: Vector) -> Vector | None:
@@ -60,10 +65,11 @@ def balance(lever: Callable[[Vector], Vector], guess: Vector) -> Vector | None:
 
         def turned(by: Vector, start: Vector = start, across: Vector = across) -> Vector:
             axis = start + by @ across
-            return axis / np.linalg.norm(axis)
+            return axis / sqrt(axis @ axis)
 
         def moment(by: Vector, turned=turned, across=across) -> Vector:
-            return across @ (turned(by) - against(lever(turned(by))))
+            axis = turned(by)
+            return across @ (axis - against(lever(axis)))
 
         found = turned(root(moment, np.zeros(2), tol=1e-14).x)
         if np.abs(found - against(lever(found))).max() < 1e-10:

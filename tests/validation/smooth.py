@@ -9,6 +9,7 @@ All straight over logarithms, and held outside.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import log
 
 import numpy as np
 
@@ -28,8 +29,9 @@ KAPPA = np.array([
     (1, 0.52, 0.80), (2, 0.58, 0.80), (5, 0.62, 0.80), (10, 0.68, 0.82), (20, 0.74, 0.90),
     (40, 0.82, 0.98), (50, 0.87, 0.99), (100, 0.98, 1.00),
 ])  # fmt: skip
-ENDS = np.array([0.1, 1e6])
+ENDS = 0.1, 1e6
 """Between these the sphere's formula is taken as it is."""
+LONG, SLENDER, CRISIS = np.log(CYLINDER[:, 0]), np.log(KAPPA[:, 0]), np.log([1.8e5, 2.2e5])
 
 
 @dataclass(frozen=True)
@@ -43,11 +45,11 @@ class Smooth:
         """Drag at a speed [m/s] over that of the usual coefficient, 0.5 or 1.2 κ."""
         reynolds = max(speed * self.diameter / VISCOSITY, 1e-9)
         if self.slenderness is None:
-            return sphere(float(np.clip(reynolds, *ENDS))) / 0.5
-        ratio = np.log(max(self.slenderness, 1e-9))
-        below, above = (np.interp(ratio, np.log(KAPPA[:, 0]), KAPPA[:, i]) for i in (1, 2))
-        kappa = np.interp(np.log(reynolds), np.log([1.8e5, 2.2e5]), [below, above])
-        long = np.interp(np.log(reynolds), np.log(CYLINDER[:, 0]), CYLINDER[:, 1])
+            return sphere(min(max(reynolds, ENDS[0]), ENDS[1])) / 0.5
+        ratio = log(max(self.slenderness, 1e-9))
+        below, above = (np.interp(ratio, SLENDER, KAPPA[:, i]) for i in (1, 2))
+        kappa = np.interp(log(reynolds), CRISIS, [below, above])
+        long = np.interp(log(reynolds), LONG, CYLINDER[:, 1])
         return float(long * kappa / (1.2 * below))
 
 

@@ -18,13 +18,17 @@ from tests.validation.agreement import closure, difference
 from tests.validation.cables import Folded, NoContinuousSolution
 from tests.validation.closing import solve_continuous
 
-STANDING = 15
+pytestmark = pytest.mark.usefixtures("march_compiled")
+
+STANDING = 5
+BLOCKS = [0, *(pytest.param(block, marks=pytest.mark.slow) for block in range(1, 3))]
 
 
 @pytest.mark.parametrize("law", [Friction.HOERNER, Friction.CONSTANT])
-def test_calm_agrees_with_the_referee(law) -> None:
-    """A failure names the number that draws its mooring."""
-    number, standing = 50_000, 0
+@pytest.mark.parametrize("block", BLOCKS)
+def test_calm_agrees_with_the_referee(law, block) -> None:
+    """Five standing moorings a block; a failure names the number that draws its mooring."""
+    number, standing = 50_000 + 1000 * block, 0
     while standing < STANDING:
         number += 1
         line, water = mooring(Random(number))

@@ -24,10 +24,10 @@ from tests.validation.agreement import closure, difference
 from tests.validation.cables import Folded, NoContinuousSolution
 from tests.validation.closing import solve_continuous
 
+pytestmark = pytest.mark.usefixtures("march_compiled")
+
 AFLOAT = 6
-
-
-BLOCKS = [*range(4), *(pytest.param(block, marks=pytest.mark.slow) for block in range(4, 8))]
+BLOCKS = [*range(2), *(pytest.param(block, marks=pytest.mark.slow) for block in range(2, 8))]
 
 
 @pytest.mark.parametrize("block", BLOCKS)

@@ -21,10 +21,10 @@ from tests.validation.agreement import closure, difference
 from tests.validation.cables import Folded, NoContinuousSolution
 from tests.validation.closing import solve_continuous
 
+pytestmark = pytest.mark.usefixtures("march_compiled")
+
 STANDING = 20
-
-
-BLOCKS = [*range(6), *(pytest.param(block, marks=pytest.mark.slow) for block in range(6, 12))]
+BLOCKS = [*range(2), *(pytest.param(block, marks=pytest.mark.slow) for block in range(2, 12))]
 
 
 @pytest.mark.parametrize("block", BLOCKS)

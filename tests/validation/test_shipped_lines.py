@@ -7,6 +7,7 @@ close to 1e-6, recomputed here from the final coordinates.
 
 from __future__ import annotations
 
+from functools import cache
 from math import radians
 from pathlib import Path
 
@@ -15,12 +16,24 @@ import pytest
 import calm
 from calm.solve import Settings, solve_mooring, solve_tow
 from tests.validation.agreement import closure, difference
-from tests.validation.closing import solve_continuous
-from tests.validation.towed import Passing, solve_continuous_tow
+from tests.validation.closing import Equilibrium, solve_continuous
+from tests.validation.towed import Passing, Towed, solve_continuous_tow
+
+pytestmark = pytest.mark.usefixtures("march_compiled")
 
 LINES = sorted((Path(__file__).parents[2] / "lines").glob("*.yaml"))
 TOWS = [path for path in LINES if "\ntow:" in path.read_text(encoding="utf-8")]
 MOORINGS = [path for path in LINES if path not in TOWS]
+
+
+@cache
+def referee_of(path: Path) -> Equilibrium | Towed:
+    """The continuous solution of a shipped line, which two tests look at."""
+    if path in TOWS:
+        tow = calm.load(path)
+        return solve_continuous_tow(tow.line, tow.water, tow.towing)
+    mooring = calm.load(path)
+    return solve_continuous(mooring.line, mooring.water)
 
 
 def test_there_are_shipped_lines() -> None:
@@ -31,7 +44,7 @@ def test_there_are_shipped_lines() -> None:
 @pytest.mark.parametrize("path", TOWS, ids=lambda path: path.stem)
 def test_calm_agrees_with_the_referee_on_tows(path) -> None:
     tow = calm.load(path)
-    referee = solve_continuous_tow(tow.line, tow.water, tow.towing)
+    referee = referee_of(path)
     for degrees, near, close in [(1.0, 5e-5, 2e-4), (0.1, 2e-6, 1e-5)]:
         solution = solve_tow(tow.line, tow.water, tow.towing, Settings(radians(degrees)))
         found = difference(solution, referee)
@@ -44,7 +57,7 @@ def test_calm_agrees_with_the_referee_on_tows(path) -> None:
 @pytest.mark.parametrize("path", MOORINGS, ids=lambda path: path.stem)
 def test_calm_agrees_with_the_referee(path) -> None:
     mooring = calm.load(path)
-    referee = solve_continuous(mooring.line, mooring.water)
+    referee = referee_of(path)
     for degrees, near, close in [(1.0, 5e-5, 2e-4), (0.1, 2e-6, 1e-5)]:
         solution = solve_mooring(mooring.line, mooring.water, Settings(radians(degrees)))
         found = difference(solution, referee)
@@ -60,7 +73,7 @@ def test_the_accuracy_it_states_holds(path) -> None:
     """What the result says of its own error, against its error; half of it is the allowance."""
     mooring = calm.load(path)
     result = mooring.solve()
-    referee = solve_continuous(mooring.line, mooring.water)
+    referee = referee_of(path)
     solution = solve_mooring(mooring.line, mooring.water)
     error = difference(solution, referee).place * mooring.water.depth
     assert error <= 1.5 * result.accuracy.depth + 1e-7 * mooring.water.depth
@@ -69,7 +82,7 @@ def test_the_accuracy_it_states_holds(path) -> None:
 @pytest.mark.parametrize("path", TOWS, ids=lambda path: path.stem)
 def test_the_accuracy_a_tow_states_holds(path) -> None:
     tow = calm.load(path)
-    referee = solve_continuous_tow(tow.line, tow.water, tow.towing)
+    referee = referee_of(path)
     length = tow.line.length.sum()
     error = difference(solve_tow(tow.line, tow.water, tow.towing), referee).place * length
     assert error <= 1.5 * tow.solve().accuracy.depth + 1e-7 * length

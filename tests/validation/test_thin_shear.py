@@ -3,7 +3,6 @@
 The water along such a piece changes with its lean, so that its balance is bracketed.
 """
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -13,10 +12,8 @@ from calm.physics import pace
 
 
 @pytest.fixture(params=[False, True], ids=["plain", "compiled"], autouse=True)
-def speed(request: pytest.FixtureRequest) -> Iterator[None]:
+def speed(request: pytest.FixtureRequest) -> None:
     pace.march_fast(request.param)
-    yield
-    pace.march_fast(False)
 
 
 def solved(folder: Path, text: str) -> calm.Result:

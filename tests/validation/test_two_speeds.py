@@ -8,7 +8,7 @@ that a result holds, random moorings and tows of every family, and lines that fa
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import fields, replace
 from random import Random
 from typing import Any
@@ -25,12 +25,6 @@ from calm.solve import FallingAnchor, Settings, Solution, solve_fall, solve_moor
 from tests.validation.families import FAMILIES
 
 SHIPPED = sorted(shipped_folder("lines").glob("*.yaml"))
-
-
-@pytest.fixture(autouse=True)
-def restored() -> Iterator[None]:
-    yield
-    pace.march_fast(False)
 
 
 def both(answer: Callable[[], Any]) -> tuple[Any, Any]:

@@ -1,18 +1,13 @@
 """When the march is compiled: for many lines, and never where it would not pay."""
 
-from collections.abc import Iterator
-
 import pytest
 
 from calm.physics import pace
 
 
 @pytest.fixture(autouse=True)
-def slow(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+def as_nobody_asked(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("CALM_COMPILED", raising=False)
-    pace.march_fast(False)
-    yield
-    pace.march_fast(False)
 
 
 @pytest.mark.parametrize(

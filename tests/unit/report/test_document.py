@@ -1,5 +1,7 @@
 import json
 
+import pytest
+
 from calm.errors import NoEquilibrium
 from calm.report.document import failure_document, to_json
 
@@ -19,6 +21,21 @@ def test_text_is_as_it_was():
         '{\n  "name": "Iroise \\u2013 \\u00e9t\\u00e9",\n  "miss": 1e-07,\n'
         '  "shape": {\n    "x": []\n  }\n}\n'
     )
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        {},
+        [],
+        {"a": []},
+        [[], {}, [[]]],
+        [1, 2.5, True, None, "a, b: {\n  []}"],
+        {"a": {"b": [{"c": ["x,\n  y", -0.0]}, 1], "d": ()}, "é": "\u2028", "e": (1, (2,))},
+    ],
+)
+def test_it_is_indented_as_the_library_does(value):
+    assert to_json([value]) == json.dumps(value, indent=2) + "\n"
 
 
 def test_failure_tells_status_message_and_advice():
