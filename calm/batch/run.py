@@ -199,4 +199,7 @@ def _reason(error: BaseException) -> str:
         return os.strerror(error.errno) if error.errno else str(error)
     if isinstance(error, MemoryError):
         return "not enough memory; fewer --workers take less"
+    # an interrupt within an `exec`, by which numba compiles, has `python -m calm` end by that
+    # signal, whatever it exits with: until another `exec` has ended well
+    exec("")
     return "interrupted"
