@@ -109,6 +109,11 @@ DIMENSIONS: Mapping[str, Dimension] = {
         "",
         {"": 1.0, "PSU": 1.0, "psu": 1.0, "g/kg": 35 / 35.16504},
     ),
+    "pressure": Dimension(
+        "a pressure",
+        "Pa",
+        {"Pa": 1.0, "hPa": 1e2, "kPa": 1e3, "MPa": 1e6, "dbar": 1e4, "mbar": 1e2, "bar": 1e5},
+    ),
     "angle": Dimension("an angle", "deg", {"deg": 1.0, "rad": 180 / math.pi}),
 }
 """Every kind of quantity, by name.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -51,11 +52,18 @@ def arrays_of(
     if shape is not None:
         columns |= {name: columns[name][:, list(shape.clamps)] for name in OF_CLAMP}
         columns |= {f"shape_{name}": array for name, array in shape.columns(profiles).items()}
+    return laid_out(layout, time, columns)
+
+
+def laid_out(
+    layout: Layout, time: NDArray[np.datetime64], columns: Mapping[str, NDArray[Any]]
+) -> dict[str, NDArray[Any]]:
+    """The values of some times, by name, as the variables of a layout that go with time."""
     unit = str(layout.variables[0].attributes["units"]).partition(" ")[0]
     since = time.astype("datetime64[ns]").astype(np.int64)
-    columns["time"] = since // dict(_TIME_UNITS)[unit]
+    known = {**columns, "time": since // dict(_TIME_UNITS)[unit]}
     return {
-        variable.name: np.ascontiguousarray(columns[variable.name], variable.dtype)
+        variable.name: np.ascontiguousarray(known[variable.name], variable.dtype)
         for variable in layout.in_blocks
     }
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.files.current_terms import DEEPEST
+from calm.files.current_terms import DEEPEST, IMPOSSIBLE
 from calm.physics.line import Floats
 
 if TYPE_CHECKING:
@@ -21,7 +21,8 @@ def implausible(
 ) -> NDArray[np.bool_]:
     """Which levels (n, k) are faster than `maximum_speed` [m/s], or deeper than any sea.
 
-    Levels above the surface and those without a value drop out first, and are none of them.
+    An infinite speed is faster. Levels above the surface and those without a value drop out
+    first, and are none of them.
     """
     with np.errstate(invalid="ignore", over="ignore"):
         squared = u * u + v * v + (0.0 if w is None else w * w)
@@ -47,5 +48,6 @@ def first_implausible(record: Record, maximum_speed: float) -> str:
             up = 0.0 if w is None else float(w[at, level])
             speed = float(np.sqrt(u[at, level] ** 2 + v[at, level] ** 2 + up * up))
             time = np.datetime_as_string(record.time[start + at], unit="m")
-            return f"the first at {time}, {deep:g} m: {speed:.5g} m/s"
+            value = f"{speed:.5g} m/s" if np.isfinite(speed) else IMPOSSIBLE
+            return f"the first at {time}, {deep:g} m: {value}"
     return ""

@@ -8,7 +8,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from threading import Event, Timer
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from calm.batch.compiling import compile_kernel
 from calm.batch.dataset import layout_of
@@ -110,8 +110,6 @@ def run_batch(
     NoEquilibrium
         Where a piece is to be cut to fit, and no length does.
     """
-    if output.suffix not in ENDINGS:
-        raise UsageError(f"cannot write {output}: the name of a result ends in .nc or .zarr")
     if record.count == 0:
         raise UsageError("the record has no profile in the time that was asked for")
     say, stop = tell or (lambda _: None), stop or Event()
@@ -119,11 +117,62 @@ def run_batch(
     batch = Batch(nodes.mooring if nodes else mooring)
     if block is None:
         block = _block_for(record.count)
+    length, options = block, {"shape": shape, "block": block}
+
+    def identify() -> str:
+        return to_text(identity_of(mooring, record, options, stop))
+
+    def begin(folder: Path, identity: str) -> Work:
+        store = open_store(folder, layout_of(mooring, record, nodes), length, identity)
+        return Work(batch, record, store, nodes, progress, stop)
+
+    def solve(work: Work) -> None:
+        if scheduler is None:
+            if work.missing:
+                compile_kernel(batch, say)
+            work.here(workers or processors())
+            return
+        try:
+            work.on_cluster(scheduler, say)
+        except UsageError:
+            if not work.counts:
+                clear(output)
+            raise
+
+    return run_kept(output, identify, begin, solve, say)
+
+
+W = TypeVar("W", bound=Work)
+
+
+def run_kept(
+    output: Path,
+    identify: Callable[[], str],
+    begin: Callable[[Path, str], W],
+    solve: Callable[[W], None],
+    say: Callable[[str], None],
+) -> Outcome:
+    """Do work that is kept beside its result as it is done, and make the result.
+
+    Parameters
+    ----------
+    identify : gives the text of what the result is made from
+    begin : opens the store in a folder, and finds what of the work is missing
+    solve : does what is missing
+    say : called with what is worth knowing meanwhile
+
+    Raises
+    ------
+    UsageError
+        As `run_batch`.
+    """
+    if output.suffix not in ENDINGS:
+        raise UsageError(f"cannot write {output}: the name of a result ends in .nc or .zarr")
     folder = store_folder(output)
-    identity, work, options = "", None, {"shape": shape, "block": block}
+    identity, work = "", None
     try:
         with _told_when_long("reading the record through, to know it again", say):
-            identity = to_text(identity_of(mooring, record, options, stop))
+            identity = identify()
         if is_finished(output, identity):
             if left_behind(output):
                 with suppress(UsageError), locked(folder, say):
@@ -133,9 +182,8 @@ def run_batch(
             if is_finished(output, identity):  # somebody else has done it meanwhile
                 clear(output)
                 return _found(output)
-            store = open_store(folder, layout_of(mooring, record, nodes), block, identity)
-            work = Work(batch, record, store, nodes, progress, stop)
-            _complete(work, output, workers or processors(), scheduler, say)
+            work = begin(folder, identity)
+            _complete(work, output, solve, say)
             clear(output)
     except (KeyboardInterrupt, Stopped, OSError, MemoryError) as error:
         if work is None:
@@ -146,21 +194,11 @@ def run_batch(
 
 
 def _complete(
-    work: Work, output: Path, workers: int, scheduler: str | None, tell: Callable[[str], None]
+    work: W, output: Path, solve: Callable[[W], None], tell: Callable[[str], None]
 ) -> None:
     """Solve what is missing, and make the result."""
     for _ in range(ATTEMPTS):
-        if scheduler is None:
-            if work.missing:
-                compile_kernel(work.batch, tell)
-            work.here(workers)
-        else:
-            try:
-                work.on_cluster(scheduler, tell)
-            except UsageError:
-                if not work.counts:
-                    clear(output)
-                raise
+        solve(work)
         go_on(work.stop)
         damaged = finish(work.store, output, lambda: go_on(work.stop))
         if not damaged:

@@ -113,6 +113,12 @@ class Work:
             done, ended = int(self._solved.sum()), endings(_named(self._solved))
             self.progress(Progress(done, self.record.count, self._found, ended, self.alone))
 
+    def count(self, profiles: Profiles) -> None:
+        """These are solved."""
+        with self._counting:
+            self._solved = self._solved + _counted(profiles.status)
+            self.alone += int(np.count_nonzero(profiles.alone))
+
     def _solve(self, number: int) -> None:
         depth, u, v, w = self._levels(number)
         parts: list[Arrays] = []
@@ -143,9 +149,7 @@ class Work:
         """Profiles of a block from one on, which then count as solved."""
         start = self.store.span(number)[0] + first
         time = self.record.time[start : start + len(profiles.status)]
-        with self._counting:
-            self._solved = self._solved + _counted(profiles.status)
-            self.alone += int(np.count_nonzero(profiles.alone))
+        self.count(profiles)
         return arrays_of(self.store.layout, time, profiles, self.shape)
 
     def _keep(self, number: int, parts: list[Arrays]) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from datetime import date
 
-from calm.case import Mooring
+from calm.case import Mooring, Result
 from calm.checks.acceptance import Acceptance
 from calm.checks.assessment import Assessment, Situation, Stand
 from calm.checks.backup import breaks_of, losses_of
@@ -152,22 +152,26 @@ def _worst_of_each_rule(findings: Sequence[Finding]) -> list[Finding]:
     return list(worst.values())
 
 
-def _handled(stand: Stand) -> Handling:
-    """Launch, recovery and breaks of a mooring, each of them or why there is none."""
-    mooring, result = stand.mooring, stand.result
+def handled(mooring: Mooring, result: Result) -> Handling:
+    """Launch, recovery and breaks of a mooring that stands, each of them or why there is none."""
     launch: Launch | NoEquilibrium
     recovery: Recovery | NoEquilibrium
-    if result is None:
-        failure = stand.situations[0].failure
-        assert failure is not None
-        launch = recovery = failure
-    else:
-        try:
-            launch = launch_of(mooring, result)
-        except NoEquilibrium as failure:
-            launch = failure
-        try:
-            recovery = recovery_of(mooring, result)
-        except NoEquilibrium as failure:
-            recovery = failure
+    try:
+        launch = launch_of(mooring, result)
+    except NoEquilibrium as failure:
+        launch = failure
+    try:
+        recovery = recovery_of(mooring, result)
+    except NoEquilibrium as failure:
+        recovery = failure
     return Handling(mooring, launch, recovery, breaks_of(mooring), losses_of(mooring))
+
+
+def _handled(stand: Stand) -> Handling:
+    """The same of a stand; of one that has no equilibrium, why not."""
+    mooring, result = stand.mooring, stand.result
+    if result is not None:
+        return handled(mooring, result)
+    failure = stand.situations[0].failure
+    assert failure is not None
+    return Handling(mooring, failure, failure, breaks_of(mooring), losses_of(mooring))

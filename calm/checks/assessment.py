@@ -72,6 +72,7 @@ class Assessment:
     losses : of each buoyant element above the release, from the top
     limits : all that it is judged by
     notices : what there is to say of accepts that have ended, or that no finding needs
+    draws : samples and seed of the probabilities of the findings; None where there are none
     """
 
     name: str
@@ -84,6 +85,7 @@ class Assessment:
     losses: tuple[Loss, ...] = ()
     limits: tuple[LimitKey, ...] = ()
     notices: tuple[str, ...] = ()
+    draws: tuple[int, int] | None = None
 
     @property
     def mooring(self) -> Mooring:

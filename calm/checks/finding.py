@@ -208,6 +208,7 @@ class Finding(Verdict):
 
     `source` is that of the rule and its limit; `situation` tells what was changed for it,
     `AS_GIVEN` where nothing was; `accept` is what the design accepts it by, and None otherwise.
+    `probability` is that its limit is broken, where that was counted.
     """
 
     mooring: str
@@ -215,12 +216,13 @@ class Finding(Verdict):
     rule: str
     situation: str = AS_GIVEN
     accept: Accept | None = None
+    probability: float | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """The finding in JSON."""
         first = ("mooring", "environment", "situation", "rule", "component")
         values = {each.name: getattr(self, each.name) for each in fields(self)}
         accept = values.pop("accept")
-        del values["place"]
+        del values["place"], values["probability"]
         said = {"reason": None if accept is None else accept.reason}
         return {name: values.pop(name) for name in first} | values | said

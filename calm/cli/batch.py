@@ -100,15 +100,15 @@ def batch(
     from calm.batch.run import run_batch
 
     period = None if time is None else parse_period(time)
-    _check_output(output, file, currents)
-    mooring = _mooring(file, environment, catalog or [])
+    check_output(output, file, currents)
+    mooring = mooring_of(file, environment, catalog or [], "batch")
     position = mooring.file.position
     own = None if position is None else (position.latitude, position.longitude)
     place = own if at is None else parse_place(at)
     seabed = float(mooring.water.depth)
     teller = Teller()
     turned = quantities({"declination": (declination, "angle")}).get("declination")
-    with _stopped_by_a_signal() as stop:
+    with stopped_by_a_signal() as stop:
         with open_record(
             currents, seabed=seabed, at=place, declination=turned, time=period, every=every
         ) as record:
@@ -126,7 +126,7 @@ def batch(
             if outcome.counts.get("implausible-current"):
                 narrate(f"{currents}: {_implausible(outcome, mooring, record)}")
             total = record.count
-        code = _ended(outcome, output, total)
+        code = ended(outcome, output, total)
         if outcome.done and not no_statistics and not _summarized(output, mooring, stop):
             return ExitCode.INCOMPLETE
     return code
@@ -170,7 +170,7 @@ def _implausible(outcome: Outcome, mooring: Mooring, record: Record) -> str:
     )
 
 
-def _ended(outcome: Outcome, output: Path, total: int) -> ExitCode:
+def ended(outcome: Outcome, output: Path, total: int) -> ExitCode:
     """Tell how the batch ended."""
     from calm.batch.statuses import Ending
 
@@ -209,17 +209,24 @@ def _kinds(outcome: Outcome) -> Iterator[str]:
             yield f"{grouped(count)} {ending.value} ({statuses})"
 
 
-def _mooring(file: Path, environment: str | None, catalogs: list[Path]) -> Mooring:
+def mooring_of(file: Path, environment: str | None, catalogs: list[Path], command: str) -> Mooring:
+    """A mooring file, read for a command that is not for tows.
+
+    Raises
+    ------
+    UsageError
+        It is a tow.
+    """
     import calm
     from calm.case import Tow
 
     read = calm.load(file, environment=environment, catalogs=catalogs)
     if isinstance(read, Tow):
-        raise UsageError(f"{file} is a tow; calm batch is for moorings")
+        raise UsageError(f"{file} is a tow; calm {command} is for moorings")
     return read
 
 
-def _check_output(output: Path, *inputs: Path) -> None:
+def check_output(output: Path, *inputs: Path) -> None:
     """Refuse a result that could not be written, or would take the place of what it is made from.
 
     Raises
@@ -242,7 +249,7 @@ def _check_output(output: Path, *inputs: Path) -> None:
 
 
 @contextmanager
-def _stopped_by_a_signal() -> Iterator[Event]:
+def stopped_by_a_signal() -> Iterator[Event]:
     """An event that a batch system's request to stop sets: it is heeded where nothing is lost."""
     stop = Event()
     if current_thread() is not main_thread():

@@ -5,19 +5,21 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from datetime import date, datetime
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from calm.cli.check_files import Design, read_designs
 from calm.cli.exit_codes import ExitCode, gravest
 from calm.cli.outputs import OutputPath, Outputs
+from calm.cli.run import check_draws
 from calm.cli.streams import narrate
 from calm.cli.workers import FEW, mapped
 from calm.errors import UsageError, internal_failure
 
 if TYPE_CHECKING:
     from calm.case import Mooring
+    from calm.case.uncertain import Mapped
     from calm.checks.assessment import Assessment, Stand
     from calm.report.blocks import Section
 
@@ -26,6 +28,7 @@ CHECK_EXAMPLES = """Examples:
   calm check mooring.yaml
   calm check mooring.yaml --environment storm.yaml --environment neap.yaml
   calm check north.yaml south.yaml --report cruise/
+  calm check mooring.yaml --uncertainty --samples 512
   calm check mooring.yaml --json - | jq '.findings[] | select(.state == "fail")'"""
 
 
@@ -38,6 +41,9 @@ def check(
     json: OutputPath = None,
     report: Path | None = None,
     allow_unknown: bool = False,
+    uncertainty: bool = False,
+    samples: int = 2048,
+    seed: int = 0,
     workers: int | None = None,
 ) -> ExitCode:
     """Check designs: solve every mooring in every environment, and judge it by rule.
@@ -63,6 +69,13 @@ def check(
         Write report.html, report.pdf, report.json, checks.csv and inventory.csv in this folder.
     allow_unknown
         End with 0, too, where figures are unknown; what is shown and written stays the same.
+    uncertainty
+        Give every finding the probability that its limit is broken, with what the file gives
+        under uncertainty as unsure as it is, and list the designs by it.
+    samples
+        How many draws, a power of two.
+    seed
+        Of the draws; the same seed gives the same figures.
     workers
         How many processes share the work; one on each core unless said.
     """
@@ -70,13 +83,17 @@ def check(
     outputs.check()
     if workers is not None and workers < 1:
         raise UsageError(f"--workers: {workers} is not 1 or more")
+    draws = None
+    if uncertainty:
+        check_draws(samples, seed)
+        draws = samples, seed
     if report is not None:
         given = [*files, *map(Path, environment or ()), *(catalog or ())]
         _check_report(report, json, given)
     designs, tows = read_designs(files, environment, catalog or [], workers)
     if tows:
         narrate(f"not checked, since towed: {', '.join(map(str, tows))}")
-    judged = _judged(designs, workers, drawn=report is not None)
+    judged = _judged(designs, workers, report is not None, draws)
     assessments = [assessment for assessment, _ in judged]
     for design, assessment in zip(designs, assessments, strict=True):
         of_files = (notice for one in design.moorings for notice in one.file.notices)
@@ -104,7 +121,7 @@ def _check_report(folder: Path, json: Path | None, given: Sequence[Path]) -> Non
 
 
 def _judged(
-    designs: Sequence[Design], workers: int | None, drawn: bool
+    designs: Sequence[Design], workers: int | None, drawn: bool, draws: tuple[int, int] | None
 ) -> list[tuple[Assessment, Section | None]]:
     """All of them on one day: that of the report, today where it has none.
 
@@ -119,31 +136,45 @@ def _judged(
     stands = [(design.name, mooring, day) for design in designs for mooring in design.moorings]
     expect_many(SOLVES * len(stands))
     if len(designs) > FEW:
-        whole = [(design, day, drawn) for design in designs]
+        whole = [(design, day, drawn, draws) for design in designs]
         return mapped(_solve_and_conclude, whole, workers, "moorings judged")
     solved = iter(mapped(_stand, stands, workers, "environments solved"))
+    shared = partial(mapped, workers=workers, what="blocks of samples solved")
     return [
-        _concluded(design.name, [next(solved) for _ in design.moorings], day, drawn)
+        _concluded(design.name, [next(solved) for _ in design.moorings], day, drawn, draws, shared)
         for design in designs
     ]
 
 
 def _solve_and_conclude(
-    task: tuple[Design, date, bool],
+    task: tuple[Design, date, bool, tuple[int, int] | None],
 ) -> tuple[Assessment, Section | None]:
-    design, day, drawn = task
+    design, day, drawn, draws = task
     stands = [_stand((design.name, mooring, day)) for mooring in design.moorings]
-    return _concluded(design.name, stands, day, drawn)
+    return _concluded(design.name, stands, day, drawn, draws, map)
 
 
 def _concluded(
-    name: str, stands: Sequence[Stand], day: date, drawn: bool
+    name: str,
+    stands: Sequence[Stand],
+    day: date,
+    drawn: bool,
+    draws: tuple[int, int] | None,
+    shared: Mapped,
 ) -> tuple[Assessment, Section | None]:
-    """What is judged of a mooring as a whole, and its section of the report where that is drawn."""
+    """What is judged of a mooring as a whole, and its section of the report where that is drawn.
+
+    `draws` are samples and seed of the probabilities, where they are asked for; `shared` has blocks
+    of them solved.
+    """
     from calm.checks.assess import assessment_of
     from calm.report.check.section import mooring_section
 
     assessment = assessment_of(name, stands, day)
+    if draws is not None:
+        from calm.checks.likelihood import with_probabilities
+
+        assessment = with_probabilities(assessment, *draws, shared)
     return assessment, mooring_section(assessment) if drawn else None
 
 

@@ -16,6 +16,7 @@ from calm.cli.catalog import catalog
 from calm.cli.chart import chart
 from calm.cli.check import CHECK_EXAMPLES, check
 from calm.cli.exit_codes import ExitCode
+from calm.cli.motion import MOTION_EXAMPLES, motion
 from calm.cli.run import RUN_EXAMPLES, run
 from calm.cli.size import SIZE_EXAMPLES, size
 from calm.cli.starter import NEW_EXAMPLES, SCHEMA_EXAMPLES, new, schema
@@ -55,6 +56,7 @@ app = App(
 app.command(run, usage="Usage: calm run [OPTIONS] FILE...", help_epilogue=RUN_EXAMPLES)
 app.command(check, usage="Usage: calm check [OPTIONS] FILE...", help_epilogue=CHECK_EXAMPLES)
 app.command(batch, help_epilogue=BATCH_EXAMPLES)
+app.command(motion, help_epilogue=MOTION_EXAMPLES)
 app.command(build, help_epilogue=BUILD_EXAMPLES)
 app.command(tow, usage="Usage: calm tow [OPTIONS] FILE...", help_epilogue=TOW_EXAMPLES)
 app.command(size, help_epilogue=SIZE_EXAMPLES)

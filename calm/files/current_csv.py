@@ -14,7 +14,7 @@ from calm.errors import InputError, Problem
 from calm.files.current_terms import Terms
 from calm.files.document import read_text
 from calm.files.tables import CurrentTable, heading, read_current, turned_notices
-from calm.files.times import TimeChoiceError, choose_time, parse_time
+from calm.files.times import ZONES_OF_UTC, TimeChoiceError, choose_time, parse_time
 
 LARGEST_CSV = 50_000_000
 """Bytes; a larger file is not read for a single profile."""
@@ -124,6 +124,13 @@ def read_csv_header(path: Path, number: int, line: str) -> CsvHeader:
         raise InputError([Problem(str(path), number, len(line.rstrip()), message)])
     if len(cells) < 2:
         message = f"`{cells[0][:40]}` is no header such as `depth[m],u[m/s],v[m/s]`"
+        raise InputError([Problem(str(path), number, 1, message)])
+    name, zone = heading(cells[0])
+    if name.lower() == "time" and zone and zone.upper() not in ZONES_OF_UTC:
+        message = (
+            f"`{cells[0].strip()[:40]}`: times are in UTC, or each says what it is ahead, as in "
+            "2026-03-01T06:00+02:00"
+        )
         raise InputError([Problem(str(path), number, 1, message)])
     return CsvHeader(path, CsvRow(number, cells))
 

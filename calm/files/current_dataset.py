@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from calm.files.current_levels import Levels, find_levels
 from calm.files.current_place import choose_column, is_regular
 from calm.files.current_terms import Terms
-from calm.files.current_times import find_times, read_times
+from calm.files.current_times import find_times, read_times, zone_notices
 from calm.files.current_values import known_values
 from calm.files.current_variables import (
     UnreadableError,
@@ -34,7 +34,8 @@ class CurrentArrays:
     Attributes
     ----------
     depth : (k,), or (n, k) where levels move [m], positive down
-    u, v : (n, k) to the east and to the north [m/s]
+    u, v : (n, k) to the east and to the north [m/s]; inf where the file has a negative speed or
+        a direction outside -360 to 360°
     w : (n, k) upwards [m/s], None where the file has none
     """
 
@@ -96,13 +97,16 @@ class CurrentDataset:
         )
         if self._turn is not None:
             angle = np.radians(second + self._turn)
+            impossible = (first < 0.0) | (np.abs(second) > 360.0)
             first, second = first * np.sin(angle), first * np.cos(angle)
+            first[impossible] = second[impossible] = np.inf  # to be refused by whoever asked
         if self._declination:
             angle = np.radians(self._declination)
-            first, second = (
-                first * np.cos(angle) + second * np.sin(angle),
-                second * np.cos(angle) - first * np.sin(angle),
-            )
+            with np.errstate(invalid="ignore"):  # of what is infinite
+                first, second = (
+                    first * np.cos(angle) + second * np.sin(angle),
+                    second * np.cos(angle) - first * np.sin(angle),
+                )
         depth = self._levels.depths(self._time, index)
         return CurrentArrays(depth, first, second, up[0] if up else None)
 
@@ -151,6 +155,8 @@ def _understood(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
             ("latitude", "longitude"), (f"{degrees:.6g}" for degrees in column.place), strict=True
         )
     notices = [*column.notes]
+    if name_of_time is not None:
+        notices += zone_notices(dataset, name_of_time)
     if any(str(name).lower().endswith("_qc") for name in dataset.variables):
         notices.append(FLAGS)
     return CurrentDataset(

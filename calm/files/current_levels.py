@@ -27,6 +27,7 @@ _FROM_INSTRUMENT = re.compile(
 _OF_THE_WATER = re.compile(r"\b(water|bottom|sea ?(bed|floor)) ?depth\b|\bsea floor\b|\bseabed\b")
 _UPWARDS = re.compile(r"\b(z ?)?up(wards?)?\b")
 _DOWNWARDS = re.compile(r"\b(z ?)?down(wards?)?\b")
+_MODEL_COORDINATE = re.compile(r"ocean_\w*(sigma|s)_\w*coordinate\w*|ocean_sigma\w*")
 _HEIGHTS = ("z", "z_rho")
 _STANDARD_DEPTH = "depth"
 
@@ -121,6 +122,11 @@ def _candidates(dataset: xr.Dataset, level: str | None, time: str | None) -> lis
 def _placed(
     dataset: xr.Dataset, levels: xr.DataArray, factor: float, time: str | None, water_depth: float
 ) -> Levels:
+    if _MODEL_COORDINATE.fullmatch(str(levels.attrs.get("standard_name", ""))):
+        raise UnreadableError(
+            f"`{levels.name}` is {levels.attrs['standard_name']}, a share of the water depth, "
+            "whatever its unit; give the depths of the levels, such as ROMS' `z_rho`"
+        )
     told = f"{levels.name} " + words_of(levels, "standard_name", "long_name", "reference_datum")
     told = re.sub(r"[\W_]+", " ", told.lower())
     if _ABOVE_SEABED.search(told):

@@ -96,7 +96,7 @@ def _profile(arrays: CurrentArrays, terms: Terms, notices: list[str]) -> Current
 
     depth, u, v = (values.ravel() for values in (arrays.depth, arrays.u, arrays.v))
     w = np.zeros_like(u) if arrays.w is None else arrays.w.ravel()
-    known = np.isfinite(u) & np.isfinite(v) & np.isfinite(w) & np.isfinite(depth)
+    known = ~np.isnan(u + v + w) & np.isfinite(depth)
     below = known & (depth >= 0)
     _tell(notices, int(np.sum(~known)), "without a value")
     _tell(notices, int(np.sum(known & ~below)), "above the surface")

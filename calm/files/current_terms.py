@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import hypot, inf
+from math import hypot, inf, isinf
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -11,6 +11,12 @@ if TYPE_CHECKING:
 
 DEEPEST = 11_000.0
 """No sea is deeper [m]."""
+
+IMPOSSIBLE = (
+    "an infinite or negative speed, or a direction outside -360 to 360°: a fill value, or "
+    "another unit?"
+)
+"""What a current is whose speed is infinite in `too_fast`."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +46,8 @@ def too_fast(u: float, v: float, w: float, maximum_speed: float) -> str | None:
     u, v, w : [m/s]
     """
     speed = hypot(u, v, w)
+    if isinf(speed):
+        return IMPOSSIBLE
     if not speed > maximum_speed:
         return None
     return (

@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING, Any
 
 from calm.files.current_variables import UnreadableError, first_present
+from calm.files.times import ZONES_OF_UTC
 
 if TYPE_CHECKING:
     import numpy as np
@@ -17,7 +18,7 @@ _CALENDARS = ("standard", "gregorian", "proleptic_gregorian")
 _FIRST, _LAST = "1678-01-01", "2262-01-01"
 _AT_ONCE = 50_000
 _ZONE = re.compile(r" since .*\d\s*([A-Za-z]{2,}(/[A-Za-z_]+)?)\s*$")
-_UTC = ("UTC", "utc", "GMT", "gmt", "Z")
+_ZONED = ("time_zone", "timezone", "tz")
 
 
 def find_times(dataset: xr.Dataset, velocity: str) -> str | None:
@@ -64,6 +65,16 @@ def read_times(dataset: xr.Dataset, name: str) -> NDArray[np.datetime64]:
     return read
 
 
+def zone_notices(dataset: xr.Dataset, name: str) -> list[str]:
+    """What is said where the attributes of the times name another zone than UTC."""
+    attributes = dataset[name].attrs
+    told = [str(attributes.get(one, "")) for one in _ZONED]
+    zone = next((one for one in told if one and one.strip().upper() not in ZONES_OF_UTC), None)
+    if zone is None and "local time" in str(attributes.get("long_name", "")).lower():
+        zone = str(attributes["long_name"])
+    return [f"`{name}` says `{zone}`; its times are taken as they stand"] if zone else []
+
+
 def _decoded(times: xr.DataArray) -> NDArray[Any]:
     import warnings
 
@@ -74,7 +85,7 @@ def _decoded(times: xr.DataArray) -> NDArray[Any]:
         return np.array("NaT", "datetime64[ns]")  # to xarray, no numbers at all are no times
     unit = str(times.attrs.get("units", ""))
     zone = _ZONE.search(unit)
-    if zone is not None and zone[1] not in _UTC:
+    if zone is not None and zone[1].upper() not in ZONES_OF_UTC:
         raise UnreadableError(
             f"the times in `{times.name}` are `{unit}`: what `{zone[1]}` is ahead of UTC is not "
             "known for sure; write the offset in hours, such as `+01:00`, or use UTC"

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from calm.files.current_words import is_magnetic, not_a_current, other_frame, way_of
+from calm.files.current_words import another_way, is_magnetic, not_a_current, other_frame, way_of
 from calm.units import QuantityError, unit_factor
 
 if TYPE_CHECKING:
@@ -20,18 +20,23 @@ class _Sought:
 
     standard: tuple[str, ...]
     usual: tuple[str, ...]
+    way: str = ""
 
 
 _EAST = _Sought(
     ("eastward_sea_water_velocity",),
     ("uo", "UCUR", "EWCT", "water_u", "u", "U", "u_eastward", "u_1205", "UCUR_MAG"),
+    "east",
 )
 _NORTH = _Sought(
     ("northward_sea_water_velocity",),
     ("vo", "VCUR", "NSCT", "water_v", "v", "V", "v_northward", "v_1206", "VCUR_MAG"),
+    "north",
 )
 _UP = _Sought(
-    ("upward_sea_water_velocity",), ("wo", "WCUR", "water_w", "w", "W", "w_1204", "WCUR_MAG")
+    ("upward_sea_water_velocity",),
+    ("wo", "WCUR", "water_w", "w", "W", "w_1204", "WCUR_MAG"),
+    "up",
 )
 _SPEED = _Sought(("sea_water_speed",), ("HCSP", "speed", "CSPD"))
 _TOWARD = _Sought(
@@ -91,7 +96,7 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
     notes: list[str] = []
     east, north, up = (_find(dataset, one, regular, notes) for one in (_EAST, _NORTH, _UP))
     if east is not None and north is not None:
-        magnetic = [name for name in (east, north) if is_magnetic(dataset[name])]
+        magnetic = [name for name in (east, north) if is_magnetic(dataset[name], dataset.attrs)]
         if len(magnetic) == 1:
             other = north if magnetic == [east] else east
             raise UnreadableError(f"`{magnetic[0]}` is to magnetic north, `{other}` is not")
@@ -102,7 +107,8 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
         flows = "the current flows to" if way == "to" else "the current comes from"
         notes.append(f"`{direction}` is the direction {flows}")
         turn = 0.0 if way == "to" else 180.0
-        return Velocity((speed, direction), up, turn, is_magnetic(dataset[direction]), tuple(notes))
+        magnetic_north = is_magnetic(dataset[direction], dataset.attrs)
+        return Velocity((speed, direction), up, turn, magnetic_north, tuple(notes))
     if speed is not None and direction is not None:
         raise UnreadableError(
             f"`{direction}` does not say whether it is where the current flows to or where it "
@@ -122,16 +128,18 @@ def _direction(
     for sought, way in ((_TOWARD, "to"), (_FROM, "from")):
         name = _find(dataset, sought, regular, notes)
         if name is not None:
-            told = way_of(dataset[name])
+            told = way_of(dataset[name], "long_name", "comment")
             if told not in (way, None):
-                said = dataset[name].attrs.get("long_name", "")
+                said = dataset[name].attrs.get("long_name") or dataset[name].attrs.get("comment")
                 raise UnreadableError(
-                    f"`{name}` says two things: it is called the direction the current flows to, "
-                    f"and `{said}`"
+                    f"`{name}` says two things: by its name it is the direction the current "
+                    f"{'flows to' if way == 'to' else 'comes from'}, and it says `{said}`"
                 )
             return name, way
     unclear = next((name for name in _AMBIGUOUS if name in dataset.data_vars), None)
-    return unclear, None if unclear is None else way_of(dataset[unclear])
+    if unclear is None:
+        return None, None
+    return _believed(dataset, unclear, _TOWARD), way_of(dataset[unclear])
 
 
 def holdings(dataset: xr.Dataset) -> str:
@@ -191,7 +199,7 @@ def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str])
             listed = ", ".join(true or found)
             raise UnreadableError(f"several variables are {standard_name}: {listed}")
         if found:
-            return _believed(dataset, (true or found)[0])
+            return _believed(dataset, (true or found)[0], sought)
     name = next((name for name in sought.usual if name in dataset.data_vars), None)
     if name is None:
         return None
@@ -201,7 +209,7 @@ def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str])
         notes.append(f"`{name}`, {own}, is {way}ward: the grid runs along latitudes")
     elif own and own not in sought.standard and not _only_marked(own, sought):
         raise UnreadableError(f"`{name}` is {own}, which is not {sought.standard[0]}")
-    return _believed(dataset, name)
+    return _believed(dataset, name, sought)
 
 
 def _only_marked(own: str, sought: _Sought) -> bool:
@@ -210,8 +218,11 @@ def _only_marked(own: str, sought: _Sought) -> bool:
     return plain != own and plain in sought.standard
 
 
-def _believed(dataset: xr.Dataset, name: str) -> str:
+def _believed(dataset: xr.Dataset, name: str, sought: _Sought) -> str:
     """The name of a variable whose own words do not speak against it."""
-    if (reason := not_a_current(dataset[name])) is not None:
+    reason = not_a_current(dataset[name])
+    if reason is None and sought.way:
+        reason = another_way(dataset[name], sought.way)
+    if reason is not None:
         raise UnreadableError(f"`{name}` {reason}")
     return name

@@ -8,12 +8,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_FRAMES = ("coord_sys", "coordinate_system", "reference_frame", "frame")
+_FRAMES = re.compile(
+    r"(?i)(velocity_?)?(coord(inate)?s?_?(sys(tem)?|frame|transform(ation)?)|(reference_?)?frame(_of_reference)?|"
+    r"transform(ation)?)"
+)
 _TO_THE_EARTH = re.compile(r"earth|\benu\b|geographic|east|true")
 _OTHER_FRAME = re.compile(r"beam|\binst|xyz|ship|head|vessel|body|vehicle|principal|stream|local")
 
@@ -25,11 +29,16 @@ _OTHER_DIRECTIONS = (
     r"\b(instrument|xyz|ship|vessel|vehicle|sensor|body|platform|glider|head) ?"
     r"(frame|coordinates?|axis|axes|reference)\b",
     r"\b(forward|starboard|portside|radial)\b",
+    r"\b(instrument|ship|vessel|vehicle|platform|glider|float|drifter) relative\b",
+    r"\brelative to (the )?(instrument|ship|vessel|vehicle|platform|glider|float|drifter|wind)\b",
+    r"\b(anti|counter) ?clockwise\b|\bclockwise from (the )?(east|x)\b|\bmath(ematical)?\b",
+    r"\b(adcp|adp|instrument|ship|vessel|platform|compass|sensor|glider) heading\b",
     r"\brotated\b(?!.*\b(to|into|in) (the )?(earth|true|geograph|enu|east))",
 )
 _OTHER_QUANTITIES = (
     r"\b(standard|std) ?(deviation|dev|error)\b|\bstd ?(err)?\b|\bstd?dev\b|\b(rms|variance)\b",
     r"\berror velocity\b|\buncertainty\b|\bnoise\b",
+    r"\b(maxim(um|a)|minim(um|a)|percentile)\b",
     r"\banomal(y|ies)\b|\bpercent\b|\bquality\b|\bstatus\b|\bcorrelation\b|\bintensity\b",
     r"\b(winds?|ice|stokes|air)\b",
     r"\b(geostrophic|baroclinic|barotropic|ageostrophic)\b",
@@ -40,7 +49,23 @@ _OTHER_QUANTITIES = (
 )
 _NOT_A_CURRENT = [re.compile(text) for text in _OTHER_DIRECTIONS + _OTHER_QUANTITIES]
 
+_SPREADS = re.compile(r"\b(maximum|minimum|range|standard_deviation|variance|sum)\b")
+_OPPOSED = {
+    "east": (r"\b(north|south|west)wards?\b|\b(meridional|v)\b", r"\beast|\b(zonal|u)\b"),
+    "north": (r"\b(east|south|west)wards?\b|\b(zonal|u)\b", r"\bnorth|\b(meridional|v)\b"),
+    "up": (r"\bdownwards?\b", r"\bup"),
+}
+"""Words that speak against a way, and words for it, with which the others may stand."""
+
 _MAGNETIC = re.compile(r"\bmag(netic)?\b")
+_DECLINATION = re.compile(r"\bdeclination\b")
+_UNTURNED = re.compile(
+    r"(?i)(magnetic_?)?(declination|variation|deviation)_?(is_?)?(applied|corrected)"
+)
+_MAGNETIC_NORTH = re.compile(r"\bmagnetic (north|east)\b|\bdeg(rees)? magnetic\b")
+_SENTENCE = re.compile(r"[.;\n]")
+_NO = ("0", "0.0", "no", "false", "n", "none", "not applied")
+_DATUM = re.compile(r"(?i)(\w+_)?(north|datum|reference|frame|coord\w*_?sys\w*)(_\w+)?")
 _UNCORRECTED = re.compile(
     r"\b(not|un|no|without)\b.{0,30}(correct|appl|declination|variation)|\buncorrected\b"
 )
@@ -60,13 +85,25 @@ def words_of(variable: xr.DataArray, *attributes: str) -> str:
 def not_a_current(variable: xr.DataArray) -> str | None:
     """Why a variable is no velocity of the water to the east, the north or up; None if it may be.
 
-    Only what it says of itself counts: its long name, standard name and frame.
+    Only what it says of itself counts: its long name, standard name, frame and cell methods.
     """
     own = words_of(variable, "long_name", "standard_name")
     if any(pattern.search(own) for pattern in _NOT_A_CURRENT):
         said = variable.attrs.get("long_name") or variable.attrs.get("standard_name")
         return f"is `{said}`, which is no current to the east and north"
+    methods = str(variable.attrs.get("cell_methods", ""))
+    if _SPREADS.search(methods):
+        return f"is `cell_methods: {methods}`, which is no current that ran"
     return other_frame(variable.attrs)
+
+
+def another_way(variable: xr.DataArray, way: str) -> str | None:
+    """Why a velocity is not ``"east"``, ``"north"`` or ``"up"``, by its long name."""
+    against, for_it = _OPPOSED[way]
+    own = words_of(variable, "long_name")
+    if re.search(against, own) and not re.search(for_it, own):
+        return f"is taken as {way}ward, and says `{variable.attrs['long_name']}`"
+    return None
 
 
 def other_frame(attributes: Mapping[Any, Any]) -> str | None:
@@ -76,8 +113,8 @@ def other_frame(attributes: Mapping[Any, Any]) -> str | None:
     ----------
     attributes : those of a dataset or of a variable
     """
-    for name in _FRAMES:
-        frame = str(attributes.get(name, "")).lower()
+    for name in filter(_FRAMES.fullmatch, map(str, attributes)):
+        frame = str(attributes[name]).lower()
         if _OTHER_FRAME.search(frame) and not _TO_THE_EARTH.search(frame):
             return (
                 f"is in other coordinates, `{name}: {attributes[name]}`, not to the east and "
@@ -86,21 +123,50 @@ def other_frame(attributes: Mapping[Any, Any]) -> str | None:
     return None
 
 
-def is_magnetic(variable: xr.DataArray) -> bool:
-    """Whether a velocity or direction counts from magnetic north, as it says itself."""
+def is_magnetic(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProxyType({})) -> bool:
+    """Whether a velocity or direction counts from magnetic north, as it or its file says.
+
+    Parameters
+    ----------
+    dataset : the attributes of its file
+    """
     if _MAGNETIC.search(re.sub(r"_", " ", str(variable.name).lower())):
         return True
-    own = words_of(
-        variable, "long_name", "standard_name", "reference_datum", "units", "comment", "reference"
-    )
-    if not _MAGNETIC.search(own):
+    own = words_of(variable, "long_name", "standard_name", "reference_datum", "units", "reference")
+    if _MAGNETIC.search(own) and (_UNCORRECTED.search(own) or not _CORRECTED.search(own)):
+        return True
+    if any(_says_so(variable.attrs.get(name), _MAGNETIC) for name in ("comment", "note", "notes")):
+        return True
+    told = [*variable.attrs.items(), *dataset.items()]
+    return any(_counts_from_it(str(name), said) for name, said in told)
+
+
+def _counts_from_it(name: str, said: Any) -> bool:
+    """Whether an attribute says that directions count from magnetic north."""
+    if _UNTURNED.fullmatch(name):
+        return str(said).strip().lower() in _NO
+    return _says_so(said, _MAGNETIC if _DATUM.fullmatch(name) else _MAGNETIC_NORTH)
+
+
+def _says_so(said: Any, magnetic: re.Pattern[str]) -> bool:
+    """Whether a text speaks of magnetic north in a sentence, and of its correction in none."""
+    if not isinstance(said, str):
         return False
-    return bool(_UNCORRECTED.search(own)) or not _CORRECTED.search(own)
+    sentences = [" ".join(re.split(r"[_\W]+", one)) for one in _SENTENCE.split(said.lower())]
+    told = [one for one in sentences if _MAGNETIC.search(one) or _DECLINATION.search(one)]
+    if any(_UNCORRECTED.search(one) for one in told):
+        return True
+    return not any(map(_CORRECTED.search, told)) and any(map(magnetic.search, told))
 
 
-def way_of(variable: xr.DataArray) -> str | None:
-    """Whether a direction is where the current flows ``"to"`` or comes ``"from"``, in its words."""
-    own = words_of(variable, "long_name", "standard_name", "comment")
+def way_of(variable: xr.DataArray, *attributes: str) -> str | None:
+    """Whether a direction is where the current flows ``"to"`` or comes ``"from"``, in its words.
+
+    Parameters
+    ----------
+    attributes : those that count; its names and its comment where none is given
+    """
+    own = words_of(variable, *(attributes or ("long_name", "standard_name", "comment")))
     toward, origin = _TOWARD.search(own), _FROM.search(own)
     if bool(toward) == bool(origin):
         return None

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from datetime import UTC, datetime
 
+ZONES_OF_UTC = ("UTC", "GMT", "Z", "ZULU", "UTC+0", "UTC+00:00", "+00:00", "ETC/UTC")
+"""What a zone is called that is no other than UTC, in capitals."""
+
 
 class TimeChoiceError(ValueError):
     """The time asked for is none, is not in the record, or is needed and not given."""

@@ -17,7 +17,7 @@ from calm.solve.refine import refine
 from calm.solve.root import bracketed_root
 from calm.solve.solution import Settings, Solution
 from calm.solve.status import Status
-from calm.solve.waterline import Waterline
+from calm.solve.waterline import Waterline, half_out
 
 SURFACE_BAND = 1e-7
 """Thickness of the band from water to air, as a share of the line out."""
@@ -27,6 +27,7 @@ FREQUENCY_TOLERANCE = 1e-8
 PAY_OUT = "Pay out more line."
 NEARLY_OUT = 2e-3
 """Depth at which a line that will not close is taken to be leaving the water, as a share of it."""
+AT_SURFACE = "The towed line comes up to the surface behind the ship."
 STAY_BELOW = "Give it more weight or a depressor, or tow slower."
 _ROUNDS = 20
 
@@ -79,22 +80,36 @@ def solve_tow(
     try:
         if closing.span == 0.0:
             raise Status.NO_EQUILIBRIUM.because("The towed line has no length.", advice=PAY_OUT)
+        _refuse_limp(towed)
         root, other_depth = _locate(closing, towing)
         if towed.strumming is not None and towed.diameter.any():
             root = _at_its_frequency(closing, towing, root)
         refined = refine(closing, root, lambda near, cuts: _polish(closing, towing, near, cuts))
     except (MarchError, NoEquilibrium) as failure:
         if root is not None and not towing.in_air and _surfaces(closing, root):
-            raise Status.ABOVE_SURFACE.because(
-                "The towed line comes up to the surface behind the ship.", advice=STAY_BELOW
-            ) from failure
+            raise Status.ABOVE_SURFACE.because(AT_SURFACE, advice=STAY_BELOW) from failure
         if isinstance(failure, MarchError):
             message = f"The march stopped: {failure}."
             raise Status.NOT_CONVERGED.because(message) from failure
+        if root is not None and towing.height > 0.0 and not towing.in_air:
+            raise half_out(closing, root) or failure from failure
         raise
     return finished(
         closing, refined, other_depth, lambda solution: _refuse_misplaced(solution, towing)
     )
+
+
+def _refuse_limp(towed: Line) -> None:
+    """A free end of cable without weight or drag along it bears nothing, and points nowhere."""
+    bears = towed.buoyancy[0] or towed.volume[0] or towed.tangential_drag[0]
+    clamped = ((towed.clamp_piece == 0) & (towed.clamp_at == 0.0)).any()
+    if towed.flexible[0] and not bears and not clamped:
+        raise Status.NO_EQUILIBRIUM.because(
+            "The free end of {piece} weighs nothing and has no drag along it, so that nothing "
+            "stretches it.",
+            0,
+            "Give it a weight or a `ct`, or tow something at its end.",
+        )
 
 
 def _relative(line: Line, water: Water, towing: Towing) -> Water:
@@ -140,7 +155,16 @@ def _locate(closing: Closing, towing: Towing) -> tuple[Root, float | None]:
         low = miss(depth)
     roots: list[Root] = []
     for upper in _upwards(closing, depth, low, shallowest):
-        high = miss(upper)
+        try:
+            high = miss(upper)
+        except MarchError:
+            # a line that drifts at the surface is now in the water, now in the air
+            if upper != shallowest or towing.in_air or roots:
+                raise
+            upper = NEARLY_OUT * closing.span
+            if miss(upper) <= 0.0:
+                raise Status.ABOVE_SURFACE.because(AT_SURFACE, advice=STAY_BELOW) from None
+            high = miss(upper)
         if upper == shallowest and -closing.allowed <= high <= 0.0:
             high = closing.allowed  # at the surface, to within what is allowed
         if (low <= 0.0) is not (high <= 0.0):

@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
+from calm.errors import NoEquilibrium
 from calm.physics.march import Cuts
-from calm.solve.closing import Closed, Closing
+from calm.physics.state import MarchError, Trace
+from calm.solve.closing import Closed, Closing, Root
+from calm.solve.status import Status
 
 MOST_MOVES = 6
+WIDEST_JUMP = 0.02
+"""How far from a root that does not close its jump is sought, as a share of the line out."""
+NARROW_JUMP = 1e-9
+RIDE_CLEAR = "Pay out or take in some line, so that it is clear of the surface."
 
 
 class Waterline:
@@ -56,3 +64,50 @@ def _shifted(cuts: Cuts, segment: int, shift: float) -> Cuts | None:
     lengths = cuts.lengths.copy()
     lengths[segment : segment + 2] += shift, -shift
     return cuts._replace(lengths=lengths)
+
+
+def half_out(closing: Closing, root: Root) -> NoEquilibrium | None:
+    """Why a tow does not close at a root where its miss jumps; None where it does not jump there.
+
+    A rigid piece or a clamp is in the water or out of it, by its middle. Where the line is too
+    high with one in the water and too low with it out, it would ride half out: no equilibrium.
+    """
+    unknown, step = root.unknown, closing.settings.angle_step
+
+    def miss(x: float) -> float:
+        return closing.run(unknown, x, step).z - unknown.goal
+
+    try:
+        reach = 1e-4 * closing.span
+        while miss(root.x - reach) < 0.0 or miss(root.x + reach) > 0.0:
+            reach *= 2.0
+            if reach > WIDEST_JUMP * closing.span:
+                return None
+        high, low = root.x - reach, root.x + reach
+        while low - high > NARROW_JUMP * closing.span:
+            middle = 0.5 * (high + low)
+            high, low = (middle, low) if miss(middle) > 0.0 else (high, middle)
+        jump = miss(high), miss(low)
+        shapes = [closing.run(unknown, x, step, record=True).trace for x in (high, low)]
+    except MarchError:
+        return None
+    above, below = (_middles(closing.line.flexible, shape) for shape in shapes)
+    for (piece, clamp), height in above.items():
+        if (height > 0.0) is not (below[piece, clamp] > 0.0):
+            what = "{piece}" if clamp < 0 else "a clamp on {piece}"
+            return Status.NO_EQUILIBRIUM.because(
+                f"The line closes neither with {what} in the water nor with it out: its upper end "
+                f"would be {jump[0]:.2g} m above the tow point or {-jump[1]:.2g} m below. It would "
+                "ride half out of the water, which CALM does not solve.",
+                piece,
+                RIDE_CLEAR,
+            )
+    return None
+
+
+def _middles(flexible: NDArray[np.bool_], shape: Trace) -> dict[tuple[int, int], float]:
+    """Heights of the middles of rigid pieces and clamps [m], by piece and clamp."""
+    single = np.flatnonzero(~flexible[shape.piece] | (shape.clamp >= 0))
+    heights = 0.5 * (shape.position[single, 2] + shape.position[single + 1, 2])
+    keys = zip(shape.piece[single].tolist(), shape.clamp[single].tolist(), strict=True)
+    return dict(zip(keys, heights.tolist(), strict=True))

@@ -59,3 +59,40 @@ def test_what_cannot_be_drawn_is_refused(calm, write_mooring, heavy):
     assert "take 1024" in done.err
     assert calm("run", file, "--uncertainty", "--seed", "-1").code == 2
     assert calm("run", heavy, *DRAWS).code == 3
+
+
+def test_every_finding_of_a_check_has_its_probability(calm, write_mooring):
+    file = write_mooring()
+    options = ("--allow-unknown", *DRAWS, "--json", "-")
+    findings = json.loads(calm("check", file, *options).out)["findings"]
+    assert all("probability" in one for one in findings)
+    counted = [one["probability"] for one in findings if one["limit"] is not None]
+    assert counted
+    assert all(0.0 <= one <= 1.0 for one in counted)
+    plain = json.loads(calm("check", file, "--allow-unknown", "--json", "-").out)["findings"]
+    assert not any("probability" in one for one in plain)
+    assert [one | {"probability": None} for one in plain] == [
+        one | {"probability": None} for one in findings
+    ]
+
+
+def test_designs_are_listed_by_their_probability(calm, write_mooring, folder):
+    safe = write_mooring()
+    text = (folder / safe).read_text(encoding="utf-8")
+    (folder / "shaky.yaml").write_text(
+        text.replace("name: Test", "name: Shaky") + "checks: {minimum_top_depth: 50 m}\n",
+        encoding="utf-8",
+    )
+    done = calm("check", safe, "shaky.yaml", "--allow-unknown", *DRAWS, "--report", "out")
+    said = done.out[done.out.index("How likely a limit is broken") :]
+    assert said.index("Shaky") < said.index("Test")
+    header, *rows = (folder / "out" / "checks.csv").read_text(encoding="utf-8").splitlines()
+    assert header.endswith(",reason,probability")
+    assert any(row.rpartition(",")[2] for row in rows)
+    assert "How likely a limit is broken" in (folder / "out" / "report.html").read_text("utf-8")
+
+
+def test_a_check_refuses_samples_that_are_no_power_of_two(calm, write_mooring):
+    done = calm("check", write_mooring(), "--uncertainty", "--samples", "99")
+    assert done.code == 2
+    assert "99 is no power of two" in done.err

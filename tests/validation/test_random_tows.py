@@ -53,3 +53,26 @@ def test_calm_agrees_with_the_referee(block) -> None:
             assert solution.frequency == pytest.approx(referee.frequency, rel=1e-4), case
             assert solution.marches <= 60 or line.strumming is not None, case
             assert closure(solution, Passing(water, towing)) <= 1e-6, case
+
+
+@pytest.mark.parametrize(
+    ("number", "status", "why"),
+    [
+        (997, "no-equilibrium", "weighs nothing and has no drag along it"),
+        (2942, "no-equilibrium", "It would ride half out of the water"),
+        (4555, "no-equilibrium", "It would ride half out of the water"),
+    ],
+)
+def test_a_tow_without_a_shape_is_refused_by_its_reason(number, status, why) -> None:
+    """The referee finds none either: no direction of a limp end, no frequency across a jump."""
+    with pytest.raises(NoEquilibrium, match=why) as caught:
+        solve_tow(*tow(Random(number)))
+    assert caught.value.status == status
+
+
+def test_a_line_that_would_fly_from_the_surface_hangs_below_it() -> None:
+    """With its free end at the surface the strumming line has no balance in the wind; the root,
+    the same at finer steps, is 6 m down."""
+    for degrees in (1.0, 0.5):
+        solution = solve_tow(*tow(Random(4326)), Settings(radians(degrees)))
+        assert -solution.position[0, 2] == pytest.approx(6.12827, abs=1e-4)

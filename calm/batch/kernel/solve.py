@@ -18,6 +18,16 @@ from calm.physics.compiled import record_type
 from calm.physics.line import Floats, Integers
 from calm.physics.profile import Interval, Sea
 
+LINE = 64
+"""Bytes of a line of the processor's cache. Lanes that begin amid one are slower by some 4 %."""
+
+
+def aligned(count: int) -> Floats:
+    """So many zeros, from the beginning of a line of the cache."""
+    room = np.zeros(count + LINE // 8)
+    first = -room.ctypes.data % LINE // 8
+    return room[first : first + count]
+
 
 def desk_for(plan: Plan, levels: int, cases: int) -> Desk:
     """What marches of so many cases at a time write on, in profiles of so many levels."""
@@ -38,10 +48,10 @@ def desk_for(plan: Plan, levels: int, cases: int) -> Desk:
         width=levels + 2,
     )
     return Desk(
-        scratch=np.zeros(SCRATCH),
+        scratch=aligned(SCRATCH),
         water=water,
-        nodes=np.zeros(STATE * LANES * (len(course.stages) + 1)),
-        forces=np.zeros(3 * LANES * len(course.loads)),
+        nodes=aligned(STATE * LANES * (len(course.stages) + 1)),
+        forces=aligned(3 * LANES * len(course.loads)),
         own=np.zeros((3, cases, len(plan.lying.cuts))),
         loads=np.zeros_like(course.loads),
         task=np.zeros(LANES, np.int64),

@@ -22,6 +22,7 @@ from calm.report.blocks import (
     Span,
     Table,
 )
+from calm.report.check.likelihood import likelihood_tables
 from calm.report.check.summary import (
     abreast,
     margin_of,
@@ -58,7 +59,8 @@ def check_part(assessments: Sequence[Assessment]) -> Part:
         for each in assessments
         for block in (*_told(each), *_worded(_accepted(each)), *_worded(_departing(each)))
     )
-    blocks = (*_matrix(assessments), _verdict(every), _worst(assessments, every), *told)
+    likely = likelihood_tables([(each.name, [*each.all_findings()]) for each in assessments])
+    blocks = (*_matrix(assessments), _verdict(every), _worst(assessments, every), *likely, *told)
     return Part("", (*blocks, Note(UNSEEN[:1])))
 
 

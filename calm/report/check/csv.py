@@ -34,6 +34,7 @@ CHECKS_HEADER = (
     "remedy",
     "source",
     "reason",
+    "probability",
 )
 """First row of `checks_csv`; value, limit and margin are in the unit of their row."""
 
@@ -88,6 +89,7 @@ def _finding(finding: Finding) -> Sequence[object]:
         finding.remedy,
         finding.source,
         None if finding.accept is None else finding.accept.reason,
+        finding.probability,
     )
 
 

@@ -47,9 +47,11 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
             for each in assessments
             for key in each.limits
         ],
-        "findings": [finding.to_dict() for each in assessments for finding in each.all_findings()],
+        "findings": [
+            _finding(each, finding) for each in assessments for finding in each.all_findings()
+        ],
         "tighter": [
-            finding.to_dict() for each in assessments for finding in each.tighter_findings()
+            _finding(each, finding) for each in assessments for finding in each.tighter_findings()
         ],
         "situations": {
             each.name: [
@@ -65,6 +67,12 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
         "losses": {each.name: [_loss(one) for one in each.losses] for each in assessments},
         "inventory": {each.name: [asdict(one) for one in each.inventory] for each in assessments},
     }
+
+
+def _finding(assessment: Assessment, finding: Finding) -> dict[str, Any]:
+    """With its probability, null where it has no limit, if those were counted."""
+    counted = {"probability": finding.probability} if assessment.draws else {}
+    return finding.to_dict() | counted
 
 
 def _accepted(mooring: str, finding: Finding) -> dict[str, Any]:

@@ -21,6 +21,7 @@ from calm.report.check.figures import check_figure
 from calm.report.check.findings import checks_table, results_table
 from calm.report.check.handling import breaks_table, handling_summary, handling_table
 from calm.report.check.inventory import deck_table, inventory_table
+from calm.report.check.likelihood import likelihood_tables
 from calm.report.check.summary import (
     failures,
     matrix_tables,
@@ -96,6 +97,8 @@ def _summary(sections: Sequence[Section]) -> Iterator[Block]:
     if accepted is not None:
         yield accepted
     yield from matrix_tables(sections)
+    if len(sections) > 1:
+        yield from likelihood_tables([(each.name, each.findings) for each in sections])
     yield failures(sections)
     yield worst_table(sections)
 
@@ -105,6 +108,7 @@ def _judgement(assessment: Assessment, columns: Sequence[str]) -> Iterator[Block
     if description:
         yield Prose((description,))
     yield from rules_tables(columns, worst_by_rule(assessment))
+    yield from likelihood_tables([(assessment.name, [*assessment.all_findings()])])
     yield results_table(assessment.stands)
 
 

@@ -188,3 +188,14 @@ def test_variant_with_a_file_is_read_when_chosen(
     assert read(text)
     with pytest.raises(InputError, match=r"current.csv:2:3: `u: oops` is not a speed"):
         read(text, "measured")
+
+
+@pytest.mark.parametrize("zone", ["EST", "local", "UTC+2", "s"])
+def test_a_column_of_times_of_another_zone(csv: Path, zone: str) -> None:
+    csv.write_text(f"time[{zone}],depth[m],u[m/s],v[m/s]\n2026-03-01,5,0.4,0.1\n")
+    with pytest.raises(InputError) as caught:
+        read_current_file(csv, None, Terms())
+    [problem] = caught.value.problems
+    assert problem.message.startswith(f"`time[{zone}]`: times are in UTC")
+    csv.write_text("time[UTC],depth[m],u[m/s],v[m/s]\n2026-03-01,5,0.4,0.1\n")
+    assert read_current_file(csv, None, Terms())[0].u == (0.4,)

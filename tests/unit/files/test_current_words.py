@@ -58,6 +58,18 @@ MAGNETIC = [
     lambda: currents(reference_datum="magnetic north"),
     lambda: currents(long_name="velocity relative to magnetic north"),
     lambda: currents(comment="not corrected for magnetic declination"),
+    lambda: currents(comment="the declination has not been applied"),
+    lambda: currents(note="magnetic north"),
+    lambda: currents(reference_frame="magnetic"),
+    lambda: currents(magnetic_declination_applied=0),
+    lambda: currents().assign_attrs(magnetic_declination_applied=0),
+    lambda: currents().assign_attrs(magnetic_variation_applied="no"),
+    lambda: currents().assign_attrs(north_reference="magnetic"),
+    lambda: currents().assign_attrs(heading_reference="Magnetic North"),
+    lambda: currents().assign_attrs(coord_sys="earth magnetic"),
+    lambda: currents().assign_attrs(history="no magnetic correction applied"),
+    lambda: currents().assign_attrs(comment="Level 1. Currents are relative to magnetic north."),
+    lambda: currents().assign_attrs(summary="degrees magnetic; declination not applied"),
     lambda: directions("CDIR_MAG", long_name="current to direction"),
     lambda: directions(long_name="direction the current flows to, magnetic"),
     lambda: directions(units="degrees magnetic", standard_name="sea_water_velocity_to_direction"),
@@ -90,7 +102,10 @@ def _as_true(dataset: xr.Dataset) -> xr.Dataset:
 @pytest.mark.parametrize(
     "words",
     [
-        {"long_name": "eastward velocity, corrected for magnetic declination"},
+        {"long_name": "velocity, corrected for magnetic declination"},
+        {"magnetic_declination_applied": "yes"},
+        {"magnetic_declination_applied": 12.5},
+        {"comment": "Magnetic declination corrected. No other correction."},
         {"comment": "magnetic declination of 12.5 degrees applied"},
         {"comment": "rotated from magnetic to true north"},
         {"reference_datum": "true north"},
@@ -127,6 +142,15 @@ def test_true_components_before_magnetic_ones(tmp_path: Path) -> None:
         ({"long_name": "sea ice velocity"}, "which is no current to the east"),
         ({"long_name": "Stokes drift"}, "which is no current to the east"),
         ({"long_name": "barotropic velocity"}, "which is no current to the east"),
+        ({"long_name": "velocity_beam1"}, "which is no current to the east"),
+        ({"long_name": "ship-relative velocity"}, "which is no current to the east"),
+        ({"long_name": "velocity relative to the vessel"}, "which is no current to the east"),
+        ({"long_name": "maximum velocity"}, "which is no current to the east"),
+        ({"cell_methods": "time: standard_deviation"}, "which is no current that ran"),
+        ({"cell_methods": "time: maximum"}, "which is no current that ran"),
+        ({"long_name": "northward velocity"}, "`u` is taken as eastward, and says `northward"),
+        ({"long_name": "eastward velocity"}, "`v` is taken as northward, and says `eastward"),
+        ({"long_name": "westward velocity"}, "`u` is taken as eastward, and says `westward"),
         ({"coord_sys": "beam"}, "is in other coordinates, `coord_sys: beam`"),
         ({"coordinate_system": "instrument XYZ"}, "is in other coordinates, `coordinate_system:"),
         (
@@ -154,6 +178,49 @@ def test_the_coordinates_of_the_file_count(tmp_path: Path, frame: str) -> None:
         "rotate it to the earth's first"
     )
     assert read(currents().assign_attrs(coord_sys="earth"), tmp_path)[0].u == tuple(U)
+    for name in ("coord_system", "coordinates_frame", "coordinate_transformation", "transform"):
+        message = refusal(currents().assign_attrs({name: frame}), tmp_path)
+        assert message.startswith(f"its current is in other coordinates, `{name}: {frame}`")
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (
+            {
+                "standard_name": "sea_water_velocity_to_direction",
+                "long_name": "direction the current comes from",
+            },
+            "says two things: by its name it is the direction the current flows to, and it says "
+            "`direction the current comes from`",
+        ),
+        ({"long_name": "angle to direction, counterclockwise from east"}, "which is no current"),
+        ({"long_name": "to direction, mathematical"}, "which is no current"),
+        ({"long_name": "to direction of the ADCP heading"}, "which is no current"),
+        ({"long_name": "heading"}, "does not say whether it is where the current flows to"),
+        ({"long_name": "wind to direction"}, "which is no current"),
+    ],
+)
+def test_directions_that_are_another(tmp_path: Path, words: dict[str, str], reason: str) -> None:
+    assert reason in refusal(directions(**words), tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("CDIR", 999.0), ("CDIR", -999.0), ("speed", -1.0), ("speed", np.inf)]
+)
+def test_speeds_and_directions_that_cannot_be(tmp_path: Path, name: str, value: float) -> None:
+    dataset = directions(long_name="to direction")
+    dataset[name][1] = value
+    assert refusal(dataset, tmp_path) == (
+        "its current at 50 m, an infinite or negative speed, or a direction outside -360 to 360°: "
+        "a fill value, or another unit?"
+    )
+
+
+def test_a_share_of_the_depth_in_metres_is_no_depth(tmp_path: Path) -> None:
+    words = {"standard_name": "ocean_sigma_coordinate"} | DEPTH[2]
+    sigma = currents().assign_coords(depth=("depth", [0.1, 0.5, 0.9], words))
+    assert "is ocean_sigma_coordinate, a share of the water depth" in refusal(sigma, tmp_path)
 
 
 def test_the_way_of_a_direction_is_in_its_words(tmp_path: Path) -> None:
@@ -316,3 +383,5 @@ def test_a_time_zone_is_not_guessed(tmp_path: Path) -> None:
     assert "what `EST` is ahead of UTC is not known for sure" in refusal(dataset, tmp_path)
     dataset["time"].attrs["units"] = "hours since 2026-03-01 00:00 UTC"
     assert read(dataset, tmp_path)[0].u == tuple(U)
+    dataset["time"].attrs["time_zone"] = "UTC+8"
+    assert read(dataset, tmp_path)[1] == ["`time` says `UTC+8`; its times are taken as they stand"]

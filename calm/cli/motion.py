@@ -1,0 +1,265 @@
+"""``calm motion``: where every part of a mooring was, from what was measured."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from calm.cli.batch import check_output, ended, mooring_of, stopped_by_a_signal
+from calm.cli.batch_progress import Teller
+from calm.cli.exit_codes import ExitCode
+from calm.cli.options import quantities
+from calm.cli.outputs import OutputPath, Outputs
+from calm.cli.streams import narrate
+from calm.errors import UsageError
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from calm.case import Mooring
+    from calm.motion.measured import Measured
+
+MOTION_EXAMPLES = """Examples:
+
+  calm motion mooring.yaml --currents adcp.nc --pressures microcats.nc -o depths.nc
+  calm motion mooring.yaml --currents meters.nc --pressures top.nc "release=p2.nc" -o depths.nc
+  calm motion mooring.yaml --currents meters.nc --pressures all.csv --cross-validate -o depths.nc"""
+
+_MATCHES = ("label", "height", "depth")
+
+Several = Annotated[list[Path], Parameter(consume_multiple=True)]
+SeveralTexts = Annotated[list[str], Parameter(consume_multiple=True)]
+
+
+def motion(
+    file: Path,
+    /,
+    *,
+    currents: Several,
+    pressures: SeveralTexts,
+    output: Annotated[Path, Parameter(name=["--output", "-o"])],
+    match: str = "label",
+    fit: str | None = None,
+    hold_out: str | None = None,
+    cross_validate: bool = False,
+    sea_level: Path | None = None,
+    flags: str = "1,2",
+    gap: str = "2 h",
+    declination: Annotated[str | None, Parameter(allow_leading_hyphen=True)] = None,
+    json: OutputPath = None,
+    workers: int | None = None,
+    environment: str | None = None,
+    catalog: list[Path] | None = None,
+) -> ExitCode:
+    """Estimate the depth of every instrument at every time from currents and pressures.
+
+    The currents move the line; what the pressures say beside that corrects the drag
+    for the whole record, and the current at each time. The result has the depth of
+    every component and clamped instrument with its standard deviation, and the
+    residuals of the sensors. A current meter of the line, known by its label, hangs
+    where the line has it.
+
+    The work is kept as calm batch keeps it: after an interruption the same command
+    solves what is missing, and the exit code is 75 as long as there is something.
+
+    Parameters
+    ----------
+    file
+        Mooring file.
+    currents
+        Records of the current, one or more: NetCDF, zarr or CSV.
+    pressures
+        Pressures of sensors on the line, one file or more: NetCDF or CSV with their
+        labels, or one sensor each as LABEL=FILE.
+    output
+        The result: a .nc file or a .zarr folder.
+    match
+        How sensors are found on the line: by label, or by nominal height or depth.
+    fit
+        What to estimate for the whole record besides the drag: buoyancy, length.
+    hold_out
+        Labels of sensors, separated by commas, that are hidden everywhere; the result
+        is judged at them against interpolation between the others.
+    cross_validate
+        Hide each sensor in turn, and judge.
+    sea_level
+        Height of the sea surface over time: NetCDF, or CSV with time,level[m].
+    flags
+        Quality flags of the pressures that count as measured.
+    gap
+        Interpolate in time between values no further apart than this.
+    declination
+        Of magnetic north from true north, such as "12.5 deg", positive to the east: turns
+        the currents that the record says count from magnetic north.
+    json
+        Write the factors and how well depths agree as JSON, - to print it.
+    workers
+        How many threads; one for each processor unless given.
+    environment
+        An environment named in the file, or an environment file, in place of its own.
+    catalog
+        A catalogue of your own; its components hide others of the same id. Repeatable.
+    """
+    from calm.batch.compiling import compile_kernel
+    from calm.batch.profiles import Batch
+    from calm.batch.result import open_result, readable
+    from calm.motion.run import run_motion
+    from calm.motion.study import cross_validated, judged, prepare
+    from calm.motion.task import MeasuredRecord
+    from calm.report.motion.brief import motion_part
+    from calm.report.motion.document import motion_document
+
+    if workers is not None and workers < 1:
+        raise UsageError(f"--workers: {workers} is not 1 or more")
+    names = fitted(fit)
+    outputs = Outputs(files=(file,), json=json)
+    outputs.check()
+    files = [Path(text.rpartition("=")[2]) for text in pressures]
+    check_output(output, file, *currents, *files, *([sea_level] if sea_level else []))
+    mooring = mooring_of(file, environment, catalog or [], "motion")
+    for notice in mooring.file.notices:
+        narrate(f"{file}: {notice}")
+    turned = quantities({"declination": (declination, "angle")}).get("declination")
+    measured, notes, source = _measured(
+        mooring, currents, pressures, match, flags, parse_gap(gap), sea_level, turned
+    )
+    for note in notes:
+        narrate(note)
+    teller = Teller()
+    hidden = [] if hold_out is None else [label.strip() for label in hold_out.split(",")]
+    with stopped_by_a_signal() as stop:
+        compile_kernel(Batch(mooring), teller.note)
+        task = prepare(mooring, measured, names, hidden)
+        record = MeasuredRecord(measured, source, notes)
+        options: dict[str, Any] = {"fit": sorted(names), "hold_out": sorted(hidden)}
+        try:
+            outcome = run_motion(
+                task, record, output, options,
+                workers=workers, progress=teller, tell=teller.note, stop=stop,
+            )  # fmt: skip
+        finally:
+            teller.clear()
+        code = ended(outcome, output, record.count)
+        if not outcome.done:
+            return code
+        with open_result(output) as result, readable(output):
+            study = judged(task, measured, result)
+        if cross_validate:
+            each = cross_validated(mooring, measured, names, hidden, narrate, workers)
+            study = replace(study, held_out=(*study.held_out, *each))
+    name = mooring.file.name or file.stem
+    outputs.write_answer(lambda: motion_document(study, name), motion_part(study, name))
+    return code
+
+
+def fitted(text: str | None) -> tuple[str, ...]:
+    """The factors that are estimated: those of the drag, and what is asked for besides.
+
+    Raises
+    ------
+    UsageError
+        What is asked for cannot be estimated.
+    """
+    from calm.files.explain import unknown
+    from calm.motion.forward import FACTORS
+
+    asked = [] if text is None else [name.strip() for name in text.split(",")]
+    for name in asked:
+        if name not in FACTORS:
+            raise UsageError(unknown(f"--fit: `{name}` cannot be estimated", name, FACTORS))
+    return tuple(name for name in FACTORS if name.endswith("_drag") or name in asked)
+
+
+def parse_gap(text: str) -> np.timedelta64:
+    """A time such as ``2 h``.
+
+    Raises
+    ------
+    UsageError
+        It is none.
+    """
+    import numpy as np
+
+    units = {"s": 1, "min": 60, "h": 3600, "d": 86400}
+    number, _, unit = text.strip().partition(" ")
+    try:
+        seconds = float(number) * units[unit.strip()]
+    except (ValueError, KeyError):
+        raise UsageError(f'--gap: `{text}` is no time; write "2 h" (s, min, h, d)') from None
+    if not 0.0 <= seconds < 1e8:
+        raise UsageError(f"--gap: `{text}` is not between 0 and three years")
+    return np.timedelta64(round(seconds * 1e9), "ns")
+
+
+def _measured(
+    mooring: Mooring,
+    currents: list[Path],
+    pressures: list[str],
+    match: str,
+    flags: str,
+    gap: np.timedelta64,
+    sea_level: Path | None,
+    declination: float | None,
+) -> tuple[Measured, list[str], dict[str, str]]:
+    """What was measured, on common times; what is said of it, and its source."""
+    from calm.files.explain import not_among
+    from calm.motion.currents import read_currents
+    from calm.motion.flags import parse_flags
+    from calm.motion.forward import Forward
+    from calm.motion.joined import joined
+    from calm.motion.matching import (
+        instruments_of,
+        labels_of,
+        matched_by_label,
+        matched_by_place,
+    )
+    from calm.motion.sea_level import read_sea_level
+    from calm.motion.sensors import read_sensors
+    from calm.motion.study import unusable
+    from calm.motion.task import without
+
+    if match not in _MATCHES:
+        raise UsageError(not_among("--match", match, _MATCHES))
+    position = mooring.file.position
+    if position is None:
+        raise UsageError(
+            f"{mooring.file.path} has no `position`, whose latitude turns pressures into depths"
+        )
+    place = position.latitude, position.longitude
+    seabed = float(mooring.water.depth)
+    wanted = parse_flags(flags)
+    sensors = read_sensors(pressures, wanted, position.latitude, seabed)
+    labels, still = labels_of(mooring), Forward(mooring, {}).still
+    notes: list[str] = []
+    if match == "label":
+        points, notes = matched_by_label(sensors, labels)
+    else:
+        points = matched_by_place(sensors, instruments_of(mooring), still, labels)
+        notes = [
+            f"the sensor at {sensors[i].nominal:.1f} m of {sensors[i].source} is `{labels[at]}`"
+            for i, at in points.items()
+        ]
+        sensors = [replace(one, label=labels[points[i]]) for i, one in enumerate(sensors)]
+    read = read_currents(currents, seabed, place, declination)
+    level = None if sea_level is None else read_sea_level(sea_level)
+    used = [sensors[i] for i in points]
+    measured = joined(read, used, list(points.values()), labels, still, gap, level)
+    notes += [f"{one.source}: {note}" for one in read for note in one.notes]
+    notes += [
+        f"{one.label}: {one.dropped} pressures left out for their flag"
+        for one in used
+        if one.dropped
+    ]
+    lost = unusable(measured, still)
+    notes += [f"{label} {reason}" for label, reason in lost.items()]
+    measured = without(measured, list(lost))
+    if not measured.label:
+        raise UsageError("--pressures: no sensor is left: " + "; ".join(notes))
+    source = {
+        "currents": ", ".join(one.source for one in read),
+        "pressures": ", ".join(dict.fromkeys(one.source for one in sensors)),
+    }
+    return measured, notes, source

@@ -1,0 +1,1 @@
+"""Where every part of a mooring was, from the currents and the pressures that were measured."""

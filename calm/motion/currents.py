@@ -1,0 +1,136 @@
+"""Currents of a mooring: records of levels, and current meters that hang on the line."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.batch.records.choice import choose_profiles
+from calm.batch.records.opening import open_record
+from calm.errors import InputError, Problem
+from calm.files.current_file import holds_arrays
+from calm.files.current_netcdf import open_current, reading
+from calm.files.current_place import is_regular
+from calm.files.current_times import find_times, read_times
+from calm.files.current_values import known_values
+from calm.files.current_variables import UnreadableError, factor_of, find_velocity
+from calm.files.current_vectors import with_components
+from calm.motion.flags import flag_variable, flags_of
+from calm.motion.labelled import labels_along
+from calm.physics.line import Floats
+
+
+@dataclass(frozen=True)
+class Currents:
+    """What one file says of the current.
+
+    Attributes
+    ----------
+    time : (n,) to the nanosecond, rising
+    depth : (n, k) of the levels [m]; NaN where they hang on the line
+    label : (k,) of the parts they hang at; empty for levels of a depth
+    u, v : (n, k) [m/s]
+    flag : (n, k); 0 without
+    source : its file
+    notes : what to know of it
+    """
+
+    time: NDArray[np.datetime64]
+    depth: Floats
+    label: tuple[str, ...]
+    u: Floats
+    v: Floats
+    flag: NDArray[np.int8]
+    source: str
+    notes: tuple[str, ...] = ()
+
+
+def read_currents(
+    paths: Sequence[Path],
+    seabed: float,
+    place: tuple[float, float] | None,
+    declination: float | None,
+) -> list[Currents]:
+    """The currents of some files.
+
+    Parameters
+    ----------
+    seabed : depth of the water [m]
+    place : latitude and longitude of the mooring [degrees], where it is known
+    declination : see `calm.batch.records.opening.open_record`
+
+    Raises
+    ------
+    InputError
+        A file cannot be understood.
+    """
+    found = []
+    for path in paths:
+        if not path.exists():
+            raise InputError([Problem(str(path), 0, 0, "no such file")])
+        mine = _labelled(path, declination) if holds_arrays(path) else None
+        if mine is None:
+            with open_record(path, seabed=seabed, at=place, declination=declination) as record:
+                depth, u, v, _ = record.profiles(0, record.count)
+                depth = np.broadcast_to(depth, u.shape).copy()
+                flag = np.zeros(u.shape, np.int8)
+                time = np.asarray(record.time)
+            mine = Currents(time, depth, ("",) * u.shape[1], u, v, flag, path.name)
+        found.append(mine)
+    return found
+
+
+def _labelled(path: Path, declination: float | None) -> Currents | None:
+    """The currents of a file whose levels are parts of the line; None of any other."""
+    with reading(path), open_current(path) as dataset:
+        dataset = with_components(dataset)
+        try:
+            velocity = find_velocity(dataset, regular=is_regular(dataset))
+        except UnreadableError:
+            return None  # the reader of records says why
+        name = velocity.names[0]
+        clock = find_times(dataset, name)
+        if clock is None or dataset[clock].ndim != 1:
+            return None
+        time = str(dataset[clock].dims[0])
+        along = [str(dim) for dim in dataset[name].dims if dim != time]
+        labels = labels_along(dataset, along[0]) if len(along) == 1 else None
+        if labels is None:
+            return None
+        if velocity.magnetic != (declination is not None):
+            told = "count from magnetic north; give `--declination`"
+            if not velocity.magnetic:
+                told = "are not said to count from magnetic north; leave `--declination` out"
+            raise UnreadableError(f"`{name}` and `{velocity.names[1]}` {told}")
+        first = _values(dataset, velocity.names[0], time, "speed")
+        second = _values(
+            dataset, velocity.names[1], time, "speed" if velocity.turn is None else "angle"
+        )
+        if velocity.turn is not None:
+            angle = np.radians(second + velocity.turn)
+            first, second = first * np.sin(angle), first * np.cos(angle)
+        turn = np.radians(declination or 0.0)
+        u = first * np.cos(turn) + second * np.sin(turn)
+        v = second * np.cos(turn) - first * np.sin(turn)
+        flag = np.zeros(u.shape, np.int8)
+        for each in velocity.names:
+            marks = flag_variable(dataset, each)
+            if marks is not None:
+                own = flags_of(marks.transpose(time, ...))
+                flag = np.maximum(flag, own.reshape(len(u), -1))
+        times = read_times(dataset, clock)
+        index, notes = choose_profiles(times, None, 1, path)
+        nowhere = np.full(u.shape, np.nan)
+        return Currents(
+            times[index], nowhere, labels, u[index], v[index],
+            np.broadcast_to(flag, u.shape)[index], path.name, notes,
+        )  # fmt: skip
+
+
+def _values(dataset, name: str, time: str, dimension: str) -> Floats:  # type: ignore[no-untyped-def]
+    variable = dataset[name].transpose(time, ...)
+    return known_values(variable) * factor_of(variable, dimension)

@@ -1,0 +1,96 @@
+"""What to doubt: found from how measured depths depart from the estimated ones."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.motion import prior
+from calm.motion.moment import Common
+from calm.physics.line import Floats
+
+LEAST = 1.5
+"""A step or a drift that is named [m], at least."""
+CLEAR = 6.0
+"""And so many standard errors."""
+SHARE = 0.6
+"""Share of the variance of the residuals that it explains, at least."""
+FEWEST = 8
+"""Times on either side of a step."""
+FAR_OFFSET = 2.5
+"""Offsets of a sensor that are named, in deviations of what is expected."""
+
+
+def doubts(
+    labels: Sequence[str],
+    time: NDArray[np.datetime64],
+    residual: Floats,
+    down: Floats,
+    common: Common,
+) -> list[str]:
+    """Sentences on sensors that drift, clamps that slipped, offsets that are too large.
+
+    They are looked for in the calmer half of the times, where the currents explain little.
+
+    Parameters
+    ----------
+    time : (n,)
+    residual : (n, s) measured less estimated depths [m]
+    down : (n,) knockdown [m]
+    common : offsets and datum
+    """
+    said = []
+    known = np.isfinite(down)
+    calm = known & (down <= (np.median(down[known]) if known.any() else 0.0))
+    changes = []
+    for j, label in enumerate(labels):
+        mine = calm & np.isfinite(residual[:, j])
+        found = _change(time[mine], residual[mine, j])
+        if found is not None:
+            changes.append((abs(found[0]), label, found))
+    if changes:
+        # what one sensor does wrong shows in the others the other way round
+        _, label, (size, kind, when) = max(changes)
+        among = "" if len(labels) > 2 else ", or the other sensor the other way: two cannot tell"
+        if kind == "step":
+            said.append(
+                f"{label}: steps by {size:+.1f} m about {np.datetime_as_string(when, 'm')}: a "
+                f"clamp that slipped{among}"
+            )
+        else:
+            said.append(f"{label}: drifts by {size:+.1f} m over the record{among}")
+    for label, offset in zip(labels, common.offset, strict=True):
+        if abs(offset) > FAR_OFFSET * prior.OFFSET:
+            said.append(
+                f"{label}: {offset:+.1f} m off throughout: its zero, or a length or a place on the "
+                "line that is wrong"
+            )
+    return said
+
+
+def _change(
+    time: NDArray[np.datetime64], residual: Floats
+) -> tuple[float, str, np.datetime64] | None:
+    """A step or a drift: its size [m], which, and when; None where there is none that is clear."""
+    count = len(residual)
+    if count < 2 * FEWEST:
+        return None
+    whole = float(((residual - residual.mean()) ** 2).sum())
+    hours = (time - time[0]) / np.timedelta64(1, "h")
+    rate, start = np.polyfit(hours, residual, 1)
+    left_by_drift = float(((residual - rate * hours - start) ** 2).sum())
+    total = np.cumsum(residual)
+    at = np.arange(FEWEST, count - FEWEST + 1)
+    before, after = total[at - 1] / at, (total[-1] - total[at - 1]) / (count - at)
+    gained = (after - before) ** 2 * at * (count - at) / count
+    best = int(np.argmax(gained))
+    left_by_step = whole - float(gained[best])
+    step = left_by_step <= left_by_drift
+    left = left_by_step if step else left_by_drift
+    size = float(after[best] - before[best]) if step else float(rate * hours[-1])
+    error = np.sqrt(left / count) * np.sqrt(12.0 / count)
+    if abs(size) < max(LEAST, CLEAR * error) or left > (1.0 - SHARE) * whole:
+        return None
+    return size, "step" if step else "drift", time[at[best] - 1]

@@ -1,0 +1,55 @@
+"""The height of the sea surface over time."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.errors import InputError, Problem
+from calm.files.current_file import holds_arrays
+from calm.files.current_netcdf import open_current, reading
+from calm.files.current_times import find_times, read_times
+from calm.files.current_values import known_values
+from calm.files.current_variables import UnreadableError, factor_of, holdings
+from calm.motion.sensors import read_table
+from calm.physics.line import Floats
+
+_STANDARD = (
+    "sea_surface_height_above_mean_sea_level",
+    "sea_surface_height_above_geoid",
+    "sea_surface_height_above_geopotential_datum",
+    "tidal_sea_surface_height_above_mean_sea_level",
+    "water_surface_height_above_reference_datum",
+)
+
+
+def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
+    """Times, rising, and the height of the sea surface above a datum [m].
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or holds no height with its unit.
+    """
+    if not path.exists():
+        raise InputError([Problem(str(path), 0, 0, "no such file")])
+    if not holds_arrays(path):
+        time, columns, values = read_table(path, ("length",), "level[m]")
+        if len(columns) != 1:
+            message = "has several columns; the sea level is one: `time,level[m]`"
+            raise InputError([Problem(str(path), 1, 1, message)])
+        return time, values[:, 0]
+    with reading(path), open_current(path) as dataset:
+        for standard in _STANDARD:
+            for name in map(str, dataset.cf.standard_names.get(standard, [])):
+                clock = find_times(dataset, name)
+                variable = dataset[name].squeeze()
+                if clock is None or variable.ndim != 1:
+                    continue
+                times = read_times(dataset, clock)
+                order = np.argsort(times, kind="stable")
+                level = known_values(variable) * factor_of(variable, "length")
+                return times[order], level[order]
+        raise UnreadableError(f"holds no height of the sea surface; it holds {holdings(dataset)}")

@@ -1,0 +1,225 @@
+"""From what was read to what is estimated, and how well that agrees with what was measured."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from calm.case import Mooring
+from calm.errors import UsageError
+from calm.files.explain import unknown
+from calm.motion.common import estimate_common
+from calm.motion.doubts import doubts
+from calm.motion.forward import Forward
+from calm.motion.judge import (
+    BAND,
+    Agreement,
+    agreement,
+    calm_times,
+    coverage,
+    difference,
+    linear,
+    rms,
+)
+from calm.motion.measured import Measured
+from calm.motion.run import estimate_in_memory
+from calm.motion.task import Task, without
+from calm.physics.line import Floats
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+CONSTANT = 1e-6
+"""A sensor whose depths span no more than this measures nothing [m]."""
+MISPLACED = 20.0
+"""How far from its place in still water a sensor may be at its least depth [m], where that is
+not within a factor of two either."""
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """A sensor that was hidden, and how well its depths were found.
+
+    Attributes
+    ----------
+    count : times that are judged: it and the used sensors have good pressures
+    bias : mean of estimated less measured [m]
+    rms, linear_rms : of the difference less its mean over the calm times [m]: estimated, and
+        interpolated between the used sensors
+    coverage : share of those differences within the band of 95 %
+    """
+
+    label: str
+    count: int
+    bias: float
+    rms: float
+    linear_rms: float
+    coverage: float
+
+
+@dataclass(frozen=True)
+class Study:
+    """What was found.
+
+    Attributes
+    ----------
+    task : with what is common to the record
+    factors : of each name its value and the ends of its interval of 95 %
+    fit, plain : agreement of each used sensor, of what is estimated and of the currents alone
+    held_out : of the hidden ones
+    doubts : what to doubt, in sentences
+    """
+
+    task: Task
+    factors: Mapping[str, tuple[float, float, float]]
+    fit: Mapping[str, Agreement]
+    plain: Mapping[str, Agreement]
+    held_out: tuple[HeldOut, ...]
+    doubts: tuple[str, ...]
+
+
+def prepare(
+    mooring: Mooring, measured: Measured, names: Sequence[str], hidden: Sequence[str]
+) -> Task:
+    """Estimate what is common to the record from the sensors that are not hidden.
+
+    Raises
+    ------
+    UsageError
+        A hidden sensor is none; none is left.
+    """
+    for label in hidden:
+        if label not in measured.label:
+            what = f"--hold-out: no sensor is called `{label}`"
+            raise UsageError(unknown(what, label, measured.label))
+    used = without(measured, hidden)
+    if not used.label:
+        raise UsageError("--hold-out: no sensor is left to estimate from")
+    return Task(mooring, used, estimate_common(mooring, used, names))
+
+
+def intervals(task: Task) -> dict[str, tuple[float, float, float]]:
+    """Of each factor its value and the ends of its interval of 95 %."""
+    spread = np.sqrt(np.diag(task.common.covariance))
+    return {
+        name: (value, value * float(np.exp(-BAND * sd)), value * float(np.exp(BAND * sd)))
+        for (name, value), sd in zip(task.common.factors.items(), spread, strict=False)
+    }
+
+
+def unusable(measured: Measured, still: Floats) -> dict[str, str]:
+    """Sensors that cannot be used, each with the reason; what cannot be right is refused.
+
+    Raises
+    ------
+    UsageError
+        A sensor is nowhere near its place on the line, so that its unit or its label is wrong.
+    """
+    reasons, complaints = {}, []
+    for j, label in enumerate(measured.label):
+        depth = measured.depth[:, j][np.isfinite(measured.depth[:, j])]
+        if not depth.size:
+            reasons[label] = "has no good pressure at any time of the currents"
+            continue
+        if depth.size > 2 and np.ptp(depth) <= CONSTANT:
+            reasons[label] = f"is constant at {depth[0]:.1f} m: it is left out"
+            continue
+        least, place = float(np.percentile(depth, 5.0)), float(still[measured.point[j]])
+        if abs(least - place) > MISPLACED and not 0.5 < least / place < 2.0:
+            complaints.append(
+                f"`{label}` is at {least:.1f} m at its least, where the line has it at "
+                f"{place:.1f} m: its unit (bar, kPa?) or its label is wrong"
+            )
+    if complaints:
+        raise UsageError("--pressures: " + "; ".join(complaints))
+    return reasons
+
+
+def judged(task: Task, measured: Measured, result: Dataset) -> Study:
+    """How a finished result agrees with all that was measured.
+
+    Parameters
+    ----------
+    measured : with the sensors that were hidden
+    result : of `calm.motion.run.run_motion`
+    """
+    used = task.measured
+    residual = np.asarray(result["residual"].values, np.float64)
+    plain = np.asarray(result["plain_depth"].values, np.float64)
+    down = knockdown(used)
+    every = np.isfinite(down)
+    fit_of, plain_of = {}, {}
+    for j, label in enumerate(used.label):
+        calm = calm_times(down, every & np.isfinite(used.depth[:, j]))
+        depth = used.depth[:, j] - task.common.offset[j]
+        fit_of[label] = agreement(depth - residual[:, j], used.depth[:, j], calm, every)
+        plain_of[label] = agreement(plain[:, j], used.depth[:, j], calm, every)
+    still = Forward(task.mooring, {}).still
+    hidden = [label for label in measured.label if label not in used.label]
+    clamps = len(result["clamp_label"]) if "clamp_label" in result else 0
+    held = []
+    for label in hidden:
+        point = int(measured.point[measured.label.index(label)])
+        at = ("clamp_depth", "clamp_depth_sd") if point < clamps else ("depth_top", "depth_sd")
+        column = point if point < clamps else point - clamps
+        depth, spread = (np.asarray(result[name][:, column].values, np.float64) for name in at)
+        held.append(judge_hidden(measured, used, label, depth, spread, still))
+    said = doubts(used.label, used.time, residual, down, task.common)
+    return Study(task, intervals(task), fit_of, plain_of, tuple(held), tuple(said))
+
+
+def knockdown(used: Measured) -> Floats:
+    """(n,) how far below its least depth the highest sensor with a pressure is [m]."""
+    down = np.full(len(used.time), np.nan)
+    for j in range(len(used.label)):
+        depth = used.depth[:, j]
+        if np.isfinite(depth).any():
+            down = np.where(np.isfinite(down), down, depth - np.nanmin(depth))
+    return down
+
+
+def judge_hidden(
+    measured: Measured, used: Measured, label: str, depth: Floats, spread: Floats, still: Floats
+) -> HeldOut:
+    """A hidden sensor against what was estimated, and against interpolation."""
+    column = measured.label.index(label)
+    own = measured.depth[:, column]
+    among = np.isfinite(own) & np.isfinite(used.depth).all(axis=1) & np.isfinite(depth)
+    calm = calm_times(knockdown(used), among)
+    between = linear(used.depth, used.point, still, int(measured.point[column]))
+    off = difference(depth, own, calm, among)
+    other = difference(between, own, calm, among)
+    bias = float((depth - own)[among].mean()) if among.any() else float("nan")
+    return HeldOut(label, int(among.sum()), bias, rms(off), rms(other), coverage(off, spread))
+
+
+def cross_validated(
+    mooring: Mooring,
+    measured: Measured,
+    names: Sequence[str],
+    hidden: Sequence[str],
+    tell: Callable[[str], None],
+    workers: int | None = None,
+) -> tuple[HeldOut, ...]:
+    """Each used sensor hidden in turn, besides those that are hidden anyway.
+
+    Raises
+    ------
+    UsageError
+        There is only one.
+    """
+    rest = [label for label in measured.label if label not in hidden]
+    if len(rest) < 2:
+        raise UsageError("--cross-validate: two sensors at least are needed")
+    still = Forward(mooring, {}).still
+    held = []
+    for label in rest:
+        tell(f"estimating without {label}")
+        task = prepare(mooring, measured, names, [*hidden, label])
+        point = int(measured.point[measured.label.index(label)])
+        depth, spread = estimate_in_memory(task, [point], workers)
+        held.append(judge_hidden(measured, task.measured, label, depth[:, 0], spread[:, 0], still))
+    return tuple(held)

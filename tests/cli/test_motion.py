@@ -1,0 +1,215 @@
+"""`calm motion` as a user runs it: a small mooring whose motion is known."""
+
+import json
+
+import numpy as np
+import pytest
+import xarray
+
+import calm as package
+from calm.motion.sensors import depth_of
+
+HOURS = 48
+LATITUDE = 48.0
+MOORING = """\
+name: Twin
+position: {latitude: 48 deg, longitude: -5 deg}
+environment:
+  depth: 300 m
+  current: {speed: 0.5 m/s, toward: 90 deg}
+line:
+  - {use: ball, label: top float}
+  - {use: rope, length: 250 m, clamps: [{use: logger, at: 10 m, label: upper}, {use: logger, at: 100 m, label: middle}, {use: logger, at: 200 m, label: lower}]}
+  - {use: weight}
+components:
+  ball: {kind: sphere, role: float, diameter: 1 m, buoyancy: 2000 N}
+  rope: {kind: cable, diameter: 10 mm, weight: 0.2 N/m, stiffness: 1 MN}
+  logger: {kind: cylinder, role: instrument, diameter: 40 mm, length: 0.3 m, buoyancy: -5 N}
+  weight: {kind: anchor, weight: 9000 N}
+"""  # noqa: E501
+LEVELS = (0.0, 150.0, 300.0)
+NAMES = ("upper", "middle", "lower")
+
+
+@pytest.fixture(scope="module")
+def truth(tmp_path_factory):
+    """Hourly currents, and the depths of the three loggers in them [m]."""
+    path = tmp_path_factory.mktemp("truth") / "m.yaml"
+    path.write_text(MOORING)
+    random = np.random.default_rng(7)
+    speed = 0.35 + 0.3 * np.sin(2 * np.pi * np.arange(HOURS) / 12.4)
+    u = speed[:, None] * np.array([1.0, 0.8, 0.5])
+    depths = package.solve_profiles(package.load(path), u, 0.0 * u, LEVELS).clamp_depth
+    return u, depths + 0.05 * random.standard_normal(depths.shape)
+
+
+def stamps():
+    return [f"2026-03-0{1 + hour // 24}T{hour % 24:02d}:00" for hour in range(HOURS)]
+
+
+def dbar(depth):
+    import gsw
+
+    return gsw.p_from_z(-depth, LATITUDE)
+
+
+@pytest.fixture
+def given(folder, truth):
+    """The files of a mooring, its currents and its pressures; returns what writes other ones."""
+    u, depth = truth
+    (folder / "m.yaml").write_text(MOORING)
+    rows = [
+        f"{time},{level},{value:.5f},0"
+        for time, profile in zip(stamps(), u, strict=True)
+        for level, value in zip(LEVELS, profile, strict=True)
+    ]
+    (folder / "c.csv").write_text("time,depth[m],u[m/s],v[m/s]\n" + "\n".join(rows) + "\n")
+
+    def pressures(name="p.csv", labels=NAMES, unit="dbar", factor=1.0, values=None, times=None):
+        values = dbar(depth) if values is None else values
+        lines = [
+            f"{time}," + ",".join(f"{value * factor:.5f}" for value in row)
+            for time, row in zip(times or stamps(), values, strict=True)
+        ]
+        head = ",".join(f"{label}[{unit}]" if unit else label for label in labels)
+        (folder / name).write_text(f"time,{head}\n" + "\n".join(lines) + "\n")
+        return name
+
+    pressures()
+    return pressures
+
+
+COMMAND = ("motion", "m.yaml", "--currents", "c.csv", "--workers", 1)
+
+
+def test_depths_sensors_and_a_hidden_one(calm, given, truth, folder):
+    done = calm(*COMMAND, "--pressures", "p.csv", "-o", "d.nc", "--hold-out", "middle",
+                "--json", "-")  # fmt: skip
+    assert done.code == 0, done.err
+    said = json.loads(done.out)
+    assert set(said["factors"]) == {"cable_drag", "rigid_drag"}
+    for one in said["factors"].values():
+        assert one["low"] < 1.0 < one["high"]  # nothing was wrong with the drag
+    assert [one["label"] for one in said["sensors"]] == ["upper", "lower"]
+    (held,) = said["held_out"]
+    assert held["label"] == "middle" and held["n"] == HOURS
+    assert held["rms"] < 0.5 * held["linear_rms"]
+    with xarray.open_dataset(folder / "d.nc", engine="h5netcdf") as result:
+        assert result["residual"].dims == ("time", "sensor")
+        assert result["depth_sd"].dims == ("time", "component")
+        off = result["clamp_depth"].values - truth[1]
+        assert np.sqrt((off**2).mean()) < 0.5
+        spread = result["clamp_depth_sd"].values
+        assert (np.abs(off) < 4.0 * spread).all() and (spread > 0.0).all()
+        assert result["current_factor"].values == pytest.approx(np.ones(HOURS), abs=0.15)
+        assert (result["status"].values == 0).all()
+
+
+def test_the_same_again_is_found_and_another_is_refused(calm, given, folder):
+    words = (*COMMAND, "--pressures", "p.csv", "-o", "d.nc")
+    first = calm(*words)
+    before = (folder / "d.nc").read_bytes()
+    assert (first.code, calm(*words).out) == (0, first.out)
+    assert (folder / "d.nc").read_bytes() == before
+    other = calm(*words, "--hold-out", "upper")
+    assert other.code == 2 and "was made from another input" in other.err
+
+
+def test_cross_validation_hides_each_in_turn(calm, given):
+    done = calm(*COMMAND, "--pressures", "p.csv", "-o", "d.nc", "--cross-validate", "--json", "-")
+    assert done.code == 0, done.err
+    assert [one["label"] for one in json.loads(done.out)["held_out"]] == list(NAMES)
+
+
+@pytest.mark.parametrize(("unit", "factor"), [("bar", 0.1), ("kPa", 10.0), ("Pa", 1e4)])
+def test_declared_units_convert(calm, given, truth, unit, factor, folder):
+    given("q.csv", unit=unit, factor=factor)
+    done = calm(*COMMAND, "--pressures", "q.csv", "-o", "d.nc")
+    assert done.code == 0, done.err
+    with xarray.open_dataset(folder / "d.nc", engine="h5netcdf") as result:
+        off = result["clamp_depth"].values - truth[1]
+        assert np.sqrt((off**2).mean()) < 0.5
+
+
+def test_netcdf_with_flags_and_one_file_for_a_sensor(calm, given, truth, folder):
+    values = dbar(truth[1])
+    flags = np.ones(values.shape, np.int8)
+    values[5, 0], flags[5, 0] = 500.0, 4
+    values[6, 0], flags[6, 0] = 400.0, 8
+    time = np.array(stamps(), "M8[ns]")
+    attributes = {"standard_name": "sea_water_pressure", "units": "dbar"}
+    both = xarray.Dataset(
+        {
+            "pressure": (("time", "instrument"), values[:, :2], attributes),
+            "pressure_qc": (("time", "instrument"), flags[:, :2], {"flag_values": [1, 2, 4, 8]}),
+        },
+        {"time": time, "instrument": list(NAMES[:2])},
+    )
+    both.to_netcdf(folder / "p.nc", engine="h5netcdf")
+    one = xarray.Dataset({"PRES": (("time",), values[:, 2], attributes)}, {"time": time})
+    one.to_netcdf(folder / "one.nc", engine="h5netcdf")
+    done = calm(*COMMAND, "--pressures", "p.nc", "lower=one.nc", "-o", "d.nc", "--json", "-")
+    assert done.code == 0, done.err
+    assert "upper: 2 pressures left out for their flag" in done.err
+    assert [one["n"] for one in json.loads(done.out)["sensors"]] == [46, 48, 48]
+
+
+def test_what_cannot_be_used_is_refused_and_nothing_is_written(calm, given, truth, folder):
+    depth = dbar(truth[1])
+    later = [time.replace("2026", "2027") for time in stamps()]
+    cases = {
+        "needs a unit": given("a.csv", unit=""),
+        "no sensor is a part of the line": given("b.csv", labels=("x", "y", "z")),
+        "no time has both": given("c2.csv", times=later),
+        "its unit (bar, kPa?)": given("d.csv", factor=0.1),
+        "is no unit": given("e.csv", unit="knot"),
+        "two sensors are called": given("f.csv", labels=("upper", "upper", "lower")),
+        "no sensor is left": given("g.csv", values=0.0 * depth + 100.0),
+        "no such file": "missing.csv",
+    }
+    for reason, file in cases.items():
+        done = calm(*COMMAND, "--pressures", file, "-o", "d.nc")
+        assert (done.code, done.out) == (2, ""), (reason, done)
+        assert reason in done.err, (reason, done.err)
+    assert not list(folder.glob("d.nc*"))
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (("--hold-out", "uper"), "did you mean `upper`"),
+        (("--hold-out", "upper,middle,lower"), "no sensor is left"),
+        (("--flags", "1,8"), "never a measurement"),
+        (("--gap", "2"), "is no time"),
+        (("--fit", "drag"), "cannot be estimated"),
+        (("--match", "colour"), "must be one of label, height, depth"),
+        (("--match", "height"), "no nominal height or depth"),
+    ],
+)
+def test_options_that_make_no_sense(calm, given, folder, words, reason):
+    done = calm(*COMMAND, "--pressures", "p.csv", "-o", "d.nc", *words)
+    assert done.code == 2 and reason in done.err
+    assert not (folder / "d.nc").exists()
+
+
+def test_a_constant_sensor_is_named_and_left_out(calm, given, truth):
+    values = dbar(truth[1])
+    values[:, 1] = values[0, 1]
+    given("k.csv", values=values)
+    done = calm(*COMMAND, "--pressures", "k.csv", "-o", "d.nc", "--json", "-")
+    assert done.code == 0 and "middle is constant" in done.err
+    assert [one["label"] for one in json.loads(done.out)["sensors"]] == ["upper", "lower"]
+
+
+def test_a_clamp_that_slipped_is_named(calm, given, truth):
+    values = dbar(truth[1])
+    values[HOURS // 2 :, 1] += 6.0
+    given("s.csv", values=values)
+    done = calm(*COMMAND, "--pressures", "s.csv", "-o", "d.nc", "--json", "-")
+    assert any("middle: steps" in one for one in json.loads(done.out)["doubts"])
+
+
+def test_depths_of_pressures_are_those_of_teos_10():
+    # the check values of the function z_from_p of the Gibbs SeaWater toolbox, at 4 degrees north
+    depths = depth_of(np.array([10.0, 600.0, 1000.0]), 4.0)
+    assert depths == pytest.approx([9.94458, 595.82535, 992.09191], abs=1e-3)
