@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
+import numpy as np
+
 from calm.physics.compiled import packed
 from calm.physics.line import Line
 from calm.physics.stretch import Knot
@@ -213,8 +215,9 @@ def head_count(line: Line) -> int:
 
 
 def _clamps_of(line: Line, piece: int) -> list[int]:
-    clamps = [m for m in range(len(line.clamp_piece)) if line.clamp_piece[m] == piece]
-    return sorted(clamps, key=lambda m: float(line.clamp_at[m]))
+    clamps = np.flatnonzero(line.clamp_piece == piece)
+    down: list[int] = clamps[np.argsort(line.clamp_at[clamps], kind="stable")].tolist()
+    return down
 
 
 def _clamp_load(line: Line, m: int, at: float = 0.0, lever: float = 0.5) -> Load:

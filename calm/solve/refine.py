@@ -138,23 +138,21 @@ def _abrupt(line: Line, fine: Closed, levels: Floats) -> tuple[float, float]:
     between = smooth[1:] & smooth[:-1]
     if not between.any():
         return 0.0, 0.0
-    length = np.where(segment, cut, 1.0)
+    length = np.where(segment, cut, 1.0)[:, None]
     apart = 0.5 * (length[1:] + length[:-1])
-
-    def excess(nodes: Floats) -> Floats:
-        slope = np.diff(np.diff(nodes, axis=0) / length[:, None], axis=0) / apart[:, None]
-        bend = np.diff(slope, axis=0) * length[1:-1, None] ** 2 / 8.0
-        size = sizes(bend)
-        around = np.pad(np.where(between, size, -1.0), 2, constant_values=-1.0)
-        usual = np.maximum(around[:-4], around[4:])
-        abrupt = between & (usual >= 0.0) & (size > usual)
-        share = np.divide(size - usual, size, out=np.zeros_like(size), where=abrupt)
-        exceeding: Floats = share[:, None] * bend
-        return exceeding
-
+    # of place and force together: columns 0 to 2, and 3 to 5
+    slope = np.diff(np.diff(np.hstack([position, force]), axis=0) / length, axis=0) / apart
+    bend = np.diff(slope, axis=0) * length[1:-1] ** 2 / 8.0
+    bend = bend.reshape(-1, 2, 3)
+    size = np.sqrt(np.einsum("ijk,ijk->ij", bend, bend))
+    around = np.full((len(size) + 4, 2), -1.0)
+    np.copyto(around[2:-2], size, where=between[:, None])
+    usual = np.maximum(around[:-4], around[4:])
+    abrupt = between[:, None] & (usual >= 0.0) & (size > usual)
+    share = np.divide(size - usual, size, out=np.zeros_like(size), where=abrupt)
+    strayed, lost = np.moveaxis(share[:, :, None] * bend, 1, 0)
     # what a force adds to the tension there, and where the line hangs from in the end
-    lost = excess(force)
     tension = sizes(force[1:])[:, None]
     axis = np.divide(force[1:], tension, out=np.zeros_like(force[1:]), where=tension > 0.0)
     along = np.maximum(np.abs((lost * axis[1:-1]).sum(axis=1)), np.abs(lost @ axis[-1]))
-    return float(sizes(excess(position)).max()), float(along.max())
+    return float(sizes(strayed).max()), float(along.max())
