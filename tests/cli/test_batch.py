@@ -239,11 +239,10 @@ def test_signals_leave_what_can_be_resumed(write_mooring, folder, number):
         command, stderr=subprocess.PIPE, text=True,
         preexec_fn=_heed_interrupts,
     )  # fmt: skip
-    part = folder / "r.nc.part" / ".batch" / "identity"
-    while not part.exists():
+    first_block = folder / "r.nc.part" / ".batch" / "0"
+    while not first_block.exists():
         assert process.poll() is None
-        time.sleep(0.05)
-    time.sleep(2.0)
+        time.sleep(0.02)
     os.kill(process.pid, number)
     told = process.communicate(timeout=600)[1]
     assert process.returncode == 75, told
