@@ -37,7 +37,9 @@ class Acceptance:
         for accept in sorted(self.accepts, key=lambda one: one.line):
             of = f" of {accept.component}" if accept.component is not None else ""
             what = f"line {accept.line}: `accept` for {accept.rule}{of}"
-            if not accept.counts_on(self.day):
+            if accept.date is not None and accept.date > self.day.isoformat():
+                yield f"{what} is dated {accept.date}, a day to come: it does not count yet"
+            elif not accept.counts_on(self.day):
                 yield f"{what} ended on {accept.until}: it no longer counts"
             elif accept not in used:
                 yield f"{what} is not needed: nothing there fails or is unknown"

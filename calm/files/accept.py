@@ -29,6 +29,8 @@ def _day(text: str) -> str:
 def _said(text: str) -> str:
     if not text.strip():
         raise ValueError("`reason` is blank")
+    if not any(sign.isalnum() for sign in text):
+        raise ValueError(f"`reason: {shown(text)}` gives no reason; say it in words")
     return text.strip()
 
 
@@ -88,8 +90,9 @@ class Accept:
         return self.rule == rule and (self.labels is None or component in self.labels)
 
     def counts_on(self, day: calendar_date) -> bool:
-        """Whether it has not ended before that day."""
-        return self.until is None or day.isoformat() <= self.until
+        """Whether it has not ended before that day, and is not dated after it."""
+        begun = self.date is None or self.date <= day.isoformat()
+        return begun and (self.until is None or day.isoformat() <= self.until)
 
 
 def read_accepts(

@@ -14,6 +14,8 @@ from calm.files.accept import AcceptKeys
 from calm.files.fields import LENGTH, POSITIVE_LENGTH, Model, Quantity
 
 _FACTOR = Quantity("number", above=0)
+_SAFETY = Quantity("number", at_least=1)
+"""A factor below 1 would pass what breaks, or an anchor that is lifted."""
 _SHARE = Quantity("number", at_least=0, at_most=1)
 _SPEED = Quantity("speed", at_least=0)
 _LEAST_TENSION = Quantity("force", at_least=0)
@@ -48,9 +50,9 @@ _URI = "URI GSO mooring program"
 class SafetyFactors(Model):
     """Least breaking load over tension."""
 
-    steel: Annotated[float, _FACTOR, Limit("of steel and all that is no rope", _UFC)] = 3.0
-    synthetic: Annotated[float, _FACTOR, Limit("of synthetic rope", _PRACTICE)] = 5.0
-    surface: Annotated[float, _FACTOR, Limit("of all of a surface mooring", _PRACTICE)] = 5.0
+    steel: Annotated[float, _SAFETY, Limit("of steel and all that is no rope", _UFC)] = 3.0
+    synthetic: Annotated[float, _SAFETY, Limit("of synthetic rope", _PRACTICE)] = 5.0
+    surface: Annotated[float, _SAFETY, Limit("of all of a surface mooring", _PRACTICE)] = 5.0
 
 
 class MinimumTensions(Model):
@@ -68,7 +70,7 @@ class Checks(Model):
 
     safety_factor: SafetyFactors = Field(default_factory=SafetyFactors)
     anchor_factor: Annotated[
-        float, _FACTOR, Limit("required weight of the anchor over V + H / friction", _DEWEY)
+        float, _SAFETY, Limit("required weight of the anchor over V + H / friction", _DEWEY)
     ] = 1.5
     anchor_friction: Annotated[
         float, _FACTOR, Limit("of an anchor on the seabed that gives none of its own", _DEWEY)
@@ -79,7 +81,7 @@ class Checks(Model):
     ] = 0.1
     minimum_rise_speed: Annotated[float, _SPEED, Limit("of the line without its anchor")] = 0.3
     launch_safety_factor: Annotated[
-        float, _FACTOR, Limit("breaking load over tension in the launch", _URI)
+        float, _SAFETY, Limit("breaking load over tension in the launch", _URI)
     ] = 2.0
     launch_working_factor: Annotated[
         float, _FACTOR, Limit("times the working load that is borne in the launch")
@@ -96,7 +98,7 @@ class Checks(Model):
     ] = None
     maximum_tilt: Annotated[
         float | None,
-        Quantity("angle", above=0, at_most=180),
+        Quantity("angle", above=0, at_most=90),
         Limit("of instruments and releases", THE_DESIGN),
     ] = None
     minimum_top_depth: Annotated[

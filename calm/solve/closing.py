@@ -9,6 +9,7 @@ from math import degrees, radians
 
 import numpy as np
 
+from calm.physics import pace
 from calm.physics.line import Floats, Line, Water
 from calm.physics.march import Cuts, End, march
 from calm.physics.profile import Profile
@@ -21,6 +22,8 @@ from calm.solve.standing import standing_lift
 from calm.solve.status import Status
 from calm.solve.unknown import Afloat, Unknown
 
+AS_MANY = 8
+"""Pieces and clamps of which a line's solve takes as long as one of an ordinary mooring."""
 COARSE_STEP = radians(4.0)
 """Angle step of the marches that only look for the neighbourhood of a root."""
 REACH = 0.01
@@ -87,6 +90,7 @@ class Closing:
         self.floats = np.flatnonzero(~line.flexible & (line.buoyancy > 0.0)).tolist()
         self.frequency = 0.0
         self.marches = 0
+        pace.expect((len(line.length) + len(line.clamp_piece)) / AS_MANY)
 
     @cached_property
     def track(self) -> Track:

@@ -27,6 +27,8 @@ DIP = 8
 GOLDEN = 0.381966
 ROUNDING = 1e-12
 """Share of a current that is no growth of it: what a weaker one of the same direction leaves."""
+MOST_AFLOAT = 16
+"""Floats at the surface one after the other: each is sought with all those above it."""
 SHARES = (0.0, 0.4, 0.7, 0.85, 0.94, 1.0 - AWASH, 0.995)
 """Shares of its buoyancy in use at which a float that would be under water is tried afloat."""
 
@@ -201,6 +203,10 @@ def _at_surface(closing: Closing, unknown: Unknown, deep: float) -> Root:
     line = closing.line
     floats = closing.floats
     for piece, lower in zip(floats, [*floats[1:], None], strict=True):
+        if len(unknown.above) == MOST_AFLOAT:
+            raise Status.ABOVE_SURFACE.because(
+                f"More than {MOST_AFLOAT} floats would lie at the surface, one after the other."
+            )
         unknown = replace(unknown, afloat=piece)
         if closing.at_rest and (unknown.lands or _slack_at_rest(closing, unknown)):
             length = float(line.length.sum())

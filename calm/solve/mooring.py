@@ -26,6 +26,10 @@ PERHAPS_LANDED = 20.0
 """The same, up to which it is looked whether it could hang: the other shape is then reported."""
 
 
+MOST_DEPTHS = 500
+"""The longest line that is solved, in depths: segments are no longer than a hundredth of one."""
+
+
 def solve_mooring(line: Line, water: Water, settings: Settings | None = None) -> Solution:
     """Solve for the static equilibrium of a moored line.
 
@@ -44,6 +48,13 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
     NoEquilibrium
         With one of the statuses of `Status`: nothing is returned that does not pass every check.
     """
+    out = float(line.length.sum())
+    if out > MOST_DEPTHS * water.depth:
+        raise Status.NOT_CONVERGED.because(
+            f"The line, {out:.0f} m, is {out / water.depth:.0f} times as long as the water is "
+            f"deep; up to {MOST_DEPTHS} times is solved.",
+            advice="Shorten it: what lies on the seabed does little for the anchor.",
+        )
     closing = Closing(line, water, settings or Settings())
     refuse_unsupported(line, water, closing.lift)
     try:

@@ -160,6 +160,39 @@ def test_an_accept_counts_through_its_last_day(calm, accepting, until, counts):
     assert (ended in done.err) is not counts
 
 
+def test_an_accept_of_a_day_to_come_does_not_count_yet(calm, accepting):
+    file = accepting("{rule: strength, component: top float, reason: a test, date: 2999-01-01}")
+    done, _, states = checked(calm, file)
+    assert states["strength", "top float"] == ["unknown"]
+    assert "of top float is dated 2999-01-01, a day to come: it does not count yet" in done.err
+
+
+@pytest.mark.parametrize("reason", [".", "-", "?!"])
+def test_a_reason_is_said_in_words(calm, accepting, reason):
+    done = calm("check", accepting(f'{{rule: strength, component: top float, reason: "{reason}"}}'))
+    assert done.code == 2
+    assert f"`reason: {reason}` gives no reason; say it in words" in done.err
+
+
+@pytest.mark.parametrize(
+    ("limit", "refused"),
+    [
+        ("safety_factor: {steel: 0.01}", "`steel: 0.01` must be at least 1"),
+        ("safety_factor: {synthetic: 0.9}", "`synthetic: 0.9` must be at least 1"),
+        ("safety_factor: {surface: 0.5}", "`surface: 0.5` must be at least 1"),
+        ("anchor_factor: 0.01", "`anchor_factor: 0.01` must be at least 1"),
+        ("launch_safety_factor: 0.1", "`launch_safety_factor: 0.1` must be at least 1"),
+        ("maximum_tilt: 180 deg", "`maximum_tilt: 180 deg` must be at most 90 deg"),
+        ("rating_margin: -5000 m", "`rating_margin: -5000 m` must be at least 0 m"),
+    ],
+)
+def test_a_limit_that_would_pass_anything_is_refused(calm, accepting, limit, refused):
+    reason = "{rule: strength, component: top float, reason: a test}"
+    done = calm("check", accepting(reason, more=f"  {limit}\n"))
+    assert done.code == 2
+    assert refused in done.err
+
+
 def test_the_more_particular_accept_is_the_one_that_counts(calm, accepting):
     file = accepting(
         "{rule: strength, reason: all of it}",
