@@ -1,4 +1,4 @@
-"""Where the component catalogue and the example lines that come with CALM are.
+"""Where the component catalogue, the example lines and the field data that come with CALM are.
 
 Once installed they stand inside the package; in a checkout, beside it.
 """
@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Literal
 
 
-def shipped_folder(name: Literal["catalog", "lines"]) -> Path:
-    """The folder of the shipped catalogue or lines.
+def shipped_folder(name: Literal["catalog", "lines", "field"]) -> Path:
+    """The folder of the shipped catalogue, lines or field data.
 
     Raises
     ------
@@ -19,7 +19,8 @@ def shipped_folder(name: Literal["catalog", "lines"]) -> Path:
         The installation is incomplete.
     """
     package = Path(str(importlib.resources.files("calm")))
-    for folder in (package / "_shipped" / name, package.parent / name):
+    beside = package.parent / "docs" / name if name == "field" else package.parent / name
+    for folder in (package / "_shipped" / name, beside):
         if folder.is_dir():
             return folder
     raise FileNotFoundError(f"CALM's folder `{name}` is missing; install CALM again")

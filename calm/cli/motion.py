@@ -49,7 +49,10 @@ def motion(
     flags: str = "1,2",
     gap: str = "2 h",
     declination: Annotated[str | None, Parameter(allow_leading_hyphen=True)] = None,
+    onto: Path | None = None,
+    replace_depth: Annotated[bool, Parameter(name="--replace")] = False,
     json: OutputPath = None,
+    report: Path | None = None,
     workers: int | None = None,
     environment: str | None = None,
     catalog: list[Path] | None = None,
@@ -94,6 +97,14 @@ def motion(
     declination
         Of magnetic north from true north, such as "12.5 deg", positive to the east: turns
         the currents that the record says count from magnetic north.
+    onto
+        A NetCDF file of instruments, found by label: OUTPUT is then a copy of it with
+        `depth` and `depth_sd` added, and the result stands beside it as
+        OUTPUT's name ending in .motion.nc.
+    replace_depth
+        Let a `depth` that the file of `--onto` has be replaced in the copy.
+    report
+        Write a page and a PDF, motion.html and motion.pdf, in this folder.
     json
         Write the factors and how well depths agree as JSON, - to print it.
     workers
@@ -103,28 +114,50 @@ def motion(
     catalog
         A catalogue of your own; its components hide others of the same id. Repeatable.
     """
+    import numpy as np
+
     from calm.batch.compiling import compile_kernel
     from calm.batch.profiles import Batch
     from calm.batch.result import open_result, readable
+    from calm.motion.matching import labels_of
+    from calm.motion.onto import read_instruments, write_onto
     from calm.motion.run import run_motion
+    from calm.motion.series import series_of
     from calm.motion.study import cross_validated, judged, prepare
     from calm.motion.task import MeasuredRecord
+    from calm.report.folder import check_folder, write_report
     from calm.report.motion.brief import motion_part
     from calm.report.motion.document import motion_document
+    from calm.report.motion.report import motion_files
 
     if workers is not None and workers < 1:
         raise UsageError(f"--workers: {workers} is not 1 or more")
     names = fitted(fit)
     outputs = Outputs(files=(file,), json=json)
     outputs.check()
+    if report is not None:
+        check_folder(report)
     files = [Path(text.rpartition("=")[2]) for text in pressures]
-    check_output(output, file, *currents, *files, *([sea_level] if sea_level else []))
+    files += [path for path in (sea_level, onto) if path is not None]
+    check_output(output, file, *currents, *files)
+    copy = output
+    if onto is not None:
+        if output.suffix != ".nc":
+            raise UsageError(f"cannot write {output}: the name of a copy ends in .nc")
+        output = output.with_suffix(".motion.nc")
+        check_output(output, file, *currents, *files)
+    elif replace_depth:
+        raise UsageError("--replace: there is no --onto whose depths could be replaced")
     mooring = mooring_of(file, environment, catalog or [], "motion")
     for notice in mooring.file.notices:
         narrate(f"{file}: {notice}")
     turned = quantities({"declination": (declination, "angle")}).get("declination")
-    measured, notes, source = _measured(
-        mooring, currents, pressures, match, flags, parse_gap(gap), sea_level, turned
+    labels, apart = labels_of(mooring), parse_gap(gap)
+    instruments = None
+    if onto is not None:
+        instruments = read_instruments(onto, labels, replace=replace_depth)
+    measured, notes, source = read_measured(
+        mooring, currents, pressures, match, flags, apart, sea_level, turned
     )
     for note in notes:
         narrate(note)
@@ -147,10 +180,18 @@ def motion(
             return code
         with open_result(output) as result, readable(output):
             study = judged(task, measured, result)
+            series = series_of(measured, task.measured.label, result)
+            factor = np.asarray(result["current_factor"].values, np.float64)
+            if instruments is not None:
+                for label in write_onto(instruments, result, labels, apart, copy):
+                    narrate(f"{onto}: `{label}` is no part of the line; its depth is NaN")
         if cross_validate:
             each = cross_validated(mooring, measured, names, hidden, narrate, workers)
             study = replace(study, held_out=(*study.held_out, *each))
     name = mooring.file.name or file.stem
+    if report is not None:
+        files_of = motion_files(study, series, measured.time, factor, name, notes)
+        write_report(report, files_of)
     outputs.write_answer(lambda: motion_document(study, name), motion_part(study, name))
     return code
 
@@ -194,7 +235,7 @@ def parse_gap(text: str) -> np.timedelta64:
     return np.timedelta64(round(seconds * 1e9), "ns")
 
 
-def _measured(
+def read_measured(
     mooring: Mooring,
     currents: list[Path],
     pressures: list[str],

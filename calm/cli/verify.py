@@ -18,10 +18,13 @@ VERIFY_EXAMPLES = """Examples:
 
   calm verify
   calm verify cdms tension
-  calm verify braconnot --json -"""
+  calm verify braconnot --json -
+  calm verify --field"""
 
 
-def verify(words: list[str] | None = None, /, *, json: OutputPath = None) -> ExitCode:
+def verify(
+    words: list[str] | None = None, /, *, field: bool = False, json: OutputPath = None
+) -> ExitCode:
     """Compute published figures and compare.
 
     Closed forms, published charts and tables, moorings that other programs have
@@ -32,6 +35,9 @@ def verify(words: list[str] | None = None, /, *, json: OutputPath = None) -> Exi
     ----------
     words
         Only cases whose source or name has every one of these words or parts of words.
+    field
+        Estimate the depths of a real mooring at hidden sensors in place of it, and compare
+        them with what was measured: see docs/motion.md.
     json
         Write the figures, with the reason for each tolerance, as JSON, - to print it.
     """
@@ -40,6 +46,12 @@ def verify(words: list[str] | None = None, /, *, json: OutputPath = None) -> Exi
 
     outputs = Outputs(json=json)
     outputs.check()
+    if field:
+        from calm.cli.verify_field import verify_field
+
+        if words:
+            raise UsageError("--field takes no words")
+        return verify_field(outputs)
     chosen = _chosen(words or [])
     expect_many(sum(len(source.cases) for source in chosen))
     findings = _checked(chosen)

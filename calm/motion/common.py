@@ -71,7 +71,7 @@ def estimate_common(mooring: Mooring, measured: Measured, names: Sequence[str]) 
     common = replace(known, covariance=np.zeros_like(known.covariance))
     for turn in range(TURNS):
         moments = Moments(part, *forwards_of(mooring, common))
-        here = settled(moments, common, turns=1 + (turn == TURNS - 1))
+        here = settled(moments, common)
         good = np.isfinite(here.begin.depth).all(axis=1)
         slope = here.begin.slope[good][:, part.point]
         currents = slope @ here.way.spread[good] @ slope.transpose(0, 2, 1)

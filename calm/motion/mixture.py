@@ -40,6 +40,14 @@ class Mixture:
         """
         self._found.append((times, _log(odds + found.evidence), way, found, without))
 
+    @property
+    def best(self) -> Floats:
+        """(n,) greatest weight so far, its logarithm."""
+        best = np.full(len(self.first.evidence), -np.inf)
+        for times, log, *_ in self._found:
+            best[times] = np.maximum(best[times], log)
+        return best
+
     def estimate(self) -> Estimate:
         """The mean over all explanations, and the deviation about it."""
         from calm.motion.moment import Estimate, Way
@@ -47,7 +55,8 @@ class Mixture:
         moments, first = self.moments, self.first
         n, p = first.depth.shape
         best = np.full(n, -np.inf)
-        level, u, v = (np.full(self._found[0][2].u.shape, np.nan) for _ in range(3))
+        measured = self._found[0][2]
+        level, u, v = measured.level.copy(), measured.u.copy(), measured.v.copy()
         for times, log, way, found, _ in self._found:
             ahead = log > best[times]
             here, mine = times[ahead], np.flatnonzero(ahead)
@@ -79,7 +88,7 @@ class Mixture:
                 sea / total,
                 np.exp(current / total),
                 (doubt / total[:, None])[:, moments.group],
-                Way(level, u, v, self._found[0][2].spread),
+                Way(level, u, v, measured.spread),
             )
 
 

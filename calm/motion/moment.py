@@ -9,9 +9,10 @@ each sensor left out, and all are weighed by how well they explain the pressures
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +27,8 @@ from calm.physics.line import Floats
 STEP = 0.05
 """Of the logarithms by which the derivatives are found."""
 NEGLIGIBLE = 0.02
-"""An explanation that cannot reach this share of the first one's weight is not tried."""
+"""An explanation is not tried that would not reach this share of the first one's weight if it left
+the pressures no more misfit than is expected of them."""
 FURTHEST = 0.7
 """Of a logarithm of a current's factor, at most."""
 APART = 1e-6
@@ -222,36 +224,42 @@ def posterior(
     seen = slope[:, one.point, :].copy()
     seen[:, np.arange(s), free + f + 1 + np.arange(s)] = 1.0
     tide = np.zeros(n) if one.tide is None else one.tide
-    base = at.depth + common.datum + tide[:, None]
+    lost: Any = ~np.isfinite(at.depth).all(axis=1)  # without current, or without equilibrium
+    there = np.where(lost[:, None], still, at.depth)
+    base = there + common.datum + tide[:, None]
     base = base - np.einsum("npg,ng->np", at.slope, at.logs)
     known = np.isfinite(one.depth)
     innovation = np.where(known, one.depth - base[:, one.point] - common.offset, 0.0)
     noise = np.where(known, prior.NOISE**2, UNMEASURED**2)
     if spike >= 0:
         noise[:, spike] = np.maximum(noise[:, spike], prior.SPIKE**2)
-    down = np.maximum(at.depth - still, 0.0) * prior.WORST
+    down = np.maximum(there - still, 0.0) * prior.WORST
     length = 0.25 * np.ptp(still)
     alike = np.exp(-np.abs(still[:, None] - still[one.point]) / max(length, 1.0))
     bent = down[:, :, None] * alike * down[:, None, one.point]
-    beside = slope @ state @ seen.transpose(0, 2, 1) + bent
-    expected = seen @ state @ seen.transpose(0, 2, 1) + bent[:, one.point, :]
+    spread_of = slope @ state
+    turned = seen.transpose(0, 2, 1)
+    beside = spread_of @ turned + bent
+    expected = seen @ state @ turned + bent[:, one.point, :]
     expected[:, np.arange(s), np.arange(s)] += noise
-    solved = np.linalg.solve(expected, innovation[:, :, None])[:, :, 0]
-    gain = np.einsum("nqr,nsr,ns->nq", state, seen, solved)
+    inverse = np.linalg.inv(expected)
+    solved = (inverse @ innovation[:, :, None])[:, :, 0]
+    gain = (state @ (turned @ solved[:, :, None]))[:, :, 0]
     logs = np.clip(gain[:, :g], -FURTHEST, FURTHEST)
-    rest = np.einsum("nps,ns->np", beside, solved) - np.einsum("npg,ng->np", at.slope, gain[:, :g])
-    depth = base + np.einsum("npg,ng->np", at.slope, logs) + rest
-    whole = np.einsum("npq,nqr,npr->np", slope, state, slope) + down**2
-    taken = np.einsum("nps,nst,npt->np", beside, np.linalg.inv(expected), beside)
+    # what the state cannot take up is spread along the line as its own errors are
+    depth = base + (beside @ solved[:, :, None])[:, :, 0]
+    whole = (spread_of * slope).sum(axis=2) + down**2
+    taken = ((beside @ inverse) * beside).sum(axis=2)
     _, size = np.linalg.slogdet(expected)
     misfit = (innovation * solved).sum(axis=1)
     even = np.full(g, 1.0 / max(g, 1))
+    depth[lost] = np.nan
     return Posterior(
         logs,
         gain[:, g] + tide,
         depth,
         np.maximum(whole - taken, 0.0),
-        -0.5 * (misfit + size),
+        np.where(lost, -np.inf, -0.5 * (misfit + size)),
         innovation,
         expected,
         logs @ even,
@@ -297,33 +305,38 @@ class Settled:
     found: Posterior
 
 
-def settled(moments: Moments, common: Common, *, turns: int = 2) -> Settled:
-    """Hang the currents where the line is, and find the best state; over again where it moves."""
+def settled(moments: Moments, common: Common) -> Settled:
+    """Hang the currents where the line is, and find the best state."""
     one, still = moments.measured, moments.forward.still
-    level = moments.levels(between(one, still))
     none = np.zeros((len(one.time), moments.groups))
-    for _ in range(turns):
-        way = moments.way(level, common.scale)
-        there = moments.depths(way, none)
-        slope = moments.slopes(way, none, there)
-        begin = at = Linear(none, there, slope, moments.common_slopes(way, there))
-        before = found = posterior(one, at, way.spread, common, still)
-        for _ in range(2):
-            at = at.moved(found.logs, moments.depths(way, found.logs))
-            found = posterior(one, at, way.spread, common, still)
-        level = moments.levels(found.depth)
+    there = between(one, np.tile(still, (len(one.time), 1)), still)
+    there = moments.depths(moments.way(moments.levels(there), common.scale), none)
+    way = moments.way(moments.levels(between(one, there, still)), common.scale)
+    there = moments.depths(way, none)
+    slope = moments.slopes(way, none, there)
+    begin = at = Linear(none, there, slope, moments.common_slopes(way, there))
+    before = found = posterior(one, at, way.spread, common, still)
+    for _ in range(2):
+        at = at.moved(found.logs, moments.depths(way, found.logs))
+        found = posterior(one, at, way.spread, common, still)
     return Settled(way, begin, before, at, found)
 
 
-def between(one: Measured, still: Floats) -> Floats:
-    """(n, p) depths of the points between those of the sensors, by the height in still water."""
+def between(one: Measured, depth: Floats, still: Floats) -> Floats:
+    """(n, p) depths with what the sensors measure beside them, linear by the height in still water.
+
+    Parameters
+    ----------
+    depth : (n, p) of the points as far as they are known [m]
+    still : (p,) in still water
+    """
     order = np.argsort(still[one.point], kind="stable")
-    result = np.tile(still, (len(one.time), 1))
+    result = depth.copy()
     for i, row in enumerate(one.depth):
         known = order[np.isfinite(row[order])]
         if len(known):
-            down = row[known] - still[one.point[known]]
-            result[i] += np.interp(still, still[one.point[known]], down)
+            points = one.point[known]
+            result[i] += np.interp(still, still[points], row[known] - depth[i, points])
     return result
 
 
@@ -340,17 +353,20 @@ def estimated(moments: Moments, common: Common) -> Estimate:
         spike = posterior(one, at, known.way.spread, common, still, sensor)
         mixture.add(every, known.way, spike, np.full(len(every), np.log(prior.SPIKES)), ())
     odds = _odds(moments)
-    solved = np.linalg.solve(first.expected, first.innovation[:, :, None])[:, :, 0]
-    gain = 0.5 * np.einsum("ns,ns->n", first.innovation, solved)
+    count = np.isfinite(one.depth).sum(axis=1)
+    fair = -0.5 * (count + np.linalg.slogdet(first.expected)[1])
     level = moments.levels(first.depth)
-    for without in _sets(moments.groups):
-        chance = odds[:, list(without)].sum(axis=1)
-        tried = np.flatnonzero(chance + gain > np.log(NEGLIGIBLE))
-        if len(tried):
-            part = Moments(one.at(tried), moments.forward, {})
-            other = part.way(level[tried], common.scale, without)
-            found = _tried(part, other, at, common, tried)
-            mixture.add(tried, other, found, chance[tried], without)
+    for sets in _sets(moments.groups):
+        best = mixture.best
+        for without in sets:
+            chance = odds[:, list(without)].sum(axis=1)
+            likely = chance + fair > best + np.log(NEGLIGIBLE)
+            tried = np.flatnonzero(likely & np.isfinite(best))
+            if len(tried):
+                part = Moments(one.at(tried), moments.forward, {})
+                other = part.way(level[tried], common.scale, without)
+                found = _tried(part, other, at, common, tried)
+                mixture.add(tried, other, found, chance[tried], without)
     return mixture.estimate()
 
 
@@ -384,8 +400,8 @@ def _tried(
     return found
 
 
-def _sets(groups: int) -> Iterator[tuple[int, ...]]:
+def _sets(groups: int) -> Iterator[Iterable[tuple[int, ...]]]:
     """One group or two, never all of them."""
     for size in (1, 2):
         if size < groups:
-            yield from combinations(range(groups), size)
+            yield combinations(range(groups), size)

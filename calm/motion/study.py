@@ -26,6 +26,7 @@ from calm.motion.judge import (
 )
 from calm.motion.measured import Measured
 from calm.motion.run import estimate_in_memory
+from calm.motion.series import depths_at
 from calm.motion.task import Task, without
 from calm.physics.line import Floats
 
@@ -159,13 +160,10 @@ def judged(task: Task, measured: Measured, result: Dataset) -> Study:
         plain_of[label] = agreement(plain[:, j], used.depth[:, j], calm, every)
     still = Forward(task.mooring, {}).still
     hidden = [label for label in measured.label if label not in used.label]
-    clamps = len(result["clamp_label"]) if "clamp_label" in result else 0
     held = []
     for label in hidden:
         point = int(measured.point[measured.label.index(label)])
-        at = ("clamp_depth", "clamp_depth_sd") if point < clamps else ("depth_top", "depth_sd")
-        column = point if point < clamps else point - clamps
-        depth, spread = (np.asarray(result[name][:, column].values, np.float64) for name in at)
+        depth, spread = depths_at(result, point)
         held.append(judge_hidden(measured, used, label, depth, spread, still))
     said = doubts(used.label, used.time, residual, down, task.common)
     return Study(task, intervals(task), fit_of, plain_of, tuple(held), tuple(said))

@@ -19,7 +19,7 @@ from calm.motion.measured import FREE, Measured
 from calm.motion.moment import Common, Moments, estimated
 from calm.physics.line import Floats
 
-BLOCK = 256
+BLOCK = 512
 """Times that are estimated, and kept, together."""
 
 

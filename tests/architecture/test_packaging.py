@@ -18,7 +18,12 @@ import calm
 from calm.cli import main
 
 ROOT = Path(__file__).resolve().parents[2]
-INSTALLED_AS = {"calm": "calm", "catalog": "calm/_shipped/catalog", "lines": "calm/_shipped/lines"}
+INSTALLED_AS = {
+    "calm": "calm",
+    "catalog": "calm/_shipped/catalog",
+    "lines": "calm/_shipped/lines",
+    "docs/field": "calm/_shipped/field",
+}
 
 
 def build_wheel(project: Path, folder: Path) -> Path:

@@ -201,6 +201,24 @@ def test_a_constant_sensor_is_named_and_left_out(calm, given, truth):
     assert [one["label"] for one in json.loads(done.out)["sensors"]] == ["upper", "lower"]
 
 
+def test_times_without_current_have_a_status_and_those_without_pressure_wider_bands(
+    calm, given, truth, folder
+):
+    lines = (folder / "c.csv").read_text().splitlines()
+    (folder / "c.csv").write_text("\n".join([lines[0], *lines[1:31], *lines[61:]]) + "\n")
+    values = dbar(truth[1])
+    given("late.csv", values=values[8:], times=stamps()[8:])
+    done = calm(*COMMAND, "--pressures", "late.csv", "-o", "d.nc")
+    assert done.code == 0, done.err
+    with xarray.open_dataset(folder / "d.nc", engine="h5netcdf") as result:
+        assert result.sizes["time"] == HOURS
+        gap = slice(10, 20)
+        assert (result["status"].values[gap] != 0).all()
+        assert np.isnan(result["clamp_depth"].values[gap]).all()
+        spread = result["clamp_depth_sd"].values[:, 1]
+        assert spread[:8].min() > 1.5 * spread[20:].max()
+
+
 def test_a_clamp_that_slipped_is_named(calm, given, truth):
     values = dbar(truth[1])
     values[HOURS // 2 :, 1] += 6.0
@@ -213,3 +231,30 @@ def test_depths_of_pressures_are_those_of_teos_10():
     # the check values of the function z_from_p of the Gibbs SeaWater toolbox, at 4 degrees north
     depths = depth_of(np.array([10.0, 600.0, 1000.0]), 4.0)
     assert depths == pytest.approx([9.94458, 595.82535, 992.09191], abs=1e-3)
+
+
+def test_depths_go_onto_a_copy_of_a_users_own_file(calm, given, truth, folder):
+    time = np.array(stamps(), "M8[ns]")
+    own = xarray.Dataset(
+        {"temperature": (("time", "instrument"), np.full((HOURS, 2), 4.5), {"units": "degC"})},
+        {"time": time, "instrument": ["middle", "elsewhere"]},
+    )
+    own.to_netcdf(folder / "own.nc", engine="h5netcdf")
+    words = (*COMMAND, "--pressures", "p.csv", "--hold-out", "middle", "--report", "report")
+    done = calm(*words, "--onto", "own.nc", "-o", "copy.nc")
+    assert done.code == 0, done.err
+    assert "`elsewhere` is no part of the line" in done.err
+    with xarray.open_dataset(folder / "copy.nc", engine="h5netcdf") as copy:
+        assert (copy["temperature"].values == 4.5).all()
+        off = copy["depth"].values[:, 0] - truth[1][:, 1]
+        assert np.sqrt((off**2).mean()) < 0.5
+        assert (copy["depth_sd"].values[:, 0] > 0.0).all()
+        assert np.isnan(copy["depth"].values[:, 1]).all()
+    assert (folder / "copy.motion.nc").exists()
+    page = (folder / "report" / "motion.html").read_text()
+    assert "middle, hidden" in page and "drag of cables and chains" in page
+    assert (folder / "report" / "motion.pdf").read_bytes().startswith(b"%PDF")
+    again = calm(*words, "--onto", "copy.nc", "-o", "other.nc")
+    assert again.code == 2 and "has `depth` already" in again.err
+    replaced = calm(*words, "--onto", "copy.nc", "-o", "other.nc", "--replace")
+    assert replaced.code == 0, replaced.err

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from math import isfinite
 from typing import TYPE_CHECKING
 
@@ -9,7 +10,7 @@ from calm.checks.finding import State
 from calm.report.blocks import Block, Cell, Column, Heading, Part, Prose, Table
 
 if TYPE_CHECKING:
-    from calm.motion.study import Study
+    from calm.motion.study import HeldOut, Study
 
 TITLES = {
     "cable_drag": "drag of cables and chains",
@@ -29,26 +30,25 @@ def motion_part(study: Study, name: str) -> Part:
     """Factors, sensors, sensors that were hidden, and what to doubt."""
     blocks: list[Block] = [
         Heading(name),
-        factors_table(study),
+        factors_table(study.factors, study.task.common.datum),
         sensors_table(study),
         Prose((PLAIN,)),
     ]
     if study.held_out:
-        blocks.append(held_out_table(study))
+        blocks.append(held_out_table(study.held_out))
     if study.doubts:
         blocks.append(Prose(study.doubts, State.WARN))
     return Part("", tuple(blocks))
 
 
-def factors_table(study: Study) -> Table:
+def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: float) -> Table:
     """The common factors with their intervals."""
     columns = (Column("factor for the whole record"), Column("value", numeric=True),
                Column("95 % interval", numeric=True))  # fmt: skip
     rows = [
         (Cell(TITLES[name]), Cell(f"{value:.3f}"), Cell(f"{low:.3f}–{high:.3f}"))
-        for name, (value, low, high) in study.factors.items()
+        for name, (value, low, high) in factors.items()
     ]
-    datum = study.task.common.datum
     note = f"All depths are shifted by {datum:+.1f} m, the datum that the pressures have in common."
     return Table("", columns, tuple(rows), note)
 
@@ -77,7 +77,7 @@ def sensors_table(study: Study) -> Table:
     return Table("", columns, tuple(rows))
 
 
-def held_out_table(study: Study) -> Table:
+def held_out_table(held_out: Sequence[HeldOut]) -> Table:
     """How the depths of hidden sensors were found."""
     columns = (
         Column("hidden sensor"),
@@ -94,7 +94,7 @@ def held_out_table(study: Study) -> Table:
             *(Cell(metres(value)) for value in (one.bias, one.rms, one.linear_rms)),
             Cell(f"{100.0 * one.coverage:.0f}" if isfinite(one.coverage) else "-"),
         )
-        for one in study.held_out
+        for one in held_out
     ]
     return Table("", columns, tuple(rows))
 

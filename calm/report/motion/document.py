@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from calm.motion.judge import Agreement
-    from calm.motion.study import Study
+    from calm.motion.study import HeldOut, Study
 
 
 def motion_document(study: Study, name: str) -> dict[str, Any]:
@@ -21,10 +22,7 @@ def motion_document(study: Study, name: str) -> dict[str, Any]:
     return {
         "calm": __version__,
         "name": name,
-        "factors": {
-            key: {"value": value, "low": low, "high": high}
-            for key, (value, low, high) in study.factors.items()
-        },
+        "factors": factors_document(study.factors),
         "datum": study.task.common.datum,
         "sensors": [
             {
@@ -37,19 +35,32 @@ def motion_document(study: Study, name: str) -> dict[str, Any]:
                 study.fit.items(), study.task.common.offset, strict=True
             )
         ],
-        "held_out": [
-            {
-                "label": one.label,
-                "n": one.count,
-                "bias": one.bias,
-                "rms": one.rms,
-                "linear_rms": one.linear_rms,
-                "coverage_95": one.coverage,
-            }
-            for one in study.held_out
-        ],
+        "held_out": held_out_document(study.held_out),
         "doubts": list(study.doubts),
     }
+
+
+def factors_document(factors: Mapping[str, tuple[float, float, float]]) -> dict[str, Any]:
+    """Each factor with its value and the ends of its interval."""
+    return {
+        name: {"value": value, "low": low, "high": high}
+        for name, (value, low, high) in factors.items()
+    }
+
+
+def held_out_document(held_out: Sequence[HeldOut]) -> list[dict[str, Any]]:
+    """The hidden sensors."""
+    return [
+        {
+            "label": one.label,
+            "n": one.count,
+            "bias": one.bias,
+            "rms": one.rms,
+            "linear_rms": one.linear_rms,
+            "coverage_95": one.coverage,
+        }
+        for one in held_out
+    ]
 
 
 def _agreement(one: Agreement) -> dict[str, Any]:

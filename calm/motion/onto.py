@@ -1,0 +1,131 @@
+"""Depths added to a copy of a user's own file of instruments."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.errors import InputError, Problem, UsageError
+from calm.files.current_netcdf import is_netcdf, open_current, reading
+from calm.files.current_times import read_times
+from calm.files.current_variables import UnreadableError, holdings
+from calm.motion.joined import interpolated
+from calm.motion.labelled import labels_along
+from calm.motion.series import depths_at
+from calm.whole_file import beside
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+ADDED = ("depth", "depth_sd")
+_TIMES = ("time", "TIME", "Time")
+
+
+@dataclass(frozen=True)
+class Instruments:
+    """A file of instruments that depths are added to.
+
+    Attributes
+    ----------
+    path : of it
+    clock, along : its variable of times, whose dimension is `dimension`; dimension of instruments
+    time : (n,)
+    label : of the instruments
+    """
+
+    path: Path
+    clock: str
+    dimension: str
+    along: str
+    time: NDArray[np.datetime64]
+    label: tuple[str, ...]
+
+
+def read_instruments(path: Path, labels: Sequence[str], *, replace: bool) -> Instruments:
+    """What a file holds, before anything is estimated for it.
+
+    Parameters
+    ----------
+    labels : of the parts of the line
+    replace : whether a `depth` that it has may be replaced
+
+    Raises
+    ------
+    InputError
+        It is no NetCDF file, or has no times or no labels of instruments.
+    UsageError
+        It has depths already; none of its instruments is a part of the line.
+    """
+    if not path.is_file() or not is_netcdf(path):
+        raise InputError([Problem(str(path), 0, 0, "is no NetCDF file")])
+    with reading(path), open_current(path) as dataset:
+        there = [name for name in ADDED if name in dataset.variables]
+        if there and not replace:
+            raise UsageError(
+                f"--onto: {path} has `{there[0]}` already; with --replace the copy has another"
+            )
+        clock = next((name for name in _TIMES if name in dataset.variables), None)
+        if clock is None or dataset[clock].ndim != 1:
+            raise UnreadableError(f"has no times; it holds {holdings(dataset)}")
+        dimension = str(dataset[clock].dims[0])
+        for along in map(str, dataset.sizes):
+            label = None if along == dimension else labels_along(dataset, along)
+            if label is not None:
+                break
+        else:
+            raise UnreadableError(
+                f"has no labels of instruments (`instrument` or `label`); it holds "
+                f"{holdings(dataset)}"
+            )
+        time = read_times(dataset, clock)
+    if not set(label) & set(labels):
+        raise UsageError(f"--onto: no instrument of {path} is a part of the line: {label[0]}, …")
+    return Instruments(path, clock, dimension, along, time, label)
+
+
+def write_onto(
+    instruments: Instruments,
+    result: Dataset,
+    labels: Sequence[str],
+    gap: np.timedelta64,
+    output: Path,
+) -> list[str]:
+    """Write the copy with `depth` and `depth_sd`, whole; returns the instruments without either.
+
+    Raises
+    ------
+    OSError
+        There is no room for it.
+    """
+    import xarray as xr
+
+    time = result["time"].values
+    shape = len(instruments.time), len(instruments.label)
+    depth, spread = np.full(shape, np.nan), np.full(shape, np.nan)
+    lost = []
+    for j, label in enumerate(instruments.label):
+        if label not in labels:
+            lost.append(label)
+            continue
+        found = depths_at(result, list(labels).index(label))
+        for array, values in zip((depth, spread), found, strict=True):
+            array[:, j] = interpolated(time, values, instruments.time, gap)
+    dims = (instruments.dimension, instruments.along)
+    told = {"units": "m", "positive": "down", "standard_name": "depth"}
+    with instruments.path.open("rb") as file:
+        engine = "scipy" if file.read(3) == b"CDF" else "h5netcdf"
+    with xr.open_dataset(instruments.path, engine=engine, decode_cf=False) as own:
+        copy = own.load().drop_vars([name for name in ADDED if name in own.variables])
+    told["long_name"], told["ancillary_variables"] = "depth estimated by CALM", "depth_sd"
+    copy["depth"] = xr.Variable(dims, depth, told)
+    copy["depth_sd"] = xr.Variable(
+        dims, spread, {"units": "m", "standard_name": "depth standard_error"}
+    )
+    with beside(output) as part:
+        copy.to_netcdf(part, engine="h5netcdf")
+    return lost
