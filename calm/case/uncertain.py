@@ -1,206 +1,36 @@
 """How sure the figures of a mooring are: it is solved for many draws of what it stands on.
 
-The draws are those of a scrambled Sobol' sequence, one of each cause for a mooring: all its cables
-are too long alike, the current too fast at all depths alike. Every sample is closed on the cuts of
-the mooring as given, or solved anew where it is of another kind, and passes every check of a
-solution.
+Every sample is closed on the cuts of the mooring as given, or solved anew where it is of another
+kind, and passes every check of a solution.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from functools import partial
-from math import cos, log1p, radians, sin
-from typing import TYPE_CHECKING, Any, NamedTuple, ParamSpec, TypeVar, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from calm.case.chaos import Indices, sobol_indices
+from calm.case.draws import CAUSES, SAMPLES, Draw, checked_samples, drawn, draws_of, normals_of
 from calm.case.measure import components_of
-from calm.case.memory import Forgetful
 from calm.case.moored import anchor_load
-from calm.case.mooring import Mooring
-from calm.errors import NoEquilibrium, UsageError
-from calm.files import Spread, Uncertainty
-from calm.physics.line import Floats, Line, Water
-from calm.physics.stretch import ElongationCurve
-from calm.physics.track import Track
-from calm.solve import Settings, Solution, expect_many, solve_mooring
-from calm.solve.nearby import Nearby
+from calm.errors import NoEquilibrium
+from calm.physics.line import Floats
+from calm.solve import expect_many
 
 if TYPE_CHECKING:
+    from calm.case.mooring import Mooring
     from calm.case.result import Result
 
-P = ParamSpec("P")
-T = TypeVar("T")
-
-SAMPLES = 2048
-FEWEST, MOST = 64, 1 << 20
 BLOCK = 128
 """Samples that one process solves at a time."""
 
 LEVELS = (5.0, 50.0, 95.0)
 """Percentiles that are given."""
-_AT_95 = 1.6448536269514722
-_LEAST_FACTOR = 0.01
-
-CAUSES = tuple(Uncertainty.model_fields)
-_ANGLE = "direction"
-
-
-class Draw(NamedTuple):
-    """One draw of all causes: factors of what is given, and an angle [degrees]."""
-
-    current: float = 1.0
-    direction: float = 0.0
-    cable_drag: float = 1.0
-    rigid_drag: float = 1.0
-    buoyancy: float = 1.0
-    cable_weight: float = 1.0
-    length: float = 1.0
-    stiffness: float = 1.0
-    depth: float = 1.0
-
-
-def normals_of(samples: int, seed: int) -> Floats:
-    """(samples, causes) standard normals, of a scrambled Sobol' sequence.
-
-    Parameters
-    ----------
-    samples : a power of two
-    """
-    from scipy.special import ndtri
-    from scipy.stats import qmc
-
-    sequence = qmc.Sobol(len(CAUSES), scramble=True, seed=seed)
-    normals: Floats = ndtri(np.clip(sequence.random(samples), 1e-12, 1.0 - 1e-12))
-    return normals
-
-
-def draws_of(uncertainty: Uncertainty, normals: Floats) -> list[Draw]:
-    """What standard normals (n, causes) stand for.
-
-    A deviation is that of a normal distribution about what is given. A pair is the 5 and the 95 %
-    of a normal distribution of an angle, of a lognormal one of a factor.
-    """
-    columns = [
-        (_angles if name == _ANGLE else _factors)(getattr(uncertainty, name), normals[:, i])
-        for i, name in enumerate(CAUSES)
-    ]
-    return [Draw(*row) for row in np.column_stack(columns).tolist()]
-
-
-def _angles(spread: Spread, normal: Floats) -> Floats:
-    if spread.between is None:
-        return (spread.deviation or 0.0) * normal
-    low, high = spread.between
-    return 0.5 * (low + high) + (high - low) / (2.0 * _AT_95) * normal
-
-
-def _factors(spread: Spread, normal: Floats) -> Floats:
-    if spread.between is None:
-        return np.maximum(1.0 + (spread.deviation or 0.0) * normal, _LEAST_FACTOR)
-    low, high = (log1p(end) for end in spread.between)
-    factors: Floats = np.exp(0.5 * (low + high) + (high - low) / (2.0 * _AT_95) * normal)
-    return factors
-
-
-def drawn_line(line: Line, draw: Draw) -> Line:
-    """The line as a draw has it."""
-    cable, rises = line.flexible, line.buoyancy > 0.0
-    drag = np.where(cable, draw.cable_drag, draw.rigid_drag)
-    lift = np.where(cable, draw.cable_weight, np.where(rises, draw.buoyancy, 1.0))
-    longer = np.where(cable, draw.length, 1.0)
-    floating = line.floating
-    if floating is not None:
-        first = int(np.argmax(~cable & rises))
-        more = (draw.buoyancy - 1.0) * float(line.buoyancy[first])
-        floating = replace(floating, weight=floating.weight - more, lift=floating.lift + more)
-    on = line.clamp_piece
-    return replace(
-        line,
-        length=longer * line.length,
-        normal_drag=drag * line.normal_drag,
-        tangential_drag=drag * line.tangential_drag,
-        buoyancy=lift * line.buoyancy,
-        compliance=line.compliance / draw.stiffness,
-        elongation=tuple(_stiffer(curve, draw.stiffness) for curve in line.elongation),
-        clamp_at=longer[on] * line.clamp_at if len(on) else line.clamp_at,
-        clamp_drag=draw.rigid_drag * line.clamp_drag,
-        clamp_buoyancy=np.where(line.clamp_buoyancy > 0.0, draw.buoyancy, 1.0)
-        * line.clamp_buoyancy,
-        floating=floating,
-    )
-
-
-def _stiffer(curve: ElongationCurve | None, stiffness: float) -> ElongationCurve | None:
-    return None if curve is None else curve.stiffer(stiffness)
-
-
-def drawn_water(water: Water, draw: Draw) -> Water:
-    """The water as a draw has it: its levels stay at their depths below the surface."""
-    turn = radians(draw.direction)
-    east, north = draw.current * cos(turn), draw.current * sin(turn)
-    return replace(
-        water,
-        depth=draw.depth * water.depth,
-        u=east * water.u + north * water.v,
-        v=east * water.v - north * water.u,
-        w=draw.current * water.w,
-    )
-
-
-class Neighbours(Forgetful):
-    """Solves what differs little from a mooring from where that stands, and else anew."""
-
-    def __init__(self, mooring: Mooring) -> None:
-        self._mooring = mooring
-        self._moving = Nearby(mooring.line, mooring.water, mooring.settings)
-        self._still: Nearby | None = None
-        self._laid: tuple[Line, Track] | None = None
-
-    def of(self, solver: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
-        """What the solver returns."""
-        if solver is solve_mooring:
-            solved: Any = self._solved
-            return cast("T", solved(*given, **named))
-        return super().of(solver, *given, **named)
-
-    def _solved(self, line: Line, water: Water, settings: Settings) -> Solution:
-        moving = water.moving or not self._mooring.water.moving
-        try:
-            if moving:
-                return self._moving.solved(line, water, self._track(line))
-            return self._at_rest(line, settings).solved(line, water, self._track(line))
-        except NoEquilibrium:
-            return solve_mooring(line, water, settings)
-
-    def _track(self, line: Line) -> Track:
-        if self._laid is None or self._laid[0] is not line:
-            self._laid = line, Track.of(line)
-        return self._laid[1]
-
-    def _at_rest(self, line: Line, settings: Settings) -> Nearby:
-        if self._still is None:
-            given = replace(self._mooring.line, floating=line.floating)
-            self._still = Nearby(given, self._mooring.water.still(), settings)
-        return self._still
-
-
-def drawn(mooring: Mooring, draws: Iterable[Draw]) -> Iterator[Mooring]:
-    """The mooring as some draws have it, each solved from where the mooring stands.
-
-    Raises
-    ------
-    NoEquilibrium
-        The mooring itself has none.
-    """
-    neighbours = Neighbours(mooring)
-    for draw in draws:
-        line, water = drawn_line(mooring.line, draw), drawn_water(mooring.water, draw)
-        yield Mooring(mooring.file, mooring.for_surface, neighbours, line, water)
 
 
 @dataclass(frozen=True)
@@ -328,21 +158,6 @@ def uncertain(
         required_weight=ends[:, 1],
         contributions=_contributions(quantity, indices),
         unexplained=0.0 if indices is None else indices.unexplained,
-    )
-
-
-def checked_samples(samples: int) -> int:
-    """The number of samples, if it is one.
-
-    Raises
-    ------
-    UsageError
-    """
-    if FEWEST <= samples <= MOST and samples & (samples - 1) == 0:
-        return samples
-    near = min(max(FEWEST, 1 << max(samples - 1, 1).bit_length()), MOST)
-    raise UsageError(
-        f"--samples: {samples} is no power of two from {FEWEST} to {MOST}; take {near}"
     )
 
 

@@ -13,7 +13,8 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from calm.case.uncertain import BLOCK, Draw, Mapped, checked_samples, drawn, draws_of, normals_of
+from calm.case.draws import Draw, checked_samples, drawn, draws_of, normals_of
+from calm.case.uncertain import BLOCK, Mapped
 from calm.checks.assess import handled
 from calm.checks.finding import Finding, Rule
 from calm.checks.rules import ONCE, STANDING

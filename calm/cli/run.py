@@ -108,7 +108,7 @@ def check_draws(samples: int, seed: int) -> None:
     ------
     UsageError
     """
-    from calm.case.uncertain import checked_samples
+    from calm.case.draws import checked_samples
 
     checked_samples(samples)
     if seed < 0:

@@ -2,7 +2,7 @@
 
 import json
 
-from calm.case.uncertain import CAUSES
+from calm.case.draws import CAUSES
 
 DRAWS = ("--uncertainty", "--samples", "64")
 

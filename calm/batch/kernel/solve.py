@@ -19,7 +19,7 @@ from calm.physics.line import Floats, Integers
 from calm.physics.profile import Interval, Sea
 
 LINE = 64
-"""Bytes of a line of the processor's cache. Lanes that begin amid one are slower by some 4 %."""
+"""Bytes of a line of the processor's cache."""
 
 
 def aligned(count: int) -> Floats:

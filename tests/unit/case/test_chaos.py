@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from calm.case.chaos import sobol_indices
-from calm.case.uncertain import normals_of
+from calm.case.draws import normals_of
 
 NORMALS = normals_of(1024, 0)
 EXACT = 1e-9

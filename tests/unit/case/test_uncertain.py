@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import calm
-from calm.case.uncertain import (
+from calm.case.draws import (
     CAUSES,
     Draw,
     drawn,
@@ -16,8 +16,8 @@ from calm.case.uncertain import (
     drawn_water,
     draws_of,
     normals_of,
-    uncertain,
 )
+from calm.case.uncertain import uncertain
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Spread, Uncertainty
 from calm.physics.stretch import ElongationCurve

@@ -5,7 +5,7 @@ from math import erf, sqrt
 import pytest
 
 import calm
-from calm.case.uncertain import CAUSES
+from calm.case.draws import CAUSES
 from calm.checks.likelihood import HANDLED, with_probabilities
 
 PLUMB = """
