@@ -1,17 +1,21 @@
 """Many current profiles of one mooring: solves a second, accuracy, and scipy by hand.
 
-    python benchmarks/batch_kernel.py [PROFILES] [CHECKED]
+    python benchmarks/batch_kernel.py [PROFILES] [CHECKED] [CHECKOUT]
 
 PROFILES of every mooring (8192), of which CHECKED (24) are solved again at a tenth of the angle
 step. The currents are sheared and turn with depth; the best of five runs counts, after one that
-compiles. Prints the kernel alone on one thread, then all of a batch on one and on two.
+compiles. Prints the kernel alone on one thread, then all of a batch on one and on two; then the
+kernel under every other law of the manual. CHECKOUT is the folder of another version, with its own
+`.venv`, whose kernel is measured first, by its own copy of this program.
 """
 
+import subprocess
 import sys
 from collections.abc import Callable
 from dataclasses import replace
 from math import radians
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from time import perf_counter
 
 import numpy as np
@@ -21,10 +25,11 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import s1000_by_hand as by_hand
 
-from calm.batch.kernel.cases import solve_cases
 from calm.batch.kernel.closing import FEWEST_HALVINGS
+from calm.batch.kernel.layout import Results
 from calm.batch.kernel.outcome import OF_CLAMP, OF_ENDS, OF_PIECE
 from calm.batch.kernel.plan import Plan
+from calm.batch.kernel.solve import Kernel
 from calm.batch.kernel.stragglers import water_of
 from calm.batch.profiles import Batch, Profiles
 from calm.case import Mooring, load
@@ -67,15 +72,16 @@ def kernel(mooring: Mooring, plan: Plan, current: Arrays) -> Callable[[], np.nda
     """The kernel by itself, on one thread; what it returns is how the cases ended."""
     depth, u, v, w = current
     count, line = len(u), mooring.line
-    rows = (
+    rows = Results(
         np.empty((count, len(OF_PIECE), len(line.length))),
         np.empty((count, len(OF_CLAMP), len(line.clamp_piece))),
         np.empty((count, len(OF_ENDS))),
     )
     ended = np.empty(count, np.int64)
+    lanes = Kernel(plan)
 
     def solve() -> np.ndarray:
-        solve_cases(plan.arrays, depth[None], u, v, w, rows, ended)
+        lanes.solve(depth[None], u, v, w, rows, ended)
         return ended
 
     return solve
@@ -122,25 +128,71 @@ def by_scipy(count: int = 20) -> float:
     return count / (perf_counter() - start)
 
 
-def main(profiles: str = "8192", checked: str = "24") -> None:
+def rates_of(checkout: Path, profiles: str) -> dict[str, float]:
+    """Solves a second of the kernel of another version, by mooring."""
+    python = checkout / ".venv" / "bin" / "python"
+    program = checkout / "benchmarks" / "batch_kernel.py"
+    printed = subprocess.run(
+        [python, program, profiles, "1"], check=True, capture_output=True, text=True
+    ).stdout
+    found: dict[str, float] = {}
+    name = ""
+    for line in printed.splitlines():
+        if ": " in line and "segments" in line:
+            name = line.split(":")[0]
+        elif "kernel, 1 thread" in line:
+            found.setdefault(name, float(line.split()[-2]))
+    return found
+
+
+LAWS = {
+    "friction: hoerner": ("", "solver: {friction: hoerner}"),
+    "friction: constant": ("", "solver: {friction: constant}"),
+    "elongation table": (
+        "breaking_load: 60 kN\n    elongation: [[0.05, 0.001], [0.2, 0.003], [0.5, 0.006]]",
+        "",
+    ),
+    "drag: reynolds": ("", "solver: {drag: reynolds}"),
+}
+"""What stands in S1000 in place of its stiffness, and below it."""
+
+
+def s1000_with(stretch: str, solver: str) -> Mooring:
+    """S1000, its float a smooth sphere, under another law."""
+    text = (shipped_folder("lines") / "s1000.yaml").read_text(encoding="utf-8")
+    text = text.replace("stiffness: 4000 kN", stretch or "stiffness: 4000 kN")
+    text = text.replace("kind: body\n    length: 0 m", "kind: sphere\n    diameter: 1.2 m")
+    text = text.replace("    drag_area: 0.6 m^2\n    cd: 1\n", "    surface: smooth\n")
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "s1000.yaml"
+        path.write_text(f"{text}{solver}\n", encoding="utf-8")
+        found = load(path)
+        assert isinstance(found, Mooring)
+        assert found.line.length.size
+    return found
+
+
+def main(profiles: str = "8192", checked: str = "24", checkout: str = "") -> None:
     """Measure some moorings."""
     print(describe("calm-mooring", "numba", "numpy", "scipy"))
+    others = rates_of(Path(checkout), profiles) if checkout else {}
     for name in MOORINGS:
         mooring = load(shipped_folder("lines") / f"{name}.yaml")
         assert isinstance(mooring, Mooring)
         batch = Batch(mooring)
         plan = batch.plan
-        assert plan is not None
         current = currents(mooring, int(profiles))
         solve = kernel(mooring, plan, current)
         start = perf_counter()
         ended = solve()
         first = perf_counter() - start
         rate = len(ended) / best(solve)
-        segments = 2**FEWEST_HALVINGS * len(plan.clear.stages[5])
+        segments = 2**FEWEST_HALVINGS * len(plan.clear.cuts)
         print(f"\n{name}: {len(mooring.line.length)} pieces, {segments} segments, {LEVELS} levels")
         print(f"  first run {first:.1f} s; left to be solved alone: {np.count_nonzero(ended)}")
         print(f"  kernel, 1 thread      {rate:9.0f} solves/s")
+        if name in others:
+            print(f"  that of {checkout}  {others[name]:9.0f} solves/s")
         for workers in (1, 2):
             rate = arrays_rate(batch, current, workers)
             print(f"  arrays out, {workers} threads {rate:9.0f} solves/s")
@@ -149,6 +201,15 @@ def main(profiles: str = "8192", checked: str = "24") -> None:
         found = batch.solve(u[:few], v[:few], depth, w[:few])
         for line in errors(mooring, plan, current, found, few):
             print(f"  off by {line}")
+    print("\nS1000 under other laws, kernel, 1 thread")
+    for name, law in {"constant drag": ("", ""), **LAWS}.items():
+        mooring = s1000_with(*law)
+        plan = Batch(mooring).plan
+        current = currents(mooring, int(profiles) // 4)
+        solve = kernel(mooring, plan, current)
+        left = np.count_nonzero(solve())
+        rate = len(current[1]) / best(solve, 3)
+        print(f"  {name:20} {rate:9.0f} solves/s; left to be solved alone: {left}")
     print(f"\nS1000 by scipy alone at 1e-6: {by_scipy():.0f} solves/s")
 
 

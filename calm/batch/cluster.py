@@ -9,6 +9,7 @@ from threading import Event
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
+from calm.batch.compiling import compile_kernel
 from calm.batch.profiles import Batch, Profiles
 from calm.case import Mooring
 from calm.errors import UsageError
@@ -22,6 +23,9 @@ AHEAD = 2
 
 PATIENCE = "20s"
 """How long the scheduler may take to answer."""
+
+COMPILING = "calm: compiling"
+"""The topic of what workers tell meanwhile."""
 
 ASKED_ANEW = 1.0
 """Seconds between two looks at how many workers there are."""
@@ -42,7 +46,7 @@ def solved_on(
     ----------
     address : of the scheduler, such as ``tcp://10.0.0.1:8786``
     blocks : numbers with their profiles; no more are taken than the workers have use for
-    tell : called when there is no worker
+    tell : called when there is no worker, and when one has to compile the solver
     stop : looked at every `ASKED_ANEW` seconds; once it is set no more are given
 
     Raises
@@ -69,6 +73,7 @@ def solved_on(
         with client:
             workers = _Workers(client)
             numbers: dict[Any, int] = {}
+            client.subscribe_topic(COMPILING, lambda event: tell(event[1]))
 
             def more() -> set[Any]:
                 """Tasks for the workers there are, beside those under way."""
@@ -143,4 +148,8 @@ def solve_there(mooring: Mooring, levels: Levels) -> Profiles:
 @lru_cache(maxsize=2)
 def _ready(mooring: Mooring) -> Batch:
     """The same for every block, as the mooring comes anew with each and is long in the making."""
-    return Batch(mooring)
+    from distributed import get_worker
+
+    worker, batch = get_worker(), Batch(mooring)
+    compile_kernel(batch, lambda text: worker.log_event(COMPILING, f"{worker.address}: {text}"))
+    return batch

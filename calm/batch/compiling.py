@@ -11,7 +11,6 @@ from numba.core import event
 
 from calm.batch.kernel.compiled import cache_folder
 from calm.batch.profiles import Batch
-from calm.solve import expect_many
 
 
 class _Notice(event.Listener):
@@ -36,15 +35,10 @@ class _Notice(event.Listener):
         pass
 
 
-def compile_kernel(batch: Batch, tell: Callable[[str], None], count: int = 0) -> None:
-    """Let what solves a batch be compiled, or fetched, and tell when it has to be compiled.
-
-    `count` : profiles to come; where the lanes solve none, the plain march is compiled for so many.
-    """
+def compile_kernel(batch: Batch, tell: Callable[[str], None]) -> None:
+    """Let the kernel be compiled, or fetched, and tell when it has to be compiled."""
     notice, started = _Notice(tell), perf_counter()
     with event.install_listener("numba:compile", notice):
         batch.solve(np.zeros((0, 1)), np.zeros((0, 1)), np.zeros(1), workers=1)
-        if batch.plan is None:
-            expect_many(count)
     if notice.told:
         tell(f"compiled in {perf_counter() - started:.0f} s")

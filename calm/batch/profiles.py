@@ -11,19 +11,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from calm.batch.kernel.cases import LEVELS_COINCIDE, NO_DATA, NOT_TRIED, solve_cases
-from calm.batch.kernel.closing import HEAP
+from calm.batch.kernel.endings import HEAP, LEVELS_COINCIDE, NO_DATA, NOT_TRIED, SOLVED
+from calm.batch.kernel.layout import Results
 from calm.batch.kernel.outcome import OF_CLAMP, OF_ENDS, OF_PIECE
-from calm.batch.kernel.plan import Plan, base_water, plan_of
-from calm.batch.kernel.search import SOLVED
-from calm.batch.kernel.stragglers import Rows, known_levels, solve_one, water_of
+from calm.batch.kernel.plan import Plan, plan_of
+from calm.batch.kernel.solve import Kernel
+from calm.batch.kernel.stragglers import solve_one, water_of
 from calm.batch.plausible import implausible
 from calm.batch.statuses import STATUSES
 from calm.batch.threads import processors
 from calm.case import Mooring
 from calm.case.measure import clamps_down, clamps_of, components_of
 from calm.errors import NoEquilibrium
-from calm.physics.line import Floats, Water
+from calm.physics.line import Floats
 from calm.solve import Status, expect_many
 
 BLOCK = 1024
@@ -118,14 +118,14 @@ class Batch:
     mooring: Mooring
 
     @cached_property
-    def plan(self) -> Plan | None:
-        """The mooring as the lanes take it; None where they do not."""
+    def plan(self) -> Plan:
+        """The mooring as the lanes take it."""
         return plan_of(self.mooring)
 
     @cached_property
-    def water(self) -> Water:
-        """The water without the current of the file."""
-        return base_water(self.mooring) if self.plan is None else self.plan.water
+    def kernel(self) -> Kernel:
+        """The lanes, compiled."""
+        return Kernel(self.plan)
 
     def solve(
         self,
@@ -144,7 +144,7 @@ class Batch:
             raise ValueError(f"{workers} workers: one at least is needed")
         shape, current = _checked(u, v, depth, w)
         line, count = self.mooring.line, len(current[1])
-        rows = (
+        rows = Results(
             np.full((count, len(OF_PIECE), len(line.length)), np.nan),
             np.full((count, len(OF_CLAMP), len(line.clamp_piece)), np.nan),
             np.full((count, len(OF_ENDS)), np.nan),
@@ -156,7 +156,7 @@ class Batch:
             depth, *others = current
             levels = depth if len(depth) == 1 else depth[block]
             mine = levels, *(array[block] for array in others)
-            columns: Rows = rows[0][block], rows[1][block], rows[2][block]
+            columns = Results(*(array[block] for array in rows))
             self._solve_block(mine, columns, status[block], alone[block])
 
         solve(slice(0, 0))  # compiles where need be
@@ -169,24 +169,22 @@ class Batch:
     def _solve_block(
         self,
         current: tuple[Floats, ...],
-        rows: Rows,
+        rows: Results,
         status: NDArray[np.int8],
         alone: NDArray[np.bool_],
     ) -> None:
         ended = np.full(len(status), NOT_TRIED)
-        plan = self.plan
         # always copies: what is read-only would be compiled for once more
         depth, u, v, w = (np.array(array, np.float64, order="C") for array in current)
         false = implausible(depth, u, v, w, self.mooring.file.environment.maximum_speed).any(axis=1)
         if false.any():
             u[false] = np.nan
         current = depth, u, v, w
-        if plan is not None:
-            solve_cases(plan.arrays, depth, u, v, w, rows, ended)
+        self.kernel.solve(depth, u, v, w, rows, ended)
         status[ended == NO_DATA] = _NO_CURRENT
         status[ended == LEVELS_COINCIDE] = _LEVELS_COINCIDE
         status[ended == HEAP] = STATUSES.index(self.mooring.heaped("a piece").status)
-        lifts = (ended == SOLVED) & (rows[2][:, 1] > self.mooring.anchor_weight)
+        lifts = (ended == SOLVED) & (rows.ends[:, 1] > self.mooring.anchor_weight)
         status[lifts] = _ANCHOR_LIFTS
         alone[:] = (ended != SOLVED) & (status == 0)
         expect_many(int(np.count_nonzero(alone)))
@@ -194,14 +192,9 @@ class Batch:
             profile = [
                 np.asarray(array[0 if len(array) == 1 else case], np.float64) for array in current
             ]
-            levels = profile[0][known_levels(*profile)]
-            if not len(levels) or (np.diff(levels) == 0.0).any():
-                status[case] = _LEVELS_COINCIDE if len(levels) else _NO_CURRENT
-                alone[case] = False
-                continue
-            own = rows[0][case], rows[1][case], rows[2][case]
+            own = Results(*(array[case] for array in rows))
             try:
-                solve_one(self.mooring, water_of(self.water, *profile), own)
+                solve_one(self.mooring, water_of(self.plan.water, *profile), own)
             except NoEquilibrium as refusal:
                 status[case] = STATUSES.index(refusal.status)
         status[false] = _IMPLAUSIBLE
@@ -251,7 +244,7 @@ def _shaped(profiles: Profiles, shape: tuple[int, ...]) -> Profiles:
 
 
 def _measured(
-    mooring: Mooring, rows: Rows, status: NDArray[np.int8], alone: NDArray[np.bool_]
+    mooring: Mooring, rows: Results, status: NDArray[np.int8], alone: NDArray[np.bool_]
 ) -> Profiles:
     """The results with the anchor, and with the knockdown from the shape in still water."""
     pieces, clamps, ends = rows

@@ -35,9 +35,8 @@ from calm.errors import UsageError
 if TYPE_CHECKING:
     from calm.batch.records.record import Record
 
-BLOCK, BLOCK_ALONE = 8192, 128
-"""Profiles to a block: what is written at once, and lost where a process is stopped. The second
-where the lanes do not solve the mooring, and each profile takes 500 to 3000 times as long."""
+BLOCK = 8192
+"""Profiles to a block: what is written at once, and lost where a process is stopped."""
 
 MOST_BLOCKS, LARGEST_BLOCK = 2048, 65536
 """Longer records have larger blocks, up to a size, as each makes a file for every variable."""
@@ -117,7 +116,7 @@ def run_batch(
     nodes = shape_of(mooring) if shape else None
     batch = Batch(nodes.mooring if nodes else mooring)
     if block is None:
-        block = BLOCK_ALONE if batch.plan is None else _block_for(record.count)
+        block = _block_for(record.count)
     length, options = block, {"shape": shape, "block": block}
 
     def identify() -> str:
@@ -130,7 +129,7 @@ def run_batch(
     def solve(work: Work) -> None:
         if scheduler is None:
             if work.missing:
-                compile_kernel(batch, say, record.count)
+                compile_kernel(batch, say)
             work.here(workers or processors())
             return
         try:
@@ -238,4 +237,7 @@ def _reason(error: BaseException) -> str:
         return os.strerror(error.errno) if error.errno else str(error)
     if isinstance(error, MemoryError):
         return "not enough memory; fewer --workers take less"
+    # an interrupt within an `exec`, by which numba compiles, has `python -m calm` end by that
+    # signal, whatever it exits with: until another `exec` has ended well
+    exec("")
     return "interrupted"

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from calm.batch.records.record import Levels, Record
 
 FIRST, FEWEST = 256, 8
-"""Profiles that are solved before anybody is told, or may stop it: at first, and where each is
-solved by itself. `SLICE` then sets how many."""
+"""Profiles that are solved before anybody is told, or may stop it: at first, and at least, where
+each is solved by itself. `SLICE` sets how many."""
 
 SLICE = 0.5
 """Seconds that the next slice should take."""
@@ -65,7 +65,7 @@ class Work:
         self.progress, self.stop = progress, stop
         self.alone = 0
         self._reading, self._counting = Lock(), Lock()
-        self._length = FEWEST if batch.plan is None else FIRST
+        self._length = FIRST
         found = ((number, store.statuses(number)) for number in range(store.count))
         self._kept = {number: _counted(status) for number, status in found if status is not None}
         self._solved = sum(self._kept.values(), _NONE)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -46,6 +46,36 @@ class Item:
     dry_mass: float | None
     wet_weight: float | None
     lift_mass: float | None
+
+
+@dataclass(frozen=True)
+class Total:
+    """What all items come to, of those whose figures are known.
+
+    Attributes
+    ----------
+    dry_mass, missing_masses : in air [kg], and of how many items it is not known: of others than
+        none the total is a lower bound
+    wet_weight, missing_weights : the same of the weight in water [N], + down
+    """
+
+    dry_mass: float
+    missing_masses: int
+    wet_weight: float
+    missing_weights: int
+
+
+def total_of(items: Sequence[Item]) -> Total:
+    """The sums over pieces and clamps."""
+    masses, weights = ([getattr(each, name) for each in items] for name in _SUMMED)
+    return Total(_known(masses), masses.count(None), _known(weights), weights.count(None))
+
+
+_SUMMED = ("dry_mass", "wet_weight")
+
+
+def _known(values: Sequence[float | None]) -> float:
+    return sum(value for value in values if value is not None)
 
 
 def inventory_of(mooring: Mooring) -> tuple[Item, ...]:

@@ -164,7 +164,7 @@ def motion(
     teller = Teller()
     hidden = [] if hold_out is None else [label.strip() for label in hold_out.split(",")]
     with stopped_by_a_signal() as stop:
-        compile_kernel(Batch(mooring), teller.note, len(measured.time))
+        compile_kernel(Batch(mooring), teller.note)
         task = prepare(mooring, measured, names, hidden)
         record = MeasuredRecord(measured, source, notes)
         options: dict[str, Any] = {"fit": sorted(names), "hold_out": sorted(hidden)}

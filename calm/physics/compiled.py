@@ -28,16 +28,7 @@ def compiled(law: Law) -> Any:
     """A law and all that it calls, compiled when first called, and kept for the next process."""
     import numba
 
-    folder, clone = cache_folder(), _clone(law)
-    if folder is None:
-        return numba.njit(clone, nogil=True, error_model="python")
-    settings: Any = numba.config
-    chosen = settings.CACHE_DIR
-    settings.CACHE_DIR = str(folder)  # read as the function is decorated
-    try:
-        return numba.njit(clone, cache=True, nogil=True, error_model="python")
-    finally:
-        settings.CACHE_DIR = chosen
+    return kept(numba.njit, clone(law, called), cache_folder(), nogil=True, error_model="python")
 
 
 @cache
@@ -47,7 +38,7 @@ def called(law: Law) -> Any:
 
     njit: Any = numba.njit
     return njit(
-        _clone(law),
+        clone(law, called),
         nogil=True,
         error_model="python",
         no_cpython_wrapper=True,
@@ -55,8 +46,8 @@ def called(law: Law) -> Any:
     )
 
 
-def _clone(law: Law) -> Law:
-    """The function, with compiled laws in place of those it calls and arrays of its tables."""
+def clone(law: Law, called: Callable[[Law], Any]) -> Law:
+    """The function, with what it calls as `called` has it, and arrays of its tables."""
     assert isinstance(law, FunctionType)
     names = {**law.__globals__}
     for name in law.__code__.co_names:
@@ -68,6 +59,21 @@ def _clone(law: Law) -> Law:
     clone = FunctionType(law.__code__, names, law.__name__, law.__defaults__, law.__closure__)
     clone.__module__, clone.__qualname__ = law.__module__, law.__qualname__
     return clone
+
+
+def kept(compiler: Callable[..., Any], law: Law, folder: Path | None, **options: Any) -> Any:
+    """A law compiled, and kept in a folder if there is one."""
+    import numba
+
+    if folder is None:
+        return compiler(law, **options)
+    settings: Any = numba.config
+    chosen = settings.CACHE_DIR
+    settings.CACHE_DIR = str(folder)  # read as the function is decorated
+    try:
+        return compiler(law, cache=True, **options)
+    finally:
+        settings.CACHE_DIR = chosen
 
 
 def packed(value: Any) -> Any:
@@ -105,14 +111,19 @@ def record_type(named: type) -> np.dtype[Any]:
 
 
 @cache
-def cache_folder() -> Path | None:
+def cache_folder(name: str = "laws", *rooms: Path) -> Path | None:
     """Where compiled code is kept; None where no such folder can be written.
 
     `NUMBA_CACHE_DIR`, or else CALM's folder in the user's cache. What is compiled from other
     sources has another folder, as numba itself looks at one file alone.
+
+    Parameters
+    ----------
+    name : of what is compiled
+    rooms : folders of the sources, besides those of the laws
     """
     given = os.environ.get("NUMBA_CACHE_DIR")
-    folder = (Path(given) if given else _user_cache() / "calm") / f"laws-{fingerprint()}"
+    folder = (Path(given) if given else _user_cache() / "calm") / f"{name}-{fingerprint(*rooms)}"
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
@@ -135,9 +146,10 @@ def _user_cache() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
 
 
-def fingerprint() -> str:
-    """Of everything that may be compiled: the sources of the room of physics."""
+def fingerprint(*rooms: Path) -> str:
+    """Of the sources of everything that may be compiled: the laws, and those in more folders."""
     digest = hashlib.sha256()
-    for source in sorted(Path(__file__).parent.glob("*.py")):
-        digest.update(source.read_bytes())
+    for room in (Path(__file__).parent, *rooms):
+        for source in sorted(room.glob("*.py")):
+            digest.update(source.read_bytes())
     return digest.hexdigest()[:16]

@@ -57,7 +57,8 @@ def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, 
     elif c < low:
         c = low
     for _ in range(100):
-        excess, following = share_step(aa, av, vv, target, c)
+        excess, root, rise = share_step(aa, av, vv, target, c)
+        following = c - excess * root / rise if rise > 0.0 else inf
         if excess > 0.0:
             high = c
         else:
@@ -71,15 +72,49 @@ def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, 
     return c
 
 
-def share_step(aa: float, av: float, vv: float, target: float, c: float) -> tuple[float, float]:
-    """How far c |A + c V| is above a target, and the next c by Newton; inf where it has no slope.
+def share_step(aa: float, av: float, vv: float, target: float, c: float) -> Vector:
+    """How far c |A + c V| is above a target; |A + c V|; and their slope by c times that.
 
     `aa`, `av` and `vv` are the products A·A, A·V and V·V.
     """
-    root = sqrt(aa + c * (2.0 * av + c * vv))
-    excess = c * root - target
-    slope = root + c * (av + c * vv) / root if root > 0.0 else 0.0
-    return excess, (c - excess / slope if slope > 0.0 else inf)
+    square = aa + c * (2.0 * av + c * vv)
+    root = sqrt(square)
+    return c * root - target, root, square + c * (av + c * vv)
+
+
+def few_steps_share(
+    ax: float,
+    ay: float,
+    az: float,
+    k: float,
+    size: float,
+    vx: float,
+    vy: float,
+    vz: float,
+    steps: int,
+) -> tuple[float, float]:
+    """`drag_share` by so many Newton steps, where drag turns the element but little.
+
+    Parameters
+    ----------
+    size : about |A| [N]; the first guess is the share if drag did not turn the element
+    steps : at least 1
+
+    Returns
+    -------
+    c [N/(m/s)], and how much the last step turned A + c V, squared [rad²].
+    """
+    aa = ax * ax + ay * ay + az * az
+    av = ax * vx + ay * vy + az * vz
+    vv = vx * vx + vy * vy + vz * vz
+    cx, cy, cz = ay * vz - az * vy, az * vx - ax * vz, ax * vy - ay * vx
+    target = k * sqrt(cx * cx + cy * cy + cz * cz)
+    before = c = target / size
+    for _ in range(steps):
+        before = c
+        excess, root, rise = share_step(aa, av, vv, target, c)
+        c -= excess * root / rise
+    return c, (c - before) * (c - before) * vv / aa
 
 
 def axis_along(
@@ -90,12 +125,16 @@ def axis_along(
     Where the force vanishes the element trails with the current, or hangs plumb in still water.
     """
     x, y, z = ax + c * vx, ay + c * vy, az + c * vz
-    size = sqrt(x * x + y * y + z * z)
-    if size == 0.0:
+    if x * x + y * y + z * z == 0.0:
         x, y, z = vx, vy, vz
-        size = sqrt(x * x + y * y + z * z)
-        if size == 0.0:
+        if x * x + y * y + z * z == 0.0:
             return 0.0, 0.0, -1.0
+    return axis_against(x, y, z)
+
+
+def axis_against(x: float, y: float, z: float) -> Vector:
+    """Unit axis against a force that does not vanish."""
+    size = sqrt(x * x + y * y + z * z)
     return -x / size, -y / size, -z / size
 
 

@@ -230,13 +230,9 @@ def _heed_interrupts():
 @pytest.mark.skipif(sys.platform == "win32", reason="sends signals as POSIX has them")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_signals_leave_what_can_be_resumed(write_mooring, folder, number):
-    hours = np.datetime64("2024-01-01T00") + np.arange(6000)
-    rows = (f"{hour},0,{0.3 + 1e-5 * i},0.1\n{hour},100,0.1,0\n" for i, hour in enumerate(hours))
-    (folder / "long.csv").write_text(HEADER + "".join(rows))
-    # the lanes do not know this friction: one by one it is slow enough to be caught at it
+    # one by one it is slow enough to be caught at it
+    (folder / "long.csv").write_text(still_water(20_000))
     file = write_mooring()
-    text = (folder / file).read_text() + "solver: {friction: hoerner}\n"
-    (folder / file).write_text(text)
     command = [sys.executable, "-m", "calm", "batch", file, "--currents", "long.csv",
                "-o", "r.nc", "--workers", "1"]  # fmt: skip
     process = subprocess.Popen(
@@ -251,7 +247,7 @@ def test_signals_leave_what_can_be_resumed(write_mooring, folder, number):
     told = process.communicate(timeout=600)[1]
     assert process.returncode == 75, told
     # a block of these takes a while; how far it comes is for the machine to say
-    assert re.search(r"interrupted; \d[\d ]* of 6 000 profiles are done", told)
+    assert re.search(r"interrupted; \d[\d ]* of 20 000 profiles are done", told)
 
 
 @pytest.mark.slow  # it compiles the kernel anew
@@ -336,11 +332,15 @@ def test_files_that_cannot_grow_are_what_a_full_disk_is(
     ]  # fmt: skip
 
 
-def test_profiles_that_go_alone_are_counted(calm, write_mooring, record, folder):
-    file = write_mooring()
-    with (folder / file).open("a", encoding="utf-8") as mooring:
-        mooring.write("solver: {friction: hoerner}\n")
-    done = calm("batch", file, "--currents", record, "-o", "r.nc")
+def still_water(hours):
+    """So many hourly profiles without any current: the lanes leave each to be solved by itself."""
+    times = np.datetime64("2024-01-01T00") + np.arange(hours)
+    return HEADER + "".join(f"{time},0,0,0\n{time},100,0,0\n" for time in times)
+
+
+def test_profiles_that_go_alone_are_counted(calm, write_mooring, folder):
+    (folder / "still.csv").write_text(still_water(30))
+    done = calm("batch", write_mooring(), "--currents", "still.csv", "-o", "r.nc")
     assert done.code == 0
     assert "30 profiles were solved one by one" in done.err
 

@@ -6,44 +6,26 @@ looked for clear of the seabed: there, where it carries its lower end all the wa
 
 from __future__ import annotations
 
-from typing import Any
-
-import numpy as np
-
 from calm.batch.kernel.bends import as_planned
-from calm.batch.kernel.closing import (
-    HEAP,
-    ON_SEABED,
-    WRITTEN,
-    Desk,
-    Shapes,
-    close_all,
-    find_roots,
-)
-from calm.batch.kernel.compiled import compiled, entry
+from calm.batch.kernel.closing import CloseAll, FindRoots, March, Shapes
 from calm.batch.kernel.contact import LIKELY, NEVER
-from calm.batch.kernel.lanes import LANES, SCRATCH, STATE
-from calm.batch.kernel.profile import growth_below, lay_profile, read_profile
-from calm.batch.kernel.search import (
-    COLUMNS,
-    FALL,
-    FOUND,
-    GROWTH,
-    LEAST_CARRIED,
-    LOWER_MISS,
-    LYING,
-    SLOPE,
+from calm.batch.kernel.endings import (
+    HEAP,
+    LEVELS_COINCIDE,
+    LIFTED,
+    NO_DATA,
+    ON_SEABED,
+    SAGS,
     SOLVED,
-    SPEED,
+    STILL,
     TURNS_BACK,
-    Y,
-    begin,
+    WRITTEN,
 )
+from calm.batch.kernel.lane import Desk
+from calm.batch.kernel.layout import Aim, Results, Way
+from calm.batch.kernel.profile import growth_below, lay_profile, read_profile
+from calm.batch.kernel.search import Searches, begin
 from calm.physics.line import Floats, Integers
-
-# how a case ended, besides
-NO_DATA, LEVELS_COINCIDE, STILL = 1, 2, 3
-SAGS, LIFTED, NOT_TRIED = 14, 15, 16
 
 CHUNK = 256
 """Cases that are laid out at once: enough to keep the lanes busy, and to fit a cache."""
@@ -52,123 +34,102 @@ EITHER_WAY = 1e-4
 water depth."""
 
 
-@compiled
 def read_case(
-    c: int, plan: Any, tables: Any, seek: Floats, depth: Floats, u: Floats, v: Floats, w: Floats
+    c: int, way: Way, desk: Desk, seek: Searches, depth: Floats, u: Floats, v: Floats, w: Floats
 ) -> int:
     """Lay a profile out in a slot and set out on its case; returns why it needs no search."""
-    bounds, rows, read, joined = tables
-    _, _, mooring, _, chances, fixed = plan
+    read, joined = desk.read, desk.joined
     found = read_profile(depth, u, v, w, read)
     if found <= 0:
         return NO_DATA if found == 0 else LEVELS_COINCIDE
-    total = lay_profile(read, found, fixed, bounds[c], rows[c], joined)
-    growth, speed = growth_below(joined, total, mooring[2])
-    begin(seek, c, growth, speed, mooring[2], chances[1])
+    sea, width = desk.water.sea, desk.water.width
+    here = slice(c * width, (c + 1) * width)
+    levels, intervals = sea.levels[here], sea.intervals[here]
+    total = lay_profile(read, found, way.fixed, levels, intervals, joined)
+    growth, speed = growth_below(joined, total, way.aim.upright)
+    begin(seek, c, growth, speed, way)
     return SOLVED if speed > 0.0 else STILL
 
 
-@compiled
-def as_on_seabed(seek: Floats, c: int, mooring: Any) -> int:
+def as_on_seabed(seek: Searches, c: int, aim: Aim) -> int:
     """Whether a line found clear of the seabed is what the search for one that lies there finds.
 
     That one brings the line's end down to the seabed: a float that just reaches the surface then
     is under water, where there may be another root.
     """
-    if seek[c, LEAST_CARRIED] <= 0.0:
+    if seek[c].least_carried <= 0.0:
         return SAGS
-    dips = seek[c, Y] < 0.0 and seek[c, LOWER_MISS] >= -mooring[5]
-    return TURNS_BACK if dips and seek[c, FALL] > 0.0 else SOLVED
+    dips = seek[c].unknown < 0.0 and seek[c].lower_miss >= -aim.anchor_height
+    return TURNS_BACK if dips and seek[c].fall > 0.0 else SOLVED
 
 
-@compiled
 def look_on_seabed(
-    desk: Desk, plans: Any, seek: Floats, shapes: Shapes, ends: Integers, start: int, results: Any
-) -> None:
+    find: FindRoots, close: CloseAll, march: March, desk: Desk, clear: Way, lying: Way,
+    contact: int, seek: Searches, shapes: Shapes, ends: Integers, start: int, results: Results,
+) -> None:  # fmt: skip
     """Look on the seabed for the cases that have not been closed clear of it."""
-    clear, lying, contact = plans
-    mooring, chances = lying[2], lying[4]
-    there = np.full(ends.size, WRITTEN)
-    aloft = seek.copy()
+    there, again = desk.there[: ends.size], desk.again[: ends.size]
     for c in range(ends.size):
+        case = seek[c]
+        there[c] = again[c] = WRITTEN
+        case.tried = 0
+        case.aloft, case.aloft_slope, case.aloft_found = case.unknown, case.slope, case.found
         if ends[c] == ON_SEABED or (contact == LIKELY and ends[c] > STILL and ends[c] != WRITTEN):
-            there[c] = SOLVED
-            begin(seek, c, seek[c, GROWTH], seek[c, SPEED], mooring[2], chances[1])
-            as_planned(desk[4], c, lying[0])
-    find_roots(desk, lying, seek, there)
+            there[c], case.tried = SOLVED, 1
+            begin(seek, c, seek[c].growth, seek[c].speed, lying)
+            as_planned(desk.own, c, lying)
+    find(march, desk, lying, seek, there)
     for c in range(ends.size):
-        if there[c] == SOLVED and seek[c, LYING] < 0.0:
+        if there[c] == SOLVED and seek[c].lying < 0.0:
             there[c] = LIFTED
-    tried = there != WRITTEN
-    close_all(desk, lying, seek, shapes, there, start, results)
-    again = np.full(ends.size, WRITTEN)
-    limit, margin = mooring[7], EITHER_WAY * mooring[0]
+    close(march, desk, lying, seek, shapes, there, start, results)
+    limit, margin = lying.aim.barely, EITHER_WAY * lying.aim.span
     for c in range(ends.size):
-        if not tried[c]:
+        if seek[c].tried == 0:
             continue
         closed = there[c] == WRITTEN or there[c] == HEAP
-        beyond = seek[c, LYING] - limit
+        beyond = seek[c].lying - limit
         if closed and beyond > margin:
             ends[c] = there[c]
         elif closed and (there[c] == HEAP or (limit > 0.0 and beyond > -margin)):
             ends[c] = LIFTED
         elif ends[c] == SAGS and (closed or there[c] == LIFTED):
-            again[c] = SOLVED
-            for column in (Y, SLOPE, FOUND):
-                seek[c, column] = aloft[c, column]
+            again[c], seek[c].tried = SOLVED, 2
+            seek[c].unknown, seek[c].slope = seek[c].aloft, seek[c].aloft_slope
+            seek[c].found = seek[c].aloft_found
         elif ends[c] == ON_SEABED and closed:
             ends[c] = WRITTEN
         else:
             ends[c] = LIFTED if closed else there[c]
-    retried = again == SOLVED
-    close_all(desk, clear, seek, shapes, again, start, results)
+    close(march, desk, clear, seek, shapes, again, start, results)
     for c in range(ends.size):
-        if retried[c]:
+        if seek[c].tried == 2:
             lies = again[c] == ON_SEABED and there[c] == WRITTEN
             ends[c] = WRITTEN if lies else again[c]
 
 
-@entry
-def solve_cases(
-    plans: Any, depth: Floats, u: Floats, v: Floats, w: Floats, results: Any, reasons: Integers
-) -> None:
-    """Solve cases; what they lead to goes to their rows of the results, how they ended to reasons.
-
-    Parameters
-    ----------
-    plans : the arrays of `calm.batch.kernel.plan.Plan`
-    depth : (1 or n, k) of the levels [m]
-    u, v, w : (n, k) current [m/s]; NaN where there is none
-    results : see `calm.batch.kernel.outcome`
-    reasons : (n,)
-    """
-    clear, lying, contact = plans
-    stages, fixed = clear[0], clear[5]
-    kinds, loads = stages[0], stages[6]
-    levels = depth.shape[1] + fixed.shape[0]
-    bounds, rows = np.zeros((CHUNK, levels + 2)), np.zeros((CHUNK, levels + 1, 8))
-    tables = (bounds, rows, np.zeros((levels, 4)), np.zeros((levels, 5)))
-    water = (np.zeros(LANES, np.int64), np.zeros(LANES, np.int64), bounds, rows)
-    nodes = np.zeros(STATE * LANES * (kinds.size + 1))
-    forces = np.zeros(3 * LANES * loads.shape[0])
-    own = np.zeros((3, CHUNK, lying[0][5].size))
-    desk = (np.zeros(SCRATCH), water, nodes, forces, own)
-    size = (nodes.size + forces.size) // LANES
-    shapes = (np.zeros((CHUNK, size)), np.zeros((CHUNK, size)), np.zeros(CHUNK), np.zeros(size))
-    seek, all_ends = np.zeros((CHUNK, COLUMNS)), np.zeros(CHUNK, np.int64)
-    for start in range(0, reasons.size, CHUNK):
-        ends = all_ends[: min(CHUNK, reasons.size - start)]
+def solve_chunks(
+    find: FindRoots, close: CloseAll, march: March, clear: Way, lying: Way, contact: int,
+    desk: Desk, shapes: Shapes, seek: Searches, depth: Floats, u: Floats, v: Floats, w: Floats,
+    results: Results, reasons: Integers,
+) -> None:  # fmt: skip
+    """Solve cases, as many at a time as there are slots: see `calm.batch.kernel.solve.Kernel`."""
+    chunk = seek.size
+    for start in range(0, reasons.size, chunk):
+        ends = reasons[start : start + chunk]
         for c in range(ends.size):
             case = start + c
             levels_at = depth[case if depth.shape[0] > 1 else 0]
-            ends[c] = read_case(c, clear, tables, seek, levels_at, u[case], v[case], w[case])
-        find_roots(desk, clear, seek, ends)
+            ends[c] = read_case(c, clear, desk, seek, levels_at, u[case], v[case], w[case])
+        find(march, desk, clear, seek, ends)
         if contact == LIKELY:
             for c in range(ends.size):
                 if ends[c] == SOLVED:
-                    ends[c] = as_on_seabed(seek, c, clear[2])
-        close_all(desk, clear, seek, shapes, ends, start, results)
+                    ends[c] = as_on_seabed(seek, c, clear.aim)
+        close(march, desk, clear, seek, shapes, ends, start, results)
         if contact != NEVER:
-            look_on_seabed(desk, plans, seek, shapes, ends, start, results)
+            look_on_seabed(
+                find, close, march, desk, clear, lying, contact, seek, shapes, ends, start, results
+            )
         for c in range(ends.size):
-            reasons[start + c] = SOLVED if ends[c] == WRITTEN else ends[c]
+            ends[c] = SOLVED if ends[c] == WRITTEN else ends[c]

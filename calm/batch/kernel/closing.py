@@ -8,58 +8,37 @@ the next case as soon as it is done with one.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import sqrt
-from typing import Any
+from typing import NamedTuple
 
-import numpy as np
-
-from calm.batch.kernel.bends import LANDS, ROUNDS, recut
-from calm.batch.kernel.compiled import compiled
-from calm.batch.kernel.lanes import (
-    FREE_END,
-    HELD,
-    HIGHEST,
-    LANDED_AT,
-    LANES,
-    LEAST_PULL,
-    LIGHTEST,
-    LOWEST,
-    OUT,
-    RESTING,
-    SHARE,
-    SHARPEST,
-    WET,
-    WIND_EAST,
-    WIND_NORTH,
-    Tables,
-    Z,
+from calm.batch.kernel import lane
+from calm.batch.kernel.bends import ROUNDS, recut
+from calm.batch.kernel.endings import (
+    COMPRESSED,
+    HEAP,
+    ON_SEABED,
+    OUT_OF_WATER,
+    SOLVED,
+    TOO_COARSE,
+    UNCLOSED,
+    WRITTEN,
 )
-from calm.batch.kernel.march import march
+from calm.batch.kernel.lane import LANES, Desk
+from calm.batch.kernel.layout import Aim, Results, Rides, Way
 from calm.batch.kernel.outcome import blend, greatest_change, write_case
 from calm.batch.kernel.search import (
     AWAY,
-    CORNERS,
     DONE,
     FIRST,
-    FOUND,
-    LEAST_CARRIED,
-    LOWEST_PLACE,
-    LYING,
     NOWHERE,
-    PLACE_BEFORE,
-    SOLVED,
-    TENSION_BEFORE,
+    ROOT,
     THERE,
-    TURN,
-    UNCLOSED,
-    Y,
+    Searches,
     advance,
     correct,
-)  # fmt: skip
+)
 from calm.physics.line import Floats, Integers
-
-# how a case ended; those of the search are there
-OUT_OF_WATER, ON_SEABED, COMPRESSED, TOO_COARSE, WRITTEN, HEAP = range(8, 14)
 
 FEWEST_HALVINGS, FINEST = 2, 6
 """How often the cuts are halved at least, and at most."""
@@ -78,48 +57,58 @@ where it is more, a halving may change little and yet the bend not be known."""
 CERTAIN = 4.0
 """A shape below the seabed by so many times what the last halving changed is there for certain."""
 MOST_MARCHES = 60
+COARSE = 0
+"""How often cuts are halved where a root is looked for."""
 
-Desk = tuple[Floats, Tables, Floats, Floats, Floats]
-"""What a march writes on: scratch, tables, recorded nodes and forces, the cuts of every case."""
+March = Callable[[Desk, Way, int], None]
+FindRoots = Callable[[March, Desk, Way, Searches, Integers], None]
+CloseAll = Callable[[March, Desk, Way, Searches, "Shapes", Integers, int, Results], None]
+"""`calm.batch.kernel.march.march`, and the two below, each compiled by itself."""
 
-Shapes = tuple[Floats, Floats, Floats, Floats]
-"""Of every case the two last shapes and where it closed the time before; one shape blended."""
+
+class Shapes(NamedTuple):
+    """Of every case the last two shapes and its unknown of the time before; one shape blended."""
+
+    older: Floats
+    newer: Floats
+    earlier: Floats
+    blended: Floats
 
 
-@compiled
-def place_free_end(s: Floats, i: int, y: float, riding: Floats, rigid: tuple[float, float]) -> None:
+def place_free_end(s: Floats, i: int, y: float, rides: Rides) -> None:
     """Put a lane's free end where its unknown has it."""
-    s[FREE_END + i], s[SHARE + i], s[OUT + i] = y, 1.0, 0.0
-    s[WET + i], s[HELD + i], s[WIND_EAST + i], s[WIND_NORTH + i] = 1.0, 1.0, 0.0, 0.0
+    s[lane.FREE_END + i], s[lane.SHARE + i], s[lane.OUT + i] = y, 1.0, 0.0
+    s[lane.WET + i], s[lane.HELD + i] = 1.0, 1.0
+    s[lane.WIND_EAST + i], s[lane.WIND_NORTH + i] = 0.0, 0.0
     if y < 0.0:
-        s[FREE_END + i], s[SHARE + i] = 0.0, 1.0 + y
-        last = riding.shape[0] - 1
+        s[lane.FREE_END + i], s[lane.SHARE + i] = 0.0, 1.0 + y
+        last = rides.by_share.size - 1
         at = (1.0 - sqrt(-y)) * last
         j = min(max(int(at), 0), last - 1)
         left = at - j
-        standing = riding[j, 0] + left * (riding[j + 1, 0] - riding[j, 0])
-        above = riding[j, 1] + left * (riding[j + 1, 1] - riding[j, 1])
-        s[OUT + i] = above * rigid[0] + standing * rigid[1]
-        s[WET + i] = 1.0 - above
-        s[HELD + i] = riding[j, 2] + left * (riding[j + 1, 2] - riding[j, 2])
-        s[WIND_EAST + i] = riding[j, 3] + left * (riding[j + 1, 3] - riding[j, 3])
-        s[WIND_NORTH + i] = riding[j, 4] + left * (riding[j + 1, 4] - riding[j, 4])
+        here, following = rides.by_share[j], rides.by_share[j + 1]
+        standing = here.standing + left * (following.standing - here.standing)
+        above = here.above + left * (following.above - here.above)
+        s[lane.OUT + i] = above * rides.above + standing * rides.own
+        s[lane.WET + i] = 1.0 - above
+        s[lane.HELD + i] = here.drag + left * (following.drag - here.drag)
+        s[lane.WIND_EAST + i] = here.push_east + left * (following.push_east - here.push_east)
+        s[lane.WIND_NORTH + i] = here.push_north + left * (following.push_north - here.push_north)
 
 
-@compiled
-def find_roots(desk: Desk, plan: Any, seek: Floats, reasons: Integers) -> None:
+def find_roots(march: March, desk: Desk, way: Way, seek: Searches, reasons: Integers) -> None:
     """Find the coarse root of every case whose reason is `SOLVED` so far: in its row of `seek`.
 
     Parameters
     ----------
-    seek : (cases, COLUMNS) see `calm.batch.kernel.search`
+    seek : (cases,) of `Search`
     reasons : (cases,)
     """
-    s, water, nodes, forces, own = desk
-    stages, _, mooring, floating, chances, _ = plan
-    slots, level = water[0], water[1]
-    task = np.full(LANES, DONE)
-    marches = np.zeros(LANES, np.int64)
+    s, water = desk.scratch, desk.water
+    slot = water.slot
+    task, marches = desk.task, desk.marches
+    for i in range(LANES):
+        task[i] = DONE
     upcoming = 0
     while True:
         busy = False
@@ -128,145 +117,155 @@ def find_roots(desk: Desk, plan: Any, seek: Floats, reasons: Integers) -> None:
                 while upcoming < reasons.size and reasons[upcoming] != SOLVED:
                     upcoming += 1
                 if upcoming < reasons.size:
-                    slots[i], task[i], marches[i] = upcoming, FIRST, 0
-                    level[i] = 0  # the last profile may have had more
+                    slot[i], task[i], marches[i] = upcoming, FIRST, 0
+                    water.interval[i] = upcoming * water.width  # the last profile may have had more
                     upcoming += 1
             busy |= task[i] != DONE
-            place_free_end(s, i, seek[slots[i], Y], floating[0], floating[1])
+            s[lane.BUSY + i] = 1.0 if task[i] != DONE else 0.0
+            place_free_end(s, i, seek[slot[i]].unknown, way.rides)
         if not busy:
             return
-        march(s, water, stages, 0, nodes, forces, own)
+        march(desk, way, COARSE)
         for i in range(LANES):
             if task[i] != DONE:
-                c = slots[i]
-                miss = s[Z + i] - mooring[1]
-                task[i], reasons[c] = advance(seek, c, task[i], miss, mooring, chances[0])
-                seek[c, LEAST_CARRIED], seek[c, LYING] = s[LIGHTEST + i], s[RESTING + i]
+                c = slot[i]
+                miss = s[lane.Z + i] - way.aim.goal
+                task[i], reasons[c] = advance(seek, c, task[i], miss, way)
+                seek[c].least_carried, seek[c].lying = s[lane.LIGHTEST + i], s[lane.RESTING + i]
                 marches[i] += 1
                 if marches[i] == MOST_MARCHES and task[i] != DONE:
                     task[i], reasons[c] = DONE, UNCLOSED
 
 
-@compiled
 def close_on(
-    grid: int, desk: Desk, plan: Any, seek: Floats, pending: Integers, reasons: Integers,
-    refusals: Integers, kept: Floats, follows: bool,
+    march: March, grid: int, desk: Desk, way: Way, seek: Searches, few: int, reasons: Integers,
+    kept: Floats, follows: bool,
 ) -> None:  # fmt: skip
     """Close pending cases on cuts halved `grid` times; their shapes go to their rows of `kept`.
 
-    `follows`: the cuts of each then follow the bends of its shape.
+    `few` : how many are pending. `follows`: the cuts of each then follow the bends of its shape.
     """
-    s, water, nodes, forces, own = desk
-    stages, _, mooring, floating, _, _ = plan
-    slots, level = water[0], water[1]
+    s, water, nodes, forces = desk.scratch, desk.water, desk.nodes, desk.forces
+    slot = water.slot
     numbers, after = nodes.size // LANES, forces.size // LANES
-    closing = np.zeros(LANES, np.bool_)
+    task, pending = desk.task, desk.pending
+    for i in range(LANES):
+        task[i] = DONE
     upcoming = 0
     while True:
         busy = False
         for i in range(LANES):
-            if not closing[i] and upcoming < pending.size:
-                slots[i], level[i], closing[i] = pending[upcoming], 0, True
-                seek[slots[i], TURN] = 0.0
+            if task[i] == DONE and upcoming < few:
+                c = pending[upcoming]
+                slot[i], water.interval[i], task[i] = c, c * water.width, ROOT
+                seek[c].turn = 0
                 upcoming += 1
-            busy |= closing[i]
-            place_free_end(s, i, seek[slots[i], Y], floating[0], floating[1])
+            busy |= task[i] != DONE
+            s[lane.BUSY + i] = 1.0 if task[i] != DONE else 0.0
+            place_free_end(s, i, seek[slot[i]].unknown, way.rides)
         if not busy:
             return
-        march(s, water, stages, grid, nodes, forces, own)
+        march(desk, way, grid)
         for i in range(LANES):
-            if not closing[i]:
+            if task[i] == DONE:
                 continue
-            c = slots[i]
-            near = correct(seek, c, s[Z + i] - mooring[1], mooring)
-            closing[i] = near == AWAY
+            c = slot[i]
+            near = correct(seek, c, s[lane.Z + i] - way.aim.goal, way.aim)
+            task[i] = ROOT if near == AWAY else DONE
             if near == NOWHERE and follows:
-                seek[c, Y] = seek[c, FOUND]
+                seek[c].unknown = seek[c].found
             elif near == NOWHERE:
                 reasons[c] = UNCLOSED
             elif near == THERE:
-                seek[c, CORNERS] = s[SHARPEST + i]
+                seek[c].corners = s[lane.SHARPEST + i]
                 if follows:
-                    recut(own, c, stages)
+                    recut(desk.own, c, way, desk.spread)
                     continue
-                refusals[c] = refused(s, i, mooring)
-                seek[c, LYING], seek[c, LOWEST_PLACE] = s[RESTING + i], s[LOWEST + i]
+                seek[c].refusal = refused(s, i, way.aim)
+                seek[c].lying, seek[c].lowest = s[lane.RESTING + i], s[lane.LOWEST + i]
                 for k in range(numbers):
                     kept[c, k] = nodes[k * LANES + i]
                 for k in range(after):
                     kept[c, numbers + k] = forces[k * LANES + i]
 
 
-@compiled
-def refused(s: Floats, i: int, mooring: Any) -> int:
+def refused(s: Floats, i: int, aim: Aim) -> int:
     """Why the lane's shape is not to be had, by this march alone; `SOLVED` where it is."""
-    span, first_chain = mooring[0], mooring[6]
-    if s[LEAST_PULL + i] < 0.0:
+    if s[lane.LEAST_PULL + i] < 0.0:
         return COMPRESSED
-    if s[LOWEST + i] < -span - 1e-6 * span:
+    if s[lane.LOWEST + i] < -aim.span - 1e-6 * aim.span:
         return ON_SEABED
-    if s[HIGHEST + i] > 1e-6 * span:
+    if s[lane.HIGHEST + i] > 1e-6 * aim.span:
         return OUT_OF_WATER
     # a line below the surface is meant to stand: see `calm.case.Mooring`
-    sunk = s[RESTING + i] >= 0.0 and s[SHARE + i] == 1.0 and s[LANDED_AT + i] < first_chain
+    chain_lies = s[lane.LANDED_AT + i] >= aim.first_chain
+    sunk = s[lane.RESTING + i] >= 0.0 and s[lane.SHARE + i] == 1.0 and not chain_lies
     return HEAP if sunk else SOLVED
 
 
-@compiled
+def still_open(ends: Integers, pending: Integers) -> int:
+    """The cases that ended `SOLVED` so far; how many."""
+    few = 0
+    for c in range(ends.size):
+        if ends[c] == SOLVED:
+            pending[few] = c
+            few += 1
+    return few
+
+
 def close_all(
-    desk: Desk, plan: Any, seek: Floats, shapes: Shapes, ends: Integers, start: int, results: Any
-) -> None:
+    march: March, desk: Desk, way: Way, seek: Searches, shapes: Shapes, ends: Integers, start: int,
+    results: Results,
+) -> None:  # fmt: skip
     """Close every case that ended `SOLVED` so far, from its coarse root, and write its results.
 
     The cuts are halved until that changes little. Those written end `WRITTEN`, or as refused.
     """
-    stages, parts, mooring = plan[0], plan[1], plan[2]
-    older, newer, earlier, shape = shapes
-    count = stages[0].size
-    refusals = np.zeros(ends.size, np.int64)
+    span, stages = way.aim.span, len(way.course.stages)
+    older, newer, earlier = shapes.older, shapes.newer, shapes.earlier
+    pending = desk.pending
     for c in range(ends.size):
-        seek[c, PLACE_BEFORE] = seek[c, TENSION_BEFORE] = 0.0
-    for _ in range(ROUNDS if stages[LANDS] else 0):
-        pending = np.flatnonzero(ends == SOLVED)
-        close_on(1, desk, plan, seek, pending, ends, refusals, newer, True)
-    finest = FINEST + 1 if stages[LANDS] else FINEST
-    allowed = PLACE_CHANGE_LYING if stages[LANDS] else PLACE_CHANGE
-    for grid in range(1, finest + 1):
-        pending = np.flatnonzero(ends == SOLVED)
-        older, newer = newer, older
-        for k in range(pending.size):
-            # where the root has gone by the last halving, it goes a quarter as far by this one
-            c = pending[k]
-            y = seek[c, Y]
-            seek[c, Y] = y + (0.25 * (y - earlier[c]) if grid > 1 else 0.0)
-            earlier[c] = y
-        close_on(grid, desk, plan, seek, pending, ends, refusals, newer, False)
-        if grid < FEWEST_HALVINGS:
+        seek[c].place_before = seek[c].tension_before = 0.0
+        seek[c].refusal = SOLVED
+    rounds = ROUNDS if way.lands else 0
+    finest = FINEST + 1 if way.lands else FINEST
+    allowed = PLACE_CHANGE_LYING if way.lands else PLACE_CHANGE
+    for time in range(1 - rounds, finest + 1):
+        grid, follows = max(time, 1), time < 1
+        few = still_open(ends, pending)
+        if not follows:
+            older, newer = newer, older
+            for k in range(few):
+                # where the root has gone by the last halving, it goes a quarter as far by this one
+                c = pending[k]
+                y = seek[c].unknown
+                seek[c].unknown = y + (0.25 * (y - earlier[c]) if grid > 1 else 0.0)
+                earlier[c] = y
+        close_on(march, grid, desk, way, seek, few, ends, newer, follows)
+        if follows or grid < FEWEST_HALVINGS:
             continue
-        for k in range(pending.size):
+        for k in range(few):
             c = pending[k]
             if ends[c] != SOLVED:
                 continue
-            place, tension = greatest_change(older[c], newer[c], count, mooring[0])
-            below = -mooring[0] - seek[c, LOWEST_PLACE]
-            if refusals[c] == ON_SEABED and below > CERTAIN * place * mooring[0]:
+            case = seek[c]
+            place, tension = greatest_change(older[c], newer[c], stages, span)
+            below = -span - case.lowest
+            if seek[c].refusal == ON_SEABED and below > CERTAIN * place * span:
                 ends[c] = ON_SEABED
                 continue
-            if stages[LANDS]:
+            if way.lands:
                 # after a great change a small one is luck
-                place, tension, seek[c, PLACE_BEFORE], seek[c, TENSION_BEFORE] = (
-                    max(place, seek[c, PLACE_BEFORE] / LUCK),
-                    max(tension, seek[c, TENSION_BEFORE] / LUCK),
-                    place,
-                    tension,
-                )
-            bends = stages[LANDS] and seek[c, CORNERS] > CORNER * mooring[0]
+                before, pull_before = case.place_before, case.tension_before
+                case.place_before, case.tension_before = place, tension
+                place, tension = max(place, before / LUCK), max(tension, pull_before / LUCK)
+            bends = way.lands and case.corners > CORNER * span
             if place <= allowed and tension <= TENSION_CHANGE and not bends:
-                ends[c] = WRITTEN if refusals[c] == SOLVED else refusals[c]
+                ends[c] = WRITTEN if seek[c].refusal == SOLVED else seek[c].refusal
                 if ends[c] != WRITTEN:
                     continue
-                blend(stages, older[c], newer[c], shape)
-                used = 1.0 + min((4.0 * seek[c, Y] - earlier[c]) / 3.0, 0.0)
-                write_case(stages, parts, shape, used, results, start + c)
+                blend(stages, older[c], newer[c], shapes.blended)
+                used = 1.0 + min((4.0 * case.unknown - earlier[c]) / 3.0, 0.0)
+                write_case(way, shapes.blended, used, results, start + c)
             elif grid == finest:
-                ends[c] = TOO_COARSE if refusals[c] == SOLVED else refusals[c]
+                ends[c] = TOO_COARSE if seek[c].refusal == SOLVED else seek[c].refusal

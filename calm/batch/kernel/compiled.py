@@ -1,82 +1,75 @@
-"""Compiling the kernel: once a machine, where its cache folder can be written."""
+"""Compiling the kernel, and the laws into it: once a machine, where its cache can be written."""
 
 from __future__ import annotations
 
-import hashlib
-import os
-import sys
-import tempfile
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numba
 
-from calm.physics import element
-
-Function = TypeVar("Function", bound=Callable[..., Any])
+from calm.physics import compiled
 
 FLAGS = {"contract", "nsz", "arcp"}
 """Liberties with arithmetic. Not with NaN, which tells a lane that has failed, nor with the order
 of sums: it might be another in the first lanes than in the last, and their digits with it."""
 
+OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": FLAGS, "_nrt": False}
+"""Nothing is allocated by the kernel, so that arrays need not be counted when they are passed on:
+that takes as long as a segment."""
 
-def compiled(function: Function) -> Function:
-    """A function compiled into those that call it."""
-    jitted: Function = numba.njit(function, nogil=True, error_model="numpy", fastmath=FLAGS)
-    return jitted
-
-
-def compilable(formula: Callable[..., Any]) -> None:
-    """Let compiled functions call a formula of the plain march."""
-    numba.extending.register_jitable(error_model="numpy", fastmath=FLAGS)(formula)
-
-
-def entry(function: Callable[..., Any]) -> Any:
-    """A function that is called from outside: compiled, and kept for the next process."""
-    folder = cache_folder()
-    options: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": FLAGS}
-    settings: Any = numba.config
-    if folder is None:
-        return numba.njit(function, **options)
-    chosen = settings.CACHE_DIR
-    settings.CACHE_DIR = str(folder)  # read as the function is decorated
-    try:
-        return numba.njit(function, cache=True, **options)
-    finally:
-        settings.CACHE_DIR = chosen
+Function = Callable[..., Any]
 
 
 @cache
-def cache_folder() -> Path | None:
-    """Where compiled code is kept; None where no such folder can be written.
+def called(function: Function, singly: bool) -> Any:
+    """A function compiled into those that call it."""
+    njit: Any = numba.njit
+    return njit(
+        _clone(function, singly),
+        nogil=True,
+        no_cpython_wrapper=True,
+        no_cfunc_wrapper=True,
+        **OPTIONS,
+    )
 
-    `NUMBA_CACHE_DIR`, or else CALM's folder in the user's cache. What is compiled from other
-    sources has another folder, as numba itself looks at one file alone.
+
+@cache
+def entry(function: Function) -> Any:
+    """A function that is called from outside: compiled, and kept for the next process."""
+    options = {"nogil": True, **OPTIONS}
+    return compiled.kept(numba.njit, _clone(function, False), cache_folder(False), **options)
+
+
+def by_address(function: Function, *arguments: Any, singly: bool = False) -> Any:
+    """A function for arguments of some types, compiled by itself and called by its address.
+
+    Those that call it are not compiled anew with it, which would take as long for each. `singly`:
+    with the laws that each lane takes by itself.
     """
-    given = os.environ.get("NUMBA_CACHE_DIR")
-    folder = (Path(given) if given else _user_cache() / "calm") / f"kernel-{_fingerprint()}"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            return folder
-    except OSError:
-        return None
+    typeof: Any = numba.typeof
+    types = tuple(typeof(argument) for argument in arguments)
+    return _by_address(function, numba.void(*types), singly)
 
 
-def _user_cache() -> Path:
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
-    if sys.platform == "darwin":
-        return Path.home() / "Library" / "Caches"
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+@cache
+def _by_address(function: Function, signature: Any, singly: bool) -> Any:
+    def compiler(clone: Function, **options: Any) -> Any:
+        return numba.cfunc(signature, **options)(clone)
+
+    return compiled.kept(compiler, _clone(function, singly), cache_folder(singly), **OPTIONS)
 
 
-def _fingerprint() -> str:
-    """Of everything that is compiled."""
-    sources = [Path(element.__file__), *sorted(Path(__file__).parent.glob("*.py"))]
-    digest = hashlib.sha256()
-    for source in sources:
-        digest.update(source.read_bytes())
-    return digest.hexdigest()[:16]
+def _clone(function: Function, singly: bool) -> Function:
+    """The function with what it calls, and without what a mooring has no use for."""
+    clone = compiled.clone(function, partial(called, singly=singly))
+    if "SINGLY" in clone.__globals__:
+        clone.__globals__["SINGLY"] = singly
+    return clone
+
+
+def cache_folder(singly: bool = False) -> Path | None:
+    """Where the compiled kernel is kept: see `calm.physics.compiled`."""
+    name = "kernel-singly" if singly else "kernel"
+    return compiled.cache_folder(name, Path(__file__).parent)

@@ -1,170 +1,108 @@
-"""What hangs on the line, in the lanes: rigid pieces and clamped instruments."""
+"""What hangs on the line, in the lanes: the laws of `calm.physics.rod`, all lanes at once."""
 
 from __future__ import annotations
 
 from math import sqrt
 
-from calm.batch.kernel.compiled import compiled
-from calm.batch.kernel.lanes import (
-    ABOVE_IT,
-    AFLOAT,
-    AX,
-    AY,
-    AZ,
-    BUOYANCY,
-    DENSITY,
-    DEPTH,
-    DIRECTIONAL,
-    FX,
-    FY,
-    FZ,
-    GX,
-    GY,
-    GZ,
-    HELD,
-    ITSELF,
-    L_BUOYANCY,
-    L_EAST,
-    L_LIFT,
-    L_NORMAL,
-    L_NORTH,
-    L_TANGENTIAL,
-    L_VOLUME,
-    LANES,
-    LEVER,
-    LIFT,
-    MX,
-    MY,
-    MZ,
-    NORMAL,
-    NX,
-    NY,
-    NZ,
-    PER_DENSITY,
-    QX,
-    QY,
-    QZ,
-    SHARE,
-    SX,
-    SY,
-    SZ,
-    TANGENTIAL,
-    VOLUME,
-    WET,
-    WIND_EAST,
-    WIND_NORTH,
-    K,
-    Tables,
-    U,
-    V,
-    W,
-    Z,
-    look_up,
-)
-from calm.physics.element import drag_force
+from calm.batch.kernel import lane
+from calm.batch.kernel.lane import LANES, SINGLY, Tables, look_up, lost
+from calm.batch.kernel.layout import Way
 from calm.physics.line import REFERENCE_DENSITY, Floats
+from calm.physics.profile import viscosity_at
+from calm.physics.rod import load_force, load_lift, load_variation, speed_across
+from calm.physics.track import Load
+
+IN_WATER, AFLOAT, ABOVE_FLOAT = range(3)
+"""Where a load is while the float is at the surface: below, the float itself, or out of the water
+above it by some share."""
 
 
-@compiled
-def load_of_every_lane(s: Floats, load: Floats, gravity: float) -> None:
-    """Lay out a load in the lanes; what is at the surface, by how much of it is in use."""
-    for i in range(LANES):
-        s[L_BUOYANCY + i] = load[BUOYANCY]
-        s[L_VOLUME + i] = load[VOLUME]
-        s[L_NORMAL + i] = load[NORMAL]
-        s[L_TANGENTIAL + i] = load[TANGENTIAL]
-        s[L_LIFT + i] = load[LIFT]
-        s[L_EAST + i] = 0.0
-        s[L_NORTH + i] = 0.0
-    if load[AFLOAT] == ITSELF:
-        for i in range(LANES):
-            s[L_BUOYANCY + i] *= s[SHARE + i]
-            s[L_VOLUME + i] *= s[SHARE + i]
-            s[L_NORMAL + i] *= s[HELD + i]
-            s[L_TANGENTIAL + i] *= s[HELD + i]
-            s[L_EAST + i] = s[WIND_EAST + i]
-            s[L_NORTH + i] = s[WIND_NORTH + i]
-    elif load[AFLOAT] == ABOVE_IT:
-        for i in range(LANES):
-            wet = s[WET + i]
-            s[L_BUOYANCY + i] -= (1.0 - wet) * REFERENCE_DENSITY * gravity * load[VOLUME]
-            s[L_VOLUME + i] *= wet
-            s[L_NORMAL + i] *= wet
-            s[L_TANGENTIAL + i] *= wet
-            s[L_LIFT + i] *= wet
+def load_in_lane(s: Floats, i: int, load: Load, place: int, gravity: float) -> Load:
+    """A load as a lane has it: what is at the surface, by how much of it is in use."""
+    buoyancy, volume, lift = load.buoyancy, load.volume, load.lift
+    normal, tangential = load.normal_drag, load.tangential_drag
+    east = north = 0.0
+    if place == AFLOAT:
+        share, held = s[lane.SHARE + i], s[lane.HELD + i]
+        buoyancy, volume = share * buoyancy, share * volume
+        normal, tangential = held * normal, held * tangential
+        east, north = s[lane.WIND_EAST + i], s[lane.WIND_NORTH + i]
+    elif place == ABOVE_FLOAT:
+        wet = s[lane.WET + i]
+        buoyancy -= (1.0 - wet) * REFERENCE_DENSITY * gravity * volume
+        volume, lift = wet * volume, wet * lift
+        normal, tangential = wet * normal, wet * tangential
+    return Load(
+        load.piece, load.clamp, load.at, load.lever, load.length, buoyancy, volume, normal,
+        tangential, load.directional, lift, east, north, load.diameter, load.lengthening,
+    )  # fmt: skip
 
 
-@compiled
-def gather_load(s: Floats, load: Floats, gravity: float, several: bool) -> None:
+def in_registers(load: Load) -> Load:
+    """A load out of the way of what is written."""
+    return Load(
+        load.piece, load.clamp, load.at, load.lever, load.length, load.buoyancy, load.volume,
+        load.normal_drag, load.tangential_drag, load.directional, load.lift, load.push_east,
+        load.push_north, load.diameter, load.lengthening,
+    )  # fmt: skip
+
+
+def gather_load(s: Floats, load: Load, place: int, gravity: float, several: bool) -> None:
     """Add a load's part in the moments: what turns the rod by itself, and its normal drag."""
-    lever, directional = load[LEVER], load[DIRECTIONAL]
     for i in range(LANES):
-        u, v, w, density = s[U + i], s[V + i], s[W + i], s[DENSITY + i]
-        scale = lever * density * PER_DENSITY
-        vv = u * u + v * v + w * w
-        kn = scale * s[L_NORMAL + i]
-        drag = (1.0 - directional) * kn * sqrt(vv)
-        excess = (density - REFERENCE_DENSITY) * gravity
-        s[AX + i] += lever * s[L_EAST + i] + drag * u
-        s[AY + i] += lever * s[L_NORTH + i] + drag * v
-        s[AZ + i] += (
-            lever * (s[L_BUOYANCY + i] + excess * s[L_VOLUME + i])
-            + scale * s[L_LIFT + i] * vv
-            + drag * w
-        )
-        share = directional * kn
+        mine = load_in_lane(s, i, load, place, gravity)
+        lever = mine.lever
+        u, v, w, density = s[lane.U + i], s[lane.V + i], s[lane.W + i], s[lane.DENSITY + i]
+        squared = u * u + v * v + w * w
+        kn = lever * density * lane.PER_DENSITY * mine.normal_drag
+        drag = 0.0 if mine.directional else kn * sqrt(squared)
+        lift = lever * load_lift(mine, squared, density, gravity)
+        s[lane.AX + i] += lever * mine.push_east + drag * u
+        s[lane.AY + i] += lever * mine.push_north + drag * v
+        s[lane.AZ + i] += lift + drag * w
+        share = kn if mine.directional else 0.0
         if several:
-            cx = v * s[NZ + i] - w * s[NY + i]
-            cy = w * s[NX + i] - u * s[NZ + i]
-            cz = u * s[NY + i] - v * s[NX + i]
-            share *= sqrt(cx * cx + cy * cy + cz * cz)
-        s[K + i] += share
-        weight = share if several else directional
-        s[GX + i] += weight * u
-        s[GY + i] += weight * v
-        s[GZ + i] += weight * w
+            share *= speed_across(u, v, w, s[lane.NX + i], s[lane.NY + i], s[lane.NZ + i])
+        s[lane.K + i] += share
+        weight = share if several else (1.0 if mine.directional else 0.0)
+        s[lane.GX + i] += weight * u
+        s[lane.GY + i] += weight * v
+        s[lane.GZ + i] += weight * w
 
 
-@compiled
-def add_load(s: Floats, load: Floats, gravity: float) -> None:
+def add_load(s: Floats, load: Load, place: int, gravity: float) -> None:
     """Force of a load in the current looked up: in QX, QY, QZ, added to the sums."""
-    lever, directional = load[LEVER], load[DIRECTIONAL]
     for i in range(LANES):
-        u, v, w, density = s[U + i], s[V + i], s[W + i], s[DENSITY + i]
-        scale = density * PER_DENSITY
-        vv = u * u + v * v + w * w
-        kn = scale * s[L_NORMAL + i]
-        drag = (1.0 - directional) * kn * sqrt(vv)
-        qx, qy, qz = drag_force(
-            directional * kn, directional * scale * s[L_TANGENTIAL + i],
-            u, v, w, s[NX + i], s[NY + i], s[NZ + i],
-        )  # fmt: skip
-        excess = (density - REFERENCE_DENSITY) * gravity
-        qx += drag * u + s[L_EAST + i]
-        qy += drag * v + s[L_NORTH + i]
-        qz += drag * w + s[L_BUOYANCY + i] + excess * s[L_VOLUME + i] + scale * s[L_LIFT + i] * vv
-        s[QX + i], s[QY + i], s[QZ + i] = qx, qy, qz
-        s[SX + i] += qx
-        s[SY + i] += qy
-        s[SZ + i] += qz
-        s[MX + i] += lever * qx
-        s[MY + i] += lever * qy
-        s[MZ + i] += lever * qz
+        mine = load_in_lane(s, i, load, place, gravity)
+        u, v, w, density = s[lane.U + i], s[lane.V + i], s[lane.W + i], s[lane.DENSITY + i]
+        tx, ty, tz = s[lane.NX + i], s[lane.NY + i], s[lane.NZ + i]
+        qx, qy, qz = load_force(mine, 1.0, u, v, w, density, gravity, tx, ty, tz)
+        s[lane.QX + i], s[lane.QY + i], s[lane.QZ + i] = qx, qy, qz
+        s[lane.SX + i] += qx
+        s[lane.SY + i] += qy
+        s[lane.SZ + i] += qz
+        s[lane.MX + i] += mine.lever * qx
+        s[lane.MY + i] += mine.lever * qy
+        s[lane.MZ + i] += mine.lever * qz
 
 
-@compiled
-def pass_clamp(s: Floats, water: Tables, loads: Floats, gravity: float, record: Floats) -> None:
+def pass_clamp(s: Floats, water: Tables, way: Way, stage: int) -> None:
     """Add an instrument clamped on a cable."""
+    load = in_registers(way.course.loads[way.course.stages[stage].first])
     for i in range(LANES):
-        s[DEPTH + i] = -s[Z + i]
-        s[SX + i], s[SY + i], s[SZ + i] = 0.0, 0.0, 0.0
+        s[lane.DEPTH + i] = -s[lane.Z + i]
+        s[lane.C + i] = 1.0
     look_up(s, water)
-    load_of_every_lane(s, loads[0], gravity)
+    if SINGLY and load.diameter > 0.0:
+        for i in range(LANES):
+            if s[lane.BUSY + i] > 0.0 and not lost(s, i):
+                viscosity = viscosity_at(water.sea, s[lane.DEPTH + i])
+                u, v, w = s[lane.U + i], s[lane.V + i], s[lane.W + i]
+                s[lane.C + i] = load_variation(load, viscosity, u, v, w, 0.0, 0.0, -1.0)
     for i in range(LANES):
-        s[AX + i], s[AY + i], s[AZ + i] = s[QX + i], s[QY + i], s[QZ + i]
-    add_load(s, loads[0], gravity)
-    for i in range(LANES):
-        s[FX + i] += s[SX + i]
-        s[FY + i] += s[SY + i]
-        s[FZ + i] += s[SZ + i]
-        s[QX + i], s[QY + i], s[QZ + i] = s[AX + i], s[AY + i], s[AZ + i]
+        u, v, w, density = s[lane.U + i], s[lane.V + i], s[lane.W + i], s[lane.DENSITY + i]
+        varied = s[lane.C + i]
+        qx, qy, qz = load_force(load, varied, u, v, w, density, water.sea.gravity, 0.0, 0.0, -1.0)
+        s[lane.FX + i] += qx
+        s[lane.FY + i] += qy
+        s[lane.FZ + i] += qz

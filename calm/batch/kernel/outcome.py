@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from math import atan2, pi, sqrt
-from typing import Any
 
-from calm.batch.kernel.compiled import compiled
-from calm.batch.kernel.lanes import AT, CLAMP, ROD, STATE
+from calm.batch.kernel.lane import STATE
+from calm.batch.kernel.layout import Results, Way
 from calm.physics.line import Floats
+from calm.physics.track import CABLE, CLAMP, ROD, Course
 
 DEPTH, EAST, NORTH, TENSION_TOP, TENSION_BOTTOM, TILT = range(6)
 OF_PIECE = ("depth_top", "x_top", "y_top", "tension_top", "tension_bottom", "tilt")
@@ -15,25 +15,21 @@ OF_CLAMP = ("depth", "x", "y", "tension", "tilt")
 OF_ENDS = ("top_depth", "anchor_vertical", "anchor_horizontal", "used_buoyancy", "end_depth")
 
 
-@compiled
 def tilt_of(x: float, y: float, z: float) -> float:
     """Angle of a vector from the vertical [degrees]; 0 for none."""
     return atan2(sqrt(x * x + y * y), z) * 180.0 / pi
 
 
-@compiled
 def size_of(x: float, y: float, z: float) -> float:
     """Size of a vector."""
     return sqrt(x * x + y * y + z * z)
 
 
-@compiled
-def blend(plan: Any, old: Floats, new: Floats, blended: Floats) -> None:
+def blend(stages: int, old: Floats, new: Floats, blended: Floats) -> None:
     """What the shapes on cuts and on halved cuts lead to.
 
     Places and forces are of second order in the cuts, the axis of what ends at a joint of first.
     """
-    stages = plan[0].size
     end = stages * STATE
     for n in range(stages + 1):
         base = n * STATE
@@ -49,7 +45,6 @@ def blend(plan: Any, old: Floats, new: Floats, blended: Floats) -> None:
     blended[end], blended[end + 1] = 0.0, 0.0
 
 
-@compiled
 def greatest_change(old: Floats, new: Floats, stages: int, span: float) -> tuple[float, float]:
     """What halving the cuts changed: of places, by the span, and of tensions, by themselves."""
     end = stages * STATE
@@ -69,21 +64,28 @@ def greatest_change(old: Floats, new: Floats, stages: int, span: float) -> tuple
     return place / span, tension
 
 
-@compiled
-def write_case(plan: Any, parts: Any, shape: Floats, used: float, results: Any, case: int) -> None:
+def piece_of(course: Course, stage: int) -> int:
+    """The piece that a stage is, or sits on; of several pieces the first."""
+    here = course.stages[stage]
+    if here.kind == CABLE:
+        return int(course.cables[here.first].piece)
+    return int(course.loads[here.first].piece)
+
+
+def write_case(way: Way, shape: Floats, used: float, results: Results, case: int) -> None:
     """Write a case's shape to its row of the results."""
-    kinds, firsts, counts, lengths = plan[0], plan[1], plan[2], plan[3]
-    piece_of_stage, _, clamp_of_load, piece_length, head = parts
+    course, piece_length = way.course, way.lengths
     pieces, clamps, ends = results
-    stages = kinds.size
+    stages = len(course.stages)
     written = -1
     ox = oy = oz = 0.0
     for n in range(stages):
         a, b = n * STATE, (n + 1) * STATE
-        if kinds[n] == ROD and counts[n] > 1:
-            written = walk_rod(plan, parts, shape, n, pieces, clamps, case)
+        here = course.stages[n]
+        if here.kind == ROD and here.size > 1:
+            written = walk_rod(way, shape, n, results, case)
             continue
-        p = piece_of_stage[n]
+        p = piece_of(course, n)
         fx, fy, fz = shape[a + 3], shape[a + 4], shape[a + 5]
         gx, gy, gz = shape[b + 3], shape[b + 4], shape[b + 5]
         upper, lower = size_of(fx, fy, fz), size_of(gx, gy, gz)
@@ -94,13 +96,13 @@ def write_case(plan: Any, parts: Any, shape: Floats, used: float, results: Any, 
             pieces[case, EAST, p], pieces[case, NORTH, p] = shape[a], shape[a + 1]
             pieces[case, TENSION_TOP, p] = upper
         pieces[case, TENSION_BOTTOM, p] = lower
-        if kinds[n] == CLAMP:
-            m = clamp_of_load[firsts[n]]
+        if here.kind == CLAMP:
+            m = way.clamp_row[here.first]
             clamps[case, 0, m] = -shape[a + 2]
             clamps[case, 1, m], clamps[case, 2, m] = shape[a], shape[a + 1]
             clamps[case, 3, m] = max(upper, lower)
             clamps[case, 4, m] = tilt_of(shape[a + 6], shape[a + 7], -shape[a + 8])
-        if n + 1 == stages or piece_of_stage[n + 1] != p:
+        if n + 1 == stages or piece_of(course, n + 1) != p:
             if piece_length[p] > 0.0:
                 pieces[case, TILT, p] = tilt_of(
                     pieces[case, EAST, p] - shape[b],
@@ -109,11 +111,11 @@ def write_case(plan: Any, parts: Any, shape: Floats, used: float, results: Any, 
                 )
             else:
                 pieces[case, TILT, p] = tilt_of(ox + gx, oy + gy, oz + gz)
-    if lengths[0] > 0.0:
+    if course.stages[0].length > 0.0:
         lean = tilt_of(
             shape[0] - shape[STATE], shape[1] - shape[STATE + 1], shape[2] - shape[STATE + 2]
         )
-        for p in range(head):
+        for p in range(way.head):
             pieces[case, TILT, p] = lean
     b = stages * STATE
     ends[case, 0] = -shape[2]
@@ -123,18 +125,17 @@ def write_case(plan: Any, parts: Any, shape: Floats, used: float, results: Any, 
     ends[case, 4] = -shape[b + 2]
 
 
-@compiled
-def walk_rod(
-    plan: Any, parts: Any, shape: Floats, n: int, pieces: Floats, clamps: Floats, case: int
-) -> int:
+def walk_rod(way: Way, shape: Floats, n: int, results: Results, case: int) -> int:
     """Down a rod of several pieces or with clamps; returns its last piece.
 
     A piece's own load counts as spread along it, a clamp's not.
     """
-    first, count, length, loads = plan[1][n], plan[2][n], plan[3][n], plan[6]
-    _, piece_of_load, clamp_of_load, piece_length, _ = parts
+    course, piece_length = way.course, way.lengths
+    pieces, clamps, _ = results
+    rod, loads = course.stages[n], course.loads
+    end, length = rod.first + rod.size, rod.length
     a, b = n * STATE, (n + 1) * STATE
-    forces = (plan[0].size + 1) * STATE
+    forces = (len(course.stages) + 1) * STATE
     x, y, z = shape[a], shape[a + 1], shape[a + 2]
     fx, fy, fz = shape[a + 3], shape[a + 4], shape[a + 5]
     tx = ty = tz = 0.0
@@ -145,17 +146,17 @@ def walk_rod(
     lean = tilt_of(-tx, -ty, -tz)
     start = 0.0
     p = 0
-    j = first
-    while j < first + count:
-        p, own = piece_of_load[j], forces + 3 * j
+    j = rod.first
+    while j < end:
+        p, own = loads[j].piece, forces + 3 * j
         pieces[case, DEPTH, p], pieces[case, EAST, p], pieces[case, NORTH, p] = -z, x, y
         pieces[case, TENSION_TOP, p] = size_of(fx, fy, fz)
         gx, gy, gz = fx, fy, fz
         reached = start
         j += 1
         while True:
-            clamp = j < first + count and clamp_of_load[j] >= 0
-            at = loads[j, AT] if clamp else start + piece_length[p]
+            clamp = j < end and loads[j].clamp >= 0
+            at = loads[j].at if clamp else start + piece_length[p]
             step = at - reached
             share = step / piece_length[p] if piece_length[p] > 0.0 else (0.0 if clamp else 1.0)
             x, y, z = x + step * tx, y + step * ty, z + step * tz
@@ -165,7 +166,7 @@ def walk_rod(
             if not clamp:
                 break
             before = size_of(fx, fy, fz)
-            k, m = forces + 3 * j, clamp_of_load[j]
+            k, m = forces + 3 * j, way.clamp_row[j]
             fx, fy, fz = fx + shape[k], fy + shape[k + 1], fz + shape[k + 2]
             clamps[case, 0, m], clamps[case, 1, m], clamps[case, 2, m] = -z, x, y
             clamps[case, 3, m] = max(before, size_of(fx, fy, fz))

@@ -8,19 +8,22 @@ from typing import Any
 import numpy as np
 
 from calm.assemble import assemble_water
+from calm.batch.kernel.cable import is_packed
 from calm.batch.kernel.contact import first_chain_of, grips_on, when_looked_for
 from calm.batch.kernel.cuts import cuts_of
-from calm.batch.kernel.lanes import ABOVE_IT, CABLE, CLAMP, ITSELF, ROD
+from calm.batch.kernel.layout import Aim, Ride, Rides, Seabed, Way
+from calm.batch.kernel.loads import ABOVE_FLOAT, AFLOAT, IN_WATER
 from calm.case import Mooring
 from calm.files import CurrentTable
-from calm.physics.friction import Friction
+from calm.physics.compiled import packed, record_type
 from calm.physics.hull import Floating
-from calm.physics.line import Floats, Line, Water
+from calm.physics.line import Floats, Integers, Line, Water
 from calm.physics.profile import Profile
 from calm.physics.state import MarchError
-from calm.physics.track import Cable, Load, Part, Rod, Track, head_count
+from calm.physics.track import CABLE, Course, Part, Rod, head_count
 from calm.solve.closing import Closing
-from calm.solve.locate import SHARES, upright_depth
+from calm.solve.locate import NEAR as NEAR_TOP
+from calm.solve.locate import SCAN, SHARES, upright_depth
 from calm.solve.mooring import BARELY_LANDED
 from calm.solve.unknown import Unknown
 
@@ -37,37 +40,25 @@ _STILL = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
 
 
 @dataclass(frozen=True)
-class Way:
-    """What the kernel reads of a line that is looked for clear of the seabed, or lying on it."""
-
-    stages: tuple[Any, ...]
-    mooring: tuple[Any, ...]
-    chances: tuple[Any, ...]
-
-
-@dataclass(frozen=True)
 class Plan:
-    """What the kernel reads of a mooring: see the functions below for what stands in each.
+    """What the kernel reads of a mooring.
 
-    `water` is the sea without the current of the file: density, and what the wind drives.
+    Attributes
+    ----------
+    water : the sea without the current of the file: density, and what the wind drives
+    strata : its viscosity, as in `Sea`
+    clear, lying : the line looked for clear of the seabed, and lying on it
+    contact : when the second: see `calm.batch.kernel.contact`
+    singly : whether it has laws that each lane takes by itself: an elongation or drag curve,
+        another friction than Berteaux's, a cable at its free end or without drag
     """
 
     water: Water
-    parts: tuple[Any, ...]
-    floating: tuple[Any, ...]
+    strata: Any
     clear: Way
     lying: Way
-    fixed: Floats
     contact: int
-
-    @property
-    def arrays(self) -> tuple[Any, ...]:
-        """All that the kernel takes."""
-        clear, lying = (
-            (way.stages, self.parts, way.mooring, self.floating, way.chances, self.fixed)
-            for way in (self.clear, self.lying)
-        )
-        return clear, lying, self.contact
+    singly: bool
 
 
 def base_water(mooring: Mooring) -> Water:
@@ -75,182 +66,93 @@ def base_water(mooring: Mooring) -> Water:
     return assemble_water(replace(mooring.file.environment, current=_STILL))
 
 
-def plan_of(mooring: Mooring) -> Plan | None:
-    """Lay a mooring out; None where it has what the lanes do not solve.
-
-    That is elongation tables, drag curves, strumming by Bourget & Marichal, other friction than
-    Berteaux's, and a line that begins with a cable.
-    """
+def plan_of(mooring: Mooring) -> Plan:
+    """Lay a mooring out."""
     line, water = mooring.line, base_water(mooring)
-    if not _simple(line):
-        return None
     closing = Closing(line, water, mooring.settings)
     track = closing.track
-    head = track.stages[0]
-    if not isinstance(head, Rod):
-        return None
-    afloat = closing.floats[0] if closing.floats else -1
-    floats = afloat in head.pieces
-    load_of = [load for stage in track.stages for load in _loads(stage)]
     first_chain = first_chain_of(mooring, track)
-    clear, lying = (
-        _way(closing, track, afloat if floats else -1, first_chain, lands=lands)
-        for lands in (False, True)
-    )
+    clear, lying = (_way(closing, first_chain, lands=lands) for lands in (False, True))
     return Plan(
         water=water,
-        parts=_parts(line, track, load_of),
-        floating=_riding(head, afloat, line.floating if floats else None),
+        strata=packed(closing.profile.sea).strata,
         clear=clear,
         lying=lying,
-        fixed=np.column_stack([water.level, water.u, water.v, water.density]),
         contact=when_looked_for(line, water, track),
+        singly=_takes_singly(track.course),
     )
 
 
-def _way(closing: Closing, track: Track, afloat: int, first_chain: int, *, lands: bool) -> Way:
+def _takes_singly(course: Course) -> bool:
+    """Whether a stage has a law that is not made for all lanes at once."""
+    cables = [n for n, stage in enumerate(course.stages) if stage.kind == CABLE]
+    curved = any(load.diameter > 0.0 for load in course.loads)
+    return curved or not all(is_packed(course, n) for n in cables)
+
+
+def _way(closing: Closing, first_chain: int, *, lands: bool) -> Way:
     """The line clear of the seabed, or on it: how it is cut, where it ends, what it may miss by."""
+    line, water, track = closing.line, closing.water, closing.track
     unknown = closing.whole(lands)
     top = upright_depth(closing, unknown)
-    line, water = closing.line, closing.water
+    course, loads = track.course, packed(track.course).loads
+    cuts = cuts_of(track, water.depth, lands)
+    afloat = closing.floats[0] if closing.floats else -1
+    head = track.stages[0]
+    floats = isinstance(head, Rod) and afloat in head.pieces
+    clamped = loads["clamp"] >= 0
+    falls, step = _falls(closing, unknown, top)
+    grips, holds = grips_on(track, water, closing.settings.seabed_friction)
     return Way(
-        stages=(
-            *_stages(line, water, track, afloat, lands),
-            *grips_on(track, water, closing.settings.seabed_friction),
-            lands,
+        course=packed(course),
+        cuts=np.concatenate([np.zeros(0), *cuts]),
+        first_cut=np.cumsum([0, *map(len, cuts)], dtype=np.int64),
+        lands=lands,
+        near=(NEAR_ON_SEABED if lands else NEAR) * water.depth,
+        seabed=Seabed(grips, holds),
+        aim=Aim(
+            span=float(water.depth),
+            goal=float(unknown.goal),
+            upright=float(top),
+            floats=floats,
+            rides=line.floating is not None,
+            anchor_height=float(line.anchor_height),
+            first_chain=first_chain,
+            barely=float(BARELY_LANDED * line.anchor_height),
         ),
-        mooring=(
-            water.depth,
-            unknown.goal,
-            top,
-            afloat >= 0,
-            line.floating is not None,
-            line.anchor_height,
-            first_chain,
-            BARELY_LANDED * line.anchor_height,
-        ),
-        chances=(np.array(SHARES), _falls(closing, unknown, top)),
+        rides=_rides(head, afloat, line.floating if floats else None),
+        places=_places(line, loads, course.stages[0].size, afloat if floats else -1),
+        shares=np.array(SHARES),
+        scanned=np.array([*NEAR_TOP, *range(1, SCAN + 1)]) / SCAN,
+        falls=falls,
+        fall_step=step,
+        clamp_row=np.where(clamped, np.cumsum(clamped) - 1, -1),
+        lengths=line.length.copy(),
+        head=head_count(line),
+        fixed=np.column_stack([water.level, water.u, water.v, water.density]),
     )
 
 
-def _simple(line: Line) -> bool:
-    """Whether a line has only what the lanes solve."""
-    curves = (*line.elongation, *line.drag_curve, *line.clamp_drag_curve)
-    return (
-        all(curve is None for curve in curves)
-        and line.strumming is None
-        and line.friction is Friction.BERTEAUX
-        and bool(np.isin(line.thinning, (0.0, 0.5)).all())
-        and bool((line.length[line.flexible] > 0.0).all())
-    )
+def _places(line: Line, loads: Any, head: int, afloat: int) -> Integers:
+    """Of every load of the head whether it is the float at the surface, or stands out above it."""
+    piece, clamp = loads["piece"], loads["clamp"]
+    at_head = np.arange(len(piece)) < head
+    above = at_head & (piece < afloat) & (line.floating is not None)
+    itself = at_head & (piece == afloat) & (clamp < 0)
+    return np.where(itself, AFLOAT, np.where(above, ABOVE_FLOAT, IN_WATER))
 
 
-def _loads(stage: Part) -> tuple[Load, ...]:
-    if isinstance(stage, Cable):
-        return ()
-    return stage.loads if isinstance(stage, Rod) else (stage,)
-
-
-def _stages(line: Line, water: Water, track: Track, afloat: int, lands: bool) -> tuple[Any, ...]:
-    """Kind, first load or cut, count of them and length of every stage; cables, cuts, loads."""
-    kinds, firsts, counts, lengths = [], [], [], []
-    cables: list[tuple[float, ...]] = []
-    cuts: list[float] = []
-    loads: list[tuple[float, ...]] = []
-    given = iter(cuts_of(track, water.depth, lands))
-    for n, stage in enumerate(track.stages):
-        if isinstance(stage, Cable):
-            mine = next(given).tolist()
-            kinds.append(CABLE)
-            firsts.append(len(cuts))
-            counts.append(len(mine))
-            lengths.append(stage.length)
-            cuts += mine
-            cables.append(_cable(stage))
-            continue
-        kinds.append(ROD if isinstance(stage, Rod) else CLAMP)
-        firsts.append(len(loads))
-        counts.append(len(_loads(stage)))
-        lengths.append(stage.length if isinstance(stage, Rod) else 0.0)
-        loads += [
-            _load(load, _place_afloat(line, load, afloat) if n == 0 else 0.0)
-            for load in _loads(stage)
-        ]
-    return (
-        np.array(kinds, np.int64),
-        np.array(firsts, np.int64),
-        np.array(counts, np.int64),
-        np.array(lengths, np.float64),
-        np.array(cables, np.float64).reshape(-1, 6),
-        np.array(cuts, np.float64),
-        np.array(loads, np.float64),
-        water.gravity,
-        (NEAR_ON_SEABED if lands else NEAR) * water.depth,
-        track.landing,
-    )
-
-
-def _cable(cable: Cable) -> tuple[float, ...]:
-    """A row of cables, in the order of the kernel's columns."""
-    return (
-        cable.buoyancy,
-        cable.volume,
-        cable.normal_drag,
-        cable.tangential_drag,
-        cable.compliance,
-        2.0 * cable.thinning,
-    )
-
-
-def _load(load: Load, place: float) -> tuple[float, ...]:
-    """A row of loads, in the order of the kernel's columns."""
-    return (
-        load.at,
-        load.lever,
-        load.buoyancy,
-        load.volume,
-        load.normal_drag,
-        load.tangential_drag,
-        load.lift,
-        float(load.directional),
-        place,
-    )
-
-
-def _place_afloat(line: Line, load: Load, afloat: int) -> float:
-    """Whether a load is the float at the surface, or stands out of the water above it."""
-    if load.piece == afloat and load.clamp < 0:
-        return ITSELF
-    return ABOVE_IT if load.piece < afloat and line.floating is not None else 0.0
-
-
-def _parts(line: Line, track: Track, loads: list[Load]) -> tuple[Any, ...]:
-    """Piece of every stage and load; clamp of every load, down the line; lengths; head."""
-    clamped = np.array([load.clamp >= 0 for load in loads], np.bool_)
-    first = [stage.pieces[0] if isinstance(stage, Rod) else stage.piece for stage in track.stages]
-    return (
-        np.array(first, np.int64),
-        np.array([load.piece for load in loads], np.int64),
-        np.where(clamped, np.cumsum(clamped) - 1, -1),
-        line.length.copy(),
-        head_count(line),
-    )
-
-
-def _riding(head: Rod, afloat: int, floating: Floating | None) -> tuple[Any, ...]:
-    """How the float rides, by 1 - √(1 - share in use); and the lengths that stand out with it.
-
-    The columns are `standing`, `above`, `drag` and the push of the wind, as in `Riding`.
-    """
-    if floating is None:
-        return np.tile([0.0, 0.0, 1.0, 0.0, 0.0], (2, 1)), (0.0, 0.0)
+def _rides(head: Part, afloat: int, floating: Floating | None) -> Rides:
+    """How the float rides, by 1 - √(1 - share in use); and the lengths that stand out with it."""
+    if floating is None or not isinstance(head, Rod):
+        return Rides(np.array([Ride(0.0, 0.0, 1.0, 0.0, 0.0)] * 2, record_type(Ride)), 0.0, 0.0)
     *above, own = head.lengths[: head.pieces.index(afloat) + 1]
-    rides = [floating.riding(1.0 - (1.0 - at) ** 2) for at in np.linspace(0.0, 1.0, SHARES_KNOWN)]
-    table = np.array([(r.standing, r.above, r.drag, *r.push) for r in rides])
-    return table, (sum(above, 0.0), own)
+    riding = [floating.riding(1.0 - (1.0 - at) ** 2) for at in np.linspace(0.0, 1.0, SHARES_KNOWN)]
+    table = [Ride(r.standing, r.above, r.drag, *r.push) for r in riding]
+    return Rides(np.array(table, record_type(Ride)), sum(above, 0.0), own)
 
 
-def _falls(closing: Closing, unknown: Unknown, top: float) -> Floats:
+def _falls(closing: Closing, unknown: Unknown, top: float) -> tuple[Floats, float]:
     """How deep even currents of growing speed push the line [m], and the step of the speed [m/s].
 
     Where one pushes it beyond all bounds, as deep as the water.
@@ -266,4 +168,4 @@ def _falls(closing: Closing, unknown: Unknown, top: float) -> Floats:
         except MarchError:
             height = 0.0
         falls.append(max(height - unknown.goal, closing.allowed))
-    return np.array([*falls, step])
+    return np.array(falls), float(step)

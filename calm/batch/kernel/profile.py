@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from math import inf, isfinite, sqrt
+from typing import Any
 
-from calm.batch.kernel.compiled import compiled
 from calm.physics.line import Floats
 
 
-@compiled
 def read_profile(depth: Floats, u: Floats, v: Floats, w: Floats, read: Floats) -> int:
     """The levels at or below the surface that have a value, sorted; how many, -1 if two are one."""
     count = 0
@@ -30,7 +29,6 @@ def read_profile(depth: Floats, u: Floats, v: Floats, w: Floats, read: Floats) -
     return count
 
 
-@compiled
 def between(table: Floats, count: int, k: int, depth: float, c: int) -> float:
     """Column of a table at a depth, of which the first level below it is the k-th."""
     if k == 0:
@@ -41,11 +39,10 @@ def between(table: Floats, count: int, k: int, depth: float, c: int) -> float:
     return float(table[k - 1, c] + share * (table[k, c] - table[k - 1, c]))
 
 
-@compiled
 def lay_profile(
-    read: Floats, count: int, fixed: Floats, bounds: Floats, rows: Floats, joined: Floats
+    read: Floats, count: int, fixed: Floats, levels: Any, intervals: Any, joined: Floats
 ) -> int:
-    """Join a profile with the fixed levels, and lay out bounds and rows as the march reads them.
+    """Join a profile with the fixed levels, and lay out levels and intervals as in `Sea`.
 
     Parameters
     ----------
@@ -58,48 +55,48 @@ def lay_profile(
     How many levels both have.
     """
     total = i = j = 0
-    levels = fixed.shape[0]
-    while i < count or j < levels:
-        if j == levels or (i < count and read[i, 0] <= fixed[j, 0]):
-            depth = read[i, 0]
-        else:
-            depth = fixed[j, 0]
+    given = fixed.shape[0]
+    while i < count or j < given:
+        of_profile = j == given or (i < count and read[i, 0] <= fixed[j, 0])
+        depth = read[i, 0] if of_profile else fixed[j, 0]
         if i < count and read[i, 0] == depth:
             i += 1
-        if j < levels and fixed[j, 0] == depth:
+        if j < given and fixed[j, 0] == depth:
             j += 1
         # at a level itself the upper of its intervals holds it to rounding
         k = i - 1 if i > 0 and read[i - 1, 0] == depth else i
         f = j - 1 if j > 0 and fixed[j - 1, 0] == depth else j
         joined[total, 0] = depth
-        joined[total, 1] = _value(read, count, k, depth, 1) + _value(fixed, levels, f, depth, 1)
-        joined[total, 2] = _value(read, count, k, depth, 2) + _value(fixed, levels, f, depth, 2)
-        joined[total, 3] = _value(read, count, k, depth, 3)
-        joined[total, 4] = _value(fixed, levels, f, depth, 3)
+        joined[total, 1] = value_at(read, count, k, depth, 1) + value_at(fixed, given, f, depth, 1)
+        joined[total, 2] = value_at(read, count, k, depth, 2) + value_at(fixed, given, f, depth, 2)
+        joined[total, 3] = value_at(read, count, k, depth, 3)
+        joined[total, 4] = value_at(fixed, given, f, depth, 3)
         total += 1
-    bounds[0] = -inf
-    for c in range(4):
-        rows[0, 2 * c], rows[0, 2 * c + 1] = joined[0, 1 + c], 0.0
-    for k in range(total):
-        depth = joined[k, 0]
-        bounds[k + 1] = depth
-        thickness = joined[k + 1, 0] - depth if k + 1 < total else inf
-        for c in range(4):
-            value = joined[k, 1 + c]
-            slope = (joined[k + 1, 1 + c] - value) / thickness if k + 1 < total else 0.0
-            rows[k + 1, 2 * c], rows[k + 1, 2 * c + 1] = value - slope * depth, slope
-    bounds[total + 1] = inf
+    levels[0], levels[total + 1] = -inf, inf
+    for k in range(total + 1):
+        upper, lower = max(k - 1, 0), min(k, total - 1)
+        depth = joined[upper, 0]
+        thickness = joined[lower, 0] - depth if lower > upper else inf
+        row = intervals[k]
+        row.origin = depth
+        row.u, row.v, row.w = joined[upper, 1], joined[upper, 2], joined[upper, 3]
+        row.density = joined[upper, 4]
+        row.du = (joined[lower, 1] - row.u) / thickness
+        row.dv = (joined[lower, 2] - row.v) / thickness
+        row.dw = (joined[lower, 3] - row.w) / thickness
+        row.ddensity = (joined[lower, 4] - row.density) / thickness
+        if k < total:
+            levels[k + 1] = joined[k, 0]
     return total
 
 
-@compiled
-def _value(table: Floats, count: int, k: int, depth: float, c: int) -> float:
+def value_at(table: Floats, count: int, k: int, depth: float, c: int) -> float:
+    """As `between`; at the k-th level itself, what stands there."""
     if k < count and table[k, 0] == depth:
         return float(table[k, c])
     return between(table, count, k, depth, c)
 
 
-@compiled
 def growth_below(joined: Floats, total: int, top: float) -> tuple[float, float]:
     """Largest growth of the current with depth below `top`, relative to the top speed [1/m].
 

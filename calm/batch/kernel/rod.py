@@ -1,278 +1,285 @@
-"""A rigid body in the lanes: `calm.physics.rod`."""
+"""A rigid body in the lanes: the laws of `calm.physics.rod`, all lanes at once.
+
+Where a drag follows a curve each lane takes the rod by itself.
+"""
 
 from __future__ import annotations
 
 from math import inf, sqrt
 
-from calm.batch.kernel.compiled import compiled
-from calm.batch.kernel.lanes import (
-    AT,
-    AX,
-    AY,
-    AZ,
-    BUOYANCY,
-    CHANGE,
-    DENSITY,
-    DEPTH,
-    DIRECTIONAL,
-    DOUBT,
-    FREE_END,
-    FX,
-    FY,
-    FZ,
-    GX,
-    GY,
-    GZ,
+from calm.batch.kernel import lane
+from calm.batch.kernel.lane import (
     LANES,
-    LEAST_PULL,
-    LEVER,
-    LIFT,
     MOST_PASSES,
-    MX,
-    MY,
-    MZ,
-    NORMAL,
-    NX,
-    NY,
-    NZ,
-    OUT,
-    PER_DENSITY,
-    PULL,
-    QX,
-    QY,
-    QZ,
-    SX,
-    SY,
-    SZ,
-    TANGENTIAL,
-    TRIED,
-    TX,
-    TY,
-    TZ,
-    VOLUME,
-    C,
-    K,
+    SINGLY,
+    Desk,
     Tables,
-    U,
-    V,
-    W,
-    X,
-    Y,
-    Z,
     exact_shares,
     look_up,
+    lost,
+    state_of,
 )
-from calm.batch.kernel.loads import add_load, gather_load, load_of_every_lane
-from calm.physics.element import axis_along, drag_force, share_step
-from calm.physics.line import REFERENCE_DENSITY, Floats
+from calm.batch.kernel.layout import Way
+from calm.batch.kernel.loads import (
+    add_load,
+    gather_load,
+    in_registers,
+    load_in_lane,
+)
+from calm.physics.element import axis_against, few_steps_share
+from calm.physics.line import Floats
+from calm.physics.rod import force_at, load_force, load_lift, next_axis, speed_across
+from calm.physics.track import Load, Stage
 
 
-@compiled
+def pass_rod(desk: Desk, way: Way, stage: int) -> None:
+    """Take all lanes down a rod; the forces of its loads go to the desk's."""
+    s, water, record = desk.scratch, desk.water, desk.forces
+    rod, loads = way.course.stages[stage], way.course.loads
+    curved = False
+    for j in range(rod.first, rod.first + rod.size):
+        curved |= loads[j].diameter > 0.0
+    for i in range(LANES):
+        s[lane.NX + i], s[lane.NY + i], s[lane.NZ + i] = 0.0, 0.0, s[lane.TZ + i]
+        s[lane.TRIED + i], s[lane.CHANGE + i] = s[lane.TZ + i], inf
+    if SINGLY and curved:
+        turn_singly(desk, way, stage)
+    elif rod.size == 1 and stage > 0:
+        pass_piece(s, water, in_registers(loads[rod.first]), rod.length, way.near)
+        return
+    else:
+        turn_together(s, water, way, stage)
+    for i in range(LANES):
+        s[lane.SX + i], s[lane.SY + i], s[lane.SZ + i] = 0.0, 0.0, 0.0
+        s[lane.MX + i], s[lane.MY + i], s[lane.MZ + i] = (
+            s[lane.FX + i],
+            s[lane.FY + i],
+            s[lane.FZ + i],
+        )
+        if not s[lane.CHANGE + i] <= way.near:
+            s[lane.LEAST_PULL + i] = -1.0
+    for j in range(rod.first, rod.first + rod.size):
+        load = in_registers(loads[j])
+        if SINGLY and curved:
+            add_singly(s, water, load, way.places[j])
+        else:
+            if rod.size > 1:
+                look_up_load(s, water, load.at, lane.NZ)
+            add_load(s, load, way.places[j], water.sea.gravity)
+        for i in range(LANES):
+            record[(3 * j) * LANES + i] = s[lane.QX + i]
+            record[(3 * j + 1) * LANES + i] = s[lane.QY + i]
+            record[(3 * j + 2) * LANES + i] = s[lane.QZ + i]
+    for i in range(LANES):
+        tx, ty, tz = s[lane.NX + i], s[lane.NY + i], s[lane.NZ + i]
+        turning = s[lane.MX + i] * tx + s[lane.MY + i] * ty + s[lane.MZ + i] * tz
+        least = s[lane.LEAST_PULL + i]
+        s[lane.LEAST_PULL + i] = -turning if -turning < least else least
+    come_below(s, rod.length)
+
+
+def come_below(s: Floats, length: float) -> None:
+    """Take the lanes to the lower end of a rod of axis N and load S."""
+    for i in range(LANES):
+        tx, ty, tz = s[lane.NX + i], s[lane.NY + i], s[lane.NZ + i]
+        s[lane.X + i] += length * tx
+        s[lane.Y + i] += length * ty
+        s[lane.Z + i] += length * tz
+        s[lane.FX + i] += s[lane.SX + i]
+        s[lane.FY + i] += s[lane.SY + i]
+        s[lane.FZ + i] += s[lane.SZ + i]
+        s[lane.QX + i], s[lane.QY + i], s[lane.QZ + i] = 0.0, 0.0, 0.0
+    if length > 0.0:
+        for i in range(LANES):
+            s[lane.TX + i], s[lane.TY + i] = s[lane.NX + i], s[lane.NY + i]
+            s[lane.TZ + i] = s[lane.NZ + i]
+
+
+def look_up_load(s: Floats, water: Tables, at: float, rise: int) -> None:
+    """Look up the current of a load some way down a rod, of the rise in a row."""
+    for i in range(LANES):
+        s[lane.DEPTH + i] = -s[lane.Z + i] - at * s[rise + i]
+    look_up(s, water)
+
+
+def turn_together(s: Floats, water: Tables, way: Way, stage: int) -> None:
+    """Find the axis of a rod of constant drags; the first hangs on nothing, and may float."""
+    rod, loads, heads = way.course.stages[stage], way.course.loads, stage == 0
+    normals = 0
+    for j in range(rod.first, rod.first + rod.size):
+        normals += 1 if loads[j].directional else 0
+    many = normals > 1
+    for _ in range(MOST_PASSES):
+        for i in range(LANES):
+            settled = s[lane.CHANGE + i] <= way.near
+            s[lane.TRIED + i] = s[lane.TRIED + i] if settled else s[lane.NZ + i]
+        if heads:
+            for i in range(LANES):
+                bring_to_waterline(s, i, s[lane.TRIED + i])
+        for i in range(LANES):
+            s[lane.AX + i], s[lane.AY + i] = s[lane.FX + i], s[lane.FY + i]
+            s[lane.AZ + i], s[lane.K + i] = s[lane.FZ + i], 0.0
+            s[lane.GX + i], s[lane.GY + i], s[lane.GZ + i] = 0.0, 0.0, 0.0
+        for j in range(rod.first, rod.first + rod.size):
+            load = in_registers(loads[j])
+            look_up_load(s, water, load.at, lane.TRIED)
+            gather_load(s, load, way.places[j], water.sea.gravity, many)
+        if many:
+            mean_current(s)
+        for i in range(LANES):
+            ax, ay, az = s[lane.AX + i], s[lane.AY + i], s[lane.AZ + i]
+            s[lane.C + i], s[lane.DOUBT + i] = few_steps_share(
+                ax, ay, az, s[lane.K + i], sqrt(ax * ax + ay * ay + az * az),
+                s[lane.GX + i], s[lane.GY + i], s[lane.GZ + i], 2,
+            )  # fmt: skip
+        exact_shares(s)
+        for i in range(LANES):
+            nx, ny, nz = s[lane.NX + i], s[lane.NY + i], s[lane.NZ + i]
+            tx, ty, tz = axis_in_lane(s, i)
+            settled = s[lane.CHANGE + i] <= way.near
+            sideways = abs(tx - nx) + abs(ty - ny)
+            change = (rod.length + (s[lane.OUT + i] if heads else 0.0)) * (
+                abs(tz - nz) + (sideways if many else 0.0)
+            )
+            s[lane.NX + i] = nx if settled else tx
+            s[lane.NY + i] = ny if settled else ty
+            s[lane.NZ + i] = nz if settled else tz
+            s[lane.CHANGE + i] = s[lane.CHANGE + i] if settled else change
+        if all_settled(s, way.near):
+            break
+
+
+def bring_to_waterline(s: Floats, i: int, tz: float) -> None:
+    """Put a lane's free end where its length out of the water has it, at a rise of the head."""
+    s[lane.Z + i] = -s[lane.FREE_END + i] - (s[lane.OUT + i] * tz if tz < 0.0 else 0.0)
+
+
+def axis_in_lane(s: Floats, i: int) -> tuple[float, float, float]:
+    """Axis along what turns a lane's element."""
+    c = s[lane.C + i]
+    return axis_against(
+        s[lane.AX + i] + c * s[lane.GX + i],
+        s[lane.AY + i] + c * s[lane.GY + i],
+        s[lane.AZ + i] + c * s[lane.GZ + i],
+    )
+
+
+def all_settled(s: Floats, near: float) -> bool:
+    """Whether no lane's axis changes any more; one that has failed does."""
+    settling = False
+    for i in range(LANES):
+        settling |= not s[lane.CHANGE + i] <= near
+    return not settling
+
+
 def mean_current(s: Floats) -> None:
     """One current and coefficient that reproduce the sum of several normal drags."""
     for i in range(LANES):
-        total = s[K + i]
+        total = s[lane.K + i]
         divisor = total if total > 0.0 else 1.0
-        gx, gy, gz = s[GX + i] / divisor, s[GY + i] / divisor, s[GZ + i] / divisor
-        cx = gy * s[NZ + i] - gz * s[NY + i]
-        cy = gz * s[NX + i] - gx * s[NZ + i]
-        cz = gx * s[NY + i] - gy * s[NX + i]
-        across = sqrt(cx * cx + cy * cy + cz * cz)
-        s[K + i] = total / across if across > 0.0 else 0.0
-        s[GX + i], s[GY + i], s[GZ + i] = gx, gy, gz
+        gx, gy, gz = s[lane.GX + i] / divisor, s[lane.GY + i] / divisor, s[lane.GZ + i] / divisor
+        across = speed_across(gx, gy, gz, s[lane.NX + i], s[lane.NY + i], s[lane.NZ + i])
+        s[lane.K + i] = total / across if across > 0.0 else 0.0
+        s[lane.GX + i], s[lane.GY + i], s[lane.GZ + i] = gx, gy, gz
 
 
-@compiled
-def turn_rod(s: Floats) -> None:
-    """Newton steps for the share of the gathered drag."""
-    for i in range(LANES):
-        ax, ay, az, k = s[AX + i], s[AY + i], s[AZ + i], s[K + i]
-        u, v, w = s[GX + i], s[GY + i], s[GZ + i]
-        aa = ax * ax + ay * ay + az * az
-        av = ax * u + ay * v + az * w
-        vv = u * u + v * v + w * w
-        cx, cy, cz = ay * w - az * v, az * u - ax * w, ax * v - ay * u
-        target = k * sqrt(cx * cx + cy * cy + cz * cz)
-        # the share is less than of the current across, and less than if it did not turn the rod
-        first, most = target / sqrt(aa), k * sqrt(vv)
-        _, first = share_step(aa, av, vv, target, first if first < most else most)
-        _, c = share_step(aa, av, vv, target, first)
-        step = c - first
-        s[C + i] = c
-        s[DOUBT + i] = step * step * vv / aa
-
-
-@compiled
-def pass_rod(
-    s: Floats,
-    water: Tables,
-    loads: Floats,
-    length: float,
-    gravity: float,
-    limit: float,
-    heads: bool,
-    record: Floats,
-) -> None:
-    """Take all lanes down a rod; `heads`: it is the first one, which hangs on nothing."""
-    count = loads.shape[0]
-    several = 0.0
-    for j in range(count):
-        several += loads[j, DIRECTIONAL]
-    many = several > 1.0
-    for i in range(LANES):
-        s[NX + i], s[NY + i], s[NZ + i] = s[TX + i], s[TY + i], s[TZ + i]
-        s[CHANGE + i] = inf
-    for _ in range(MOST_PASSES):
-        for i in range(LANES):
-            s[TRIED + i] = s[TRIED + i] if s[CHANGE + i] <= limit else s[NZ + i]
-        if heads:
-            for i in range(LANES):
-                tz = s[TRIED + i]
-                s[Z + i] = -s[FREE_END + i] - (s[OUT + i] * tz if tz < 0.0 else 0.0)
-        for i in range(LANES):
-            s[AX + i], s[AY + i], s[AZ + i] = s[FX + i], s[FY + i], s[FZ + i]
-            s[K + i] = 0.0
-            s[GX + i], s[GY + i], s[GZ + i] = 0.0, 0.0, 0.0
-        for j in range(count):
-            at = loads[j, AT]
-            for i in range(LANES):
-                s[DEPTH + i] = -s[Z + i] - at * s[TRIED + i]
-            look_up(s, water)
-            load_of_every_lane(s, loads[j], gravity)
-            gather_load(s, loads[j], gravity, many)
-        if many:
-            mean_current(s)
-        turn_rod(s)
-        exact_shares(s)
-        for i in range(LANES):
-            nx, ny, nz = s[NX + i], s[NY + i], s[NZ + i]
-            tx, ty, tz = axis_along(
-                s[AX + i], s[AY + i], s[AZ + i], s[C + i], s[GX + i], s[GY + i], s[GZ + i]
-            )
-            settled = s[CHANGE + i] <= limit
-            sideways = abs(tx - nx) + abs(ty - ny)
-            change = (length + (s[OUT + i] if heads else 0.0)) * (
-                abs(tz - nz) + (sideways if many else 0.0)
-            )
-            s[NX + i] = nx if settled else tx
-            s[NY + i] = ny if settled else ty
-            s[NZ + i] = nz if settled else tz
-            s[CHANGE + i] = s[CHANGE + i] if settled else change
-        worst = 0.0
-        for i in range(LANES):
-            if not s[CHANGE + i] <= worst:
-                worst = s[CHANGE + i]
-        if worst <= limit:
-            break
-    for i in range(LANES):
-        s[SX + i], s[SY + i], s[SZ + i] = 0.0, 0.0, 0.0
-        s[MX + i], s[MY + i], s[MZ + i] = s[FX + i], s[FY + i], s[FZ + i]
-        if not s[CHANGE + i] <= limit:
-            s[LEAST_PULL + i] = -1.0
-    for j in range(count):
-        if count > 1:
-            at = loads[j, AT]
-            for i in range(LANES):
-                s[DEPTH + i] = -s[Z + i] - at * s[NZ + i]
-            look_up(s, water)
-            load_of_every_lane(s, loads[j], gravity)
-        add_load(s, loads[j], gravity)
-        for i in range(LANES):
-            record[(3 * j) * LANES + i] = s[QX + i]
-            record[(3 * j + 1) * LANES + i] = s[QY + i]
-            record[(3 * j + 2) * LANES + i] = s[QZ + i]
-    if length > 0.0:
-        for i in range(LANES):
-            s[TX + i], s[TY + i], s[TZ + i] = s[NX + i], s[NY + i], s[NZ + i]
-    for i in range(LANES):
-        tx, ty, tz = s[NX + i], s[NY + i], s[NZ + i]
-        s[X + i] += length * tx
-        s[Y + i] += length * ty
-        s[Z + i] += length * tz
-        s[FX + i] += s[SX + i]
-        s[FY + i] += s[SY + i]
-        s[FZ + i] += s[SZ + i]
-        turning = s[MX + i] * tx + s[MY + i] * ty + s[MZ + i] * tz
-        s[LEAST_PULL + i] = -turning if -turning < s[LEAST_PULL + i] else s[LEAST_PULL + i]
-        s[QX + i], s[QY + i], s[QZ + i] = 0.0, 0.0, 0.0
-
-
-@compiled
-def pass_piece(
-    s: Floats, water: Tables, loads: Floats, j: int, length: float, gravity: float, limit: float
-) -> None:
+def pass_piece(s: Floats, water: Tables, load: Load, length: float, near: float) -> None:
     """Take all lanes down a rod of one load: as `pass_rod`, in fewer steps."""
-    at, lever, directional = loads[j, AT], loads[j, LEVER], loads[j, DIRECTIONAL]
-    buoyancy, volume, lifting = loads[j, BUOYANCY], loads[j, VOLUME], loads[j, LIFT]
-    normal, tangential = loads[j, NORMAL], loads[j, TANGENTIAL]
-    against = (1.0 - directional) * normal
-    normal *= directional
-    tangential *= directional
-    for i in range(LANES):
-        s[NX + i], s[NY + i], s[NZ + i] = s[TX + i], s[TY + i], s[TZ + i]
-        s[TRIED + i] = s[TZ + i]
-        s[CHANGE + i] = inf
+    gravity, lever = water.sea.gravity, load.lever
+    turning = lever * load.normal_drag if load.directional else 0.0
+    steady = 0.0 if load.directional else lever * load.normal_drag
     for _ in range(MOST_PASSES):
+        look_up_load(s, water, load.at, lane.TRIED)
         for i in range(LANES):
-            s[DEPTH + i] = -s[Z + i] - at * s[TRIED + i]
-        look_up(s, water)
-        for i in range(LANES):
-            u, v, w, density = s[U + i], s[V + i], s[W + i], s[DENSITY + i]
-            scale = density * PER_DENSITY
-            vv = u * u + v * v + w * w
-            drag = scale * against * sqrt(vv)
-            lift = buoyancy + (density - REFERENCE_DENSITY) * gravity * volume
-            lift += scale * lifting * vv
-            ax, ay = s[FX + i] + lever * drag * u, s[FY + i] + lever * drag * v
-            az = s[FZ + i] + lever * (lift + drag * w)
-            k = lever * scale * normal
-            aa = ax * ax + ay * ay + az * az
-            av = ax * u + ay * v + az * w
-            cx, cy, cz = ay * w - az * v, az * u - ax * w, ax * v - ay * u
-            target = k * sqrt(cx * cx + cy * cy + cz * cz)
-            # the share is less than if it did not turn the rod
-            first = target / sqrt(aa)
-            _, c = share_step(aa, av, vv, target, first)
-            step = c - first
-            s[AX + i], s[AY + i], s[AZ + i] = ax, ay, az
-            s[K + i], s[C + i], s[DOUBT + i] = k, c, step * step * vv / aa
-            s[GX + i], s[GY + i], s[GZ + i] = u, v, w
-            s[SX + i], s[SY + i], s[SZ + i] = drag * u, drag * v, lift + drag * w
-            s[PULL + i] = scale
+            u, v, w, density = s[lane.U + i], s[lane.V + i], s[lane.W + i], s[lane.DENSITY + i]
+            squared = u * u + v * v + w * w
+            drag = density * lane.PER_DENSITY * steady * sqrt(squared)
+            lift = lever * load_lift(load, squared, density, gravity)
+            ax, ay = s[lane.FX + i] + drag * u, s[lane.FY + i] + drag * v
+            az = s[lane.FZ + i] + lift + drag * w
+            k = density * lane.PER_DENSITY * turning
+            size = sqrt(ax * ax + ay * ay + az * az)
+            c, doubt = few_steps_share(ax, ay, az, k, size, u, v, w, 1)
+            s[lane.AX + i], s[lane.AY + i], s[lane.AZ + i] = ax, ay, az
+            s[lane.K + i], s[lane.C + i], s[lane.DOUBT + i] = k, c, doubt
+            s[lane.GX + i], s[lane.GY + i], s[lane.GZ + i] = u, v, w
         exact_shares(s)
         for i in range(LANES):
-            tx, ty, tz = axis_along(
-                s[AX + i], s[AY + i], s[AZ + i], s[C + i], s[GX + i], s[GY + i], s[GZ + i]
-            )
-            settled = s[CHANGE + i] <= limit
-            nx, ny, nz = s[NX + i], s[NY + i], s[NZ + i]
+            tx, ty, tz = axis_in_lane(s, i)
+            settled = s[lane.CHANGE + i] <= near
+            nx, ny, nz = s[lane.NX + i], s[lane.NY + i], s[lane.NZ + i]
             change = length * abs(tz - nz)
             tx, ty, tz = nx if settled else tx, ny if settled else ty, nz if settled else tz
-            change = s[CHANGE + i] if settled else change
-            s[NX + i], s[NY + i], s[NZ + i], s[CHANGE + i] = tx, ty, tz, change
-            s[TRIED + i] = s[TRIED + i] if change <= limit else tz
-        settling = False
-        for i in range(LANES):
-            settling |= not s[CHANGE + i] <= limit
-        if not settling:
+            change = s[lane.CHANGE + i] if settled else change
+            s[lane.NX + i], s[lane.NY + i], s[lane.NZ + i] = tx, ty, tz
+            s[lane.CHANGE + i] = change
+            s[lane.TRIED + i] = s[lane.TRIED + i] if change <= near else tz
+        if all_settled(s, near):
             break
     for i in range(LANES):
-        tx, ty, tz = s[NX + i], s[NY + i], s[NZ + i]
-        scale = s[PULL + i]
-        qx, qy, qz = drag_force(
-            scale * normal, scale * tangential, s[GX + i], s[GY + i], s[GZ + i], tx, ty, tz
-        )
-        qx, qy, qz = qx + s[SX + i], qy + s[SY + i], qz + s[SZ + i]
-        fx, fy, fz = s[FX + i], s[FY + i], s[FZ + i]
+        tx, ty, tz = s[lane.NX + i], s[lane.NY + i], s[lane.NZ + i]
+        u, v, w, density = s[lane.GX + i], s[lane.GY + i], s[lane.GZ + i], s[lane.DENSITY + i]
+        qx, qy, qz = load_force(load, 1.0, u, v, w, density, gravity, tx, ty, tz)
+        fx, fy, fz = s[lane.FX + i], s[lane.FY + i], s[lane.FZ + i]
         pull = -((fx + lever * qx) * tx + (fy + lever * qy) * ty + (fz + lever * qz) * tz)
-        least = s[LEAST_PULL + i]
-        pull = pull if s[CHANGE + i] <= limit else -1.0
-        s[LEAST_PULL + i] = pull if pull < least else least
-        s[X + i] += length * tx
-        s[Y + i] += length * ty
-        s[Z + i] += length * tz
-        s[FX + i], s[FY + i], s[FZ + i] = fx + qx, fy + qy, fz + qz
-        s[NX + i], s[NY + i], s[NZ + i] = tx, ty, tz
-    if length > 0.0:
-        for i in range(LANES):
-            s[TX + i], s[TY + i], s[TZ + i] = s[NX + i], s[NY + i], s[NZ + i]
+        least = s[lane.LEAST_PULL + i]
+        pull = pull if s[lane.CHANGE + i] <= near else -1.0
+        s[lane.LEAST_PULL + i] = pull if pull < least else least
+        s[lane.SX + i], s[lane.SY + i], s[lane.SZ + i] = qx, qy, qz
+    come_below(s, length)
+
+
+def turn_singly(desk: Desk, way: Way, stage: int) -> None:
+    """Find the axis of a rod in each lane that has a case, by the plain march's passes."""
+    s, water, mine = desk.scratch, desk.water, desk.loads
+    rod, heads = way.course.stages[stage], stage == 0
+    here = Stage(rod.kind, 0, rod.size, rod.length)
+    for i in range(LANES):
+        if s[lane.BUSY + i] == 0.0 or lost(s, i):
+            continue
+        for j in range(rod.size):
+            mine[j] = way.course.loads[rod.first + j]
+            load = way.course.loads[rod.first + j]
+            loaded = load_in_lane(s, i, load, way.places[rod.first + j], water.sea.gravity)
+            mine[j].buoyancy, mine[j].volume, mine[j].lift = (
+                loaded.buoyancy, loaded.volume, loaded.lift,
+            )  # fmt: skip
+            mine[j].normal_drag, mine[j].tangential_drag = (
+                loaded.normal_drag, loaded.tangential_drag,
+            )  # fmt: skip
+            mine[j].push_east, mine[j].push_north = loaded.push_east, loaded.push_north
+        pace = 1.0
+        for _ in range(MOST_PASSES):
+            if s[lane.CHANGE + i] <= way.near:
+                break
+            x, y, z = s[lane.NX + i], s[lane.NY + i], s[lane.NZ + i]
+            if heads:
+                bring_to_waterline(s, i, z)
+            tx, ty, tz = next_axis(here, mine, water.sea, state_of(s, water, i), x, y, z)
+            tx, ty, tz = x + pace * (tx - x), y + pace * (ty - y), z + pace * (tz - z)
+            size = sqrt(tx * tx + ty * ty + tz * tz)
+            tx, ty, tz = tx / size, ty / size, tz / size
+            reach = rod.length + (s[lane.OUT + i] if heads else 0.0)
+            change = reach * (abs(tx - x) + abs(ty - y) + abs(tz - z)) / pace
+            if change > 0.7 * s[lane.CHANGE + i]:
+                pace *= 0.5
+            s[lane.NX + i], s[lane.NY + i], s[lane.NZ + i] = tx, ty, tz
+            s[lane.CHANGE + i] = change
+
+
+def add_singly(s: Floats, water: Tables, load: Load, place: int) -> None:
+    """As `add_load`, of a load whose drag follows a curve."""
+    for i in range(LANES):
+        if s[lane.BUSY + i] == 0.0 or lost(s, i):
+            continue
+        mine = load_in_lane(s, i, load, place, water.sea.gravity)
+        tx, ty, tz = s[lane.NX + i], s[lane.NY + i], s[lane.NZ + i]
+        depth = -s[lane.Z + i] - load.at * tz
+        qx, qy, qz = force_at(mine, water.sea, depth, water.interval[i], tx, ty, tz)
+        s[lane.QX + i], s[lane.QY + i], s[lane.QZ + i] = qx, qy, qz
+        s[lane.SX + i] += qx
+        s[lane.SY + i] += qy
+        s[lane.SZ + i] += qz
+        s[lane.MX + i] += load.lever * qx
+        s[lane.MY + i] += load.lever * qy
+        s[lane.MZ + i] += load.lever * qz

@@ -1,32 +1,88 @@
 """What a lane does next: one step of the search for the root of one case.
 
-Above and below are the ends of its bracket: above, the miss is not negative. `calm.solve.locate`
-has the reasons of each step.
+`calm.solve.locate` has the reasons of each step.
 """
 
 from __future__ import annotations
 
 from math import isfinite, nan
-from typing import Any
+from typing import Any, NamedTuple
 
-from calm.batch.kernel.compiled import compiled
+from calm.batch.kernel.endings import (
+    AT_SURFACE,
+    LOST,
+    SOLVED,
+    TURNS_BACK,
+    UNCLOSED,
+)
+from calm.batch.kernel.layout import Aim, Way
 from calm.physics.hull import AWASH as GOING_UNDER
-from calm.physics.line import Floats
 
-(
-    Y, ABOVE, ABOVE_MISS, BELOW, BELOW_MISS, LAST, LAST_MISS, OLDER_MISS, SLOPE, FALL, STEP, TURN,
-    STUCK, FOUND, UPPER, UPPER_MISS, LOWER, LOWER_MISS, GROWTH, SPEED, LEAST_CARRIED, LYING,
-    LOWEST_PLACE, CORNERS, PLACE_BEFORE, TENSION_BEFORE,
-) = range(26)  # fmt: skip
-COLUMNS = 26
+Searches = Any
+"""Of every case a record of `Search`."""
 
-# what a lane is about to learn from its next march
+
+class Search(NamedTuple):
+    """What is known of a case.
+
+    Attributes
+    ----------
+    unknown : depth of the free end [m] where not negative, else the share in use less one
+    above, below : ends of the bracket; above, the miss is not negative
+    last : where the last march was, older_miss the miss before that
+    slope : of the miss
+    fall, reach, turn : the largest knockdown, 0 where there is no scan; how far down from its
+        beginning is scanned; which step, or correction, it is
+    stuck : how many steps have not halved the miss
+    found : the coarse root
+    upper, lower : where the scan has seen the miss change its sign
+    growth, speed : of the current with depth [1/m], and its greatest [m/s]
+    least_carried : vertical force where the line carries least of what may land [N]
+    lying : length on the seabed [m]; below 0 where none is
+    lowest : lowest place of the shape [m]
+    corners : turn times length of its worst corner [m]
+    place_before, tension_before : what the last halving but one changed
+    refusal : why its shape is not to be had, `SOLVED` where it is
+    tried : 1 on the seabed, 2 clear of it again
+    aloft, aloft_slope, aloft_found : the search clear of the seabed, while it is sought there
+    """
+
+    unknown: float
+    above: float
+    above_miss: float
+    below: float
+    below_miss: float
+    last: float
+    last_miss: float
+    older_miss: float
+    slope: float
+    fall: float
+    reach: float
+    turn: int
+    stuck: int
+    found: float
+    upper: float
+    upper_miss: float
+    lower: float
+    lower_miss: float
+    growth: float
+    speed: float
+    least_carried: float
+    lying: float
+    lowest: float
+    corners: float
+    place_before: float
+    tension_before: float
+    refusal: int
+    tried: int
+    aloft: float
+    aloft_slope: float
+    aloft_found: float
+
+
 DONE, FIRST, UNLOADED, TOP, AWASH, SCAN, ROOT = range(7)
+"""What a lane is about to learn from its next march."""
 
-# how a search ends
-SOLVED, AT_SURFACE, LOST, TURNS_BACK, UNCLOSED = 0, 4, 5, 6, 7
-
-SCANNED = 16
 MOST_CORRECTIONS = 12
 SMALL, SMALL_SHARE = 5e-7, 3e-6
 """The miss of a closed line, as a share of the span; and how well a share in use is found."""
@@ -41,194 +97,184 @@ THERE, AWAY, NOWHERE = range(3)
 """Where a correction finds itself."""
 
 
-@compiled
-def begin(seek: Floats, c: int, growth: float, speed: float, upright: float, falls: Floats) -> None:
-    """Set out on a case: from the depth of the line standing in still water.
-
-    `falls` are the knockdowns in even currents of growing speed, the last the speed's step.
-    """
-    for column in range(COLUMNS):
-        seek[c, column] = nan
-    seek[c, GROWTH], seek[c, SPEED] = growth, speed
-    seek[c, Y], seek[c, SLOPE], seek[c, TURN], seek[c, STUCK] = upright, -1.0, 0.0, 0.0
+def begin(seek: Searches, c: int, growth: float, speed: float, way: Way) -> None:
+    """Set out on a case: from the depth of the line standing in still water."""
+    case, falls = seek[c], way.falls
+    case.above = case.above_miss = case.below = case.below_miss = nan
+    case.last = case.last_miss = case.older_miss = case.reach = case.found = nan
+    case.upper = case.upper_miss = case.lower = case.lower_miss = nan
+    case.growth, case.speed = growth, speed
+    case.unknown, case.slope, case.turn, case.stuck = way.aim.upright, -1.0, 0, 0
     # where the miss may rise with depth, depths are scanned
-    last = falls.size - 2
-    at = min(speed / falls[last + 1], last - 1e-9)
+    last = falls.size - 1
+    at = min(speed / way.fall_step, last - 1e-9)
     j = int(at)
     fall = falls[j] + (at - j) * (falls[j + 1] - falls[j])
-    seek[c, FALL] = fall if fall * growth > 0.25 else 0.0
+    case.fall = fall if fall * growth > 0.25 else 0.0
 
 
-@compiled
-def advance(
-    seek: Floats, c: int, task: int, m: float, mooring: Any, shares: Floats
-) -> tuple[int, int]:
+def advance(seek: Searches, c: int, task: int, m: float, way: Way) -> tuple[int, int]:
     """The next task of a case whose unknown leads to the miss m, and how its search ended."""
-    span, _, upright, floats, rides = mooring[0], mooring[1], mooring[2], mooring[3], mooring[4]
-    y = seek[c, Y]
+    aim, shares, y = way.aim, way.shares, seek[c].unknown
     if not isfinite(m):
         return DONE, UNCLOSED
     if task == FIRST:
         if m >= 0.0:
-            seek[c, ABOVE], seek[c, ABOVE_MISS] = y, m
-            if upright == 0.0 and rides:
-                seek[c, Y] = shares[0] - 1.0
+            seek[c].above, seek[c].above_miss = y, m
+            if aim.upright == 0.0 and aim.rides:
+                seek[c].unknown = shares[0] - 1.0
                 return AWASH, SOLVED
-            return go_down(seek, c, span), SOLVED
-        seek[c, BELOW], seek[c, BELOW_MISS] = y, m
-        if upright > 0.0:
-            seek[c, Y] = 0.0
+            return go_down(seek, c, way), SOLVED
+        seek[c].below, seek[c].below_miss = y, m
+        if aim.upright > 0.0:
+            seek[c].unknown = 0.0
             return TOP, SOLVED
-        seek[c, Y] = -1.0
-        return (UNLOADED, SOLVED) if floats else (DONE, AT_SURFACE)
+        seek[c].unknown = -1.0
+        return (UNLOADED, SOLVED) if aim.floats else (DONE, AT_SURFACE)
     if task in (TOP, UNLOADED):
         if m <= 0.0:
             return DONE, AT_SURFACE
-        seek[c, ABOVE], seek[c, ABOVE_MISS] = y, m
+        seek[c].above, seek[c].above_miss = y, m
         return bracket(seek, c), SOLVED
     if task == AWASH:
-        if seek[c, LAST_MISS] > 0.0 and m <= 0.0:
-            seek[c, ABOVE], seek[c, ABOVE_MISS] = seek[c, LAST], seek[c, LAST_MISS]
-            seek[c, BELOW], seek[c, BELOW_MISS] = y, m
+        if seek[c].last_miss > 0.0 and m <= 0.0:
+            seek[c].above, seek[c].above_miss = seek[c].last, seek[c].last_miss
+            seek[c].below, seek[c].below_miss = y, m
             return bracket(seek, c), SOLVED
-        seek[c, TURN] += 1.0
-        seek[c, LAST], seek[c, LAST_MISS] = y, m
-        if seek[c, TURN] < shares.size:
-            seek[c, Y] = shares[int(seek[c, TURN])] - 1.0
+        seek[c].turn += 1
+        seek[c].last, seek[c].last_miss = y, m
+        if seek[c].turn < shares.size:
+            seek[c].unknown = shares[seek[c].turn] - 1.0
             return AWASH, SOLVED
         if m <= 0.0:
             return DONE, TURNS_BACK
-        seek[c, Y] = 0.0
-        return go_down(seek, c, span), SOLVED
+        seek[c].unknown = 0.0
+        return go_down(seek, c, way), SOLVED
     if task == SCAN:
-        return scan(seek, c, m, span)
-    return narrow(seek, c, m, span)
+        return scan(seek, c, m, way)
+    return narrow(seek, c, m, aim.span)
 
 
-@compiled
-def go_down(seek: Floats, c: int, span: float) -> int:
+def go_down(seek: Searches, c: int, way: Way) -> int:
     """Begin the search below the surface, from above."""
-    y, m = seek[c, ABOVE], seek[c, ABOVE_MISS]
-    seek[c, LAST], seek[c, LAST_MISS], seek[c, OLDER_MISS] = y, m, nan
-    if m > 1e-7 * span and seek[c, FALL] > 0.0:
-        seek[c, STEP], seek[c, TURN] = (min(y + 1.02 * seek[c, FALL], span) - y) / SCANNED, 1.0
-        seek[c, Y] = y + seek[c, STEP]
+    span, y, m = way.aim.span, seek[c].above, seek[c].above_miss
+    seek[c].last, seek[c].last_miss, seek[c].older_miss = y, m, nan
+    if m > 1e-7 * span and seek[c].fall > 0.0:
+        seek[c].reach, seek[c].turn = min(1.02 * seek[c].fall, span - y), 0
+        seek[c].unknown = y + way.scanned[0] * seek[c].reach
         return SCAN
-    seek[c, Y] = min(y + max(m, 1e-7 * span), span)
+    seek[c].unknown = min(y + max(m, 1e-7 * span), span)
     return ROOT
 
 
-@compiled
-def bracket(seek: Floats, c: int) -> int:
+def bracket(seek: Searches, c: int) -> int:
     """Go on between the ends of a bracket, where their chord crosses nothing."""
-    a, fa, b, fb = seek[c, ABOVE], seek[c, ABOVE_MISS], seek[c, BELOW], seek[c, BELOW_MISS]
-    seek[c, UPPER], seek[c, UPPER_MISS], seek[c, LOWER], seek[c, LOWER_MISS] = a, fa, b, fb
-    seek[c, SLOPE] = (fb - fa) / (b - a)
-    seek[c, LAST], seek[c, LAST_MISS] = (a, fa) if fa < -fb else (b, fb)
-    seek[c, Y] = a - fa / seek[c, SLOPE]
+    a, fa, b, fb = seek[c].above, seek[c].above_miss, seek[c].below, seek[c].below_miss
+    seek[c].upper, seek[c].upper_miss, seek[c].lower, seek[c].lower_miss = a, fa, b, fb
+    seek[c].slope = (fb - fa) / (b - a)
+    seek[c].last, seek[c].last_miss = (a, fa) if fa < -fb else (b, fb)
+    seek[c].unknown = a - fa / seek[c].slope
     return ROOT
 
 
-@compiled
-def scan(seek: Floats, c: int, m: float, span: float) -> tuple[int, int]:
+def scan(seek: Searches, c: int, m: float, way: Way) -> tuple[int, int]:
     """Go down until the miss is negative."""
-    y, before = seek[c, Y], seek[c, LAST_MISS]
+    span, y, before = way.aim.span, seek[c].unknown, seek[c].last_miss
     if m < 0.0:
-        seek[c, ABOVE], seek[c, ABOVE_MISS] = seek[c, LAST], before
-        seek[c, BELOW], seek[c, BELOW_MISS] = y, m
+        seek[c].above, seek[c].above_miss = seek[c].last, before
+        seek[c].below, seek[c].below_miss = y, m
         return bracket(seek, c), SOLVED
-    if seek[c, OLDER_MISS] > before and m > before > 0.0:
+    if seek[c].older_miss > before and m > before > 0.0:
         return DONE, TURNS_BACK
     if y >= span:
         return DONE, LOST
-    seek[c, OLDER_MISS], seek[c, LAST_MISS], seek[c, LAST] = before, m, y
-    seek[c, TURN] += 1.0
-    seek[c, Y] = min(y + seek[c, STEP], span) if seek[c, TURN] <= SCANNED else span
+    seek[c].older_miss, seek[c].last_miss, seek[c].last = before, m, y
+    seek[c].turn += 1
+    following = span
+    if seek[c].turn < way.scanned.size:
+        following = min(seek[c].above + way.scanned[seek[c].turn] * seek[c].reach, span)
+    seek[c].unknown = following
     return SCAN, SOLVED
 
 
-@compiled
-def narrow(seek: Floats, c: int, m: float, span: float) -> tuple[int, int]:
+def narrow(seek: Searches, c: int, m: float, span: float) -> tuple[int, int]:
     """One secant step, or one that halves the bracket."""
-    y, last, before = seek[c, Y], seek[c, LAST], seek[c, LAST_MISS]
+    y, last, before = seek[c].unknown, seek[c].last, seek[c].last_miss
     if m >= 0.0:
-        seek[c, ABOVE], seek[c, ABOVE_MISS] = y, m
+        seek[c].above, seek[c].above_miss = y, m
     else:
-        seek[c, BELOW], seek[c, BELOW_MISS] = y, m
+        seek[c].below, seek[c].below_miss = y, m
     if y != last:
-        seek[c, SLOPE] = (m - before) / (y - last)
-    a, b, slope = seek[c, ABOVE], seek[c, BELOW], seek[c, SLOPE]
+        seek[c].slope = (m - before) / (y - last)
+    a, b, slope = seek[c].above, seek[c].below, seek[c].slope
     following = y - m / slope if slope < 0.0 else nan
     if abs(m) <= 1e-5 * span or abs(b - a) <= 1e-9 * span:
         if slope < 0.0:
-            seek[c, Y] = following
+            seek[c].unknown = following
         else:
-            seek[c, SLOPE] = -1.0
-        seek[c, FOUND] = seek[c, Y]
-        return DONE, TURNS_BACK if seek[c, FALL] > 0.0 and may_turn(seek, c) else SOLVED
-    seek[c, STUCK] = seek[c, STUCK] + 1.0 if abs(m) > 0.5 * abs(before) else 0.0
+            seek[c].slope = -1.0
+        seek[c].found = seek[c].unknown
+        return DONE, TURNS_BACK if seek[c].fall > 0.0 and may_turn(seek, c) else SOLVED
+    seek[c].stuck = seek[c].stuck + 1 if abs(m) > 0.5 * abs(before) else 0
     if isfinite(a) and isfinite(b):
-        if not a < following < b or seek[c, STUCK] > 2.0:
+        if not a < following < b or seek[c].stuck > 2:
             following = 0.5 * (a + b)
-            seek[c, STUCK] = 0.0
+            seek[c].stuck = 0
     elif y >= span:
         return DONE, LOST
     else:
         furthest = y + 4.0 * max(m, y - last)
         following = min(following if following > y else furthest, furthest, span)
-    seek[c, LAST], seek[c, LAST_MISS] = y, m
-    seek[c, Y] = following
+    seek[c].last, seek[c].last_miss = y, m
+    seek[c].unknown = following
     return ROOT, SOLVED
 
 
-@compiled
-def may_turn(seek: Floats, c: int) -> bool:
+def may_turn(seek: Searches, c: int) -> bool:
     """Whether the miss is so flat by the root that finer cuts may find the highest one elsewhere.
 
     There, or on the way from the depths of the scan on either side.
     """
-    y = seek[c, Y]
-    above, below = y - seek[c, UPPER], seek[c, LOWER] - y
+    y = seek[c].unknown
+    above, below = y - seek[c].upper, seek[c].lower - y
     return bool(
         y > 0.0
         and (
-            seek[c, SLOPE] > FLAT
-            or -seek[c, UPPER_MISS] > FLAT * above
-            or seek[c, LOWER_MISS] > FLAT * below
+            seek[c].slope > FLAT
+            or -seek[c].upper_miss > FLAT * above
+            or seek[c].lower_miss > FLAT * below
         )
     )
 
 
-@compiled
-def is_another(found: float, y: float, mooring: Any) -> bool:
+def is_another(found: float, y: float, aim: Aim) -> bool:
     """Whether a root may not be the one found on coarse cuts, or is about to go under."""
-    under = mooring[4] and -GOING_UNDER < y < STRAYED * mooring[0]
-    if (found < 0.0) != (y < 0.0) or (mooring[3] and mooring[2] == 0.0 and under):
+    under = aim.rides and -GOING_UNDER < y < STRAYED * aim.span
+    if (found < 0.0) != (y < 0.0) or (aim.floats and aim.upright == 0.0 and under):
         return True
-    return abs(y - found) > (STRAYED_SHARE if y < 0.0 else STRAYED * mooring[0])
+    return abs(y - found) > (STRAYED_SHARE if y < 0.0 else STRAYED * aim.span)
 
 
-@compiled
-def correct(seek: Floats, c: int, m: float, mooring: Any) -> int:
+def correct(seek: Searches, c: int, m: float, aim: Aim) -> int:
     """A secant step near the root: whether the miss m is small enough, or a next one is to come."""
-    span, upright, floats = mooring[0], mooring[2], mooring[3]
-    y = seek[c, Y]
-    if not isfinite(m) or seek[c, TURN] == MOST_CORRECTIONS:
+    y = seek[c].unknown
+    if not isfinite(m) or seek[c].turn == MOST_CORRECTIONS:
         return NOWHERE
-    if seek[c, TURN] > 0.0 and y != seek[c, LAST]:
-        slope = (m - seek[c, LAST_MISS]) / (y - seek[c, LAST])
+    if seek[c].turn > 0 and y != seek[c].last:
+        slope = (m - seek[c].last_miss) / (y - seek[c].last)
         if slope < 0.0:
-            seek[c, SLOPE] = slope
-    small = SMALL * span
+            seek[c].slope = slope
+    small = SMALL * aim.span
     if y < 0.0:
-        small = min(small, -SMALL_SHARE * seek[c, SLOPE])
-    following = y - m / seek[c, SLOPE]
-    if is_another(seek[c, FOUND], following, mooring):
+        small = min(small, -SMALL_SHARE * seek[c].slope)
+    following = y - m / seek[c].slope
+    if is_another(seek[c].found, following, aim):
         return NOWHERE
     if abs(m) <= small:
-        seek[c, Y] = following
+        seek[c].unknown = following
         return THERE
-    seek[c, TURN] += 1.0
-    seek[c, LAST], seek[c, LAST_MISS] = y, m
-    seek[c, Y] = min(max(following, -1.0 if floats and upright == 0.0 else 0.0), span)
+    seek[c].turn += 1
+    seek[c].last, seek[c].last_miss = y, m
+    least = -1.0 if aim.floats and aim.upright == 0.0 else 0.0
+    seek[c].unknown = min(max(following, least), aim.span)
     return AWAY

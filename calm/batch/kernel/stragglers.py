@@ -7,13 +7,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from calm.batch.kernel.layout import Results
 from calm.batch.kernel.outcome import OF_CLAMP, OF_PIECE
 from calm.case import Mooring
 from calm.case.measure import clamps_of, components_of
 from calm.physics.line import Floats, Water
-
-Rows = tuple[Floats, Floats, Floats]
-"""Of pieces, clamps and ends, as in `calm.batch.kernel.outcome`."""
 
 
 def known_levels(depth: Floats, u: Floats, v: Floats, w: Floats) -> NDArray[np.intp]:
@@ -38,7 +36,7 @@ def water_of(base: Water, depth: Floats, u: Floats, v: Floats, w: Floats) -> Wat
     return replace(base, level=levels, u=u, v=v, w=w, density=density)
 
 
-def solve_one(mooring: Mooring, water: Water, rows: Rows) -> None:
+def solve_one(mooring: Mooring, water: Water, rows: Results) -> None:
     """Solve the mooring in some water, and write what comes of it to the rows of the case.
 
     Raises

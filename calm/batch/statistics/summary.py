@@ -18,6 +18,9 @@ from calm.batch.statistics.samples import median_step, years_of
 from calm.batch.statistics.series import Column, Series, Times
 from calm.batch.statuses import Ending, endings
 from calm.case import Mooring
+from calm.checks.limits import limits_used
+from calm.checks.posture import reaches_the_surface
+from calm.files.checks import LimitKey
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -91,6 +94,7 @@ class Summary:
     rules : whether there is an equilibrium, and the rules that can be judged in every profile
     not_judged : why others are not, by their names
     source : what the result says of where it comes from, by the names in `SOURCE`
+    limits_used : what the rules judge by, each with its default
     """
 
     name: str
@@ -106,6 +110,7 @@ class Summary:
     rules: tuple[RuleShare, ...]
     not_judged: Mapping[str, str]
     source: Mapping[str, str]
+    limits_used: tuple[LimitKey, ...] = ()
 
     @property
     def solved(self) -> int:
@@ -165,6 +170,7 @@ def summarize(
             rules=(equilibrium, *shares_of(series, limits_of(mooring), unsolved)),
             not_judged=NOT_JUDGED,
             source={name: str(dataset.attrs[name]) for name in SOURCE if name in dataset.attrs},
+            limits_used=limits_used(mooring.file, reaches_the_surface(mooring)),
         )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from calm.batch.statistics.distribution import PERCENTILES
 from calm.batch.statistics.extremes import Fit, Refusal
+from calm.report.check.document import limit_document
 
 if TYPE_CHECKING:
     from calm.batch.statistics.distribution import Distribution
@@ -23,8 +24,9 @@ def summary_document(summary: Summary) -> dict[str, Any]:
     -------
     dict
         `profiles`, how many and how they ended; `components` and `clamps` with their
-        distributions; `rules` and `limits`, how often each is broken; `responses` of the line as
-        a whole with their exceedance curves and return levels; `worst` profiles of each response.
+        distributions; `rules` and `limits`, how often each is broken, and `limits_used`, by which
+        they judge; `responses` of the line as a whole with their exceedance curves and return
+        levels; `worst` profiles of each response.
     """
     from calm.version import __version__
 
@@ -45,6 +47,7 @@ def summary_document(summary: Summary) -> dict[str, Any]:
         "clamps": [said for clamped, said in parts if clamped],
         "rules": [_rule(rule) for rule in summary.rules],
         "limits": [_limit(rule, one) for rule in summary.rules for one in rule.exceedances],
+        "limits_used": [limit_document(key) for key in summary.limits_used],
         "not_judged": dict(summary.not_judged),
         "responses": {response.name: _response(response) for response in summary.responses},
         "worst": {

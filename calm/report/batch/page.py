@@ -17,6 +17,7 @@ from calm.report.batch.tables import (
     worst_tables,
 )
 from calm.report.blocks import Block, Figure, Listing, Part, Prose, Report, Section
+from calm.report.check.verdict import limits_table as limits_used_table
 from calm.report.html import page
 from calm.report.inputs import UNSEEN
 from calm.report.provenance import date, versions
@@ -48,7 +49,14 @@ def summary_report(summary: Summary) -> Report:
         ),
         Part("Return levels", (*levels_tables(summary), Prose((_EXTRAPOLATED,)))),
         Part("Worst profiles", tuple(worst_tables(summary))),
-        Part("Limits", (limits_table(summary), _not_judged(summary))),
+        Part(
+            "Limits",
+            (
+                limits_table(summary),
+                _not_judged(summary),
+                limits_used_table([(summary.name, summary.limits_used)]),
+            ),
+        ),
         Part("Distributions", (*_left_out(summary), *statistics_tables(summary))),
         Part("What is not judged", (Prose(UNSEEN, State.UNKNOWN),)),
         Part("Inputs", tuple(_inputs(summary))),

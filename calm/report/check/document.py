@@ -7,11 +7,13 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from calm.checks.finding import worst_state
+from calm.checks.inventory import total_of
 
 if TYPE_CHECKING:
     from calm.checks.assessment import Assessment, Situation
     from calm.checks.backup import Loss
     from calm.checks.finding import Finding
+    from calm.files.checks import LimitKey
 
 
 def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
@@ -22,8 +24,8 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
     dict
         `state`, the worst there is; what is `accepted`, and why; `findings`, and as `tighter` those
         of other situations that leave less margin; of each mooring by its name `launch`,
-        `recovery`, `backup`, `inventory`; and `situations`, what was solved of each mooring in
-        each environment.
+        `recovery`, `backup`, `inventory` and its `totals`; and `situations`, what was solved of
+        each mooring in each environment.
     """
     from calm.version import __version__
 
@@ -36,14 +38,7 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
             for finding in each.accepted_findings()
         ],
         "limits": [
-            {
-                "mooring": each.name,
-                "name": key.name,
-                "value": key.value,
-                "default": key.default,
-                "source": key.source,
-                "departs": key.departs,
-            }
+            {"mooring": each.name} | limit_document(key)
             for each in assessments
             for key in each.limits
         ],
@@ -66,6 +61,18 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
         "backup": {each.name: [asdict(one) for one in each.backup] for each in assessments},
         "losses": {each.name: [_loss(one) for one in each.losses] for each in assessments},
         "inventory": {each.name: [asdict(one) for one in each.inventory] for each in assessments},
+        "totals": {each.name: asdict(total_of(each.inventory)) for each in assessments},
+    }
+
+
+def limit_document(key: LimitKey) -> dict[str, Any]:
+    """The JSON object of a limit as used."""
+    return {
+        "name": key.name,
+        "value": key.value,
+        "default": key.default,
+        "source": key.source,
+        "departs": key.departs,
     }
 
 

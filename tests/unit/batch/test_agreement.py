@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from calm.batch.kernel.plan import plan_of
 from calm.batch.profiles import solve_profiles
 from calm.batch.statuses import STATUSES
 from calm.case import Mooring
@@ -65,15 +64,3 @@ def test_an_anchor_that_would_lift_is_a_status() -> None:
     found = solve_profiles(Mooring(file), u, v, depth, w)
     assert STATUSES[found.status[0]] == "anchor-lifts"
     assert np.isnan(found.tension_top[0]).all()
-
-
-def test_what_the_lanes_do_not_know_is_solved_alone() -> None:
-    mooring = shipped("s1000")
-    solver = mooring.file.solver.model_copy(update={"friction": "hoerner"})
-    mooring = Mooring(replace(mooring.file, solver=solver))
-    assert plan_of(mooring) is None
-    depth, u, v, w = drawn(2, 2, mooring.water.depth)
-    found = solve_profiles(mooring, u, v, depth, w)
-    assert found.alone.all()
-    result = in_profile(mooring, depth, u[0], v[0], w[0]).solve()
-    assert_alike(found, 0, result)

@@ -114,9 +114,26 @@ def test_workers_that_come_late_get_their_share(tmp_path, started, monkeypatch):
         mooring, record, tmp_path / "r.nc", block=16, scheduler=address, progress=count, tell=tell
     )
     assert outcome.done
-    assert len(told) == 1
+    assert sum("waiting for the first" in text for text in told) == 1
     assert max(under_way[1:10]) == cluster_module.AHEAD
     assert max(under_way) == 2 * cluster_module.AHEAD
+
+
+def test_a_worker_that_compiles_says_so(tmp_path, monkeypatch):
+    def compile_anew(batch, tell):
+        tell("compiling the solver")
+
+    monkeypatch.setattr(cluster_module, "compile_kernel", compile_anew)
+    told = []
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
+    ) as here:
+        run_batch(
+            made_mooring(tmp_path), MadeRecord(20), tmp_path / "r.nc",
+            scheduler=here.scheduler_address, tell=told.append,
+        )  # fmt: skip
+        (address,) = here.scheduler_info["workers"]
+    assert told == [f"{address}: compiling the solver"]
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="kills a process as POSIX has it")

@@ -317,3 +317,24 @@ def test_an_event_ends_it_wherever_it_is(tmp_path, mooring, record):
         assert sum(outcome.counts.values()) == limit
     assert run_batch(mooring, record, output, block=8).done
     assert content(output) == undisturbed(tmp_path, mooring, record, block=8)
+
+
+def test_an_interrupt_while_compiling_ends_as_any_other(tmp_path):
+    """Numba compiles by `exec`: CPython remembers an interrupt in one, though it was caught."""
+    program = (
+        "import sys\n"
+        "from pathlib import Path\n"
+        "from calm.batch.run import run_batch\n"
+        "from tests.unit.batch.made import MadeRecord, made_mooring\n"
+        "def interrupted(check):\n"
+        "    exec('raise KeyboardInterrupt')\n"
+        "record, folder = MadeRecord(), Path(sys.argv[1])\n"
+        "record.digest = interrupted\n"
+        "sys.exit(75 if not run_batch(made_mooring(folder), record, folder / 'r.nc').done else 0)\n"
+    )
+    (tmp_path / "program.py").write_text(program)
+    done = subprocess.run(
+        [sys.executable, "-m", "program", tmp_path], cwd=tmp_path, check=False,
+        env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[3])},
+    )  # fmt: skip
+    assert done.returncode == 75

@@ -1,9 +1,11 @@
 """Masses and weights of what comes to the deck."""
 
+from dataclasses import replace
+
 import pytest
 
 import calm
-from calm.checks.inventory import anchor_dry_mass, inventory_of
+from calm.checks.inventory import anchor_dry_mass, inventory_of, total_of
 
 FILE = """
 name: By hand
@@ -101,3 +103,17 @@ def test_an_anchor_of_steel_and_of_concrete():
     steel, concrete = anchor_dry_mass(9806.65, 1025.0, 9.80665)
     assert steel == pytest.approx(1000.0 / 0.869, rel=1e-3)
     assert concrete == pytest.approx(1000.0 / 0.573, rel=1e-3)
+
+
+def test_a_total_says_how_much_it_lacks(inventory):
+    items = inventory()
+    total = total_of(items)
+    known = [item.dry_mass for item in items if item.dry_mass is not None]
+    assert total.dry_mass == pytest.approx(sum(known))
+    assert total.missing_masses == len(items) - len(known)
+    assert total.wet_weight == pytest.approx(sum(item.wet_weight for item in items))
+    assert total.missing_weights == 0
+    unknown = replace(items[0], dry_mass=None, wet_weight=None)
+    less = total_of([unknown, *items[1:]])
+    assert less.dry_mass == pytest.approx(total.dry_mass - (items[0].dry_mass or 0.0))
+    assert (less.missing_masses > 0, less.missing_weights) == (True, 1)

@@ -95,6 +95,9 @@ def test_the_document_is_strict_json_and_says_all(summary):
     named = {rule["rule"] for rule in said["rules"]}
     assert {limit["rule"] for limit in said["limits"]} | {"equilibrium"} == named
     assert "backup" in said["not_judged"]
+    used = {limit["name"]: limit for limit in said["limits_used"]}
+    assert used["anchor_factor"]["default"] == 1.5
+    assert {"value", "source", "departs"} <= used["safety_factor.steel"].keys()
 
 
 def test_the_document_is_that_of_the_docs(made, mooring):
