@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from calm.physics.line import Floats
 
 if TYPE_CHECKING:
-    from calm.motion.moment import Estimate, Moments, Posterior, Way
+    from calm.motion.estimate import Estimate
+    from calm.motion.moment import Moments, Posterior, Way
 
     Explanation = tuple[NDArray[np.int64], Floats, Way, Posterior, tuple[int, ...]]
 
@@ -50,7 +51,8 @@ class Mixture:
 
     def estimate(self) -> Estimate:
         """The mean over all explanations, and the deviation about it."""
-        from calm.motion.moment import Estimate, Way
+        from calm.motion.estimate import Estimate
+        from calm.motion.moment import Way
 
         moments, first = self.moments, self.first
         n, p = first.depth.shape

@@ -14,9 +14,10 @@ from calm.batch.profiles import Profiles
 from calm.batch.records.record import Levels, Record
 from calm.case import Mooring
 from calm.motion.common import forwards_of
+from calm.motion.estimate import estimated
 from calm.motion.forward import Forward, points
 from calm.motion.measured import FREE, Measured
-from calm.motion.moment import Common, Moments, estimated
+from calm.motion.moment import Common, Moments
 from calm.physics.line import Floats
 
 BLOCK = 512

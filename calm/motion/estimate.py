@@ -1,0 +1,107 @@
+"""The depths at each time, over all ways to read the currents and the sensors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.motion import prior
+from calm.motion.mixture import Mixture
+from calm.motion.moment import Common, Linear, Moments, Posterior, Way, posterior, settled
+from calm.physics.line import Floats
+
+NEGLIGIBLE = 0.02
+"""An explanation is not tried that would not reach this share of the first one's weight if it left
+the pressures no more misfit than is expected of them."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What is known of a block of times.
+
+    Attributes
+    ----------
+    depth, deviation : (n, p) of the points [m]
+    sea : (n,) what stands over the mean surface [m]
+    current : (n,) factor on the current
+    doubt : (n, k) probability that the current of a level is false
+    likely : the most likely reading of the currents, whose levels, u and v have their factors
+    """
+
+    depth: Floats
+    deviation: Floats
+    sea: Floats
+    current: Floats
+    doubt: Floats
+    likely: Way
+
+
+def estimated(moments: Moments, common: Common) -> Estimate:
+    """The posterior of all ways to read the currents and the sensors."""
+    one, still = moments.measured, moments.forward.still
+    known = settled(moments, common)
+    first, at = known.found, known.at
+    every = np.arange(len(one.time))
+    mixture = Mixture(moments, known.way, first)
+    if not len(one.label):
+        return mixture.estimate()
+    for sensor in range(len(one.label)):
+        spike = posterior(one, at, known.way.spread, common, still, sensor)
+        mixture.add(every, known.way, spike, np.full(len(every), np.log(prior.SPIKES)), ())
+    odds = _odds(moments)
+    count = np.isfinite(one.depth).sum(axis=1)
+    fair = -0.5 * (count + np.linalg.slogdet(first.expected)[1])
+    level = moments.levels(first.depth)
+    for sets in _sets(moments.groups):
+        best = mixture.best
+        for without in sets:
+            chance = odds[:, list(without)].sum(axis=1)
+            likely = chance + fair > best + np.log(NEGLIGIBLE)
+            tried = np.flatnonzero(likely & np.isfinite(best))
+            if len(tried):
+                part = Moments(one.at(tried), moments.forward, {})
+                other = part.way(level[tried], common.scale, without)
+                found = _tried(part, other, at, common, tried)
+                mixture.add(tried, other, found, chance[tried], without)
+    return mixture.estimate()
+
+
+def _odds(moments: Moments) -> Floats:
+    """(n, g) logarithms of the odds that the current of a group is false; none without one."""
+    one = moments.measured
+    known = np.isfinite(one.u) & np.isfinite(one.v)
+    false = np.where(known, prior.by_flag(prior.FALSE, one.flag), 0.0)
+    odds = np.full((len(one.time), moments.groups), -np.inf)
+    for g in range(moments.groups):
+        mine = moments.group == g
+        count = known[:, mine].sum(axis=1)
+        mean = false[:, mine].sum(axis=1) / np.maximum(count, 1)
+        odds[count > 0, g] = np.log(mean[count > 0] / (1.0 - mean[count > 0]))
+    return odds
+
+
+def _tried(
+    part: Moments, other: Way, at: Linear, common: Common, tried: NDArray[np.int64]
+) -> Posterior:
+    """The posterior of another way, whose slopes begin with those of the currents as measured."""
+    none, still = np.zeros((len(tried), part.groups)), part.forward.still
+    there = part.depths(other, none)
+    before = np.maximum(at.depth[tried] - still, 1.0)
+    ratio = np.clip(np.maximum(there - still, 1.0) / before, 0.2, 5.0)[:, :, None]
+    state = Linear(none, there, at.slope[tried] * ratio, at.common[tried] * ratio)
+    found = posterior(part.measured, state, other.spread, common, still)
+    for _ in range(2):
+        state = state.moved(found.logs, part.depths(other, found.logs))
+        found = posterior(part.measured, state, other.spread, common, still)
+    return found
+
+
+def _sets(groups: int) -> Iterator[Iterable[tuple[int, ...]]]:
+    """One group or two, never all of them."""
+    for size in (1, 2):
+        if size < groups:
+            yield combinations(range(groups), size)
