@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import isnan, nan
+from math import ceil, isnan, nan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,6 +28,10 @@ from calm.solve import FreeMotion, Settings, part_of, solve_rise
 
 if TYPE_CHECKING:
     from calm.case import Mooring, Result
+
+
+MOST_SOLVED = 48
+"""Buoyant pieces whose rise is solved one by one; of more, some rise as the one before them."""
 
 
 @dataclass(frozen=True)
@@ -164,14 +168,16 @@ def _risers(
     top, speed : depth of the line's upper end where it stands [m], and its speed at first [m/s]
     """
     time, up, count = 0.0, 0, len(length)
-    for piece in np.flatnonzero(lifts > 0.0).tolist():
+    rising = np.flatnonzero(lifts > 0.0).tolist()
+    apart = ceil(len(rising) / MOST_SOLVED)
+    for number, piece in enumerate(rising):
         # a rope is up when its lower end is, a rigid piece when its upper end is
         way = float(length[up : piece + bool(line.flexible[piece])].sum())
         if up == 0:
             way = top if piece < head_count(line) else top + way
         elif not lifts[up:].sum() > 0.0:
             return
-        elif way > 0.0:
+        elif way > 0.0 and number % apart == 0:
             rest = solve_rise(part_of(line, up, count), water, 0.0, settings)
             speed = float(rest.velocity[2])
             if not speed > 0.0:

@@ -177,17 +177,17 @@ class Track:
 
         `frequency` is that of the cables that strum [Hz].
         """
-        head = head_count(line)
-        parts: list[Part] = [_rod(line, range(head))] if head else []
+        head, rows = head_count(line), _Rows(line)
+        parts: list[Part] = [_rod(rows, range(head))] if head else []
         knots: list[Knot] = []
-        for piece in range(head, len(line.length)):
-            if line.flexible[piece]:
+        for piece, flexible in enumerate(line.flexible.tolist()[head:], head):
+            if flexible:
                 curve = line.elongation[piece] if line.elongation else None
                 mine = () if curve is None else curve.knots
-                parts.extend(_cable_parts(line, piece, frequency, len(knots), len(mine)))
+                parts.extend(_cable_parts(rows, piece, frequency, len(knots), len(mine)))
                 knots += mine
             else:
-                parts.append(_rod(line, range(piece, piece + 1)))
+                parts.append(_rod(rows, range(piece, piece + 1)))
         vibration = AT_REST if line.strumming is None else line.strumming.vibration(0.0)
         return Track(tuple(parts), tuple(knots), vibration)
 
@@ -214,26 +214,50 @@ def head_count(line: Line) -> int:
     return 0
 
 
-def _clamps_of(line: Line, piece: int) -> list[int]:
-    clamps = np.flatnonzero(line.clamp_piece == piece)
-    down: list[int] = clamps[np.argsort(line.clamp_at[clamps], kind="stable")].tolist()
-    return down
+class _Rows:
+    """The columns of a line as lists of numbers, which are looked up far faster one by one.
+
+    `clamps` are those of each piece, from its top.
+    """
+
+    def __init__(self, line: Line) -> None:
+        self.line = line
+        self.length: list[float] = line.length.tolist()
+        self.buoyancy: list[float] = line.buoyancy.tolist()
+        self.volume: list[float] = line.volume.tolist()
+        self.normal_drag: list[float] = line.normal_drag.tolist()
+        self.tangential_drag: list[float] = line.tangential_drag.tolist()
+        self.compliance: list[float] = line.compliance.tolist()
+        self.thinning: list[float] = line.thinning.tolist()
+        self.lift: list[float] = line.lift.tolist()
+        self.diameter: list[float] = line.diameter.tolist()
+        self.clamp_at: list[float] = line.clamp_at.tolist()
+        self.clamp_buoyancy: list[float] = line.clamp_buoyancy.tolist()
+        self.clamp_volume: list[float] = line.clamp_volume.tolist()
+        self.clamp_drag: list[float] = line.clamp_drag.tolist()
+        self.clamp_lift: list[float] = line.clamp_lift.tolist()
+        self.directional: list[bool] = line.directional.tolist()
+        self.clamp_piece: list[int] = line.clamp_piece.tolist()
+        self.clamps: dict[int, list[int]] = {}
+        for clamp in np.argsort(line.clamp_at, kind="stable").tolist():
+            self.clamps.setdefault(self.clamp_piece[clamp], []).append(clamp)
 
 
-def _clamp_load(line: Line, m: int, at: float = 0.0, lever: float = 0.5) -> Load:
-    curve = line.clamp_drag_curve[m] if line.clamp_drag_curve else None
+def _clamp_load(rows: _Rows, m: int, at: float = 0.0, lever: float = 0.5) -> Load:
+    curves = rows.line.clamp_drag_curve
+    curve = curves[m] if curves else None
     return Load(
-        piece=int(line.clamp_piece[m]),
+        piece=rows.clamp_piece[m],
         clamp=m,
         at=at,
         lever=lever,
         length=0.0,
-        buoyancy=float(line.clamp_buoyancy[m]),
-        volume=float(line.clamp_volume[m]),
-        normal_drag=float(line.clamp_drag[m]),
+        buoyancy=rows.clamp_buoyancy[m],
+        volume=rows.clamp_volume[m],
+        normal_drag=rows.clamp_drag[m],
         tangential_drag=0.0,
         directional=False,
-        lift=float(line.clamp_lift[m]),
+        lift=rows.clamp_lift[m],
         push_east=0.0,
         push_north=0.0,
         diameter=0.0 if curve is None else curve.diameter,
@@ -241,9 +265,10 @@ def _clamp_load(line: Line, m: int, at: float = 0.0, lever: float = 0.5) -> Load
     )
 
 
-def _rod(line: Line, pieces: range) -> Rod:
-    lengths = tuple(float(line.length[p]) for p in pieces)
+def _rod(rows: _Rows, pieces: range) -> Rod:
+    lengths = tuple(rows.length[p] for p in pieces)
     total = sum(lengths)
+    curves = rows.line.drag_curve
     loads, top = [], 0.0
 
     def lever(at: float) -> float:
@@ -251,7 +276,7 @@ def _rod(line: Line, pieces: range) -> Rod:
 
     for piece, length in zip(pieces, lengths, strict=True):
         middle = top + 0.5 * length
-        curve = line.drag_curve[piece] if line.drag_curve else None
+        curve = curves[piece] if curves else None
         loads.append(
             Load(
                 piece=piece,
@@ -259,53 +284,49 @@ def _rod(line: Line, pieces: range) -> Rod:
                 at=middle,
                 lever=lever(middle),
                 length=length,
-                buoyancy=float(line.buoyancy[piece]),
-                volume=float(line.volume[piece]),
-                normal_drag=float(line.normal_drag[piece]),
-                tangential_drag=float(line.tangential_drag[piece]),
-                directional=bool(line.directional[piece]),
-                lift=float(line.lift[piece]),
+                buoyancy=rows.buoyancy[piece],
+                volume=rows.volume[piece],
+                normal_drag=rows.normal_drag[piece],
+                tangential_drag=rows.tangential_drag[piece],
+                directional=rows.directional[piece],
+                lift=rows.lift[piece],
                 push_east=0.0,
                 push_north=0.0,
                 diameter=0.0 if curve is None else curve.diameter,
                 lengthening=0.0 if curve is None else curve.lengthening,
             )
         )
-        for m in _clamps_of(line, piece):
-            at = top + float(line.clamp_at[m])
-            loads.append(_clamp_load(line, m, at, lever(at)))
+        for m in rows.clamps.get(piece, ()):
+            at = top + rows.clamp_at[m]
+            loads.append(_clamp_load(rows, m, at, lever(at)))
         top += length
     return Rod(tuple(pieces), lengths, tuple(loads))
 
 
 def _cable_parts(
-    line: Line, piece: int, frequency: float, first_knot: int, knots: int
+    rows: _Rows, piece: int, frequency: float, first_knot: int, knots: int
 ) -> Iterable[Part]:
-    strums = line.strumming is not None
-
-    def stretch(length: float) -> Cable:
-        return Cable(
-            piece=piece,
-            length=length,
-            buoyancy=float(line.buoyancy[piece]),
-            volume=float(line.volume[piece]),
-            normal_drag=float(line.normal_drag[piece]),
-            tangential_drag=float(line.tangential_drag[piece]),
-            compliance=float(line.compliance[piece]),
-            thinning=float(line.thinning[piece]),
-            friction=line.friction.law,
-            first_knot=first_knot,
-            end_knot=first_knot + knots,
-            beat=frequency * float(line.diameter[piece]) if strums else 0.0,
-        )
-
-    start, end = 0.0, float(line.length[piece])
+    start, end = 0.0, rows.length[piece]
+    stretch = Cable(
+        piece=piece,
+        length=end,
+        buoyancy=rows.buoyancy[piece],
+        volume=rows.volume[piece],
+        normal_drag=rows.normal_drag[piece],
+        tangential_drag=rows.tangential_drag[piece],
+        compliance=rows.compliance[piece],
+        thinning=rows.thinning[piece],
+        friction=rows.line.friction.law,
+        first_knot=first_knot,
+        end_knot=first_knot + knots,
+        beat=frequency * rows.diameter[piece] if rows.line.strumming is not None else 0.0,
+    )
     rounding = 1e-12 * end  # a clamp so near to an end, or to another, is there
-    for m in _clamps_of(line, piece):
-        at = float(line.clamp_at[m])
+    for m in rows.clamps.get(piece, ()):
+        at = rows.clamp_at[m]
         if at - start > rounding:
-            yield stretch(at - start)
+            yield stretch._replace(length=at - start)
             start = at
-        yield _clamp_load(line, m)
+        yield _clamp_load(rows, m)
     if end - start > rounding or end == 0.0:
-        yield stretch(end - start)
+        yield stretch._replace(length=end - start)
