@@ -11,7 +11,6 @@ import numpy as np
 from calm.case import Mooring
 from calm.errors import UsageError
 from calm.files.explain import unknown
-from calm.motion.common import estimate_common
 from calm.motion.doubts import doubts
 from calm.motion.forward import Forward
 from calm.motion.judge import (
@@ -28,6 +27,7 @@ from calm.motion.measured import Measured
 from calm.motion.run import estimate_in_memory
 from calm.motion.series import depths_at
 from calm.motion.task import Task, without
+from calm.motion.whole_record import estimate_common
 from calm.physics.line import Floats
 
 if TYPE_CHECKING:

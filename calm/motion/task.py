@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from calm.batch.profiles import Profiles
 from calm.batch.records.record import Levels, Record
 from calm.case import Mooring
-from calm.motion.common import forwards_of
 from calm.motion.estimate import estimated
 from calm.motion.forward import Forward, points
 from calm.motion.measured import FREE, Measured
 from calm.motion.moment import Common, Moments
+from calm.motion.whole_record import forwards_of
 from calm.physics.line import Floats
 
 BLOCK = 512

@@ -11,11 +11,11 @@ import pytest
 
 import calm
 from calm.motion import prior
-from calm.motion.common import estimate_common
 from calm.motion.forward import Forward, points
 from calm.motion.matching import labels_of
 from calm.motion.measured import Measured
 from calm.motion.task import Task
+from calm.motion.whole_record import estimate_common
 
 FIELD = Path(__file__).parents[2] / "docs" / "field" / "dune2"
 LEVELS = ("Aquadopp 626", "Aquadopp 426", "Aquadopp 226", "Aquadopp 26")
