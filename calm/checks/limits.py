@@ -18,18 +18,20 @@ def limits_used(file: MooringFile, surface: bool) -> tuple[LimitKey, ...]:
     """Every limit that the design check judges a mooring by.
 
     One that the design does not give has its default; one that has none and is not given is not
-    used. The friction of an anchor that gives its own stands for `anchor_friction`.
+    used. The friction of an anchor that gives its own stands for `anchor_friction`. What the line
+    lets a component bear beyond its own definition is a limit that departs from it.
 
     Parameters
     ----------
     surface : whether the mooring is meant for the surface: then no depth of its top is asked for
     """
     given = file.checks.minimum_top_depth is not None
-    return tuple(
+    used = (
         key
         for key in _keys(file)
         if key.value is not None and (key.name != "minimum_top_depth" or given or not surface)
     )
+    return (*used, *file.looser)
 
 
 def _keys(file: MooringFile) -> Iterator[LimitKey]:

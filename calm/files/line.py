@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from calm.errors import Problem
 from calm.files.catalogue import Assembly, Catalogue, define
+from calm.files.checks import LimitKey
 from calm.files.components import Body, Cable, Chain, Component, Cylinder, Sphere
 from calm.files.definition import IN_AIR
 from calm.files.entries import Entry
@@ -29,6 +30,14 @@ _CLAMP_KEYS = frozenset({"use", "label", "at"})
 _WORDS = {"at": "place", "top_depth": "top depth", "body_depth": "body depth"}
 
 
+_LIMITS = {
+    **dict.fromkeys(("breaking_load", "working_load", "opening_load", "grip"), "force"),
+    "depth_rating": "length",
+    **dict.fromkeys(("max_tilt", "warn_tilt"), "angle"),
+}
+"""Fields by which a component is judged, the greater the more it may bear; their dimensions."""
+
+
 class LineReader:
     """Expands line items; mistakes are added to `problems`, things worth telling to `notices`.
 
@@ -47,6 +56,7 @@ class LineReader:
         self._catalogue = catalogue
         self._problems = problems
         self._notices = notices
+        self.looser: list[LimitKey] = []
         self._towed = towed
         self._in_air = in_air
         self._defined: dict[str, Component | Assembly | None] = {}
@@ -247,6 +257,7 @@ class LineReader:
         component = self._define(entry, section, also_allowed=item_keys)
         if isinstance(component, Assembly) or component is None:
             return None
+        self._keep_looser_limits(entry, item, definition, component)
         force_stays = component.net_buoyancy == definition.net_buoyancy
         if "mass" in overriding and force_stays and not self._in_air:
             self._notices.append(
@@ -254,6 +265,16 @@ class LineReader:
                 "force in water is not; override that too if it changes"
             )
         return component
+
+    def _keep_looser_limits(
+        self, entry: Entry, item: Section, definition: Component, component: Component
+    ) -> None:
+        """Keep what the line lets a component bear beyond its own definition."""
+        for key, dimension in _LIMITS.items():
+            before, after = (getattr(each, key, None) for each in (definition, component))
+            if before is not None and after is not None and after > before:
+                name, source = f"{key} of {self._label(item)}", f"the definition of {entry.id}"
+                self.looser.append(LimitKey(name, dimension, after, before, source))
 
     def _define(
         self, entry: Entry, section: Section, *, also_allowed: Iterable[str] = ()

@@ -9,7 +9,7 @@ from typing import Annotated, Literal, Protocol
 from pydantic import AfterValidator
 
 from calm.files.accept import Accept
-from calm.files.checks import Checks
+from calm.files.checks import Checks, LimitKey
 from calm.files.components import Anchor, Component
 from calm.files.environment import Environment, Position
 from calm.files.fields import LENGTH, Model, Quantity
@@ -138,7 +138,8 @@ class MooringFile:
     the ship to the towed body. `notices` tell what a person may want to know: a catalogue entry
     hidden by a nearer one, levels dropped from a measured current. `variants` are the names of
     the environments it gives besides its own, `accepts` what it accepts of the design check,
-    `uncertainty` how sure what it stands on is.
+    `uncertainty` how sure what it stands on is, `looser` the limits of components that its line
+    sets beyond those of their definitions.
     """
 
     path: str
@@ -154,6 +155,7 @@ class MooringFile:
     variants: tuple[str, ...] = ()
     accepts: tuple[Accept, ...] = ()
     uncertainty: Uncertainty = field(default_factory=Uncertainty)
+    looser: tuple[LimitKey, ...] = ()
 
     @property
     def release(self) -> int | None:

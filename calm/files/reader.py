@@ -126,6 +126,7 @@ def read_mooring(
         solver=keys.solver or Solver(),
         checks=checks,
         uncertainty=keys.uncertainty or Uncertainty(),
+        looser=tuple(reader.looser),
         notices=tuple(notices),
         variants=tuple(keys.environments or ()),
         accepts=accepts,

@@ -1,0 +1,47 @@
+"""The limits as used: those of `checks:`, and those of components that the line sets higher."""
+
+import pytest
+
+import calm
+from calm.checks.limits import limits_used
+
+LINE = """
+environment: {{depth: 100 m}}
+line:
+  - {{use: ball, label: float, {float}}}
+  - {{use: thread, length: 50 m, clamps: [{{use: logger, at: 2 m, label: probe, {clamp}}}]}}
+  - {{use: block}}
+components:
+  ball: {{kind: sphere, diameter: 1 m, buoyancy: 4 kN, breaking_load: 60 kN}}
+  thread: {{kind: cable, diameter: 8 mm, weight: 1 N/m}}
+  logger: {{kind: body, length: 0 m, buoyancy: 0 N, kn: 1 N/(m/s)^2, inclination: insensitive,
+    depth_rating: 300 m, max_tilt: 20 deg}}
+  block: {{kind: anchor, weight: 20 kN}}
+"""
+
+
+def departing(float="", clamp=""):
+    file = calm.load("line.yaml", text=LINE.format(float=float, clamp=clamp)).file
+    return [key for key in limits_used(file, surface=False) if key.departs]
+
+
+def test_what_a_component_may_bear_beyond_its_definition_departs():
+    (strength,) = departing(float="breaking_load: 90 kN")
+    assert (strength.name, strength.value, strength.default) == ("breaking_load of float", 9e4, 6e4)
+    assert strength.source == "the definition of ball"
+    rating, tilt = departing(clamp="depth_rating: 1 km, max_tilt: 45 deg")
+    assert (rating.name, rating.value, rating.default) == ("depth_rating of probe", 1000.0, 300.0)
+    assert (tilt.name, tilt.value, tilt.default) == ("max_tilt of probe", 45.0, 20.0)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {},
+        {"float": "breaking_load: 50 kN"},  # stricter
+        {"float": "breaking_load: 60 kN"},
+        {"float": "depth_rating: 500 m"},  # its definition gives none
+    ],
+)
+def test_what_is_no_looser_does_not_depart(given):
+    assert departing(**given) == []
