@@ -100,7 +100,7 @@ def without_standard_names(long_name: str) -> xr.Dataset:
         (lambda: adcp().drop_vars("bin_depths"), "its levels have no depth"),
         (
             lambda: with_attributes(adcp(), "bin_depths", units="dbar"),
-            "`bin_depths`: its unit, `dbar`, is not a length",
+            "`bin_depths`: its unit, `dbar`, is a pressure; a length",
         ),
         (
             lambda: adcp_by_distance().drop_vars("DEPTH"),
