@@ -26,6 +26,7 @@ from machine import describe
 
 from calm.case import Mooring
 from calm.files import read_mooring
+from calm.files.editing import Draft
 from calm.tui.live import judge
 
 DEEP_LINE = Path(__file__).resolve().parents[1] / "lines" / "deep-current-meters.yaml"
@@ -38,14 +39,10 @@ DOWN, UP = "\x1b[B", "\x1b[A"
 
 
 def pieces(count: int) -> str:
-    """The deep mooring with shackles below its lowest ropes and meters, as many as it takes."""
-    head, line = DEEP_LINE.read_text(encoding="utf-8").split("\nline:\n")
-    rows = line.splitlines(keepends=True)
-    items = [number for number, row in enumerate(rows) if row.startswith("  - ")]
-    lacking = count - len(items)
-    for turn in range(lacking):
-        rows.insert(items[-3 - turn % (len(items) - 4)], "  - {use: shackle-13}\n")
-    return f"{head}\nline:\n{''.join(rows)}"
+    """The deep mooring with shackles above its lowest three pieces, as many as it takes."""
+    line = Draft(DEEP_LINE.read_text(encoding="utf-8"))
+    lacking = max(count - len(line.items), 0)
+    return line.paste(len(line.items) - 3, ["- {use: shackle-13}\n"] * lacking).text
 
 
 def seconds(action: Callable[[], object]) -> float:
@@ -167,7 +164,7 @@ def edits(text: str, repetitions: int) -> Iterable[tuple[str, list[float], list[
     kinds: dict[str, Callable[[int], str]] = {
         "length": lambda i: text.replace("length: 395 m", f"length: {395 + i / 10:.1f} m"),
         "current": lambda i: text.replace("[300, 0.45, 68]", f"[300, {0.45 + i / 1000:.3f}, 68]"),
-        "label": lambda i: text.replace("label: top float", f"label: top float {i}"),
+        "label": lambda i: text.replace("label: wire 1}", f"label: wire 1 {i}}}"),
     }
     for kind, edited in kinds.items():
         view = judge(text)
