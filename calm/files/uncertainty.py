@@ -1,4 +1,4 @@
-"""`uncertainty:` of a mooring file: how sure its figures are, each with its default and source."""
+"""`uncertainty:` of a mooring file: how sure its figures are, each with its default."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from typing import Annotated, Any
 from pydantic import GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
-from calm.files.checks import THIS_PROGRAM
 from calm.files.fields import Model, Quantity
 from calm.units import QuantityError
 
@@ -40,13 +39,12 @@ class SpreadOf:
     ----------
     one : what a standard deviation may be
     end : what the 5 and the 95 % may be
-    meaning, source : of the key, and of its default
+    meaning : of the key, for the schema
     """
 
     one: Quantity
     end: Quantity
     meaning: str
-    source: str = THIS_PROGRAM
 
     def read(self, value: object) -> Spread:
         """Of one text with a unit, or of two in a list."""

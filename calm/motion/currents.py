@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,9 @@ from calm.files.current_vectors import with_components
 from calm.motion.flags import flag_variable, flags_of
 from calm.motion.labelled import labels_along
 from calm.physics.line import Floats
+
+if TYPE_CHECKING:
+    from xarray import Dataset
 
 
 @dataclass(frozen=True)
@@ -131,6 +135,6 @@ def _labelled(path: Path, declination: float | None) -> Currents | None:
         )  # fmt: skip
 
 
-def _values(dataset, name: str, time: str, dimension: str) -> Floats:  # type: ignore[no-untyped-def]
+def _values(dataset: Dataset, name: str, time: str, dimension: str) -> Floats:
     variable = dataset[name].transpose(time, ...)
     return known_values(variable) * factor_of(variable, dimension)

@@ -61,14 +61,8 @@ class Nearby:
             return int(np.argmax(self._trace.clamp == clamp))
         return int(np.argmax(self._trace.piece == piece))
 
-    def shape(
-        self, line: Line, water: Water | None = None, track: Track | None = None
-    ) -> tuple[Floats, float]:
+    def shape(self, line: Line) -> tuple[Floats, float]:
         """Nodes of a line that differs a little, and its buoyancy in use.
-
-        Parameters
-        ----------
-        line, water, track : as of `solved`
 
         Returns
         -------
@@ -80,7 +74,7 @@ class Nearby:
         NoEquilibrium
             ``not-converged`` or ``slack``.
         """
-        _, closed = self._closed(line, water or self._water, track)
+        _, closed = self._closed(line, self._water)
         position, _ = nodes_of(closed.trace)
         return position, _used(closed, line)
 
@@ -91,8 +85,7 @@ class Nearby:
 
         Parameters
         ----------
-        line : of the same pieces, all cables longer by one factor
-        water : this one where not given
+        line, water : of the same pieces, all cables longer by one factor
         track : the line laid out, where it is known
 
         Raises
@@ -107,7 +100,9 @@ class Nearby:
         errors = (base.depth_error, base.tension_error, base.lift_error, base.pull_error)
         return finished(closing, Refined(closed, *errors), None, refuse_out_of_the_water)
 
-    def _closed(self, line: Line, water: Water, track: Track | None) -> tuple[Closing, Closed]:
+    def _closed(
+        self, line: Line, water: Water, track: Track | None = None
+    ) -> tuple[Closing, Closed]:
         closing = Closing(line, water, self._settings)
         root, deeper = self._root, water.depth - self._water.depth
         unknown = replace(
