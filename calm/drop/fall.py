@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -157,10 +158,9 @@ def _stepped(mover: Mover, state: State, step: float, depth: float) -> State:
     """
     shortest = _SHORTEST * depth
     while step > shortest:
-        try:
+        with suppress(NoStep):
             return mover.stepped(state, step)
-        except NoStep:
-            step *= 0.4
+        step *= 0.4
     raise Status.NOT_CONVERGED.because(
         f"The way of the line finds no next step, {state.time:.1f} s after it was let go."
     )

@@ -77,6 +77,7 @@ def loads_on(
     axis: Floats,
     strain: Floats,
     variation: Floats,
+    slowest: float = SLOWEST,
 ) -> Loads:
     """The forces on a chain's loads.
 
@@ -87,6 +88,7 @@ def loads_on(
     axis : (k, 3) of their bars, unit, downward along the line
     strain : (k,) of their bars
     variation : (k,) how many times its constant drag a smooth body has
+    slowest : speed below which drag goes with the speed [m/s]
     """
     on = chain.elements
     current, shear, density = sea.at(-height)
@@ -94,10 +96,10 @@ def loads_on(
     dense = density / REFERENCE_DENSITY
     grown = dense * (1.0 + 2.0 * on.thinning * (np.sqrt(1.0 + np.maximum(strain, 0.0)) - 1.0))
     lift, stiffness, wet, wetting, push = _afloat(chain, sea, height, density)
-    speed = np.sqrt(np.einsum("ij,ij->i", flow, flow) + SLOWEST**2)
+    speed = np.sqrt(np.einsum("ij,ij->i", flow, flow) + slowest**2)
     along = np.einsum("ij,ij->i", flow, axis)
     across = flow - np.where(on.directional, along, 0.0)[:, np.newaxis] * axis
-    size = np.sqrt(np.einsum("ij,ij->i", across, across) + SLOWEST**2)
+    size = np.sqrt(np.einsum("ij,ij->i", across, across) + slowest**2)
     kn, kt = grown * variation * on.normal_drag, grown * on.tangential_drag
     kt = np.where(on.directional, kt, 0.0)
     outer = across[:, :, np.newaxis] * across[:, np.newaxis, :]
@@ -111,7 +113,7 @@ def loads_on(
     drag = (kn * size)[:, np.newaxis] * across
     by_flow = kn[:, np.newaxis, np.newaxis] * (turn @ project)
     by_axis = kn[:, np.newaxis, np.newaxis] * (turn @ lean)
-    pull, pull_by_flow, pull_by_axis = _friction(chain, kt, flow, axis, along, speed)
+    pull, pull_by_flow, pull_by_axis = _friction(chain, kt, flow, axis, along, speed, slowest)
     drag += pull
     by_flow += pull_by_flow
     by_axis += pull_by_axis
@@ -127,18 +129,24 @@ def loads_on(
 
 
 def _friction(
-    chain: Chain, kt: Floats, flow: Floats, axis: Floats, along: Floats, speed: Floats
+    chain: Chain,
+    kt: Floats,
+    flow: Floats,
+    axis: Floats,
+    along: Floats,
+    speed: Floats,
+    slowest: float,
 ) -> tuple[Floats, Floats, Floats]:
     """Drag along the axis, (k, 3), and its changes with the flow and with the axis."""
     law = chain.line.friction
-    straight = kt * np.sqrt(along**2 + SLOWEST**2)
+    straight = kt * np.sqrt(along**2 + slowest**2)
     square, slope, side = straight * along, 2.0 * straight, np.zeros_like(flow)
     if law is Friction.CONSTANT:
         # the whole of V², towards where the flow goes along the cable
         cable = chain.elements.flexible
-        sign = along / np.sqrt(along**2 + SLOWEST**2)
+        sign = along / np.sqrt(along**2 + slowest**2)
         square = np.where(cable, kt * speed**2 * sign, square)
-        slope = np.where(cable, kt * speed**2 * (1.0 - sign**2) / np.hypot(along, SLOWEST), slope)
+        slope = np.where(cable, kt * speed**2 * (1.0 - sign**2) / np.hypot(along, slowest), slope)
         side = (np.where(cable, 2.0 * kt * sign, 0.0))[:, np.newaxis] * flow
     pull = square[:, np.newaxis] * axis
     by_along = slope[:, np.newaxis, np.newaxis] * axis[:, :, np.newaxis]

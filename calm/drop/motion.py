@@ -18,8 +18,10 @@ from calm.drop.loads import SLOWEST, Loads, Sea, loads_on
 from calm.physics.line import REFERENCE_DENSITY, Floats, Integers
 from calm.physics.reynolds import Smooth, drag_variation
 
-MOST_ROUNDS = 25
+MOST_ROUNDS = 16
 """Of Newton's method; a step that takes more is too long."""
+GENTLE = 10.0
+"""Speed below which drag goes with the speed, in the first round of a step from rest [m/s]."""
 CLOSE = 1e-6
 """Last change of a place, as a share of the line, and of a tension, as one of all the weights; what
 is left is of the order of its square."""
@@ -88,6 +90,9 @@ class Mover:
     def stepped(self, state: State, step: float) -> State:
         """The state a time later [s].
 
+        A line at rest begins to move by rounds in which drag goes with the speed: they find the
+        way to where it goes with the square.
+
         Raises
         ------
         NoStep
@@ -101,8 +106,10 @@ class Mover:
             node[0, :2] = self.tether
         tension = state.tension.copy()
         reach = float(self.chain.length.sum())
+        slowest = SLOWEST if state.velocity.any() else GENTLE
+        nearer = np.inf
         for _ in range(MOST_ROUNDS):
-            change = self._change(state.node, node, tension, variation, step)
+            change = self._change(state.node, node, tension, variation, step, slowest)
             moved = np.append(change, 0.0).reshape(-1, 4)
             farthest = float(np.abs(moved[:, :3]).max())
             if not np.isfinite(farthest):
@@ -110,10 +117,14 @@ class Mover:
             share = min(1.0, 0.2 * reach / max(farthest, 1e-300))
             node -= share * moved[:, :3]
             tension -= share * moved[:-1, 3]
-            if farthest < CLOSE * reach and np.abs(moved[:-1, 3]).max() < CLOSE * self.scale:
+            close = farthest < CLOSE * reach
+            if close and np.abs(moved[:-1, 3]).max() < CLOSE * self.scale and slowest == SLOWEST:
                 if _overturned(state.node, node):
                     break
                 return State(state.time + step, node, tension, (node - state.node) / step)
+            if slowest == SLOWEST and farthest > max(nearer, 0.1 * reach):
+                break
+            nearer, slowest = farthest, max(0.2 * slowest, SLOWEST)
         raise NoStep("the nodes of the chain find no place")
 
     @cached_property
@@ -122,7 +133,12 @@ class Mover:
         return self.anchor.weight + float(np.abs(self.chain.elements.buoyancy).sum())
 
     def loads(
-        self, node: Floats, velocity: Floats, tension: Floats, variation: Floats
+        self,
+        node: Floats,
+        velocity: Floats,
+        tension: Floats,
+        variation: Floats,
+        slowest: float = SLOWEST,
     ) -> tuple[Loads, Floats]:
         """The forces on the loads, and the axes (n, 3) of the bars."""
         bar, place = self.chain.elements.bar, self.chain.elements.place[:, np.newaxis]
@@ -131,7 +147,9 @@ class Mover:
         strain, _ = self.strain(tension)
         height = ((1.0 - place) * node[bar] + place * node[bar + 1])[:, 2]
         moving = (1.0 - place) * velocity[bar] + place * velocity[bar + 1]
-        loads = loads_on(self.chain, self.sea, height, moving, axis[bar], strain[bar], variation)
+        loads = loads_on(
+            self.chain, self.sea, height, moving, axis[bar], strain[bar], variation, slowest
+        )
         return loads, axis
 
     def strain(self, tension: Floats) -> tuple[Floats, Floats]:
@@ -146,12 +164,14 @@ class Mover:
             growth[bars] = np.where(tension[bars] > 0.0, b + x * (2.0 * c + 3.0 * x * d), 0.0)
         return strain, growth
 
-    def anchor_force(self, node: Floats, velocity: Floats) -> tuple[Floats, Floats]:
+    def anchor_force(
+        self, node: Floats, velocity: Floats, slowest: float = SLOWEST
+    ) -> tuple[Floats, Floats]:
         """Weight and drag of the falling anchor (3,) [N], and its change with velocity (3, 3)."""
         current, _, density = self.sea.at(-node[-1:, 2])
         flow = current[0] - velocity[-1]
         k = self.anchor.drag * float(density[0]) / REFERENCE_DENSITY
-        speed = float(np.sqrt(flow @ flow + SLOWEST**2))
+        speed = float(np.sqrt(flow @ flow + slowest**2))
         force = k * speed * flow - [0.0, 0.0, self.anchor.weight]
         return force, -k * (speed * _UNIT + np.outer(flow, flow) / speed)
 
@@ -176,14 +196,20 @@ class Mover:
         return variation
 
     def _change(
-        self, before: Floats, node: Floats, tension: Floats, variation: Floats, step: float
+        self,
+        before: Floats,
+        node: Floats,
+        tension: Floats,
+        variation: Floats,
+        step: float,
+        slowest: float,
     ) -> Floats:
         """What the nodes and tensions are too much by, one node and one tension after another."""
         from scipy.linalg import solve_banded
 
         chain, place = self.chain, self.chain.elements.place
         velocity = (node - before) / step
-        loads, axis = self.loads(node, velocity, tension, variation)
+        loads, axis = self.loads(node, velocity, tension, variation, slowest)
         length = np.linalg.norm(np.diff(node, axis=0), axis=1)
         strain, growth = self.strain(tension)
         bars = len(length)
@@ -215,7 +241,7 @@ class Mover:
             residual[:-1, 2] += self._bearing * sunk**2
             diagonal[:-1, 2, 2] -= 2.0 * self._bearing * sunk / self._sinking
         if not self.held:
-            force, by_velocity = self.anchor_force(node, velocity)
+            force, by_velocity = self.anchor_force(node, velocity, slowest)
             residual[-1, :3] += force
             diagonal[-1] += by_velocity / step
         band = np.zeros((2 * _SIDE + 1, 4 * bars + 3))

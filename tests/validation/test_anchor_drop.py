@@ -135,8 +135,8 @@ def test_a_heavy_sphere_on_a_thin_line_falls_as_if_alone(loaded):
         environment: {depth: 500 m}
         line: [{use: cork}, {use: thread, length: 300 m}, {use: ball}]
         components:
-          cork: {kind: sphere, diameter: 50 mm, buoyancy: 1 N}
-          thread: {kind: cable, diameter: 0.1 mm, weight: 0.0001 N/m}
+          cork: {kind: sphere, diameter: 50 mm, buoyancy: 1 N, cx: 0.001}
+          thread: {kind: cable, diameter: 0.1 mm, weight: 0.0001 N/m, ct: 0}
           ball: {kind: anchor, weight: 10 kN, kt: 100 N/(m/s)^2}
         """
     )
