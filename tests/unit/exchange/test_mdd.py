@@ -87,7 +87,7 @@ def test_the_mooring_file_runs(tmp_path):
 
 
 def test_it_leans_as_that_program_printed(tmp_path):
-    """CDMS-1: the sphere 432.07 m above the seabed and 75.5 m away, the anchor pulled by 827.2 kg at
+    """CDMS-1: the sphere 432.07 m above the seabed, 75.5 m away, the anchor pulled by 827.2 kg at
     9.1 degrees, printed in the users guide. 0.5 % of the water is 2.6 m; the figures are closer."""
     balls, size = 10, []
     size += [[1.2, 0, 1.2, 0], [10, 0.007, 0, 1]]
