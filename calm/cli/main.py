@@ -16,6 +16,7 @@ from calm.cli.catalog import catalog
 from calm.cli.chart import chart
 from calm.cli.check import CHECK_EXAMPLES, check
 from calm.cli.diff import DIFF_EXAMPLES, diff
+from calm.cli.exchange import IMPORT_EXAMPLES, import_
 from calm.cli.exit_codes import ExitCode
 from calm.cli.motion import MOTION_EXAMPLES, motion
 from calm.cli.run import RUN_EXAMPLES, run
@@ -62,6 +63,12 @@ app.command(motion, help_epilogue=MOTION_EXAMPLES)
 app.command(build, help_epilogue=BUILD_EXAMPLES)
 app.command(tow, usage="Usage: calm tow [OPTIONS] FILE...", help_epilogue=TOW_EXAMPLES)
 app.command(size, help_epilogue=SIZE_EXAMPLES)
+app.command(
+    import_,
+    name="import",
+    usage="Usage: calm import [OPTIONS] FILE...",
+    help_epilogue=IMPORT_EXAMPLES,
+)
 app.command(strumming, help_epilogue=STRUMMING_EXAMPLES)
 app.command(catalog)
 app.command(chart)
