@@ -107,7 +107,9 @@ def _plausible(one: Currents, maximum_speed: float) -> Currents:
         f"{where}: {np.hypot(one.u[at, level], one.v[at, level]):.5g} m/s"
     )
     u, v = (np.where(false, np.nan, each) for each in (one.u, one.v))
-    return replace(one, u=u, v=v, notes=(*one.notes, note), false=np.logical_or.reduce(false, axis=1))
+    return replace(
+        one, u=u, v=v, notes=(*one.notes, note), false=np.logical_or.reduce(false, axis=1)
+    )
 
 
 def _labelled(path: Path, declination: float | None) -> Currents | None:
