@@ -69,9 +69,9 @@ def placed(one: Hung, deck: Deck) -> str:
     """Where a clamp sits: from the upper end of its piece, anchor first from the lower end too."""
     if one.on is None or one.at is None:
         return ""
-    text = f"{one.at:.2f} m from the upper end of {one.on}"
+    text = f"{one.at:.2f} m from the upper end"
     if deck.order is Order.ANCHOR_FIRST and one.of_length is not None:
-        text += f", {one.of_length - one.at:.2f} m from its lower end"
+        text += f", {one.of_length - one.at:.2f} m from the lower end"
     return text
 
 
