@@ -39,7 +39,8 @@ def geometry_warnings(
     if is_line(ships):
         yield (
             "The ranges are all taken along one line: a place as far on its other side fits as "
-            "well. Take some off that line."
+            f"well{'' if depth_given else ', and so do nearer ones that are deeper'}. Take some "
+            "off that line."
         )
     elif (gap := widest_gap(away)) > WIDEST_GAP and distance.min() > 0.0:
         yield (

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-import csv
 import re
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
 from calm.errors import InputError, Problem
-from calm.files.document import read_text
-from calm.files.explain import shown, unknown
-from calm.files.tables import heading
+from calm.files.explain import shown
+from calm.locate.columns import NUMBER, Row, lacking, read_columns
+from calm.locate.ellipsoid import Frame
 from calm.physics.line import Floats
 
+EXAMPLE = "latitude[deg],longitude[deg],range[m]"
 LONGEST = {"range": 25_000.0, "time": 35.0}
 """Beyond what the transponders of moorings answer [m], and there and back [s]."""
 WIDEST = 50_000.0
@@ -22,7 +23,6 @@ WIDEST = 50_000.0
 MOST_PROBLEMS = 20
 _UNANSWERED = frozenset({"", "nan", "na", "n/a", "-", "none", "null"})
 _FILLS = frozenset({"-9999", "-999", "-99", "9999", "99999", "999999", "-99999", "1e35", "1e+35"})
-_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 _DEGREES = {"deg": 1.0, "degree": 1.0, "degrees": 1.0, "°": 1.0}
 _UNITS = {
     "latitude": _DEGREES,
@@ -56,17 +56,12 @@ class Survey:
     transducer: float
     notices: tuple[str, ...] = ()
 
-    @property
-    def middle_longitude(self) -> float:
-        """Of the survey, which may lie across 180 degrees."""
+    @cached_property
+    def frame(self) -> Frame:
+        """About the middle of the ship's positions, which may lie across 180 degrees."""
         lam = np.radians(self.longitude)
-        return float(np.degrees(np.arctan2(np.sin(lam).mean(), np.cos(lam).mean())))
-
-
-@dataclass(frozen=True)
-class _Row:
-    line: int
-    cells: dict[str, str]
+        middle = np.degrees(np.arctan2(np.sin(lam).mean(), np.cos(lam).mean()))
+        return Frame(float(self.latitude.mean()), float(middle))
 
 
 def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
@@ -84,13 +79,22 @@ def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
     InputError
         With every mistake of the file, each with its line.
     """
-    text = read_text(path)
     problems: list[Problem] = []
-    heads, rows, notices = _rows_of(path, text, problems)
+    columns = read_columns(path, _UNITS, EXAMPLE, problems)
+    heads = columns.factors
+    problems += [
+        lacking(path, name, "deg", columns)
+        for name in ("latitude", "longitude")
+        if name not in heads
+    ]
+    if ("range" in heads) == ("time" in heads):
+        both = "there are columns `range` and `time`; leave one of them out"
+        none = "there is no column `range[m]` or `time[s]`"
+        problems.append(Problem(str(path), 1, 1, both if "range" in heads else none))
     measure = "time" if "time" in heads else "range"
     values: list[tuple[int, float, float, float]] = []
     silent: list[int] = []
-    for row in rows:
+    for row in columns.rows:
         if row.cells.get(measure, "").strip().lower() in _UNANSWERED:
             silent.append(row.line)
             continue
@@ -103,6 +107,8 @@ def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
     problems.sort(key=lambda problem: problem.line)
     if problems:
         raise InputError(problems[:MOST_PROBLEMS])
+    notices = [f"not read: {', '.join(f'`{shown(one)}`' for one in columns.others)}"]
+    notices = notices if columns.others else []
     once: dict[tuple[float, float, float], int] = {}
     for line, *what in values:
         first = once.setdefault((what[0], what[1], what[2]), line)
@@ -124,77 +130,7 @@ def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
     )
 
 
-def _rows_of(
-    path: Path, text: str, problems: list[Problem]
-) -> tuple[dict[str, float], list[_Row], list[str]]:
-    """The factor of every known column to SI, the rows below the header, and notices."""
-    lines = [
-        (number, line)
-        for number, line in enumerate(text.splitlines(), 1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
-    if not lines:
-        raise InputError([Problem(str(path), 0, 0, "is empty; a header and ranges are needed")])
-    first = lines[0][1]
-    separator = max(",;\t", key=first.count)
-    header = [cell.strip() for cell in next(csv.reader([first], delimiter=separator))]
-    heads, names, notices = _headings(path, lines[0][0], header, problems)
-    rows = []
-    for number, line in lines[1:]:
-        cells = [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
-        if len(cells) != len(header):
-            hint = "; a decimal comma? (write 48.2, not 48,2)" if len(cells) > len(header) else ""
-            message = f"the row has {len(cells)} values, the header {len(header)}{hint}"
-            problems.append(Problem(str(path), number, 1, message))
-            continue
-        known = {name: cell for name, cell in zip(names, cells, strict=True) if name in heads}
-        rows.append(_Row(number, known))
-    return heads, rows, notices
-
-
-def _headings(
-    path: Path, line: int, header: list[str], problems: list[Problem]
-) -> tuple[dict[str, float], list[str], list[str]]:
-    heads: dict[str, float] = {}
-    names, others = [], []
-
-    def complain(message: str) -> None:
-        problems.append(Problem(str(path), line, 1, message))
-
-    for column in header:
-        name, unit = heading(column)
-        name = name.lower()
-        names.append(name)
-        if name not in _UNITS:
-            others.append(column)
-        elif name in heads:
-            complain(f"column `{name}` is given twice")
-        else:
-            usual = next(iter(_UNITS[name]))
-            if not unit:
-                complain(f"column `{name}` needs a unit; did you mean `{name}[{usual}]`?")
-            elif unit not in _UNITS[name]:
-                allowed = ", ".join(_UNITS[name])
-                complain(f"column `{shown(column)}`: no such unit; allowed: {allowed}")
-            heads[name] = _UNITS[name].get(unit, 1.0)
-    numbers = all(_NUMBER.fullmatch(cell) for cell in header)
-    if numbers:
-        complain("there is no header; did you mean `latitude[deg],longitude[deg],range[m]`?")
-    else:
-        for name in ("latitude", "longitude"):
-            if name not in heads:
-                complain(unknown(f"there is no column `{name}[deg]`", name, others))
-        if "range" not in heads and "time" not in heads:
-            complain("there is no column `range[m]` or `time[s]`")
-        if "range" in heads and "time" in heads:
-            complain("there are columns `range` and `time`; leave one of them out")
-    listed = ", ".join(f"`{shown(column)}`" for column in others)
-    return heads, names, [f"not read: column {listed}"] if others else []
-
-
-def _value(
-    path: Path, row: _Row, name: str, factor: float, problems: list[Problem]
-) -> float | None:
+def _value(path: Path, row: Row, name: str, factor: float, problems: list[Problem]) -> float | None:
     """A cell in SI or degrees; None, with a mistake added, where it is no such figure."""
     text = row.cells[name]
     refusal = _refusal(name, text, factor)
@@ -210,7 +146,7 @@ def _refusal(name: str, text: str, factor: float) -> str:
     if re.sub(r"\.0*$", "", text) in _FILLS:
         leave = "leave the row out" if placed else "leave the cell blank"
         return f"is a fill value; {leave} where there is none"
-    if not _NUMBER.fullmatch(text):
+    if not NUMBER.fullmatch(text):
         degrees = "; decimal degrees are needed, south and west negative" if placed else ""
         return f"is no number{degrees}"
     value = float(text) * factor

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
+from calm.errors import InputError, Problem
+from calm.files.explain import shown
+from calm.locate.columns import NUMBER, lacking, read_columns
 from calm.physics.line import Floats
 
 SLOWEST, FASTEST = 1380.0, 1680.0
 """Of sound in natural waters [m/s]: near-freezing fresh water, the deepest trench."""
+_UNITS = {"depth": {"m": 1.0}, "sound_speed": {"m/s": 1.0}}
+_EXAMPLE = "depth[m],sound_speed[m/s]"
 
 
 @dataclass(frozen=True)
@@ -47,3 +53,49 @@ class Sound:
         slowness = np.where(small, 1.0 - 0.5 * ratio, np.log1p(ratio) / np.where(small, 1.0, ratio))
         time = float((np.diff(levels) * slowness / speeds[:-1]).sum())
         return (below - above) / time
+
+
+def read_sound(path: Path) -> Sound:
+    """A profile from a CSV file with the header ``depth[m],sound_speed[m/s]``.
+
+    Raises
+    ------
+    InputError
+        With every mistake of the file: a depth that does not grow, a speed that no water has.
+    """
+    problems: list[Problem] = []
+    columns = read_columns(path, _UNITS, _EXAMPLE, problems)
+    for name, units in _UNITS.items():
+        if name not in columns.factors:
+            problems.append(lacking(path, name, next(iter(units)), columns))
+    depths: list[float] = []
+    speeds: list[float] = []
+    for row in columns.rows:
+        for name, text in row.cells.items():
+            complaint = _complaint(name, text, depths)
+            if complaint:
+                message = f"`{name}: {shown(text)}` {complaint}"
+                problems.append(Problem(str(path), row.line, 1, message))
+            else:
+                (depths if name == "depth" else speeds).append(float(text))
+    if not problems and not depths:
+        problems.append(Problem(str(path), 0, 0, "there are no rows below the header"))
+    if problems:
+        raise InputError(problems)
+    return Sound(np.array(depths), np.array(speeds))
+
+
+def _complaint(name: str, text: str, depths: list[float]) -> str:
+    if not NUMBER.fullmatch(text):
+        return "is no number"
+    value = float(text)
+    if name == "depth":
+        if value < 0.0 or (depths and value <= depths[-1]):
+            return "depths count downwards from 0 and must increase"
+        return ""
+    return "" if SLOWEST <= value <= FASTEST else sound_complaint()
+
+
+def sound_complaint() -> str:
+    """What is said of a speed of sound that no water has."""
+    return f"is no speed of sound in water; it is {SLOWEST:g} to {FASTEST:g} m/s"
