@@ -50,7 +50,7 @@ def import_(
     output
         The mooring file to write; of several files, the folder for them.
     format
-        The program: mdd. Found from the content when not given.
+        The program: mdd or cbl. Found from the content when not given.
     strict
         Refuse what would have to be guessed.
     define

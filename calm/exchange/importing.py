@@ -8,6 +8,7 @@ from pathlib import Path
 
 from calm.errors import InputError, Problem, UsageError
 from calm.exchange.anchors import hold
+from calm.exchange.cbl.reading import is_cbl, read_cbl
 from calm.exchange.design import Design, Record, Remark
 from calm.exchange.environments import environment_lines
 from calm.exchange.matching import Match, match
@@ -49,6 +50,12 @@ FORMATS = (
     Format(
         "mdd", "Mooring Design & Dynamics", lambda path, content: is_mat(content),
         lambda path, options: read_mdd(path),
+    ),
+    Format(
+        "cbl", "WHOI Cable", lambda path, content: is_cbl(content),
+        lambda path, options: read_cbl(
+            path, options.defines, allow_include=options.allow_include
+        ),
     ),
 )  # fmt: skip
 

@@ -20,12 +20,17 @@ def kebab(name: str) -> str:
     return re.sub(r"[^a-z0-9]+", "-", text)[:_LONGEST].strip("-")
 
 
-def ids_of(components: Iterable[Component]) -> dict[int, str]:
-    """The id of every component, by its `id()`: those that say the same thing share one."""
+def ids_of(components: Iterable[Component], taken: Iterable[str] = ()) -> dict[int, str]:
+    """The id of every component, by its `id()`: those that say the same thing share one.
+
+    Parameters
+    ----------
+    taken : ids that stand for something else
+    """
     components = list(components)
     ids: dict[int, str] = {}
     said: dict[tuple[object, ...], str] = {}
-    taken = {component.entry for component in components}
+    known = {*taken, *(component.entry for component in components)}
     for component in components:
         if component.entry:
             ids[id(component)] = component.entry
@@ -34,10 +39,10 @@ def ids_of(components: Iterable[Component]) -> dict[int, str]:
         if says not in said:
             base = kebab(component.name) or component.kind
             chosen, number = base, 1
-            while chosen in taken:
+            while chosen in known:
                 number += 1
                 chosen = f"{base}-v{number}"
-            taken.add(chosen)
+            known.add(chosen)
             said[says] = chosen
         ids[id(component)] = said[says]
     return ids
