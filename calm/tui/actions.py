@@ -170,6 +170,13 @@ ACTIONS: tuple[Action, ...] = (
         10,
     ),
     Action("anywhere", "compare", "D", "compare", "What has changed since the file was saved."),
+    Action(
+        "anywhere",
+        "figures",
+        "f",
+        "missing figures",
+        "Fill in the figures that are not known, piece by piece, with their source.",
+    ),
     Action("anywhere", "search", "slash", "catalogue", "Search the catalogue."),
     Action("anywhere", "define", "o", "own component", "Define a component of one's own."),
     Action("anywhere", "picture('elevation')", "1", "elevation", "The line seen from the side."),

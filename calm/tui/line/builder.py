@@ -120,6 +120,33 @@ class BuilderScreen(DraftScreen):
         """Show what has changed since the file was saved."""
         Comparing(self.app, self.body.line).with_saved()
 
+    def action_figures(self) -> None:
+        """Fill in what is not known of the components."""
+        from calm.tui.line.missing_figures import filled, missing_figures
+        from calm.tui.line.missing_screen import Filled, MissingScreen
+
+        workspace, session = self.workspace, self.workspace.session
+        if not self.part.settle():
+            return
+        if workspace.view is None or not workspace.is_fresh:
+            self.tell("Which figures are missing is known once the line is judged")
+            return
+        missing = missing_figures(workspace.view, session.draft)
+        if not missing:
+            self.tell("No figure of a component is missing")
+            return
+
+        def take(given: Filled | None) -> None:
+            if given is not None and given[0]:
+                count = len(given[0])
+                told = f"{count} figure{'s' * (count != 1)} filled in"
+                self.body.line.attempt(
+                    lambda: session.do(filled(session.draft, missing, *given), "fill in figures"),
+                    told,
+                )
+
+        self.app.push_screen(MissingScreen(missing), take)
+
     def action_search(self) -> None:
         """Search the catalogue for a piece below."""
         self.body.search("below")
