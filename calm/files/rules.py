@@ -223,7 +223,7 @@ RULES = {
         "Anchor-last launch at terminal speed (URI GSO program); the working load, and breaking "
         "load over 2",
         _ONCE,
-        figures=("working_load", "breaking_load", "kt"),
+        figures=("working_load", "breaking_load"),
     ),
     "launch-speed": RuleText(
         "Speed at touchdown",
