@@ -10,7 +10,6 @@ from textual import events
 from textual.app import ComposeResult
 from textual.containers import Vertical
 from textual.geometry import Size
-from textual.markup import escape
 from textual.reactive import reactive
 from textual.scroll_view import ScrollView
 from textual.strip import Strip
@@ -50,7 +49,7 @@ class Tabs(Static):
             + "[/]"
             for n, tab in enumerate(TABS, 1)
         ]
-        self.update("".join(parts) + (f"  [italic]{escape(note)}[/]" if note else ""), layout=False)
+        self.update("".join(parts) + (f"  [italic]{note}[/]" if note else ""), layout=False)
 
 
 class Picture(ScrollView, can_focus=True):
@@ -171,6 +170,7 @@ class Pictures(Vertical):
     DEFAULT_CSS = """
     Pictures { height: 1fr; width: 1fr; }
     Pictures.-old Picture { text-style: dim; }
+    Pictures > #beside { height: 1; padding: 0 1; color: $text-muted; display: none; }
     """
 
     tab: reactive[Tab] = reactive("elevation", init=False)
@@ -185,6 +185,7 @@ class Pictures(Vertical):
     def compose(self) -> ComposeResult:
         """The names, and the picture."""
         yield Tabs()
+        yield Static(id="beside", markup=False)
         yield Picture()
 
     def on_mount(self) -> None:
@@ -225,8 +226,10 @@ class Pictures(Vertical):
 
     def _show(self) -> None:
         shapes, named = self._beside()
-        told = f"dashed: {named}" if named and self.tab in ("elevation", "plan") else ""
-        self.query_one(Tabs).show(self.tab, ", ".join(filter(None, (self._note, told))))
+        self.query_one(Tabs).show(self.tab, self._note)
+        told = self.query_one("#beside", Static)
+        told.update(f"dashed: {named}")
+        told.display = bool(named) and self.tab in ("elevation", "plan")
         self.query_one(Picture).show(self._view, self.tab, shapes)
 
     def on_click(self, event: events.Click) -> None:

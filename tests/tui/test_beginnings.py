@@ -138,6 +138,8 @@ def test_another_file_is_compared_and_drawn_beside(drive, small):
     broken.write_text("line: [", encoding="utf-8")
 
     async def story(driver):
+        driver.app.judging.ask_fully()
+        await driver.settle()
         before = driver.screen
         await driver.press("C")
         driver.app.screen.query_one("Input").value = other.name
