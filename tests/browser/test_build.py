@@ -59,7 +59,7 @@ def opened(browser, address, **options):
     """A page with the line on it, what it asked for, and what it complained of."""
     page = browser.new_page(**options)
     asked, complained = [], []
-    page.on("console", lambda message: message.type == "log" or complained.append(message.text))
+    page.on("console", lambda each: each.type != "error" or complained.append(each.text))
     page.on("pageerror", lambda error: complained.append(str(error)))
     page.on("request", lambda request: asked.append(request.url))
     page.goto(address)
