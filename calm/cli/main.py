@@ -15,6 +15,7 @@ from calm.cli.build import BUILD_EXAMPLES, build
 from calm.cli.catalog import catalog
 from calm.cli.chart import chart
 from calm.cli.check import CHECK_EXAMPLES, check
+from calm.cli.deck import DECK_EXAMPLES, deck
 from calm.cli.diff import DIFF_EXAMPLES, diff
 from calm.cli.exchange import EXPORT_EXAMPLES, IMPORT_EXAMPLES, export, import_
 from calm.cli.exit_codes import ExitCode
@@ -57,6 +58,7 @@ app = App(
 )
 app.command(run, usage="Usage: calm run [OPTIONS] FILE...", help_epilogue=RUN_EXAMPLES)
 app.command(check, usage="Usage: calm check [OPTIONS] FILE...", help_epilogue=CHECK_EXAMPLES)
+app.command(deck, usage="Usage: calm deck [OPTIONS] FILE...", help_epilogue=DECK_EXAMPLES)
 app.command(diff, usage="Usage: calm diff [OPTIONS] FILE [FILE]", help_epilogue=DIFF_EXAMPLES)
 app.command(batch, help_epilogue=BATCH_EXAMPLES)
 app.command(motion, help_epilogue=MOTION_EXAMPLES)
