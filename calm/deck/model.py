@@ -16,6 +16,8 @@ from calm.deck.instruments import Posted, posted
 from calm.deck.lifts import Lifts, lifts_of
 from calm.deck.order import Order, Surfacing, over_the_side, surfacing
 from calm.deck.shipping import Freight, freight_of
+from calm.drop import DropPlan, drop_plan
+from calm.drop.planning import SHIP_SPEED
 from calm.errors import NoEquilibrium
 
 if TYPE_CHECKING:
@@ -37,6 +39,7 @@ class Deck:
     deployment, recovery : in the order over the side, and in that of surfacing
     rise : of the line without its anchor; None where it could not be solved
     cuts, hardware, freight, lifts, instruments : what the sheets of these names say
+    plan : of the anchor drop, or why it could not be solved; None where the anchor goes first
     notes : what could not be told, and why
     """
 
@@ -54,6 +57,7 @@ class Deck:
     instruments: tuple[Posted, ...]
     environments: tuple[str, ...]
     notes: tuple[str, ...]
+    plan: DropPlan | NoEquilibrium | None = None
 
     @property
     def file(self) -> MooringFile:
@@ -61,17 +65,25 @@ class Deck:
         return self.result.file
 
 
-def deck_of(moorings: Sequence[Mooring], order: Order = Order.ANCHOR_LAST) -> Deck:
+def deck_of(
+    moorings: Sequence[Mooring],
+    order: Order = Order.ANCHOR_LAST,
+    ship_speed: float = SHIP_SPEED,
+    streamed: float | None = None,
+) -> Deck:
     """The sheets of a mooring.
 
     Parameters
     ----------
     moorings : the same one in each environment, that of the sheets first, and cut alike in all
+    ship_speed, streamed : of the anchor drop, see `calm.drop.drop_plan` [m/s], [m]
 
     Raises
     ------
     NoEquilibrium
         It does not stand in the first environment.
+    UsageError
+        The ship streams no line, or not so far.
     """
     first = moorings[0]
     result = first.solve()
@@ -91,6 +103,13 @@ def deck_of(moorings: Sequence[Mooring], order: Order = Order.ANCHOR_LAST) -> De
         rise = recovery_of(first, result)
     except NoEquilibrium as failure:
         notes.append(f"The rise of the line is not known: {failure}")
+    plan: DropPlan | NoEquilibrium | None = None
+    if order is Order.ANCHOR_LAST:
+        try:
+            plan = drop_plan(first, ship_speed, streamed, result=result)
+        except NoEquilibrium as failure:
+            plan = failure
+            notes.append(f"The anchor drop is not planned: {failure}")
     released = first.file.pieces[-1].index - 1 if rise is None else rise.released
     return Deck(
         result=result,
@@ -107,6 +126,7 @@ def deck_of(moorings: Sequence[Mooring], order: Order = Order.ANCHOR_LAST) -> De
         instruments=posted(parts, results),
         environments=tuple(name for name, _ in results),
         notes=tuple(notes),
+        plan=plan,
     )
 
 

@@ -74,8 +74,8 @@ def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
             f"{abs(plan.aside):.0f} m to the {side}, seen from where it is let go",
         ),
         ("Float behind the ship when let go", f"{plan.streamed:.0f} m, {_bearing(plan.astern)}"),
-        ("Let go, from the target", _east_north(plan.let_go)),
-        ("Start of the run, from the target", _east_north(plan.start)),
+        ("Let go, from the target", east_north(plan.let_go)),
+        ("Start of the run, from the target", east_north(plan.start)),
         ("Speed at touchdown", say("speed", plan.touchdown_speed)),
         ("Greatest tension in the fall", _greatest(plan)),
         ("Drag of the anchor at 1 m/s", f"{plan.anchor_drag:.0f} N, {given}"),
@@ -209,7 +209,8 @@ def _error(value: float) -> str:
     return f"{max(value, 1.0):.0f}"
 
 
-def _east_north(place: tuple[float, float]) -> str:
+def east_north(place: tuple[float, float]) -> str:
+    """A place east and north of another [m], in words."""
     east, north = place
     return (
         f"{abs(north):.0f} m {'north' if north >= 0.0 else 'south'}, "
