@@ -17,7 +17,7 @@ from calm.cli.chart import chart
 from calm.cli.check import CHECK_EXAMPLES, check
 from calm.cli.deck import DECK_EXAMPLES, deck
 from calm.cli.diff import DIFF_EXAMPLES, diff
-from calm.cli.exchange import IMPORT_EXAMPLES, import_
+from calm.cli.exchange import EXPORT_EXAMPLES, IMPORT_EXAMPLES, export, import_
 from calm.cli.exit_codes import ExitCode
 from calm.cli.locate import LOCATE_EXAMPLES, locate
 from calm.cli.motion import MOTION_EXAMPLES, motion
@@ -73,6 +73,7 @@ app.command(
     usage="Usage: calm import [OPTIONS] FILE...",
     help_epilogue=IMPORT_EXAMPLES,
 )
+app.command(export, help_epilogue=EXPORT_EXAMPLES)
 app.command(strumming, help_epilogue=STRUMMING_EXAMPLES)
 app.command(catalog)
 app.command(chart)
