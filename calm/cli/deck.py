@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
 from calm.cli.check_files import Design, read_designs
 from calm.cli.exit_codes import ExitCode
+from calm.cli.options import quantities
 from calm.cli.streams import narrate
 from calm.errors import NoEquilibrium, UsageError
 
@@ -23,6 +24,7 @@ DECK_EXAMPLES = """Examples:
   calm deck mooring.yaml -o cruise/
   calm deck mooring.yaml -o cruise/ --page a3 --environment storm
   calm deck north.yaml south.yaml -o cruise/
+  calm deck mooring.yaml -o cruise/ --ship-speed "2 knot" --streamed "900 m"
   calm deck shallow.yaml -o cruise/ --order anchor-first"""
 
 
@@ -34,13 +36,16 @@ def deck(
     page: Literal["a4", "a3", "letter"] = "a4",
     environment: list[str] | None = None,
     order: Literal["anchor-last", "anchor-first"] = "anchor-last",
+    ship_speed: str = "1 m/s",
+    streamed: str | None = None,
     catalog: list[Path] | None = None,
 ) -> ExitCode:
     """Draw and list what goes to sea with moorings.
 
     Writes deck.pdf with a mooring diagram for the wall, deployment and recovery
-    logs, cutting list, hardware bill, shipping list, lifts and instrument sheet;
-    the diagram by itself as diagram.pdf and diagram.svg; and the lists as CSV files.
+    logs, cutting list, hardware bill, shipping list, lifts, instrument sheet and,
+    anchor last, the plan of the anchor drop; the diagram by itself as diagram.pdf
+    and diagram.svg; the lists as CSV files; and the plan as plan.json.
 
     Parameters
     ----------
@@ -55,6 +60,11 @@ def deck(
         given; more of them are design currents. Without it the file's own, and all that it names.
     order
         Which end goes over the side last.
+    ship_speed
+        Over the ground, of the ship that tows the line out before the anchor is let go.
+    streamed
+        Horizontal distance from the anchor to the top float as it is let go; that of the line as
+        it is towed at that speed unless given.
     catalog
         A catalogue of your own; its components hide others of the same id. Repeatable.
     """
@@ -66,6 +76,7 @@ def deck(
 
     check_folder(output)
     moment()
+    ship = quantities({"ship_speed": (ship_speed, "speed"), "streamed": (streamed, "length")})
     designs, tows = read_designs(files, environment, catalog or [], None)
     if tows:
         narrate(f"not drawn, since towed: {', '.join(map(str, tows))}")
@@ -75,7 +86,7 @@ def deck(
         for notice in dict.fromkeys(n for one in design.moorings for n in one.file.notices):
             narrate(f"{design.path}: {notice}")
         try:
-            decks.append(deck_of(design.moorings, Order(order)))
+            decks.append(deck_of(design.moorings, Order(order), **ship))
         except NoEquilibrium as failure:
             narrate(f"{design.path}: {failure}")
             return ExitCode.NO_EQUILIBRIUM
@@ -98,14 +109,27 @@ def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, 
     from calm.report.deck.diagram import diagram_svg
     from calm.report.deck.files import deck_csvs
     from calm.report.deck.report import deck_report, diagram_report
+    from calm.report.document import to_json
     from calm.report.pdf import printed
 
     texts = {"diagram.svg": diagram_svg(deck, paper), **deck_csvs(deck)}
+    texts["plan.json"] = to_json([_plan(deck)])
     return {
         "deck.pdf": printed(deck_report(deck, paper, notes), paper, least=7.5),
         "diagram.pdf": printed(diagram_report(deck, paper), paper, least=7.5),
         **{name: text.encode("utf-8", "replace") for name, text in texts.items()},
     }
+
+
+def _plan(deck: Deck) -> dict[str, Any]:
+    """The plan of the anchor drop, or why there is none."""
+    from calm.report.document import failure_document
+
+    if deck.plan is None:
+        return {"status": str(deck.order), "message": "The anchor goes first: it is not dropped."}
+    if isinstance(deck.plan, NoEquilibrium):
+        return failure_document(deck.file.name, deck.plan)
+    return deck.plan.to_dict()
 
 
 def _signs_that_are_lacking(deck: Deck) -> tuple[str, ...]:

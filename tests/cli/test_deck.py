@@ -2,6 +2,7 @@
 
 import csv
 import io
+import json
 import math
 import re
 
@@ -125,7 +126,7 @@ def test_the_same_input_gives_the_same_bytes(deck):
     assert first == again
     assert set(first) >= {
         "deck.pdf", "diagram.pdf", "diagram.svg", "deployment.csv", "recovery.csv", "cutting.csv",
-        "hardware.csv", "shipping.csv", "lifts.csv", "instruments.csv",
+        "hardware.csv", "shipping.csv", "lifts.csv", "instruments.csv", "plan.json",
     }  # fmt: skip
 
 
@@ -138,6 +139,25 @@ def test_every_sheet_is_in_the_deck(deck):
         "Heaviest single lift", "a lower bound", "logger 0", "SHA-256",
     ):  # fmt: skip
         assert packed(words) in text, words
+
+
+def test_the_anchor_drop_is_planned_for_the_ship(deck):
+    text = mooring(8).replace("length: 10 m", "length: 60 m").replace("900 m", "100 m")
+    text = text.replace("weight: 40 kN", "weight: 8 kN, kt: 300 N/(m/s)^2")
+    plans = []
+    for words in ((), ("--ship-speed", "1.5 m/s", "--streamed", "50 m")):
+        out, _ = deck(text, *words)
+        plans.append(json.loads((out / "plan.json").read_text()))
+        assert packed("Anchor drop plan") in "".join(pages_of((out / "deck.pdf").read_bytes())[0])
+    assert [plan["ship_speed"] for plan in plans] == [1.0, 1.5]
+    assert plans[1]["streamed"] == pytest.approx(50.0, abs=0.1) != plans[0]["streamed"]
+    assert {"fall_time", "fall_back", "fall_back_band", "tow_past", "run_in", "path"} <= set(
+        plans[0]
+    )
+    out, _ = deck(text, "--order", "anchor-first")
+    pages, _, _ = pages_of((out / "deck.pdf").read_bytes())
+    assert packed("Anchor drop plan") not in "".join(pages)
+    assert json.loads((out / "plan.json").read_text())["status"] == "anchor-first"
 
 
 def test_signs_that_no_font_has_are_reported(deck):
@@ -206,7 +226,23 @@ def test_usage(calm, folder, write_mooring):
         (("m.yaml",), "output"),
         (("m.yaml", "-o", "out", "--page", "a5"), "a5"),
         (("m.yaml", "-o", "file"), "is no folder"),
+        (("m.yaml", "-o", "out", "--ship-speed", "2"), "--ship-speed: `2` needs a unit: `2 m/s`?"),
+        (("m.yaml", "-o", "out", "--ship-speed", "0 m/s"), "it must be faster"),
+        (("m.yaml", "-o", "out", "--streamed", "2 km"), "give less than its length"),
     ):
         done = calm("deck", *words)
         assert (done.code, done.out) == (2, "")
-        assert complaint in done.err.lower() or complaint in done.err
+        assert complaint in done.err.lower()
+        assert not (folder / "out").exists()
+
+
+def test_a_line_that_still_water_leaves_slack_is_dropped_all_the_same(deck):
+    text = (
+        "name: Slack\nenvironment: {depth: 100 m}\n"
+        "line: [{use: ball}, {use: rope, length: 110 m}, {use: weight, kt: 300 N/(m/s)^2}]\n"
+    )
+    out, said = deck(text + COMPONENTS)
+    assert "Still water leaves the line slack" in said
+    plan = json.loads((out / "plan.json").read_text())
+    assert plan["rest_difference"] is None
+    assert 0.0 < plan["fall_back"] < plan["streamed"]

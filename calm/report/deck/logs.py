@@ -5,8 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from calm.deck.order import Order
+from calm.drop import DropPlan
 from calm.quantities import QUANTITIES, say
 from calm.report.blocks import Block, Cell, Column, Pairs, Part, Prose, Table
+from calm.report.drop.sheet import east_north
 from calm.report.title_block import position_text, title_pairs
 
 if TYPE_CHECKING:
@@ -132,15 +134,20 @@ def _positions(deck: Deck) -> Table:
     file = deck.file
     target = "" if file.position is None else position_text(file.position)
     depth = QUANTITIES["depth"].say(file.environment.depth)
+    plan = deck.plan
+    start = let_go = ""
+    if isinstance(plan, DropPlan):
+        start, let_go = east_north(plan.start), east_north(plan.let_go)
     rows = (
-        (Cell("Target"), Cell(target), Cell(depth), Cell()),
-        (Cell("Fall-back target"), Cell(), Cell(), Cell()),
-        (Cell("First piece over"), Cell(), Cell(), Cell()),
-        (Cell("Anchor let go"), Cell(), Cell(), Cell()),
-        (Cell("Anchor on the bottom, ranged"), Cell(), Cell(), Cell()),
+        (Cell("Target"), Cell(), Cell(target), Cell(depth), Cell()),
+        (Cell("Fall-back target"), Cell(), Cell(), Cell(), Cell()),
+        (Cell("First piece over"), Cell(start), Cell(), Cell(), Cell()),
+        (Cell("Anchor let go"), Cell(let_go), Cell(), Cell(), Cell()),
+        (Cell("Anchor on the bottom, ranged"), Cell(), Cell(), Cell(), Cell()),
     )
     columns = (
         Column(""),
+        Column("planned, from the target"),
         Column("position", share=1.5),
         Column("depth", share=0.8),
         Column("time", "UTC", share=0.8),

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
+from calm.drop import DropPlan
 from calm.report.blocks import PageBreak, Part, Plate, Prose, Report, Section
 from calm.report.deck.diagram import diagram_pages
 from calm.report.deck.lists import (
@@ -16,6 +17,7 @@ from calm.report.deck.lists import (
     shipping_part,
 )
 from calm.report.deck.logs import deployment_part, recovery_part
+from calm.report.drop.sheet import drop_part
 from calm.report.inputs import origin
 from calm.report.provenance import date
 from calm.report.title_block import document_part
@@ -31,9 +33,8 @@ def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report
     said = (*deck.notes, *notes)
     if said:
         parts.append(Part("To be known", (Prose(said, State.WARN),)))
-    for part in _sheets(deck):
-        parts.append(Part(part.title, (*part.blocks, PageBreak())))
-    parts.append(Part("Inputs", (origin([deck.file]),)))
+    parts.append(Part("Inputs", (origin([deck.file]), PageBreak())))
+    parts += (Part(part.title, (*part.blocks, PageBreak())) for part in _sheets(deck))
     subtitle = f"{deck.order}, environment: {deck.environment}"
     section = Section(deck.file.name, tuple(parts))
     return Report(deck.file.name, subtitle, (), (section,), date(), plates(deck, paper))
@@ -61,3 +62,5 @@ def _sheets(deck: Deck) -> Iterator[Part]:
     yield shipping_part(deck)
     yield lifts_part(deck)
     yield instruments_part(deck)
+    if isinstance(deck.plan, DropPlan):
+        yield drop_part(deck.plan)
