@@ -50,7 +50,7 @@ def import_(
     output
         The mooring file to write; of several files, the folder for them.
     format
-        The program: mdd, cbl, moords or table. Found from the content when not given.
+        The program: mdd, cbl, moordyn, moords or table. Found from the content when not given.
     strict
         Refuse what would have to be guessed.
     define
@@ -197,6 +197,7 @@ EXPORT_EXAMPLES = """Examples:
 
   calm export mooring.yaml --to mdd -o mooring.mat
   calm export mooring.yaml --to cbl -o mooring.cbl --environment storm
+  calm export mooring.yaml --to moordyn -o moordyn/mooring.txt
   calm export mooring.yaml --to csv -o mooring.csv"""
 
 
@@ -219,7 +220,8 @@ def export(
     file
         Mooring file.
     to
-        The program: mdd (Mooring Design & Dynamics), cbl (WHOI Cable) or csv (a list).
+        The program: mdd (Mooring Design & Dynamics), cbl (WHOI Cable), moordyn (MoorDyn 2,
+        with the current in a file beside it) or csv (a list).
     output
         The file to write.
     environment
@@ -234,7 +236,13 @@ def export(
     if os.path.realpath(output) == os.path.realpath(file):
         raise UsageError(f"{output} would take the place of the file that is read")
     exported = export_file(file, to, environment=environment, catalogs=catalog or [])
+    beside = {output.with_name(name): content for name, content in exported.beside.items()}
+    for path in beside:
+        check_destination(path)
     write_file(output, exported.content)
+    for path, content in beside.items():
+        write_file(path, content)
+        narrate(f"{path} written")
     for each in exported.lost:
         narrate(f"{output}: lost: {each}")
     narrate(f"{output} written")

@@ -14,6 +14,8 @@ from calm.exchange.environments import environment_lines
 from calm.exchange.matching import Match, match
 from calm.exchange.mdd.matfile import is_mat
 from calm.exchange.mdd.reading import read_mdd
+from calm.exchange.moordyn.reading import read_moordyn
+from calm.exchange.moordyn.sections import is_moordyn
 from calm.exchange.refusal import refused
 from calm.exchange.table.moords import is_moords, read_moords
 from calm.exchange.table.reading import read_table
@@ -59,6 +61,10 @@ FORMATS = (
         lambda path, options: read_cbl(
             path, options.defines, allow_include=options.allow_include
         ),
+    ),
+    Format(
+        "moordyn", "MoorDyn or MoorPy", lambda path, content: is_moordyn(content),
+        lambda path, options: read_moordyn(path),
     ),
     Format(
         "moords", "moords", lambda path, content: is_moords(content),

@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import pi
 
 import numpy as np
 
-from calm.case import Mooring, Tow
+from calm.case import Mooring, Result, Tow, TowResult
 from calm.errors import NoEquilibrium, UsageError
-from calm.files import Anchor, Component
+from calm.files import Anchor, Component, Sphere
+from calm.files.rigid import Displacement
 from calm.physics.line import REFERENCE_DENSITY, Line, Water
+from calm.units import KILOGRAM_FORCE
 
 _DIGITS = 9  # of a speed in m/s
+
+
+Place = tuple[float, float, float]
+"""East and north of the anchor, and depth [m]."""
 
 
 @dataclass(frozen=True)
@@ -70,6 +77,7 @@ class Assembled:
     tow : speed [m/s], direction [degrees] and height of the sheave [m]
     afloat : whether the line reaches the surface, and whether its float has a draft there
     unsaid : what no other program is told
+    solve : finds the equilibrium
     """
 
     name: str
@@ -83,6 +91,42 @@ class Assembled:
     tow: tuple[float, float, float] | None
     afloat: tuple[bool, bool]
     unsaid: tuple[str, ...]
+    solve: Callable[[], Result | TowResult]
+
+    def paths(self) -> list[Path]:
+        """The equilibrium: where each part lies, from the top down.
+
+        Raises
+        ------
+        NoEquilibrium
+            There is none.
+        """
+        result = self.solve()
+        nodes = np.column_stack([result.shape.x, result.shape.y, result.shape.depth])
+        paths, start = [], 0
+        for row in (result.components[i] for i in range(len(self.parts))):
+            low = np.array([row.x_bottom, row.y_bottom, row.depth_bottom])
+            gap = np.linalg.norm(nodes[start:] - low, axis=1)
+            end = start + int(np.flatnonzero(gap <= gap.min() + 1e-9)[0])
+            first = np.array([[row.x_top, row.y_top, row.depth_top]])
+            inner = nodes[start + 1 : end]
+            paths.append(Path(np.vstack([first, inner, low[np.newaxis]])))
+            start = end
+        return paths
+
+
+@dataclass(frozen=True)
+class Path:
+    """Where a part lies in equilibrium: nodes from its upper end, (n, 3) as `Place` has them."""
+
+    nodes: np.ndarray[tuple[int, int], np.dtype[np.float64]]
+
+    def at(self, share: float) -> Place:
+        """The place at a share of its length from its upper end."""
+        steps = np.linalg.norm(np.diff(self.nodes, axis=0), axis=1)
+        along = np.concatenate([[0.0], np.cumsum(steps)])
+        place = [float(np.interp(share * along[-1], along, column)) for column in self.nodes.T]
+        return place[0], place[1], place[2]
 
 
 def assembled(mooring: Mooring | Tow) -> Assembled:
@@ -146,6 +190,7 @@ def assembled(mooring: Mooring | Tow) -> Assembled:
         tow=tow,
         afloat=(_reaches(mooring), line.floating is not None and line.floating.hull is not None),
         unsaid=_unsaid(mooring),
+        solve=mooring.solve,
     )
 
 
@@ -229,3 +274,18 @@ def area(part: Part) -> float:
 def remarks(design: Assembled, more: Sequence[str]) -> tuple[str, ...]:
     """What is lost, each once."""
     return tuple(dict.fromkeys((*more, *design.unsaid)))
+
+
+def mass_of(part: Part) -> float:
+    """In air [kg, kg/m]: as known, or of what weight and size say."""
+    if part.mass is not None:
+        return part.mass
+    hull = getattr(part.component, "hull", None)
+    volume = part.component.displaced_volume
+    if isinstance(hull, Displacement):
+        volume = hull.displacement[-1][1]
+    if not volume:
+        across = part.diameter
+        round_ = pi / 6.0 * across**3 if isinstance(part.component, Sphere) else 0.0
+        volume = round_ or pi / 4.0 * across**2 * (1.0 if part.flexible else part.length)
+    return max(REFERENCE_DENSITY * volume - part.net / KILOGRAM_FORCE, 0.1 * abs(part.net) / 9.81)

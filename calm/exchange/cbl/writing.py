@@ -6,12 +6,11 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from math import cos, pi, radians, sin, sqrt
 
-from calm.exchange.parts import Assembled, Part, area, remarks
+from calm.exchange.parts import Assembled, Part, area, mass_of, remarks
 from calm.exchange.words import is_chain
 from calm.files import Body, Chain, Cylinder, Sphere
 from calm.files.rigid import Displacement
 from calm.physics.line import REFERENCE_DENSITY
-from calm.units import KILOGRAM_FORCE
 
 _HALF_DENSITY = 0.5 * REFERENCE_DENSITY
 _RIGID = 1e8  # N: EA of what does not stretch
@@ -34,7 +33,7 @@ class _Load:
         """Let a part act here, too."""
         self.names.append(part.use)
         self.net += part.net
-        self.mass += _mass(part)
+        self.mass += mass_of(part)
         self.area += area(part)
 
 
@@ -156,7 +155,7 @@ def _material(problem: _Problem, part: Part) -> str:
     normal = part.kn / per / (_HALF_DENSITY * across) if across else 0.0
     along = part.kt / per / (_HALF_DENSITY * pi * across) if across else 0.0
     figures = (
-        f"d = {across:.9g}  m = {max(_mass(part) / per, _LEAST_MASS):.9g}"
+        f"d = {across:.9g}  m = {max(mass_of(part) / per, _LEAST_MASS):.9g}"
         f"  wet = {wet if abs(wet) > _LEAST_WEIGHT else _LEAST_WEIGHT:.9g}"
         f"  Cdn = {normal:.9g}  Cdt = {along:.9g}  EA = {part.stiffness or _RIGID:.9g}"
         "  EI = 1e-4  GJ = 1e-4"
@@ -165,21 +164,6 @@ def _material(problem: _Problem, part: Part) -> str:
     if isinstance(part.component, Chain) and not is_chain(name):
         name = f"chain_{name}"
     return _keep(problem.materials, name, figures)
-
-
-def _mass(part: Part) -> float:
-    """In air [kg, kg/m]: as known, or of what weight and size say."""
-    if part.mass is not None:
-        return part.mass
-    hull = getattr(part.component, "hull", None)
-    volume = part.component.displaced_volume
-    if isinstance(hull, Displacement):
-        volume = hull.displacement[-1][1]
-    if not volume:
-        across = part.diameter
-        round_ = pi / 6.0 * across**3 if isinstance(part.component, Sphere) else 0.0
-        volume = round_ or pi / 4.0 * across**2 * (1.0 if part.flexible else part.length)
-    return max(REFERENCE_DENSITY * volume - part.net / KILOGRAM_FORCE, 0.1 * abs(part.net) / 9.81)
 
 
 def _windage(part: Part) -> str:
@@ -196,7 +180,7 @@ def _buoy(part: Part, design: Assembled, density: float, floating: bool, lost: l
     gravity = design.gravity
     if part.flexible:
         return "type = sphere  d = 0.001  m = 0.001  buoyancy = 0.01  Cdn = 0"
-    mass = max(_mass(part), 1e-3)
+    mass = max(mass_of(part), 1e-3)
     lift = part.net + mass * gravity
     if lift <= 0.0:
         mass, lift = -part.net / gravity * 1.2, 0.2 * -part.net

@@ -13,13 +13,15 @@ from calm.exchange.importing import import_file
 from calm.shipped import shipped_folder
 
 LINES = Path(str(shipped_folder("lines")))
-ENDINGS = {"mdd": ".mat", "cbl": ".cbl", "csv": ".csv"}
+ENDINGS = {"mdd": ".mat", "cbl": ".cbl", "csv": ".csv", "moordyn": ".txt"}
 SUBSURFACE = ["cdms-1", "deep-current-meters", "fit-top-depth", "tidal-adcp"]
 
 
 def there_and_back(tmp_path, name, to, environment=None):
     source = LINES / f"{name}.yaml"
     exported = export_file(source, to)
+    for beside, content in exported.beside.items():
+        (tmp_path / beside).write_bytes(content)
     other = tmp_path / f"{name}{ENDINGS[to]}"
     other.write_bytes(exported.content)
     made = import_file(other, tmp_path / "back.yaml", environment=environment)
@@ -36,6 +38,33 @@ def test_a_subsurface_mooring_comes_back(name, to, tmp_path):
     assert other["top"]["depth"] == pytest.approx(one["top"]["depth"], abs=1e-4 * depth)
     pull, back = one["anchor"]["tension"], other["anchor"]["tension"]
     assert back == pytest.approx(pull, rel=0.01)
+
+
+def test_a_rope_under_a_float_comes_back_from_moordyn(tmp_path):
+    """S1000, all of which that program can be told; its current stands beside the file."""
+    _, one, other, _ = there_and_back(tmp_path, "s1000", "moordyn")
+    assert other["top"]["depth"] == pytest.approx(one["top"]["depth"], abs=0.1)
+    assert other["top"]["x"] == pytest.approx(one["top"]["x"], abs=0.1)
+    assert other["anchor"]["tension"] == pytest.approx(one["anchor"]["tension"], rel=1e-4)
+
+
+def test_the_points_of_moordyn_stand_in_equilibrium():
+    exported = export_file(LINES / "cdms-1.yaml", "moordyn")
+    rows = exported.content.decode().split("POINTS")[1].split("LINES")[0].splitlines()[3:-1]
+    first, last = rows[0].split(), rows[-1].split()
+    answer = load(LINES / "cdms-1.yaml").solve().to_dict()
+    assert first[1] == "Fixed"
+    assert float(first[4]) == pytest.approx(-525.0 + 0.55)
+    assert last[1] == "Free"
+    assert float(last[2]) == pytest.approx(answer["components"][1]["x_top"], abs=1e-3)
+    assert -float(last[4]) == pytest.approx(answer["components"][1]["depth_top"], abs=1e-3)
+    lift = (1025 * float(last[6]) - float(last[5])) * 9.81
+    assert lift == pytest.approx(682 * 9.80665, rel=2e-3)
+
+
+def test_moordyn_is_given_no_tow():
+    with pytest.raises(UsageError, match="a tow has no anchor"):
+        export_file(LINES / "depressor-fit-depth.yaml", "moordyn")
 
 
 def test_a_hull_comes_back_from_whoi_cable(tmp_path):
