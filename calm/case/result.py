@@ -13,20 +13,26 @@ from calm.case.columns import Clamps, Components, Shape
 if TYPE_CHECKING:
     from calm.case.mooring import Mooring
     from calm.case.tow import TowResult
-    from calm.files import MooringFile
+    from calm.files import Clamp, MooringFile, Piece
 
 
 def document_of(result: Result | TowResult, ends: dict[str, Any]) -> dict[str, Any]:
     """The JSON object of a result, with what its kind tells of the line's ends."""
     from calm.version import __version__
 
-    components = result.components.to_dicts()
+    components, clamps = result.components.to_dicts(), result.clamps.to_dicts()
     for component in components:
         for name in ("kind", "role", "tension", "least_tension"):
             del component[name]
+    parts: list[Piece | Clamp] = [*result.components.part, *result.clamps.part]
+    for row, part in zip((*components, *clamps), parts, strict=True):
+        if part.serial is not None:
+            row["serial"] = part.serial
+    document = result.file.document
     return {
         "calm": __version__,
         "name": result.name,
+        **({} if document is None else {"document": document.to_dict()}),
         "type": result.type,
         "status": result.status,
         "iterations": result.iterations,
@@ -37,7 +43,7 @@ def document_of(result: Result | TowResult, ends: dict[str, Any]) -> dict[str, A
         **ends,
         "other_equilibrium": result.other_equilibrium,
         "components": components,
-        "clamps": result.clamps.to_dicts(),
+        "clamps": clamps,
         "shape": {name: column.tolist() for name, column in vars(result.shape).items()},
         "warnings": list(result.warnings),
     }

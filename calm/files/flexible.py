@@ -108,6 +108,20 @@ class Cable(Flexible):
         return self
 
 
+def strain_under(component: Flexible, load: float) -> float:
+    """Strain of a cable or chain under a load ≥ 0 [N], as the solver has it [-].
+
+    By its `elongation`, else load / `stiffness`; 0 of one that gives neither.
+    """
+    if isinstance(component, Cable) and component.elongation is not None:
+        assert component.breaking_load is not None
+        permanent = component.permanent_elongation or 0.0
+        return ElongationCurve(component.elongation, component.breaking_load, permanent).strain(
+            load
+        )
+    return load / component.stiffness if component.stiffness is not None else 0.0
+
+
 class Chain(Flexible):
     """A chain; `diameter` is that of its bar."""
 

@@ -10,12 +10,16 @@ from calm.files.mooring import Piece, Place
 
 
 def placed(piece: Piece, place: Place) -> Piece:
-    """The piece, with its clamps, at another place of the line."""
+    """The piece, with its clamps and the serial numbers there, at another place of the line."""
     clamps = tuple(
-        replace(clamp, place=replace(place, clamp=number))
+        replace(
+            clamp,
+            place=replace(place, clamp=number),
+            equipment=clamp.equipment.of(place.repeat),
+        )
         for number, clamp in enumerate(piece.clamps)
     )
-    return replace(piece, place=place, clamps=clamps)
+    return replace(piece, place=place, clamps=clamps, equipment=piece.equipment.of(place.repeat))
 
 
 def numbered(pieces: Iterable[Piece]) -> tuple[Piece, ...]:

@@ -12,9 +12,11 @@ from calm.files.checks import LimitKey
 from calm.files.components import Body, Cable, Chain, Component, Cylinder, Sphere
 from calm.files.definition import IN_AIR
 from calm.files.entries import Entry
-from calm.files.explain import about_quantity, shown, unknown
+from calm.files.explain import about_quantity, shown, unknown, validate
 from calm.files.fields import LENGTH, POSITIVE_LENGTH, Quantity
+from calm.files.flexible import strain_under
 from calm.files.labels import placed
+from calm.files.logbook import EQUIPMENT_KEYS, LengthAt, check_serials, read_equipment
 from calm.files.mooring import Clamp, Piece, Place
 from calm.files.overrides import contradicted
 from calm.files.section import Section
@@ -24,9 +26,11 @@ MOST_PIECES = 10_000
 """Pieces a line may have, after assemblies and counts are expanded."""
 
 _COUNT = Quantity("number", at_least=1, at_most=MOST_PIECES)
-_ITEM_KEYS = frozenset({"use", "label", "count", "length", "top_depth", "body_depth", "clamps"})
+_ITEM_KEYS = EQUIPMENT_KEYS | {
+    *("use", "label", "count", "length", "length_at", "top_depth", "body_depth", "clamps")
+}
 _ASSEMBLY_KEYS = frozenset({"use", "label", "count"})
-_CLAMP_KEYS = frozenset({"use", "label", "at"})
+_CLAMP_KEYS = EQUIPMENT_KEYS | {"use", "label", "at"}
 _WORDS = {"at": "place", "top_depth": "top depth", "body_depth": "body depth"}
 
 
@@ -100,6 +104,7 @@ class LineReader:
 
     def _item(self, item: Section) -> tuple[Piece, ...]:
         count = self._count(item)
+        check_serials(item, count, self._problems)
         entry = self._entry(item)
         definition = self._definition(entry, item, _ITEM_KEYS) if entry else None
         if entry is None or definition is None:
@@ -124,13 +129,22 @@ class LineReader:
 
     def _piece(self, component: Component, item: Section) -> Piece:
         length: float | None
+        load = 0.0
         if not isinstance(component, (Cable, Chain)):
             length = component.length
         elif item.data.get("length") == "fit":
             length = None
+        elif "length_at" in item.data:
+            length, load = self._measured(item, component)
         else:
             need = "a cable or chain needs it"
             length = self._quantity(item, "length", POSITIVE_LENGTH, need) or math.nan
+        if "length_at" in item.data and not isinstance(component, (Cable, Chain)):
+            message = "`length_at` is for cables and chains; this is as long as its definition says"
+            self._refuse(item, ("length_at",), message, key=True)
+        elif "length" in item.data and "length_at" in item.data:
+            message = "gives both `length` and `length_at`; one says how long it is cut"
+            self._refuse(item, ("length_at",), message, key=True)
         fit_depth = self._fit_depth(item, fits=length is None)
         clamps = self._clamps(item, length)
         place = item.problem((), "")
@@ -148,7 +162,24 @@ class LineReader:
             column=place.column,
             place=Place(0),
             fit_body_depth=fit_depth if self._towed else None,
+            equipment=read_equipment(item, self._problems),
+            measured_load=load,
         )
+
+    def _measured(self, item: Section, component: Cable | Chain) -> tuple[float, float]:
+        """The unstretched length of what is measured under a load [m], and that load [N]."""
+        if not isinstance(item.data["length_at"], dict):
+            example = "{load: 2 kN, length: 480 m}"
+            self._refuse(item, ("length_at",), f"`length_at` must be as `{example}`")
+            return math.nan, 0.0
+        measured = validate(LengthAt, item.child("length_at"), self._problems)
+        if measured is None:
+            return math.nan, 0.0
+        breaking = component.breaking_load
+        if breaking is not None and measured.load > breaking:
+            message = f"`load` is above the breaking load of {breaking:g} N"
+            self._refuse(item, ("length_at", "load"), message)
+        return measured.length / (1.0 + strain_under(component, measured.load)), measured.load
 
     def _fit_depth(self, item: Section, *, fits: bool) -> float | None:
         """The depth a piece is cut to fit: of the line's top, in a tow of its own lower end."""
@@ -186,7 +217,9 @@ class LineReader:
             if isinstance(component, (Sphere, Cylinder, Body)) and at is not None:
                 self._tell_of_mass(clamp.data["use"], component)
                 where = Place(0, clamp=len(clamps))
-                clamps.append(Clamp(clamp.data["use"], self._label(clamp), component, at, where))
+                own = read_equipment(clamp, self._problems)
+                label = self._label(clamp)
+                clamps.append(Clamp(clamp.data["use"], label, component, at, where, own))
             elif component is not None and at is not None:
                 message = f"a component of kind {component.kind} cannot be clamped on a line"
                 self._refuse(clamp, ("use",), message)
@@ -254,7 +287,8 @@ class LineReader:
         void = contradicted(definition.kind, entry.section.data.keys(), overriding.keys())
         override = Section.of(item.document, item.location, overriding)
         section = override.over(entry.section, dropping=void)
-        component = self._define(entry, section, also_allowed=item_keys)
+        hinted = item_keys if isinstance(definition, Cable) else item_keys - {"termination"}
+        component = self._define(entry, section, also_allowed=hinted)
         if isinstance(component, Assembly) or component is None:
             return None
         self._keep_looser_limits(entry, item, definition, component)

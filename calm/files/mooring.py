@@ -13,6 +13,7 @@ from calm.files.checks import Checks, LimitKey
 from calm.files.components import Anchor, Component
 from calm.files.environment import Environment, Position
 from calm.files.fields import LENGTH, Model, Quantity
+from calm.files.logbook import NO_EQUIPMENT, Deployed, DocumentKeys, Equipment, ReleaseKeys
 from calm.files.strumming import Strumming
 from calm.files.uncertainty import Uncertainty
 
@@ -91,6 +92,12 @@ class Clamp:
     component: Component
     at: float
     place: Place
+    equipment: Equipment = NO_EQUIPMENT
+
+    @property
+    def serial(self) -> str | None:
+        """Serial number of the very instrument, where the file gives it."""
+        return _serial(self.equipment)
 
 
 @dataclass(frozen=True)
@@ -115,6 +122,10 @@ class Piece:
     place : Place
     fit_body_depth : float or None
         Depth wanted for the lower end of the piece at the tow's speed [m], where it is cut to fit.
+    equipment : Equipment
+        What the file says of the very thing.
+    measured_load : float
+        Load under which its length is measured [N], `length` being without load all the same.
     """
 
     index: int
@@ -128,6 +139,18 @@ class Piece:
     column: int
     place: Place
     fit_body_depth: float | None = None
+    equipment: Equipment = NO_EQUIPMENT
+    measured_load: float = 0.0
+
+    @property
+    def serial(self) -> str | None:
+        """Serial number of the very thing, where the file gives it."""
+        return _serial(self.equipment)
+
+
+def _serial(equipment: Equipment) -> str | None:
+    assert not isinstance(equipment.serial, tuple)  # one was chosen as the item was expanded
+    return equipment.serial
 
 
 @dataclass(frozen=True)
@@ -139,7 +162,8 @@ class MooringFile:
     hidden by a nearer one, levels dropped from a measured current. `variants` are the names of
     the environments it gives besides its own, `accepts` what it accepts of the design check,
     `uncertainty` how sure what it stands on is, `looser` the limits of components that its line
-    sets beyond those of their definitions.
+    sets beyond those of their definitions. `document` is what its title block says, `releases` the
+    codes of the releases, `deployed` what went over the side.
     """
 
     path: str
@@ -156,6 +180,9 @@ class MooringFile:
     accepts: tuple[Accept, ...] = ()
     uncertainty: Uncertainty = field(default_factory=Uncertainty)
     looser: tuple[LimitKey, ...] = ()
+    document: DocumentKeys | None = None
+    releases: tuple[ReleaseKeys, ...] = ()
+    deployed: Deployed | None = None
 
     @property
     def release(self) -> int | None:

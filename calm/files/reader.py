@@ -12,14 +12,15 @@ from calm.errors import InputError, Problem
 from calm.files.accept import read_accepts
 from calm.files.catalogue import Catalogue
 from calm.files.checks import Checks
-from calm.files.components import Anchor
+from calm.files.components import Anchor, Cable, Chain
 from calm.files.document import compose, read_document
 from calm.files.environment import Position, read_environment
 from calm.files.explain import validate
 from calm.files.fields import Model, Text
 from calm.files.labels import numbered
 from calm.files.line import LineReader
-from calm.files.mooring import MooringFile, Piece, Place, Solver, TowKeys
+from calm.files.logbook import Deployed, DocumentKeys, ReleaseKeys, check_deployed
+from calm.files.mooring import Clamp, MooringFile, Piece, Place, Solver, TowKeys
 from calm.files.section import Section
 from calm.files.uncertainty import Uncertainty
 from calm.files.variants import choose_environment
@@ -40,6 +41,7 @@ class MooringKeys(Model):
 
     name: Text | None = None
     description: Text | None = None
+    document: DocumentKeys | None = None
     position: Position | None = None
     tow: Annotated[TowKeys | None, BeforeValidator(_given, json_schema_input_type=TowKeys)] = None
     environment: dict[str, Any] = Field(default_factory=dict)
@@ -49,6 +51,8 @@ class MooringKeys(Model):
     solver: Solver | None = None
     checks: Checks | None = None
     uncertainty: Uncertainty | None = None
+    releases: tuple[ReleaseKeys, ...] | None = None
+    deployed: Deployed | None = None
 
 
 def read_mooring(
@@ -107,6 +111,11 @@ def read_mooring(
     checks = (keys and keys.checks) or Checks()
     labels = _labels(pieces) if line_is_whole else None
     accepts = read_accepts(checks.accept, labels, top, problems)
+    if keys and keys.deployed and labels is not None:
+        cut = [p.label for p in pieces if isinstance(p.component, Cable | Chain)]
+        check_deployed(keys.deployed, labels, cut, top, problems)
+    if keys and keys.releases and labels is not None:
+        notices += _unknown_releases(keys.releases, pieces)
     surroundings = None
     if chosen:
         position = keys.position if keys else None
@@ -130,6 +139,9 @@ def read_mooring(
         notices=tuple(notices),
         variants=tuple(keys.environments or ()),
         accepts=accepts,
+        document=keys.document,
+        releases=keys.releases or (),
+        deployed=keys.deployed,
     )
 
 
@@ -139,6 +151,19 @@ def _labels(pieces: Sequence[Piece]) -> list[str]:
         label
         for piece in pieces
         for label in (piece.label, *(clamp.label for clamp in piece.clamps))
+    ]
+
+
+def _unknown_releases(releases: Sequence[ReleaseKeys], pieces: Sequence[Piece]) -> list[str]:
+    """Of releases whose serial number nothing in the line has."""
+    parts: list[Piece | Clamp] = []
+    for piece in pieces:
+        parts += (piece, *piece.clamps)
+    serials = {part.serial for part in parts if part.component.role == "release"}
+    return [
+        f"`releases`: no release of the line has the serial number {release.serial}"
+        for release in releases
+        if serials != {None} and release.serial is not None and release.serial not in serials
     ]
 
 

@@ -6,11 +6,14 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+from calm.files.editing import Value
 from calm.files.fields import LENGTH, POSITIVE_LENGTH, Quantity
+from calm.files.logbook import LOAD
 from calm.units import QuantityError
 
 COUNT = Quantity("number", at_least=1, at_most=10_000)
 _FIT = re.compile(r"fit\b\s*(?:to\b)?\s*(.*)", re.IGNORECASE)
+_AT_LOAD = re.compile(r"(.+?)\s+at\s+(.+)", re.IGNORECASE)
 _UNIT = re.compile(r"[\d.]\s*([^\d.\s].*)$")
 
 
@@ -119,13 +122,16 @@ def distance(before: str = "") -> Check:
 
 
 def length(before: str = "", *, towed: bool = False) -> Check:
-    """A length, or ``fit`` with the depth to be reached."""
+    """A length, one with the load it is measured ``at``, or ``fit`` with the depth to reach."""
     plain = quantity(POSITIVE_LENGTH, usual_unit=unit_of(before))
     depth = quantity(Quantity("length") if towed else LENGTH, usual_unit=unit_of(before))
+    load = quantity(LOAD, usual_unit="kN")
     what = "the depth its lower end is to reach" if towed else "the depth the top is to reach"
 
     def check(text: str) -> Reading:
-        fit = _FIT.fullmatch(text.strip())
+        fit, measured = _FIT.fullmatch(text.strip()), _AT_LOAD.fullmatch(text.strip())
+        if fit is None and measured is not None:
+            return _joined(plain(measured[1]), load(measured[2]))
         if fit is None:
             return plain(text)
         if not fit[1]:
@@ -137,18 +143,30 @@ def length(before: str = "", *, towed: bool = False) -> Check:
     return check
 
 
-def length_values(text: str, *, towed: bool = False) -> Mapping[str, str | None]:
+def _joined(long: Reading, load: Reading) -> Reading:
+    """A length and the load it is measured at, each with what is wrong with it."""
+    offers = [each.offer or each.text for each in (long, load)]
+    offer = " at ".join(offers) if long.offer or load.offer else None
+    complaint = long.complaint or load.complaint
+    return Reading(f"{long.text} at {load.text}", complaint, offer)
+
+
+def length_values(text: str, *, towed: bool = False) -> Mapping[str, Value | None]:
     """The keys of an item with this length, as `length` has read it."""
     key, other = ("body_depth", "top_depth") if towed else ("top_depth", "body_depth")
-    fit = _FIT.fullmatch(text)
-    if fit is None:
-        return {"length": text, "top_depth": None, "body_depth": None}
-    return {"length": "fit", key: fit[1], other: None}
+    fit, measured = _FIT.fullmatch(text), _AT_LOAD.fullmatch(text)
+    if fit is not None:
+        return {"length": "fit", "length_at": None, key: fit[1], other: None}
+    no_depth = {"top_depth": None, "body_depth": None}
+    if measured is not None:
+        under = {"load": measured[2], "length": measured[1]}
+        return {"length": None, "length_at": under, **no_depth}
+    return {"length": text, "length_at": None, **no_depth}
 
 
 def length_text(values: Mapping[str, str]) -> str:
     """The length of an item as it is shown and typed."""
-    written = values.get("length", "")
+    written = values.get("length", "") or values.get("length_at", "")
     if written != "fit":
         return written
     return f"fit {values.get('top_depth') or values.get('body_depth') or ''}".rstrip()

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from calm.files import Place
-from calm.files.editing import LINE, Draft, History, Item, Kept, WorkingFile, clamps_of
+from calm.files.editing import LINE, Draft, History, Item, Kept, Value, WorkingFile, clamps_of
 from calm.tui.standing import Standing
 
 Location = tuple[str | int, ...]
@@ -123,7 +123,7 @@ class Session:
         self.do(draft, f"clamp {values['use']}")
         return Place(spot.item, clamp=index)
 
-    def put(self, spot: Place, values: Mapping[str, str | None], label: str) -> None:
+    def put(self, spot: Place, values: Mapping[str, Value | None], label: str) -> None:
         """Set keys of a row; None takes one away."""
         draft, (rows, index) = self.draft, _listed(spot)
         for key, value in values.items():

@@ -37,6 +37,16 @@ def test_the_keys_of_a_length():
         assert checking.length_text(kept) == text
 
 
+def test_a_length_at_a_load():
+    assert checking.length()("480 at 2").text == "480 m at 2 kN"
+    assert checking.length()("480 m at 2 kN").is_good
+    assert checking.length()("480 m at 2 kg").offer == "480 m at 2 kgf"
+    values = checking.length_values("480 m at 2 kN")
+    assert values["length_at"] == {"load": "2 kN", "length": "480 m"}
+    assert values["length"] is None
+    assert checking.length_text({"length_at": "480 m at 2 kN"}) == "480 m at 2 kN"
+
+
 def test_counts():
     assert checking.count("6").text == "6"
     assert checking.count("×6").text == "6"

@@ -23,7 +23,8 @@ class Item:
     line, column : int
         Where it stands, counted from 1: those of the pieces that it is read as.
     values : dict
-        Its keys with plain values, as written; empty text where there is no value.
+        Its keys with plain values, as written; empty text where there is no value. A `length_at`
+        is in it as people say it, `480 m at 2 kN`.
     clamps : tuple of Item
     text : str
         The lines it takes, with the comments that belong to it.
@@ -41,6 +42,9 @@ def item_of(node: Node, text: str, *, lines: str = "") -> Item:
     entries = list(zip(node.keys, node.children, strict=False))
     values = {key.data: child.data or "" for key, child in entries if child.kind == "scalar"}
     clamps = [child for key, child in entries if key.data == "clamps" and child.kind == "sequence"]
+    measured = next((child.data for key, child in entries if key.data == "length_at"), None)
+    if isinstance(measured, dict):
+        values["length_at"] = f"{measured.get('length', '?')} at {measured.get('load', '?')}"
     return Item(
         line=node.line,
         column=node.column,

@@ -42,17 +42,27 @@ class Worded(list[Value]):
 
 
 SECTIONS = frozenset(
-    {"environment", "line", "components", "environments", "solver", "checks", "uncertainty"}
+    {
+        *("document", "environment", "line", "components", "environments", "solver", "checks"),
+        *("uncertainty", "releases", "deployed"),
+    }
 )
 """Keys whose values are written below them, a line each."""
 
 _ORDERS: tuple[tuple[str, ...], ...] = (
     (
-        *("name", "description", "position", "tow", "environment", "line", "components"),
-        *("environments", "solver", "checks", "uncertainty"),
+        *("name", "description", "document", "position", "tow", "environment", "line"),
+        *("components", "environments", "solver", "checks", "uncertainty", "releases", "deployed"),
     ),
     ("fluid", "depth", "depth_range", "density", "gravity", "current", "wind", "fouling"),
-    ("use", "at", "label", "count", "length", "top_depth", "body_depth"),
+    (
+        *("use", "at", "label", "count", "length", "top_depth", "body_depth", "length_at"),
+        *("termination", "serial", "calibrated", "sampling", "battery_until"),
+    ),
+    (
+        *("id", "revision", "date", "author", "checked", "approved", "project", "ship", "cruise"),
+        "history",
+    ),
     ("columns", "rows"),
     ("speed", "toward", "w", "height", "surface_drift", "drift_depth"),
     ("file", "time"),

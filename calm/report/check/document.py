@@ -24,13 +24,19 @@ def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
     dict
         `state`, the worst there is; what is `accepted`, and why; `findings`, and as `tighter` those
         of other situations that leave less margin; of each mooring by its name `launch`,
-        `recovery`, `backup`, `inventory` and its `totals`; and `situations`, what was solved of
-        each mooring in each environment.
+        `recovery`, `backup`, `inventory` and its `totals`, and its `document` where files give any;
+        and `situations`, what was solved of each mooring in each environment.
     """
     from calm.version import __version__
 
+    documents = {
+        each.name: each.mooring.file.document.to_dict()
+        for each in assessments
+        if each.mooring.file.document is not None
+    }
     return {
         "calm": __version__,
+        **({"document": documents} if documents else {}),
         "state": worst_state(each.state for each in assessments),
         "accepted": [
             _accepted(each.name, finding)

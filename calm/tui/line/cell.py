@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from calm.files import Place
+from calm.files.editing import Value
 from calm.tui.catalogue.index import WITH_LENGTH
 from calm.tui.checking import Check, anything, count, distance, length, length_text, length_values
 from calm.tui.line.table_row import EDITABLE, Column
@@ -60,6 +61,8 @@ class Cell:
         EditError
         """
         written = self._values
+        if text == self.text:
+            return
         given = {k: new for k, new in self._keys(text).items() if new is not None or k in written}
         if any(written.get(key) != new for key, new in given.items()):
             name = "place" if self.spot.is_clamp and self.column == "length" else self.column
@@ -73,7 +76,7 @@ class Cell:
                 return cell
         return None
 
-    def _keys(self, text: str) -> dict[str, str | None]:
+    def _keys(self, text: str) -> dict[str, Value | None]:
         """The keys of the file that a text stands for."""
         if self._is_length:
             return dict(length_values(text, towed=self._is_towed))

@@ -33,7 +33,8 @@ line:
     top_depth: 105 m
     clamps: [{use: meter, at: 0, label: clamped, cn: 1.1}]
   - {use: frame, count: 2}
-  - {use: measured, slack: allowed, cd: 1}
+  - {use: measured, slack: allowed, cd: 1, serial: 12, calibrated: 2026-03-01, sampling: 9 s}
+  - {use: own, length_at: {load: 2 kN, length: 20 m}, count: 2, serial: [1, 2]}
   - {use: deadweight, friction: 1/2, mass: 1.5 t}
 components:
   frame: {kind: assembly, parts: [{use: own, length: 1/2 ft}, {use: chain}]}
@@ -58,6 +59,11 @@ checks:
   accept:
     - {rule: tilt, component: "?*", reason: x, by: me, date: "2026-11-22", until: "2027-11-22"}
     - {rule: strength, reason: 5}
+document: {id: M-17, revision: 2, date: 2026-11-22, author: me, checked: you, approved: they,
+  project: P, ship: S, cruise: C1, history: [{revision: 1, date: 2026-11-01, by: me, change: x}]}
+releases: [{serial: 77, codes: 0123}, {serial: 78, codes: {enable: 1, release: "2"}}]
+deployed: {date: "2026-11-22T10:30", position: {latitude: 48.3 deg, longitude: 0}, depth: 1103 m,
+  items: [{label: 5, serial: 12, remark: x}, {label: rope-12, length: 99 m}]}
 """
 
 TOWED = """\
@@ -90,7 +96,7 @@ def test_ways_of_strumming(strumming: str) -> None:
 def test_the_reader_takes_everything_too(read: Callable[..., MooringFile], tmp_path: Any) -> None:
     (tmp_path / "current.csv").write_text("depth[m],u[m/s],v[m/s]\n0,1,1\n")
     text = EVERYTHING.replace("{use: chain}", "{use: chain, length: 2 m}")
-    assert len(read(text).pieces) == 9
+    assert len(read(text).pieces) == 11
     assert len(read(TOWED, "shallow").pieces) == 2
 
 

@@ -1,0 +1,180 @@
+"""What a mooring file keeps beside the design: its document, serial numbers, what was deployed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Annotated, Any, TypeGuard
+
+from pydantic import AfterValidator, Field, WithJsonSchema
+
+from calm.errors import Problem
+from calm.files.accept import Day
+from calm.files.environment import Position
+from calm.files.explain import shown, unknown, validate
+from calm.files.fields import POSITIVE_LENGTH, Model, Quantity, Text
+from calm.files.section import Section
+from calm.files.times import TimeChoiceError, parse_time
+
+
+def _moment(text: str) -> str:
+    try:
+        parse_time(text)
+    except TimeChoiceError as error:
+        raise ValueError(str(error)) from None
+    return text
+
+
+Moment = Annotated[
+    Text,
+    AfterValidator(_moment),
+    WithJsonSchema({"type": "string", "pattern": r"^\d{4}-\d{2}-\d{2}"}),
+]
+"""A day, or a day and time, as ISO 8601 writes them; kept as written."""
+
+
+class Revision(Model):
+    """What a revision of the document changed."""
+
+    revision: Text
+    date: Day | None = None
+    by: Text | None = None
+    change: Text | None = None
+
+
+class DocumentKeys(Model):
+    """What the title block of a drawing says."""
+
+    id: Text | None = None
+    revision: Text | None = None
+    date: Day | None = None
+    author: Text | None = None
+    checked: Text | None = None
+    approved: Text | None = None
+    project: Text | None = None
+    ship: Text | None = None
+    cruise: Text | None = None
+    history: tuple[Revision, ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """What is given, as JSON has it."""
+        return self.model_dump(mode="json", exclude_none=True, exclude_defaults=True)
+
+
+class ReleaseKeys(Model):
+    """A release by its serial number, and its codes: one text, several, or several by name."""
+
+    serial: Text | None = None
+    codes: Text | tuple[Text, ...] | dict[str, Text] | None = None
+
+    @property
+    def code_lines(self) -> tuple[str, ...]:
+        """The codes as a person reads them, one a line."""
+        if isinstance(self.codes, dict):
+            return tuple(f"{name}: {code}" for name, code in self.codes.items())
+        return (self.codes,) if isinstance(self.codes, str) else self.codes or ()
+
+
+class DeployedItem(Model):
+    """What went over the side for a piece or a clamp; `length` [m] is what a cable was cut to."""
+
+    label: Text
+    serial: Text | None = None
+    length: Annotated[float | None, POSITIVE_LENGTH] = None
+    remark: Text | None = None
+
+
+class Deployed(Model):
+    """Where and when the mooring was deployed, and what of it differs from the design."""
+
+    date: Moment | None = None
+    position: Position | None = None
+    depth: Annotated[float | None, Quantity("length", above=0)] = None
+    items: tuple[DeployedItem, ...] = ()
+
+
+class Equipment(Model):
+    """What the file says of the very thing that hangs at a place of the line.
+
+    `serial` is a text, or as many as the `count` of the item; of an item, one of it is chosen for
+    each piece.
+    """
+
+    serial: Text | Annotated[tuple[Text, ...], Field(min_length=1)] | None = None
+    calibrated: Day | None = None
+    sampling: Text | None = None
+    battery_until: Day | None = None
+    termination: Text | None = None
+
+    def of(self, repeat: int) -> Equipment:
+        """That of one of a count, from 0."""
+        if not isinstance(self.serial, tuple):
+            return self
+        return self.model_copy(update={"serial": self.serial[min(repeat, len(self.serial) - 1)]})
+
+
+LOAD = Quantity("force", usual_unit="kN", at_least=0)
+
+
+class LengthAt(Model):
+    """A length of a cable [m] as measured under a load [N]."""
+
+    load: Annotated[float, LOAD]
+    length: Annotated[float, POSITIVE_LENGTH]
+
+
+EQUIPMENT_KEYS = frozenset(Equipment.model_fields)
+NO_EQUIPMENT = Equipment()
+
+
+def read_equipment(item: Section, problems: list[Problem]) -> Equipment:
+    """What an item or a clamp says of the very thing; mistakes are added to `problems`."""
+    given = {key: item.data[key] for key in item.data.keys() & EQUIPMENT_KEYS}
+    if not given:
+        return NO_EQUIPMENT
+    section = Section.of(item.document, item.location, given)
+    return validate(Equipment, section, problems) or NO_EQUIPMENT
+
+
+def check_serials(item: Section, count: int, problems: list[Problem]) -> None:
+    """Of an item and of its clamps: a list of serial numbers has one for each of the count."""
+    clamps: Any = item.data.get("clamps")
+    below = [(("clamps", i), one) for i, one in enumerate(clamps if _is_list(clamps) else ())]
+    for place, data in [((), item.data), *below]:
+        serials = data.get("serial") if isinstance(data, dict) else None
+        if _is_list(serials) and len(serials) != count:
+            message = f"`serial` has {len(serials)} numbers for a count of {count}"
+            problems.append(item.problem((*place, "serial"), message))
+
+
+def _is_list(value: object) -> TypeGuard[Sequence[object]]:
+    return isinstance(value, (list, tuple))
+
+
+def check_deployed(
+    deployed: Deployed,
+    labels: Sequence[str],
+    cables: Sequence[str],
+    top: Section,
+    problems: list[Problem],
+) -> None:
+    """What was deployed is of the line, each piece or clamp once, and only cables are cut.
+
+    Parameters
+    ----------
+    labels : of pieces and clamps
+    cables : those of what is cut to length
+    top : the mooring file
+    """
+    seen: set[str] = set()
+    for number, item in enumerate(deployed.items):
+        where = ("deployed", "items", number)
+        text = shown(item.label)
+        if item.label not in labels:
+            message = unknown(f"no piece or clamp is called `{text}`", item.label, labels)
+            problems.append(top.problem((*where, "label"), message))
+        elif item.label in seen:
+            problems.append(top.problem((*where, "label"), f"`{text}` is given twice"))
+        elif item.length is not None and item.label not in cables:
+            message = f"`length` of `{text}`: only a cable or chain is cut to length"
+            problems.append(top.problem((*where, "length"), message))
+        seen.add(item.label)
