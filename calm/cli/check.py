@@ -15,7 +15,7 @@ from calm.cli.outputs import OutputPath, Outputs
 from calm.cli.run import check_draws
 from calm.cli.streams import narrate
 from calm.cli.workers import FEW, mapped
-from calm.errors import UsageError, internal_failure
+from calm.errors import InputError, Problem, UsageError, internal_failure
 
 if TYPE_CHECKING:
     from calm.case import Mooring
@@ -28,6 +28,7 @@ CHECK_EXAMPLES = """Examples:
   calm check mooring.yaml
   calm check mooring.yaml --environment storm.yaml --environment neap.yaml
   calm check north.yaml south.yaml --report cruise/
+  calm check revised.yaml --report cruise/ --against design.yaml
   calm check mooring.yaml --uncertainty --samples 512
   calm check mooring.yaml --json - | jq '.findings[] | select(.state == "fail")'"""
 
@@ -40,6 +41,7 @@ def check(
     catalog: list[Path] | None = None,
     json: OutputPath = None,
     report: Path | None = None,
+    against: Path | None = None,
     allow_unknown: bool = False,
     uncertainty: bool = False,
     samples: int = 2048,
@@ -67,6 +69,8 @@ def check(
         Write every finding as JSON, - to print it.
     report
         Write report.html, report.pdf, report.json, checks.csv and inventory.csv in this folder.
+    against
+        An earlier design, with which the report compares the mooring; needs --report.
     allow_unknown
         End with 0, too, where figures are unknown; what is shown and written stays the same.
     uncertainty
@@ -83,25 +87,72 @@ def check(
     outputs.check()
     if workers is not None and workers < 1:
         raise UsageError(f"--workers: {workers} is not 1 or more")
+    if against is not None and (report is None or len(files) > 1):
+        raise UsageError("--against compares one mooring with an earlier design in its --report")
     draws = None
     if uncertainty:
         check_draws(samples, seed)
         draws = samples, seed
     if report is not None:
-        given = [*files, *map(Path, environment or ()), *(catalog or ())]
+        given = [*files, *map(Path, environment or ()), *(catalog or ()), *filter(None, [against])]
         _check_report(report, json, given)
-    designs, tows = read_designs(files, environment, catalog or [], workers)
+    designs, tows, earlier = _read(files, environment, catalog or [], workers, against)
     if tows:
         narrate(f"not checked, since towed: {', '.join(map(str, tows))}")
-    judged = _judged(designs, workers, report is not None, draws)
+    drawn = report is not None and earlier is None  # one that is compared is drawn with that
+    judged = _judged(designs, workers, drawn, draws)
     assessments = [assessment for assessment, _ in judged]
     for design, assessment in zip(designs, assessments, strict=True):
         of_files = (notice for one in design.moorings for notice in one.file.notices)
         for notice in dict.fromkeys((*of_files, *assessment.notices)):
             narrate(f"{design.path}: {notice}")
     sections = [section for _, section in judged if section is not None]
+    if earlier is not None and against is not None:
+        sections = [_beside(against, earlier, designs[0], assessments[0])]
     _answer(assessments, sections, outputs, report)
     return gravest(_code(each, allow_unknown) for each in assessments)
+
+
+def _read(
+    files: Sequence[Path],
+    environments: Sequence[str] | None,
+    catalogs: Sequence[Path],
+    workers: int | None,
+    against: Path | None,
+) -> tuple[list[Design], list[Path], Mooring | None]:
+    """What is judged, the tows among the files, and the earlier design; or all their mistakes."""
+    if against is None:
+        return *read_designs(files, environments, catalogs, workers), None
+    import calm
+    from calm.case import Tow
+
+    problems: list[Problem] = []
+    earlier: Mooring | Tow | None = None
+    designs: list[Design] = []
+    tows: list[Path] = []
+    try:
+        first = environments[0] if environments else None
+        earlier = calm.load(against, environment=first, catalogs=catalogs)
+    except InputError as error:
+        problems += error.problems
+    try:
+        designs, tows = read_designs(files, environments, catalogs, workers)
+    except InputError as error:
+        problems = [*error.problems, *problems]
+    if problems:
+        raise InputError(list(dict.fromkeys(problems)))
+    if isinstance(earlier, Tow):
+        raise UsageError(f"{against} is a tow; calm check is for moorings")
+    return designs, tows, earlier
+
+
+def _beside(path: Path, earlier: Mooring, design: Design, assessment: Assessment) -> Section:
+    """The section of a mooring, with what differs from an earlier design."""
+    from calm.checks.comparison import comparison_of
+    from calm.report.check.section import mooring_section
+
+    names = str(path), str(design.path)
+    return mooring_section(assessment, comparison_of(names, earlier, design.moorings[0]))
 
 
 def _check_report(folder: Path, json: Path | None, given: Sequence[Path]) -> None:

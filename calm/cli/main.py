@@ -15,6 +15,8 @@ from calm.cli.build import BUILD_EXAMPLES, build
 from calm.cli.catalog import catalog
 from calm.cli.chart import chart
 from calm.cli.check import CHECK_EXAMPLES, check
+from calm.cli.diff import DIFF_EXAMPLES, diff
+from calm.cli.exchange import IMPORT_EXAMPLES, import_
 from calm.cli.exit_codes import ExitCode
 from calm.cli.motion import MOTION_EXAMPLES, motion
 from calm.cli.run import RUN_EXAMPLES, run
@@ -55,11 +57,18 @@ app = App(
 )
 app.command(run, usage="Usage: calm run [OPTIONS] FILE...", help_epilogue=RUN_EXAMPLES)
 app.command(check, usage="Usage: calm check [OPTIONS] FILE...", help_epilogue=CHECK_EXAMPLES)
+app.command(diff, usage="Usage: calm diff [OPTIONS] FILE [FILE]", help_epilogue=DIFF_EXAMPLES)
 app.command(batch, help_epilogue=BATCH_EXAMPLES)
 app.command(motion, help_epilogue=MOTION_EXAMPLES)
 app.command(build, help_epilogue=BUILD_EXAMPLES)
 app.command(tow, usage="Usage: calm tow [OPTIONS] FILE...", help_epilogue=TOW_EXAMPLES)
 app.command(size, help_epilogue=SIZE_EXAMPLES)
+app.command(
+    import_,
+    name="import",
+    usage="Usage: calm import [OPTIONS] FILE...",
+    help_epilogue=IMPORT_EXAMPLES,
+)
 app.command(strumming, help_epilogue=STRUMMING_EXAMPLES)
 app.command(catalog)
 app.command(chart)

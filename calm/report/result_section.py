@@ -21,6 +21,7 @@ from calm.report.inputs import (
 from calm.report.plot import draw
 from calm.report.provenance import date
 from calm.report.sheet import sheet
+from calm.report.title_block import document_part
 from calm.report.uncertain import uncertainty_part
 from calm.report.vector import figure_svg
 
@@ -39,6 +40,7 @@ def result_report(result: Result | TowResult, uncertain: Uncertain | None = None
     drawing = figure_svg(draw(result, uncertain))
     described = (Prose((file.description,)),) if file.description else ()
     parts = (
+        *document_part(file),
         Part("Result", (*described, *said.summary, Prose((said.convergence,)))),
         Part("The line", (Figure("Schematic", schematic_svg(file, result), tall=True),
                           replace(said.table, title="Table of the line"))),

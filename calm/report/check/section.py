@@ -30,6 +30,7 @@ from calm.report.check.summary import (
     worst_table,
 )
 from calm.report.check.verdict import accepted_table, limits_table, unknown_table, verdict_prose
+from calm.report.differences import comparison_part
 from calm.report.inputs import (
     UNSEEN,
     current_listing,
@@ -39,16 +40,24 @@ from calm.report.inputs import (
 )
 from calm.report.provenance import date
 from calm.report.sheet import sheet
+from calm.report.title_block import document_part
 
 if TYPE_CHECKING:
     from calm.checks.assessment import Assessment
+    from calm.checks.comparison import Comparison
 
 
-def mooring_section(assessment: Assessment) -> Section:
-    """All that the report says of one mooring; it draws, so it takes some tenths of a second."""
+def mooring_section(assessment: Assessment, against: Comparison | None = None) -> Section:
+    """All that the report says of one mooring; it draws, so it takes some tenths of a second.
+
+    `against` is the mooring compared with the design that it came from.
+    """
     columns = (*(stand.environment for stand in assessment.stands), ON_THE_WAY)
     worst = worst_by_rule(assessment)
+    compared = () if against is None else (comparison_part(against),)
     parts = (
+        *document_part(assessment.mooring.file),
+        *compared,
         Part("Judgement", tuple(_judgement(assessment, columns))),
         Part("The line", tuple(_line(assessment))),
         Part("Shape, tension and breaks", tuple(_drawn(assessment))),

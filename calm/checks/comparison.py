@@ -1,0 +1,243 @@
+"""What a change of a design does: depth, knockdown, tension, margins, anchor and weights."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import date
+from math import hypot
+from typing import Any
+
+from calm.case import Mooring, Result, Tow, TowResult
+from calm.case.columns import ClampRow, ComponentRow
+from calm.checks.assess import check
+from calm.checks.assessment import Assessment
+from calm.checks.finding import State
+from calm.checks.inventory import total_of
+from calm.checks.rules import RULES
+from calm.errors import NoEquilibrium
+from calm.files import Place
+from calm.files.differences import Change, Differences, differences
+from calm.quantities import QUANTITIES
+
+Number = float | None
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A figure of two designs.
+
+    Attributes
+    ----------
+    name : dotted, of what and which figure: ``top.depth``
+    title : for people
+    quantity : of `calm.quantities`; "" of a word
+    before, after : [SI, degrees], or a word; None where it is not known
+    states : of a margin, how its rule judges
+    of_a_part : whether it is of a piece or a clamp
+    """
+
+    name: str
+    title: str
+    quantity: str
+    before: Number | str
+    after: Number | str
+    states: tuple[State, State] | None = None
+    of_a_part: bool = False
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Two designs, or a design and what was deployed of it.
+
+    Attributes
+    ----------
+    names : what each is called
+    differences : between what was read
+    figures : side by side
+    notes : why figures are missing
+    """
+
+    names: tuple[str, str]
+    differences: Differences
+    figures: tuple[Compared, ...]
+    notes: tuple[str, ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """The JSON object; None stands where a figure is unknown."""
+        found = self.differences
+        return {
+            "names": list(self.names),
+            "changed": [_change(one) for one in found.changed],
+            "moved": [_change(one) for one in found.moved],
+            "added": list(found.added),
+            "removed": list(found.removed),
+            "figures": [
+                {"name": one.name, "from": one.before, "to": one.after}
+                | ({} if one.states is None else {"states": list(one.states)})
+                for one in self.figures
+            ],
+        }
+
+
+@dataclass(frozen=True)
+class _Design:
+    """A design solved: `failure` says why it has no result."""
+
+    result: Result | TowResult | None
+    failure: str
+    assessment: Assessment | None
+
+
+_Figures = dict[str, tuple[str, str, Number | str]]
+"""Title, quantity and value by name."""
+
+
+def comparison_of(
+    names: tuple[str, str],
+    before: Mooring | Tow,
+    after: Mooring | Tow,
+    day: date | None = None,
+) -> Comparison:
+    """Solve and judge two moorings, or solve two tows; one that does not stand is compared too.
+
+    Parameters
+    ----------
+    names : what each is called
+    day : on which accepts count or have ended; today unless given
+    """
+    found = differences(before.file, after.file)
+    designs = _solved(before, day), _solved(after, day)
+    sides = [_figures_of(each) for each in designs]
+    figures = [
+        Compared(name, title, quantity, sides[0].get(name, _NONE)[2], sides[1].get(name, _NONE)[2])
+        for name, (title, quantity, _) in (sides[0] | sides[1]).items()
+    ]
+    notes = (
+        f"{name}: {design.failure}" for name, design in zip(names, designs, strict=True)
+        if design.failure
+    )  # fmt: skip
+    return Comparison(
+        names, found, (*figures, *_parts(found, designs), *_margins(designs)), tuple(notes)
+    )
+
+
+_NONE = "", "", None
+
+
+def _solved(line: Mooring | Tow, day: date | None) -> _Design:
+    if isinstance(line, Tow):
+        try:
+            return _Design(line.solve(), "", None)
+        except NoEquilibrium as failure:
+            return _Design(None, str(failure), None)
+    assessment = check(line, day=day)
+    situation = assessment.stands[0].situations[0]
+    return _Design(
+        situation.result,
+        "" if situation.failure is None else str(situation.failure),
+        assessment,
+    )
+
+
+def _figures_of(design: _Design) -> _Figures:
+    """The figures of the whole, in the order in which they are read."""
+    found: _Figures = {"status": ("status", "", "stands" if design.result else "does not stand")}
+    result = design.result
+    if isinstance(result, TowResult):
+        found |= {
+            "body.depth": ("depth of the body", "depth", result.body.depth),
+            "body.layback": ("layback of the body", "layback", result.body.layback),
+            "body.tension": ("pull on the body", "tension", result.body.tension),
+            "tow_point.tension": ("pull on the tow point", "tension", result.tow_point.tension),
+        }
+    elif result is not None:
+        top, anchor = result.top, result.anchor
+        found |= {
+            "top.depth": ("depth of the top", "depth", top.depth),
+            "top.knockdown": ("knockdown of the top", "knockdown", top.knockdown),
+            "top.excursion": ("excursion of the top", "offset", hypot(top.x, top.y)),
+            "top.reserve": ("reserve of buoyancy", "reserve", top.reserve),
+            "anchor.tension": ("pull on the anchor", "tension", anchor.tension),
+            "anchor.vertical": ("pull on the anchor, up", "vertical", anchor.vertical),
+            "anchor.horizontal": ("pull, sideways", "horizontal", anchor.horizontal),
+            "anchor.required_weight": (
+                "weight that the anchor needs", "required_weight", anchor.required_weight,
+            ),
+            "anchor.weight": ("weight of the anchor in water", "required_weight", anchor.weight),
+        }  # fmt: skip
+        if result.type != "surface":
+            del found["top.reserve"]
+    if result is not None:
+        greatest = max(row.tension for row in result.components)
+        factors = [row.safety_factor for row in result.components]
+        least = min((factor for factor in factors if factor == factor), default=None)
+        found["greatest_tension"] = ("greatest tension", "tension", greatest)
+        found["least_safety_factor"] = ("least safety factor", "safety_factor", least)
+    if design.assessment is not None:
+        total = total_of(design.assessment.inventory)
+        found |= {
+            "mass_in_air": ("mass in air, as far as known", "dry_mass", total.dry_mass),
+            "weight_in_water": ("weight in water", "wet_weight", total.wet_weight),
+        }
+    return found
+
+
+def _parts(found: Differences, designs: tuple[_Design, _Design]) -> Iterator[Compared]:
+    """Of what measures or is cut: where it is, and how long it was cut."""
+    first, second = (_rows(design) for design in designs)
+    for before, after in found.pairs:
+        if before.place not in first or after.place not in second:
+            continue
+        rows, label = (first[before.place], second[after.place]), before.label
+        sides: dict[str, list[float]] = {}
+        if before.component.role == "instrument":
+            sides["depth"] = [
+                row.depth if isinstance(row, ClampRow) else row.depth_top for row in rows
+            ]
+            sides["tilt"] = [row.tilt for row in rows]
+        if before.component.kind in ("cable", "chain"):
+            sides["cut_length"] = [row.cut_length for row in rows if isinstance(row, ComponentRow)]
+        for name, values in sides.items():
+            title = f"{QUANTITIES[name].heading} of {label}"
+            before_it, after_it = values
+            yield Compared(f"{label}.{name}", title, name, before_it, after_it, of_a_part=True)
+
+
+def _rows(design: _Design) -> dict[Place, ComponentRow | ClampRow]:
+    if design.result is None:
+        return {}
+    rows: list[ComponentRow | ClampRow] = [*design.result.components, *design.result.clamps]
+    return {row.place: row for row in rows}
+
+
+def _margins(designs: tuple[_Design, _Design]) -> Iterator[Compared]:
+    """The worst that each rule finds in each design."""
+    first, second = (each.assessment for each in designs)
+    if first is None or second is None:
+        return
+    for rule in RULES.values():
+        worst = [
+            min(
+                (one for one in assessment.all_findings() if one.rule == rule.name),
+                key=lambda one: one.rank,
+                default=None,
+            )
+            for assessment in (first, second)
+        ]
+        if worst == [None, None]:
+            continue
+        margins = [None if one is None else one.margin for one in worst]
+        states = [State.PASS if one is None else one.state for one in worst]
+        yield Compared(
+            f"margin.{rule.name}",
+            f"margin: {rule.title}",
+            rule.quantity,
+            margins[0],
+            margins[1],
+            (states[0], states[1]),
+        )
+
+
+def _change(change: Change) -> dict[str, Any]:
+    return {"where": change.where, "from": change.before.value, "to": change.after.value}

@@ -1,0 +1,193 @@
+"""``calm import``: designs of other programs as mooring files."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from calm.cli.exit_codes import ExitCode
+from calm.cli.outputs import STDOUT, OutputPath
+from calm.cli.streams import narrate, show
+from calm.errors import InputError, Problem, UsageError
+
+if TYPE_CHECKING:
+    from calm.exchange.importing import Imported
+
+IMPORT_EXAMPLES = """Examples:
+
+  calm import moor001.mat -o moor001.yaml
+  calm import *.cbl -o moorings/ --environment site.yaml
+  calm import snare.cbl -o snare.yaml -D DEPTH=1200 --strict
+  calm import list.csv -o list.yaml --columns name=Item,length=Len --environment site.yaml"""
+
+
+def import_(
+    *files: Path,
+    output: Annotated[Path, Parameter(name=["--output", "-o"])],
+    format: str | None = None,
+    strict: bool = False,
+    define: Annotated[list[str] | None, Parameter(name=["--define", "-D"])] = None,
+    environment: Path | None = None,
+    columns: str | None = None,
+    match_catalogue: bool = False,
+    allow_include: bool = False,
+    json: OutputPath = None,
+) -> ExitCode:
+    """Make mooring files of other programs' designs.
+
+    The program is found from the content of the file. Every figure is that of the
+    file; what had to be guessed stands as a comment at its line, and is reported,
+    as is what was left out. What CALM cannot represent is refused by name, and then
+    nothing is written.
+
+    Parameters
+    ----------
+    files
+        Files of other programs.
+    output
+        The mooring file to write; of several files, the folder for them.
+    format
+        The program: mdd. Found from the content when not given.
+    strict
+        Refuse what would have to be guessed.
+    define
+        A macro of WHOI Cable, as NAME=VALUE. Repeatable.
+    environment
+        An environment file, in place of what the file says of the water.
+    columns
+        The headings of a table by what they hold: name=Item,length=Len.
+    match_catalogue
+        Use catalogue entries for components that agree with them in name and figures.
+    allow_include
+        Let a file include others from outside its own folder.
+    json
+        Write what was guessed and left out as JSON, - to print it.
+    """
+    from calm.exchange.importing import Options, import_file
+    from calm.exchange.records import record_file
+    from calm.report.write import check_destination, write_file
+
+    if not files:
+        raise UsageError("calm import needs a file")
+    options = Options(_pairs("--define", define or []), _columns(columns), allow_include)
+    targets = _targets(files, output)
+    if json is not None and json != STDOUT:
+        check_destination(json)
+    done: list[tuple[Imported, Path]] = []
+    problems: list[Problem] = []
+    for file, target in zip(files, targets, strict=True):
+        try:
+            imported = import_file(
+                file, target, format=format, environment=environment, options=options,
+                match_catalogue=match_catalogue,
+            )  # fmt: skip
+        except InputError as error:
+            problems += error.problems
+            continue
+        if strict:
+            problems += [
+                Problem(str(file), 0, 0, f"--strict: {each} would be guessed")
+                for each in imported.guessed
+            ]
+        done.append((imported, target))
+    if problems:
+        raise InputError(problems)
+    if _is_folder(files, output):
+        output.mkdir(parents=True, exist_ok=True)
+    for imported, target in done:
+        record = _record_of(target) if imported.record is not None else None
+        if record is not None and imported.record is not None:
+            write_file(record, record_file(imported.record, imported.file.name))
+        write_file(target, imported.text.encode("utf-8", "replace"))
+        _tell(imported, target, record)
+    documents = [_document(imported, target) for imported, target in done]
+    if json is not None:
+        _write_json(documents[0] if len(documents) == 1 else documents, json)
+    return ExitCode.DONE
+
+
+def _pairs(option: str, texts: list[str]) -> dict[str, str]:
+    """NAME=VALUE pairs."""
+    pairs = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not name.strip() or not equals:
+            raise UsageError(f"{option}: `{text}` is no NAME=VALUE")
+        pairs[name.strip()] = value.strip()
+    return pairs
+
+
+def _columns(text: str | None) -> dict[str, str]:
+    return _pairs("--columns", text.split(",")) if text else {}
+
+
+def _is_folder(files: tuple[Path, ...], output: Path) -> bool:
+    return len(files) > 1 or output.is_dir() or str(output).endswith(("/", os.sep))
+
+
+def _targets(files: tuple[Path, ...], output: Path) -> list[Path]:
+    """Where each mooring file will stand.
+
+    Raises
+    ------
+    UsageError
+        Two would stand in one place, or one in the place of a file that is read.
+    """
+    from calm.report.write import check_destination
+
+    if not _is_folder(files, output):
+        check_destination(output)
+        targets = [output]
+    else:
+        if output.exists() and not output.is_dir():
+            raise UsageError(f"cannot write into {output}: it is no folder")
+        targets = [output / f"{file.stem}.yaml" for file in files]
+    for target in targets:
+        if targets.count(target) > 1:
+            raise UsageError(f"two of the files would both become {target}")
+        if any(os.path.realpath(target) == os.path.realpath(file) for file in files):
+            raise UsageError(f"{target} would take the place of the file that is read")
+    return targets
+
+
+def _record_of(target: Path) -> Path:
+    return target.with_name(f"{target.stem}-currents.nc")
+
+
+def _tell(imported: Imported, target: Path, record: Path | None) -> None:
+    for remark in imported.guessed:
+        narrate(f"{imported.file}: guessed: {remark}")
+    for remark in imported.dropped:
+        narrate(f"{imported.file}: left out: {remark}")
+    for match in imported.matched:
+        narrate(f"{imported.file}: {match.name} is {match.entry} of the catalogue")
+    if record is not None:
+        narrate(f"{record} written; solve it with: calm batch {target} --currents {record} -o …")
+    narrate(f"{target} written; solve it with: calm run {target}")
+
+
+def _document(imported: Imported, target: Path) -> dict[str, Any]:
+    return {
+        "file": str(imported.file),
+        "format": imported.format,
+        "output": str(target),
+        "record": None if imported.record is None else str(_record_of(target)),
+        "guessed": [vars(each) for each in imported.guessed],
+        "dropped": [vars(each) for each in imported.dropped],
+        "matched": [vars(each) for each in imported.matched],
+    }
+
+
+def _write_json(document: object, target: Path) -> None:
+    from json import dumps
+
+    from calm.report.write import write_file
+
+    text = dumps(document, indent=2, ensure_ascii=False) + "\n"
+    if target == STDOUT:
+        show(text)
+    else:
+        write_file(target, text.encode())

@@ -1,0 +1,66 @@
+"""Anchors that other programs do not weigh: heavy enough to hold the line where it stands."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+from calm.case import Mooring, load
+from calm.errors import CalmError
+from calm.exchange.design import Component, Design
+from calm.exchange.writing import written
+
+_HOLDS = 1e8  # N: holds whatever is tied to it
+_STEPS = 2  # digits that a guessed weight keeps
+
+
+def hold(design: Design, environment: list[str] | None, output: Path) -> None:
+    """Give the anchor a weight where the file gives none, or one that the line would lift.
+
+    No shape depends on it. The weight is that which `calm check` asks for in this current; where
+    the line has no equilibrium, that is for `calm run` to say.
+    """
+    anchor = design.items[-1].component if design.items and design.tow is None else None
+    if anchor is None or anchor.kind != "anchor" or "mass" in anchor.figures:
+        return
+    given = anchor.figures.get("weight")
+    pull, required = _pull(design, anchor, environment, output)
+    if isinstance(given, float) and (pull is None or pull <= given):
+        return
+    if pull is None:
+        anchor.figures["weight"], reason = _HOLDS, "the file gives no weight; this holds anything"
+    else:
+        anchor.figures["weight"] = _rounded_up(required)
+        reason = (
+            "the file gives no weight; 1.5 × (V + H/0.6) in this current"
+            if given is None
+            else f"the file's {given:.5g} N would be lifted: the line pulls up with {pull:.5g} N"
+        )
+    anchor.guesses["weight"] = reason
+
+
+def _pull(
+    design: Design, anchor: Component, environment: list[str] | None, output: Path
+) -> tuple[float | None, float]:
+    """What the line pulls up with, and the weight that such a pull asks for [N]."""
+    given = anchor.figures.get("weight")
+    anchor.figures["weight"] = _HOLDS
+    try:
+        mooring = load(output, text=written(design, "", environment).text)
+        assert isinstance(mooring, Mooring)
+        vertical = mooring.solve().to_dict()["anchor"]
+    except (CalmError, AssertionError):
+        return None, 0.0
+    finally:
+        if given is None:
+            del anchor.figures["weight"]
+        else:
+            anchor.figures["weight"] = given
+    return float(vertical["vertical"]), float(vertical["required_weight"])
+
+
+def _rounded_up(force: float) -> float:
+    """A force with two digits, never less than it is, nor than 100 N."""
+    force = max(force, 100.0)
+    step = 10.0 ** (math.floor(math.log10(force)) - _STEPS + 1)
+    return math.ceil(force / step) * step

@@ -1,0 +1,159 @@
+"""What a file of another program says, in CALM's terms: the one model that every importer fills.
+
+Figures are SI and degrees under the names of the mooring file; depths are positive down.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+Figure = float | str
+"""A number in SI, or a word of the mooring file such as ``insensitive``."""
+
+
+@dataclass(frozen=True)
+class Remark:
+    """Something guessed, or left out: where it stands, and what."""
+
+    where: str
+    what: str
+
+    def __str__(self) -> str:
+        return f"{self.where}: {self.what}"
+
+
+@dataclass(eq=False)
+class Component:
+    """A definition, with the figures of the file it comes from.
+
+    Attributes
+    ----------
+    name : as that file calls it
+    kind : sphere, cylinder, body, cable, chain or anchor
+    figures : by the fields of `kind`; of cables and chains per metre
+    guesses : why a field is not from the file
+    comment : what a reader should know about where the figures come from
+    hull : draft [m], displaced volume [m³] and immersed area [m²], rows
+    entry : id of the catalogue entry that stands in its place
+    """
+
+    name: str
+    kind: str
+    figures: dict[str, Figure]
+    guesses: dict[str, str] = field(default_factory=dict)
+    comment: str = ""
+    hull: tuple[tuple[float, float, float], ...] = ()
+    entry: str = ""
+
+    def says(self) -> tuple[object, ...]:
+        """All it says: two that say the same are one definition."""
+        figures = tuple(sorted(self.figures.items(), key=lambda pair: pair[0]))
+        return self.name, self.kind, figures, self.hull
+
+
+@dataclass(eq=False)
+class Hung:
+    """A component clamped on a piece, `at` metres from the piece's upper end."""
+
+    component: Component
+    at: float
+    guess: str = ""
+
+
+@dataclass(eq=False)
+class Item:
+    """A piece of the line; `length` [m] is that of a cable or chain."""
+
+    component: Component
+    length: float | None = None
+    clamps: list[Hung] = field(default_factory=list)
+    guess: str = ""
+    label: str = ""
+    count: int = 1
+
+
+@dataclass(eq=False)
+class Record:
+    """Currents at several times: `u`, `v`, `w` [m/s] by time and level, `depth` [m] of the levels.
+
+    `days` count from `epoch`, a date.
+    """
+
+    days: NDArray[np.float64]
+    epoch: str
+    depth: NDArray[np.float64]
+    u: NDArray[np.float64]
+    v: NDArray[np.float64]
+    w: NDArray[np.float64]
+
+
+@dataclass(eq=False)
+class Water:
+    """What the line stands in.
+
+    Attributes
+    ----------
+    depth : of the water [m]; None in a tow whose file gives none
+    density : [kg/m³], or rows of depth and density; None where the file does not say
+    gravity : [m/s²]
+    current : rows of depth, and speed to the east, to the north and up [m/s]
+    wind : speed [m/s] and where it blows to [degrees]
+    guesses : why a field is not from the file
+    """
+
+    depth: float | None
+    density: float | tuple[tuple[float, float], ...] | None = None
+    gravity: float | None = None
+    current: tuple[tuple[float, float, float, float], ...] = ()
+    wind: tuple[float, float] | None = None
+    guesses: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass(eq=False)
+class Tow:
+    """Speed [m/s], where to [degrees], height of the sheave above the water [m]."""
+
+    speed: float
+    toward: float
+    height: float = 0.0
+
+
+@dataclass(eq=False)
+class Design:
+    """A mooring or a tow as another program's file gives it.
+
+    Attributes
+    ----------
+    program : that wrote the file
+    items : from the top down; of a tow, from the ship
+    water : None where the file gives no environment
+    solver : keys of `solver`, each with a comment
+    guessed : what was guessed beside the figures, which carry their guesses themselves
+    dropped : what the file says and CALM has no use for
+    notes : what the heading of the mooring file tells besides
+    in_kilograms : whether the file counts forces in kilograms-force
+    """
+
+    program: str
+    name: str
+    items: list[Item]
+    water: Water | None
+    description: str = ""
+    tow: Tow | None = None
+    record: Record | None = None
+    solver: dict[str, tuple[Figure, str]] = field(default_factory=dict)
+    guessed: list[Remark] = field(default_factory=list)
+    dropped: list[Remark] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    in_kilograms: bool = False
+
+    def components(self) -> Iterator[Component]:
+        """Every definition in use, those of clamps behind that of their piece; repeats included."""
+        for item in self.items:
+            yield item.component
+            for clamp in item.clamps:
+                yield clamp.component

@@ -1,0 +1,172 @@
+"""From a file of another program to a mooring file: found, read, written, and read back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from calm.errors import InputError, Problem, UsageError
+from calm.exchange.anchors import hold
+from calm.exchange.design import Design, Record, Remark
+from calm.exchange.environments import environment_lines
+from calm.exchange.matching import Match, match
+from calm.exchange.mdd.matfile import is_mat
+from calm.exchange.mdd.reading import read_mdd
+from calm.exchange.refusal import refused
+from calm.exchange.writing import written
+from calm.files import read_mooring
+from calm.version import __version__
+
+
+@dataclass(frozen=True)
+class Options:
+    """What a command line says beside the file.
+
+    Attributes
+    ----------
+    defines : macros of WHOI Cable
+    columns : the headings of a table, by what they hold
+    allow_include : whether a file may include another from outside its folder
+    """
+
+    defines: Mapping[str, str] = field(default_factory=dict)
+    columns: Mapping[str, str] = field(default_factory=dict)
+    allow_include: bool = False
+
+
+@dataclass(frozen=True)
+class Format:
+    """A format of files that can be imported: its name, how it is recognised and read."""
+
+    name: str
+    program: str
+    recognises: Callable[[Path, bytes], bool]
+    read: Callable[[Path, Options], Design]
+
+
+FORMATS = (
+    Format(
+        "mdd", "Mooring Design & Dynamics", lambda path, content: is_mat(content),
+        lambda path, options: read_mdd(path),
+    ),
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Imported:
+    """A mooring file made of another program's file.
+
+    Attributes
+    ----------
+    file : that it comes from
+    format : name of its format
+    text : of the mooring file
+    guessed, dropped : what was guessed, and what was left out
+    matched : components that the catalogue has
+    record : currents at several times, where the file has them
+    """
+
+    file: Path
+    format: str
+    text: str
+    guessed: tuple[Remark, ...]
+    dropped: tuple[Remark, ...]
+    matched: tuple[Match, ...]
+    record: Record | None
+
+
+_HEAD = 70_000  # bytes from which a format is recognised
+
+
+def import_file(
+    path: Path,
+    output: Path,
+    *,
+    format: str | None = None,
+    environment: Path | None = None,
+    options: Options | None = None,
+    match_catalogue: bool = False,
+) -> Imported:
+    """Read a file of another program.
+
+    Parameters
+    ----------
+    output : where the mooring file will stand; nothing is written here
+    format : one of `FORMATS`; found from the content when not given
+    environment : an environment file, in place of what the file has
+    match_catalogue : use catalogue entries for what agrees with them
+
+    Raises
+    ------
+    InputError
+        The file is damaged or holds what CALM cannot represent: each by name.
+    UsageError
+        There is no such format.
+    """
+    chosen = format_of(path, format)
+    design = chosen.read(path, options or Options())
+    lines = None
+    if environment is not None:
+        lines = environment_lines(environment, output)
+        if design.water is not None:
+            what = f"its water: that of {environment.name} stands in its place"
+            design.dropped.append(Remark("environment", what))
+        design.record = None
+    elif design.water is None and design.tow is None:
+        message = "has no environment; give one: --environment FILE (depth, current, density)"
+        raise refused(path, message)
+    matched = match(design) if match_catalogue else ()
+    hold(design, lines, output)
+    page = written(design, path.name, lines, __version__)
+    _check(path, output, page.text)
+    return Imported(
+        path, chosen.name, page.text, tuple(page.guessed + design.guessed),
+        tuple(design.dropped), matched, design.record,
+    )  # fmt: skip
+
+
+def format_of(path: Path, name: str | None) -> Format:
+    """The format of a file: as named, or by its content.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or is of no format that is known.
+    UsageError
+        There is no format of that name.
+    """
+    if name is not None:
+        for each in FORMATS:
+            if each.name == name:
+                return each
+        known = ", ".join(each.name for each in FORMATS)
+        raise UsageError(f"--format: `{name}` is none of {known}")
+    try:
+        with path.open("rb") as file:
+            content = file.read(_HEAD)
+    except OSError as error:
+        raise refused(path, f"cannot be read: {error.strerror}") from None
+    for each in FORMATS:
+        if each.recognises(path, content):
+            return each
+    programs = ", ".join(f"{each.name} ({each.program})" for each in FORMATS)
+    raise refused(path, f"is of no program that CALM reads: {programs}")
+
+
+def _check(path: Path, output: Path, text: str) -> None:
+    """Read the mooring file as `calm run` will; what is wrong with it is wrong with its source."""
+    try:
+        read_mooring(output, text=text)
+    except InputError as error:
+        raise InputError(
+            [Problem(str(path), 0, 0, _blamed(each, text)) for each in error.problems]
+        ) from None
+
+
+def _blamed(problem: Problem, text: str) -> str:
+    """A mistake of the mooring file told with the line it stands in."""
+    lines: Sequence[str] = text.splitlines()
+    if not 0 < problem.line <= len(lines):
+        return problem.message
+    return f"{problem.message} (in `{' '.join(lines[problem.line - 1].split())[:80]}`)"

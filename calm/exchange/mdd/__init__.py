@@ -1,0 +1,1 @@
+"""Mooring Design & Dynamics: its `.mat` files, read and written."""

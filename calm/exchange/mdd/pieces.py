@@ -1,0 +1,98 @@
+"""Elements of Mooring Design & Dynamics as components of CALM, with that program's drag."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from calm.exchange.design import Component, Figure
+from calm.exchange.mdd.elements import Element
+from calm.exchange.words import is_chain, role_of
+from calm.units import KILOGRAM_FORCE
+
+_REFERENCE_DENSITY = 1025.0
+_SOFT = 1e10  # Pa: the modulus of a rope is below, of a wire above
+_HARD = re.compile(r"\bwire|\bchain|\bsteel", re.I)
+
+
+def component_of(element: Element) -> Component:
+    """The definition of an element that is not the anchor."""
+    return _flexible(element) if element.is_line else rigid(element)
+
+
+def rigid(element: Element) -> Component:
+    """Of an element that is no line, or of what is clamped on one.
+
+    That program takes an element with a diameter for a sphere of it, whatever its length; one with
+    a width alone for a cylinder whose Cd counts on the flow across it and which has no end face.
+    """
+    lift = element.lift * KILOGRAM_FORCE
+    role = role_of(element.name, lift, fastener=element.is_fastener)
+    figures: dict[str, Figure]
+    if element.diameter > 0.0:
+        kind = "sphere"
+        figures = {"diameter": element.diameter, "length": element.length, "cx": element.cd}
+    elif element.width > 0.0 and element.length > 0.0:
+        kind = "cylinder"
+        figures = {"diameter": element.width, "length": element.length, "cn": element.cd, "ct": 0.0}
+    else:
+        kind = "body"
+        figures = {"length": element.length, "drag_area": 0.0, "cd": element.cd}
+    figures["buoyancy"] = lift
+    if lift > 0.0 and element.mass is not None:
+        figures["mass"] = element.mass
+    component = Component(element.name, kind, {**figures, "role": role})
+    if kind == "body":
+        component.comment = "The file gives it no size, so that it has no drag."
+    elif _is_too_small(element):
+        component.guesses["diameter"] = (
+            f"kept as it stands, a placeholder: nothing of this size lifts {element.lift:g} kgf, "
+            "so its drag is missing"
+        )
+    return component
+
+
+def _is_too_small(element: Element) -> bool:
+    """Whether the water that a float could displace at its size does not bear its buoyancy."""
+    if element.diameter > 0.0:
+        volume = math.pi * element.diameter**2 * max(element.diameter / 6.0, element.length / 4.0)
+    else:
+        volume = math.pi * element.width**2 * element.length / 4.0
+    return element.lift > _REFERENCE_DENSITY * volume
+
+
+def _flexible(element: Element) -> Component:
+    """Of a wire, rope or chain: its Cd counts on its width, and nothing drags along it."""
+    chain = is_chain(element.name)
+    figures: dict[str, Figure] = {"diameter": element.across, "cn": element.cd, "ct": 0.0}
+    weight = 0.0 - element.lift * KILOGRAM_FORCE
+    component = Component(element.name, "chain" if chain else "cable", figures)
+    if weight < 0.0 and not chain:
+        figures["buoyancy"] = -weight
+    else:
+        figures["weight"] = weight
+    modulus = element.modulus
+    if modulus is not None and math.isfinite(modulus):
+        figures["stiffness"] = modulus * math.pi / 4.0 * element.across**2
+        if _HARD.search(element.name) and modulus < _SOFT:
+            component.guesses["stiffness"] = (
+                f"the file's modulus of {modulus / 1e9:g} GPa is that of a rope; was it left "
+                "behind when the line was edited?"
+            )
+    if chain:
+        component.comment = (
+            "The width that the file gives stands as diameter, which is not that of the bar; "
+            "Cd counts on it."
+        )
+    if element.width > 0.0 and element.diameter > 0.0:
+        component.guesses["diameter"] = "the file gives a width and a diameter of a sphere"
+    return component
+
+
+def anchor_of(element: Element) -> Component:
+    """The definition of the lowest element, whose weight the files give with either sign."""
+    figures: dict[str, Figure] = {
+        "weight": abs(element.lift) * KILOGRAM_FORCE,
+        "length": element.length,
+    }
+    return Component(element.name, "anchor", figures)

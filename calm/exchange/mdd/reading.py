@@ -1,0 +1,175 @@
+"""A `.mat` file of Mooring Design & Dynamics as a design."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+
+from calm.exchange.design import Design, Hung, Item, Remark, Tow
+from calm.exchange.mdd.elements import Element, read_elements
+from calm.exchange.mdd.matfile import read_variables
+from calm.exchange.mdd.pieces import anchor_of, component_of, rigid
+from calm.exchange.mdd.value import Value, numbers
+from calm.exchange.mdd.water import read_water
+from calm.exchange.refusal import refused
+
+_WANTED = frozenset(
+    ["U", "V", "W", "z", "rho", "time", "ZCO", "Jobj", "Pobj", "mooreleCO", "HCO", "BCO", "CdCO"]
+    + [f"{name}{end}" for name in ("H", "B", "Wt", "Cd", "ME", "moorele") for end in ("", "t")]
+    + ["Usp", "Vsp", "afh"]
+)
+_APART = 0.02  # m and share of the piece by which the two places of a clamp may differ
+_NOTE = (
+    "cn and cx are its Cd. That program has no drag along a line or cylinder worth the name, so "
+    "ct is 0. See docs/import-mdd.md."
+)
+
+
+def read_mdd(path: Path) -> Design:
+    """Read a mooring or a tow.
+
+    Raises
+    ------
+    InputError
+        The file is damaged, is none of that program, or holds what CALM cannot represent.
+    """
+    variables = read_variables(path, _WANTED)
+    sized = [name for name in ("H", "Ht") if name in variables and len(_flat(variables[name]))]
+    if not sized:
+        raise refused(path, "holds no mooring (`H`) and no tow (`Ht`) of that program")
+    towed = sized[0] == "Ht"
+    elements, problems = read_elements(variables, "t" if towed else "")
+    hung, more = read_elements(variables, "CO")
+    if problems or more:
+        raise refused(path, *problems, *more)
+    guessed: list[Remark] = []
+    try:
+        water, record = read_water(variables, towed, guessed)
+    except ValueError as error:
+        raise refused(path, str(error)) from None
+    design = Design(
+        program="Mooring Design & Dynamics",
+        name=path.stem,
+        items=[],
+        water=water,
+        record=record,
+        guessed=guessed,
+        notes=[_NOTE],
+        in_kilograms=True,
+    )
+    if record is not None:
+        design.notes.append("The current is the first profile of the record beside this file.")
+    (_lay_tow if towed else _lay_mooring)(design, elements, variables, path)
+    _clamp(design, hung, variables, towed, path)
+    return design
+
+
+def _flat(value: Value) -> list[float]:
+    try:
+        return [float(each) for each in numbers(value).ravel()]
+    except ValueError:
+        return []
+
+
+def _lay_mooring(
+    design: Design, elements: list[Element], variables: Mapping[str, Value], path: Path
+) -> None:
+    last = elements[-1]
+    if last.is_line or len(elements) < 2 or last.lift == 0.0:
+        raise refused(path, f"element {last.number}, {last.name}, is no anchor with a weight")
+    design.items = [_item(element) for element in elements[:-1]]
+    design.items.append(Item(anchor_of(last)))
+
+
+def _lay_tow(
+    design: Design, elements: list[Element], variables: Mapping[str, Value], path: Path
+) -> None:
+    """The file leads from the body up, and ends in a mark of the program's own at the ship."""
+    end = elements[-1]
+    if not end.is_line and end.length <= 0.01 and abs(end.lift) <= 0.011 and len(elements) > 1:
+        elements = elements[:-1]
+    design.items = [_item(element) for element in reversed(elements)]
+    east, north = (next(iter(_flat(variables.get(name, []))), 0.0) for name in ("Usp", "Vsp"))
+    speed = math.hypot(east, north)
+    if speed == 0.0:
+        raise refused(path, "the ship of this tow does not move (`Usp`, `Vsp`)")
+    design.tow = Tow(speed, math.degrees(math.atan2(east, north)) % 360.0)
+    height = next(iter(_flat(variables.get("afh", []))), 0.0)
+    if height > 0.0:
+        what = f"an A-frame of {height:g} m is only drawn: the wire counts from the water"
+        design.dropped.append(Remark("afh", what))
+
+
+def _item(element: Element) -> Item:
+    component = component_of(element)
+    return Item(component, element.length if element.is_line else None)
+
+
+def _clamp(
+    design: Design, hung: list[Element], variables: Mapping[str, Value], towed: bool, path: Path
+) -> None:
+    """Hang what is clamped on: by element and share of its length, counted from its lower end."""
+    if not hung:
+        return
+    host, share, height = (_flat(variables.get(name, [])) for name in ("Jobj", "Pobj", "ZCO"))
+    by_share = len(host) == len(share) == len(hung)
+    by_height = len(height) == len(hung)
+    if not by_share and not by_height:
+        counts = f"`Jobj` {len(host)}, `Pobj` {len(share)}, `ZCO` {len(height)}"
+        raise refused(path, f"{len(hung)} clamps without their places: {counts}")
+    for i, element in enumerate(hung):
+        above = _by_height(design.items, height[i], towed) if by_height else None
+        if by_share:
+            place = _by_share(design.items, host[i], share[i], towed)
+            if place is None:
+                raise refused(path, f"{element.name} is clamped on element {host[i]:g}: none")
+        else:
+            place = above
+        if place is None:
+            raise refused(path, f"{element.name} is clamped at {height[i]:g} m, off the line")
+        number, at = place
+        guess = ""
+        if by_share and above is not None and not _agree(place, above):
+            guess = f"`ZCO` has it at {height[i]:g} m, elsewhere than `Jobj` and `Pobj`"
+        elif not by_share:
+            guess = "from its height alone"
+        design.items[number].clamps.append(Hung(rigid(element), at, guess))
+    for item in design.items:
+        item.clamps.sort(key=lambda clamp: clamp.at)
+
+
+def _length(item: Item) -> float:
+    if item.length is not None:
+        return item.length
+    length = item.component.figures.get("length", 0.0)
+    return float(length)
+
+
+def _by_share(
+    items: list[Item], host: float, share: float, towed: bool
+) -> tuple[int, float] | None:
+    """The piece that an element became, and how far below its upper end a share of it is."""
+    number = round(host) - 1
+    if towed:
+        number = len(items) - 1 - number
+    if not (0 <= number < len(items)) or not -1e-6 <= share <= 1.0 + 1e-6:
+        return None
+    # in a tow the program counts from the body up: from the lower end, too
+    length = _length(items[number])
+    return number, min(max((1.0 - share) * length, 0.0), length)
+
+
+def _by_height(items: list[Item], height: float, towed: bool) -> tuple[int, float] | None:
+    """The piece at a height above the seabed (in a tow above the lower end of the body)."""
+    below = 0.0
+    for number in range(len(items) - 1, -1, -1):
+        length = _length(items[number])
+        if below <= height <= below + length and length > 0.0:
+            return number, length - (height - below)
+        below += length
+    return None
+
+
+def _agree(one: tuple[int, float], other: tuple[int, float]) -> bool:
+    return one[0] == other[0] and abs(one[1] - other[1]) <= _APART + _APART * abs(one[1])

@@ -1,0 +1,105 @@
+"""The water of a Mooring Design & Dynamics file: heights above the seabed, or depths of a tow."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from calm.exchange.design import Record, Remark, Water
+from calm.exchange.mdd.value import Floats, Value, numbers
+
+_MATLAB_EPOCH = 719529.0  # datenum of 1 January 1970
+_EARLIEST, _LATEST = 500_000.0, 1_000_000.0  # datenums that are dates of this age
+
+
+def read_water(
+    variables: Mapping[str, Value], towed: bool, guessed: list[Remark]
+) -> tuple[Water | None, Record | None]:
+    """The environment of a file, None where it has none; and its record, where it is one.
+
+    In a mooring `z` is the height above the seabed and its greatest the depth of the water, in a
+    tow it is the depth. The first profile of a record stands for the current.
+
+    Raises
+    ------
+    ValueError
+        The sizes of the variables do not go together.
+    """
+    levels = _numbers(variables, "z").ravel()
+    if levels.size == 0 or not np.any(levels > 0.0):
+        return None, None
+    if not np.all(np.isfinite(levels)) or np.any(levels < 0.0):
+        raise ValueError("`z` must be heights of 0 and more")
+    seabed = float(levels.max())
+    profiles = [_profiles(variables, name, levels.size) for name in "UVW"]
+    if profiles[0] is None and profiles[1] is None:
+        return None, None
+    times = max(each.shape[1] for each in profiles if each is not None)
+    u, v, w = (
+        _filled(each, name, levels.size, times) for each, name in zip(profiles, "UVW", strict=True)
+    )
+    density = _numbers(variables, "rho").ravel()
+    if density.size == levels.size:
+        density = np.asarray(density)
+    elif density.size:
+        raise ValueError(f"`rho` has {density.size} values for {levels.size} of `z`")
+    depth = np.sort(levels) if towed else seabed - levels
+    order = np.arange(levels.size) if towed else np.argsort(depth, kind="stable")
+    depth = depth if towed else depth[order]
+    u, v, w = u[order], v[order], w[order]
+    keep = np.append(True, np.diff(depth) > 0.0)
+    water = Water(None if towed else seabed)
+    if density.size:
+        rows = list(zip(depth[keep].tolist(), density[order][keep].tolist(), strict=True))
+        alike = all(row[1] == rows[0][1] for row in rows)
+        water.density = rows[0][1] if alike else tuple(rows)
+    first = np.column_stack([depth, u[:, 0], v[:, 0], w[:, 0]])[keep]
+    if np.any(first[:, 1:]) or times > 1:
+        water.current = tuple((float(d), float(e), float(n), float(up)) for d, e, n, up in first)
+    if times == 1:
+        return water, None
+    days, epoch = _days(_numbers(variables, "time").ravel(), times, guessed)
+    return water, Record(days, epoch, depth[keep], u[keep].T, v[keep].T, w[keep].T)
+
+
+def _numbers(variables: Mapping[str, Value], name: str) -> Floats:
+    try:
+        return numbers(variables.get(name))
+    except ValueError as error:
+        raise ValueError(f"`{name}` {error}") from None
+
+
+def _profiles(variables: Mapping[str, Value], name: str, levels: int) -> Floats | None:
+    """Speeds by level and time: one profile lies down or stands, several have a row a level."""
+    values = _numbers(variables, name)
+    if values.size == 0:
+        return None
+    values = np.atleast_2d(values)
+    if values.ndim == 2 and values.shape[0] == levels:
+        return values
+    if values.ndim == 2 and values.shape[1] == levels:
+        return values.T
+    shape = "×".join(str(length) for length in values.shape)
+    raise ValueError(f"`{name}` is {shape} for {levels} values of `z`")
+
+
+def _filled(values: Floats | None, name: str, levels: int, times: int) -> Floats:
+    if values is None:
+        return np.zeros((levels, times))
+    if values.shape[1] not in (1, times):
+        raise ValueError(f"`{name}` has {values.shape[1]} profiles, the others {times}")
+    if not np.all(np.isfinite(values[:, 0])):
+        raise ValueError(f"`{name}` has gaps in its first profile")
+    return np.broadcast_to(values, (levels, times))
+
+
+def _days(time: Floats, times: int, guessed: list[Remark]) -> tuple[Floats, str]:
+    """Days, and the date that they count from."""
+    if time.size != times:
+        guessed.append(Remark("record.time", "an hour between profiles, from 2000-01-01"))
+        return np.arange(times) / 24.0, "2000-01-01"
+    if np.all((time > _EARLIEST) & (time < _LATEST)):
+        return time - _MATLAB_EPOCH, "1970-01-01"
+    guessed.append(Remark("record.time", "days from 2000-01-01"))
+    return time - time[0], "2000-01-01"

@@ -1,0 +1,15 @@
+"""How files of other programs are refused."""
+
+from __future__ import annotations
+
+from calm.errors import InputError, Problem
+
+
+def refused(path: object, *messages: str) -> InputError:
+    """Why a file cannot be read, or what in it CALM cannot represent."""
+    return InputError([Problem(str(path), 0, 0, message) for message in messages])
+
+
+def refused_at(path: object, line: int, column: int, message: str) -> InputError:
+    """The same, with the place in a text."""
+    return InputError([Problem(str(path), line, column, message)])

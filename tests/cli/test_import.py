@@ -1,0 +1,147 @@
+"""`calm import`: exit codes, what is written and what is said."""
+
+import json
+
+import numpy as np
+import pytest
+
+from tests.unit.exchange.mat_files import mooring, write_matlab
+
+SITE = """\
+name: site
+environment:
+  depth: 150 m
+  current: {columns: [depth m, u m/s, v m/s], rows: [[0, 0.4, -0.1], [150, 0, 0]]}
+"""
+
+
+@pytest.fixture
+def design(folder):
+    def write(name="a.mat", **changes):
+        write_matlab(folder / name, mooring(**changes))
+        return name
+
+    return write
+
+
+def test_a_design_becomes_a_mooring_that_runs(calm, folder, design):
+    done = calm("import", design(), "-o", "a.yaml")
+    assert (done.code, done.out) == (0, "")
+    assert "calm run a.yaml" in done.err
+    assert json.loads(calm("run", "a.yaml", "--json", "-").out)["status"] == "converged"
+
+
+def test_guesses_are_comments_lines_and_json(calm, folder, design):
+    lift = mooring()["B"].copy()
+    lift[0, -1] = 20.0
+    done = calm("import", design(B=lift), "-o", "a.yaml", "--json", "-")
+    (guess,) = json.loads(done.out)["guessed"]
+    assert guess["where"] == "components.two-wheels.weight"
+    assert f"guessed: {guess['where']}: {guess['what']}" in done.err
+    assert f"# guessed: {guess['what']}" in (folder / "a.yaml").read_text()
+
+
+def test_strict_refuses_guesses_and_writes_nothing(calm, folder, design):
+    lift = mooring()["B"].copy()
+    lift[0, -1] = 20.0
+    done = calm("import", design(B=lift), "-o", "a.yaml", "--strict")
+    assert done.code == 2
+    assert "--strict" in done.err
+    assert not (folder / "a.yaml").exists()
+    assert calm("import", design(), "-o", "a.yaml", "--strict").code == 0
+
+
+def test_several_files_become_several_or_none(calm, folder, design):
+    design("b.mat", H=None)
+    done = calm("import", design("a.mat"), "b.mat", "-o", "out/")
+    assert done.code == 2
+    assert "b.mat: holds no mooring" in done.err
+    assert not (folder / "out").exists()
+    done = calm("import", "a.mat", design("c.mat"), "-o", "out/", "--json", "-")
+    assert sorted(path.name for path in (folder / "out").iterdir()) == ["a.yaml", "c.yaml"]
+    assert [each["file"] for each in json.loads(done.out)] == ["a.mat", "c.mat"]
+
+
+def test_an_environment_is_needed_and_may_be_given(calm, folder, design):
+    design("a.mat", U=None, V=None, W=None, z=None, rho=None)
+    assert "--environment" in calm("import", "a.mat", "-o", "a.yaml").err
+    assert not (folder / "a.yaml").exists()
+    (folder / "site.yaml").write_text(SITE)
+    assert calm("import", "a.mat", "-o", "a.yaml", "--environment", "site.yaml").code == 0
+    result = json.loads(calm("run", "a.yaml", "--json", "-").out)
+    assert result["top"]["y"] < 0.0 < result["top"]["x"]
+    assert result["components"][-1]["depth_bottom"] == pytest.approx(150.0)
+
+
+def test_an_environment_keeps_its_files(calm, folder, design):
+    (folder / "site").mkdir()
+    (folder / "site" / "flow.csv").write_text("depth[m],u[m/s],v[m/s]\n0,0.3,0\n150,0,0\n")
+    site = "environment:\n  depth: 150 m\n  current: {file: flow.csv}\n"
+    (folder / "site" / "site.yaml").write_text(site)
+    (folder / "out").mkdir()
+    done = calm("import", design(), "-o", "out/a.yaml", "--environment", "site/site.yaml")
+    assert done.code == 0, done.err
+    assert "left out: environment" in done.err
+    assert json.loads(calm("run", "out/a.yaml", "--json", "-").out)["top"]["x"] > 0.0
+
+
+def test_a_record_is_written_beside_and_batches(calm, folder, design):
+    u = np.outer([0.8, 0.3, 0.0], [1.0, 0.5, 0.2])
+    design(U=u, V=0 * u, W=0 * u, time=730486.0 + np.arange(3) / 24)
+    done = calm("import", "a.mat", "-o", "a.yaml", "--json", "-")
+    record = json.loads(done.out)["record"]
+    assert record == "a-currents.nc"
+    import xarray as xr
+
+    with xr.open_dataset(folder / record) as dataset:
+        assert str(dataset.time.values[1])[:16] == "2000-01-01T01:00"
+        assert dataset.u.sel(depth=90.0).values == pytest.approx([0.3, 0.15, 0.06])
+
+
+def test_the_catalogue_takes_the_place_of_what_agrees(calm, folder, design):
+    names = ["37in ORE", *mooring()["moorele"][1:]]
+    design(moorele=names)
+    done = calm("import", "a.mat", "-o", "a.yaml", "--match-catalogue", "--json", "-")
+    matched = {each["name"]: each["entry"] for each in json.loads(done.out)["matched"]}
+    assert matched["37in ORE"] == "sphere-ore-37in"
+    assert "37in ORE is sphere-ore-37in of the catalogue" in done.err
+    assert "use: sphere-ore-37in" in (folder / "a.yaml").read_text()
+    assert calm("run", "a.yaml").code == 0
+
+
+def test_a_name_alone_is_no_match(calm, folder, design):
+    lift = mooring()["B"].copy()
+    lift[0, 0] = 200.0
+    done = calm(
+        "import", design(B=lift, moorele=["37in ORE"]), "-o", "a.yaml", "--match-catalogue",
+        "--json", "-",
+    )  # fmt: skip
+    assert "37in ORE" not in {each["name"] for each in json.loads(done.out)["matched"]}
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--format", "orca"], "`orca` is none of mdd"),
+        (["-D", "DEPTH"], "`DEPTH` is no NAME=VALUE"),
+    ],
+)
+def test_options_that_make_no_sense_are_refused(calm, folder, design, words, message):
+    done = calm("import", design(), "-o", "a.yaml", *words)
+    assert done.code == 2
+    assert message in done.err
+
+
+def test_a_file_never_takes_the_place_of_its_source(calm, folder, design):
+    before = (folder / design()).read_bytes()
+    assert calm("import", "a.mat", "-o", "a.mat").code == 2
+    assert (folder / "a.mat").read_bytes() == before
+
+
+def test_a_file_of_no_program_is_refused(calm, folder):
+    (folder / "x.bin").write_bytes(bytes(range(256)))
+    done = calm("import", "x.bin", "missing.mat", "-o", "out/")
+    assert done.code == 2
+    assert "x.bin: is of no program that CALM reads" in done.err
+    assert "missing.mat" in done.err
+    assert "Traceback" not in done.err

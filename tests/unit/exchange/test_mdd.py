@@ -1,0 +1,315 @@
+"""Designs of Mooring Design & Dynamics: every dialect, every trap that real files hold."""
+
+from math import pi
+
+import h5py
+import numpy as np
+import pytest
+from scipy.io import savemat
+
+from calm.case import load
+from calm.errors import InputError
+from calm.exchange.importing import import_file
+from calm.exchange.mdd.octave import read_octave_text
+from calm.exchange.mdd.reading import read_mdd
+from tests.unit.exchange.mat_files import (
+    HEIGHT,
+    NAMES,
+    mooring,
+    octave_text,
+    tow,
+    write_hdf5,
+    write_matlab,
+)
+
+KILOGRAM = 9.80665
+
+DIALECTS = {
+    "matlab 5": lambda path, data: write_matlab(path, data),
+    "matlab 5, cells": lambda path, data: write_matlab(path, data, names="cell"),
+    "matlab 5, uint16": lambda path, data: write_matlab(path, data, names="uint16"),
+    "matlab 4": lambda path, data: write_matlab(path, data, version="4"),
+    "matlab 7.3": lambda path, data: write_hdf5(path, data),
+    "matlab 7.3, cells": lambda path, data: write_hdf5(path, data, names="cell"),
+    "octave": lambda path, data: path.write_text(octave_text(data)),
+    "octave, no colon": lambda path, data: path.write_text(octave_text(data, colon="")),
+    "octave, wrong rows": lambda path, data: path.write_text(octave_text(data, rows=7)),
+}
+
+
+def read(tmp_path, data, write=write_matlab):
+    path = tmp_path / "design.mat"
+    write(path, data)
+    return read_mdd(path)
+
+
+def imported(tmp_path, data):
+    path = tmp_path / "design.mat"
+    write_matlab(path, data)
+    return import_file(path, tmp_path / "design.yaml")
+
+
+def refusal(tmp_path, data):
+    with pytest.raises(InputError) as error:
+        imported(tmp_path, data)
+    return str(error.value)
+
+
+@pytest.mark.parametrize("dialect", DIALECTS)
+def test_every_dialect_says_the_same(dialect, tmp_path):
+    design = read(tmp_path, mooring(), DIALECTS[dialect])
+    assert [item.component.name for item in design.items] == NAMES
+    ball, _, wire, meter, release, chain, anchor = (item.component for item in design.items)
+    assert ball.kind == "sphere"
+    assert ball.figures["buoyancy"] == pytest.approx(300 * KILOGRAM)
+    assert wire.figures["stiffness"] == pytest.approx(1.38e11 * pi / 4 * 0.009**2)
+    assert (meter.kind, meter.figures["diameter"], meter.figures["ct"]) == ("cylinder", 0.128, 0.0)
+    assert release.figures["role"] == "release"
+    assert (chain.kind, chain.figures["diameter"]) == ("chain", 0.03)
+    assert "stiffness" not in chain.figures  # inf: that program does not stretch it
+    assert anchor.figures["weight"] == pytest.approx(915 * KILOGRAM)
+    assert design.water.depth == 120.0
+    assert design.water.density == 1025.0
+    assert design.water.current == ((0, 0.8, 0.0, 0), (90, 0.3, 0.1, 0), (120, 0, 0, 0))
+    (clamp,) = design.items[2].clamps
+    assert clamp.component.name == "SBE-16"
+    assert clamp.at == pytest.approx(0.3 * 80.0)  # 0.7 up the wire
+    assert not clamp.guess
+
+
+def test_the_mooring_file_runs(tmp_path):
+    made = imported(tmp_path, mooring())
+    assert made.guessed == ()
+    result = load(tmp_path / "design.yaml", text=made.text).solve()
+    assert result.to_dict()["status"] == "converged"
+    assert "wire rope" in made.text
+    assert "buoyancy: 300 kgf" in made.text
+
+
+def test_it_leans_as_that_program_printed(tmp_path):
+    """CDMS-1: the sphere 432.07 m above the seabed, 75.5 m away, the anchor pulled by 827.2 kg at
+    9.1 degrees, printed in the users guide. 0.5 % of the water is 2.6 m; the figures are closer."""
+    balls, size = 10, []
+    size += [[1.2, 0, 1.2, 0], [10, 0.007, 0, 1]]
+    for length in (98, 98, 212.9):
+        size += [[2, 0.2, 0, 0], [length, 0.007, 0, 1]]
+    size += [[0.51, 0, 0.51, 0]] * balls + [[2, 0.2, 0, 0], [4.8, 0.022, 0, 1], [0.55, 1, 0, 0]]
+    lift = [682, -0.12, -20, -0.009, -20, -0.009, -20, -0.009, *[23] * balls, -20, -2.33, 1350]
+    drag = [0.5, 1.3, 1.2, 1.3, 1.2, 1.3, 1.2, 1.3, *[0.95] * balls, 1.2, 1.3, 1.3]
+    modulus = np.full(len(lift), np.inf)
+    modulus[[1, -2]] = 1.38e11
+    modulus[[3, 5, 7]] = 6.9e10
+    water = {"U": [1.5, 0.6, 0.1], "V": [0, 0, 0], "z": [525, 325, 0], "rho": [1024, 1025, 1026]}
+    line = {"H": np.array(size, float).T, "B": lift, "Cd": drag, "ME": modulus}
+    made = imported(tmp_path, {name: np.array(value) for name, value in (water | line).items()})
+    answer = load(tmp_path / "design.yaml", text=made.text).solve().to_dict()
+    assert 525 - (answer["top"]["depth"] + 0.6) == pytest.approx(432.07, abs=0.5)
+    assert answer["top"]["x"] == pytest.approx(75.5, abs=1.6)
+    assert answer["anchor"]["tension"] / KILOGRAM == pytest.approx(827.2, rel=0.02)
+    assert answer["anchor"]["angle"] == pytest.approx(9.1, abs=0.3)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_an_anchor_weighs_whatever_its_sign(sign, tmp_path):
+    lift = mooring()["B"].copy()
+    lift[0, -1] = sign * 915.0
+    design = read(tmp_path, mooring(B=lift))
+    assert design.items[-1].component.figures["weight"] == pytest.approx(915 * KILOGRAM)
+
+
+def test_an_anchor_that_would_be_lifted_is_made_heavy_enough(tmp_path):
+    lift = mooring()["B"].copy()
+    lift[0, -1] = 50.0
+    made = imported(tmp_path, mooring(B=lift))
+    (guess,) = made.guessed
+    assert "490.33 N would be lifted" in guess.what
+    result = load(tmp_path / "design.yaml", text=made.text).solve().to_dict()
+    assert result["anchor"]["weight"] >= result["anchor"]["required_weight"]
+    assert result["anchor"]["weight"] <= 1.1 * result["anchor"]["required_weight"]
+
+
+@pytest.mark.parametrize("shape", [(1, 3), (3, 1)])
+def test_a_profile_lies_or_stands(shape, tmp_path):
+    data = mooring()
+    changed = {name: np.reshape(data[name], shape) for name in ("U", "V", "W", "z", "rho")}
+    assert read(tmp_path, data | changed).water.current == read(tmp_path, data).water.current
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_record_stands_beside_the_mooring(turned, tmp_path):
+    times = 730486.0 + np.arange(4) / 24  # from the first of January 2000, counted from year 0
+    u = np.outer([0.8, 0.3, 0.0], [1.0, 0.5, 0.0, -0.5])
+    data = mooring(U=u.T if turned else u, V=0 * u, W=0 * u, time=times)
+    design = read(tmp_path, data)
+    assert design.water.current[0] == (0.0, 0.8, 0.0, 0.0)
+    assert design.record.depth.tolist() == [0.0, 90.0, 120.0]
+    assert design.record.u[:, 1] == pytest.approx([0.3, 0.15, 0.0, -0.15])
+    assert design.record.epoch == "1970-01-01"
+    assert design.record.days[0] == 10957.0  # from 1970 to 2000
+    assert design.guessed == []
+
+
+def test_times_that_are_no_dates_are_guessed(tmp_path):
+    u = np.ones((3, 4))
+    design = read(tmp_path, mooring(U=u, V=u, W=u, time=np.arange(4.0)))
+    assert "days from 2000-01-01" in str(design.guessed[0])
+
+
+def test_a_modulus_counts_on_lines_alone(tmp_path):
+    """After edits the moduli may be those of other elements: on a shackle one means nothing."""
+    modulus = np.array([[1.38e11, 3.45e8, np.inf, 6.9e10, np.inf, 1.38e11, np.inf]])
+    design = read(tmp_path, mooring(ME=modulus))
+    stiff = [item.component.name for item in design.items if "stiffness" in item.component.figures]
+    assert stiff == ["1/2 chain"]
+
+
+def test_the_modulus_of_a_rope_on_a_wire_is_pointed_out(tmp_path):
+    modulus = np.array([[np.inf, np.inf, 3.45e8, np.inf, np.inf, np.inf, np.inf]])
+    made = imported(tmp_path, mooring(ME=modulus))
+    assert [each.where for each in made.guessed] == ["components.3-8-wire-rope.stiffness"]
+
+
+def test_a_modulus_may_be_the_number_of_a_material(tmp_path):
+    modulus = np.array([[1, 1, 6, 1, 1, 1, 1]], np.uint8)
+    wire = read(tmp_path, mooring(ME=modulus)).items[2].component
+    assert wire.figures["stiffness"] == pytest.approx(6.9e10 * pi / 4 * 0.009**2)
+
+
+def test_a_missing_modulus_is_no_error(tmp_path):
+    wire = read(tmp_path, mooring(ME=None)).items[2].component
+    assert "stiffness" not in wire.figures
+
+
+def test_a_placeholder_size_is_kept_and_pointed_out(tmp_path):
+    size = np.array(HEIGHT)
+    size[:, 0] = (1.5, 0.01, 0.01, 2.0)
+    made = imported(tmp_path, mooring(H=size))
+    assert "diameter: 10 mm  # guessed: kept as it stands, a placeholder" in made.text
+    assert len(made.guessed) == 1
+
+
+def test_a_piece_without_size_has_no_drag(tmp_path):
+    size = np.array(HEIGHT)
+    size[:, 3] = (0.55, 0.0, 0.0, 0.0)
+    made = imported(tmp_path, mooring(H=size))
+    assert "drag_area: 0 m^2" in made.text
+    assert load(tmp_path / "design.yaml", text=made.text).solve()
+
+
+def test_clamps_sit_on_rigid_pieces_too(tmp_path):
+    data = mooring(Jobj=np.array([[5]]), Pobj=np.array([[0.25]]), ZCO=None)
+    made = imported(tmp_path, data)
+    assert "at: 0.705 m" in made.text  # of 0.94 m, a quarter of it up
+    assert load(tmp_path / "design.yaml", text=made.text).solve()
+
+
+def test_a_clamp_known_by_its_height_alone_is_guessed(tmp_path):
+    made = imported(tmp_path, mooring(Jobj=None, Pobj=None))
+    assert [each.what for each in made.guessed] == ["from its height alone"]
+    assert "at: 24 m" in made.text
+
+
+def test_a_clamp_in_two_places_is_pointed_out(tmp_path):
+    made = imported(tmp_path, mooring(ZCO=np.array([[20.0]])))
+    assert "`ZCO` has it at 20 m" in made.guessed[0].what
+
+
+def test_a_tow_leads_from_the_ship_to_the_body(tmp_path):
+    made = imported(tmp_path, tow())
+    assert "tow: {speed: 1 m/s, toward: 36.8698976 deg}" in made.text
+    assert [each.where for each in made.dropped] == ["afh"]
+    read_back = load(tmp_path / "design.yaml", text=made.text)
+    assert [piece.use for piece in read_back.file.pieces] == ["1-4-kevlar", "heavy-sphere"]
+    assert read_back.solve().to_dict()["status"] == "converged"
+
+
+def test_names_that_are_missing_are_numbers(tmp_path):
+    design = read(tmp_path, mooring(moorele=NAMES[:2]))
+    assert [item.component.name for item in design.items][1:4] == [
+        "1/2 shackle", "element 3", "element 4",
+    ]  # fmt: skip
+
+
+REFUSED = {
+    "no mooring": (mooring(H=None), "holds no mooring"),
+    "no water": (mooring(U=None, V=None, z=None, rho=None), "--environment FILE"),
+    "all at the seabed": (mooring(z=np.zeros((1, 3))), "--environment FILE"),
+    "too few buoyancies": (mooring(B=np.array([[1.0, 2.0]])), "`B` has 2 values for 7 elements"),
+    "current of other levels": (mooring(U=np.ones((1, 2))), "`U` is 1×2 for 3 values of `z`"),
+    "a line for an anchor": (mooring(H=np.array(HEIGHT)[:, [0, 1, 2, 3, 4, 6, 5]]), "no anchor"),
+    "a negative length": (mooring(H=-np.array(HEIGHT)), "its length is -0.94"),
+    "a clamp off the line": (mooring(Jobj=np.array([[40]])), "clamped on element 40: none"),
+    "a ship at rest": (tow(Usp=0.0, Vsp=0.0), "does not move"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_what_makes_no_sense_is_refused_by_name(case, tmp_path):
+    data, message = REFUSED[case]
+    assert message in refusal(tmp_path, data)
+
+
+@pytest.mark.parametrize(
+    ("dialect", "share"),
+    [(name, share) for name in ("matlab 5", "matlab 7.3") for share in (0.1, 0.5, 0.9)]
+    + [("octave", 0.1), ("octave", 0.5)],
+)
+def test_a_truncated_file_is_refused(dialect, share, tmp_path):
+    path = tmp_path / "design.mat"
+    DIALECTS[dialect](path, mooring())
+    content = path.read_bytes()
+    path.write_bytes(content[: int(share * len(content))])
+    with pytest.raises(InputError):
+        import_file(path, tmp_path / "design.yaml")
+
+
+@pytest.mark.parametrize("content", [b"", b"\x00" * 4000, b"\x93NUMPY", bytes(range(256)) * 40])
+def test_binary_files_are_refused(content, tmp_path):
+    path = tmp_path / "design.mat"
+    path.write_bytes(content)
+    for format in (None, "mdd"):
+        with pytest.raises(InputError):
+            import_file(path, tmp_path / "design.yaml", format=format)
+
+
+def test_nothing_in_a_file_is_unpickled(tmp_path):
+    """A pickle in place of a file, and one hidden as bytes in a variable, do nothing."""
+    import pickle
+
+    class Trap:
+        def __reduce__(self):
+            return (open, (str(tmp_path / "sprung"), "w"))
+
+    path = tmp_path / "design.mat"
+    path.write_bytes(pickle.dumps(Trap()))
+    with pytest.raises(InputError):
+        import_file(path, tmp_path / "design.yaml", format="mdd")
+    data = mooring(moorele=np.frombuffer(pickle.dumps(Trap()), np.uint8).reshape(1, -1))
+    savemat(path, data)
+    read_mdd(path)
+    assert not (tmp_path / "sprung").exists()
+
+
+def test_a_file_that_links_to_another_is_refused(tmp_path):
+    write_hdf5(tmp_path / "other.mat", mooring())
+    path = tmp_path / "design.mat"
+    write_hdf5(path, mooring())
+    with h5py.File(path, "r+") as file:
+        del file["H"]
+        file["H"] = h5py.ExternalLink(str(tmp_path / "other.mat"), "/H")
+    with pytest.raises(InputError, match="no mooring"):
+        read_mdd(path)
+
+
+def test_octave_cells_and_ranges_are_read():
+    text = (
+        "# Created by Octave\n# name: moorele\n# type: cell\n# rows: 2\n# columns: 1\n"
+        "# name: <cell-element>\n# type: string\n# elements: 1\n# length: 4\nball\n\n"
+        "# name: <cell-element>\n# type: string\n# elements: 1\n# length: 4\nrope\n\n"
+        "# name: z\n# type: range\n# base, limit, increment\n0 10 5\n\n"
+        "# name: n\n# type: uint8 matrix\n# ndims: 2\n 1 3\n  1\n  2\n  3\n"
+    )
+    found = read_octave_text(text)
+    assert found["moorele"] == [["ball"], ["rope"]]
+    assert found["z"].tolist() == [0.0, 5.0, 10.0]
+    assert found["n"].tolist() == [[1.0, 2.0, 3.0]]
