@@ -165,7 +165,6 @@ STANDING = 10
 BLOCKS = [*range(2), *(pytest.param(block, marks=pytest.mark.slow) for block in range(2, 4))]
 
 
-@pytest.mark.usefixtures("march_compiled")
 @pytest.mark.parametrize("block", BLOCKS)
 def test_calm_agrees_with_the_referee(block) -> None:
     """The promises of `test_random_moorings`, kept with curves."""
