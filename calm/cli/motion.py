@@ -284,7 +284,9 @@ def read_measured(
             for i, at in points.items()
         ]
         sensors = [replace(one, label=labels[points[i]]) for i, one in enumerate(sensors)]
-    read = read_currents(currents, seabed, place, declination)
+    read = read_currents(
+        currents, seabed, place, declination, mooring.file.environment.maximum_speed
+    )
     level = None if sea_level is None else read_sea_level(sea_level)
     used = [sensors[i] for i in points]
     measured = joined(read, used, list(points.values()), labels, still, gap, level)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from importlib.resources import files
 from pathlib import Path
 from typing import Annotated
 
@@ -12,11 +11,13 @@ from cyclopts import Parameter
 from calm.cli.exit_codes import ExitCode
 from calm.cli.streams import narrate, show
 from calm.errors import UsageError
+from calm.files.starts import Start, start
 
 NEW_EXAMPLES = """Examples:
 
   calm new
   calm new -o mooring.yaml
+  calm new taut-surface -o buoy.yaml
   calm new --record -o record.nc"""
 
 SCHEMA_EXAMPLES = """Examples:
@@ -25,6 +26,8 @@ SCHEMA_EXAMPLES = """Examples:
 
 
 def new(
+    kind: Start = "shelf",
+    /,
     *,
     record: bool = False,
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
@@ -34,6 +37,8 @@ def new(
 
     Parameters
     ----------
+    kind
+        Of mooring: on the shelf, in the deep sea, an ADCP, a surface buoy, or a tow.
     record
         Write a small made record, NetCDF, for `calm batch`; it needs --output.
     output
@@ -43,12 +48,13 @@ def new(
     """
     if record:
         return _new_record(output, force)
-    text = (files("calm.cli") / "starter.yaml").read_text(encoding="utf-8")
+    text = start(kind)
     if output is None:
         show(text)
         return ExitCode.DONE
     _write(output, text.encode(), force)
-    narrate(f"{output} written; solve it with: calm run {output}")
+    command = "tow" if kind == "tow" else "run"
+    narrate(f"{output} written; solve it with: calm {command} {output}")
     return ExitCode.DONE
 
 

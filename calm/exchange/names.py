@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from calm.exchange.design import Component
 
 _LONGEST = 40
+_NO_IDS = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}  # other words in YAML
 _SIGNS = {'"': "in ", "″": "in ", "↑": " up ", "↓": " down ", "+": " ", "&": " and ", "µ": "u"}
 
 
@@ -20,24 +21,31 @@ def kebab(name: str) -> str:
     return re.sub(r"[^a-z0-9]+", "-", text)[:_LONGEST].strip("-")
 
 
-def ids_of(components: Iterable[Component]) -> dict[int, str]:
-    """The id of every component, by its `id()`: those that say the same thing share one."""
+def ids_of(components: Iterable[Component], taken: Iterable[str] = ()) -> dict[int, str]:
+    """The id of every component, by its `id()`: those that say the same thing share one.
+
+    Parameters
+    ----------
+    taken : ids that stand for something else
+    """
     components = list(components)
     ids: dict[int, str] = {}
     said: dict[tuple[object, ...], str] = {}
-    taken = {component.entry for component in components}
+    known = {*taken, *(component.entry for component in components)}
     for component in components:
         if component.entry:
             ids[id(component)] = component.entry
             continue
         says = component.says()
         if says not in said:
-            base = kebab(component.name) or component.kind
+            base = kebab(component.name)
+            if base in _NO_IDS or not any(sign.isalpha() for sign in base):
+                base = f"{component.kind}-{base}".rstrip("-")
             chosen, number = base, 1
-            while chosen in taken:
+            while chosen in known:
                 number += 1
                 chosen = f"{base}-v{number}"
-            taken.add(chosen)
+            known.add(chosen)
             said[says] = chosen
         ids[id(component)] = said[says]
     return ids

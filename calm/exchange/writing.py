@@ -9,6 +9,7 @@ from textwrap import wrap
 
 from calm.exchange.design import Component, Design, Figure, Item, Remark, Water
 from calm.exchange.names import ids_of
+from calm.files import Catalogue
 from calm.units import KILOGRAM_FORCE
 
 _WIDTH = 100
@@ -41,6 +42,7 @@ class _Page:
 
     def add(self, line: str = "", guess: str = "", where: str = "", comment: str = "") -> None:
         if guess:
+            guess = one_line(guess)
             self.guessed.append(Remark(where, guess))
             line += f"  # guessed: {guess}"
         elif comment:
@@ -87,7 +89,7 @@ def written(
         page.add()
     elif design.water is not None:
         _write_water(page, design.water)
-    ids = ids_of(design.components())
+    ids = ids_of(design.components(), Catalogue.load().ids())
     page.add("line:" + (" # from the ship down" if design.tow else " # top to bottom"))
     for item in _counted(design.items):
         _write_item(page, item, ids)

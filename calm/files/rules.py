@@ -21,6 +21,7 @@ class RuleText:
     limit : and by what
     source : of the rule and its limit as it is by default
     unseen : why no profile of a batch can be judged by it, where none can
+    figures : of a component, without which the rule does not know
     """
 
     title: str
@@ -29,6 +30,7 @@ class RuleText:
     limit: str
     source: str
     unseen: str = ""
+    figures: tuple[str, ...] = ()
 
 
 _ONCE = "judged once of a mooring, by `calm check`"
@@ -49,6 +51,7 @@ RULES = {
         "5 synthetic, 5 anything in a surface mooring",
         "The lesser of working load and breaking load over a factor: UFC 4-159-03 table 3-7 (3, "
         "chain and wire), oceanographic practice MBL/3 to MBL/5",
+        figures=("working_load", "breaking_load"),
     ),
     "release-load": RuleText(
         "Load of the release",
@@ -56,6 +59,7 @@ RULES = {
         "greatest tension of every release, and the pull below it as it opens",
         "what its loads allow as under `strength`, and its `opening_load`; without one, the same",
         "The maker's static load, and the greatest under which it opens",
+        figures=("working_load", "opening_load"),
     ),
     "clamp-grip": RuleText(
         "Grip of the clamps",
@@ -64,6 +68,7 @@ RULES = {
         "its `grip`, else its `breaking_load`; reported where neither is given",
         "The maker's figures of the clamp",
         "the result does not tell the current at each clamp",
+        figures=("grip",),
     ),
     "strength-steps": RuleText(
         "Strength steps",
@@ -80,6 +85,7 @@ RULES = {
         "its own `max_tilt`, and `maximum_tilt` where given; a warning from its `warn_tilt`",
         "The maker's limit: RCM 27° (BODC), single-point Doppler 30°, ADCP 15 to 20°, release 45°, "
         "sediment trap 10°",
+        figures=("max_tilt",),
     ),
     "depth-rating": RuleText(
         "Depth rating",
@@ -87,6 +93,7 @@ RULES = {
         "depth in the current",
         "`depth_rating` less `rating_margin`, 100 m, or half of a rating below 200 m",
         "The maker's rating, less a margin for a stronger current than was thought of",
+        figures=("depth_rating",),
     ),
     "top-depth": RuleText(
         "Depth of the top",
@@ -115,6 +122,7 @@ RULES = {
         "weight in water",
         "`anchor_factor` × (V + H / friction), 1.5 and 0.6",
         "Dewey, Mooring Design & Dynamics: weight in water ≥ 1.5 (V + H/0.6)",
+        figures=("weight", "density"),
     ),
     "anchor-uplift": RuleText(
         "Anchor uplift",
@@ -122,6 +130,7 @@ RULES = {
         "V",
         "weight in water / 1.5",
         "The same rule apart: V ≤ weight in water / 1.5",
+        figures=("weight", "density"),
     ),
     "anchor-sliding": RuleText(
         "Anchor sliding",
@@ -130,6 +139,7 @@ RULES = {
         "friction × (weight in water / 1.5 − V)",
         "The same rule apart: H ≤ friction (weight in water / 1.5 - V), friction 0.6 of a "
         "deadweight",
+        figures=("weight", "density"),
     ),
     "slack": RuleText(
         "Least tension",
@@ -213,6 +223,7 @@ RULES = {
         "Anchor-last launch at terminal speed (URI GSO program); the working load, and breaking "
         "load over 2",
         _ONCE,
+        figures=("working_load", "breaking_load"),
     ),
     "launch-speed": RuleText(
         "Speed at touchdown",
@@ -221,6 +232,7 @@ RULES = {
         "2.5 m/s: a warning",
         "A default of this program: faster, an anchor may bury itself or break what stands on it",
         _ONCE,
+        figures=("kt",),
     ),
     "recovery": RuleText(
         "Rise",

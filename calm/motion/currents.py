@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from calm.batch.plausible import implausible
 from calm.batch.records.choice import choose_profiles
 from calm.batch.records.opening import open_record
 from calm.errors import InputError, Problem
@@ -41,6 +42,7 @@ class Currents:
     flag : (n, k); 0 without
     source : its file
     notes : what to know of it
+    false : (n,) whether a speed that cannot be was left out
     """
 
     time: NDArray[np.datetime64]
@@ -51,6 +53,7 @@ class Currents:
     flag: NDArray[np.int8]
     source: str
     notes: tuple[str, ...] = ()
+    false: NDArray[np.bool_] | None = None
 
 
 def read_currents(
@@ -58,6 +61,7 @@ def read_currents(
     seabed: float,
     place: tuple[float, float] | None,
     declination: float | None,
+    maximum_speed: float,
 ) -> list[Currents]:
     """The currents of some files.
 
@@ -66,6 +70,7 @@ def read_currents(
     seabed : depth of the water [m]
     place : latitude and longitude of the mooring [degrees], where it is known
     declination : see `calm.batch.records.opening.open_record`
+    maximum_speed : what is faster is left out, and said [m/s]
 
     Raises
     ------
@@ -84,8 +89,27 @@ def read_currents(
                 flag = np.zeros(u.shape, np.int8)
                 time = np.asarray(record.time)
             mine = Currents(time, depth, ("",) * u.shape[1], u, v, flag, path.name)
-        found.append(mine)
+        found.append(_plausible(mine, maximum_speed))
     return found
+
+
+def _plausible(one: Currents, maximum_speed: float) -> Currents:
+    """Without the levels whose current cannot be."""
+    depth = np.where([bool(label) for label in one.label], 0.0, one.depth)
+    false = implausible(depth, one.u, one.v, None, maximum_speed)
+    if not false.any():
+        return one
+    at, level = (int(index[0]) for index in np.nonzero(false))
+    where = one.label[level] or f"{one.depth[at, level]:g} m"
+    note = (
+        f"{false.sum()} currents left out as implausible (above `maximum_speed`, "
+        f"{maximum_speed:g} m/s): the first at {np.datetime_as_string(one.time[at], unit='m')}, "
+        f"{where}: {np.hypot(one.u[at, level], one.v[at, level]):.5g} m/s"
+    )
+    u, v = (np.where(false, np.nan, each) for each in (one.u, one.v))
+    return replace(
+        one, u=u, v=v, notes=(*one.notes, note), false=np.logical_or.reduce(false, axis=1)
+    )
 
 
 def _labelled(path: Path, declination: float | None) -> Currents | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from calm.motion import prior
 from calm.motion.moment import Common
 from calm.physics.line import Floats
+
+Times = NDArray[np.datetime64]
 
 LEAST = 1.5
 """A step or a drift that is named [m], at least."""
@@ -19,13 +21,15 @@ SHARE = 0.6
 """Share of the variance of the residuals that it explains, at least."""
 FEWEST = 8
 """Times on either side of a step."""
+FALSE = 0.5
+"""Probability from which the current of a level is named as false."""
 FAR_OFFSET = 2.5
 """Offsets of a sensor that are named, in deviations of what is expected."""
 
 
 def doubts(
     labels: Sequence[str],
-    time: NDArray[np.datetime64],
+    time: Times,
     residual: Floats,
     down: Floats,
     common: Common,
@@ -70,9 +74,7 @@ def doubts(
     return said
 
 
-def _change(
-    time: NDArray[np.datetime64], residual: Floats
-) -> tuple[float, str, np.datetime64] | None:
+def _change(time: Times, residual: Floats) -> tuple[float, str, np.datetime64] | None:
     """A step or a drift: its size [m], which, and when; None where there is none that is clear."""
     count = len(residual)
     if count < 2 * FEWEST:
@@ -94,3 +96,24 @@ def _change(
     if abs(size) < max(LEAST, CLEAR * error) or left > (1.0 - SHARE) * whole:
         return None
     return size, "step" if step else "drift", time[at[best] - 1]
+
+
+def false_currents(names: Sequence[str], time: Times, doubt: Floats) -> dict[str, Times]:
+    """The times at which the current of a level is more likely false than not, by its name.
+
+    Parameters
+    ----------
+    time : (n,)
+    doubt : (n, k) probability that the current of a level is false
+    """
+    hit = doubt > FALSE
+    return {name: time[hit[:, k]] for k, name in enumerate(names) if hit[:, k].any()}
+
+
+def said_of_currents(false: Mapping[str, Times], count: int) -> list[str]:
+    """A sentence on each level whose current looks false at some of so many times."""
+    return [
+        f"current at {name}: its direction or speed looks false at {len(when)} of {count} times, "
+        f"first at {np.datetime_as_string(when[0], 'm')}"
+        for name, when in false.items()
+    ]

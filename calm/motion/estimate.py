@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -52,19 +52,21 @@ def estimated(moments: Moments, common: Common) -> Estimate:
     for sensor in range(len(one.label)):
         spike = posterior(one, at, known.way.spread, common, still, sensor)
         mixture.add(every, known.way, spike, np.full(len(every), np.log(prior.SPIKES)), ())
-    odds = _odds(moments)
+    odds, worse = _odds(moments), np.full(len(every), np.log(prior.ALL_WORSE))
     count = np.isfinite(one.depth).sum(axis=1)
     fair = -0.5 * (count + np.linalg.slogdet(first.expected)[1])
     level = moments.levels(first.depth)
     for sets in _sets(moments.groups):
         best = mixture.best
         for without in sets:
-            chance = odds[:, list(without)].sum(axis=1)
+            chance = odds[:, list(without)].sum(axis=1) if without else worse
             likely = chance + fair > best + np.log(NEGLIGIBLE)
             tried = np.flatnonzero(likely & np.isfinite(best))
             if len(tried):
                 part = Moments(one.at(tried), moments.forward, {})
-                other = part.way(level[tried], common.scale, without)
+                other = part.way(level[tried], common, without)
+                if not without:
+                    other = replace(other, spread=prior.WORSE**2 * other.spread)
                 found = _tried(part, other, at, common, tried)
                 mixture.add(tried, other, found, chance[tried], without)
     return mixture.estimate()
@@ -101,7 +103,8 @@ def _tried(
 
 
 def _sets(groups: int) -> Iterator[Iterable[tuple[int, ...]]]:
-    """One group or two, never all of them."""
+    """No group but all of them worse, one group or two, never all of them."""
+    yield [()]
     for size in (1, 2):
         if size < groups:
             yield combinations(range(groups), size)

@@ -120,9 +120,15 @@ def joined(
         np.stack([column[4] for column in columns], axis=1),
         np.stack([column[5] for column in columns], axis=1),
         tide,
+        _false(currents, time),
     )
     _refuse_apart(measured)
     return measured
+
+
+def _false(currents: Sequence[Currents], time: Times) -> NDArray[np.bool_] | None:
+    when = [one.time[one.false] for one in currents if one.false is not None]
+    return np.isin(time, np.concatenate(when)) if when else None
 
 
 def _mean(depth: Floats) -> float:

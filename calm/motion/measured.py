@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -32,6 +33,7 @@ class Measured:
     u, v : (n, k) current [m/s], NaN where not measured
     flag : (n, k) quality flags of the current; 0 where it has none
     tide : (n,) height of the sea surface above its mean [m]; None where not known
+    false : (n,) whether a current that cannot be was left out; None where none was
     """
 
     time: NDArray[np.datetime64]
@@ -45,6 +47,7 @@ class Measured:
     v: Floats
     flag: NDArray[np.int8]
     tide: Floats | None = None
+    false: NDArray[np.bool_] | None = None
 
     @property
     def group(self) -> Integers:
@@ -63,4 +66,16 @@ class Measured:
             v=self.v[times],
             flag=self.flag[times],
             tide=None if self.tide is None else self.tide[times],
+            false=None if self.false is None else self.false[times],
         )
+
+
+def level_names(measured: Measured, labels: Sequence[str]) -> tuple[str, ...]:
+    """What each level of the currents is called: its part of the line, or its mean depth."""
+    names = []
+    for k, point in enumerate(measured.level_point.tolist()):
+        depth = measured.level_depth[:, k]
+        known = depth[np.isfinite(depth)]
+        at = f"{known.mean():.1f} m" if known.size else f"level {k + 1}"
+        names.append(at if point == FREE else labels[point])
+    return tuple(names)

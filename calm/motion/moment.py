@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from calm.motion import prior
 from calm.motion.filled import filled
@@ -45,6 +46,8 @@ class Common:
     offset : (s,) of the sensors [m]
     covariance : (q, q)
     scale : of the errors of the currents, on those of `calm.motion.prior`
+    gap : (g, g) error of the logarithm of the factor on a group of levels whose currents are taken
+        from the others, another group left out besides; see `calm.motion.filled.gap_errors`
     """
 
     factors: Mapping[str, float]
@@ -52,6 +55,7 @@ class Common:
     offset: Floats
     covariance: Floats
     scale: float
+    gap: Floats
 
 
 @dataclass(frozen=True)
@@ -100,22 +104,34 @@ class Moments:
         apart: Floats = np.maximum(level, 0.0) + APART * np.arange(level.shape[1])
         return apart
 
-    def way(self, level: Floats, scale: float, without: tuple[int, ...] = ()) -> Way:
-        """The currents at these levels; some groups of them taken from the others."""
+    def read(
+        self, level: Floats, without: tuple[int, ...] = ()
+    ) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+        """(n, k) u and v [m/s] at these levels, and whether each was measured.
+
+        Parameters
+        ----------
+        without : groups that are taken from the others, as is what was not measured
+        """
         one = self.measured
         known = np.isfinite(one.u) & np.isfinite(one.v) & np.isfinite(level)
         known &= ~np.isin(self.group, without)
-        u, v = filled(level, one.u, known), filled(level, one.v, known)
+        return filled(level, one.u, known), filled(level, one.v, known), known
+
+    def way(self, level: Floats, common: Common, without: tuple[int, ...] = ()) -> Way:
+        """The currents at these levels with their errors; some groups taken from the others."""
+        u, v, known = self.read(level, without)
         speed = np.maximum(np.hypot(u, v), 1e-3)
-        own = np.hypot(prior.by_flag(prior.LEVEL, one.flag), prior.STEADY / speed)
-        own = np.minimum(np.where(known, own, prior.GAP), 0.5)
+        own = np.hypot(prior.by_flag(prior.LEVEL, self.measured.flag), prior.STEADY / speed)
+        gap = common.gap[:, [*without]].max(axis=1) if without else np.diag(common.gap)
+        own = np.minimum(np.where(known, own, gap[self.group]), prior.LARGEST)
         spread = np.zeros((len(u), self.groups, self.groups))
         place = np.linspace(-1.0, 1.0, self.groups) if self.groups > 1 else np.zeros(1)
         spread += prior.CURRENT**2 + prior.SHEAR**2 * np.outer(place, place)
         for g in range(self.groups):
             mine = own[:, self.group == g]
             spread[:, g, g] += (mine**2).mean(axis=1)
-        return Way(level, u, v, scale**2 * spread)
+        return Way(level, u, v, common.scale**2 * spread)
 
     def depths(self, way: Way, logs: Floats, forward: Forward | None = None) -> Floats:
         """(n, p) depths of the points with factors on the currents."""
@@ -283,8 +299,8 @@ def settled(moments: Moments, common: Common) -> Settled:
     one, still = moments.measured, moments.forward.still
     none = np.zeros((len(one.time), moments.groups))
     there = between(one, np.tile(still, (len(one.time), 1)), still)
-    there = moments.depths(moments.way(moments.levels(there), common.scale), none)
-    way = moments.way(moments.levels(between(one, there, still)), common.scale)
+    there = moments.depths(moments.way(moments.levels(there), common), none)
+    way = moments.way(moments.levels(between(one, there, still)), common)
     there = moments.depths(way, none)
     slope = moments.slopes(way, none, there)
     begin = at = Linear(none, there, slope, moments.common_slopes(way, there))

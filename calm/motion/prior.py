@@ -22,9 +22,14 @@ LEVEL: Mapping[int, float] = {0: 0.05, 1: 0.05, 2: 0.07, 3: 0.15, 4: 0.30, 8: 0.
 STEADY = 0.01
 """What a weak current is wrong by besides [m/s]."""
 GAP = 0.25
-"""Of the factor on a level whose current is taken from its neighbours."""
+"""Of the factor on a level whose current is taken from its neighbours, where the record does not
+say how alike these are."""
+LARGEST = 0.5
+"""Of the factor on a single level, at most."""
 FALSE: Mapping[int, float] = {0: 0.01, 1: 0.01, 2: 0.03, 3: 0.10, 4: 0.30, 8: 0.10}
 """Probability that a current is false in direction or size, by its quality flag."""
+WORSE, ALL_WORSE = 3.0, 0.01
+"""All currents of a time are so many times worse than this, and the probability that they are."""
 
 FACTORS: Mapping[str, tuple[float, float]] = {
     "cable_drag": (0.0, 0.15),
@@ -44,7 +49,7 @@ NOISE = 0.2
 """Of a depth by pressure at one time [m]."""
 SPIKE, SPIKES = 30.0, 1e-5
 """Of a depth that is a spike [m], and the probability that one is."""
-WORST = 0.05
+WORST = 0.07
 """Share of the knockdown that the line itself may be wrong by, after all else: shape, model."""
 
 

@@ -19,6 +19,8 @@ from calm.batch.store.store import Store, open_store
 from calm.batch.threads import processors
 from calm.batch.work import Progress, Work
 from calm.dataset.variables import Attributes, Layout, labels, numbers
+from calm.motion.matching import labels_of
+from calm.motion.measured import level_names
 from calm.motion.task import BLOCK, MeasuredRecord, Task
 from calm.physics.line import Floats
 
@@ -33,6 +35,10 @@ OF_MOTION: Mapping[str, tuple[tuple[str, ...], tuple[str, str, Attributes]]] = {
         ("m", "standard deviation of the depth of the upper end", _DEVIATION),
     ),
     "current_factor": ((), ("1", "factor on the current, estimated", {})),
+    "current_doubt": (
+        ("level",),
+        ("1", "probability that the current of the level is false", {}),
+    ),
     "residual": (("sensor",), ("m", "measured less estimated depth of the sensor", {})),
     "plain_depth": (
         ("sensor",),
@@ -107,7 +113,11 @@ def motion_layout(task: Task, record: MeasuredRecord) -> Layout:
     layout = layout_of(task.mooring, record, None)
     known = dict(layout.sizes)
     known["sensor"] = len(task.measured.label)
+    names = level_names(task.measured, labels_of(task.mooring))
+    known["level"] = len(names)
     variables = [*layout.variables]
+    if names:
+        variables.append(labels("level_label", "level", names, "levels of the currents"))
     if known["sensor"]:
         meaning = "sensors whose pressures are used, from the top down"
         variables.append(labels("sensor_label", "sensor", task.measured.label, meaning))

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from calm.case import Mooring
 from calm.errors import UsageError
 from calm.files.explain import unknown
-from calm.motion.doubts import doubts
+from calm.motion.doubts import doubts, false_currents, said_of_currents
 from calm.motion.forward import Forward
 from calm.motion.judge import (
     BAND,
@@ -23,7 +24,8 @@ from calm.motion.judge import (
     linear,
     rms,
 )
-from calm.motion.measured import Measured
+from calm.motion.matching import labels_of
+from calm.motion.measured import Measured, level_names
 from calm.motion.run import estimate_in_memory
 from calm.motion.series import depths_at
 from calm.motion.task import Task, without
@@ -72,6 +74,7 @@ class Study:
     fit, plain : agreement of each used sensor, of what is estimated and of the currents alone
     held_out : of the hidden ones
     doubts : what to doubt, in sentences
+    false : times at which the current of a level looks false, by its name
     """
 
     task: Task
@@ -80,6 +83,7 @@ class Study:
     plain: Mapping[str, Agreement]
     held_out: tuple[HeldOut, ...]
     doubts: tuple[str, ...]
+    false: Mapping[str, NDArray[np.datetime64]]
 
 
 def prepare(
@@ -166,7 +170,10 @@ def judged(task: Task, measured: Measured, result: Dataset) -> Study:
         depth, spread = depths_at(result, point)
         held.append(judge_hidden(measured, used, label, depth, spread, still))
     said = doubts(used.label, used.time, residual, down, task.common)
-    return Study(task, intervals(task), fit_of, plain_of, tuple(held), tuple(said))
+    names = level_names(used, labels_of(task.mooring))
+    false = false_currents(names, used.time, np.asarray(result["current_doubt"].values))
+    said += said_of_currents(false, len(used.time))
+    return Study(task, intervals(task), fit_of, plain_of, tuple(held), tuple(said), false)
 
 
 def knockdown(used: Measured) -> Floats:

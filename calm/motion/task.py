@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from calm.batch.profiles import Profiles
 from calm.batch.records.record import Levels, Record
+from calm.batch.statuses import STATUSES
 from calm.case import Mooring
 from calm.motion.estimate import estimated
 from calm.motion.forward import Forward, points
@@ -38,7 +39,7 @@ class Task:
         Returns
         -------
         The profiles with the depths that were estimated, and `clamp_depth_sd`, `depth_sd`,
-        `current_factor`, `residual`, `plain_depth`.
+        `current_factor`, `current_doubt`, `residual`, `plain_depth`.
         """
         one = self.measured.at(slice(start, stop))
         moments = Moments(one, *self._forwards)
@@ -56,11 +57,16 @@ class Task:
             knockdown=down[:, clamps:] + 0.0 * likely.knockdown,
             top_depth=likely.top_depth + shift[:, clamps],
         )
+        if one.false is not None:
+            lost = one.false & (likely.status == STATUSES.index("no-current"))
+            status = np.where(lost, STATUSES.index("implausible-current"), likely.status)
+            profiles = replace(profiles, status=status.astype(np.int8))
         known = np.where(likely.status == 0, 1.0, np.nan)
         return profiles, {
             "clamp_depth_sd": found.deviation[:, :clamps] * known[:, None],
             "depth_sd": found.deviation[:, clamps:] * known[:, None],
             "current_factor": found.current * known,
+            "current_doubt": found.doubt * known[:, None],
             "residual": one.depth - self.common.offset - found.depth[:, one.point],
             "plain_depth": plain(self._alone, one)[:, one.point],
         }
@@ -79,8 +85,9 @@ def plain(forward: Forward, one: Measured) -> Floats:
     moments = Moments(one, forward, {})
     depth = np.tile(forward.still, (len(one.time), 1))
     for _ in range(2):
-        way = moments.way(moments.levels(np.nan_to_num(depth)), scale=1.0)
-        depth = moments.depths(way, np.zeros((len(one.time), moments.groups)))
+        level = moments.levels(np.nan_to_num(depth))
+        u, v, _ = moments.read(level)
+        depth = forward.depths(level, u, v)
     return depth
 
 

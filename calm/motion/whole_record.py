@@ -9,6 +9,7 @@ import numpy as np
 
 from calm.case import Mooring
 from calm.motion import prior
+from calm.motion.filled import gap_errors
 from calm.motion.forward import Forward
 from calm.motion.measured import Measured
 from calm.motion.moment import STEP, Common, Moments, settled
@@ -48,7 +49,10 @@ def assumed(mooring: Mooring, measured: Measured, names: Sequence[str]) -> Commo
         *[prior.OFFSET] * sensors,
     ]
     factors = {name: float(np.exp(prior.FACTORS[name][0])) for name in names}
-    return Common(factors, 0.0, np.zeros(sensors), np.diag(np.square(spread)), 1.0)
+    moments = Moments(measured, Forward(mooring, factors), {})
+    level = moments.levels(np.tile(moments.forward.still, (len(measured.time), 1)))
+    gap = gap_errors(level, measured.u, measured.v, moments.group)
+    return Common(factors, 0.0, np.zeros(sensors), np.diag(np.square(spread)), 1.0, gap)
 
 
 def estimate_common(mooring: Mooring, measured: Measured, names: Sequence[str]) -> Common:
@@ -62,8 +66,8 @@ def estimate_common(mooring: Mooring, measured: Measured, names: Sequence[str]) 
     ----------
     names : of `calm.motion.forward.FACTORS`, those that are estimated
     """
-    known = assumed(mooring, measured, names)
     part = measured.at(_chosen(measured))
+    known = assumed(mooring, part, names)
     if not len(part.time):
         return known
     beforehand = np.linalg.inv(known.covariance)
@@ -99,7 +103,7 @@ def estimate_common(mooring: Mooring, measured: Measured, names: Sequence[str]) 
         covariance = np.linalg.inv(normal / alike + beforehand)
         value = _vector(common)
         value = value + covariance @ (pull.sum(axis=0) / alike + beforehand @ (centre - value))
-        common = _common(names, value, covariance * (turn == TURNS - 1), scale)
+        common = _moved(common, value, covariance * (turn == TURNS - 1), scale)
     return common
 
 
@@ -117,11 +121,12 @@ def _vector(common: Common) -> Floats:
     return np.concatenate([logs, [common.datum], common.offset])
 
 
-def _common(names: Sequence[str], value: Floats, covariance: Floats, scale: float) -> Common:
-    count = len(names)
+def _moved(known: Common, value: Floats, covariance: Floats, scale: float) -> Common:
+    names, count = list(known.factors), len(known.factors)
     logs = np.clip(value[:count], -FURTHEST, FURTHEST)
     factors = {name: float(np.exp(log)) for name, log in zip(names, logs, strict=True)}
-    return Common(factors, float(value[count]), value[count + 1 :], covariance, scale)
+    offset = value[count + 1 :]
+    return Common(factors, float(value[count]), offset, covariance, scale, known.gap)
 
 
 def _scale(left: Floats, expected: Floats, currents: Floats, scale: float) -> float:

@@ -58,6 +58,7 @@ class Table:
 
     A row of a single cell heads those below it. The rows of a table that is `sortable` may be put
     in another order and chosen from; a `dense` one has more columns than fit with room to spare.
+    One that is to be filled in `by_hand` has rules and room to write.
     """
 
     title: str
@@ -67,6 +68,7 @@ class Table:
     totals: int = 0
     sortable: bool = False
     dense: bool = False
+    by_hand: bool = False
 
 
 @dataclass(frozen=True)
@@ -83,6 +85,14 @@ class Figure:
     title: str
     svg: str
     tall: bool = False
+
+
+@dataclass(frozen=True)
+class Plate:
+    """A drawing as SVG that is as large as a page and has it to itself, and what it shows."""
+
+    title: str
+    svg: str
 
 
 @dataclass(frozen=True)
@@ -197,6 +207,7 @@ class Report:
     front : what stands before the sections
     sections : one for each mooring or tow
     date : in words, None where no date was given
+    plates : drawings before all else
     """
 
     title: str
@@ -204,3 +215,4 @@ class Report:
     front: tuple[Part, ...]
     sections: tuple[Section, ...]
     date: str | None = None
+    plates: tuple[Plate, ...] = ()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from calm.case.columns import rows_down
@@ -41,6 +41,27 @@ _FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n")
 def as_text(text: str) -> str:
     """A text as a cell that no spreadsheet takes for a formula: with an apostrophe before it."""
     return f"'{text}" if text.startswith(_FORMULA) else text
+
+
+def table_csv(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    """A table as CSV text (UTF-8, comma, point, LF); what is unknown is left empty.
+
+    A spreadsheet takes a text that begins with ``=``, ``+``, ``-`` or ``@`` for a formula. Such
+    texts are written with an apostrophe before them; numbers are numbers, in full.
+    """
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(header)
+    writer.writerows(map(_cell, row) for row in rows)
+    return text.getvalue()
+
+
+def _cell(value: object) -> str:
+    if value is None or value != value:
+        return ""
+    if isinstance(value, str):
+        return as_text(value)
+    return repr(float(value)) if isinstance(value, float) else str(value)
 
 
 def to_csv(results: Sequence[Result | TowResult]) -> str:

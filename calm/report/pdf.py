@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from importlib.resources import files
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from calm.report.blocks import Section
+from calm.report.fonts import font_folder, legible
 from calm.report.provenance import moment
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ def report_pdf(sections: Sequence[Section]) -> bytes:
     """The report of a design check, as `calm.report.html.report_html` shows it.
 
     The same sections give the same bytes: the fonts are those that typst and matplotlib bring, and
-    the only date is that of SOURCE_DATE_EPOCH. A sign that no font has shows as a box.
+    the only date is that of SOURCE_DATE_EPOCH. A sign that no font has shows as �.
     """
     from calm.report.check.section import check_report
 
@@ -35,19 +35,27 @@ def result_pdf(result: Result | TowResult, uncertain: Uncertain | None = None) -
     return printed(result_report(result, uncertain))
 
 
-def printed(report: Report) -> bytes:
-    """Any report on A4 pages; its texts reach the template as data, never as markup."""
-    import matplotlib
+def printed(report: Report, paper: str = "a4", least: float = 0.0) -> bytes:
+    """Any report on pages; its texts reach the template as data, never as markup.
+
+    Parameters
+    ----------
+    paper : a4, a3 (lying) or letter
+    least : size of the smallest text of its tables and notes [pt]
+    """
     import typst
 
-    text = json.dumps(report, default=_members, ensure_ascii=False)
-    folder = Path(matplotlib.get_data_path(), "fonts", "ttf")
-    fonts = typst.Fonts(include_system_fonts=False, font_paths=[folder])
+    text = legible(json.dumps(report, default=_members, ensure_ascii=False))
+    fonts = typst.Fonts(include_system_fonts=False, font_paths=[font_folder()])
     when = moment()
     return typst.compile(
         (files("calm.report") / "report.typ").read_bytes(),
         font_paths=fonts,
-        sys_inputs={"report": text.encode("utf-8", "replace").decode("utf-8")},
+        sys_inputs={
+            "report": text.encode("utf-8", "replace").decode("utf-8"),
+            "paper": "us-letter" if paper == "letter" else paper,
+            "least": f"{least:g}",
+        },
         pdf_tags=False,  # they make the file ten times as large; the page for a browser has its own
         timestamp=None if when is None else int(when.timestamp()),
     )

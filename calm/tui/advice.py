@@ -220,7 +220,11 @@ def differences(before: View, after: View) -> list[str]:
                 told.append(f"{name} {texts[0]} → {texts[1]}")
     elif after.failure is not None:
         told.append(f"it does not stand: {after.failure.message}")
-    for state, word in ((State.FAIL, "failures"), (State.WARN, "warnings")):
+    for state, word in (
+        (State.FAIL, "failures"),
+        (State.UNKNOWN, "figures unknown"),
+        (State.WARN, "warnings"),
+    ):
         counts = [sum(each.state is state for each in view.findings) for view in (before, after)]
         if counts[0] != counts[1]:
             told.append(f"{word} {counts[0]} → {counts[1]}")

@@ -11,6 +11,7 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Vertical
 from textual.events import Key
+from textual.markup import escape
 from textual.screen import ModalScreen
 from textual.widgets import Static
 
@@ -59,7 +60,8 @@ class Question(ModalScreen[str | None]):
             yield Static(self._text, classes="text", markup=False)
             for number, answer in enumerate(self._answers):
                 yield Static(
-                    f"[@click=screen.answer_number({number})][b]{answer.key}[/b]  {answer.title}[/]"
+                    f"[@click=screen.answer_number({number})][b]{answer.key}[/b]  "
+                    f"{escape(answer.title)}[/]"
                 )
             if not self._must:
                 yield Static("[@click=screen.answer('')][b]Esc[/b]  go back[/]")

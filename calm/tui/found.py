@@ -27,7 +27,7 @@ class Row:
     ----------
     place : in the line as read
     use, label : as in results
-    length : stretched, cut where nothing is solved [m]; None of a clamp, or to be cut to fit
+    length : as cut [m]; None of a clamp, and of one to be cut to fit until it is solved
     depth : of the upper end [m], None like all below where nothing is solved
     tension : the greatest [N]
     tilt : [degrees]
@@ -59,7 +59,7 @@ def rows_of(
         for clamp in result.clamps:
             figures[clamp.place] = (None, clamp.depth, clamp.tension, clamp.tilt)
         for row in result.components:
-            figures[row.place] = (row.length, row.depth_top, row.tension, row.tilt)
+            figures[row.place] = (row.cut_length, row.depth_top, row.tension, row.tilt)
     said = _said(findings)
     for piece in file.pieces:
         if piece.use == STAND_IN:

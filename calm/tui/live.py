@@ -84,6 +84,11 @@ class View:
         return Draft(self.text).items
 
     @property
+    def here(self) -> str:
+        """The environment that the line stands in, as findings name it."""
+        return OWN if self.file is None else self.file.environment.name or OWN
+
+    @property
     def anchored(self) -> bool:
         """Whether the line has an anchor of its own, or needs none."""
         return self.file is not None and self.file.pieces[-1].use != STAND_IN
@@ -210,8 +215,8 @@ def _found(
     """What the rules of a standing line find; none of them is of a tow."""
     if file.tow is None:
         as_given = Situation(AS_GIVEN, result, failure)
-        environment = file.environment.name or OWN
-        yield from findings_of(as_given, file.name, environment, anchored=view.anchored)
+        here = file.environment.name or OWN
+        yield from findings_of(as_given, file.name, here, anchored=view.anchored)
 
 
 def _wrong(view: View, problems: Sequence[Problem]) -> View:

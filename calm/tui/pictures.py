@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Literal
 
 from rich.text import Text
@@ -19,6 +19,7 @@ from calm.tui.signs import ELLIPSIS
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
+    from calm.case.columns import Shape
     from calm.physics.line import Water
     from calm.tui.live import View
 
@@ -27,7 +28,6 @@ TABS: tuple[Tab, ...] = ("elevation", "plan", "tension", "schematic")
 
 _LEAST_BESIDE = 52
 _BESIDE, _MOST_BESIDE = 3, 26
-_SCHEMATIC_WIDTH = 56
 
 
 class Tabs(Static):
@@ -57,7 +57,7 @@ class Picture(ScrollView, can_focus=True):
 
     DEFAULT_CSS = """
     Picture { height: 1fr; width: 1fr; background: $background; scrollbar-size: 1 1;
-              overflow-x: hidden; padding: 0 1; }
+              overflow-x: auto; padding: 0 1; }
     Picture:focus { background-tint: $foreground 3%; }
     """
 
@@ -65,14 +65,15 @@ class Picture(ScrollView, can_focus=True):
         super().__init__()
         self.tab: Tab = "elevation"
         self._view: View | None = None
+        self._beside: Sequence[Shape] = ()
         self._drawn: Size | None = None  # the size that the rows are for
         self._rows: list[Text] = []
 
-    def show(self, view: View | None, tab: Tab) -> None:
-        """Draw a line as judged."""
+    def show(self, view: View | None, tab: Tab, beside: Sequence[Shape] = ()) -> None:
+        """Draw a line as judged, other shapes beside it."""
         if tab != self.tab:
-            self.scroll_to(y=0, animate=False)
-        self._view, self.tab = view, tab
+            self.scroll_to(0, 0, animate=False)
+        self._view, self.tab, self._beside = view, tab, beside
         self._drawn = None
         self.refresh()
 
@@ -84,9 +85,9 @@ class Picture(ScrollView, can_focus=True):
         if number >= len(self._rows):
             return Strip.blank(width, self.rich_style)
         segments = self._rows[number].render(self.app.console)
-        return (
-            Strip(segments).apply_style(self.rich_style).adjust_cell_length(width, self.rich_style)
-        )
+        left = self.scroll_offset.x
+        strip = Strip(segments).apply_style(self.rich_style)
+        return strip.adjust_cell_length(left + width, self.rich_style).crop(left, left + width)
 
     def _draw(self) -> None:
         size = self.scrollable_content_region.size
@@ -94,8 +95,11 @@ class Picture(ScrollView, can_focus=True):
             return
         self._drawn = size
         self._rows = self._picture(size)
-        tall = len(self._rows) if self.tab == "schematic" else 0
-        self.virtual_size = Size(0, tall)
+        if self.tab == "schematic":
+            widest = max((row.cell_len for row in self._rows), default=0)
+            self.virtual_size = Size(widest, len(self._rows))
+        else:
+            self.virtual_size = Size(0, 0)
 
     def _picture(self, size: Size) -> list[Text]:
         result = None if self._view is None else self._view.result
@@ -113,9 +117,9 @@ class Picture(ScrollView, can_focus=True):
         from calm.report.sketch import current_profile, elevation
 
         if size.width < _LEAST_BESIDE or result.file.environment.depth is None:
-            return elevation(result, size.width, size.height)
+            return elevation(result, size.width, size.height, self._beside)
         beside = min(size.width // _BESIDE, _MOST_BESIDE)
-        line = elevation(result, size.width - beside - 1, size.height)
+        line = elevation(result, size.width - beside - 1, size.height, self._beside)
         profile = current_profile(_water_of(result), beside, size.height)
         rows = []
         for left, right in zip(line, profile, strict=True):
@@ -126,7 +130,7 @@ class Picture(ScrollView, can_focus=True):
     def _plan(self, result: Result | TowResult, size: Size) -> list[Text]:
         from calm.report.sketch import plan
 
-        return plan(result, size.width, size.height)
+        return plan(result, size.width, size.height, self._beside)
 
     def _tension(self, result: Result | TowResult, size: Size) -> list[Text]:
         from calm.report.sketch import tension
@@ -136,8 +140,7 @@ class Picture(ScrollView, can_focus=True):
     def _schematic(self, result: Result | TowResult, size: Size) -> list[Text]:
         from calm.report.schematic.text import schematic_text
 
-        width = max(size.width, _SCHEMATIC_WIDTH)
-        text = schematic_text(result.file, result, width)
+        text = schematic_text(result.file, result, size.width)
         return [Text(line) for line in text.splitlines()]
 
 
@@ -167,6 +170,7 @@ class Pictures(Vertical):
     DEFAULT_CSS = """
     Pictures { height: 1fr; width: 1fr; }
     Pictures.-old Picture { text-style: dim; }
+    Pictures > #beside { height: 1; padding: 0 1; color: $text-muted; display: none; }
     """
 
     tab: reactive[Tab] = reactive("elevation", init=False)
@@ -175,10 +179,13 @@ class Pictures(Vertical):
         super().__init__(id=id)
         self._view: View | None = None
         self._note = ""
+        self._overlaid = False
+        self._other: tuple[str, Shape] | None = None
 
     def compose(self) -> ComposeResult:
         """The names, and the picture."""
         yield Tabs()
+        yield Static(id="beside", markup=False)
         yield Picture()
 
     def on_mount(self) -> None:
@@ -190,13 +197,40 @@ class Pictures(Vertical):
         self._view, self._note = view, note
         self._show()
 
+    def overlay(self) -> bool:
+        """Draw the line in all its environments, or no more; whether it is drawn so."""
+        self._overlaid = not self._overlaid
+        self._show()
+        return self._overlaid
+
+    def put_beside(self, other: tuple[str, Shape] | None) -> None:
+        """Draw another design beside the line, by the name of its file; None takes it away."""
+        self._other = other
+        self._show()
+
+    def _beside(self) -> tuple[list[Shape], str]:
+        """The shapes that are drawn beside the line, and what they are."""
+        view, shapes, named = self._view, [], []
+        if self._overlaid and view is not None:
+            results = [stand.result for stand in view.stands if stand.environment != view.here]
+            shapes = [result.shape for result in results if result is not None]
+            named = ["all environments"] if shapes else []
+        if self._other is not None:
+            shapes.append(self._other[1])
+            named.append(self._other[0])
+        return shapes, " and ".join(named)
+
     def watch_tab(self) -> None:
         """Draw the other picture."""
         self._show()
 
     def _show(self) -> None:
+        shapes, named = self._beside()
         self.query_one(Tabs).show(self.tab, self._note)
-        self.query_one(Picture).show(self._view, self.tab)
+        told = self.query_one("#beside", Static)
+        told.update(f"dashed: {named}")
+        told.display = bool(named) and self.tab in ("elevation", "plan")
+        self.query_one(Picture).show(self._view, self.tab, shapes)
 
     def on_click(self, event: events.Click) -> None:
         """Give the picture the focus."""

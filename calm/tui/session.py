@@ -219,6 +219,19 @@ class Session:
         self.do(self.draft.paste(first, self.copied.clamps, clamps_of(spot.item)), label)
         return Place(spot.item, clamp=first)
 
+    def assemble(self, spots: Iterable[Place], id: str) -> Place:
+        """Make pieces that follow one another an assembly of the file, which stands for them then.
+
+        Raises
+        ------
+        EditError
+            They do not follow one another.
+        """
+        chosen = [spot for spot in _whole(spots) if not spot.is_clamp]
+        draft = self.draft.assemble((spot.item for spot in chosen), id)
+        self.do(draft, f"make {id} of {self._called(chosen)}")
+        return Place(chosen[0].item)
+
     def _clamps(self, chosen: Sequence[Place]) -> tuple[str, ...]:
         """The text of clamps, of one piece or of several."""
         copied = (self.draft.copy([spot.clamp], clamps_of(spot.item)) for spot in chosen)

@@ -112,8 +112,7 @@ def sayings(view: View | None) -> Iterator[Saying]:
 
 def _placed(finding: Finding, view: View) -> Finding:
     """A finding whose situation names its environment too, where the line stands in another."""
-    here = OWN if view.file is None else view.file.environment.name or OWN
-    if finding.environment == here:
+    if finding.environment == view.here:
         return finding
     there = _environment(finding.environment)
     given = finding.situation == AS_GIVEN

@@ -258,3 +258,50 @@ def test_depths_go_onto_a_copy_of_a_users_own_file(calm, given, truth, folder):
     assert again.code == 2 and "has `depth` already" in again.err
     replaced = calm(*words, "--onto", "copy.nc", "-o", "other.nc", "--replace")
     assert replaced.code == 0, replaced.err
+
+
+def test_currents_that_look_false_are_named(calm, given, truth, folder):
+    rows = (folder / "c.csv").read_text().splitlines()
+    for hour in (15, 16, 40):
+        rows[1 + 3 * hour] = rows[1 + 3 * hour].rsplit(",", 2)[0] + ",2.0,0"
+    (folder / "c.csv").write_text("\n".join(rows) + "\n")
+    done = calm(*COMMAND, "--pressures", "p.csv", "-o", "d.nc", "--report", "r", "--json", "-")
+    assert done.code == 0, done.err
+    doubts = json.loads(done.out)["doubts"]
+    assert any("current at 0.0 m: its direction or speed looks false at 3 of 48" in one
+               and "2026-03-01T15:00" in one for one in doubts), doubts  # fmt: skip
+    with xarray.open_dataset(folder / "d.nc", engine="h5netcdf") as result:
+        assert result["level_label"].values.tolist() == ["0.0 m", "150.0 m", "300.0 m"]
+        doubt = result["current_doubt"].values
+        assert (doubt[[15, 16, 40], 0] > 0.5).all() and np.median(doubt) < 0.05
+    assert "more likely false than not" in (folder / "r" / "motion.html").read_text()
+
+
+def test_currents_that_cannot_be_are_left_out_and_named(calm, given, folder):
+    rows = (folder / "c.csv").read_text().splitlines()
+    for row in (1 + 3 * 5, *range(1 + 3 * 9, 4 + 3 * 9)):  # one level; all of another time
+        rows[row] = rows[row].rsplit(",", 2)[0] + ",-32.768,0"
+    (folder / "c.csv").write_text("\n".join(rows) + "\n")
+    done = calm(*COMMAND, "--pressures", "p.csv", "--gap", "0 h", "-o", "d.nc")
+    assert done.code == 0, done.err
+    assert "4 currents left out as implausible" in done.err
+    assert "the first at 2026-03-01T05:00, 0 m: 32.768 m/s" in done.err
+    with xarray.open_dataset(folder / "d.nc", engine="h5netcdf") as result:
+        meanings = result["status"].attrs["flag_meanings"].split()
+        assert meanings[int(result["status"][9])] == "implausible-current"
+        assert (result["status"].values != 0).sum() == 1
+
+
+def test_sensors_are_found_by_nominal_depth_in_order_down_the_line(calm, given, truth, folder):
+    attributes = {"standard_name": "sea_water_pressure", "units": "dbar"}
+    place = {"units": "m", "standard_name": "depth", "positive": "down", "axis": "Z"}
+    coordinates = {"TIME": np.array(stamps(), "M8[ns]"), "DEPTH": ("DEPTH", [59, 149, 249], place)}
+    values = {"PRES": (("TIME", "DEPTH"), dbar(truth[1]), attributes)}
+    xarray.Dataset(values, coordinates).to_netcdf(folder / "os.nc", engine="h5netcdf")
+    done = calm(*COMMAND, "--pressures", "os.nc", "--match", "depth", "-o", "d.nc", "--json", "-")
+    assert done.code == 0, done.err  # as many sensors as instruments: no other order is possible
+    assert [one["label"] for one in json.loads(done.out)["sensors"]] == list(NAMES)
+    middle = xarray.open_dataset(folder / "os.nc", engine="h5netcdf").isel(DEPTH=[1])
+    middle.assign_coords(DEPTH=("DEPTH", [105.0], place)).to_netcdf(folder / "one.nc")
+    apart = calm(*COMMAND, "--pressures", "one.nc", "--match", "depth", "-o", "e.nc")
+    assert apart.code == 2 and "may be `middle` or `upper`" in apart.err

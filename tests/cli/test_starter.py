@@ -4,6 +4,7 @@ import os
 import pytest
 from jsonschema import Draft202012Validator
 
+from calm.files.starts import STARTS
 from tests.core_yaml import loaded
 
 
@@ -32,6 +33,24 @@ def test_new_is_a_good_design(calm, environment):
     assert document["anchor"]["weight"] > document["anchor"]["required_weight"]
     factors = [row["safety_factor"] for row in document["components"] if row["safety_factor"]]
     assert min(factors) > 5.0
+
+
+@pytest.mark.parametrize("kind", STARTS)
+def test_each_kind_stands_and_no_rule_fails(calm, kind):
+    calm("new", kind, "-o", "m.yaml")
+    if kind == "tow":
+        body = json.loads(calm("tow", "m.yaml", "--json", "-").out)["body"]
+        assert body["depth"] == pytest.approx(70.0, abs=0.2)
+        return
+    done = calm("check", "m.yaml", "--json", "-")
+    states = {each["state"] for each in json.loads(done.out)["findings"]}
+    assert "fail" not in states and "accepted" not in states
+    assert done.code == 1  # what no maker prints is left to whoever signs
+
+
+def test_of_kinds_that_are_not_there_the_others_are_named(calm):
+    done = calm("new", "taut")
+    assert done.code == 2 and "taut-surface" in done.err
 
 
 def test_new_overwrites_only_when_told(calm, folder):

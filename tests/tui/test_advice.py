@@ -142,7 +142,7 @@ def test_what_changed_since_the_file_was_saved(drive, folder, painted):
         await driver.settle()
         await driver.press("D")
         await driver.settle()
-        assert "Since it was saved" in driver.screen
+        assert "Beside what was saved" in driver.screen
         assert "-    length: 60 m" in driver.screen and "+    length: 50 m" in driver.screen
         assert "top 39" in driver.screen or "top 4" in driver.screen
         await driver.press("b")

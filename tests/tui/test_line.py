@@ -195,7 +195,7 @@ def test_cut_a_piece_to_fit_a_depth(drive, small):
         await driver.settle()
         values = driver.session.draft.items[1].values
         assert (values["length"], values["top_depth"]) == ("fit", "30 m")
-        assert driver.table.rows[1].texts["length"] == "fit 30 m"
+        assert driver.table.rows[1].texts["length"] == "fit: 67.33 m"
         await driver.press("l")
         await driver.type("60 m")
         await driver.press("enter")

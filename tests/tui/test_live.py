@@ -36,7 +36,8 @@ def text_of(name: str) -> str:
 
 def figures(result) -> dict[str, tuple[float, ...]]:
     found = {
-        row.label: (row.length, row.depth_top, row.tension, row.tilt) for row in result.components
+        row.label: (row.cut_length, row.depth_top, row.tension, row.tilt)
+        for row in result.components
     }
     return found | {row.label: (None, row.depth, row.tension, row.tilt) for row in result.clamps}
 

@@ -160,10 +160,7 @@ class Draft:
     def paste(self, index: int, snippets: Iterable[str], rows: Location = LINE) -> Draft:
         """Items as `copy` gives them above the one of an index, or below the last."""
         self._stands(rows)
-        wordings = [read_snippet(snippet) for snippet in snippets]
-        if None in wordings:
-            raise EditError("what is to be pasted is no list of items")
-        worded = Worded(one for one in wordings if one is not None)
+        worded = _worded(snippets)
         return self._add(rows, index, worded) if worded else self
 
     def duplicate(self, indices: Iterable[int]) -> Draft:
@@ -222,6 +219,14 @@ class Draft:
         """A definition of a component used only here, in place of one of that id."""
         return self.put_at((NAMED[0], id), values)
 
+    def assemble(self, indices: Iterable[int], id: str) -> Draft:
+        """Items of the line that follow one another made an assembly, used in their place."""
+        known = self._page.known(LINE, indices)
+        if not known or known != list(range(known[0], known[-1] + 1)):
+            raise EditError("an assembly is made of pieces that follow one another")
+        parts = {"kind": "assembly", "parts": _worded(self.copy(known))}
+        return self.put_component(id, parts).delete(known).insert(known[0], {"use": id})
+
     def _stands(self, rows: Location) -> None:
         """Raise where there is no item whose clamps a list is to be."""
         if rows != LINE:
@@ -272,3 +277,11 @@ class Draft:
     def _line(self) -> Node | None:
         node = self._page.node(LINE) if self._root is not None else None
         return node if node is not None and node.kind == "sequence" else None
+
+
+def _worded(snippets: Iterable[str]) -> Worded:
+    """Items as `Draft.copy` gives them."""
+    wordings = [read_snippet(snippet) for snippet in snippets]
+    if None in wordings:
+        raise EditError("what is to be pasted is no list of items")
+    return Worded(one for one in wordings if one is not None)

@@ -31,6 +31,11 @@ class History:
         """What was saved."""
         return self._saved
 
+    @property
+    def steps(self) -> tuple[str, ...]:
+        """What was done and can be taken back, the last first."""
+        return tuple(label for label, _ in reversed(self._done))
+
     def do(self, draft: Draft, label: str) -> None:
         """A new state, and what it came of; an equal one is none."""
         if draft.text == self.draft.text:

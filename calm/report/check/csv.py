@@ -1,20 +1,14 @@
-"""The findings and the pieces of a design check as CSV (UTF-8, comma, point, LF).
-
-A spreadsheet takes a text that begins with ``=``, ``+``, ``-`` or ``@`` for a formula. Such texts
-are written with an apostrophe before them; numbers are numbers.
-"""
+"""The findings and the pieces of a design check as CSV."""
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from calm.checks.finding import Finding
 from calm.checks.rules import RULES
 from calm.quantities import QUANTITIES
-from calm.report.csv import as_text
+from calm.report.csv import table_csv
 
 if TYPE_CHECKING:
     from calm.checks.assessment import Assessment
@@ -56,20 +50,12 @@ INVENTORY_HEADER = (
 def checks_csv(assessments: Sequence[Assessment]) -> str:
     """A row for every finding, of one mooring after the other; what is unknown is left empty."""
     findings = (finding for each in assessments for finding in each.all_findings())
-    return _csv(CHECKS_HEADER, map(_finding, findings))
+    return table_csv(CHECKS_HEADER, map(_finding, findings))
 
 
 def inventory_csv(assessments: Sequence[Assessment]) -> str:
     """A row for every piece and clamp, from the top of each mooring to its anchor."""
-    return _csv(INVENTORY_HEADER, (row for each in assessments for row in _items(each)))
-
-
-def _csv(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(header)
-    writer.writerows(map(_cell, row) for row in rows)
-    return text.getvalue()
+    return table_csv(INVENTORY_HEADER, (row for each in assessments for row in _items(each)))
 
 
 def _finding(finding: Finding) -> Sequence[object]:
@@ -109,12 +95,3 @@ def _items(assessment: Assessment) -> Iterator[Sequence[object]]:
             item.wet_weight,
             item.lift_mass,
         )
-
-
-def _cell(value: object) -> str:
-    """A value as a cell: text that no spreadsheet computes, numbers in full."""
-    if value is None or value != value:
-        return ""
-    if isinstance(value, str):
-        return as_text(value)
-    return repr(float(value)) if isinstance(value, float) else str(value)

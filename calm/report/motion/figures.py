@@ -9,7 +9,7 @@ import numpy as np
 from calm.report.vector import figure_svg
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from matplotlib.axes import Axes
 
@@ -83,6 +83,21 @@ def factor_figure(time: Any, factor: Any) -> str:
     axes.plot(time.astype("datetime64[s]"), factor, **_ESTIMATED)
     axes.axhline(1.0, color="#999999", linewidth=0.5)
     axes.set_ylabel("factor on the current", fontsize=_FONT_SIZE)
+    axes.tick_params(labelsize=_FONT_SIZE)
+    return figure_svg(figure)
+
+
+def false_figure(time: Any, false: Mapping[str, Any]) -> str:
+    """A row of marks for each level whose current looks false at some of the times (n,)."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(_WIDTH, 0.2 * len(false) + 0.5))
+    figure.subplots_adjust(0.2, 0.3 / (0.2 * len(false) + 0.5), 0.99, 0.97)
+    axes = figure.subplots()
+    for row, when in enumerate(false.values()):
+        axes.plot(when.astype("datetime64[s]"), np.full(len(when), row), "|", color="#d55e00")
+    axes.set_yticks(range(len(false)), list(false), parse_math=False)
+    axes.set(xlim=tuple(time[[0, -1]].astype("datetime64[s]")), ylim=(len(false) - 0.5, -0.5))
     axes.tick_params(labelsize=_FONT_SIZE)
     return figure_svg(figure)
 

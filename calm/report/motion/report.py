@@ -13,6 +13,7 @@ from calm.report.motion.figures import (
     MOST_PANELS,
     depth_figure,
     factor_figure,
+    false_figure,
     residual_figure,
     scatter_figure,
 )
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
     from calm.motion.study import Study
     from calm.physics.line import Floats
 
+_DEPTHS = "Depths over time"
+_FALSE = "Times at which a current is more likely false than not"
 _LEGEND = (
     "Black: measured. Blue: estimated, with its band of 95 %. Orange: by the currents alone. A "
     "hidden sensor was not used."
@@ -66,16 +69,17 @@ def motion_report(
     shown = sorted(series, key=lambda one: not one.hidden)[:MOST_PANELS]
     shown = [one for one in series if any(one is each for each in shown)]
     doubts = Prose(study.doubts, State.WARN) if study.doubts else Prose((_NOTHING,))
+    marks = (Figure(_FALSE, false_figure(time, study.false)),) if study.false else ()
     held: tuple[Block, ...] = (held_out_table(study.held_out),) if study.held_out else ()
     factors = factors_table(study.factors, study.task.common.datum)
     parts = (
+        Part("What to doubt", (doubts, *marks)),
         Part("Factors", (factors, Figure("Over time", factor_figure(time, factor)))),
         Part("Measured against computed", (sensors_table(study), *held, Note((PLAIN,)))),
-        Part("What to doubt", (doubts,)),
-        Part("Depths", (Figure(_LEGEND, depth_figure(shown), tall=True),)),
+        Part("Inputs", (Prose(tuple(notes) or ("Nothing was left out.",)),)),
+        Part("Depths", (Figure(_DEPTHS, depth_figure(shown), tall=True), Note((_LEGEND,)))),
         Part("Scatter", (Figure("Computed against measured depths", scatter_figure(shown)),)),
         Part("Residuals", (Figure("Measured less estimated", residual_figure(shown), tall=True),)),
-        Part("Inputs", (Prose(tuple(notes) or ("Nothing was left out.",)),)),
     )
     span = f"{str(time[0])[:16]} to {str(time[-1])[:16]}, {len(time)} times"
     return Report(f"{name}: where it was", span, (), (Section(name, parts),), date())

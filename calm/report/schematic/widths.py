@@ -1,4 +1,4 @@
-"""How wide a text can be, whatever sans-serif font it is shown in, and texts cut to a width."""
+"""How wide a text can be, whatever sans-serif font it is shown in; texts cut or wrapped to it."""
 
 from __future__ import annotations
 
@@ -37,6 +37,26 @@ def shortened(text: str, width: float, size: float, *, bold: bool = False) -> st
             break
         kept += 1
     return text[:kept].rstrip() + ELLIPSIS
+
+
+def wrapped(text: str, width: float, size: float, *, bold: bool = False) -> list[str]:
+    """The text in lines that fit the width; a word that is wider is parted. Nothing is cut off."""
+    lines: list[str] = []
+    line = ""
+    for word in text.split():
+        longer = f"{line} {word}" if line else word
+        if text_width(longer, size, bold=bold) <= width:
+            line = longer
+            continue
+        if line:
+            lines.append(line)
+        line = ""
+        for sign in word:
+            if line and text_width(line + sign, size, bold=bold) > width:
+                lines.append(line)
+                line = ""
+            line += sign
+    return [*lines, line] if line else lines
 
 
 def _ems(sign: str) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import hypot
 from typing import TYPE_CHECKING
@@ -21,6 +22,7 @@ from calm.report.sketch.canvas import Canvas
 from calm.report.sketch.frame import AXIS, COLUMNS_PER_TICK, Frame, levels, number, ticks
 from calm.report.sketch.parts import (
     LINE,
+    OTHER,
     SEABED,
     SHIP,
     STILL,
@@ -52,13 +54,16 @@ _NEED = ("float", "release", "anchor", "instrument")
 Points = list[tuple[float, float]]
 
 
-def elevation(result: Result | TowResult, width: int, height: int) -> list[Text]:
+def elevation(
+    result: Result | TowResult, width: int, height: int, beside: Sequence[Shape] = ()
+) -> list[Text]:
     """A line in the vertical plane of its excursion, or of its tow, from 20 by 6 cells on.
 
     Distances are from the anchor towards the free end, or from the ship backward; their scale is
     not that of the depths. The line in still water is dotted. From 50 cells on parts are named.
+    Shapes `beside` a mooring, of other environments or designs, are dashed.
     """
-    view = _of_mooring(result) if isinstance(result, Result) else _of_tow(result)
+    view = _of_mooring(result, beside) if isinstance(result, Result) else _of_tow(result)
     canvas = Canvas(width, height)
     head = header_rows(height)
     if head:
@@ -68,19 +73,21 @@ def elevation(result: Result | TowResult, width: int, height: int) -> list[Text]
     foot = "m" if view.seabed is None else number(view.seabed)
     gutter = max(map(len, [foot, *map(number, values)]))
     named = _names(result, view, rows, int(_SHARE_OF_NAMES * width)) if width >= _NAMED_FROM else []
-    beside = max((cell_len(text) for _, text in named), default=-1) + 1
+    room = max((cell_len(text) for _, text in named), default=-1) + 1
     low, high = _span(view)
-    frame = Frame.within(canvas, head, gutter, (low, high), (view.top, view.bottom), beside)
+    frame = Frame.within(canvas, head, gutter, (low, high), (view.top, view.bottom), room)
     _draw_water(frame, view)
     frame.scale_down(values, gutter, foot)
     frame.scale_across(ticks(low, high, max(frame.columns // COLUMNS_PER_TICK, 2)), view.along, "m")
+    for other in view.beside:
+        frame.line(other, OTHER, dash=3, gap=2)
     frame.line(view.still, STILL, dash=1, gap=2)
     frame.line(view.line, LINE)
     if view.ship is not None:
         frame.mark(*view.ship, *SHIP)
     mark_parts(frame, result, view.place)
     for row, text in named:
-        canvas.text(width - beside + 1, head + row, text, AXIS)
+        canvas.text(width - room + 1, head + row, text, AXIS)
     return canvas.rows()
 
 
@@ -95,6 +102,7 @@ class _View:
     sea: bool
     line: Points
     still: Points
+    beside: list[Points]
     ship: tuple[float, float] | None
     said: str
     along: str
@@ -104,7 +112,7 @@ class _View:
         return float(along(part.x, part.y, self.plane)), part.depth
 
 
-def _of_mooring(result: Result) -> _View:
+def _of_mooring(result: Result, beside: Sequence[Shape]) -> _View:
     plane, top, depth = plane_of(result), result.top, result.mooring.water.depth
     still = result.still_shape
     moved = still is not None and still is not result.shape
@@ -119,6 +127,7 @@ def _of_mooring(result: Result) -> _View:
         sea=True,
         line=_points(result.shape, plane),
         still=_points(still, plane) if still is not None and moved else [],
+        beside=[_points(shape, plane) for shape in beside],
         ship=None,
         said=f"{deep}, {say('offset', offset)} off{towards}",
         along=f"m to {bearing(*plane)}",
@@ -143,6 +152,7 @@ def _of_tow(result: TowResult) -> _View:
         sea=environment.fluid == "water",
         line=line,
         still=[],
+        beside=[],
         ship=line[-1],
         said=f"body {deep}, {say('layback', body.layback)} behind",
         along="m behind",
@@ -156,7 +166,7 @@ def _points(shape: Shape, plane: Floats) -> Points:
 
 def _span(view: _View) -> tuple[float, float]:
     """Distances at the edges; a line that hardly leaves the plumb stands in the middle."""
-    offsets = [0.0, *(offset for offset, _ in view.line)]
+    offsets = [0.0, *(offset for line in (view.line, *view.beside) for offset, _ in line)]
     low, high = min(offsets), max(offsets)
     spare = max(LEAST_SPAN * (view.bottom - view.top) - (high - low), 0.0)
     margin = 0.04 * (high - low + spare) + spare / 2.0

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 LINE = "bold cyan"
 STILL = "white"
+OTHER = "magenta"
+"""Of a line in another environment, or of another design, drawn beside."""
 SURFACE, SEABED = "blue", "yellow"
 LIMIT = "red"
 SHIP = ("▲", "bold")

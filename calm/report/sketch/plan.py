@@ -2,33 +2,45 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from math import hypot
 from typing import TYPE_CHECKING
 
+import numpy as np
 from rich.text import Text
 
 from calm.case import Result
 from calm.quantities import say
 from calm.report.sketch.canvas import ACROSS, DOWN, Canvas
 from calm.report.sketch.frame import AXIS, COLUMNS_PER_TICK, Frame, levels, number, ticks
-from calm.report.sketch.parts import LINE, SHIP, STILL, bearing, header_rows, mark_parts
+from calm.report.sketch.parts import LINE, OTHER, SHIP, STILL, bearing, header_rows, mark_parts
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from calm.case import TowResult
+    from calm.case.columns import Shape
+
+    Floats = NDArray[np.float64]
 
 _LEAST_SPAN = 1.0
 _MARGIN = 0.06
 
 
-def plan(result: Result | TowResult, width: int, height: int) -> list[Text]:
-    """A line from above with its anchor, or the ship, at nought, from 20 by 6 cells on."""
+def plan(
+    result: Result | TowResult, width: int, height: int, beside: Sequence[Shape] = ()
+) -> list[Text]:
+    """A line from above with its anchor, or the ship, at nought, from 20 by 6 cells on.
+
+    Shapes `beside` it, of other environments or designs, are dashed.
+    """
     canvas = Canvas(width, height)
     head, shape = header_rows(height), result.shape
     if head:
         canvas.text(0, 0, _said(result), AXIS)
     rows = height - head - 2
-    west, east = _range([0.0, float(shape.x.min()), float(shape.x.max())])
-    south, north = _range([0.0, float(shape.y.min()), float(shape.y.max())])
+    west, east = _range([0.0, *_ends(each.x for each in (shape, *beside))])
+    south, north = _range([0.0, *_ends(each.y for each in (shape, *beside))])
     gutter = 1
     for _ in range(2):  # the numbers beside it take room, which changes them
         columns = width - gutter - 1
@@ -47,6 +59,8 @@ def plan(result: Result | TowResult, width: int, height: int) -> list[Text]:
     )
     frame.line([(left, 0.0), (right, 0.0)], STILL, dash=1, gap=3)
     frame.line([(0.0, bottom), (0.0, top)], STILL, dash=1, gap=3)
+    for other in beside:
+        frame.line(zip(other.x.tolist(), other.y.tolist(), strict=True), OTHER, dash=3, gap=2)
     frame.line(zip(shape.x.tolist(), shape.y.tolist(), strict=True), LINE)
     if not isinstance(result, Result):
         frame.mark(0.0, 0.0, *SHIP)
@@ -63,6 +77,10 @@ def _said(result: Result | TowResult) -> str:
     distance = hypot(x, y)
     towards = f" to {bearing(x, y)}" if distance >= 0.05 else ""
     return f"{what} {say('offset', distance)} off{towards}"
+
+
+def _ends(coordinates: Iterable[Floats]) -> list[float]:
+    return [float(end) for each in coordinates for end in (each.min(), each.max())]
 
 
 def _range(values: list[float]) -> tuple[float, float]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from types import UnionType
 from typing import Any, Literal, Union, get_args, get_origin
@@ -20,6 +21,8 @@ from calm.units import DIMENSIONS
 _FIRST = ("name", "manufacturer", "role")
 _LAST = ("material", "part_number", "note", "source", "date")
 _PATH = "the form"
+_ID = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
+_WORDS = re.compile(r"[^a-z0-9]+")
 
 
 @dataclass(frozen=True)
@@ -90,7 +93,24 @@ def _one_of(words: tuple[str, ...]) -> Check:
     return check
 
 
-def defined(id: str, values: Mapping[str, str]) -> tuple[Component | None, tuple[Problem, ...]]:
+def id_check(own: Collection[str]) -> Check:
+    """Whether a text can be the id of a component; `own` are those that the file has already."""
+
+    def check(text: str) -> Reading:
+        tidy = text.strip()
+        if not tidy:
+            return Reading("", "an id is needed")
+        if not _ID.fullmatch(tidy):
+            offer = _WORDS.sub("-", tidy.casefold()).strip("-")
+            return Reading(tidy, "small letters, figures and hyphens", offer or None)
+        if tidy in own:
+            return Reading(tidy, "is defined in this file already")
+        return Reading(tidy)
+
+    return check
+
+
+def defined(id: str, values: Mapping[str, Any]) -> tuple[Component | None, tuple[Problem, ...]]:
     """The component that values define, and what is wrong with them."""
     section = Section.of(Document(_PATH, {id: dict(values)}), (id,), dict(values))
     problems: list[Problem] = []

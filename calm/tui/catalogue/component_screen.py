@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Sequence
-from typing import ClassVar
+from collections.abc import Collection
+from typing import Any, ClassVar
 
 from textual import on
 from textual.app import ComposeResult
@@ -16,15 +15,11 @@ from textual.widgets import Static
 from calm.files.components import KINDS
 from calm.tui.actions import bindings, hints
 from calm.tui.bars import KeyBar, TitleBar
-from calm.tui.catalogue.component_form import defined, form_fields
-from calm.tui.checking import Check, Reading
+from calm.tui.catalogue.component_form import defined, form_fields, id_check
 from calm.tui.cycle import Cycle
 from calm.tui.field import Field
 
 Defined = tuple[str, dict[str, str]]
-
-_ID = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
-_WORDS = re.compile(r"[^a-z0-9]+")
 
 
 class ComponentScreen(Screen[Defined | None]):
@@ -34,6 +29,7 @@ class ComponentScreen(Screen[Defined | None]):
     ----------
     listed : ids of the catalogue: a component of such an id hides the one there
     own : ids that the file defines already: no other is defined under them
+    begun : a component that is to be changed, with all that the file says of it
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("form")]
@@ -50,19 +46,27 @@ class ComponentScreen(Screen[Defined | None]):
     ComponentScreen.-narrow Field > Input { width: 16; }
     """
 
-    def __init__(self, listed: Sequence[str] = (), own: Sequence[str] = ()) -> None:
+    def __init__(
+        self,
+        listed: Collection[str] = (),
+        own: Collection[str] = (),
+        begun: tuple[str, dict[str, Any]] | None = None,
+    ) -> None:
         super().__init__()
         self._listed, self._own = frozenset(listed), frozenset(own)
-        self._values: dict[str, str] = {}
-        self._kind = "cylinder"
+        self._component, self._begun = begun or ("", {})
+        self._kind = self._begun.get("kind", "cylinder")
+        self._values = {key: each for key, each in self._begun.items() if isinstance(each, str)}
 
     def compose(self) -> ComposeResult:
         """Title; the fields beside what they come to; keys."""
         yield TitleBar()
         with Horizontal():
             with VerticalScroll(id="fields", can_focus=False):
-                yield Field("id", "id", self._check_id(), id="id", placeholder="sphere-own-1250")
-                yield Cycle("kind", tuple(KINDS), self._kind, title_width=20)
+                if not self._begun:
+                    check = id_check(self._own)
+                    yield Field("id", "id", check, id="id", placeholder="sphere-own-1250")
+                    yield Cycle("kind", tuple(KINDS), self._kind, title_width=20)
                 yield Vertical(id="kind-fields")
             with VerticalScroll(id="outcome", can_focus=False):
                 yield Static(id="outcome-text")
@@ -70,24 +74,11 @@ class ComponentScreen(Screen[Defined | None]):
 
     async def on_mount(self) -> None:
         """The fields of the first kind."""
-        self.query_one(TitleBar).show("A component of one's own, kept in this file   * needed", "")
+        what = f"{self._component}, a {self._kind}" if self._begun else "A component of one's own"
+        self.query_one(TitleBar).show(f"{what}, kept in this file   * needed", "")
         self.query_one(KeyBar).show_keys(hints("form"))
         await self._show_fields()
-        self.query_one("#id", Field).focus_input()
-
-    def _check_id(self) -> Check:
-        def check(text: str) -> Reading:
-            tidy = text.strip()
-            if not tidy:
-                return Reading("", "an id is needed")
-            if not _ID.fullmatch(tidy):
-                offer = _WORDS.sub("-", tidy.casefold()).strip("-")
-                return Reading(tidy, "small letters, figures and hyphens", offer or None)
-            if tidy in self._own:
-                return Reading(tidy, "is defined in this file already; change it in the text (t)")
-            return Reading(tidy)
-
-        return check
+        self.query(Field).first().focus_input()
 
     async def _show_fields(self) -> None:
         holder = self.query_one("#kind-fields", Vertical)
@@ -124,10 +115,18 @@ class ComponentScreen(Screen[Defined | None]):
         return list(self.query(Field))
 
     def _given(self) -> Defined:
-        """The id and the values that have been typed."""
+        """The id and the values that have been typed; empty what is to be taken away."""
         texts = {field.key: field.text for field in self._fields()}
-        id = texts.pop("id", "")
+        id = texts.pop("id", self._component)
+        if self._begun:
+            return id, texts
         return id, {"kind": self._kind} | {key: text for key, text in texts.items() if text}
+
+    def _all(self) -> tuple[str, dict[str, Any]]:
+        """The same with what the form does not show."""
+        id, values = self._given()
+        whole = {**self._begun, **values}
+        return id, {key: value for key, value in whole.items() if value != ""}
 
     def _judge(self) -> None:
         """Say what the values come to."""
@@ -137,7 +136,7 @@ class ComponentScreen(Screen[Defined | None]):
         from calm.report.catalogue import to_card
         from calm.report.terminal import shown
 
-        id, values = self._given()
+        id, values = self._all()
         component, problems = defined(id or "component", values)
         parts: list[RenderableType] = []
         if id in self._listed - self._own:
@@ -158,13 +157,12 @@ class ComponentScreen(Screen[Defined | None]):
         if wrong:
             wrong[0].focus_input()
             return
-        id, values = self._given()
-        component, problems = defined(id, values)
+        component, problems = defined(*self._all())
         if component is None:
             message = problems[0].message if problems else "It is not complete"
             self.query_one(KeyBar).tell(message, wrong=True)
         else:
-            self.dismiss((id, values))
+            self.dismiss(self._given())
 
     def action_cancel(self) -> None:
         """Give nothing."""

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual import on
 from textual.binding import BindingType
 from textual.events import DescendantFocus, Key
 
+from calm.files.components import KINDS
 from calm.tui.actions import Place, bindings, hints
 from calm.tui.bars import KeyBar
 from calm.tui.catalogue.pane import CataloguePane
@@ -15,8 +16,11 @@ from calm.tui.line.advising import Advising
 from calm.tui.line.body import LineBody
 from calm.tui.line.cell_editor import CellEditor
 from calm.tui.line.comparing import Comparing
+from calm.tui.line.filling import Filling
+from calm.tui.line.pane import LinePane
 from calm.tui.pictures import Picture, Tab
 from calm.tui.screen import DraftScreen
+from calm.tui.session import Location
 from calm.tui.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -118,7 +122,54 @@ class BuilderScreen(DraftScreen):
 
     def action_compare(self) -> None:
         """Show what has changed since the file was saved."""
-        Comparing(self.app, self.body.line).with_saved()
+        Comparing(self.app, self.body).with_saved()
+
+    def action_compare_file(self) -> None:
+        """Show what is different in another file."""
+        Comparing(self.app, self.body).with_file()
+
+    def action_overlay(self) -> None:
+        """Draw the line in all its environments, or in its own alone."""
+        shown = self.body.pictures.overlay()
+        self.tell("All environments that are judged are drawn" if shown else "One is drawn alone")
+
+    def action_figures(self) -> None:
+        """Fill in what is not known of the components."""
+        Filling(self.app, self.body.line).ask()
+
+    def action_begin(self) -> None:
+        """Begin an empty line with a mooring."""
+        from calm.files.starts import start
+        from calm.tui.line.questions import beginning, kind_of
+
+        session = self.workspace.session
+        if session.draft.items:
+            self.tell("There is a line already; a new file can begin with a mooring")
+            return
+
+        def take(answer: str | None) -> None:
+            if answer is not None:
+                text = start(kind_of(answer))
+                self.body.line.attempt(lambda: session.write(text, f"begin with {answer}"))
+
+        self.app.push_screen(beginning(), take)
+
+    def action_history(self) -> None:
+        """Show what was done, and go back to before any of it."""
+        from calm.tui.line.questions import history
+
+        steps = self.workspace.session.history
+        if not self.part.settle():
+            return
+        if not steps.steps:
+            self.tell("Nothing was done yet that could be taken back")
+            return
+
+        def take(answer: str | None) -> None:
+            if answer is not None:
+                self._go("undone", lambda: [steps.undo() for _ in range(int(answer))][-1])
+
+        self.app.push_screen(history(self.workspace.session), take)
 
     def action_search(self) -> None:
         """Search the catalogue for a piece below."""
@@ -133,10 +184,40 @@ class BuilderScreen(DraftScreen):
                 self.body.put_component(*defined)
 
         index = self.workspace.index
-        defined = self.workspace.session.draft.value(("components",))
         listed = () if index is None else tuple(index.catalogue.ids())
-        own = tuple(defined) if isinstance(defined, dict) else ()
-        self.app.push_screen(ComponentScreen(listed, own), take)
+        self.app.push_screen(ComponentScreen(listed, self._own), take)
+
+    @on(LinePane.ChangeWanted)
+    def _change_component(self, event: LinePane.ChangeWanted) -> None:
+        """Change a component of the file in its form; figures that it does not show stay."""
+        from calm.tui.catalogue.component_screen import ComponentScreen
+
+        id, session = event.id, self.workspace.session
+        values = self._own.get(id)
+        if not isinstance(values, dict) or values.get("kind") not in KINDS:
+            what = "is an assembly: change it in the text (t)" if id in self._own else (
+                "is not of this file: what the row says in the text (t) counts for it alone, "
+                "o defines one of your own"
+            )  # fmt: skip
+            self.tell(f"{id} {what}")
+            return
+
+        def take(defined: tuple[str, dict[str, str]] | None) -> None:
+            if defined is not None:
+                changed: dict[Location, str | None] = {
+                    ("components", id, key): text or None
+                    for key, text in defined[1].items()
+                    if text != values.get(key, "")
+                }
+                self.body.line.attempt(lambda: session.put_all(changed, f"change {id}"))
+
+        self.app.push_screen(ComponentScreen(begun=(id, values)), take)
+
+    @property
+    def _own(self) -> dict[str, Any]:
+        """The components that the file defines, as written."""
+        defined = self.workspace.session.draft.value(("components",))
+        return defined if isinstance(defined, dict) else {}
 
     def action_water(self) -> None:
         """Depth, density, current, wind."""

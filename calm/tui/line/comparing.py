@@ -1,53 +1,93 @@
-"""The line beside what was last saved of it: figures, findings and lines of the file."""
+"""The line beside what was saved of it, or another file: figures, findings, lines, pictures."""
 
 from __future__ import annotations
 
 from difflib import unified_diff
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from textual.app import App
 
-from calm.tui.dialogs import Answer, Question
-from calm.tui.line.pane import LinePane
+from calm.errors import CalmError
+from calm.files.editing import WorkingFile
+from calm.tui.dialogs import Answer, Asked, Question, Sheet
+from calm.tui.line.body import LineBody
+
+if TYPE_CHECKING:
+    from calm.tui.live import View
 
 _MOST_LINES = 24
 
 
 class Comparing:
-    """Shows what has changed since the file was saved."""
+    """Shows what has changed since the file was saved, or what is different in another one."""
 
-    def __init__(self, app: App[Any], line: LinePane) -> None:
-        self._app, self._line, self._workspace = app, line, line.workspace
+    def __init__(self, app: App[Any], body: LineBody) -> None:
+        self._app, self._line, self._pictures = app, body.line, body.pictures
+        self._workspace = body.workspace
 
     def with_saved(self) -> None:
         """Judge what was saved in a thread, and show the differences."""
-        workspace, view = self._workspace, self._workspace.view
-        saved = workspace.session.history.saved_text
         if not self._line.settle():
             return
-        if not workspace.session.changed:
-            workspace.tell("Nothing has changed since it was saved")
+        session = self._workspace.session
+        if session.changed:
+            self._judge(session.history.saved_text, "what was saved")
+        else:
+            self._pictures.put_beside(None)
+            self._workspace.tell("Nothing has changed since it was saved")
+
+    def with_file(self) -> None:
+        """Ask for another file; draw its line beside this one, and show the differences."""
+        if not self._line.settle():
             return
-        if view is None or not workspace.is_fresh:
-            workspace.tell("The line is still being judged; ask again")
+
+        def take(texts: dict[str, str] | None) -> None:
+            if texts is None:
+                return
+            if not texts["file"]:
+                self._pictures.put_beside(None)
+                return
+            try:
+                text = WorkingFile(Path(texts["file"])).read()
+            except (CalmError, OSError) as error:
+                self._workspace.tell(str(error), wrong=True)
+            else:
+                self._judge(text, texts["file"])
+
+        asked = [Asked("file", "File", placeholder="other.yaml")]
+        text = "Its line is drawn dashed beside this one; no name takes it away again."
+        self._app.push_screen(Sheet("Compare with another file", text, asked), take)
+
+    def _judge(self, text: str, name: str) -> None:
+        view = self._workspace.view
+        if view is None or not self._workspace.is_fresh:
+            self._workspace.tell("The line is still being judged; ask again")
             return
-        catalogs = workspace.session.catalogs
+        catalogs = self._workspace.session.catalogs
+        is_own = name == "what was saved"
 
         def work() -> None:
             from calm.tui.advice import differences
             from calm.tui.live import judge, judge_fully
 
-            before = judge(saved, view.path, view.environment, catalogs, keep=view)
+            path = view.path if is_own else Path(name)
+            environment, keep = (view.environment, view) if is_own else (None, None)
+            before = judge(text, path, environment, catalogs, keep=keep)
             told = differences(judge_fully(before, catalogs), judge_fully(view, catalogs))
-            self._line.call_later(self._show, [*told, "", *changed_lines(saved, view.text)])
+            told += ["", *changed_lines(text, view.text)]
+            self._line.call_later(self._show, name, before, told)
 
-        workspace.tell("Comparing …")
+        self._workspace.tell("Comparing …")
         self._line.run_worker(work, thread=True, group="advice", exclusive=True)
 
-    def _show(self, told: list[str]) -> None:
+    def _show(self, name: str, before: View, told: list[str]) -> None:
         self._workspace.tell("")
+        view = self._workspace.view
+        if before.result is not None and view and type(before.result) is type(view.result):
+            self._pictures.put_beside((name, before.result.shape))
         answers = [Answer("b", "back to the line", "back")]
-        self._app.push_screen(Question("Since it was saved", "\n".join(told), answers))
+        self._app.push_screen(Question(f"Beside {name}", "\n".join(told), answers))
 
 
 def changed_lines(before: str, after: str) -> list[str]:

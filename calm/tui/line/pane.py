@@ -19,6 +19,7 @@ from calm.tui.catalogue.pane import Purpose
 from calm.tui.dialogs import Answer, Question
 from calm.tui.line.cell import Cell
 from calm.tui.line.cell_editor import CellEditor
+from calm.tui.line.questions import naming
 from calm.tui.line.rows import table_rows
 from calm.tui.line.table import LineTable
 from calm.tui.line.table_row import EDITABLE, Column
@@ -39,6 +40,12 @@ class LinePane(Vertical):
         """A component is to be chosen for the row under the cursor."""
 
         purpose: Purpose
+
+    @dataclass
+    class ChangeWanted(Message):
+        """A component of the file is to be changed in its form."""
+
+        id: str
 
     def __init__(self, workspace: Workspace) -> None:
         super().__init__(id="line-pane")
@@ -170,6 +177,26 @@ class LinePane(Vertical):
         """Use another component."""
         if self.table.spot is not None:
             self.post_message(self.ComponentWanted("replace"))
+
+    def action_change_component(self) -> None:
+        """Change the component of the row in its form."""
+        if self.table.spot is not None and self.settle():
+            self.post_message(self.ChangeWanted(self.session.item(self.table.spot).values["use"]))
+
+    def action_assemble(self) -> None:
+        """Make an assembly of what is chosen."""
+        chosen = self.table.chosen
+        if not chosen or not self.settle():
+            return
+
+        def take(texts: dict[str, str] | None) -> None:
+            if texts is not None:
+                self.attempt(
+                    lambda: self.session.assemble(chosen, texts["id"]),
+                    f"{texts['id']} is defined in the file; add it again with a",
+                )
+
+        self.app.push_screen(naming(self.session), take)
 
     def action_duplicate(self) -> None:
         """Repeat what is chosen."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -93,11 +93,18 @@ def _row(spot: Place, item: Item, found: Sequence[Row], index: Index | None) -> 
         "component": f"{CLAMP} {use}" if spot.is_clamp else use,
         "label": values.get("label", ""),
         "count": values.get("count", ""),
-        "length": f"at {values.get('at', '?')}" if spot.is_clamp else length_text(values),
+        "length": f"at {values.get('at', '?')}" if spot.is_clamp else _length(values, found),
         **_told(found),
     }
     states = [row.state for row in found if row.state is not None]
     return TableRow(spot, sign if index else " ", texts, worst(states), unknown)
+
+
+def _length(values: Mapping[str, str], found: Sequence[Row]) -> str:
+    """A length as written; of one that is fitted, what it is cut to."""
+    if values.get("length") == "fit" and found and found[0].length is not None:
+        return f"fit: {QUANTITIES['length'].say(found[0].length)}"
+    return length_text(values)
 
 
 def _told(found: Sequence[Row]) -> dict[str, str]:

@@ -28,6 +28,11 @@ from calm.tui.listing import Listing
 from calm.tui.signs import CURSOR, ELLIPSIS, LOOKS, MARK
 
 _TAIL = 4
+_EMPTY = (
+    "  The line is empty.",
+    "  a   adds the first piece, from the catalogue",
+    "  b   begins with a mooring: deep, shelf, ADCP, taut or slack surface; a tow",
+)
 
 
 class LineTable(Listing, can_focus=True):
@@ -86,7 +91,7 @@ class LineTable(Listing, can_focus=True):
         """The columns as wide as they are now."""
         width = self.scrollable_content_region.width
         if self._arranged[0] != width:
-            longest = (self._longest("component"), self._longest("label"))
+            longest = (self._longest(name) for name in ("component", "label", "length"))
             self._arranged = (width, layout_for(width, *longest))
         return self._arranged[1]
 
@@ -170,6 +175,8 @@ class LineTable(Listing, can_focus=True):
         width = self.scrollable_content_region.width
         number = self.row_at(y)
         segments = self._heading() if y == 0 else [] if number is None else self._row(number)
+        if not self.rows and 1 < y < len(_EMPTY) + 2:
+            segments = [Segment(_EMPTY[y - 2], self.get_component_rich_style("line-table--clamp"))]
         ground = self.get_component_rich_style("line-table--row")
         if number == self.cursor and self.has_focus:
             ground += self.get_component_rich_style("line-table--under-cursor", partial=True)

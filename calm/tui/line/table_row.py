@@ -27,7 +27,7 @@ RIGHT_ALIGNED = frozenset({"count", "length", *FIGURES})
 
 _WIDTHS = {"count": 3, "length": 9, "depth": 8, "tension": 9, "tilt": 6, "margin": 7}
 _LEAST_TEXT, _WANTED_TEXT = 9, 12
-_MOST_COMPONENT, _MOST_LABEL = 30, 40
+_MOST_COMPONENT, _MOST_LABEL, _MOST_LENGTH = 30, 40, 13
 LEAD = 4
 """Cells before the first column: cursor, mark or state, sign, a blank."""
 
@@ -68,22 +68,26 @@ class Layout:
         return found
 
 
-def layout_for(width: int, component: int = _MOST_COMPONENT, label: int = _MOST_LABEL) -> Layout:
+def layout_for(
+    width: int, component: int = _MOST_COMPONENT, label: int = _MOST_LABEL, length: int = 0
+) -> Layout:
     """The columns of a table as wide as this, those least needed left out where it is narrow.
 
     Parameters
     ----------
     component, label : cells of the longest text in these columns, which share what is left
+    length : cells of the longest length
     """
     shown = [*EDITABLE, *FIGURES]
+    fixed = _WIDTHS | {"length": min(max(length, _WIDTHS["length"]), _MOST_LENGTH)}
     for name in ("margin", "tilt", "count", "tension", "depth"):
-        if _text_room(shown, width) >= 2 * _WANTED_TEXT:
+        if _text_room(shown, width, fixed) >= 2 * _WANTED_TEXT:
             break
         shown.remove(name)
-    room = max(_text_room(shown, width), 2 * _LEAST_TEXT)
+    room = max(_text_room(shown, width, fixed), 2 * _LEAST_TEXT)
     component = min(max(component, _LEAST_TEXT), _MOST_COMPONENT)
     component = min(component, room - min(max(label, _LEAST_TEXT), room // 2))
-    widths = _WIDTHS | {"component": component, "label": min(room - component, _MOST_LABEL)}
+    widths = fixed | {"component": component, "label": min(room - component, _MOST_LABEL)}
     columns, start = [], LEAD
     for name in shown:
         columns.append((name, start, widths[name]))
@@ -91,6 +95,6 @@ def layout_for(width: int, component: int = _MOST_COMPONENT, label: int = _MOST_
     return Layout(tuple(columns))
 
 
-def _text_room(shown: list[str], width: int) -> int:
+def _text_room(shown: list[str], width: int, fixed: dict[str, int]) -> int:
     """Cells left for the component and the label."""
-    return width - LEAD - len(shown) - sum(_WIDTHS.get(name, 0) for name in shown)
+    return width - LEAD - len(shown) - sum(fixed.get(name, 0) for name in shown)

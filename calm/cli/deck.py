@@ -1,0 +1,183 @@
+"""``calm deck``: drawings, log sheets and lists for the deck."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from cyclopts import Parameter
+
+from calm.cli.check_files import Design, read_designs
+from calm.cli.exit_codes import ExitCode
+from calm.cli.options import quantities
+from calm.cli.streams import narrate
+from calm.errors import NoEquilibrium, UsageError
+
+if TYPE_CHECKING:
+    from calm.deck import Deck
+    from calm.report.deck.paper import Paper
+
+DECK_EXAMPLES = """Examples:
+
+  calm deck mooring.yaml -o cruise/
+  calm deck mooring.yaml -o cruise/ --page a3 --environment storm
+  calm deck north.yaml south.yaml -o cruise/
+  calm deck mooring.yaml -o cruise/ --ship-speed "2 knot" --streamed "900 m"
+  calm deck shallow.yaml -o cruise/ --order anchor-first"""
+
+
+def deck(
+    files: list[Path],
+    /,
+    *,
+    output: Annotated[Path, Parameter(alias="-o")],
+    page: Literal["a4", "a3", "letter"] = "a4",
+    environment: list[str] | None = None,
+    order: Literal["anchor-last", "anchor-first"] = "anchor-last",
+    ship_speed: str = "1 m/s",
+    streamed: str | None = None,
+    catalog: list[Path] | None = None,
+) -> ExitCode:
+    """Draw and list what goes to sea with moorings.
+
+    Writes deck.pdf with a mooring diagram for the wall, deployment and recovery
+    logs, cutting list, hardware bill, shipping list, lifts, instrument sheet and,
+    anchor last, the plan of the anchor drop; the diagram by itself as diagram.pdf
+    and diagram.svg; the lists as CSV files; and the plan as plan.json.
+
+    Parameters
+    ----------
+    files
+        Mooring files.
+    output
+        The folder; of several moorings each has one of its own in it, by its name.
+    page
+        The paper.
+    environment
+        An environment named in the files, or an environment file, in which depths and lengths are
+        given; more of them are design currents. Without it the file's own, and all that it names.
+    order
+        Which end goes over the side last.
+    ship_speed
+        Over the ground, of the ship that tows the line out before the anchor is let go.
+    streamed
+        Horizontal distance from the anchor to the top float as it is let go; that of the line as
+        it is towed at that speed unless given.
+    catalog
+        A catalogue of your own; its components hide others of the same id. Repeatable.
+    """
+    from calm.deck import deck_of
+    from calm.deck.order import Order
+    from calm.report.deck.paper import Paper
+    from calm.report.folder import check_folder
+    from calm.report.provenance import moment
+
+    check_folder(output)
+    moment()
+    ship = quantities({"ship_speed": (ship_speed, "speed"), "streamed": (streamed, "length")})
+    designs, tows = read_designs(files, environment, catalog or [], None)
+    if tows:
+        narrate(f"not drawn, since towed: {', '.join(map(str, tows))}")
+    folders = _folders(designs, output)
+    decks: list[Deck] = []
+    for design in designs:
+        for notice in dict.fromkeys(n for one in design.moorings for n in one.file.notices):
+            narrate(f"{design.path}: {notice}")
+        try:
+            decks.append(deck_of(design.moorings, Order(order), **ship))
+        except NoEquilibrium as failure:
+            narrate(f"{design.path}: {failure}")
+            return ExitCode.NO_EQUILIBRIUM
+    for folder, design, one in zip(folders, designs, decks, strict=True):
+        _write(folder, design.path, one, Paper(page))
+    return ExitCode.DONE
+
+
+def _write(folder: Path, path: Path, deck: Deck, paper: Paper) -> None:
+    from calm.report.folder import write_report
+
+    notes = _signs_that_are_lacking(deck)
+    for note in (*deck.notes, *notes):
+        narrate(f"{path}: {note}")
+    write_report(folder, _contents(deck, paper, notes))
+    narrate(f"the sheets are in {folder}")
+
+
+def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, bytes]:
+    from calm.report.deck.diagram import diagram_svg
+    from calm.report.deck.files import deck_csvs
+    from calm.report.deck.report import deck_report, diagram_report
+    from calm.report.document import to_json
+    from calm.report.pdf import printed
+
+    texts = {"diagram.svg": diagram_svg(deck, paper), **deck_csvs(deck)}
+    texts["plan.json"] = to_json([_plan(deck)])
+    return {
+        "deck.pdf": printed(deck_report(deck, paper, notes), paper, least=7.5),
+        "diagram.pdf": printed(diagram_report(deck, paper), paper, least=7.5),
+        **{name: text.encode("utf-8", "replace") for name, text in texts.items()},
+    }
+
+
+def _plan(deck: Deck) -> dict[str, Any]:
+    """The plan of the anchor drop, or why there is none."""
+    from calm.report.document import failure_document
+
+    if deck.plan is None:
+        return {"status": str(deck.order), "message": "The anchor goes first: it is not dropped."}
+    if isinstance(deck.plan, NoEquilibrium):
+        return failure_document(deck.file.name, deck.plan)
+    return deck.plan.to_dict()
+
+
+def _signs_that_are_lacking(deck: Deck) -> tuple[str, ...]:
+    """What the sheets cannot show of the names in a file, and where."""
+    from calm.report.fonts import lacking
+
+    signs = lacking(text for text, _ in _texts(deck))
+    if not signs:
+        return ()
+    where = dict.fromkeys(place for text, place in _texts(deck) if lacking([text]))
+    named = ", ".join(f"{sign} (U+{ord(sign):04X})" for sign in signs)
+    return (f"The font of the sheets lacks {named}, which shows as �: in {', '.join(where)}",)
+
+
+def _texts(deck: Deck) -> Iterator[tuple[str, str]]:
+    """What a person wrote, and where it stands."""
+    from calm.report.title_block import title_pairs
+
+    for name, text in title_pairs(deck.file):
+        yield text, name
+    if deck.file.document is not None:
+        for revision in deck.file.document.history:
+            yield f"{revision.by} {revision.change}", "history"
+    for one in deck.parts:
+        equipment = one.part.equipment
+        texts = (one.label, one.name, one.serial, one.deployed_serial, one.remark,
+                 equipment.sampling, equipment.termination)  # fmt: skip
+        yield " ".join(filter(None, texts)), f"`{one.label}`"
+
+
+def _folders(designs: Sequence[Design], output: Path) -> list[Path]:
+    """Where each mooring's sheets go.
+
+    Raises
+    ------
+    UsageError
+        Two moorings would have the same folder, or a file that is read stands where one goes.
+    """
+    if len(designs) == 1:
+        return [output]
+    folders = [output / _file_name(design.name) for design in designs]
+    for folder in folders:
+        if [str(one).casefold() for one in folders].count(str(folder).casefold()) > 1:
+            raise UsageError(f"two moorings would go to {folder}; give them other names")
+    return folders
+
+
+def _file_name(name: str) -> str:
+    """A name as a folder may have it: signs that systems refuse become a stroke."""
+    plain = re.sub(r'[\x00-\x1f<>:"/\\|?*]+', "-", name).strip(" .")
+    return plain or "mooring"

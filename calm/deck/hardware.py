@@ -1,0 +1,148 @@
+"""What joins the pieces: counted, with the pins and thimbles that belong to it, and spares."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import ceil
+from typing import TYPE_CHECKING
+
+from calm.files import Cable, Chain, Piece
+
+if TYPE_CHECKING:
+    from calm.deck.hung import Hung
+    from calm.files import Component
+
+SPARE_SHARE = 0.1
+"""Of what is in the line, at least one, of small parts two: a default of this program."""
+
+_KINDS = {
+    "cotter pins": r"cotter",
+    "shackles": r"shackle",
+    "swivels": r"swivel",
+    "thimbles": r"thimble",
+    "anodes": r"\banode|\bzinc\b",
+    "isolators": r"isolat|insulat|bushing",
+    "rings": r"\bring\b",
+    "links": r"\blink\b|\bpear\b|\bsling\b|hammerlock",
+}
+"""Kinds of hardware by words of id, name and label, the first that is there."""
+_OTHER, _CHAIN = "other connectors", "chains"
+ORDER = ("shackles", "pins", "cotter pins", *(kind for kind in _KINDS if kind not in
+         ("shackles", "cotter pins")), _CHAIN, _OTHER)  # fmt: skip
+_SMALL = frozenset({"shackles", "pins", "cotter pins", "thimbles"})
+
+
+@dataclass(frozen=True)
+class Stock:
+    """So many of one thing.
+
+    Attributes
+    ----------
+    kind : of `ORDER`
+    use, name : id and name of the component; of what belongs to others only the name
+    count : in the line
+    spares : to bring along beside them
+    length : of chains, in all [m]
+    basis : what the count follows from, where it is not a piece of the line
+    """
+
+    kind: str
+    use: str
+    name: str
+    count: int
+    spares: int
+    length: float | None = None
+    basis: str = ""
+
+    @property
+    def total(self) -> int:
+        """To be brought."""
+        return self.count + self.spares
+
+
+def hardware_of(parts: Sequence[Hung]) -> tuple[Stock, ...]:
+    """The connectors of a line, the chains, and the pins and thimbles that belong to them.
+
+    A shackle has a pin, and one with a bolt and nut a cotter pin, where its definition says so. A
+    termination that names a thimble has one at each end.
+    """
+    groups: dict[tuple[str, str], list[Hung]] = {}
+    for one in parts:
+        kind = _kind(one)
+        if kind is not None:
+            groups.setdefault((kind, one.part.use), []).append(one)
+    found = [_stock(kind, use, group) for (kind, use), group in groups.items()]
+    found += _pins(groups)
+    found += _thimbles(parts)
+    return tuple(sorted(found, key=lambda stock: ORDER.index(stock.kind)))
+
+
+def spares_of(kind: str, count: int) -> int:
+    """A tenth, rounded up, and of what is small and easily lost at least two."""
+    return max(ceil(SPARE_SHARE * count), 2 if kind in _SMALL else 1)
+
+
+def kind_of(words: str) -> str | None:
+    """The kind of hardware that some words tell of."""
+    found = (kind for kind, word in _KINDS.items() if re.search(word, words.lower()))
+    return next(found, None)
+
+
+def _kind(one: Hung) -> str | None:
+    component = one.part.component
+    if isinstance(component, Chain):
+        return _CHAIN
+    if isinstance(component, Cable):
+        return None
+    kind = kind_of(f"{one.part.use.replace('-', ' ')} {component.name or ''} {one.label}")
+    if one.role == "connector":
+        return kind or _OTHER
+    return kind if kind in ("anodes", "isolators", "thimbles", "cotter pins") else None
+
+
+def _stock(kind: str, use: str, group: Sequence[Hung]) -> Stock:
+    lengths = [one.cut_length for one in group if one.cut_length is not None]
+    count = len(group)
+    return Stock(
+        kind=kind,
+        use=use,
+        name=group[0].name,
+        count=count,
+        spares=spares_of(kind, count),
+        length=sum(lengths) if kind == _CHAIN else None,
+    )
+
+
+def _pins(groups: dict[tuple[str, str], list[Hung]]) -> Iterator[Stock]:
+    for (kind, use), group in groups.items():
+        if kind != "shackles":
+            continue
+        component, count = group[0].part.component, len(group)
+        pin = "bolt and nut" if _is_bolted(component) else "pin"
+        name = f"{pin} of {group[0].name}"
+        yield Stock("pins", use, name, count, spares_of("pins", count), basis="one a shackle")
+        if _is_bolted(component):
+            name = f"cotter pin of {group[0].name}"
+            spares = spares_of("cotter pins", count)
+            yield Stock("cotter pins", use, name, count, spares, basis="one a bolted shackle")
+
+
+def _is_bolted(component: Component) -> bool:
+    words = f"{component.name or ''} {component.note or ''}".lower()
+    return "bolt" in words or "cotter" in words
+
+
+def _thimbles(parts: Sequence[Hung]) -> Iterator[Stock]:
+    ends: dict[tuple[str, str], int] = {}
+    for one in parts:
+        part = one.part
+        made = part.equipment.termination or ""
+        if isinstance(part, Piece) and "thimble" in made.lower():
+            ends[part.use, one.name] = ends.get((part.use, one.name), 0) + 2
+    for (use, name), count in ends.items():
+        spares = spares_of("thimbles", count)
+        yield Stock(
+            "thimbles", use, f"thimble for {name}", count, spares, basis="two a cable, termination"
+        )

@@ -1,0 +1,168 @@
+"""All that the deck needs to know of a mooring: the one model of its sheets and of their files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from calm.case import Mooring
+from calm.checks.finding import OWN
+from calm.checks.inventory import inventory_of
+from calm.checks.recovery import recovery_of
+from calm.deck.cutting import Cut, cuts_of
+from calm.deck.hardware import Stock, hardware_of
+from calm.deck.hung import Hung, hung_of
+from calm.deck.instruments import Posted, posted
+from calm.deck.lifts import Lifts, lifts_of
+from calm.deck.order import Order, Surfacing, over_the_side, surfacing
+from calm.deck.shipping import Freight, freight_of
+from calm.drop import DropPlan, drop_plan
+from calm.drop.planning import SHIP_SPEED
+from calm.errors import NoEquilibrium
+from calm.files import CurrentTable
+from calm.solve import Status
+
+if TYPE_CHECKING:
+    from calm.case import Result
+    from calm.checks.recovery import Recovery
+    from calm.files import MooringFile
+
+FAINT = 0.1
+"""Current in which a line is drawn that still water leaves slack [m/s]."""
+
+
+@dataclass(frozen=True)
+class Deck:
+    """The sheets of one mooring.
+
+    Attributes
+    ----------
+    result : in the environment of the sheets
+    environment : its name
+    order : in which the line goes over the side
+    parts : every piece and clamp, down the line
+    deployment, recovery : in the order over the side, and in that of surfacing
+    rise : of the line without its anchor; None where it could not be solved
+    cuts, hardware, freight, lifts, instruments : what the sheets of these names say
+    plan : of the anchor drop, or why it could not be solved; None where the anchor goes first
+    notes : what could not be told, and why
+    """
+
+    result: Result
+    environment: str
+    order: Order
+    parts: tuple[Hung, ...]
+    deployment: tuple[Hung, ...]
+    recovery: tuple[Surfacing, ...]
+    rise: Recovery | None
+    cuts: tuple[Cut, ...]
+    hardware: tuple[Stock, ...]
+    freight: tuple[Freight, ...]
+    lifts: Lifts
+    instruments: tuple[Posted, ...]
+    environments: tuple[str, ...]
+    notes: tuple[str, ...]
+    plan: DropPlan | NoEquilibrium | None = None
+
+    @property
+    def file(self) -> MooringFile:
+        """As read, in the environment of the sheets."""
+        return self.result.file
+
+
+def deck_of(
+    moorings: Sequence[Mooring],
+    order: Order = Order.ANCHOR_LAST,
+    ship_speed: float = SHIP_SPEED,
+    streamed: float | None = None,
+) -> Deck:
+    """The sheets of a mooring.
+
+    Parameters
+    ----------
+    moorings : the same one in each environment, that of the sheets first, and cut alike in all
+    ship_speed, streamed : of the anchor drop, see `calm.drop.drop_plan` [m/s], [m]
+
+    Raises
+    ------
+    NoEquilibrium
+        It does not stand in the first environment.
+    UsageError
+        The ship streams no line, or not so far.
+    """
+    first = moorings[0]
+    notes: list[str] = []
+    result = _standing(first, notes)
+    results = [(_name(first), result)]
+    for other in moorings[1:]:
+        try:
+            there = other.solve()
+        except NoEquilibrium as failure:
+            notes.append(f"The mooring does not stand in {_name(other)}: {failure}")
+            continue
+        results.append((_name(other), there))
+    parts = hung_of(result)
+    inventory = inventory_of(first)
+    rise: Recovery | None = None
+    try:
+        rise = recovery_of(first, result)
+    except NoEquilibrium as failure:
+        notes.append(f"The rise of the line is not known: {failure}")
+    plan: DropPlan | NoEquilibrium | None = None
+    if order is Order.ANCHOR_LAST:
+        try:
+            stands = result if result.mooring is first else None
+            plan = drop_plan(first, ship_speed, streamed, result=stands)
+        except NoEquilibrium as failure:
+            plan = failure
+            notes.append(f"The anchor drop is not planned: {failure}")
+    released = first.file.pieces[-1].index - 1 if rise is None else rise.released
+    return Deck(
+        result=result,
+        environment=_name(first),
+        order=order,
+        parts=parts,
+        deployment=over_the_side(parts, order),
+        recovery=surfacing(parts, rise),
+        rise=rise,
+        cuts=cuts_of(result, parts, order),
+        hardware=hardware_of(parts),
+        freight=freight_of(first.file, inventory),
+        lifts=lifts_of(inventory, released, order),
+        instruments=posted(parts, results),
+        environments=tuple(name for name, _ in results),
+        notes=tuple(notes),
+        plan=plan,
+    )
+
+
+def _standing(mooring: Mooring, notes: list[str]) -> Result:
+    """The mooring solved; one that still water leaves slack in a current that hardly moves it.
+
+    Raises
+    ------
+    NoEquilibrium
+        It does not stand.
+    """
+    try:
+        return mooring.solve()
+    except NoEquilibrium as failure:
+        if failure.status != Status.SLACK.label:
+            raise
+        faint = CurrentTable((0.0,), (FAINT,), (0.0,), (0.0,))
+        environment = replace(mooring.file.environment, current=faint)
+        try:
+            result = Mooring(replace(mooring.file, environment=environment)).solve()
+        except NoEquilibrium:
+            raise failure from None
+        notes.append(
+            "Still water leaves the line slack, longer than the water is deep: the sheets have it "
+            f"as it stands in a current of {FAINT:g} m/s to the east; the anchor drop is that in "
+            "still water"
+        )
+        return result
+
+
+def _name(mooring: Mooring) -> str:
+    return mooring.file.environment.name or OWN

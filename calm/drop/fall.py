@@ -1,0 +1,221 @@
+"""The drop of an anchor: the line is towed, let go, and comes to rest on its anchor."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from calm.drop.chain import chain_of
+from calm.drop.loads import Sea
+from calm.drop.motion import Anchor, Mover, NoStep, State
+from calm.physics.line import Line, Water
+from calm.solve import Status
+
+SKIN, THICKEST_SKIN = 5e-4, 0.3
+"""Of the layer in which what floats loses its buoyancy: share of the depth, and at most [m]."""
+AT_REST = 1e-7
+"""Share of the depth by which nothing moves any more, however long one waits."""
+LONG = 1e6
+"""The longest step [s]: at its end a line is at rest."""
+PUSHED = 1e-4
+"""Of all weights: what a bar at rest is pushed with at least, to be laid down."""
+_FALLS = 3
+_GROWTH = 1.3
+_REST_GROWTH = 1.6
+_SHORTEST = 1e-9
+_MOST = 20
+
+
+@dataclass(frozen=True)
+class Fineness:
+    """Into how many bars cables and chains are cut, and the fall into how many steps, about."""
+
+    bars: int
+    steps: int
+
+    @property
+    def halved(self) -> Fineness:
+        """With bars and steps twice as long."""
+        return Fineness(self.bars // 2, self.steps // 2)
+
+
+@dataclass(frozen=True)
+class Ship:
+    """The ship that lets go: its velocity to the east and north over the ground [m/s].
+
+    `streamed` is the horizontal distance from the anchor to the free end [m]; None leaves it as it
+    is towed.
+    """
+
+    east: float
+    north: float
+    streamed: float | None = None
+
+
+@dataclass(frozen=True)
+class Course:
+    """What a chain went through: states by growing time, each a step of the mover."""
+
+    mover: Mover
+    states: tuple[State, ...]
+
+
+def towed(line: Line, water: Water, anchor: Anchor, ship: Ship, fineness: Fineness) -> State:
+    """The line as it streams behind the ship, with its lower end at the surface, at the origin.
+
+    Raises
+    ------
+    NoEquilibrium
+        ``not-converged`` where no steady shape is found.
+    """
+    flow = replace(water, u=water.u - ship.east, v=water.v - ship.north)
+    mover = Mover(chain_of(line, fineness.bars), _sea(flow), anchor, held=True)
+    current, _ = flow.at(np.zeros(()))
+    astern = np.array([current[0], current[1], 0.0])
+    if not astern.any():
+        astern[:2] = -ship.east, -ship.north
+    astern /= np.linalg.norm(astern)
+    length = mover.chain.length
+    along = np.append(np.cumsum(length[::-1])[::-1], 0.0)
+    state = State(
+        time=0.0,
+        node=along[:, np.newaxis] * astern,
+        tension=np.full(len(length), 0.01 * mover.scale),
+        velocity=np.zeros((len(along), 3)),
+    )
+    state = _settled(mover, state, 1e-3 * water.depth)[-1]
+    if ship.streamed is not None:
+        state = _drawn(mover, state, ship.streamed)
+    return replace(state, time=0.0, velocity=np.zeros_like(state.node))
+
+
+def fall(line: Line, water: Water, anchor: Anchor, start: State, fineness: Fineness) -> Course:
+    """The fall of a line from where it is towed until its anchor meets the seabed.
+
+    The instant of the touchdown is interpolated within the step that passes it.
+
+    Raises
+    ------
+    NoEquilibrium
+        ``anchor-lifts`` where the anchor does not come to the seabed, ``not-converged`` where a
+        step is not found.
+    """
+    mover = Mover(chain_of(line, fineness.bars), _sea(water), anchor)
+    bottom = line.anchor_height - water.depth
+    way = water.depth / fineness.steps
+    states, step = [start], 0.02 * way
+    while states[-1].node[-1, 2] > bottom:
+        if len(states) > _MOST * fineness.steps:
+            raise Status.ANCHOR_LIFTS.because(
+                f"The anchor weighs {anchor.weight:.0f} N in water and does not draw the line to "
+                "the seabed."
+            )
+        state = _stepped(mover, states[-1], step, water.depth)
+        step = state.time - states[-1].time
+        if state.node[-1, 2] <= bottom:
+            # the seabed would stop what is above the anchor in the part of the step beyond it
+            state = _stepped(replace(mover, bedded=False), states[-1], step, water.depth)
+        speed = float(np.linalg.norm(state.velocity[-1]))
+        step = min(_GROWTH * (state.time - states[-1].time), way / max(speed, 1e-300), LONG)
+        states.append(state)
+    return Course(mover, (*states[:-1], _passing(states[-2], states[-1], bottom)))
+
+
+def settle(line: Line, water: Water, anchor: Anchor, landed: State, fineness: Fineness) -> Course:
+    """How a line comes to rest on the anchor that holds it.
+
+    Raises
+    ------
+    NoEquilibrium
+        ``not-converged`` where it does not.
+    """
+    mover = Mover(chain_of(line, fineness.bars), _sea(water), anchor, held=True)
+    return Course(mover, _settled(mover, landed, 0.2 * water.depth / fineness.steps))
+
+
+def _sea(water: Water) -> Sea:
+    return Sea(water, min(SKIN * water.depth, THICKEST_SKIN))
+
+
+def _passing(before: State, after: State, bottom: float) -> State:
+    """The state at which the lower end is at a height [m]."""
+    high, low = float(before.node[-1, 2]), float(after.node[-1, 2])
+    share = (high - bottom) / (high - low)
+    return State(
+        time=before.time + share * (after.time - before.time),
+        node=before.node + share * (after.node - before.node),
+        tension=before.tension + share * (after.tension - before.tension),
+        velocity=after.velocity,
+    )
+
+
+def _stepped(mover: Mover, state: State, step: float, depth: float) -> State:
+    """A step, or a shorter one where it is not found.
+
+    Raises
+    ------
+    NoEquilibrium
+        ``not-converged``
+    """
+    shortest = _SHORTEST * depth
+    while step > shortest:
+        with suppress(NoStep):
+            return mover.stepped(state, step)
+        step *= 0.4
+    raise Status.NOT_CONVERGED.because(
+        f"The way of the line finds no next step, {state.time:.1f} s after it was let go."
+    )
+
+
+def _settled(mover: Mover, state: State, step: float) -> tuple[State, ...]:
+    """States from one on, in longer and longer steps, until nothing moves any more.
+
+    What then stands on its lower end, pushed and not pulled, is laid down: a long step holds it
+    upright as a short one would not.
+    """
+    depth = mover.sea.water.depth
+    states = [state]
+    for _ in range(_FALLS + 1):
+        length = step
+        while length < LONG:
+            after = _stepped(mover, states[-1], length, depth)
+            length = _REST_GROWTH * (after.time - states[-1].time)
+            states.append(after)
+        moved = float(np.abs(states[-1].node - states[-2].node).max())
+        if moved > AT_REST * depth:
+            raise Status.NOT_CONVERGED.because("The line does not come to rest.")
+        laid = _laid_down(mover, states[-1])
+        if laid is None:
+            break
+        states[-1] = laid
+    return tuple(states)
+
+
+def _laid_down(mover: Mover, state: State) -> State | None:
+    """The state with the bars that are pushed along the next one above them that is not.
+
+    None where no bar is.
+    """
+    pushed = state.tension < -PUSHED * mover.scale
+    if not pushed.any() or pushed[0]:
+        return None
+    node, axis = state.node.copy(), np.zeros(3)
+    for bar in range(len(pushed)):
+        upward = state.node[bar] - state.node[bar + 1]
+        if not pushed[bar]:
+            axis = upward / np.linalg.norm(upward)
+        else:
+            node[: bar + 1] += np.linalg.norm(upward) * axis - upward
+    return replace(state, node=node, velocity=np.zeros_like(node))
+
+
+def _drawn(mover: Mover, state: State, streamed: float) -> State:
+    """The line with its free end held at a horizontal distance from the other [m]."""
+    end = state.node[0, :2]
+    here = float(np.linalg.norm(end))
+    for share in np.linspace(0.0, 1.0, 21)[1:]:
+        tether = end * (1.0 + share * (streamed / here - 1.0))
+        state = _stepped(replace(mover, tether=tether), state, 10.0, mover.sea.water.depth)
+    return _settled(replace(mover, tether=end * (streamed / here)), state, 10.0)[-1]

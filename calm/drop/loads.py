@@ -1,0 +1,207 @@
+"""Forces on the loads of a chain that moves, and how they change with its motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from calm.drop.chain import Chain
+from calm.physics.friction import Friction
+from calm.physics.line import REFERENCE_DENSITY, Floats, Water
+
+SLOWEST = 1e-3
+"""Speed below which drag goes with the speed and not with its square [m/s]; else a line at rest
+would have nothing to keep it where it is."""
+
+_UNIT = np.eye(3)
+
+
+@dataclass(frozen=True)
+class Sea:
+    """Water by depth with its gradients.
+
+    Attributes
+    ----------
+    water : the sea
+    skin : thickness of the layer below the surface in which what floats there loses its buoyancy,
+        where nothing is known of its hull [m]
+    """
+
+    water: Water
+    skin: float
+
+    @cached_property
+    def _rows(self) -> tuple[Floats, Floats]:
+        """Columns u, v, w, density of every level, and their growth per metre below it."""
+        water = self.water
+        values = np.stack([water.u, water.v, water.w, water.density], axis=1)
+        slopes = np.zeros((len(values) + 1, 4))
+        slopes[1:-1] = np.diff(values, axis=0) / np.diff(water.level)[:, np.newaxis]
+        return values, slopes
+
+    def at(self, depth: Floats) -> tuple[Floats, Floats, Floats]:
+        """Current (k, 3), its growth per metre of depth (k, 3), and density (k,)."""
+        values, slopes = self._rows
+        interval = np.searchsorted(self.water.level, depth, side="right")
+        origin = np.maximum(interval - 1, 0)
+        slope = slopes[interval]
+        found = values[origin] + slope * (depth - self.water.level[origin])[:, np.newaxis]
+        return found[:, :3], slope[:, :3], found[:, 3]
+
+
+@dataclass(frozen=True)
+class Loads:
+    """Forces on the k loads of a chain (k, 3) [N] and what they change by.
+
+    Attributes
+    ----------
+    force : (k, 3) [N]
+    by_flow : (k, 3, 3) per metre per second of the water past the load
+    by_axis : (k, 3, 3) per unit of its bar's axis
+    by_height : (k, 3) per metre upward, the current it meets there included
+    """
+
+    force: Floats
+    by_flow: Floats
+    by_axis: Floats
+    by_height: Floats
+
+
+def loads_on(
+    chain: Chain,
+    sea: Sea,
+    height: Floats,
+    velocity: Floats,
+    axis: Floats,
+    strain: Floats,
+    variation: Floats,
+    slowest: float = SLOWEST,
+) -> Loads:
+    """The forces on a chain's loads.
+
+    Parameters
+    ----------
+    height : (k,) of the loads above the surface [m]
+    velocity : (k, 3) over the ground [m/s]
+    axis : (k, 3) of their bars, unit, downward along the line
+    strain : (k,) of their bars
+    variation : (k,) how many times its constant drag a smooth body has
+    slowest : speed below which drag goes with the speed [m/s]
+    """
+    on = chain.elements
+    current, shear, density = sea.at(-height)
+    flow = current - velocity
+    dense = density / REFERENCE_DENSITY
+    grown = dense * (1.0 + 2.0 * on.thinning * (np.sqrt(1.0 + np.maximum(strain, 0.0)) - 1.0))
+    lift, stiffness, wet, wetting, push = _afloat(chain, sea, height, density)
+    speed = np.sqrt(np.einsum("ij,ij->i", flow, flow) + slowest**2)
+    along = np.einsum("ij,ij->i", flow, axis)
+    across = flow - np.where(on.directional, along, 0.0)[:, np.newaxis] * axis
+    size = np.sqrt(np.einsum("ij,ij->i", across, across) + slowest**2)
+    kn, kt = grown * variation * on.normal_drag, grown * on.tangential_drag
+    kt = np.where(on.directional, kt, 0.0)
+    outer = across[:, :, np.newaxis] * across[:, np.newaxis, :]
+    # d(s n)/dn of the normal drag, and n = V - (V.t) t
+    turn = size[:, np.newaxis, np.newaxis] * _UNIT + outer / size[:, np.newaxis, np.newaxis]
+    project = _UNIT - np.where(on.directional, 1.0, 0.0)[:, np.newaxis, np.newaxis] * (
+        axis[:, :, np.newaxis] * axis[:, np.newaxis, :]
+    )
+    lean = -along[:, np.newaxis, np.newaxis] * _UNIT - axis[:, :, np.newaxis] * flow[:, np.newaxis]
+    lean *= on.directional[:, np.newaxis, np.newaxis]
+    drag = (kn * size)[:, np.newaxis] * across
+    by_flow = kn[:, np.newaxis, np.newaxis] * (turn @ project)
+    by_axis = kn[:, np.newaxis, np.newaxis] * (turn @ lean)
+    pull, pull_by_flow, pull_by_axis = _friction(chain, kt, flow, axis, along, speed, slowest)
+    drag += pull
+    by_flow += pull_by_flow
+    by_axis += pull_by_axis
+    raised = dense * on.lift * wet
+    force = wet[:, np.newaxis] * drag + push
+    force[:, 2] += lift + raised * speed**2
+    by_flow *= wet[:, np.newaxis, np.newaxis]
+    by_axis *= wet[:, np.newaxis, np.newaxis]
+    by_flow[:, 2] += 2.0 * raised[:, np.newaxis] * flow
+    by_height = -np.einsum("ijk,ik->ij", by_flow, shear) + wetting[:, np.newaxis] * drag
+    by_height[:, 2] += stiffness
+    return Loads(force, by_flow, by_axis, by_height)
+
+
+def _friction(
+    chain: Chain,
+    kt: Floats,
+    flow: Floats,
+    axis: Floats,
+    along: Floats,
+    speed: Floats,
+    slowest: float,
+) -> tuple[Floats, Floats, Floats]:
+    """Drag along the axis, (k, 3), and its changes with the flow and with the axis."""
+    law = chain.line.friction
+    straight = kt * np.sqrt(along**2 + slowest**2)
+    square, slope, side = straight * along, 2.0 * straight, np.zeros_like(flow)
+    if law is Friction.CONSTANT:
+        # the whole of V², towards where the flow goes along the cable
+        cable = chain.elements.flexible
+        sign = along / np.sqrt(along**2 + slowest**2)
+        square = np.where(cable, kt * speed**2 * sign, square)
+        slope = np.where(cable, kt * speed**2 * (1.0 - sign**2) / np.hypot(along, slowest), slope)
+        side = (np.where(cable, 2.0 * kt * sign, 0.0))[:, np.newaxis] * flow
+    pull = square[:, np.newaxis] * axis
+    by_along = slope[:, np.newaxis, np.newaxis] * axis[:, :, np.newaxis]
+    by_flow = by_along * axis[:, np.newaxis] + axis[:, :, np.newaxis] * side[:, np.newaxis]
+    by_axis = by_along * flow[:, np.newaxis] + square[:, np.newaxis, np.newaxis] * _UNIT
+    if law is Friction.HOERNER:
+        cable = chain.elements.flexible[:, np.newaxis]
+        wide = cable[:, :, np.newaxis]
+        pull = np.where(cable, (kt * speed)[:, np.newaxis] * flow, pull)
+        turning = (kt * speed)[:, np.newaxis, np.newaxis] * _UNIT
+        turning = turning + (kt / speed)[:, np.newaxis, np.newaxis] * (
+            flow[:, :, np.newaxis] * flow[:, np.newaxis]
+        )
+        by_flow, by_axis = np.where(wide, turning, by_flow), np.where(wide, 0.0, by_axis)
+    return pull, by_flow, by_axis
+
+
+def _afloat(
+    chain: Chain, sea: Sea, height: Floats, density: Floats
+) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+    """Net force, its growth per metre upward, share of the drag and its growth, push of the wind.
+
+    What lifts loses its buoyancy over the skin of the sea as its top comes out; where its mass is
+    known it then weighs on the line. A float whose hull is known loses it, and its drag, by its
+    draft.
+    """
+    on = chain.elements
+    excess = (density - REFERENCE_DENSITY) * sea.water.gravity
+    net = on.buoyancy + excess * on.volume
+    displaced = density * sea.water.gravity * on.volume
+    dry = np.where(on.out & (on.volume > 0.0), displaced - net, np.maximum(displaced - net, 0.0))
+    top = height + 0.5 * on.height
+    way = np.clip(1.0 - top / sea.skin, 0.0, 1.0)
+    share = way**2 * (3.0 - 2.0 * way)
+    rise = -6.0 * way * (1.0 - way) / sea.skin
+    floats = net > 0.0
+    lift = np.where(floats | on.out, share * (net + dry) - dry, net)
+    stiffness = np.where(floats | on.out, rise * (net + dry), 0.0)
+    wet, wetting = np.where(on.out, share, 1.0), np.where(on.out, rise, 0.0)
+    push = np.column_stack([on.push_east, on.push_north, np.zeros(len(net))])
+    if chain.afloat is not None:
+        hull, i = chain.afloat, chain.afloat.element
+        draft = 0.5 - height[i] / hull.height
+        near = draft + np.array([-_STEP, 0.0, _STEP])
+        immersed, drag = (np.interp(near, hull.draft, y) for y in (hull.immersed, hull.drag))
+        whole = hull.weight + net[i]
+        growth = -0.5 / (_STEP * hull.height)
+        lift[i], stiffness[i] = (
+            whole * immersed[1] - hull.weight,
+            growth * whole * (immersed[2] - immersed[0]),
+        )
+        wet[i], wetting[i] = drag[1], growth * (drag[2] - drag[0])
+        push[i, :2] += [np.interp(draft, hull.draft, hull.push[:, k]) for k in (0, 1)]
+    return lift, stiffness, wet, wetting, push
+
+
+_STEP = 1e-3
+"""Of a draft, to find what a hull's buoyancy grows by."""

@@ -1,0 +1,316 @@
+"""A step of a chain without inertia: where its nodes are a moment later.
+
+The forces on every node cancel at the end of the step, with drag by the velocity V = (X - Xₙ)/Δt
+over it (implicit Euler), and every bar is as long as its tension makes it. Unknown are the nodes
+and the tensions, together: so a bar may be as stiff as it is, or inextensible. Newton's method; the
+matrix is a band.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from calm.drop.chain import Chain
+from calm.drop.loads import SLOWEST, Loads, Sea, loads_on
+from calm.physics.line import REFERENCE_DENSITY, Floats, Integers
+from calm.physics.reynolds import Smooth, drag_variation
+
+MOST_ROUNDS = 16
+"""Of Newton's method; a step that takes more is too long."""
+GENTLE = 10.0
+"""Speed below which drag goes with the speed, in the first round of a step from rest [m/s]."""
+CLOSE = 1e-6
+"""Last change of a place, as a share of the line, and of a tension, as one of all the weights; what
+is left is of the order of its square."""
+SINKING = 1e-4
+"""Depth into the seabed at which it bears what lies there, as a share of the water's depth."""
+
+_SIDE = 6  # diagonals of the band on either side
+_UNIT = np.eye(3)
+
+
+class NoStep(ArithmeticError):
+    """Newton's method does not find a step; it may find a shorter one."""
+
+
+def _overturned(before: Floats, after: Floats) -> bool:
+    """Whether a bar has turned by more than 120°: then it may be one that is pushed, not pulled."""
+    chords = np.diff(before, axis=0), np.diff(after, axis=0)
+    sizes = np.prod([np.linalg.norm(chord, axis=1) for chord in chords], axis=0)
+    return bool((np.einsum("ij,ij->i", *chords) < -0.5 * sizes).any())
+
+
+@dataclass(frozen=True)
+class State:
+    """Where a chain is.
+
+    Attributes
+    ----------
+    time : since it was let go [s]
+    node : (n+1, 3) east, north, up [m]
+    tension : (n,) in the bars at their middle [N]
+    velocity : (n+1, 3) over the step that led here [m/s]
+    """
+
+    time: float
+    node: Floats
+    tension: Floats
+    velocity: Floats
+
+
+@dataclass(frozen=True)
+class Anchor:
+    """What hangs at the lower end: weight in water [N] and K of its drag in reference water."""
+
+    weight: float
+    drag: float
+
+
+@dataclass(frozen=True)
+class Mover:
+    """A chain in its sea.
+
+    Attributes
+    ----------
+    held : whether its lower end stays where it is; else it falls with the anchor
+    bedded : whether the seabed bears what comes to lie on it
+    tether : (2,) horizontal place to which its free end is brought [m]; None where that is free
+    """
+
+    chain: Chain
+    sea: Sea
+    anchor: Anchor
+    held: bool = False
+    bedded: bool = True
+    tether: Floats | None = None
+
+    def stepped(self, state: State, step: float) -> State:
+        """The state a time later [s].
+
+        A line at rest begins to move by rounds in which drag goes with the speed: they find the
+        way to where it goes with the square.
+
+        Raises
+        ------
+        NoStep
+            Where Newton's method does not find it.
+        """
+        variation = self.variation(state)
+        node = state.node + step * state.velocity
+        if self.held:
+            node[-1] = state.node[-1]
+        if self.tether is not None:
+            node[0, :2] = self.tether
+        tension = state.tension.copy()
+        reach = float(self.chain.length.sum())
+        slowest = SLOWEST if state.velocity.any() else GENTLE
+        nearer = np.inf
+        for _ in range(MOST_ROUNDS):
+            change = self._change(state.node, node, tension, variation, step, slowest)
+            moved = np.append(change, 0.0).reshape(-1, 4)
+            farthest = float(np.abs(moved[:, :3]).max())
+            if not np.isfinite(farthest):
+                break
+            share = min(1.0, 0.2 * reach / max(farthest, 1e-300))
+            node -= share * moved[:, :3]
+            tension -= share * moved[:-1, 3]
+            close = farthest < CLOSE * reach
+            if close and np.abs(moved[:-1, 3]).max() < CLOSE * self.scale and slowest == SLOWEST:
+                if _overturned(state.node, node):
+                    break
+                return State(state.time + step, node, tension, (node - state.node) / step)
+            if slowest == SLOWEST and farthest > max(nearer, 0.1 * reach):
+                break
+            nearer, slowest = farthest, max(0.2 * slowest, SLOWEST)
+        raise NoStep("the nodes of the chain find no place")
+
+    @cached_property
+    def scale(self) -> float:
+        """What forces are measured by [N]."""
+        return self.anchor.weight + float(np.abs(self.chain.elements.buoyancy).sum())
+
+    def loads(
+        self,
+        node: Floats,
+        velocity: Floats,
+        tension: Floats,
+        variation: Floats,
+        slowest: float = SLOWEST,
+    ) -> tuple[Loads, Floats]:
+        """The forces on the loads, and the axes (n, 3) of the bars."""
+        bar, place = self.chain.elements.bar, self.chain.elements.place[:, np.newaxis]
+        chord = np.diff(node, axis=0)
+        axis = chord / np.linalg.norm(chord, axis=1)[:, np.newaxis]
+        strain, _ = self.strain(tension)
+        height = ((1.0 - place) * node[bar] + place * node[bar + 1])[:, 2]
+        moving = (1.0 - place) * velocity[bar] + place * velocity[bar + 1]
+        loads = loads_on(
+            self.chain, self.sea, height, moving, axis[bar], strain[bar], variation, slowest
+        )
+        return loads, axis
+
+    def strain(self, tension: Floats) -> tuple[Floats, Floats]:
+        """(n,) of the bars and what it grows by [1/N]; a rope that is pushed is as one at rest."""
+        strain, growth = self.chain.compliance * tension, self.chain.compliance.copy()
+        for bars, curve in self.chain.elongation:
+            knots = np.array(curve.knots)
+            pull = np.maximum(tension[bars], 0.0)
+            origin, a, b, c, d = knots[np.searchsorted(knots[:, 0], pull, side="right") - 1].T
+            x = pull - origin
+            strain[bars] = a + x * (b + x * (c + x * d))
+            growth[bars] = np.where(tension[bars] > 0.0, b + x * (2.0 * c + 3.0 * x * d), 0.0)
+        return strain, growth
+
+    def anchor_force(
+        self, node: Floats, velocity: Floats, slowest: float = SLOWEST
+    ) -> tuple[Floats, Floats]:
+        """Weight and drag of the falling anchor (3,) [N], and its change with velocity (3, 3)."""
+        current, _, density = self.sea.at(-node[-1:, 2])
+        flow = current[0] - velocity[-1]
+        k = self.anchor.drag * float(density[0]) / REFERENCE_DENSITY
+        speed = float(np.sqrt(flow @ flow + slowest**2))
+        force = k * speed * flow - [0.0, 0.0, self.anchor.weight]
+        return force, -k * (speed * _UNIT + np.outer(flow, flow) / speed)
+
+    def variation(self, state: State) -> Floats:
+        """(k,) by how much a smooth body's drag differs from the constant one, as it moved last."""
+        on = self.chain.elements
+        variation = np.ones(len(on.bar))
+        for element, curve in enumerate(on.curve):
+            if curve is not None:
+                bar, place = on.bar[element], on.place[element]
+                node, velocity = state.node[bar : bar + 2], state.velocity[bar : bar + 2]
+                lever = np.array([1.0 - place, place])
+                depth = -(lever @ node)[2:]
+                current, _, _ = self.sea.at(depth)
+                flow = current[0] - lever @ velocity
+                if on.directional[element]:
+                    axis = (node[1] - node[0]) / np.linalg.norm(node[1] - node[0])
+                    flow = flow - (flow @ axis) * axis
+                viscosity = float(self.sea.water.viscosity_at(depth)[0])
+                smooth = Smooth(curve.diameter / viscosity, curve.lengthening)
+                variation[element] = drag_variation(smooth, float(np.linalg.norm(flow)))
+        return variation
+
+    def _change(
+        self,
+        before: Floats,
+        node: Floats,
+        tension: Floats,
+        variation: Floats,
+        step: float,
+        slowest: float,
+    ) -> Floats:
+        """What the nodes and tensions are too much by, one node and one tension after another."""
+        from scipy.linalg import solve_banded
+
+        chain, place = self.chain, self.chain.elements.place
+        velocity = (node - before) / step
+        loads, axis = self.loads(node, velocity, tension, variation, slowest)
+        length = np.linalg.norm(np.diff(node, axis=0), axis=1)
+        strain, growth = self.strain(tension)
+        bars = len(length)
+        # nodes and bars in turn, as the unknowns
+        residual = np.zeros((bars + 1, 4))
+        upper, lower = (1.0 - place)[:, np.newaxis], place[:, np.newaxis]
+        pull = tension[:, np.newaxis] * axis
+        residual[:-1, :3] += self._summed(upper * loads.force) + pull
+        residual[1:, :3] += self._summed(lower * loads.force) - pull
+        residual[:-1, 3] = length - chain.length * (1.0 + strain)
+        project = _UNIT - axis[:, :, np.newaxis] * axis[:, np.newaxis]
+        turn = project / length[:, np.newaxis, np.newaxis]
+        stiff = tension[:, np.newaxis, np.newaxis] * turn
+        own = -loads.by_flow / step
+        own[:, :, 2] += loads.by_height
+        leaning = loads.by_axis @ turn[chain.elements.bar]
+        upper, lower = upper[:, np.newaxis], lower[:, np.newaxis]
+        from_upper, from_lower = upper * own - leaning, lower * own + leaning
+        blocks = np.zeros((4, bars, 3, 3))
+        blocks[0] = self._summed(upper * from_upper) - stiff
+        blocks[1] = self._summed(upper * from_lower) + stiff
+        blocks[2] = self._summed(lower * from_upper) + stiff
+        blocks[3] = self._summed(lower * from_lower) - stiff
+        diagonal = np.zeros((bars + 1, 3, 3))
+        diagonal[:-1] += blocks[0]
+        diagonal[1:] += blocks[3]
+        if self.bedded:
+            sunk = np.maximum(-self.sea.water.depth - node[:-1, 2], 0.0) / self._sinking
+            residual[:-1, 2] += self._bearing * sunk**2
+            diagonal[:-1, 2, 2] -= 2.0 * self._bearing * sunk / self._sinking
+        if not self.held:
+            force, by_velocity = self.anchor_force(node, velocity, slowest)
+            residual[-1, :3] += force
+            diagonal[-1] += by_velocity / step
+        band = np.zeros((2 * _SIDE + 1, 4 * bars + 3))
+        flat = band.reshape(-1)
+        places = self._places
+        flat[places[0]] = diagonal
+        flat[places[1]], flat[places[2]] = blocks[1], blocks[2]
+        flat[places[3]], flat[places[4]] = axis, -axis
+        flat[places[5]], flat[places[6]] = -axis, axis
+        band[_SIDE, 3::4] = -chain.length * growth
+        equations = residual.reshape(-1)[:-1]
+        for row in self._fixed:
+            columns = np.arange(max(row - _SIDE, 0), min(row + _SIDE + 1, 4 * bars + 3))
+            band[_SIDE + row - columns, columns] = 0.0
+            band[_SIDE, row], equations[row] = 1.0, 0.0
+        change: Floats = solve_banded(
+            (_SIDE, _SIDE), band, equations, overwrite_ab=True, overwrite_b=True,
+            check_finite=False,
+        )  # fmt: skip
+        return change
+
+    def _summed(self, per_element: Floats) -> Floats:
+        """Over the loads of every bar."""
+        total: Floats = np.add.reduceat(per_element, self._first, axis=0)
+        return total
+
+    @cached_property
+    def _first(self) -> Integers:
+        bar = self.chain.elements.bar
+        return np.searchsorted(bar, np.arange(len(self.chain.length)))
+
+    @cached_property
+    def _sinking(self) -> float:
+        return SINKING * self.sea.water.depth
+
+    @cached_property
+    def _bearing(self) -> Floats:
+        """(n,) of the seabed on a node that has sunk in by `SINKING` [N]."""
+        on = self.chain.elements
+        weight = self._summed(np.abs(on.buoyancy))
+        weight[1:] += weight[:-1]
+        bearing: Floats = np.maximum(0.5 * weight, 1e-4 * self.scale)
+        return bearing
+
+    @cached_property
+    def _fixed(self) -> list[int]:
+        """Rows of the unknowns that are known."""
+        last = 4 * len(self.chain.length)
+        upper = [] if self.tether is None else [0, 1]
+        return [*upper, last, last + 1, last + 2] if self.held else upper
+
+    @cached_property
+    def _places(self) -> tuple[Integers, ...]:
+        """Where the blocks of the matrix stand in the band, flat."""
+        bars = len(self.chain.length)
+        width = 4 * bars + 3
+        node = 4 * np.arange(bars + 1)[:, np.newaxis] + np.arange(3)
+        pull = 4 * np.arange(bars)[:, np.newaxis] + 3
+
+        def at(row: Integers, column: Integers) -> Integers:
+            return (_SIDE + row - column) * width + column
+
+        above, below = node[:-1], node[1:]
+        return (
+            at(node[:, :, np.newaxis], node[:, np.newaxis]),
+            at(above[:, :, np.newaxis], below[:, np.newaxis]),
+            at(below[:, :, np.newaxis], above[:, np.newaxis]),
+            at(above, pull),
+            at(below, pull),
+            at(pull, above),
+            at(pull, below),
+        )

@@ -1,0 +1,223 @@
+"""What the states of a chain tell of its pieces: depths, tensions, shapes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from calm.case import Result
+from calm.case.measure import clamps_in
+from calm.drop.chain import Chain
+from calm.drop.fall import Course
+from calm.drop.motion import Mover, State
+from calm.files import Clamp, Piece
+from calm.physics.line import Floats, Integers
+
+REPORTED_ROLES = ("float", "instrument", "release")
+"""Of pieces and clamps whose depth in the drop matters."""
+MOMENTS = 5
+"""Shapes from letting go to the touchdown; one more is that at rest."""
+
+
+@dataclass(frozen=True)
+class DepthReached:
+    """How deep a piece or clamp comes while the line falls and straightens.
+
+    Attributes
+    ----------
+    part : the piece or clamp
+    rest : its depth when all is at rest, of its lower end [m]
+    greatest : the largest depth of its lower end [m]
+    time : when, after the anchor was let go [s]
+    rating : the depth it is made for [m]; None where it is not known
+    """
+
+    part: Piece | Clamp
+    rest: float
+    greatest: float
+    time: float
+    rating: float | None
+
+    @property
+    def label(self) -> str:
+        """Of the piece or clamp."""
+        return self.part.label
+
+    @property
+    def beyond(self) -> bool:
+        """Whether it comes deeper than it is made for."""
+        return self.rating is not None and self.greatest > self.rating
+
+
+@dataclass(frozen=True)
+class Pull:
+    """The greatest tension in a piece during the fall [N], and when [s]."""
+
+    part: Piece
+    tension: float
+    time: float
+
+
+@dataclass(frozen=True)
+class Moment:
+    """The shape of the line at a time [s]: distance towards the float and depth of nodes [m]."""
+
+    time: float
+    name: str
+    x: Floats
+    depth: Floats
+
+
+@dataclass(frozen=True)
+class Path:
+    """What happens over time, from the moment the anchor is let go to its touchdown; (t,) each.
+
+    Attributes
+    ----------
+    time : [s]
+    anchor_depth : of its foot [m]
+    anchor_speed : downward [m/s]
+    anchor_x, float_x : distance from where the anchor was let go, towards the float [m]
+    float_depth : of the free end [m]
+    anchor_tension : of the line at the anchor [N]
+    """
+
+    time: Floats
+    anchor_depth: Floats
+    anchor_speed: Floats
+    anchor_x: Floats
+    float_x: Floats
+    float_depth: Floats
+    anchor_tension: Floats
+
+
+def place_of(chain: Chain, state: State, bar: Integers, place: Floats) -> Floats:
+    """(m, 3) of points at places of bars [m]."""
+    share = place[:, np.newaxis]
+    found: Floats = (1.0 - share) * state.node[bar] + share * state.node[bar + 1]
+    return found
+
+
+def piece_ends(chain: Chain, state: State) -> tuple[Floats, Floats]:
+    """(p, 3) of the upper and of the lower end of every piece [m]."""
+    first, end = chain.bars.T
+    last = np.maximum(end - 1, first)
+    return (
+        place_of(chain, state, first, chain.span[:, 0]),
+        place_of(chain, state, last, chain.span[:, 1]),
+    )
+
+
+def clamp_places(chain: Chain, state: State) -> Floats:
+    """(m, 3) of the clamps [m]."""
+    return place_of(chain, state, chain.clamp_bar, chain.clamp_place)
+
+
+def end_tensions(mover: Mover, state: State) -> Floats:
+    """(n, 2) in every bar at its upper and at its lower end [N]."""
+    on = mover.chain.elements
+    loads, axis = mover.loads(state.node, state.velocity, state.tension, mover.variation(state))
+    pull = state.tension[:, np.newaxis] * axis
+    lower = on.place[:, np.newaxis]
+    above = np.zeros_like(pull)
+    below = np.zeros_like(pull)
+    np.add.at(above, on.bar, (1.0 - lower) * loads.force)
+    np.add.at(below, on.bar, lower * loads.force)
+    return np.stack([np.linalg.norm(pull + above, axis=1), np.linalg.norm(pull - below, axis=1)], 1)
+
+
+def path_of(drop: Course, toward: Floats, anchor_height: float) -> Path:
+    """The fall over time.
+
+    Parameters
+    ----------
+    toward : (2,) horizontal unit vector from the anchor to the free end at the start
+    anchor_height : of the line's end above the anchor's foot [m]
+    """
+    states = drop.states
+    foot, top = (np.array([state.node[i] for state in states]) for i in (-1, 0))
+    return Path(
+        time=np.array([state.time for state in states]),
+        anchor_depth=anchor_height - foot[:, 2],
+        anchor_speed=np.array([-state.velocity[-1, 2] for state in states]),
+        anchor_x=foot[:, :2] @ toward,
+        float_x=top[:, :2] @ toward,
+        float_depth=-top[:, 2],
+        anchor_tension=np.array([end_tensions(drop.mover, state)[-1, 1] for state in states]),
+    )
+
+
+def moments_of(drop: Course, rest: Course, toward: Floats) -> tuple[Moment, ...]:
+    """Shapes at equal intervals from letting go to the touchdown, and at rest."""
+    times = np.array([state.time for state in drop.states])
+    chosen = [int(np.argmin(np.abs(times - t))) for t in np.linspace(0.0, times[-1], MOMENTS)]
+    shown = [drop.states[i] for i in chosen]
+    names = ["let go", *(f"after {state.time:.0f} s" for state in shown[1:-1]), "touchdown"]
+    return tuple(
+        Moment(state.time, name, state.node[:, :2] @ toward, -state.node[:, 2])
+        for state, name in zip([*shown, rest.states[-1]], [*names, "at rest"], strict=True)
+    )
+
+
+def depths_of(pieces: Sequence[Piece], drop: Course, rest: Course) -> tuple[DepthReached, ...]:
+    """How deep floats, instruments and releases come, from letting go to rest."""
+    parts: list[Piece | Clamp] = [*pieces[:-1], *clamps_in(pieces[:-1])]
+    chain, states = drop.mover.chain, (*drop.states, *rest.states[1:])
+    depth = np.array([_depths(chain, state) for state in states])
+    deepest = depth.argmax(axis=0)
+    return tuple(
+        DepthReached(
+            part=part,
+            rest=float(depth[-1, i]),
+            greatest=float(depth[deepest[i], i]),
+            time=states[deepest[i]].time,
+            rating=part.component.depth_rating,
+        )
+        for i, part in enumerate(parts)
+        if part.component.role in REPORTED_ROLES
+    )
+
+
+def _depths(chain: Chain, state: State) -> Floats:
+    """Of the deeper end of every piece, and of every clamp [m]."""
+    upper, lower = piece_ends(chain, state)
+    clamps = clamp_places(chain, state)
+    return -np.append(np.minimum(upper[:, 2], lower[:, 2]), clamps[:, 2])
+
+
+def pulls_of(pieces: Sequence[Piece], drop: Course) -> tuple[Pull, ...]:
+    """The greatest tension in every piece from letting go to the touchdown."""
+    chain = drop.mover.chain
+    tension = np.array([end_tensions(drop.mover, state).max(axis=1) for state in drop.states])
+    pulls = []
+    for piece, (first, end) in zip(pieces[:-1], chain.bars.tolist(), strict=True):
+        over_time = tension[:, first : max(end, first + 1)].max(axis=1)
+        when = int(over_time.argmax())
+        pulls.append(Pull(piece, float(over_time[when]), drop.states[when].time))
+    return tuple(pulls)
+
+
+def rest_difference(result: Result, rest: Course) -> float:
+    """Farthest that an end of a piece comes to rest from its place in the equilibrium [m].
+
+    Of a line that comes down on the seabed before its anchor, pieces that lie there are left out:
+    the equilibrium has them at the foot of the anchor, where here they go up to its top.
+    """
+    state = rest.states[-1]
+    upper, lower = piece_ends(rest.mover.chain, state)
+    at, count = result.components, len(upper)
+    expected = np.concatenate(
+        [
+            np.column_stack([at.x_top, at.y_top, -at.depth_top])[:count],
+            np.column_stack([at.x_bottom, at.y_bottom, -at.depth_bottom])[:count],
+        ]
+    )
+    found = np.concatenate([upper, lower]) - [*state.node[-1, :2], 0.0]
+    away = np.linalg.norm(found - expected, axis=1)
+    if result.anchor.grounded_length > 0.0:
+        away = away[
+            expected[:, 2] > -result.mooring.water.depth + 1e-6 * result.mooring.water.depth
+        ]
+    return float(away.max())

@@ -1,0 +1,1 @@
+"""WHOI Cable: its problem files, read and written."""

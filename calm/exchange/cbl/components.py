@@ -1,0 +1,204 @@
+"""Buoys, anchors, connectors and materials of WHOI Cable, with that program's drag."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from calm.exchange.cbl.hulls import displacement, largest
+from calm.exchange.cbl.problem import Definition, Value, Values
+from calm.exchange.cbl.water import number, value_at
+from calm.exchange.design import Component, Figure, Remark
+from calm.exchange.refusal import refused
+from calm.exchange.words import is_chain, role_of
+from calm.units import KILOGRAM_FORCE
+
+_REFERENCE_DENSITY = 1025.0  # in which CALM's net forces are
+_TOO_WIDE = 20.0  # times what mass and weight say: no cable, whatever its fairing
+_FASTEST = 10.0  # m/s: a drag tabulated beyond it counts on depth
+_DYNAMICS = (
+    "ei", "gj", "am", "amn", "amt", "can", "cat", "cmn", "cmt", "bn", "bt", "b", "cg", "cl",
+    "i", "j", "g", "nu",
+)  # fmt: skip
+_YIELDS = ("swl", "yield")
+
+
+@dataclass
+class Makers:
+    """Makes components in the water of the problem; what they have no use for goes to `dropped`."""
+
+    density: float
+    gravity: float
+    dropped: list[Remark]
+
+    def material(self, definition: Definition, depth: float, speed: float) -> Component:
+        """Of a cable: its drag at a depth [m] and a speed [m/s], where it depends on them."""
+        values, name = definition.values, definition.name
+        across, inside = number(values, "d") or number(values, "diam"), number(values, "id")
+        if across <= 0.0:
+            raise definition.token.refuse(f"material `{name}` has no diameter")
+        area, bore = math.pi / 4.0 * across**2, math.pi / 4.0 * inside**2
+        mass = number(values, "m") or number(values, "mass")
+        dry = number(values, "w") or mass * self.gravity
+        wet = number(values, "wet") or dry - area * self.density * self.gravity
+        if not mass and not dry and not number(values, "wet"):
+            raise definition.token.refuse(f"material `{name}` has neither `m` nor `wet`")
+        figures: dict[str, Figure] = {
+            "diameter": across,
+            "cn": self._drag(values, "cdn", depth, speed),
+            "ct": self._drag(values, "cdt", depth, speed),
+        }
+        kind = "chain" if is_chain(name) else "cable"
+        weight, mass = self._at_reference(wet, mass)
+        if weight < 0.0 and kind == "chain":
+            kind = "cable"
+        figures["buoyancy" if weight < 0.0 else "weight"] = abs(weight)
+        if mass:
+            figures["mass"] = mass
+        component = Component(name, kind, figures)
+        if mass and _TOO_WIDE * (mass - weight / self.gravity) < _REFERENCE_DENSITY * area:
+            component.guesses["diameter"] = (
+                f"kept as it stands: a metre of it displaces {_REFERENCE_DENSITY * area:.3g} kg of "
+                f"water, but has a mass of {mass:.3g} kg and weighs {weight:.3g} N"
+            )
+        self._stretch(component, definition, area - bore)
+        self._drop(definition)
+        return component
+
+    def _stretch(self, component: Component, definition: Definition, section: float) -> None:
+        values = definition.values
+        stiffness = number(values, "ea") or number(values, "e") * section
+        tension = values.get("t")
+        if not stiffness and tension is not None:
+            stiffness = value_at(tension, 0.01) / 0.01
+            component.guesses["stiffness"] = "its tension at a strain of 0.01; the file has a curve"
+        if stiffness > 0.0:
+            component.figures["stiffness"] = stiffness
+        limit = {key: number(values, key) for key in _YIELDS}
+        if limit["yield"] > 0.0:
+            component.figures["breaking_load"] = limit["yield"]
+        if limit["swl"] > 0.0 and (not limit["yield"] or limit["swl"] <= limit["yield"]):
+            component.figures["working_load"] = limit["swl"]
+
+    def connector(self, definition: Definition) -> Component:
+        """Of a point in the line: a sphere for its drag, as long as the file says."""
+        values, name = definition.values, definition.name
+        wet, mass = self._at_reference(
+            number(values, "wet"), number(values, "m") or number(values, "mass")
+        )
+        figures: dict[str, Figure] = {"length": number(values, "length"), "buoyancy": 0.0 - wet}
+        across, drag = number(values, "d") or number(values, "diam"), number(values, "cdn")
+        if across > 0.0:
+            kind = "sphere"
+            figures = {"diameter": across, **figures, "cx": drag}
+        else:
+            kind = "body"
+            figures |= {"drag_area": 0.0, "cd": drag}
+        if mass:
+            figures["mass"] = mass
+        figures["role"] = role_of(name, -wet, fastener=abs(wet) < 20.0)
+        self._drop(definition)
+        return Component(name, kind, figures)
+
+    def anchor(self, definition: Definition | None, name: str, friction: float) -> Component:
+        """Of the lower end; without a weight where the file gives none."""
+        values: Values = definition.values if definition else {}
+        figures: dict[str, Figure] = {}
+        wet, mass = number(values, "wet"), number(values, "m") or number(values, "mass")
+        if wet > 0.0:
+            figures["weight"] = wet
+            if mass * self.gravity > wet:
+                figures["mass"] = mass
+        elif mass > 0.0:
+            figures["mass"] = mass
+        mu = number(values, "mu") or friction
+        if mu > 0.0:
+            figures["friction"] = mu
+        component = Component(name, "anchor", figures)
+        if "mass" in figures and "weight" not in figures:
+            component.guesses["mass"] = "taken for steel: the file gives no weight in water"
+        return component
+
+    def buoy(self, definition: Definition, *, afloat: bool) -> Component:
+        """Of the upper end, or of what is towed.
+
+        Its hull is that of the file. Where it does not float, it is a point, as in that program.
+        """
+        values, name = definition.values, definition.name
+        shape = values["type"].text.lower() if "type" in values else "sphere"
+        if shape in ("ship", "platform"):
+            raise definition.token.refuse(
+                f"`{name}` is a {shape}: CALM has lines that end in a float or at a towing ship"
+            )
+        volume, area, height = largest(definition, shape)
+        mass = number(values, "m") or number(values, "mass")
+        mass = mass or number(values, "w") / self.gravity
+        lift = number(values, "buoyancy")
+        whole = lift / (self.density * self.gravity) if lift else volume
+        if not whole:
+            raise refused(definition.token.path, f"buoy `{name}` has no size and no buoyancy")
+        drag = number(values, "cdn")
+        across = number(values, "d") or number(values, "diam")
+        figures: dict[str, Figure]
+        if shape == "sphere":
+            kind, figures = "sphere", {"diameter": across, "length": height, "cx": drag}
+        elif shape == "cylinder" and afloat:
+            kind = "cylinder"
+            figures = {"diameter": across, "length": height, "cn": drag}
+            figures["inclination"] = "insensitive"
+        else:
+            kind, figures = "body", {"length": height, "drag_area": area, "cd": drag}
+        component = Component(name, kind, figures)
+        if not afloat:
+            figures["length"] = 0.0
+            component.comment = "That program takes it for a point: the line ends in its depth."
+        elif kind == "body":
+            component.hull = displacement(definition, shape)
+            whole = max(whole, component.hull[-1][1]) if not lift else whole
+        figures |= {"mass": mass, "volume": whole}
+        windage, wind_drag = number(values, "sw"), number(values, "cdw") or drag
+        if afloat and (windage or wind_drag):
+            figures |= {"wind_area": windage} if windage else {}
+            figures["wind_cd"] = wind_drag
+        net = (self.density * whole - mass) * self.gravity
+        figures["role"] = "float" if net > 0.0 else "instrument"
+        self._drop(definition)
+        return component
+
+    def _at_reference(self, wet: float, mass: float) -> tuple[float, float]:
+        """A weight in CALM's water, and the mass; 0 for a mass that cannot be.
+
+        What is displaced follows from both, so that the weight in the file's own water comes out.
+        """
+        if mass * KILOGRAM_FORCE < wet or mass <= 0.0:
+            return wet, 0.0
+        volume = (mass - wet / self.gravity) / self.density
+        return wet + (self.density - _REFERENCE_DENSITY) * self.gravity * volume, mass
+
+    def _drag(self, values: Values, key: str, depth: float, speed: float) -> float:
+        value = values.get(key)
+        if value is None:
+            return 0.0
+        return value_at(value, depth if counts_on_depth(value) else speed)
+
+    def _drop(self, definition: Definition) -> None:
+        found = [key for key in _DYNAMICS if key in definition.values]
+        what = ", ".join({"ei": "EI", "gj": "GJ"}.get(key, key) for key in found)
+        remark = Remark(definition.name, f"stiffness in bending, added mass and the like ({what})")
+        if found and remark not in self.dropped:
+            self.dropped.append(remark)
+
+
+def counts_on_depth(value: Value) -> bool:
+    """Whether a drag is a function of depth; a table up to speeds that occur is one of speed."""
+    return not value.rows or value.rows[-1][0].at() > _FASTEST
+
+
+def varies(definition: Definition) -> bool:
+    """Whether a drag of a material is a function of depth."""
+    return any(
+        value is not None
+        and counts_on_depth(value)
+        and (bool(value.rows) or bool(value.formula and value.formula.names))
+        for value in (definition.values.get("cdn"), definition.values.get("cdt"))
+    )

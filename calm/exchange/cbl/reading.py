@@ -1,0 +1,187 @@
+"""A problem file of WHOI Cable as a design."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from pathlib import Path
+
+from calm.exchange.cbl.components import Makers
+from calm.exchange.cbl.problem import Problem, Segment, Terminal, read_problem
+from calm.exchange.cbl.segments import defined, laid
+from calm.exchange.cbl.water import number, value_at, water_of
+from calm.exchange.design import Design, Item, Remark, Tow
+from calm.exchange.refusal import refused
+
+_REFUSED = {
+    "horizontal": "a horizontal array with an anchor at each end",
+    "positioned": "a line between two fixed points",
+    "horizontal-drifter": "a drifting horizontal array",
+    "drifter": "a drifting line without anchor",
+    "deployment": "a line that is being laid; `calm deck` plans that",
+    "riser": "a riser below a platform",
+    "webster": "a line under a given tension",
+    "tensioned": "a line under a given tension",
+}
+_MOORED = ("general", "surface", "subsurface")
+_HEADS = re.compile(
+    r"^\s*(problem\s+description|analysis\s+parameters|environment|layout|materials)\b(?!\s*[=:])",
+    re.MULTILINE,
+)
+_FORCES = ("x-force", "y-force", "z-force", "x-thrust", "y-thrust", "z-thrust")
+_NOTE = (
+    "cn and ct are its Cdn and Cdt, counted alike: on the diameter, and on the surface of a metre. "
+    "See docs/import-cable.md."
+)
+
+
+def is_cbl(content: bytes) -> bool:
+    """Whether a file looks like a problem: it names two of the sections that each must have."""
+    text = content.decode("latin-1").lower()
+    return b"\0" not in content and len(set(_HEADS.findall(text))) >= 2
+
+
+def read_cbl(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> Design:
+    """Read a mooring or a tow.
+
+    Raises
+    ------
+    InputError
+        The file makes no sense, or holds what CALM cannot represent.
+    """
+    problem = read_problem(path, defines, allow_include=allow_include)
+    kind = _kind(problem)
+    ends = [each for each in problem.layout if isinstance(each, Terminal)]
+    segments = [each for each in problem.layout if isinstance(each, Segment)]
+    _refuse_other_shapes(problem, kind, ends, segments)
+    length = sum(number(segment.values, "length") for segment in segments)
+    title = problem.description.get("title")
+    design = Design("WHOI Cable", title.text if title and title.text else path.stem, [], None)
+    design.notes.append(_NOTE)
+    design.water = water_of(problem.environment, length, design.dropped)
+    if "current-file" in problem.environment:
+        what = "its currents from a file of that program; give them with --environment"
+        design.dropped.append(Remark("current-file", what))
+    if problem.analysis:
+        design.dropped.append(Remark("analysis parameters", "how that program is to solve it"))
+    density = number(problem.environment, "rho") or number(problem.environment, "density")
+    gravity = number(problem.environment, "gravity", 9.81)
+    makers = Makers(density or 1025.0, gravity, design.dropped)
+    items = laid(problem, segments, makers, design)
+    if kind == "towing":
+        _lay_tow(problem, ends, items, makers, design)
+    else:
+        _lay_mooring(problem, kind, ends, items, makers, design)
+    return design
+
+
+def _kind(problem: Problem) -> str:
+    given = problem.description.get("type")
+    return given.text.lower() if given else "general"
+
+
+def _refuse_other_shapes(
+    problem: Problem, kind: str, ends: list[Terminal], segments: list[Segment]
+) -> None:
+    """Lines that are no single line from an anchor to a float, or from a ship to a body."""
+    path = problem.path
+    if kind in _REFUSED:
+        raise problem.description["type"].token.refuse(
+            f"`type = {kind}` is {_REFUSED[kind]}; CALM has single moorings and tows"
+        )
+    if kind not in (*_MOORED, "towing"):
+        raise problem.description["type"].token.refuse(f"`type = {kind}` is not known")
+    if problem.branch is not None:
+        raise problem.branch.refuse("a branch: a mooring of several legs is no single line")
+    if len(ends) != 2 or not segments:
+        raise refused(path, f"the layout has {len(ends)} terminals and {len(segments)} segments")
+    if not isinstance(problem.layout[0], Terminal) or not isinstance(problem.layout[-1], Terminal):
+        raise refused(path, "the layout must lead from one terminal to the other")
+    anchored = ["anchor" in end.values for end in ends]
+    if any("node" in end.values for end in ends):
+        raise ends[1].token.refuse("a loop: its end is tied to a node of the line")
+    if kind != "towing" and all(anchored):
+        raise ends[1].token.refuse("both ends are anchors: a line of several legs")
+    if kind != "towing" and not any(anchored):
+        raise ends[0].token.refuse("no end is an anchor: a drifting line")
+    for values in (*(end.values for end in ends), *(segment.joint for segment in segments)):
+        for key in _FORCES:
+            if key in values and value_at(values[key], 0.0) != 0.0:
+                raise values[key].token.refuse(f"`{key}` pulls at the line from outside")
+
+
+def _lay_mooring(
+    problem: Problem,
+    kind: str,
+    ends: list[Terminal],
+    items: list[Item],
+    makers: Makers,
+    design: Design,
+) -> None:
+    if "anchor" in ends[1].values:
+        raise ends[1].token.refuse("the layout must lead from the anchor up")
+    if design.water is None or design.water.depth is None:
+        raise refused(problem.path, "the environment has no `depth`")
+    lower, upper = ends
+    name = lower.values["anchor"]
+    anchor = makers.anchor(problem.anchors.get(name.text), name.text, number(lower.values, "mu"))
+    if number(lower.values, "z") > 0.0:
+        anchor.figures["length"] = number(lower.values, "z")
+    top = upper.values.get("buoy") or upper.values.get("platform")
+    if top is None:
+        raise upper.token.refuse("the upper end is no buoy")
+    buoy = defined(problem.buoys, top, upper.token)
+    afloat = kind == "surface" or (
+        kind == "general"
+        and sum(
+            number(each.values, "length") for each in problem.layout if isinstance(each, Segment)
+        )
+        >= 0.97 * design.water.depth
+    )
+    design.items = [Item(makers.buoy(buoy, afloat=afloat)), *reversed(items), Item(anchor)]
+    friction = number(problem.environment, "bottom-friction")
+    if friction > 0.0:
+        design.solver["seabed_friction"] = friction, "its bottom-friction"
+    _drop_dynamics(ends, design)
+
+
+def _lay_tow(
+    problem: Problem,
+    ends: list[Terminal],
+    items: list[Item],
+    makers: Makers,
+    design: Design,
+) -> None:
+    """The line from the ship down; a ship at rest in a current is one that moves against it."""
+    body, ship = ends
+    towed = body.values.get("buoy") or body.values.get("platform")
+    if towed is None or "anchor" in ship.values:
+        raise body.token.refuse("a tow leads from a towed body up to a ship")
+    water = design.water
+    assert water is not None
+    east, north = (
+        value_at(ship.values[key], 0.0) if key in ship.values else 0.0
+        for key in ("x-speed", "y-speed")
+    )
+    if not east and not north and water.current:
+        _, drift_east, drift_north, _ = water.current[0]
+        east, north = 0.0 - drift_east, 0.0 - drift_north
+        rows = [(d, u - drift_east, v - drift_north, w) for d, u, v, w in water.current]
+        water.current = tuple(rows) if any(any(row[1:]) for row in rows) else ()
+        design.notes.append("The ship lay in a current: here it moves, and the water with it.")
+    speed = math.hypot(east, north)
+    if speed == 0.0:
+        raise ship.token.refuse("the ship of this tow does not move")
+    design.tow = Tow(speed, math.degrees(math.atan2(east, north)) % 360.0)
+    buoy = defined(problem.buoys, towed, body.token)
+    design.items = [*items[::-1], Item(makers.buoy(buoy, afloat=False))]
+    _drop_dynamics(ends, design)
+
+
+def _drop_dynamics(ends: list[Terminal], design: Design) -> None:
+    known = {"buoy", "platform", "anchor", "mu", "x-speed", "y-speed", "x", "y", "z", *_FORCES}
+    for end in ends:
+        found = [key for key in end.values if key not in known]
+        if found:
+            design.dropped.append(Remark("terminal", ", ".join(found)))

@@ -1,0 +1,129 @@
+"""The environment of a WHOI Cable problem."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from itertools import pairwise
+
+from calm.exchange.cbl.problem import Value, Values
+from calm.exchange.design import Remark, Water
+
+_USUAL_GRAVITY = 9.81
+_FINEST = 1e-4  # share of the fastest current by which levels may miss a formula
+_HALVINGS = 8
+_DIGITS = 9  # of a speed in m/s
+_WAVES = ("x-wave", "y-wave", "x-input", "y-input", "z-input", "wave-file")
+_DYNAMICS = ("forcing-method", "input-type", "velocity-file", "force-file")
+_SEABED = ("bottom-stiffness", "bottom-damping", "bottom-elevation")
+
+
+def number(values: Values, key: str, default: float = 0.0) -> float:
+    """A number of a section; it may depend on the time, which is 0."""
+    value = values.get(key)
+    return default if value is None else value.number(t=0.0)
+
+
+def water_of(environment: Values, deepest: float, dropped: list[Remark]) -> Water:
+    """Depth, density, gravity, current and wind.
+
+    Parameters
+    ----------
+    deepest : of the line [m], for a tow whose file gives no depth
+    """
+    depth = number(environment, "depth")
+    water = Water(depth if depth > 0.0 else None)
+    water.density = number(environment, "rho") or number(environment, "density") or None
+    water.gravity = number(environment, "gravity", _USUAL_GRAVITY)
+    water.current = current_of(environment, depth if depth > 0.0 else deepest)
+    east, north = (number(environment, f"{axis}-wind") for axis in "xy")
+    if east or north:
+        water.wind = math.hypot(east, north), math.degrees(math.atan2(east, north)) % 360.0
+    for what, keys in (("waves", _WAVES), ("how waves act", _DYNAMICS), ("the seabed", _SEABED)):
+        found = [key for key in keys if key in environment]
+        if found:
+            dropped.append(Remark("environment", f"{what} ({', '.join(found)})"))
+    return water
+
+
+def current_of(
+    environment: Values, deepest: float
+) -> tuple[tuple[float, float, float, float], ...]:
+    """Rows of depth, and speed to the east (x), to the north (y) and up (z), at the time 0."""
+    axes = [_profile(environment, axis) for axis in "xyz"]
+    if not any(axes):
+        return ()
+    angle = number(environment, "current-rotation")
+
+    def at(depth: float) -> tuple[float, float, float]:
+        x, y, z = (0.0 if axis is None else axis[0](depth) for axis in axes)
+        turned = x * math.cos(angle) - y * math.sin(angle)
+        return turned, x * math.sin(angle) + y * math.cos(angle), z
+
+    knots = {0.0, deepest}
+    knots.update(knot for axis in axes if axis for knot in axis[1] if 0.0 < knot < deepest)
+    levels = sorted(knots)
+    if any(axis is not None and not axis[1] for axis in axes):
+        levels = _refined(at, levels)
+    rows = []
+    for depth in levels:
+        x, y, z = (round(speed, _DIGITS) + 0.0 for speed in at(depth))
+        rows.append((depth, x, y, z))
+    return tuple(rows) if any(any(row[1:]) for row in rows) else ()
+
+
+_Profile = tuple[Callable[[float], float], list[float]]
+"""A speed by depth, and the depths between which it is linear."""
+
+
+def _profile(environment: Values, axis: str) -> _Profile | None:
+    value = environment.get(f"{axis}-current")
+    if value is None:
+        return None
+    scale = number(environment, f"{axis}-current-scale", 1.0)
+    if scale == 1.0:
+        scale = number(environment, "current-scale", 1.0)
+    modulation = environment.get(f"{axis}-current-modulation")
+    if modulation is not None:
+        scale *= value_at(modulation, 0.0)
+    knots = [row[0].at() for row in value.rows]
+    if not knots and value.formula is not None and not value.formula.names:
+        knots = [0.0]  # one speed at all depths
+    return (lambda depth: scale * value_at(value, depth)), knots
+
+
+def value_at(value: Value, depth: float) -> float:
+    """A formula or a table at a depth (or whatever it counts on), lines prolonged at both ends."""
+    if not value.rows:
+        return value.number(H=depth, h=depth, t=0.0)
+    if any(len(row) != 2 for row in value.rows):
+        raise value.token.refuse(f"the rows of `{value.token.text}` must be pairs")
+    pairs = [(row[0].at(), row[1].at()) for row in value.rows]
+    if any(b[0] < a[0] for a, b in pairwise(pairs)):
+        raise value.token.refuse(f"the rows of `{value.token.text}` must go on growing")
+    if len(pairs) == 1:
+        return pairs[0][1]
+    if value.repeats and pairs[-1][0] > 0.0:
+        depth = math.fmod(depth, pairs[-1][0])
+    above = next((i for i, pair in enumerate(pairs) if depth <= pair[0]), len(pairs) - 1)
+    (x1, y1), (x2, y2) = pairs[max(above - 1, 0)], pairs[max(above, 1)]
+    return y2 if x1 == x2 else y1 + (y2 - y1) * (depth - x1) / (x2 - x1)
+
+
+def _refined(at: Callable[[float], tuple[float, float, float]], levels: list[float]) -> list[float]:
+    """Levels between which the current is as good as linear."""
+    fastest = max(max(map(abs, at(depth))) for depth in levels)
+    for _ in range(_HALVINGS):
+        finer = [levels[0]]
+        for upper, lower in pairwise(levels):
+            middle = (upper + lower) / 2.0
+            a, b, c = at(upper), at(middle), at(lower)
+            fastest = max(fastest, *map(abs, b))
+            straight = all(
+                abs(y - (x + z) / 2.0) <= _FINEST * fastest for x, y, z in zip(a, b, c, strict=True)
+            )
+            finer += [lower] if straight and len(levels) > 4 else [middle, lower]
+        if len(finer) == len(levels):
+            break
+        levels = finer
+    return levels

@@ -1,0 +1,1 @@
+"""The sheets of the deck: on pages, and as files that a spreadsheet opens."""

@@ -1,0 +1,1 @@
+"""The plan of an anchor drop as blocks and drawings."""

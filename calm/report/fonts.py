@@ -1,0 +1,37 @@
+"""Which signs the fonts of a PDF lack."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import cache
+from pathlib import Path
+
+
+def font_folder() -> Path:
+    """The fonts that are always there: those that matplotlib brings."""
+    import matplotlib
+
+    return Path(matplotlib.get_data_path(), "fonts", "ttf")
+
+
+def lacking(texts: Iterable[str]) -> str:
+    """The signs of some texts that no font of a PDF has, each once, in order."""
+    known = _signs()
+    signs = dict.fromkeys(sign for text in texts for sign in text)
+    return "".join(sign for sign in signs if sign.isprintable() and ord(sign) not in known)
+
+
+def legible(text: str) -> str:
+    """A text for a PDF: a sign that no font has is a question mark in a lozenge.
+
+    A single one would otherwise have all of a drawing's label shown in boxes.
+    """
+    return text.translate(dict.fromkeys(map(ord, lacking([text])), "\ufffd"))
+
+
+@cache
+def _signs() -> frozenset[int]:
+    from matplotlib.ft2font import FT2Font
+
+    fonts = sorted(font_folder().glob("DejaVuSans*.ttf"))
+    return frozenset(code for font in fonts for code in FT2Font(str(font)).get_charmap())

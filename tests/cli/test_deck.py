@@ -1,0 +1,248 @@
+"""The deck on pages: everything is there, large enough, and the same again."""
+
+import csv
+import io
+import json
+import math
+import re
+
+import pypdfium2
+import pypdfium2.raw as pdfium
+import pytest
+
+COMPONENTS = """\
+components:
+  ball: {kind: sphere, role: float, diameter: 1 m, mass: 300 kg, buoyancy: 4000 N}
+  pack: {kind: body, role: float, length: 0.5 m, mass: 20 kg, buoyancy: 250 N, drag_area: 0.15 m^2,
+    cd: 0.6}
+  joint: {kind: body, role: connector, length: 0.05 m, mass: 0.4 kg, buoyancy: -3 N,
+    drag_area: 0.002 m^2, cd: 1, name: swivel of a long name}
+  rope: {kind: cable, diameter: 8 mm, weight: 0.5 N/m, mass: 0.1 kg/m}
+  logger: {kind: cylinder, diameter: 40 mm, length: 0.3 m, buoyancy: -5 N}
+  release: {kind: body, role: release, length: 0.8 m, mass: 30 kg, buoyancy: -220 N,
+    drag_area: 0.1 m^2, cd: 1}
+  weight: {kind: anchor, weight: 40 kN}
+"""
+LABELS = (
+    "a label that somebody made so long that it has to wrap over several lines of the sheet",
+    "מצוף עליון",
+    "عوامة",
+    "Unbreakable" * 9,
+    "plain",
+)
+
+
+def mooring(pieces, environments=0):
+    """A line of some pieces, each kind of row in it."""
+    lines = ["  - {use: ball, label: top float, serial: T-1}"]
+    for n in range((pieces - 3) // 5):
+        lines += [
+            "  - {use: shackle-13}",
+            f"  - {{use: joint, serial: J-{n}}}",
+            "  - {use: shackle-16}",
+            f"  - {{use: rope, length: 10 m, serial: R-{n}, clamps: [{{use: logger, at: 2 m, "
+            f"serial: L-{n}, label: logger {n} {LABELS[n % 5]}}}]}}",
+            f"  - {{use: pack, serial: P-{n}}}",
+        ]
+    lines += ["  - {use: release, serial: AR-77}"] if pieces > 2 else []
+    text = "name: Wall\ndocument: {id: M-17, author: A. Nobody}\nenvironment:\n  depth: 900 m\n"
+    text += "  current: {speed: 0.1 m/s, toward: 90 deg}\nline:\n" + "\n".join(lines)
+    text += "\n  - {use: weight}\n"
+    if environments:
+        given = (
+            f"e{n}: {{current: {{speed: {n / 200} m/s, toward: 0}}}}" for n in range(environments)
+        )
+        text += f"environments: {{{', '.join(given)}}}\n"
+    return text + COMPONENTS
+
+
+def pages_of(content):
+    """The text of each page, the smallest text in it [pt], and its size."""
+    document = pypdfium2.PdfDocument(content)
+    pages, smallest, matrix = [], math.inf, pdfium.FS_MATRIX()
+    for page in document:
+        read = page.get_textpage()
+        pages.append("".join(read.get_text_range().split()))
+        for sign in range(read.count_chars()):
+            if pdfium.FPDFText_IsGenerated(read, sign) == 1:
+                continue
+            if chr(pdfium.FPDFText_GetUnicode(read, sign)).isspace():
+                continue
+            pdfium.FPDFText_GetMatrix(read, sign, matrix)
+            size = pdfium.FPDFText_GetFontSize(read, sign) * math.hypot(matrix.c, matrix.d)
+            smallest = min(smallest, size)
+    sizes = {tuple(map(round, page.get_size())) for page in document}
+    document.close()
+    return pages, smallest, sizes
+
+
+def packed(text):
+    return "".join(text.split())
+
+
+@pytest.fixture
+def deck(calm, folder):
+    def make(text, *words):
+        (folder / "m.yaml").write_text(text, encoding="utf-8")
+        done = calm("deck", "m.yaml", "-o", "out", *words)
+        assert done.code == 0, done.err
+        return folder / "out", done.err
+
+    return make
+
+
+@pytest.mark.parametrize(
+    ("pieces", "paper", "size"),
+    [(2, "letter", (612, 792)), (43, "a3", (1191, 842)), (203, "a4", (595, 842))],
+)  # fmt: skip
+def test_everything_is_on_the_pages(deck, pieces, paper, size):
+    out, _ = deck(mooring(pieces), "--page", paper)
+    blocks = max(pieces - 3, 0) // 5
+    for name in ("diagram.pdf", "deck.pdf"):
+        pages, smallest, sizes = pages_of((out / name).read_bytes())
+        text = "".join(pages)
+        assert smallest >= 6.995
+        assert sizes == {size}
+        for n in range(blocks):
+            for serial in ("J", "R", "L", "P"):
+                assert f"{serial}-{n}" in text
+            if n % 5 not in (1, 2):  # right to left is extracted in another order of its signs
+                assert packed(f"logger {n} {LABELS[n % 5]}") in text
+        assert text.count(packed("at 2.00")) == blocks
+        for words in ("T-1", "M-17", "A.Nobody", "Symbols", "seabed", "sheet"):
+            assert words in text
+        # two ends of one line carry the same mark
+        goes_on = re.findall(r"continuesat([A-Z]\d*)", text)
+        assert goes_on == re.findall(r"from([A-Z]\d*)(?=13shackle)", text)
+        assert len(set(goes_on)) == len(goes_on) >= pieces // 40
+    if blocks:
+        assert packed("13 shackle – swivel of a long name no. J-0 – 16 shackle") in text
+
+
+def test_the_same_input_gives_the_same_bytes(deck):
+    text = mooring(13)
+    first = {path.name: path.read_bytes() for path in deck(text)[0].iterdir()}
+    again = {path.name: path.read_bytes() for path in deck(text)[0].iterdir()}
+    assert first == again
+    assert set(first) >= {
+        "deck.pdf", "diagram.pdf", "diagram.svg", "deployment.csv", "recovery.csv", "cutting.csv",
+        "hardware.csv", "shipping.csv", "lifts.csv", "instruments.csv", "plan.json",
+    }  # fmt: skip
+
+
+def test_every_sheet_is_in_the_deck(deck):
+    pages, _, _ = pages_of((deck(mooring(13))[0] / "deck.pdf").read_bytes())
+    text = "".join(pages)
+    for words in (
+        "Deployment log", "Order over the side", "Soundings", "Recovery log", "Order of surfacing",
+        "Cutting and marking list", "Hardware bill", "Shipping list", "Lifts", "Instrument sheet",
+        "Heaviest single lift", "a lower bound", "logger 0", "SHA-256",
+    ):  # fmt: skip
+        assert packed(words) in text, words
+
+
+def test_the_anchor_drop_is_planned_for_the_ship(deck):
+    text = mooring(8).replace("length: 10 m", "length: 60 m").replace("900 m", "100 m")
+    text = text.replace("weight: 40 kN", "weight: 8 kN, kt: 300 N/(m/s)^2")
+    plans = []
+    for words in ((), ("--ship-speed", "1.5 m/s", "--streamed", "50 m")):
+        out, _ = deck(text, *words)
+        plans.append(json.loads((out / "plan.json").read_text()))
+        assert packed("Anchor drop plan") in "".join(pages_of((out / "deck.pdf").read_bytes())[0])
+    assert [plan["ship_speed"] for plan in plans] == [1.0, 1.5]
+    assert plans[1]["streamed"] == pytest.approx(50.0, abs=0.1) != plans[0]["streamed"]
+    assert {"fall_time", "fall_back", "fall_back_band", "tow_past", "run_in", "path"} <= set(
+        plans[0]
+    )
+    out, _ = deck(text, "--order", "anchor-first")
+    pages, _, _ = pages_of((out / "deck.pdf").read_bytes())
+    assert packed("Anchor drop plan") not in "".join(pages)
+    assert json.loads((out / "plan.json").read_text())["status"] == "anchor-first"
+
+
+def test_signs_that_no_font_has_are_reported(deck):
+    text = mooring(8).replace("A. Nobody", "海 Nobody")
+    out, said = deck(text.replace("label: top float", "label: top 浮"))
+    assert "lacks 海 (U+6D77), 浮 (U+6D6E), which shows as �: in author, `top 浮`" in said
+    pages, _, _ = pages_of((out / "deck.pdf").read_bytes())
+    assert "lacks" in "".join(pages)
+    assert packed("top �") in pages[0]
+    assert "top 浮" in (out / "diagram.svg").read_text(encoding="utf-8")
+
+
+def test_the_files_for_spreadsheets(deck):
+    out, _ = deck(mooring(8).replace("use: ball, label: top float", 'use: ball, label: "=1+1"'))
+    rows = [*csv.DictReader(io.StringIO((out / "cutting.csv").read_text()))]
+    assert [row["label"] for row in rows] == ["rope"]
+    assert (float(rows[0]["cut_length[m]"]), float(rows[0]["at_load[N]"])) == (10.0, 0.0)
+    label, _, at = rows[0]["marks[m]"].rpartition("@")
+    assert (label, float(at)) == (f"logger 0 {LABELS[0]}", 2.0)
+    over = [*csv.DictReader(io.StringIO((out / "deployment.csv").read_text()))]
+    assert [row["label"] for row in over][:2] == ["'=1+1", "shackle-13"]
+    assert [row["serial"] for row in over if row["use"] == "logger"] == ["L-0"]
+    up = [*csv.DictReader(io.StringIO((out / "recovery.csv").read_text()))]
+    assert "weight" not in {row["label"] for row in up}
+    shipped = [*csv.DictReader(io.StringIO((out / "shipping.csv").read_text()))]
+    assert {row["use"]: row["mass[kg]"] for row in shipped}["logger"] == ""
+
+
+def test_many_environments_are_design_currents(deck):
+    out, _ = deck(mooring(8, environments=60))
+    rows = [*csv.DictReader(io.StringIO((out / "instruments.csv").read_text()))]
+    assert {row["greatest_in"] for row in rows} == {"e59"}
+    assert {row["least_in"] for row in rows} == {"e0"}
+    _, smallest, _ = pages_of((out / "deck.pdf").read_bytes())
+    assert smallest >= 6.995
+
+
+def test_several_moorings_each_have_a_folder(calm, folder):
+    for name in ("north", "south"):
+        text = mooring(3).replace("name: Wall", f"name: Deep/{name}")
+        (folder / f"{name}.yaml").write_text(text)
+    assert calm("deck", "north.yaml", "south.yaml", "-o", "out").code == 0
+    assert sorted(path.name for path in (folder / "out").iterdir()) == ["Deep-north", "Deep-south"]
+    assert (folder / "out" / "Deep-north" / "deck.pdf").exists()
+
+
+@pytest.mark.parametrize(
+    ("change", "code", "complaint"),
+    [
+        (("4000 N", "4000 kg"), 2, "4000 kgf"),
+        (("buoyancy: 4000 N", "buoyancy: 1 N"), 3, "m.yaml"),
+    ],
+)
+def test_nothing_is_written_of_what_cannot_be(calm, folder, change, code, complaint):
+    (folder / "m.yaml").write_text(mooring(3).replace(*change))
+    done = calm("deck", "m.yaml", "-o", "out")
+    assert done.code == code
+    assert complaint in done.err
+    assert not (folder / "out").exists()
+
+
+def test_usage(calm, folder, write_mooring):
+    write_mooring()
+    (folder / "file").write_text("")
+    for words, complaint in (
+        (("m.yaml",), "output"),
+        (("m.yaml", "-o", "out", "--page", "a5"), "a5"),
+        (("m.yaml", "-o", "file"), "is no folder"),
+        (("m.yaml", "-o", "out", "--ship-speed", "2"), "--ship-speed: `2` needs a unit: `2 m/s`?"),
+        (("m.yaml", "-o", "out", "--ship-speed", "0 m/s"), "it must be faster"),
+        (("m.yaml", "-o", "out", "--streamed", "2 km"), "give less than its length"),
+    ):
+        done = calm("deck", *words)
+        assert (done.code, done.out) == (2, "")
+        assert complaint in done.err.lower()
+        assert not (folder / "out").exists()
+
+
+def test_a_line_that_still_water_leaves_slack_is_dropped_all_the_same(deck):
+    text = (
+        "name: Slack\nenvironment: {depth: 100 m}\n"
+        "line: [{use: ball}, {use: rope, length: 110 m}, {use: weight, kt: 300 N/(m/s)^2}]\n"
+    )
+    out, said = deck(text + COMPONENTS)
+    assert "Still water leaves the line slack" in said
+    plan = json.loads((out / "plan.json").read_text())
+    assert plan["rest_difference"] is None
+    assert 0.0 < plan["fall_back"] < plan["streamed"]

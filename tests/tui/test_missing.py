@@ -1,0 +1,102 @@
+"""The figures that are not known, as a form: what is asked for, and where it is written."""
+
+import pytest
+
+from calm.checks.finding import State
+from calm.files.editing import Draft
+from calm.tui.line.missing_figures import filled, missing_figures
+from calm.tui.live import judge
+from tests.tui.conftest import MOORING
+
+UNKNOWN = MOORING.replace(", depth_rating: 300 m", "")
+
+
+def asked(text):
+    return {each.use: each for each in missing_figures(judge(text), Draft(text))}
+
+
+def test_each_component_is_asked_for_once_with_the_rows_that_use_it():
+    found = asked(UNKNOWN)
+    keys = ["depth_rating", "working_load", "breaking_load"]
+    assert [field.key for field in found["ball"].fields] == keys
+    assert list(found["ball"].labels) == ["top float"]
+    assert [list(found["ball"].targets[key]) for key in keys] == [[("components", "ball")]] * 3
+    assert list(found["logger"].labels) == ["logger", "deep logger"]
+    assert set(found) == {"ball", "logger", "releaser", "weight"}
+
+
+def test_of_a_component_of_the_catalogue_the_rows_that_lack_it_get_the_figure():
+    clamped = "- {use: rcm4, at: 10 m}"
+    text = MOORING.replace("- {use: logger, at: 10 m}", clamped).replace(
+        "  - {use: weight}", "  - {use: rcm4, count: 2}\n  - {use: weight}"
+    )
+    found = asked(text)["rcm4"]
+    rows = {key: list(targets) for key, targets in found.targets.items()}
+    assert rows["depth_rating"] == [("line", 1, "clamps", 0), ("line", 3)]
+    assert rows["breaking_load"] == [("line", 3)]  # a clamp's would be taken for its grip
+    missing = missing_figures(judge(text), Draft(text))
+    figures = {("rcm4", "depth_rating"): "2000 m", ("rcm4", "working_load"): "20 kN"}
+    made = filled(Draft(text), missing, figures, "")
+    assert "- {use: rcm4, at: 10 m, depth_rating: 2000 m}" in made.text
+    assert "- {use: rcm4, count: 2, depth_rating: 2000 m, working_load: 20 kN}" in made.text
+    assert "rcm4" not in asked(made.text)
+
+
+def test_what_is_filled_in_is_known_then_with_its_source():
+    draft = Draft(UNKNOWN)
+    missing = missing_figures(judge(UNKNOWN), draft)
+    texts = {("ball", "depth_rating"): "500 m", ("ball", "breaking_load"): "90 kN"}
+    made = filled(draft, missing, texts, "test certificate 12")
+    assert "depth_rating: 500 m" in made.text and "# carries all" in made.text
+    view = judge(made.text)
+    component = next(each.component for each in view.file.pieces if each.use == "ball")
+    assert component.depth_rating == pytest.approx(500.0)
+    assert component.sources == {
+        "depth_rating": "test certificate 12",
+        "breaking_load": "test certificate 12",
+    }
+    of_ball = [each for each in view.findings if each.component == "top float"]
+    assert of_ball
+    assert State.UNKNOWN not in {e.state for e in of_ball if e.rule in ("strength", "depth-rating")}
+
+
+def test_the_form_writes_what_was_typed_and_refuses_what_is_no_figure(drive, folder):
+    path = folder / "unknown.yaml"
+    path.write_text(UNKNOWN, encoding="utf-8")
+
+    async def story(driver):
+        await driver.press("f")
+        assert "ball: top float" in driver.screen and "depth rating" in driver.screen
+        await driver.type("5 kg")
+        await driver.press("ctrl+s")
+        assert driver.text == UNKNOWN
+        await driver.press("ctrl+u")
+        await driver.type("500 m")
+        await driver.press("ctrl+s")
+        await driver.settle()
+        assert "buoyancy: 2000 N, depth_rating: 500 m" in driver.text
+        assert "1 figure filled in" in driver.screen
+        await driver.press("u")
+        assert driver.text == UNKNOWN
+
+    drive(story, path)
+
+
+def test_where_nothing_is_missing_that_is_said(drive, folder):
+    known = MOORING
+    for old, new in (
+        ("diameter: 1 m,", "breaking_load: 90 kN"),
+        ("role: release,", "working_load: 50 kN, opening_load: 50 kN"),
+        ("role: release,", "max_tilt: 45 deg, depth_rating: 300 m"),
+        ("length: 0.3 m,", "max_tilt: 45 deg, depth_rating: 300 m"),
+        ("kind: anchor,", "breaking_load: 90 kN"),
+    ):
+        known = known.replace(old, f"{old} {new},")
+    path = folder / "known.yaml"
+    path.write_text(known, encoding="utf-8")
+
+    async def story(driver):
+        await driver.press("f")
+        assert "No figure of a component is missing" in driver.screen
+
+    drive(story, path)

@@ -1,0 +1,172 @@
+"""What the sheets of the deck are made of, against sums and solves of their own."""
+
+import math
+
+import pytest
+
+import calm
+from calm.deck import Deck, deck_of
+from calm.deck.hardware import spares_of
+from calm.deck.order import Order
+from calm.deck.shipping import total_of
+
+MOORING = """\
+name: Sheets
+environment: {depth: 300 m, current: {speed: 0.25 m/s, toward: 90 deg}}
+line:
+  - {use: ball, label: top float, serial: T1}
+  - {use: shackle-13}
+  - {use: ring-22-102}
+  - {use: shackle-16, serial: 4}
+  - {use: wire, length_at: {load: 2 kN, length: 100 m}, termination: thimble and link, label: wire,
+     clamps: [{use: logger, at: 60 m, label: low}, {use: logger, at: 20 m, label: high}]}
+  - {use: pack, count: 3, serial: [a, b, c], label: glass}
+  - {use: release, serial: 77}
+  - {use: rope, length: 50 m, label: rope}
+  - {use: weight, mass: 800 kg}
+environments:
+  calm: {current: {speed: 0.05 m/s, toward: 90 deg}}
+  storm: {current: {speed: 0.6 m/s, toward: 90 deg}}
+deployed: {items: [{label: top float, serial: T2, remark: newly painted}]}
+components:
+  ball: {kind: sphere, role: float, diameter: 1 m, mass: 250 kg, buoyancy: 2500 N}
+  wire: {kind: cable, diameter: 8 mm, weight: 1.6 N/m, mass: 0.21 kg/m, stiffness: 2 MN,
+    material: steel}
+  rope: {kind: cable, diameter: 14 mm, weight: 0.3 N/m, stiffness: 200 kN}
+  logger: {kind: cylinder, diameter: 50 mm, length: 0.4 m, mass: 3 kg, buoyancy: -15 N,
+    max_tilt: 30 deg}
+  pack: {kind: body, role: float, length: 0.5 m, mass: 20 kg, buoyancy: 250 N, drag_area: 0.15 m^2,
+    cd: 0.6}
+  release: {kind: body, role: release, length: 0.8 m, mass: 30 kg, buoyancy: -220 N,
+    drag_area: 0.1 m^2, cd: 1}
+  weight: {kind: anchor, mass: 800 kg, length: 0.3 m}
+"""
+
+
+@pytest.fixture(scope="module")
+def moorings(tmp_path_factory):
+    path = tmp_path_factory.mktemp("deck") / "m.yaml"
+    path.write_text(MOORING)
+    return [calm.load(path, environment=name) for name in (None, "calm", "storm")]
+
+
+@pytest.fixture(scope="module")
+def deck(moorings) -> Deck:
+    return deck_of(moorings)
+
+
+def test_the_order_over_the_side(moorings, deck):
+    down = [one.label for one in deck.deployment]
+    assert down[:6] == ["top float", "shackle-13", "ring-22-102", "shackle-16", "wire", "high"]
+    assert down[-1] == "weight"
+    first = [one.label for one in deck_of(moorings, Order.ANCHOR_FIRST).deployment]
+    # a piece goes with its lower end ahead: its lowest clamp comes first
+    assert first[:2] == ["weight", "rope"]
+    assert first[first.index("wire") :][:3] == ["wire", "low", "high"]
+    assert sorted(first) == sorted(down)
+
+
+def test_depths_and_heights_are_those_of_the_result(deck):
+    depths = {row.label: row.depth_top for row in deck.result.components}
+    depths |= {row.label: row.depth for row in deck.result.clamps}
+    for one in deck.parts:
+        assert one.depth == depths[one.label]
+        assert one.depth + one.height == pytest.approx(300.0)
+
+
+def test_a_cable_is_cut_and_marked_under_its_load(deck):
+    wire, rope = deck.cuts
+    longer = 1.0 + 2e3 / 2e6
+    assert (wire.length, wire.load) == (pytest.approx(100.0), 2000.0)
+    assert wire.unstretched == pytest.approx(100.0 / longer)
+    assert [(mark.label, mark.at) for mark in wire.marks] == [
+        ("high", pytest.approx(20.0 * longer)), ("low", pytest.approx(60.0 * longer)),
+    ]  # fmt: skip
+    assert (rope.length, rope.load, rope.marks) == (50.0, 0.0, ())
+    assert (wire.over, wire.onto, rope.over, rope.onto) == (1, 2, 2, 1)
+    assert wire.tolerance == pytest.approx(0.5)
+
+
+def test_the_effect_of_an_error_is_what_another_file_gives(moorings, deck, tmp_path):
+    for cut, old, new in (
+        (deck.cuts[0], "length: 100 m}", "length: 100.5 m}"),
+        (deck.cuts[1], "length: 50 m", "length: 50.25 m"),
+    ):
+        assert MOORING.count(old) == 1
+        (tmp_path / "m.yaml").write_text(MOORING.replace(old, new))
+        top = calm.load(tmp_path / "m.yaml").solve().top.depth
+        assert cut.effect == pytest.approx(top - deck.result.top.depth, abs=1e-6)
+        # half a metre more on a line that hardly leans: as much shallower
+        assert cut.effect == pytest.approx(-0.005 * cut.unstretched, rel=0.02)
+
+
+def test_hardware_is_counted_with_its_pins_and_thimbles(deck):
+    stocks = {(one.kind, one.use): (one.count, one.spares) for one in deck.hardware}
+    assert stocks == {
+        ("shackles", "shackle-13"): (1, 2),
+        ("shackles", "shackle-16"): (1, 2),
+        ("pins", "shackle-13"): (1, 2),
+        ("pins", "shackle-16"): (1, 2),
+        ("rings", "ring-22-102"): (1, 1),
+        ("thimbles", "wire"): (2, 2),
+    }
+    assert [spares_of("shackles", count) for count in (1, 20, 21)] == [2, 2, 3]
+    assert [spares_of("rings", count) for count in (1, 10, 11)] == [1, 1, 2]
+
+
+def test_the_shipping_list_adds_up_and_says_what_it_lacks(deck):
+    freight = {one.use: one for one in deck.freight}
+    assert freight["pack"].mass == pytest.approx(60.0)
+    assert freight["ball"].volume == pytest.approx(math.pi / 6.0)
+    assert freight["wire"].mass == pytest.approx(21.0, rel=2e-3)
+    assert freight["wire"].volume == pytest.approx(math.pi * 0.004**2 * 99.9, rel=1e-3)
+    assert (freight["rope"].mass, freight["rope"].missing_masses) == (0.0, 1)
+    total = total_of(deck.freight)
+    assert total.count == len(deck.parts)
+    assert total.mass == pytest.approx(sum(one.mass for one in deck.freight))
+    assert total.missing_masses == 1
+
+
+def test_what_hangs_at_each_stage(deck):
+    lifts = {one.label: one for one in deck.lifts.deployment}
+    assert (lifts["top float"].mass, lifts["top float"].hanging) == (250.0, -2500.0)
+    assert deck.lifts.heaviest is not None and deck.lifts.heaviest.label == "weight"
+    # what hangs in the end is all that the line weighs in water
+    weights = [one.wet_weight for one in calm.check(deck.result.mooring).inventory]
+    assert deck.lifts.deployment[-1].hanging == pytest.approx(sum(weights))
+    # hauled in from the top, the release hangs alone at last, and nothing of what stays is lifted
+    assert deck.lifts.recovery[-1].label == "release"
+    assert deck.lifts.recovery[-1].hanging == pytest.approx(220.0)
+    assert deck.lifts.recovery[0].hanging == pytest.approx(
+        deck.lifts.deployment[[*lifts].index("release")].hanging
+    )
+    assert deck.lifts.unknown == ()
+
+
+def test_surfacing_is_in_order_of_time(deck):
+    times = [one.time for one in deck.recovery if one.time is not None]
+    assert times == sorted(times)
+    assert deck.rise is not None
+    assert times[0] == deck.rise.time_to_surface
+    first = deck.recovery[0].hung
+    assert (first.label, first.deployed_serial, first.remark) == (
+        "top float",
+        "T2",
+        "newly painted",
+    )
+    assert "rope" not in [one.hung.label for one in deck.recovery]
+
+
+def test_instruments_in_all_environments(moorings, deck):
+    results = {
+        name: one.solve() for name, one in zip(("own", "calm", "storm"), moorings, strict=True)
+    }
+    high = next(one for one in deck.instruments if one.hung.label == "high")
+    depths = {
+        name: next(row.depth for row in result.clamps if row.label == "high")
+        for name, result in results.items()
+    }
+    assert (high.shallowest.depth, high.shallowest.environment) == (depths["calm"], "calm")
+    assert (high.deepest.depth, high.deepest.environment) == (depths["storm"], "storm")
+    assert high.hung.depth == depths["own"]
+    assert [one.hung.label for one in deck.instruments] == ["high", "low", "release"]

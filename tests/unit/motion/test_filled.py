@@ -1,0 +1,37 @@
+"""What is taken from neighbours, and how wrong the record says that is."""
+
+import numpy as np
+import pytest
+
+from calm.motion import prior
+from calm.motion.filled import filled, gap_errors
+
+LEVEL = np.array([0.0, 100.0, 200.0, 300.0])
+
+
+def test_levels_are_linear_between_the_others_and_constant_beyond():
+    known = np.array([[False, True, False, True]])
+    found = filled(LEVEL[None], np.array([[9.0, 1.0, 9.0, 3.0]]), known)
+    assert found == pytest.approx(np.array([[1.0, 1.0, 2.0, 3.0]]))
+
+
+def test_errors_of_neighbours_are_those_of_the_record():
+    # linear in depth but for a factor on the second level, whose logarithm is normal: 0.3
+    random = np.random.default_rng(1)
+    times = 4000
+    profile = random.uniform(0.5, 1.0, (times, 1)) * np.array([1.0, 0.9, 0.8, 0.7])
+    profile[:, 1] *= np.exp(0.3 * random.standard_normal(times))
+    level, turned = np.tile(LEVEL, (times, 1)), 0.6 * profile
+    errors = gap_errors(level, 0.8 * profile, turned, np.arange(4))
+    # of the second: itself, also where a third is left out; of the third, half of it
+    assert errors[1, [1, 2, 3]] == pytest.approx(0.3, rel=0.08)
+    assert errors[2, 2] == pytest.approx(0.17, rel=0.15)
+    assert errors[3, 1] == pytest.approx(np.log(0.8 / 0.7) * 1.4826, rel=0.05)
+
+
+def test_few_times_say_nothing_and_equal_levels_are_not_without_error():
+    same = np.full((19, 4), 0.4)
+    level = np.tile(LEVEL, (19, 1))
+    assert (gap_errors(level, same, same, np.arange(4)) == prior.GAP).all()
+    many = [np.repeat(one, 2, axis=0) for one in (level, same, same)]
+    assert (gap_errors(*many, np.arange(4)) == prior.LEVEL[1]).all()
