@@ -39,8 +39,8 @@ def deck_table(items: Sequence[Item]) -> Table:
         quantity_column("lift_mass"),
     )
     note = (
-        "On its piece: where a clamp sits, from the top of it. Weight in water: + down. Mass of the "
-        "lift: of the piece with what is clamped on it."
+        "On its piece: where a clamp sits, from the top of it. Weight in water: + down. Mass of "
+        "the lift: of the piece with what is clamped on it."
     )
     return Table("Pieces for the deck", columns, rows, note)
 
