@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from importlib.util import find_spec
+from math import inf
 from pathlib import Path
 
 from calm.cli.exit_codes import ExitCode
@@ -19,6 +20,7 @@ BUILD_EXAMPLES = """Examples:
   calm build mooring.yaml --serve"""
 
 PORT = 8000
+IDLE = 120.0  # minutes
 
 _NO_TERMINAL = (
     "calm build needs a terminal to draw in, and keys; `calm build --serve` opens it in a "
@@ -37,6 +39,8 @@ def build(
     catalog: list[Path] | None = None,
     serve: bool = False,
     port: int = PORT,
+    allow_host: list[str] | None = None,
+    idle_timeout: float = IDLE,
 ) -> ExitCode:
     """Build or edit a mooring or a tow, and see it bend at every change.
 
@@ -56,10 +60,17 @@ def build(
     serve
         Open it in a browser of this machine; other machines cannot reach it.
     port
-        Port of --serve: the page is http://localhost:PORT, 8000 unless given.
+        Port of --serve, 8000 unless given. The address of the page, with the token that it needs,
+        is printed; a tunnel may lead to it from any port.
+    allow_host
+        A name under which a proxy hands the page of --serve on. Repeatable.
+    idle_timeout
+        Minutes without a key after which a page of --serve is closed, its work kept; 0 for never.
     """
     if serve:
-        return _serve(file, environment, catalog or [], port)
+        if not 0.0 <= idle_timeout < inf:
+            raise UsageError(f"--idle-timeout: {idle_timeout} minutes cannot be waited")
+        return _serve(file, environment, catalog or [], port, allow_host or [], 60.0 * idle_timeout)
     if not _has_terminal():
         raise UsageError(_NO_TERMINAL)
     from calm.tui.launch import build
@@ -74,7 +85,14 @@ def _has_terminal() -> bool:
     return all(stream is not None and stream.isatty() for stream in (sys.stdin, sys.stderr))
 
 
-def _serve(file: Path | None, environment: str | None, catalogs: list[Path], port: int) -> ExitCode:
+def _serve(
+    file: Path | None,
+    environment: str | None,
+    catalogs: list[Path],
+    port: int,
+    hosts: list[str],
+    idle: float,
+) -> ExitCode:
     if not 1 <= port <= 65535:
         raise UsageError(f"--port: {port} is not a port; give one from 1024 to 65535")
     if find_spec("textual_serve") is None:
@@ -88,5 +106,5 @@ def _serve(file: Path | None, environment: str | None, catalogs: list[Path], por
         words += ["--environment", environment]
     for path in catalogs:
         words += ["--catalog", str(path.absolute())]
-    serve(words, port, narrate)
+    serve(words, port, narrate, hosts=hosts, idle=idle)
     return ExitCode.DONE

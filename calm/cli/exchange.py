@@ -1,4 +1,4 @@
-"""``calm import``: designs of other programs as mooring files."""
+"""``calm import`` and ``calm export``: designs of other programs, in and out."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def import_(
     output
         The mooring file to write; of several files, the folder for them.
     format
-        The program: mdd or cbl. Found from the content when not given.
+        The program: mdd, cbl, moordyn, moords or table. Found from the content when not given.
     strict
         Refuse what would have to be guessed.
     define
@@ -191,3 +191,59 @@ def _write_json(document: object, target: Path) -> None:
         show(text)
     else:
         write_file(target, text.encode())
+
+
+EXPORT_EXAMPLES = """Examples:
+
+  calm export mooring.yaml --to mdd -o mooring.mat
+  calm export mooring.yaml --to cbl -o mooring.cbl --environment storm
+  calm export mooring.yaml --to moordyn -o moordyn/mooring.txt
+  calm export mooring.yaml --to csv -o mooring.csv"""
+
+
+def export(
+    file: Path,
+    /,
+    *,
+    to: str,
+    output: Annotated[Path, Parameter(name=["--output", "-o"])],
+    environment: str | None = None,
+    catalog: list[Path] | None = None,
+) -> ExitCode:
+    """Write a mooring or a tow for another program.
+
+    What the other program cannot be told is reported, and stands at the head of
+    the file. A piece that is cut to fit goes out with its cut length.
+
+    Parameters
+    ----------
+    file
+        Mooring file.
+    to
+        The program: mdd (Mooring Design & Dynamics), cbl (WHOI Cable), moordyn (MoorDyn 2,
+        with the current in a file beside it) or csv (a list).
+    output
+        The file to write.
+    environment
+        An environment named in the file, or an environment file, in place of its own.
+    catalog
+        A catalogue of your own; its components hide others of the same id. Repeatable.
+    """
+    from calm.exchange.exporting import export_file
+    from calm.report.write import check_destination, write_file
+
+    check_destination(output)
+    if os.path.realpath(output) == os.path.realpath(file):
+        raise UsageError(f"{output} would take the place of the file that is read")
+    exported = export_file(file, to, environment=environment, catalogs=catalog or [])
+    beside = {output.with_name(name): content for name, content in exported.beside.items()}
+    for path in beside:
+        check_destination(path)
+    write_file(output, exported.content)
+    for path, content in beside.items():
+        write_file(path, content)
+        narrate(f"{path} written")
+    for each in exported.lost:
+        narrate(f"{output}: lost: {each}")
+    narrate(f"{output} written")
+    return ExitCode.DONE

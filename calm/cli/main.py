@@ -17,8 +17,9 @@ from calm.cli.chart import chart
 from calm.cli.check import CHECK_EXAMPLES, check
 from calm.cli.deck import DECK_EXAMPLES, deck
 from calm.cli.diff import DIFF_EXAMPLES, diff
-from calm.cli.exchange import IMPORT_EXAMPLES, import_
+from calm.cli.exchange import EXPORT_EXAMPLES, IMPORT_EXAMPLES, export, import_
 from calm.cli.exit_codes import ExitCode
+from calm.cli.locate import LOCATE_EXAMPLES, locate
 from calm.cli.motion import MOTION_EXAMPLES, motion
 from calm.cli.run import RUN_EXAMPLES, run
 from calm.cli.size import SIZE_EXAMPLES, size
@@ -62,6 +63,7 @@ app.command(deck, usage="Usage: calm deck [OPTIONS] FILE...", help_epilogue=DECK
 app.command(diff, usage="Usage: calm diff [OPTIONS] FILE [FILE]", help_epilogue=DIFF_EXAMPLES)
 app.command(batch, help_epilogue=BATCH_EXAMPLES)
 app.command(motion, help_epilogue=MOTION_EXAMPLES)
+app.command(locate, usage="Usage: calm locate [OPTIONS] FILE", help_epilogue=LOCATE_EXAMPLES)
 app.command(build, help_epilogue=BUILD_EXAMPLES)
 app.command(tow, usage="Usage: calm tow [OPTIONS] FILE...", help_epilogue=TOW_EXAMPLES)
 app.command(size, help_epilogue=SIZE_EXAMPLES)
@@ -71,6 +73,7 @@ app.command(
     usage="Usage: calm import [OPTIONS] FILE...",
     help_epilogue=IMPORT_EXAMPLES,
 )
+app.command(export, help_epilogue=EXPORT_EXAMPLES)
 app.command(strumming, help_epilogue=STRUMMING_EXAMPLES)
 app.command(catalog)
 app.command(chart)

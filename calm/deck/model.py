@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from calm.case import Mooring
 from calm.checks.finding import OWN
 from calm.checks.inventory import inventory_of
 from calm.checks.recovery import recovery_of
@@ -19,11 +20,16 @@ from calm.deck.shipping import Freight, freight_of
 from calm.drop import DropPlan, drop_plan
 from calm.drop.planning import SHIP_SPEED
 from calm.errors import NoEquilibrium
+from calm.files import CurrentTable
+from calm.solve import Status
 
 if TYPE_CHECKING:
-    from calm.case import Mooring, Result
+    from calm.case import Result
     from calm.checks.recovery import Recovery
     from calm.files import MooringFile
+
+FAINT = 0.1
+"""Current in which a line is drawn that still water leaves slack [m/s]."""
 
 
 @dataclass(frozen=True)
@@ -86,8 +92,8 @@ def deck_of(
         The ship streams no line, or not so far.
     """
     first = moorings[0]
-    result = first.solve()
     notes: list[str] = []
+    result = _standing(first, notes)
     results = [(_name(first), result)]
     for other in moorings[1:]:
         try:
@@ -106,7 +112,8 @@ def deck_of(
     plan: DropPlan | NoEquilibrium | None = None
     if order is Order.ANCHOR_LAST:
         try:
-            plan = drop_plan(first, ship_speed, streamed, result=result)
+            stands = result if result.mooring is first else None
+            plan = drop_plan(first, ship_speed, streamed, result=stands)
         except NoEquilibrium as failure:
             plan = failure
             notes.append(f"The anchor drop is not planned: {failure}")
@@ -128,6 +135,33 @@ def deck_of(
         notes=tuple(notes),
         plan=plan,
     )
+
+
+def _standing(mooring: Mooring, notes: list[str]) -> Result:
+    """The mooring solved; one that still water leaves slack in a current that hardly moves it.
+
+    Raises
+    ------
+    NoEquilibrium
+        It does not stand.
+    """
+    try:
+        return mooring.solve()
+    except NoEquilibrium as failure:
+        if failure.status != Status.SLACK.label:
+            raise
+        faint = CurrentTable((0.0,), (FAINT,), (0.0,), (0.0,))
+        environment = replace(mooring.file.environment, current=faint)
+        try:
+            result = Mooring(replace(mooring.file, environment=environment)).solve()
+        except NoEquilibrium:
+            raise failure from None
+        notes.append(
+            "Still water leaves the line slack, longer than the water is deep: the sheets have it "
+            f"as it stands in a current of {FAINT:g} m/s to the east; the anchor drop is that in "
+            "still water"
+        )
+        return result
 
 
 def _name(mooring: Mooring) -> str:

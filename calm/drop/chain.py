@@ -23,6 +23,12 @@ from calm.physics.line import Floats, Integers, Line
 from calm.physics.stretch import ElongationCurve
 from calm.physics.track import head_count
 
+LEAST = 0.12
+"""Of all bars: those of a cable or chain that is not short, since it may be the one that turns on
+the seabed."""
+NOT_SHORT = 0.02
+"""Share of all cables and chains from which on one is not short."""
+
 
 @dataclass(frozen=True)
 class Chain:
@@ -104,7 +110,9 @@ def _bars(line: Line, count: int) -> tuple[Floats, Integers, Integers, Floats]:
     """Length and piece of every bar; bars and span of every piece."""
     pieces, head = len(line.length), head_count(line)
     cable = float(line.length[line.flexible].sum())
-    cuts = np.where(line.flexible, np.ceil(line.length * count / max(cable, 1e-300)), 1.0)
+    share = line.length / max(cable, 1e-300)
+    least = np.where(share > NOT_SHORT, count * LEAST, 1.0)
+    cuts = np.where(line.flexible, np.ceil(np.maximum(share * count, least)), 1.0)
     cuts[line.length == 0.0] = 0.0
     bars, span = np.zeros((pieces, 2), dtype=np.int64), np.zeros((pieces, 2))
     length: list[float] = []

@@ -19,6 +19,9 @@ AT_REST = 1e-7
 """Share of the depth by which nothing moves any more, however long one waits."""
 LONG = 1e6
 """The longest step [s]: at its end a line is at rest."""
+PUSHED = 1e-4
+"""Of all weights: what a bar at rest is pushed with at least, to be laid down."""
+_FALLS = 3
 _GROWTH = 1.3
 _REST_GROWTH = 1.6
 _SHORTEST = 1e-9
@@ -167,17 +170,45 @@ def _stepped(mover: Mover, state: State, step: float, depth: float) -> State:
 
 
 def _settled(mover: Mover, state: State, step: float) -> tuple[State, ...]:
-    """States from one on, in longer and longer steps, until nothing moves any more."""
+    """States from one on, in longer and longer steps, until nothing moves any more.
+
+    What then stands on its lower end, pushed and not pulled, is laid down: a long step holds it
+    upright as a short one would not.
+    """
     depth = mover.sea.water.depth
     states = [state]
-    while step < LONG:
-        after = _stepped(mover, states[-1], step, depth)
-        step = _REST_GROWTH * (after.time - states[-1].time)
-        states.append(after)
-    moved = float(np.abs(states[-1].node - states[-2].node).max())
-    if moved > AT_REST * depth:
-        raise Status.NOT_CONVERGED.because("The line does not come to rest.")
+    for _ in range(_FALLS + 1):
+        length = step
+        while length < LONG:
+            after = _stepped(mover, states[-1], length, depth)
+            length = _REST_GROWTH * (after.time - states[-1].time)
+            states.append(after)
+        moved = float(np.abs(states[-1].node - states[-2].node).max())
+        if moved > AT_REST * depth:
+            raise Status.NOT_CONVERGED.because("The line does not come to rest.")
+        laid = _laid_down(mover, states[-1])
+        if laid is None:
+            break
+        states[-1] = laid
     return tuple(states)
+
+
+def _laid_down(mover: Mover, state: State) -> State | None:
+    """The state with the bars that are pushed along the next one above them that is not.
+
+    None where no bar is.
+    """
+    pushed = state.tension < -PUSHED * mover.scale
+    if not pushed.any() or pushed[0]:
+        return None
+    node, axis = state.node.copy(), np.zeros(3)
+    for bar in range(len(pushed)):
+        upward = state.node[bar] - state.node[bar + 1]
+        if not pushed[bar]:
+            axis = upward / np.linalg.norm(upward)
+        else:
+            node[: bar + 1] += np.linalg.norm(upward) * axis - upward
+    return replace(state, node=node, velocity=np.zeros_like(node))
 
 
 def _drawn(mover: Mover, state: State, streamed: float) -> State:

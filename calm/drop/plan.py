@@ -8,6 +8,9 @@ from typing import Any
 from calm.case import Mooring
 from calm.drop.record import DepthReached, Moment, Path, Pull
 
+ASTRAY = 1e-3
+"""Share of the depth by which the line may come to rest elsewhere than its equilibrium."""
+
 
 @dataclass(frozen=True)
 class DropPlan:
@@ -73,6 +76,31 @@ class DropPlan:
         """What comes deeper in the drop than it is made for."""
         return tuple(each for each in self.depths if each.beyond)
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What makes the plan less certain than it looks."""
+        said = []
+        if not self.drag_known:
+            said.append(
+                "The anchor gives no `kt`: its drag is taken to be that of a cube of its weight."
+            )
+        if self.rest_difference is None:
+            said.append(
+                "In still water the line is slack and has no single shape at rest: where it comes "
+                "to rest is not compared with an equilibrium."
+            )
+        elif self.rest_difference > ASTRAY * self.mooring.water.depth:
+            said.append(
+                f"The line comes to rest {self.rest_difference:.2f} m from its equilibrium, more "
+                "than a thousandth of the depth: its depths at rest are not to be relied on."
+            )
+        if self.mooring.line.strumming is not None:
+            said.append("That cables strum is not in it: their drag is the one at rest.")
+        names = ", ".join(each.label for each in self.beyond_rating)
+        if names:
+            said.append(f"Deeper in the drop than made for: {names}.")
+        return tuple(said)
+
     def to_dict(self) -> dict[str, Any]:
         """The plan as JSON; figures in SI."""
         path = self.path
@@ -105,6 +133,8 @@ class DropPlan:
             "start": list(self.start),
             "anchor_drag": self.anchor_drag,
             "anchor_drag_known": self.drag_known,
+            "rest_difference": self.rest_difference,
+            "warnings": list(self.warnings),
             "depths": [
                 {
                     "label": each.label,

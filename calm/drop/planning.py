@@ -26,8 +26,6 @@ DRAG_BAND = 2.0
 """By how many times the anchor's drag may be more, or less, than given."""
 BLOCK_CD = 1.05
 """Of a cube that falls with a face ahead (Hoerner, Fluid-Dynamic Drag, 1965)."""
-ASTRAY = 1e-3
-"""Share of the depth by which the line may come to rest elsewhere than its equilibrium."""
 SLOWEST_SHIP = 0.05
 """Through the water, to stream a line at all [m/s]."""
 
@@ -58,8 +56,7 @@ def drop_plan(
         A ship that makes no way through the water, or a distance that the line does not span.
     NoEquilibrium
         As `Mooring.solve`; ``anchor-lifts`` where the anchor does not draw the line down,
-        ``not-converged`` where no step is found, or the line does not come to rest where its
-        equilibrium is.
+        ``not-converged`` where no step is found.
     """
     if result is None:
         result = _equilibrium(mooring)
@@ -77,10 +74,6 @@ def drop_plan(
     coarse_start, coarse = let_fall(fineness.halved)
     rest = settle(mooring.line, water, anchor, drop.states[-1], fineness)
     difference = None if result is None else rest_difference(result, rest)
-    if difference is not None and difference > ASTRAY * water.depth:
-        raise Status.NOT_CONVERGED.because(
-            f"Dropped, the line comes to rest {difference:.2f} m from its equilibrium."
-        )
     toward = start.node[0, :2] / np.linalg.norm(start.node[0, :2])
     others = [
         fall(

@@ -200,7 +200,11 @@ def pulls_of(pieces: Sequence[Piece], drop: Course) -> tuple[Pull, ...]:
 
 
 def rest_difference(result: Result, rest: Course) -> float:
-    """Farthest that an end of a piece comes to rest from its place in the equilibrium [m]."""
+    """Farthest that an end of a piece comes to rest from its place in the equilibrium [m].
+
+    Of a line that comes down on the seabed before its anchor, pieces that lie there are left out:
+    the equilibrium has them at the foot of the anchor, where here they go up to its top.
+    """
     state = rest.states[-1]
     upper, lower = piece_ends(rest.mover.chain, state)
     at, count = result.components, len(upper)
@@ -211,4 +215,9 @@ def rest_difference(result: Result, rest: Course) -> float:
         ]
     )
     found = np.concatenate([upper, lower]) - [*state.node[-1, :2], 0.0]
-    return float(np.linalg.norm(found - expected, axis=1).max())
+    away = np.linalg.norm(found - expected, axis=1)
+    if result.anchor.grounded_length > 0.0:
+        away = away[
+            expected[:, 2] > -result.mooring.water.depth + 1e-6 * result.mooring.water.depth
+        ]
+    return float(away.max())

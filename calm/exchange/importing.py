@@ -14,7 +14,12 @@ from calm.exchange.environments import environment_lines
 from calm.exchange.matching import Match, match
 from calm.exchange.mdd.matfile import is_mat
 from calm.exchange.mdd.reading import read_mdd
+from calm.exchange.moordyn.reading import read_moordyn
+from calm.exchange.moordyn.sections import is_moordyn
 from calm.exchange.refusal import refused
+from calm.exchange.table.moords import is_moords, read_moords
+from calm.exchange.table.reading import read_table
+from calm.exchange.table.sheet import is_table
 from calm.exchange.writing import written
 from calm.files import read_mooring
 from calm.version import __version__
@@ -56,6 +61,18 @@ FORMATS = (
         lambda path, options: read_cbl(
             path, options.defines, allow_include=options.allow_include
         ),
+    ),
+    Format(
+        "moordyn", "MoorDyn or MoorPy", lambda path, content: is_moordyn(content),
+        lambda path, options: read_moordyn(path),
+    ),
+    Format(
+        "moords", "moords", lambda path, content: is_moords(content),
+        lambda path, options: read_moords(path),
+    ),
+    Format(
+        "table", "a list in CSV or a spreadsheet", lambda path, content: is_table(content),
+        lambda path, options: read_table(path, options.columns),
     ),
 )  # fmt: skip
 

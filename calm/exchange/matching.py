@@ -10,7 +10,7 @@ from pydantic import ValidationError
 from calm.assemble.line import drag_of
 from calm.exchange.design import Component, Design
 from calm.exchange.writing import figure_text
-from calm.files import Anchor, Assembly, Catalogue
+from calm.files import Anchor, Assembly, Cable, Catalogue, Chain
 from calm.files.components import KINDS
 from calm.files.components import Component as Model
 
@@ -44,7 +44,10 @@ def match(design: Design) -> tuple[Match, ...]:
         if model is None or component.entry:
             continue
         for id, entry in entries.items():
-            if _alike(component.name, f"{id} {entry.name or ''}") and _agree(model, entry):
+            sizeless = "drag_area" in component.guesses
+            if _alike(component.name, f"{id} {entry.name or ''}") and (
+                _weighs_alike(model, entry) if sizeless else _agree(model, entry)
+            ):
                 component.entry = id
                 matched[id + component.name] = Match(component.name, id)
                 break
@@ -71,6 +74,14 @@ def _alike(name: str, other: str) -> bool:
 
 def _words(text: str) -> set[str]:
     return set(re.findall(r"[a-z]+|\d+(?:[./]\d+)?", text.lower()))
+
+
+def _weighs_alike(one: Model, other: Model) -> bool:
+    """Whether what has no size in the file weighs, or lifts, what an entry does."""
+    if isinstance(other, Anchor | Cable | Chain):
+        return False
+    a, b = one.net_buoyancy, other.net_buoyancy
+    return abs(a - b) <= TOLERANCE * max(abs(a), abs(b))
 
 
 def _agree(one: Model, other: Model) -> bool:

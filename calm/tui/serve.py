@@ -1,20 +1,27 @@
-"""The line builder in a browser of the same machine.
+"""The line builder in a browser.
 
-Each page that is opened is an application of its own. Only this machine is listened to, and of its
-browsers only the page itself: what another site's page sends here is refused.
+Each page that is opened is an application of its own. Only this machine is listened to; the page
+needs the token of its address, and what another site's page sends here is refused.
 """
 
 from __future__ import annotations
 
+import asyncio
 import os
-import re
+import secrets
 import shlex
 import subprocess
 import sys
-from collections.abc import Awaitable, Callable, Sequence
+from collections.abc import Awaitable, Callable, Collection, Sequence
+from html import escape
+from importlib.resources import files
+from ipaddress import ip_address
+from string import Template
 from typing import Any
+from urllib.parse import urlsplit
 
-from aiohttp import web
+from aiohttp import WSMsgType, web
+from textual_serve.app_service import AppService
 from textual_serve.server import Server
 
 from calm.errors import UsageError
@@ -24,61 +31,148 @@ _UNSAID = 80
 """The port that a browser leaves out of the address."""
 _POLICY = (
     "default-src 'self'; script-src 'self' 'unsafe-inline'; style-src 'self' 'unsafe-inline'; "
-    "font-src 'self' data:; img-src 'self' data:; connect-src 'self' ws:"
+    "font-src 'self' data:; img-src 'self' data:; connect-src 'self' ws: wss:; "
+    "frame-ancestors 'none'"
 )
-
-_ELSEWHERE = re.compile(r"<link[^>]*\shref=\"https?:[^>]*>")
-"""What the page of textual-serve would have from other sites, a font: its policy refuses it."""
+_TITLE = "calm build"
 
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 
 class Browser(Server):
-    """A server for one person on one machine."""
+    """A server for one person.
 
-    def __init__(self, words: Sequence[str], port: int, tell: Callable[[str], None]) -> None:
+    Parameters
+    ----------
+    words : the command that each page runs
+    tell : says where the page is
+    hosts : names, besides those of this machine, under which a proxy hands the page on
+    idle : seconds without a key after which a session is ended, its work kept; 0 for never
+    token : that the address of the page has; a random one as a rule
+    """
+
+    def __init__(
+        self,
+        words: Sequence[str],
+        port: int,
+        tell: Callable[[str], None],
+        *,
+        hosts: Collection[str] = (),
+        idle: float = 0.0,
+        token: str = "",
+    ) -> None:
         # a shell is given the words: that of the system
         command = subprocess.list2cmdline(words) if os.name == "nt" else shlex.join(words)
-        address = HOST if port == _UNSAID else f"{HOST}:{port}"
-        super().__init__(
-            command, host=HOST, port=port, title="calm build", public_url=f"http://{address}"
-        )
-        self._tell = tell
+        super().__init__(command, host=HOST, port=port, title=_TITLE)
+        self.token = token or secrets.token_urlsafe(24)
+        self._tell, self._idle = tell, idle
+        self._hosts = frozenset(host.lower() for host in hosts)
+
+    @property
+    def address(self) -> str:
+        """Where the page is."""
+        where = HOST if self.port == _UNSAID else f"{HOST}:{self.port}"
+        return f"http://{where}/?token={self.token}"
 
     async def _make_app(self) -> web.Application:
-        application = await super()._make_app()
-        application.middlewares.append(self._only_own_page)
+        application = web.Application(middlewares=[self._only_own_page])
+        application.router.add_get("/", self.handle_index)
+        application.router.add_get("/ws/{token}", self.handle_websocket)
         application.router.add_get("/favicon.ico", _no_icon)
+        application.router.add_static("/static", self.statics_path)
         return application
-
-    async def on_startup(self, app: web.Application) -> None:
-        """Say nothing: the port may be taken."""
 
     def serve(self, debug: bool = False) -> None:
         """Listen until it is interrupted, and say where as soon as it does."""
-        self.debug = debug
-        self.initialize_logging()
-        told = f"calm build is at {self.public_url}; Ctrl+C ends it"
+        told = f"calm build is at {self.address}\nCtrl+C ends it"
         web.run_app(
             self._make_app(), host=self.host, port=self.port, print=lambda *_: self._tell(told)
         )
 
+    async def handle_index(self, request: web.Request) -> web.Response:
+        """The page; all that it names is beside it, whatever address it was asked for under."""
+        self._check_token(request.query.get("token", ""))
+        page = Template((files("calm.tui") / "page.html").read_text(encoding="utf-8"))
+        text = page.substitute(title=escape(self.title))
+        return web.Response(text=text, content_type="text/html")
+
+    async def handle_websocket(self, request: web.Request) -> web.WebSocketResponse:
+        """The keys and the screen of a page."""
+        self._check_token(request.match_info["token"])
+        return await super().handle_websocket(request)
+
+    async def _process_messages(
+        self, websocket: web.WebSocketResponse, app_service: AppService
+    ) -> None:
+        """Pass messages on, until the page is closed or nothing was typed for too long."""
+        clock = asyncio.get_running_loop().time
+        typed = clock()
+        while True:
+            left = typed + self._idle - clock() if self._idle else None
+            try:
+                message = await asyncio.wait_for(websocket.receive(), left)
+            except TimeoutError:
+                return
+            if message.type in (WSMsgType.CLOSE, WSMsgType.CLOSING, WSMsgType.CLOSED):
+                return
+            if message.type == WSMsgType.TEXT:
+                typed = clock() if await _pass_on(message, websocket, app_service) else typed
+
+    def _check_token(self, token: str) -> None:
+        if not secrets.compare_digest(token.encode(), self.token.encode()):
+            raise web.HTTPForbidden(
+                text="The address lacks its token: open the one that `calm build --serve` printed."
+            )
+
     @web.middleware
     async def _only_own_page(self, request: web.Request, handler: Handler) -> web.StreamResponse:
-        names = (HOST, "127.0.0.1", "[::1]")
-        own = {f"{name}:{self.port}" for name in names}
-        own |= set(names) if self.port == _UNSAID else set()
         origin = request.headers.get("Origin")
-        if request.host.lower() not in own or (
-            origin is not None and origin.lower().removeprefix("http://") not in own
-        ):
-            raise web.HTTPForbidden(text="This page is for the machine that it runs on.")
+        asked_of = _name(f"//{request.host}")
+        if not self._is_own(asked_of) or (origin is not None and not self._is_own(_name(origin))):
+            raise web.HTTPForbidden(
+                text=f"{asked_of} is not allowed: start it with --allow-host {asked_of}"
+            )
         response = await handler(request)
-        if isinstance(response, web.Response) and response.text:
-            response.text = _ELSEWHERE.sub("", response.text)
         if not response.prepared:
             response.headers["Content-Security-Policy"] = _POLICY
+            response.headers["Referrer-Policy"] = "no-referrer"
         return response
+
+    def _is_own(self, name: str) -> bool:
+        """Whether a name is that of this machine, or one that was allowed."""
+        if name == HOST or name in self._hosts:
+            return True
+        try:
+            return ip_address(name).is_loopback
+        except ValueError:
+            return False
+
+
+async def _pass_on(message: Any, websocket: web.WebSocketResponse, app_service: AppService) -> bool:
+    """Give the application what a page has sent; whether that was typed."""
+    try:
+        kind, *data = message.json()
+        if kind == "stdin":
+            await app_service.send_bytes(str(data[0]).encode("utf-8"))
+        elif kind == "resize":
+            await app_service.set_terminal_size(int(data[0]["width"]), int(data[0]["height"]))
+        elif kind == "ping":
+            await websocket.send_json(["pong", data[0]])
+        elif kind == "blur":
+            await app_service.blur()
+        elif kind == "focus":
+            await app_service.focus()
+    except (ValueError, TypeError, KeyError, IndexError):
+        return False  # nothing that the page itself sends
+    return bool(kind == "stdin")
+
+
+def _name(address: str) -> str:
+    """The host of an address, without its port; empty where it has none."""
+    try:
+        return (urlsplit(address).hostname or "").lower()
+    except ValueError:
+        return ""
 
 
 async def _no_icon(_: web.Request) -> web.Response:
@@ -86,8 +180,15 @@ async def _no_icon(_: web.Request) -> web.Response:
     return web.Response(status=204)
 
 
-def serve(arguments: Sequence[str], port: int, tell: Callable[[str], None]) -> None:
-    """Serve ``calm build`` with these arguments until it is interrupted.
+def serve(
+    arguments: Sequence[str],
+    port: int,
+    tell: Callable[[str], None],
+    *,
+    hosts: Collection[str] = (),
+    idle: float = 0.0,
+) -> None:
+    """Serve ``calm build`` with these arguments until it is interrupted; see `Browser`.
 
     Raises
     ------
@@ -96,7 +197,7 @@ def serve(arguments: Sequence[str], port: int, tell: Callable[[str], None]) -> N
     """
     words = [sys.executable, "-m", "calm", "build", *arguments]
     try:
-        Browser(words, port, tell).serve()
+        Browser(words, port, tell, hosts=hosts, idle=idle).serve()
     except OSError as error:
         raise UsageError(f"port {port} cannot be used ({_reason(error)}); try --port") from None
 

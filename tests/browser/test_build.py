@@ -33,54 +33,86 @@ def served(tmp_path):
     with socket.socket() as free:
         free.bind(("localhost", 0))
         port = free.getsockname()[1]
-    command = [sys.executable, "-m", "calm", "build", str(file), "--serve", "--port", str(port)]
-    with subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE) as server:
-        address = f"http://localhost:{port}"
-        deadline = time.monotonic() + PATIENCE
-        while True:
-            try:
-                with urllib.request.urlopen(address) as answer:
-                    assert answer.status == 200
-                break
-            except urllib.error.URLError:
-                assert server.poll() is None, server.stderr.read()
-                assert time.monotonic() < deadline
-                time.sleep(0.1)
+    words = [str(file), "--serve", "--port", str(port), "--allow-host", "ship.example"]
+    command = [sys.executable, "-m", "calm", "build", *words]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as server:
+        told = server.stderr.readline()
+        address = told.removeprefix("calm build is at ").strip()
+        assert address.startswith(f"http://localhost:{port}/?token="), told
         yield address, file
         server.terminate()
 
 
-def test_the_line_is_built_in_a_browser(served):
+@pytest.fixture
+def browser():
     if CHROMIUM is None and os.environ.get("CALM_BROWSER_TESTS") != "1":
         pytest.skip("there is no Chromium")
     from playwright.sync_api import sync_playwright
 
-    address, file = served
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        page = browser.new_page(viewport={"width": 1200, "height": 800})
-        asked, answered, complained = [], [], []
-        page.on("console", lambda message: message.type == "log" or complained.append(message.text))
-        page.on("pageerror", lambda error: complained.append(str(error)))
-        page.on("request", lambda request: asked.append(request.url))
-        page.on("response", lambda response: answered.append(response.url))
-        page.goto(address)
-        page.wait_for_selector("body.-first-byte", timeout=PATIENCE * 1e3)
-        page.wait_for_timeout(3000)
-        if folder := os.environ.get("CALM_BROWSER_PICTURES"):
-            page.screenshot(path=f"{folder}/build.png")
-        page.mouse.click(300, 600)
-        page.keyboard.type("n")
-        page.keyboard.type("named in a browser")
-        page.keyboard.press("Enter")
-        page.keyboard.press("Control+s")
-        deadline = time.monotonic() + PATIENCE
-        while b"named in a browser" not in file.read_bytes() and time.monotonic() < deadline:
-            page.wait_for_timeout(100)
+        yield browser
         browser.close()
-    assert b"label: named in a browser" in file.read_bytes()
-    own = (address, address.replace("http", "ws"), "data:")
-    assert answered and not [url for url in asked if not url.startswith(own)]
+
+
+def opened(browser, address, **options):
+    """A page with the line on it, what it asked for, and what it complained of."""
+    page = browser.new_page(**options)
+    asked, complained = [], []
+    page.on("console", lambda each: each.type != "error" or complained.append(each.text))
+    page.on("pageerror", lambda error: complained.append(str(error)))
+    page.on("request", lambda request: asked.append(request.url))
+    page.goto(address)
+    page.wait_for_selector("body.-first-byte", timeout=PATIENCE * 1e3)
+    page.wait_for_timeout(3000)
+    if folder := os.environ.get("CALM_BROWSER_PICTURES"):
+        width = page.viewport_size["width"]
+        page.screenshot(path=f"{folder}/build-{width}.png")
+    return page, asked, complained
+
+
+def saved(page, file, words):
+    """Whether a text comes to stand in the file."""
+    deadline = time.monotonic() + PATIENCE
+    while words not in file.read_bytes() and time.monotonic() < deadline:
+        page.wait_for_timeout(100)
+    return words in file.read_bytes()
+
+
+@pytest.mark.parametrize("host", ["localhost", "127.0.0.1"])
+def test_the_line_is_built_in_a_browser_without_a_click(served, browser, host):
+    address, file = served
+    address = address.replace("localhost", host)
+    size = {"width": 1366, "height": 768}
+    page, asked, complained = opened(browser, address, viewport=size)
+    screen = page.locator(".xterm-screen").bounding_box()
+    assert screen["y"] + screen["height"] <= size["height"]
+    assert screen["x"] + screen["width"] <= size["width"]
+    assert screen["height"] > 0.94 * size["height"]
+    assert not page.locator("#keys").is_visible()
+    page.keyboard.type("nnamed in a browser")
+    page.keyboard.press("Enter")
+    page.keyboard.press("Control+s")
+    assert saved(page, file, b"label: named in a browser")
+    root = address.partition("?")[0]
+    own = (root, root.replace("http", "ws"), "data:")
+    assert not [url for url in asked if not url.startswith(own)]
+    assert any(url.endswith("xterm.css") for url in asked)
+    assert not complained
+
+
+def test_on_a_phone_a_value_is_edited_with_the_keys_of_the_page(served, browser):
+    address, file = served
+    size = {"width": 390, "height": 844}
+    page, _, complained = opened(browser, address, viewport=size, has_touch=True, is_mobile=True)
+    screen, keys = (page.locator(each).bounding_box() for each in (".xterm-screen", "#keys"))
+    assert screen["x"] + screen["width"] <= size["width"]
+    assert screen["y"] + screen["height"] <= keys["y"] and keys["y"] + keys["height"] <= 844
+    page.locator("#keys button", has_text="↓").tap()
+    page.keyboard.type("l900 m")
+    page.locator("#keys button", has_text="Enter").tap()
+    page.keyboard.press("Control+s")
+    assert saved(page, file, b"length: 900 m")
     assert not complained
 
 
@@ -95,47 +127,63 @@ def status(address, **headers):
 
 def test_another_sites_page_is_refused(served):
     address, _ = served
-    own = address.removeprefix("http://")
-    other = own.replace("localhost", "elsewhere.example")
-    for path in ("", "/ws"):
-        assert status(address + path, Host=other) == 403
-        assert status(address + path, Origin=f"http://{other}") == 403
-        assert status(address + path, Origin="null") == 403
-    assert status(address, Host=own, Origin=address) == 200
-    assert status(address, Host=own.upper(), Origin=address.upper().replace("HTTP", "http")) == 200
-    assert status(address, Host=own.replace("localhost", "127.0.0.1")) == 200
-    assert status(address + "/favicon.ico") == 204  # browsers ask for it
+    root, _, query = address.partition("/?token=")
+    own = root.removeprefix("http://")
+    for path in (f"/?token={query}", f"/ws/{query}"):
+        assert status(root + path, Host="elsewhere.example") == 403
+        assert status(root + path, Origin="http://elsewhere.example") == 403
+        assert status(root + path, Origin="null") == 403
+        assert status(root + path, Host="localhost.elsewhere.example") == 403
+    assert status(root + "/") == status(root + "/?token=x") == status(root + "/ws/x") == 403
+    assert status(address, Host=own, Origin=root) == 200
+    assert status(address, Host=own.upper()) == 200
+    assert status(address, Host="127.0.0.1:9000", Origin="http://127.0.0.1:9000") == 200  # a tunnel
+    assert status(address, Host="[::1]:80") == 200
+    assert status(address, Host="ship.example", Origin="https://ship.example") == 200  # a proxy
+    assert status(root + "/favicon.ico") == 204  # browsers ask for it
 
 
-@pytest.mark.parametrize(
-    ("port", "host", "passes"),
-    [
-        (80, "localhost", True),  # as browsers say it
-        (80, "localhost:80", True),
-        (80, "elsewhere.example", False),
-        (8000, "localhost", False),
-        (8000, "localhost:8000", True),
-    ],
-)
-def test_the_host_as_browsers_send_it(port, host, passes):
-    from aiohttp import web
-    from aiohttp.test_utils import make_mocked_request
+def test_a_page_where_nothing_is_typed_is_closed(monkeypatch):
+    from aiohttp.test_utils import TestClient, TestServer
 
     from calm.tui.serve import Browser
 
-    async def answer(_):
-        return web.Response()
+    class Silent:
+        def __init__(self, *_, **__):
+            self.stopped = 0
 
-    browser = Browser(["calm"], port, print)
-    request = make_mocked_request("GET", "/", headers={"Host": host})
-    asking = browser._only_own_page(request, answer)
-    if passes:
-        assert asyncio.run(asking).status == 200
-    else:
-        with pytest.raises(web.HTTPForbidden):
-            asyncio.run(asking)
-    # what the page names are addresses that pass, never those of https
-    assert browser.public_url.startswith("http://localhost")
+        async def start(self, *_):
+            pass
+
+        async def send_bytes(self, typed):
+            assert typed == b"a"
+
+        async def stop(self):
+            pass
+
+    monkeypatch.setattr("textual_serve.server.AppService", Silent)
+
+    async def idle():
+        served = Browser(["calm"], 8000, print, idle=0.05, token="t")
+        async with TestClient(TestServer(await served._make_app())) as client:
+            async with client.ws_connect("/ws/t") as page:
+                await page.send_str("no json")
+                await page.send_json(["stdin"])
+                await page.send_json(["stdin", "a"])
+                await page.send_json(["ping", "1"])
+                assert await page.receive_json() == ["pong", "1"]
+                message = await page.receive(timeout=PATIENCE)
+            return message.type.name
+
+    assert asyncio.run(idle()) in ("CLOSE", "CLOSED")
+
+
+def test_the_address_of_the_usual_port_has_none():
+    from calm.tui.serve import Browser
+
+    assert Browser(["calm"], 80, print, token="t").address == "http://localhost/?token=t"
+    tokens = {Browser(["calm"], 8000, print).token for _ in range(10)}
+    assert len(tokens) == 10 and min(map(len, tokens)) >= 32
 
 
 def test_each_word_of_the_command_stays_one():
@@ -161,8 +209,9 @@ def test_a_closed_page_keeps_the_work(served, tmp_path):
 async def _type_and_close(address, keys):
     from aiohttp import ClientSession
 
-    place = f"{address}/ws?width=110&height=40"
-    async with ClientSession() as session, session.ws_connect(place, origin=address) as page:
+    root, _, token = address.partition("/?token=")
+    place = f"{root}/ws/{token}?width=110&height=40"
+    async with ClientSession() as session, session.ws_connect(place, origin=root) as page:
         await _until(page, b"Anchor")
         await page.send_json(["stdin", keys.decode()])
         await _until(page, b"not saved")

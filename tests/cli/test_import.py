@@ -122,7 +122,7 @@ def test_a_name_alone_is_no_match(calm, folder, design):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["--format", "orca"], "`orca` is none of mdd"),
+        (["--format", "orca"], "`orca` is none of mdd, cbl"),
         (["-D", "DEPTH"], "`DEPTH` is no NAME=VALUE"),
     ],
 )
@@ -145,3 +145,31 @@ def test_a_file_of_no_program_is_refused(calm, folder):
     assert "x.bin: is of no program that CALM reads" in done.err
     assert "missing.mat" in done.err
     assert "Traceback" not in done.err
+
+
+def test_export_writes_and_tells_what_is_lost(calm, folder, write_mooring):
+    done = calm("export", write_mooring(), "--to", "cbl", "-o", "m.cbl")
+    assert (done.code, done.out) == (0, "")
+    assert "m.cbl: lost: limits of the design check" in done.err
+    assert calm("import", "m.cbl", "-o", "back.yaml").code == 0
+    one, other = (
+        json.loads(calm("run", each, "--json", "-").out) for each in ("m.yaml", "back.yaml")
+    )
+    assert other["top"]["depth"] == pytest.approx(one["top"]["depth"], abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["m.yaml", "--to", "orca", "-o", "m.out"], "`orca` is no program"),
+        (["m.yaml", "--to", "mdd", "-o", "m.yaml"], "would take the place"),
+        (["none.yaml", "--to", "mdd", "-o", "m.mat"], "none.yaml"),
+        (["m.yaml", "--to", "mdd", "-o", "none/m.mat"], "there is no folder"),
+    ],
+)
+def test_export_refuses(calm, folder, write_mooring, words, message):
+    write_mooring()
+    done = calm("export", *words)
+    assert done.code == 2
+    assert message in done.err
+    assert sorted(path.name for path in folder.iterdir()) == ["m.yaml"]

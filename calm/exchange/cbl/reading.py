@@ -248,6 +248,8 @@ def _lay_mooring(
     lower, upper = ends
     name = lower.values["anchor"]
     anchor = makers.anchor(problem.anchors.get(name.text), name.text, number(lower.values, "mu"))
+    if number(lower.values, "z") > 0.0:
+        anchor.figures["length"] = number(lower.values, "z")
     top = upper.values.get("buoy") or upper.values.get("platform")
     if top is None:
         raise upper.token.refuse("the upper end is no buoy")
@@ -300,7 +302,7 @@ def _lay_tow(
 
 
 def _drop_dynamics(ends: list[Terminal], design: Design) -> None:
-    known = {"buoy", "platform", "anchor", "mu", "x-speed", "y-speed", "x", "y", *_FORCES}
+    known = {"buoy", "platform", "anchor", "mu", "x-speed", "y-speed", "x", "y", "z", *_FORCES}
     for end in ends:
         found = [key for key in end.values if key not in known]
         if found:

@@ -47,7 +47,7 @@ class Element:
         return self.width or self.diameter
 
 
-_MODULI = (1.38e11, 3.45e8, 8.0e8, 3.45e8, 6.9e8, 6.9e10, 7.6e10, 1.0e11)
+MODULI = (1.38e11, 3.45e8, 8.0e8, 3.45e8, 6.9e8, 6.9e10, 7.6e10, 1.0e11)
 """Of the materials that the program numbers from 1: steel, nylon, Dacron, polypropylene,
 polyethylene, Kevlar, aluminium, Dyneema [Pa]."""
 
@@ -160,6 +160,6 @@ def _modulus(value: float) -> float | None:
     """A modulus of elasticity [Pa]; small whole numbers stand for a material."""
     if math.isnan(value) or value <= 0.0:
         return None
-    if value <= len(_MODULI) and value == int(value):
-        return _MODULI[int(value) - 1]
+    if value <= len(MODULI) and value == int(value):
+        return MODULI[int(value) - 1]
     return value

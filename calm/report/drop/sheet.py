@@ -25,6 +25,7 @@ def drop_part(plan: DropPlan) -> Part:
     """The sheet."""
     blocks: list[Block] = [
         _instructions(plan),
+        *([Prose(plan.warnings, state=State.WARN)] if plan.warnings else []),
         Pairs(_figures(plan)),
         Figure("Anchor drop", drop_figure(plan)),
         _fall_table(plan),
@@ -143,9 +144,6 @@ def _depth_blocks(plan: DropPlan) -> list[Block]:
         if each.part.component.role != "float" or each.beyond or each.greatest > each.rest + _DEEPER
     ]
     blocks: list[Block] = []
-    if plan.beyond_rating:
-        names = ", ".join(each.label for each in plan.beyond_rating)
-        blocks.append(Prose((f"Deeper in the drop than made for: {names}.",), state=State.FAIL))
     if listed:
         depth = QUANTITIES["depth"]
         rows = tuple(
@@ -181,12 +179,7 @@ def _notes(plan: DropPlan) -> tuple[str, ...]:
         "± is what bars and steps of half the length change, and half as much again; the current "
         "and the drag of the anchor are known less well.",
     ]
-    if plan.rest_difference is None:
-        notes.append(
-            "In still water the line is slack and has no single shape at rest: where it comes to "
-            "rest is not compared with an equilibrium."
-        )
-    else:
+    if plan.rest_difference is not None:
         notes.append(
             f"The line comes to rest {plan.rest_difference:.2f} m at most from its equilibrium."
         )

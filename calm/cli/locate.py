@@ -1,0 +1,129 @@
+"""``calm locate``: where an anchor stands, from acoustic ranges."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
+
+from calm.cli.exit_codes import ExitCode
+from calm.cli.options import quantities
+from calm.cli.outputs import OutputPath, Outputs
+from calm.cli.streams import narrate
+from calm.errors import UsageError
+
+if TYPE_CHECKING:
+    from calm.locate import Sound
+
+LOCATE_EXAMPLES = """Examples:
+
+  calm locate ranges.csv
+  calm locate times.csv --sound-speed "1492 m/s" --transducer "5 m" --plot circles.png
+  calm locate times.csv --sound-speed profile.csv --depth "1103 m"
+  calm locate ranges.csv -o mooring.yaml       (its deployed: gets position and depth)
+
+ranges.csv:
+
+  latitude[deg],longitude[deg],range[m]
+  48.30120,-5.19870,1432.5"""
+
+
+def locate(
+    file: Path,
+    /,
+    *,
+    sound_speed: str = "1500 m/s",
+    transducer: str = "0 m",
+    depth: str | None = None,
+    above_seabed: str = "0 m",
+    plot: Path | None = None,
+    json: OutputPath = None,
+    output: Annotated[Path | None, Parameter(name=["--output", "-o"])] = None,
+) -> ExitCode:
+    """Find where an anchor stands from acoustic ranges that a ship took about it.
+
+    Ranges that do not belong are found, named and left out. The place comes with
+    the ellipse that holds it with 95 %, the depth with its interval, and a warning
+    where the ship's positions leave them poorly known. Rays are taken as straight.
+
+    Parameters
+    ----------
+    file
+        CSV file with the columns latitude[deg], longitude[deg] (WGS 84, of the
+        transducer) and range[m], or time[s], there and back.
+    sound_speed
+        Speed of sound for times: a speed, or a CSV file with the columns depth[m] and
+        sound_speed[m/s].
+    transducer
+        Depth of the ship's transducer.
+    depth
+        Depth of the water at the anchor, where it is known; it is then not sought.
+    above_seabed
+        Height above the seabed of what answers, such as the release.
+    plot
+        Draw the ranges as circles about the ship, with the place: .png, .svg or .pdf.
+    json
+        Write the place as JSON, - to print it.
+    output
+        A mooring file: write position and depth into its `deployed:`.
+    """
+    from calm.locate import locate as found_at
+    from calm.locate import read_ranges
+    from calm.report.locate import located_figure, located_part
+    from calm.report.picture import check_format, image
+    from calm.report.write import check_destination, write_file
+
+    outputs = Outputs((file,), json)
+    outputs.check()
+    if plot is not None:
+        check_format(plot, (".png", ".svg", ".pdf"))
+        check_destination(plot)
+    given = quantities(
+        {
+            "transducer": (transducer, "length"),
+            "depth": (depth, "length"),
+            "above_seabed": (above_seabed, "length"),
+        }
+    )
+    under, height = given["transducer"], given["above_seabed"]
+    answering = given["depth"] - height if "depth" in given else None
+    if under < 0.0 or height < 0.0 or (answering is not None and answering <= under):
+        raise UsageError(
+            "--transducer and --above-seabed are not negative, and what answers is deeper than "
+            "the transducer"
+        )
+    sound = _sound(sound_speed)
+    survey = read_ranges(file, under)
+    for notice in survey.notices:
+        narrate(f"{file}: {notice}")
+    located = found_at(survey, sound, answering)
+    water_depth = located.depth + height
+    edited = None
+    if output is not None:
+        from calm.locate.deployed import with_deployed
+
+        edited = with_deployed(output, located, water_depth)
+    outputs.write_answer(
+        lambda: {**located.to_dict(), "depth": water_depth}, located_part(located, water_depth)
+    )
+    if plot is not None:
+        write_file(plot, image(located_figure(located), plot.suffix))
+    if edited is not None:
+        working, text = edited
+        lost = working.save(text)
+        narrate(f"{output}: `deployed:` has position and depth" + (f"; {lost}" if lost else ""))
+    return ExitCode.DONE
+
+
+def _sound(text: str) -> Sound:
+    """One speed, or the profile of a file."""
+    from calm.locate import Sound
+    from calm.locate.sound import FASTEST, SLOWEST, read_sound, sound_complaint
+
+    if text.lower().endswith((".csv", ".txt", ".tsv")):
+        return read_sound(Path(text))
+    speed = quantities({"sound_speed": (text, "speed")})["sound_speed"]
+    if not SLOWEST <= speed <= FASTEST:
+        raise UsageError(f"--sound-speed: `{text}` {sound_complaint()}")
+    return Sound.constant(speed)

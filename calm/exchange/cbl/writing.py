@@ -1,0 +1,301 @@
+"""A mooring or a tow as a problem of WHOI Cable, ready to be solved and for its dynamics."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import pairwise
+from math import cos, pi, radians, sin, sqrt
+
+from calm.exchange.parts import Assembled, Part, area, mass_of, remarks
+from calm.exchange.words import is_chain
+from calm.files import Body, Chain, Cylinder, Sphere
+from calm.files.rigid import Displacement
+from calm.physics.line import REFERENCE_DENSITY
+
+_HALF_DENSITY = 0.5 * REFERENCE_DENSITY
+_RIGID = 1e8  # N: EA of what does not stretch
+_LEAST_MASS = 0.01  # kg per metre: what weighs and drags nothing still moves
+_LEAST_WEIGHT = 1e-6  # N per metre: a weight of 0 is worked out from the mass there
+_FINEST, _COARSEST = 3, 401  # nodes of a segment
+_APART = 0.5  # m between nodes, where that many suffice
+
+
+@dataclass
+class _Load:
+    """What acts at a point: names, net force [N], mass [kg], drag area [m²]."""
+
+    names: list[str] = field(default_factory=list)
+    net: float = 0.0
+    mass: float = 0.0
+    area: float = 0.0
+
+    def add(self, part: Part) -> None:
+        """Let a part act here, too."""
+        self.names.append(part.use)
+        self.net += part.net
+        self.mass += mass_of(part)
+        self.area += area(part)
+
+
+@dataclass
+class _Problem:
+    """The sections of the file, as they grow from the lower end up."""
+
+    materials: dict[str, str] = field(default_factory=dict)
+    connectors: dict[str, str] = field(default_factory=dict)
+    layout: list[str] = field(default_factory=list)
+    load: _Load | None = None
+    last: tuple[str, float] = ("", 0.0)
+
+    def segment(self, name: str, length: float) -> None:
+        """A length of a material, after what acts at its lower end."""
+        if length <= 0.0:
+            return
+        if self.load is None and self.last[0] == name:
+            length += self.last[1]
+            self.layout.pop()
+        self._join()
+        self.last = name, length
+        count = min(max(round(length / _APART) + 1, _FINEST), _COARSEST)
+        self.layout.append(
+            f"    segment = {{ length = {length:.10g}  material = {name}  nodes = ({count}, 1.0) }}"
+        )
+
+    def at_a_point(self, part: Part) -> None:
+        """What acts where the line has come to."""
+        if self.load is None:
+            self.load = _Load()
+        self.load.add(part)
+
+    def _join(self) -> None:
+        """The connector for what acts here; where nothing does, the line goes on."""
+        if self.load is None:
+            return
+        load, self.load = self.load, None
+        across = sqrt(4.0 * load.area / pi)
+        base = load.names[0] if len(set(load.names)) == 1 else "_and_".join(load.names[:2])
+        figures = (
+            f"d = {max(across, 1e-6):.9g}  wet = {-load.net:.9g}  m = {load.mass:.9g}"
+            f"  Cdn = {1.0 if across else 0.0:g}"
+        )
+        name = _keep(self.connectors, f"p_{_word(base)}", figures)
+        self.layout.append(f"    connector = {name}")
+
+
+def cbl_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
+    """The content of the file, and what is lost in it."""
+    lost: list[str] = []
+    problem = _Problem()
+    density = sum(row[4] for row in design.levels) / len(design.levels)
+    if max(row[4] for row in design.levels) - min(row[4] for row in design.levels) > 1e-9:
+        lost.append("the profile of density: weights are those where each part stands upright")
+    parts = list(design.parts)
+    if design.tow is None:
+        buoy, parts = parts[0], parts[1:]
+    else:
+        buoy, parts = parts[-1], parts[:-1]
+    for part in reversed(parts):
+        _lay(problem, part, lost)
+    if buoy.clamps:
+        lost.append("what is clamped on the float: it acts at the end of the line")
+        for clamp, _ in buoy.clamps:
+            problem.at_a_point(clamp)
+    floating, has_draft = design.afloat
+    if floating and not has_draft:
+        lost.append("a float that has no draft, or full drag: there it floats at its draft")
+    if buoy.flexible:
+        lost.append("the free end of the line: a small sphere without weight stands there")
+    elif not floating and design.tow is None and buoy.length > 0.0:
+        problem.segment(_link(problem), buoy.length)
+    if problem.load is not None:
+        problem.segment(_link(problem), 0.001)
+    text = _text(design, problem, _buoy(buoy, design, density, floating, lost), density, floating)
+    told = remarks(design, lost)
+    head = [f"{design.name}, by CALM; lost:", *(f"- {each}" for each in told)]
+    comment = "\n   ".join(line.replace("*/", "* /") for line in head)
+    return f"/* {comment} */\n{text}".encode(), told
+
+
+def _lay(problem: _Problem, part: Part, lost: list[str]) -> None:
+    """A part, from its lower end up."""
+    if part.flexible or (part.directional and part.length > 0.0):
+        name = _material(problem, part)
+        below = part.length
+        for clamp, at in sorted(part.clamps, key=lambda pair: -pair[1]):
+            problem.segment(name, below - at)
+            problem.at_a_point(clamp)
+            below = min(at, below)
+        problem.segment(name, below)
+        return
+    link = _link(problem) if part.length > 0.0 else ""
+    if link:
+        problem.segment(link, part.length / 2.0)
+    problem.at_a_point(part)
+    for clamp, at in part.clamps:
+        problem.at_a_point(clamp)
+        if abs(at - part.length / 2.0) > 0.05:
+            lost.append("where on a rigid piece a clamp sits: it acts at its middle")
+    if link:
+        problem.segment(link, part.length / 2.0)
+
+
+def _link(problem: _Problem) -> str:
+    """A stiff material without weight and drag, as long as a rigid piece is."""
+    figures = (
+        f"d = 0.001  m = {_LEAST_MASS}  wet = {_LEAST_WEIGHT}  Cdn = 0  Cdt = 0"
+        f"  EA = {_RIGID:g}  EI = 1e-4  GJ = 1e-4"
+    )
+    return _keep(problem.materials, "link", figures)
+
+
+def _material(problem: _Problem, part: Part) -> str:
+    """The material of a cable, a chain or a cylinder, per metre."""
+    per = 1.0 if part.flexible else part.length
+    wet, across = 0.0 - part.net / per, part.diameter or area(part) / per
+    normal = part.kn / per / (_HALF_DENSITY * across) if across else 0.0
+    along = part.kt / per / (_HALF_DENSITY * pi * across) if across else 0.0
+    figures = (
+        f"d = {across:.9g}  m = {max(mass_of(part) / per, _LEAST_MASS):.9g}"
+        f"  wet = {wet if abs(wet) > _LEAST_WEIGHT else _LEAST_WEIGHT:.9g}"
+        f"  Cdn = {normal:.9g}  Cdt = {along:.9g}  EA = {part.stiffness or _RIGID:.9g}"
+        "  EI = 1e-4  GJ = 1e-4"
+    )
+    name = _word(part.use)
+    if isinstance(part.component, Chain) and not is_chain(name):
+        name = f"chain_{name}"
+    return _keep(problem.materials, name, figures)
+
+
+def _windage(part: Part) -> str:
+    """What of a float the wind blows on."""
+    component = part.component
+    if not isinstance(component, Sphere | Cylinder | Body):
+        return ""
+    shown = f"  Sw = {component.wind_area:.9g}" if component.wind_area else ""
+    return shown + (f"  Cdw = {component.wind_cd:.9g}" if component.wind_cd else "")
+
+
+def _buoy(part: Part, design: Assembled, density: float, floating: bool, lost: list[str]) -> str:
+    """The float of a mooring, or what is towed: its size, mass, buoyancy and drag."""
+    gravity = design.gravity
+    if part.flexible:
+        return "type = sphere  d = 0.001  m = 0.001  buoyancy = 0.01  Cdn = 0"
+    mass = max(mass_of(part), 1e-3)
+    lift = part.net + mass * gravity
+    if lift <= 0.0:
+        mass, lift = -part.net / gravity * 1.2, 0.2 * -part.net
+    hull = getattr(part.component, "hull", None)
+    wind = _windage(part)
+    if floating and isinstance(hull, Displacement):
+        return f"type = axisymmetric  m = {mass:.9g}  {_diameters(hull, part)}{wind}"
+    if floating and part.component.kind == "cylinder":
+        across, height = part.diameter, part.length
+        drag = area(part) / (across * height)
+        size = f"type = cylinder  d = {across:.9g}  h = {height:.9g}"
+        return f"{size}  m = {mass:.9g}  Cdn = {drag:.9g}{wind}"
+    if floating and not isinstance(part.component, Sphere):
+        lost.append("the hull of the float: it is a sphere of its drag")
+    across = part.diameter if isinstance(part.component, Sphere) else sqrt(4.0 * area(part) / pi)
+    across = max(across, 1e-3)
+    drag = area(part) / (pi / 4.0 * across**2)
+    size = f"type = sphere  d = {across:.9g}"
+    return f"{size}  m = {mass:.9g}  buoyancy = {lift:.9g}  Cdn = {drag:.9g}{wind}"
+
+
+def _diameters(hull: Displacement, part: Part) -> str:
+    """Levels and diameters of a hull of revolution that displaces what a table says."""
+    rows = hull.displacement
+    pairs = []
+    for (low, less, _), (high, more, _) in pairwise(rows):
+        across = sqrt(4.0 * (more - less) / (high - low) / pi)
+        pairs += [(low, across), (high - 1e-6, across)]
+    shown = sum(
+        (high - low) * across
+        for (low, across), (high, _) in zip(pairs[::2], pairs[1::2], strict=True)
+    )
+    drag = area(part) / shown if shown else 0.0
+    text = " ".join(f"({level:.9g}, {across:.9g})" for level, across in pairs)
+    return f"diameters = {text}  Cdn = {drag:.9g}"
+
+
+def _keep(known: dict[str, str], name: str, figures: str) -> str:
+    """The name under which figures stand, another where the name is taken by others."""
+    chosen, number = name, 1
+    while known.setdefault(chosen, figures) != figures:
+        number += 1
+        chosen = f"{name}_{number}"
+    return chosen
+
+
+def _word(text: str) -> str:
+    """A name as that program's words are: it begins with a letter."""
+    word = "".join(sign if sign.isalnum() and sign.isascii() else "_" for sign in text)
+    return word if word[:1].isalpha() else f"n_{word}"
+
+
+def _text(design: Assembled, problem: _Problem, buoy: str, density: float, floating: bool) -> str:
+    kind = "towing" if design.tow else "surface" if floating else "subsurface"
+    lines = [
+        "Problem Description",
+        f'    title = "{design.name.replace(chr(34), chr(39))}"',
+        f"    type = {kind}",
+        "",
+        "Analysis Parameters",
+        "    static-solution = " + ("shooting" if design.tow else "relaxation"),
+        "    static-relaxation = 0.1   static-iterations = 20000   static-tolerance = 1e-5",
+        "    static-outer-iterations = 500   static-outer-tolerance = 1e-3",
+        "    duration = 60   time-step = 0.1   ramp-time = 10",
+        "    dynamic-relaxation = 1.0   dynamic-iterations = 20   dynamic-tolerance = 1e-6",
+        "",
+        "Environment",
+        f"    rho = {density:.9g}   gravity = {design.gravity:.9g}",
+    ]
+    if design.tow is None:
+        lines.append(
+            f"    depth = {design.depth:.9g}   bottom-stiffness = 100   bottom-damping = 1"
+        )
+    for axis, column in (("x", 1), ("y", 2), ("z", 3)):
+        if any(row[column] for row in design.levels):
+            rows = " ".join(f"({row[0]:.9g}, {row[column]:.9g})" for row in design.levels)
+            lines.append(f"    {axis}-current = {rows}")
+    lines += _wind(design)
+    lines += ["", "Buoys", f"    upper_end  {buoy}"]
+    if design.tow:
+        lines[-1] = f"    towed  {buoy}"
+        lines.append("    vessel  type = ship")
+    else:
+        assert design.anchor is not None
+        _, weight = design.anchor
+        lines += ["", "Anchors", f"    anchor  wet = {weight:.9g}  m = {weight / 8.0:.9g}"]
+        if design.anchor[0].friction:
+            lines[-1] += f"  mu = {design.anchor[0].friction:.9g}"
+    lines += ["", "Connectors"] + [
+        f"    {name}  {each}" for name, each in problem.connectors.items()
+    ]
+    lines += ["", "Materials"] + [f"    {name}  {each}" for name, each in problem.materials.items()]
+    lines += ["", "Layout", *_ends(design, problem.layout), "", "End", ""]
+    return "\n".join(lines)
+
+
+def _wind(design: Assembled) -> list[str]:
+    speed, toward = design.wind
+    if not speed:
+        return []
+    east, north = speed * sin(radians(toward)), speed * cos(radians(toward))
+    return [f"    x-wind = {east:.9g}   y-wind = {north:.9g}"]
+
+
+def _ends(design: Assembled, layout: list[str]) -> list[str]:
+    if design.tow is None:
+        assert design.anchor is not None
+        height = design.anchor[0].length
+        place = f"  z = {height:.9g}" if height else ""
+        return [
+            f"    terminal = {{ anchor = anchor{place} }}",
+            *layout,
+            "    terminal = { buoy = upper_end }",
+        ]
+    speed, toward, _ = design.tow
+    east, north = speed * sin(radians(toward)), speed * cos(radians(toward))
+    ship = f"    terminal = {{ buoy = vessel  x-speed = {east:.9g}  y-speed = {north:.9g} }}"
+    return ["    terminal = { buoy = towed }", *layout, ship]

@@ -1,0 +1,1 @@
+"""MoorDyn and MoorPy: single lines of their input files, read and written."""

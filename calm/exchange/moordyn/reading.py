@@ -1,0 +1,227 @@
+"""A single line of a MoorDyn or MoorPy file as a design."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+from calm.exchange.design import Component, Design, Figure, Item, Remark, Water
+from calm.exchange.moordyn.sections import Row, Sections, read_sections
+from calm.exchange.refusal import refused
+from calm.exchange.words import is_chain
+
+_FIXED, _FREE = ("fix", "anchor"), ("free", "connect", "point")
+_CURRENTS = "current_profile.txt"
+_NEAR, _NEAR_AT_LEAST = (
+    0.05,
+    2.0,
+)  # m, of the depth: an upper end as near the surface hangs under a float
+_NOTE = "cn and ct are its Cd and CdAx, counted alike. See docs/import-moordyn.md."
+
+
+def read_moordyn(path: Path) -> Design:
+    """Read a file with one line, of one or several lengths, from an anchor up.
+
+    Raises
+    ------
+    InputError
+        It makes no sense, or holds a platform, a body, a rod or several lines.
+    """
+    sections = read_sections(path)
+    for name in ("bodies", "rods"):
+        for row in sections.rows.get(name, []):
+            raise row.refuse(
+                f"{name}: CALM has single moorings, without bodies and rods of MoorDyn"
+            )
+    points = {row.words.get("id", ""): row for row in sections.rows.get("points", [])}
+    lines = sections.rows.get("lines", [])
+    if not points or not lines:
+        raise refused(path, f"has {len(points)} points and {len(lines)} lines")
+    way = _way(points, lines, path)
+    design = Design("MoorDyn", path.stem, [], _water(sections, points, path), notes=[_NOTE])
+    assert design.water is not None
+    density, gravity = design.water.density, design.water.gravity
+    assert isinstance(density, float) and gravity is not None
+    types = {row.words.get("name", ""): row for row in sections.rows.get("types", [])}
+    anchor, items = way[0][0], []
+    for point, line in way:
+        if point is not anchor and (at_point := _point(point, design)) is not None:
+            items.append(at_point)
+        kind = types.get(line.words.get("type", ""))
+        if kind is None:
+            raise line.refuse(f"line type `{line.words.get('type')}` is defined nowhere")
+        length = line.number("length")
+        if length <= 0.0:
+            raise line.refuse("a line has no length")
+        items.append(Item(_cable(kind, density, gravity), length))
+    design.items = [_upper_end(_last(points, way), items, design), *items[::-1]]
+    design.items.append(Item(_anchor(anchor, design.water)))
+    what = "damping, stiffness in bending, added mass"
+    design.dropped.append(Remark("line types", what))
+    return design
+
+
+def _way(points: dict[str, Row], lines: list[Row], path: Path) -> list[tuple[Row, Row]]:
+    """The lines from the anchor up, each with the point at its lower end."""
+    at: dict[str, list[Row]] = {}
+    for line in lines:
+        for end in ("a", "b"):
+            name = line.words.get(end, "")
+            if name not in points:
+                raise line.refuse(f"its end `{name}` is no point of the file")
+            at.setdefault(name, []).append(line)
+    if any(len(each) > 2 for each in at.values()):
+        raise refused(path, "more than two lines meet in a point: CALM has single lines")
+    ends = [name for name, each in at.items() if len(each) == 1]
+    if len(ends) != 2:
+        raise refused(
+            path, f"holds {max(len(ends) // 2, 1)} lines or a ring; CALM has single lines"
+        )
+    ends.sort(key=lambda name: points[name].number("z"))
+    lower = points[ends[0]]
+    if not _is(lower, _FIXED):
+        raise lower.refuse("the lower end is not fixed: it is no anchor")
+    way: list[tuple[Row, Row]] = []
+    here, left = ends[0], list(lines)
+    while met := [each for each in left if here in _ends(each)]:
+        way.append((points[here], met[0]))
+        left.remove(met[0])
+        a, b = _ends(met[0])
+        here = b if here == a else a
+    if left:
+        raise left[0].refuse("lines that do not hang together; CALM has single lines")
+    return way
+
+
+def _ends(line: Row) -> tuple[str, str]:
+    return line.words["a"], line.words["b"]
+
+
+def _last(points: dict[str, Row], way: list[tuple[Row, Row]]) -> Row:
+    point, line = way[-1]
+    a, b = _ends(line)
+    return points[b] if points[a] is point else points[a]
+
+
+def _is(point: Row, words: tuple[str, ...]) -> bool:
+    return point.words.get("attachment", "").lower().startswith(words)
+
+
+def _water(sections: Sections, points: dict[str, Row], path: Path) -> Water:
+    options = sections.options
+    lowest = min(point.number("z") for point in points.values())
+    depth = _option(options, "wtrdpth", "depth", default=-lowest)
+    if depth <= 0.0:
+        raise refused(path, "gives no depth of the water (`WtrDpth`)")
+    water = Water(depth)
+    water.density = _option(options, "wtrdnsty", "rhow", "rho", default=1025.0)
+    water.gravity = _option(options, "g", "gravity", default=9.80665)
+    beside = path.with_name(_CURRENTS)
+    if options.get("currents", "0") not in ("0", "none") and beside.is_file():
+        water.current = _currents(beside)
+    return water
+
+
+def _option(options: dict[str, str], *names: str, default: float) -> float:
+    for name in names:
+        try:
+            return abs(float(options[name]))
+        except (KeyError, ValueError):
+            continue
+    return default
+
+
+def _currents(path: Path) -> tuple[tuple[float, float, float, float], ...]:
+    from calm.files.document import read_text
+
+    rows = []
+    for line in read_text(path).splitlines():
+        try:
+            z, u, v, w = (float(word) for word in line.split()[:4])
+        except ValueError:
+            continue  # its head
+        if z <= 0.0:
+            rows.append((0.0 - z, u, v, w))
+    return tuple(sorted(rows))
+
+
+def _cable(kind: Row, density: float, gravity: float) -> Component:
+    """A line type: its weight is that of its mass less that of the water it displaces."""
+    across = kind.number("diameter")
+    if across <= 0.0:
+        raise kind.refuse("a line type has no diameter")
+    mass = kind.number("mass")
+    volume = math.pi / 4.0 * across**2
+    wet = (mass - 1025.0 * volume) * gravity
+    figures: dict[str, Figure] = {
+        "diameter": across, "cn": kind.number("cd", 0.0), "ct": kind.number("cdt", 0.0),
+    }  # fmt: skip
+    name = kind.words["name"]
+    heavy = wet >= 0.0
+    figures["weight" if heavy else "buoyancy"] = abs(wet)
+    figures["mass"] = mass
+    stiffness = kind.number("ea", 0.0)
+    if stiffness > 0.0:
+        figures["stiffness"] = stiffness
+    return Component(name, "chain" if heavy and is_chain(name) else "cable", figures)
+
+
+def _point(point: Row, design: Design) -> Item | None:
+    """What stands where two lengths join; nothing where it neither weighs nor drags."""
+    if not _is(point, _FREE):
+        raise point.refuse("a joint between two lengths is held: CALM has lines that hang free")
+    figures = _figures(point)
+    if not any(figures[key] for key in ("mass", "volume", "drag_area")):
+        return None
+    lifts = 1025.0 * float(figures["volume"]) > float(figures["mass"])
+    figures["role"] = "float" if lifts else "instrument"
+    return Item(Component(f"point {point.words['id']}", "body", figures))
+
+
+def _figures(point: Row) -> dict[str, Figure]:
+    for key in ("fx", "fy", "fz"):
+        if point.number(key, 0.0) != 0.0:
+            raise point.refuse(f"`{key}` pulls at the line from outside")
+    return {
+        "length": 0.0, "drag_area": point.number("cda", 0.0), "cd": 1.0,
+        "mass": point.number("mass", 0.0), "volume": point.number("volume", 0.0),
+    }  # fmt: skip
+
+
+def _upper_end(top: Row, items: list[Item], design: Design) -> Item:
+    """A free point is the float; one that is held at the surface gets a float that is guessed."""
+    assert design.water is not None and design.water.depth is not None
+    if _is(top, _FREE):
+        figures = _figures(top)
+        if 1025.0 * float(figures["volume"]) <= float(figures["mass"]):
+            raise top.refuse("the upper end is free, and does not float")
+        return Item(Component(f"point {top.words['id']}", "body", {**figures, "role": "float"}))
+    depth = 0.0 - top.number("z")
+    if depth > max(_NEAR * design.water.depth, _NEAR_AT_LEAST):
+        raise top.refuse(
+            f"the upper end is held {depth:g} m deep: a platform's; CALM has lines under a float"
+        )
+    lift = 1.5 * sum(_weight(item) for item in items) + 1e4
+    volume = lift / (1025.0 * 9.80665)
+    across = (6.0 * volume / math.pi) ** (1.0 / 3.0)
+    component = Component(
+        "float", "sphere",
+        {"diameter": across, "buoyancy": lift, "cx": 0.0, "role": "float"},
+        {"buoyancy": "the file holds the upper end; here a float without drag, free to move"},
+    )  # fmt: skip
+    return Item(component)
+
+
+def _weight(item: Item) -> float:
+    """In water [N]; 0 of what floats."""
+    figures = item.component.figures
+    mass, volume = float(figures.get("mass", 0.0)), float(figures.get("volume", 0.0))
+    if item.length is None:
+        return max((mass - 1025.0 * volume) * 9.81, 0.0)
+    return float(figures.get("weight", 0.0)) * item.length
+
+
+def _anchor(point: Row, water: Water) -> Component:
+    assert water.depth is not None
+    height = water.depth + point.number("z")
+    return Component("anchor", "anchor", {"length": height} if height > 1e-6 else {})

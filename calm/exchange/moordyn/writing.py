@@ -1,0 +1,206 @@
+"""A mooring as an input file of MoorDyn 2, its points where they stand in equilibrium."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import groupby
+from math import pi, sqrt
+
+from calm.errors import UsageError
+from calm.exchange.parts import Assembled, Part, Path, Place, area, mass_of, remarks
+from calm.physics.line import REFERENCE_DENSITY
+
+CURRENTS = "current_profile.txt"
+"""The name under which that program looks for the current, beside its input."""
+
+_HALF_DENSITY = 0.5 * REFERENCE_DENSITY
+_RIGID = 1e7  # N: EA of what does not stretch; stiffer lines need shorter steps
+_SHORT = 0.5  # m: rigid pieces in a row as long are a point
+_LENGTH, _MOST = 20.0, 60  # m of a length between two points, lengths of a cable
+_CLOSE = 0.5  # m: a clamp as close to a point stands there
+_SEGMENTS = 4  # of a length
+_LEAST = 1e-3  # kg of mass and of displaced water per metre, for what has none
+
+
+@dataclass
+class _Load:
+    """Parts at one point, or in one stiff length: net force, mass and drag area together."""
+
+    net: float = 0.0
+    mass: float = 0.0
+    area: float = 0.0
+
+    def add(self, part: Part) -> None:
+        """Let a part, with what is clamped on it, be one of them."""
+        for each in (part, *(clamp for clamp, _ in part.clamps)):
+            self.net += each.net
+            self.mass += mass_of(each)
+            self.area += area(each)
+
+
+@dataclass
+class _System:
+    """Types, points and lines of the file, as they grow from the anchor up."""
+
+    density: float
+    gravity: float
+    place: Place
+    types: dict[str, str] = field(default_factory=dict)
+    points: list[str] = field(default_factory=list)
+    lines: list[str] = field(default_factory=list)
+    load: _Load = field(default_factory=_Load)
+
+    def end_point(self, kind: str) -> int:
+        """The point that the line has come to, with what acts there; its number."""
+        volume = (self.load.mass + self.load.net / self.gravity) / self.density
+        figures = f"{self.load.mass:.9g}  {volume:.9g}  {self.load.area:.9g}  0"
+        x, y, depth = self.place
+        number = len(self.points) + 1
+        self.points.append(f"{number}  {kind}  {x:.6f}  {y:.6f}  {-depth:.6f}  {figures}")
+        return number
+
+    def line(self, name: str, figures: str, length: float, to: Place) -> None:
+        """A length of a type, from the point that the line has come to."""
+        below = self.end_point("Free" if self.points else "Fixed")
+        chosen, number = name, 1
+        while self.types.setdefault(chosen, figures) != figures:
+            number += 1
+            chosen = f"{name}_{number}"
+        segments = _SEGMENTS if length > 1.0 else 1
+        self.lines.append(
+            f"{len(self.lines) + 1}  {chosen}  {below}  {below + 1}  {length:.9g}  {segments}  -"
+        )
+        self.place, self.load = to, _Load()
+
+    def figures(self, load: _Load, along: float, stiffness: float) -> str:
+        """A line type of what acts on a metre; `along` is its drag along it at 1 m/s."""
+        mass = max(load.mass, _LEAST - load.net / self.gravity)
+        volume = (mass + load.net / self.gravity) / self.density
+        across = sqrt(4.0 * volume / pi)
+        return (
+            f"{across:.9g}  {mass:.9g}  {stiffness or _RIGID:.9g}  -0.8  0"
+            f"  {load.area / across:.9g}  1.0  {along / (_HALF_DENSITY * pi * across):.9g}  0.0"
+        )
+
+
+def moordyn_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
+    """The content of the file, and what is lost in it.
+
+    Raises
+    ------
+    UsageError
+        It is a tow.
+    NoEquilibrium
+        There is none whose places could be given.
+    """
+    if design.tow is not None:
+        raise UsageError("a tow has no anchor; MoorDyn is given moorings alone")
+    paths = design.paths()
+    density = sum(row[4] for row in design.levels) / len(design.levels)
+    system = _System(density, design.gravity, paths[-1].at(1.0))
+    lost = ["rigid pieces in a row: each row is one stiff length, or a point where it is short"]
+    numbered = list(enumerate(design.parts))[::-1]
+    for flexible, group in groupby(numbered, key=lambda pair: pair[1].flexible):
+        members = list(group)
+        if flexible:
+            for i, part in members:
+                _lay(system, part, paths[i])
+        else:
+            upper = members[-1][0]
+            parts = [part for _, part in members]
+            _lay_rigid(system, parts, paths[upper].at(0.0), last=upper == 0)
+    afloat, _ = design.afloat
+    if afloat:
+        lost.append("the float: the upper end is held where it is")
+    else:
+        lost.append("how high the float stands: it is a point at the end of the line")
+    system.end_point("Fixed" if afloat else "Free")
+    told = remarks(design, lost)
+    return _text(design, system, density, told).encode(), told
+
+
+def _lay(system: _System, part: Part, path: Path) -> None:
+    """A cable or chain from its lower end up, cut where something is clamped on.
+
+    It is cut into short lengths, too: that program begins with each hanging as in still water.
+    """
+    load = _Load(part.net, mass_of(part), area(part))
+    figures = system.figures(load, part.kt, part.stiffness)
+    count = min(max(round(part.length / _LENGTH), 1), _MOST)
+    cuts: dict[float, list[Part]] = {part.length * k / count: [] for k in range(count)}
+    for clamp, at in part.clamps:
+        near = min(cuts, key=lambda cut: abs(cut - at))
+        place = near if abs(near - at) < _CLOSE else at
+        cuts.setdefault(place, []).append(clamp)
+    below = part.length
+    for at in sorted(cuts, reverse=True):
+        if below > at:
+            system.line(_word(part.use), figures, below - at, path.at(at / part.length))
+            below = at
+        for clamp in cuts[at]:
+            system.load.add(clamp)
+
+
+def _lay_rigid(system: _System, parts: list[Part], top: Place, *, last: bool) -> None:
+    """Rigid pieces in a row; the uppermost row is the point at the end."""
+    load, length = _Load(), sum(part.length for part in parts)
+    for part in parts:
+        load.add(part)
+    if last or length <= _SHORT:
+        for part in parts:
+            system.load.add(part)
+        return
+    per_metre = _Load(load.net / length, load.mass / length, load.area / length)
+    along = sum(part.kt for part in parts) / length
+    name = _word("_and_".join(dict.fromkeys(part.use for part in parts[:2])))
+    system.line(name, system.figures(per_metre, along, _RIGID), length, top)
+
+
+def _word(text: str) -> str:
+    return "".join(sign if sign.isalnum() and sign.isascii() else "_" for sign in text)
+
+
+def _text(design: Assembled, system: _System, density: float, lost: tuple[str, ...]) -> str:
+    title = f"{design.name}, by CALM; the current stands in {CURRENTS}; lost:"
+    options = (
+        ("0", "writeLog"), ("0.1", "CFL"), ("RK2", "tScheme"), ("3.0e5", "kBot"),
+        ("3.0e4", "cBot"), (f"{density:.9g}", "rho"), (f"{design.gravity:.9g}", "g"),
+        (f"{design.depth:.9g}", "WtrDpth"), ("1.0", "dtIC"), ("0.0", "TmaxIC"),
+        ("4.0", "CdScaleIC"), ("0.0005", "threshIC"), ("0", "WaveKin"), ("1", "Currents"),
+        ("1", "disableOutput"), ("1", "disableOutTime"),
+    )  # fmt: skip
+    lines = [
+        "--------------------- MoorDyn Input File ------------------------------------",
+        *(" ".join(f"{each}".split()) for each in (title, *(f"  {each}" for each in lost))),
+        "---------------------- LINE TYPES -----------------------------------",
+        "TypeName   Diam    Mass/m     EA     BA/-zeta    EI    Cd     Ca    CdAx    CaAx",
+        "(name)     (m)     (kg/m)     (N)    (N-s/-)   (N-m^2) (-)    (-)   (-)     (-)",
+        *(f"{name}  {figures}" for name, figures in system.types.items()),
+        "---------------------- POINTS ---------------------------------------",
+        "ID   Attachment  X   Y   Z   Mass   Volume   CdA   Ca",
+        "(#)  (-)        (m) (m) (m)  (kg)   (m^3)   (m^2)  (-)",
+        *system.points,
+        "---------------------- LINES ----------------------------------------",
+        "ID   LineType   AttachA  AttachB  UnstrLen  NumSegs  LineOutputs",
+        "(#)  (name)     (#)      (#)      (m)       (-)      (-)",
+        *system.lines,
+        "---------------------- OPTIONS --------------------------------------",
+        *(f"{value}   {name}" for value, name in options),
+        "------------------------- need this line ----------------------------",
+        "",
+    ]
+    return "\n".join(lines)
+
+
+def current_profile(design: Assembled) -> bytes:
+    """The current for that program: heights from below the seabed to above the water."""
+    rows = [[0.0 - row[0], *row[1:4]] for row in reversed(design.levels)]
+    rows = [[rows[0][0] - 10.0, *rows[0][1:]], *rows, [10.0, *rows[-1][1:]]]
+    lines = [
+        "--------------------- MoorDyn steady currents File ------------------",
+        f"Currents of {' '.join(design.name.split())}, by CALM",
+        "z (m), ux (m/s), uy (m/s), uz (m/s)",
+        *(" ".join(f"{value:.9g}" for value in row) for row in rows),
+        "",
+    ]
+    return "\n".join(lines).encode()

@@ -1,0 +1,291 @@
+"""A mooring or a tow as it is given to other programs: parts with what the water does to each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+from calm.case import Mooring, Result, Tow, TowResult
+from calm.errors import NoEquilibrium, UsageError
+from calm.files import Anchor, Component, Sphere
+from calm.files.rigid import Displacement
+from calm.physics.line import REFERENCE_DENSITY, Line, Water
+from calm.units import KILOGRAM_FORCE
+
+_DIGITS = 9  # of a speed in m/s
+
+
+Place = tuple[float, float, float]
+"""East and north of the anchor, and depth [m]."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A piece, or what is clamped on one.
+
+    Attributes
+    ----------
+    use, label, role : as in the mooring file
+    component : its definition
+    flexible : whether it is a cable or chain, whose figures are per metre
+    length : unstretched [m]
+    net : net force in the water where it stands upright, + up [N or N/m]
+    kn, kt : drag across and along it at 1 m/s and 1025 kg/m³ [N/(m/s)², per metre where flexible]
+    directional : whether its drag depends on its axis
+    stiffness : EA [N]; 0 where it does not stretch
+    clamps : with their distance from its upper end [m]
+    """
+
+    use: str
+    label: str
+    role: str
+    component: Component
+    flexible: bool
+    length: float
+    net: float
+    kn: float
+    kt: float
+    directional: bool
+    stiffness: float
+    clamps: tuple[tuple[Part, float], ...] = ()
+
+    @property
+    def diameter(self) -> float:
+        """As its definition has it; 0 for a body [m]."""
+        return float(getattr(self.component, "diameter", 0.0))
+
+    @property
+    def mass(self) -> float | None:
+        """In air, where it is known [kg or kg/m]."""
+        return getattr(self.component, "mass", None)
+
+
+@dataclass(frozen=True)
+class Assembled:
+    """The parts of a line from its first piece to its last, the anchor apart.
+
+    Attributes
+    ----------
+    name, description : of the file
+    parts : of a mooring from the top, of a tow from the ship
+    anchor : the anchor, and its weight with what is clamped on it [N]; None for a tow
+    depth, levels, u, v, w, density : of the water [m, m/s, kg/m³], first at the surface
+    gravity : [m/s²]
+    tow : speed [m/s], direction [degrees] and height of the sheave [m]
+    afloat : whether the line reaches the surface, and whether its float has a draft there
+    unsaid : what no other program is told
+    solve : finds the equilibrium
+    """
+
+    name: str
+    description: str
+    parts: tuple[Part, ...]
+    anchor: tuple[Anchor, float] | None
+    depth: float
+    levels: tuple[tuple[float, float, float, float, float], ...]
+    gravity: float
+    wind: tuple[float, float]
+    tow: tuple[float, float, float] | None
+    afloat: tuple[bool, bool]
+    unsaid: tuple[str, ...]
+    solve: Callable[[], Result | TowResult]
+
+    def paths(self) -> list[Path]:
+        """The equilibrium: where each part lies, from the top down.
+
+        Raises
+        ------
+        NoEquilibrium
+            There is none.
+        """
+        result = self.solve()
+        nodes = np.column_stack([result.shape.x, result.shape.y, result.shape.depth])
+        paths, start = [], 0
+        for row in (result.components[i] for i in range(len(self.parts))):
+            low = np.array([row.x_bottom, row.y_bottom, row.depth_bottom])
+            gap = np.linalg.norm(nodes[start:] - low, axis=1)
+            end = start + int(np.flatnonzero(gap <= gap.min() + 1e-9)[0])
+            first = np.array([[row.x_top, row.y_top, row.depth_top]])
+            inner = nodes[start + 1 : end]
+            paths.append(Path(np.vstack([first, inner, low[np.newaxis]])))
+            start = end
+        return paths
+
+
+@dataclass(frozen=True)
+class Path:
+    """Where a part lies in equilibrium: nodes from its upper end, (n, 3) as `Place` has them."""
+
+    nodes: np.ndarray[tuple[int, int], np.dtype[np.float64]]
+
+    def at(self, share: float) -> Place:
+        """The place at a share of its length from its upper end."""
+        steps = np.linalg.norm(np.diff(self.nodes, axis=0), axis=1)
+        along = np.concatenate([[0.0], np.cumsum(steps)])
+        place = [float(np.interp(share * along[-1], along, column)) for column in self.nodes.T]
+        return place[0], place[1], place[2]
+
+
+def assembled(mooring: Mooring | Tow) -> Assembled:
+    """What there is to give away.
+
+    Raises
+    ------
+    NoEquilibrium
+        A piece is to be cut to fit, and no length does.
+    """
+    file, water, line = mooring.file, mooring.water, mooring.line
+    if file.environment.fluid == "air":
+        raise UsageError(f"{file.path} is towed in air; the other programs know water alone")
+    secant = _secants(mooring)
+    depths = _depths(line, water, isinstance(mooring, Tow))
+    parts = []
+    for i in range(len(line.length)):
+        piece = file.pieces[i]
+        excess = _excess(water, depths[i])
+        on = [k for k in range(len(line.clamp_at)) if line.clamp_piece[k] == i]
+        clamps = tuple(
+            (
+                Part(
+                    clamp.use, clamp.label, clamp.component.role, clamp.component, False,
+                    float(getattr(clamp.component, "length", 0.0)),
+                    float(line.clamp_buoyancy[k] + excess * line.clamp_volume[k]),
+                    float(line.clamp_drag[k]), float(line.clamp_drag[k]), False, 0.0,
+                ),
+                float(line.clamp_at[k]),
+            )
+            for k, clamp in zip(on, piece.clamps, strict=True)
+        )  # fmt: skip
+        compliance = float(line.compliance[i])
+        stiffness = secant.get(i, 1.0 / compliance if compliance else 0.0)
+        parts.append(
+            Part(
+                piece.use, piece.label, piece.component.role, piece.component,
+                bool(line.flexible[i]), float(line.length[i]),
+                float(line.buoyancy[i] + excess * line.volume[i]),
+                float(line.normal_drag[i]), float(line.tangential_drag[i]),
+                bool(line.directional[i]), stiffness, clamps,
+            )
+        )  # fmt: skip
+    wind = file.environment.wind
+    anchor = None
+    tow = None
+    if isinstance(mooring, Tow):
+        keys = mooring.keys
+        tow = keys.speed, keys.toward, keys.height
+    else:
+        anchor = file.anchor, mooring.anchor_weight
+    return Assembled(
+        name=file.name,
+        description=file.description,
+        parts=tuple(parts),
+        anchor=anchor,
+        depth=float(water.depth),
+        levels=_levels(water, 2.0 * float(line.length.sum()) if tow else float(water.depth)),
+        gravity=float(water.gravity),
+        wind=(0.0, 0.0) if wind is None else (wind.speed, wind.toward),
+        tow=tow,
+        afloat=(_reaches(mooring), line.floating is not None and line.floating.hull is not None),
+        unsaid=_unsaid(mooring),
+        solve=mooring.solve,
+    )
+
+
+def _reaches(mooring: Mooring | Tow) -> bool:
+    """Whether a mooring floats at the surface; by its length where it has no equilibrium."""
+    if isinstance(mooring, Tow):
+        return False
+    try:
+        return mooring.solve().type == "surface"
+    except NoEquilibrium:
+        whole = mooring.line.anchor_height + float(mooring.line.length.sum())
+        return whole >= float(mooring.water.depth)
+
+
+def _secants(mooring: Mooring | Tow) -> dict[int, float]:
+    """Stiffness of the pieces that stretch by a table, as it is at their tension here [N]."""
+    curves = mooring.line.elongation
+    if not any(curves):
+        return {}
+    rows = mooring.solve().components
+    secants = {}
+    for i, curve in enumerate(curves):
+        if curve is not None:
+            strain = rows[i].length / rows[i].cut_length - 1.0
+            tension = (rows[i].tension_top + rows[i].tension_bottom) / 2.0
+            secants[i] = tension / strain if strain > 0.0 else 0.0
+    return secants
+
+
+def _depths(line: Line, water: Water, towed: bool) -> list[float]:
+    """Of the middle of every piece, upright above the anchor or below the ship [m]."""
+    below = np.cumsum(line.length) - line.length / 2.0
+    if not towed:
+        below += float(water.depth) - line.anchor_height - float(line.length.sum())
+    return [max(float(depth), 0.0) for depth in below]
+
+
+def _excess(water: Water, depth: float) -> float:
+    """What a displaced cubic metre lifts there more than in reference water [N/m³]."""
+    _, density = water.at(np.array(depth))
+    return (float(density) - REFERENCE_DENSITY) * float(water.gravity)
+
+
+def _levels(water: Water, deepest: float) -> tuple[tuple[float, float, float, float, float], ...]:
+    """Rows of depth, u, v, w and density, from the surface to the seabed."""
+    inside = [float(depth) for depth in water.level if 0.0 < depth < deepest]
+    rows = []
+    for depth in (0.0, *inside, deepest):
+        u, v, w, density = (
+            round(float(np.interp(depth, water.level, values)), _DIGITS) + 0.0
+            for values in (water.u, water.v, water.w, water.density)
+        )
+        rows.append((depth, u, v, w, density))
+    return tuple(rows)
+
+
+def _unsaid(mooring: Mooring | Tow) -> tuple[str, ...]:
+    """What a mooring file says that only CALM works with."""
+    file = mooring.file
+    told = [
+        "limits of the design check, strengths, ratings and tilts of components",
+    ]
+    if file.solver.strumming is not None:
+        told.append("strumming: the drag of cables is that at rest")
+    if file.solver.drag == "reynolds":
+        told.append("`drag: reynolds`: drags are those of the constant coefficients")
+    if file.solver.friction != "berteaux":
+        told.append(f"`friction: {file.solver.friction}`")
+    if any(mooring.line.elongation):
+        told.append("elongation tables: stiffness is that at the tension found here")
+    if any(mooring.line.lift) or any(mooring.line.clamp_lift):
+        told.append("lift of towed bodies")
+    return tuple(told)
+
+
+def area(part: Part) -> float:
+    """Drag coefficient times area [m²], of a cable per metre."""
+    return part.kn / (0.5 * REFERENCE_DENSITY)
+
+
+def remarks(design: Assembled, more: Sequence[str]) -> tuple[str, ...]:
+    """What is lost, each once."""
+    return tuple(dict.fromkeys((*more, *design.unsaid)))
+
+
+def mass_of(part: Part) -> float:
+    """In air [kg, kg/m]: as known, or of what weight and size say."""
+    if part.mass is not None:
+        return part.mass
+    hull = getattr(part.component, "hull", None)
+    volume = part.component.displaced_volume
+    if isinstance(hull, Displacement):
+        volume = hull.displacement[-1][1]
+    if not volume:
+        across = part.diameter
+        round_ = pi / 6.0 * across**3 if isinstance(part.component, Sphere) else 0.0
+        volume = round_ or pi / 4.0 * across**2 * (1.0 if part.flexible else part.length)
+    return max(REFERENCE_DENSITY * volume - part.net / KILOGRAM_FORCE, 0.1 * abs(part.net) / 9.81)

@@ -1,0 +1,1 @@
+"""Lists of pieces in CSV files and spreadsheets, those of moords among them."""

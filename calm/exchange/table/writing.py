@@ -1,0 +1,48 @@
+"""A mooring or a tow as a list: CSV, a row each piece and each clamp, from the top down."""
+
+from __future__ import annotations
+
+import csv
+import io
+
+from calm.exchange.parts import Assembled, Part, area, remarks
+
+HEADER = (
+    "name", "label", "kind", "role", "clamped at[m]", "length[m]", "diameter[m]", "whole mass[kg]",
+    "whole buoyancy[N]", "whole Cd x area[m^2]", "EA[N]",
+)  # fmt: skip
+
+
+def csv_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
+    """The content of the file, and what is lost in it."""
+    told = remarks(design, ("drag along pieces: one area stands for all", "the water"))
+    text = io.StringIO()
+    for line in (f"{design.name}, by CALM; lost:", *told):
+        text.write(f"# {' '.join(line.split())}\n")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(HEADER)
+    for part in design.parts:
+        writer.writerow(_row(part, ""))
+        for clamp, at in part.clamps:
+            writer.writerow(_row(clamp, f"{at:.9g}"))
+    if design.anchor is not None:
+        anchor, weight = design.anchor
+        mass = "" if anchor.mass is None else f"{anchor.mass:.9g}"
+        shown = ["anchor", "anchor", "anchor", "anchor", "", f"{anchor.length:.9g}", "", mass]
+        writer.writerow([*shown, f"{-weight:.9g}", "", ""])
+    return text.getvalue().encode(), told
+
+
+def _row(part: Part, at: str) -> list[str]:
+    whole = part.length if part.flexible else 1.0
+    mass = "" if part.mass is None else f"{part.mass * whole:.9g}"
+    stiffness = f"{part.stiffness:.9g}" if part.stiffness else ""
+    diameter = f"{part.diameter:.9g}" if part.diameter else ""
+    figures = [diameter, mass, f"{part.net * whole:.9g}", f"{area(part) * whole:.9g}", stiffness]
+    words = [part.use, part.label, part.component.kind, part.role]
+    return [_cell(word) for word in words] + [at, f"{part.length:.9g}", *figures]
+
+
+def _cell(text: str) -> str:
+    """A text that no spreadsheet takes for a formula."""
+    return f"'{text}" if text.startswith(("=", "+", "-", "@")) else text

@@ -1,0 +1,184 @@
+"""Ranges from a CSV file: `latitude[deg],longitude[deg]` of the ship, `range[m]` or `time[s]`."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from calm.errors import InputError, Problem
+from calm.files.explain import shown
+from calm.locate.columns import NUMBER, Row, lacking, read_columns
+from calm.locate.ellipsoid import Frame
+from calm.physics.line import Floats
+
+EXAMPLE = "latitude[deg],longitude[deg],range[m]"
+LONGEST = {"range": 25_000.0, "time": 35.0}
+"""Beyond what the transponders of moorings answer [m], and there and back [s]."""
+WIDEST = 50_000.0
+"""How far from the middle of a survey its positions may be [m]."""
+MOST_PROBLEMS = 20
+_UNANSWERED = frozenset({"", "nan", "na", "n/a", "-", "none", "null"})
+_FILLS = frozenset({"-9999", "-999", "-99", "9999", "99999", "999999", "-99999", "1e35", "1e+35"})
+_DEGREES = {"deg": 1.0, "degree": 1.0, "degrees": 1.0, "°": 1.0}
+_UNITS = {
+    "latitude": _DEGREES,
+    "longitude": _DEGREES,
+    "range": {"m": 1.0, "km": 1000.0},
+    "time": {"s": 1.0, "ms": 1e-3},
+}
+_EARTH = 111_200.0  # metres of a degree, about
+
+
+@dataclass(frozen=True)
+class Survey:
+    """Ranges that a ship took.
+
+    Attributes
+    ----------
+    path : of their file
+    line : in the file, of each
+    latitude, longitude : (n,) of the transducer, WGS 84 [degrees]
+    measured : (n,) ranges [m], or where `timed` times there and back [s]
+    transducer : its depth [m]
+    notices : what of the file was left out
+    """
+
+    path: Path
+    line: tuple[int, ...]
+    latitude: Floats
+    longitude: Floats
+    measured: Floats
+    timed: bool
+    transducer: float
+    notices: tuple[str, ...] = ()
+
+    @cached_property
+    def frame(self) -> Frame:
+        """About the middle of the ship's positions, which may lie across 180 degrees."""
+        lam = np.radians(self.longitude)
+        middle = np.degrees(np.arctan2(np.sin(lam).mean(), np.cos(lam).mean()))
+        return Frame(float(self.latitude.mean()), float(middle))
+
+
+def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
+    """The ranges of a file.
+
+    A row without a range, its cell blank or `nan`, is one that was not answered: it is left out.
+    So is a row that repeats another, which tells nothing new. Other columns are not read.
+
+    Parameters
+    ----------
+    transducer : depth of the ship's transducer [m]
+
+    Raises
+    ------
+    InputError
+        With every mistake of the file, each with its line.
+    """
+    problems: list[Problem] = []
+    columns = read_columns(path, _UNITS, EXAMPLE, problems)
+    heads = columns.factors
+    problems += [
+        lacking(path, name, "deg", columns)
+        for name in ("latitude", "longitude")
+        if name not in heads
+    ]
+    if ("range" in heads) == ("time" in heads):
+        both = "there are columns `range` and `time`; leave one of them out"
+        none = "there is no column `range[m]` or `time[s]`"
+        problems.append(Problem(str(path), 1, 1, both if "range" in heads else none))
+    measure = "time" if "time" in heads else "range"
+    values: list[tuple[int, float, float, float]] = []
+    silent: list[int] = []
+    for row in columns.rows:
+        if row.cells.get(measure, "").strip().lower() in _UNANSWERED:
+            silent.append(row.line)
+            continue
+        names = [name for name in ("latitude", "longitude", measure) if name in heads]
+        found = [_value(path, row, name, heads[name], problems) for name in names]
+        numbers = [value for value in found if value is not None]
+        if len(numbers) == 3:
+            values.append((row.line, numbers[0], numbers[1], numbers[2]))
+    problems += _misplaced(path, values)
+    problems.sort(key=lambda problem: problem.line)
+    if problems:
+        raise InputError(problems[:MOST_PROBLEMS])
+    notices = [f"not read: {', '.join(f'`{shown(one)}`' for one in columns.others)}"]
+    notices = notices if columns.others else []
+    once: dict[tuple[float, float, float], int] = {}
+    for line, *what in values:
+        first = once.setdefault((what[0], what[1], what[2]), line)
+        if first != line:
+            notices.append(f"line {line} repeats line {first}: left out")
+    if silent:
+        lines = ", ".join(map(str, silent))
+        notices.append(f"no answer in line{'s' * (len(silent) > 1)} {lines}: left out")
+    latitude, longitude, measured = np.array([*once]).reshape(-1, 3).T
+    return Survey(
+        path=path,
+        line=tuple(once.values()),
+        latitude=latitude,
+        longitude=longitude,
+        measured=measured,
+        timed=measure == "time",
+        transducer=transducer,
+        notices=tuple(notices),
+    )
+
+
+def _value(path: Path, row: Row, name: str, factor: float, problems: list[Problem]) -> float | None:
+    """A cell in SI or degrees; None, with a mistake added, where it is no such figure."""
+    text = row.cells[name]
+    refusal = _refusal(name, text, factor)
+    if refusal:
+        problems.append(Problem(str(path), row.line, 1, f"`{name}: {shown(text)}` {refusal}"))
+        return None
+    return float(text) * factor
+
+
+def _refusal(name: str, text: str, factor: float) -> str:
+    """What is wrong with a cell; empty where nothing is."""
+    placed = name in ("latitude", "longitude")
+    if re.sub(r"\.0*$", "", text) in _FILLS:
+        leave = "leave the row out" if placed else "leave the cell blank"
+        return f"is a fill value; {leave} where there is none"
+    if not NUMBER.fullmatch(text):
+        degrees = "; decimal degrees are needed, south and west negative" if placed else ""
+        return f"is no number{degrees}"
+    value = float(text) * factor
+    if name == "latitude" and abs(value) > 90.0:
+        return "is beyond 90 degrees; are latitude and longitude exchanged?"
+    if name == "longitude" and abs(value) > 360.0:
+        return "is beyond 360 degrees"
+    if not placed and value <= 0.0:
+        return "must be above 0; leave the cell blank where there was no answer"
+    if not placed and value > LONGEST[name]:
+        hint = "; did you mean `time[ms]`?" if name == "time" and factor == 1.0 else ""
+        unit = next(iter(_UNITS[name]))
+        return f"is more than {LONGEST[name]:g} {unit}, farther than is answered{hint}"
+    return ""
+
+
+def _misplaced(path: Path, values: list[tuple[int, float, float, float]]) -> list[Problem]:
+    """Positions that are none, and those that are far from the others."""
+    problems = []
+    places = []
+    for line, latitude, longitude, _ in values:
+        if latitude == 0.0 and longitude == 0.0:
+            message = "position 0, 0 is a fill value; leave the row out"
+            problems.append(Problem(str(path), line, 1, message))
+        else:
+            places.append((line, latitude, longitude))
+    if len(places) > 2:
+        north, east = np.median([place[1:] for place in places], axis=0)
+        for line, latitude, longitude in places:
+            turn = (longitude - east + 180.0) % 360.0 - 180.0
+            away = _EARTH * np.hypot(latitude - north, turn * np.cos(np.radians(north)))
+            if away > WIDEST:
+                message = f"the position is {away / 1000.0:.0f} km from the others"
+                problems.append(Problem(str(path), line, 1, message))
+    return problems

@@ -1,0 +1,101 @@
+"""The speed of sound: one, or a profile, and the path of a straight ray through it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from calm.errors import InputError, Problem
+from calm.files.explain import shown
+from calm.locate.columns import NUMBER, lacking, read_columns
+from calm.physics.line import Floats
+
+SLOWEST, FASTEST = 1380.0, 1680.0
+"""Of sound in natural waters [m/s]: near-freezing fresh water, the deepest trench."""
+_UNITS = {"depth": {"m": 1.0}, "sound_speed": {"m/s": 1.0}}
+_EXAMPLE = "depth[m],sound_speed[m/s]"
+
+
+@dataclass(frozen=True)
+class Sound:
+    """Speed of sound by depth: linear between the depths, constant beyond them.
+
+    Attributes
+    ----------
+    depth : (k,) growing [m]
+    speed : (k,) [m/s]
+    """
+
+    depth: Floats
+    speed: Floats
+
+    @classmethod
+    def constant(cls, speed: float) -> Sound:
+        """The same speed at all depths [m/s]."""
+        return cls(np.zeros(1), np.array([speed]))
+
+    def mean(self, above: float, below: float) -> float:
+        """Harmonic mean between two depths [m/s].
+
+        A straight ray spends its way evenly over the depths between its ends, at any slope, so its
+        time is its length over this mean.
+        """
+        if len(self.speed) == 1 or below - above < 1e-6:
+            return float(np.interp(0.5 * (above + below), self.depth, self.speed))
+        inside = self.depth[(self.depth > above) & (self.depth < below)]
+        levels = np.array([above, *inside, below])
+        speeds = np.interp(levels, self.depth, self.speed)
+        ratio = np.diff(speeds) / speeds[:-1]
+        # ∫ dz/c of a linear c is Δz ln(1 + x)/(x c), x its relative growth
+        small = np.abs(ratio) < 1e-6
+        slowness = np.where(small, 1.0 - 0.5 * ratio, np.log1p(ratio) / np.where(small, 1.0, ratio))
+        time = float((np.diff(levels) * slowness / speeds[:-1]).sum())
+        return (below - above) / time
+
+
+def read_sound(path: Path) -> Sound:
+    """A profile from a CSV file with the header ``depth[m],sound_speed[m/s]``.
+
+    Raises
+    ------
+    InputError
+        With every mistake of the file: a depth that does not grow, a speed that no water has.
+    """
+    problems: list[Problem] = []
+    columns = read_columns(path, _UNITS, _EXAMPLE, problems)
+    for name, units in _UNITS.items():
+        if name not in columns.factors:
+            problems.append(lacking(path, name, next(iter(units)), columns))
+    depths: list[float] = []
+    speeds: list[float] = []
+    for row in columns.rows:
+        for name, text in row.cells.items():
+            complaint = _complaint(name, text, depths)
+            if complaint:
+                message = f"`{name}: {shown(text)}` {complaint}"
+                problems.append(Problem(str(path), row.line, 1, message))
+            else:
+                (depths if name == "depth" else speeds).append(float(text))
+    if not problems and not depths:
+        problems.append(Problem(str(path), 0, 0, "there are no rows below the header"))
+    if problems:
+        raise InputError(problems)
+    return Sound(np.array(depths), np.array(speeds))
+
+
+def _complaint(name: str, text: str, depths: list[float]) -> str:
+    if not NUMBER.fullmatch(text):
+        return "is no number"
+    value = float(text)
+    if name == "depth":
+        if value < 0.0 or (depths and value <= depths[-1]):
+            return "depths count downwards from 0 and must increase"
+        return ""
+    return "" if SLOWEST <= value <= FASTEST else sound_complaint()
+
+
+def sound_complaint() -> str:
+    """What is said of a speed of sound that no water has."""
+    return f"is no speed of sound in water; it is {SLOWEST:g} to {FASTEST:g} m/s"

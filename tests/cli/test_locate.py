@@ -1,0 +1,165 @@
+import json
+
+import pytest
+
+RANGES = """\
+latitude[deg],longitude[deg],range[m]
+48.313488,-5.200000,2497.3
+48.306743,-5.182485,2497.1
+48.293256,-5.182490,2497.2
+48.286512,-5.200000,2497.0
+48.293256,-5.217510,2497.2
+48.306743,-5.217515,2597.1
+"""
+"""1500 m from 48.3, -5.2 every 60 degrees, of an anchor at 2000 m; the last is 100 m too long."""
+
+
+@pytest.fixture
+def ranges(folder):
+    def write(text=RANGES, name="ranges.csv"):
+        (folder / name).write_text(text, encoding="utf-8")
+        return name
+
+    return write
+
+
+def test_the_place(calm, ranges):
+    done = calm("locate", ranges(), "--transducer", "3 m", "--json", "-")
+    assert done.code == 0
+    document = json.loads(done.out)
+    assert document["latitude"] == pytest.approx(48.3, abs=1e-5)
+    assert document["longitude"] == pytest.approx(-5.2, abs=1e-5)
+    assert document["depth"] == pytest.approx(1999.5, abs=1.0)
+    assert document["horizontal_95"] < 5.0
+    assert len(document["residuals"]) == 6
+    assert [one["line"] for one in document["outliers"]] == [7]
+
+
+def test_what_a_person_reads(calm, ranges):
+    done = calm("locate", ranges())
+    assert done.code == 0
+    assert "48° 18.000′ N" in done.out
+    assert "Not used, they do not fit the others: line 7." in done.out
+    assert done.err == ""
+
+
+def test_height_of_what_answers_and_a_given_depth(calm, ranges):
+    found = json.loads(calm("locate", ranges(), "--above-seabed", "30 m", "--json", "-").out)
+    assert found["depth"] == pytest.approx(2026.5, abs=1.0)
+    done = calm("locate", ranges(), "--depth", "2026.5 m", "--above-seabed", "30 m", "--json", "-")
+    assert json.loads(done.out)["depth"] == pytest.approx(2026.5, abs=1e-6)
+
+
+def test_it_is_written_into_the_mooring_and_nothing_else_changes(
+    calm, ranges, write_mooring, folder
+):
+    write_mooring("m.yaml")
+    text = (folder / "m.yaml").read_text() + (
+        "deployed:   # by the mate\n  date: 2027-03-02   # a Tuesday\n"
+        "  depth: 12 m\n  items: [{label: rope, remark: remade}]\n"
+    )
+    (folder / "m.yaml").write_text(text)
+    done = calm("locate", ranges(), "-o", "m.yaml")
+    assert done.code == 0
+    written = (folder / "m.yaml").read_text()
+    assert "deployed:   # by the mate\n  date: 2027-03-02   # a Tuesday\n" in written
+    assert "position: {latitude: 48.299999 deg, longitude: -5.199998 deg}" in written
+    assert "depth: 12 m" not in written
+    kept = [line for line in text.splitlines() if "depth: 12 m" not in line]
+    assert [line for line in kept if line not in written.splitlines()] == []
+    assert calm("diff", "m.yaml").code == 0
+
+
+def test_a_file_that_cannot_take_it_is_refused_before_anything_is_written(
+    calm, ranges, broken, folder
+):
+    done = calm("locate", ranges(), "-o", "broken.yaml", "--plot", "circles.svg")
+    assert done.code == 2
+    assert done.out == ""
+    assert not (folder / "circles.svg").exists()
+    assert calm("locate", ranges(), "-o", "none.yaml").code == 2
+
+
+def test_the_plot(calm, ranges, folder):
+    assert calm("locate", ranges(), "--plot", "circles.svg").code == 0
+    assert "all ranges, numbered by line of the file" in (folder / "circles.svg").read_text()
+    assert calm("locate", ranges(), "--plot", "circles.txt").code == 2
+
+
+def test_every_mistake_at_once_with_its_line(calm, ranges):
+    text = (
+        "latitude,longitude[deg],range[m]\n148.3,-5.2,2000\n0,0,2000\n48.3,-5.2,-9999\n"
+        "48.3,-5.2\n48 12N,-5.2,x\n48.3,-5.2,-1\n10.0,-5.2,2000\n48.3,-5.2,99000\n"
+        "48.31,-5.21,2000\n48.32,-5.21,2000\n48.33,-5.21,2000\n48.34,-5.21,2000\n"
+    )
+    done = calm("locate", ranges(text))
+    assert done.code == 2
+    assert done.out == ""
+    said = [line.split(":", 3)[1::2] for line in done.err.splitlines()]
+    assert [number for number, _ in said] == ["1", "2", "3", "4", "5", "6", "6", "7", "8", "9"]
+    for (_, message), part in zip(
+        said,
+        [
+            "column `latitude` needs a unit; did you mean `latitude[deg]`?",
+            "is beyond 90 degrees; are latitude and longitude exchanged?",
+            "position 0, 0 is a fill value",
+            "is a fill value; leave the cell blank",
+            "the row has 2 values, the header 3",
+            "decimal degrees are needed",
+            "is no number",
+            "must be above 0",
+            "km from the others",
+            "farther than is answered",
+        ],
+        strict=True,
+    ):
+        assert part in message
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "is empty"),
+        ("48.3,-5.2,2000\n", "there is no header"),
+        ("latitude[deg],longitude[deg]\n48.3,-5.2\n", "there is no column `range[m]` or `time[s]`"),
+        ("lat[deg],longitude[deg],range[m]\n48.3,-5.2,1\n", "there is no column `latitude[deg]`"),
+        ("latitude[deg],longitude[deg],time[s]\n48.3,-5.2,2750\n", "did you mean `time[ms]`?"),
+        ("latitude[deg],longitude[deg],range[ell]\n48.3,-5.2,1\n", "allowed: m, km"),
+        ("latitude[deg];longitude[deg];range[m]\n48,3;-5,2;2000\n", "decimal degrees are needed"),
+        (RANGES.split("48.29")[0], "2 ranges; 3 are needed"),
+    ],
+)
+def test_files_that_are_none(calm, ranges, text, said):
+    done = calm("locate", ranges(text))
+    assert done.code == 2
+    assert said in done.err
+
+
+def test_what_was_not_answered_and_what_repeats_is_left_out(calm, ranges):
+    lines = RANGES.splitlines()
+    text = "\n".join(["# night of the 3rd", *lines[:6], lines[1], "48.3,-5.2,nan", "48.3,-5.2,"])
+    done = calm("locate", ranges(text), "--json", "-")
+    assert done.code == 0
+    assert "line 8 repeats line 3: left out" in done.err
+    assert "no answer in lines 9, 10: left out" in done.err
+    assert json.loads(done.out)["lines"] == [3, 4, 5, 6, 7]
+
+
+def test_times_and_a_profile_of_the_sound(calm, ranges, folder):
+    times = RANGES.splitlines()[:6]
+    text = "latitude[deg],longitude[deg],time[ms]\n" + "\n".join(
+        ",".join([*line.split(",")[:2], str(2000.0 * float(line.split(",")[2]) / 1490.0)])
+        for line in times[1:]
+    )
+    (folder / "sound.csv").write_text("depth[m],sound_speed[m/s]\n0,1480\n2000,1500\n")
+    done = calm("locate", ranges(text), "--sound-speed", "sound.csv", "--json", "-")
+    assert done.code == 0
+    document = json.loads(done.out)
+    assert document["sound_speed"] == pytest.approx(1490.0, abs=0.1)
+    assert document["depth"] == pytest.approx(1996.5, abs=2.0)
+    (folder / "sound.csv").write_text("depth[m],sound_speed[m/s]\n10,1480\n5,150\n")
+    done = calm("locate", ranges(text), "--sound-speed", "sound.csv")
+    assert done.code == 2
+    assert "must increase" in done.err
+    assert "is no speed of sound in water" in done.err
+    assert calm("locate", ranges(text), "--sound-speed", "300 m/s").code == 2

@@ -1,0 +1,142 @@
+"""Moorings given to other programs, and read back: the same equilibrium."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.io import loadmat
+
+from calm.case import load
+from calm.errors import UsageError
+from calm.exchange.exporting import export_file
+from calm.exchange.importing import import_file
+from calm.shipped import shipped_folder
+
+LINES = Path(str(shipped_folder("lines")))
+ENDINGS = {"mdd": ".mat", "cbl": ".cbl", "csv": ".csv", "moordyn": ".txt"}
+SUBSURFACE = ["cdms-1", "deep-current-meters", "fit-top-depth", "tidal-adcp"]
+
+
+def there_and_back(tmp_path, name, to, environment=None):
+    source = LINES / f"{name}.yaml"
+    exported = export_file(source, to)
+    for beside, content in exported.beside.items():
+        (tmp_path / beside).write_bytes(content)
+    other = tmp_path / f"{name}{ENDINGS[to]}"
+    other.write_bytes(exported.content)
+    made = import_file(other, tmp_path / "back.yaml", environment=environment)
+    before, after = load(source), load(tmp_path / "back.yaml", text=made.text)
+    return before, before.solve().to_dict(), after.solve().to_dict(), exported.lost
+
+
+@pytest.mark.parametrize("to", ["mdd", "cbl"])
+@pytest.mark.parametrize("name", SUBSURFACE)
+def test_a_subsurface_mooring_comes_back(name, to, tmp_path):
+    """To 1e-4 of the depth, though cylinders come back as stiff lines and floats as points."""
+    before, one, other, _ = there_and_back(tmp_path, name, to)
+    depth = before.file.environment.depth
+    assert other["top"]["depth"] == pytest.approx(one["top"]["depth"], abs=1e-4 * depth)
+    pull, back = one["anchor"]["tension"], other["anchor"]["tension"]
+    assert back == pytest.approx(pull, rel=0.01)
+
+
+def test_a_rope_under_a_float_comes_back_from_moordyn(tmp_path):
+    """S1000, all of which that program can be told; its current stands beside the file."""
+    _, one, other, _ = there_and_back(tmp_path, "s1000", "moordyn")
+    assert other["top"]["depth"] == pytest.approx(one["top"]["depth"], abs=0.1)
+    assert other["top"]["x"] == pytest.approx(one["top"]["x"], abs=0.1)
+    assert other["anchor"]["tension"] == pytest.approx(one["anchor"]["tension"], rel=1e-4)
+
+
+def test_the_points_of_moordyn_stand_in_equilibrium():
+    exported = export_file(LINES / "cdms-1.yaml", "moordyn")
+    rows = exported.content.decode().split("POINTS")[1].split("LINES")[0].splitlines()[3:-1]
+    first, last = rows[0].split(), rows[-1].split()
+    answer = load(LINES / "cdms-1.yaml").solve().to_dict()
+    assert first[1] == "Fixed"
+    assert float(first[4]) == pytest.approx(-525.0 + 0.55)
+    assert last[1] == "Free"
+    assert float(last[2]) == pytest.approx(answer["components"][1]["x_top"], abs=1e-3)
+    assert -float(last[4]) == pytest.approx(answer["components"][1]["depth_top"], abs=1e-3)
+    lift = (1025 * float(last[6]) - float(last[5])) * 9.81
+    assert lift == pytest.approx(682 * 9.80665, rel=2e-3)
+
+
+def test_moordyn_is_given_no_tow():
+    with pytest.raises(UsageError, match="a tow has no anchor"):
+        export_file(LINES / "depressor-fit-depth.yaml", "moordyn")
+
+
+def test_a_hull_comes_back_from_whoi_cable(tmp_path):
+    """Its displacement is that of its table; the area it shows is not, which moves the buoy."""
+    _, one, other, _ = there_and_back(tmp_path, "taut-nylon-surface", "cbl")
+    assert other["type"] == "surface"
+    assert other["top"]["depth"] == pytest.approx(one["top"]["depth"], abs=0.02)
+    assert other["anchor"]["vertical"] == pytest.approx(one["anchor"]["vertical"], rel=0.02)
+
+
+@pytest.mark.parametrize("to", ["mdd", "cbl"])
+def test_a_tow_comes_back(to, tmp_path):
+    source = tmp_path / "tow.yaml"
+    source.write_text(
+        "tow: {speed: 2 m/s, toward: 60 deg}\nline:\n"
+        "  - {use: wire, length: 300 m, clamps: [{use: light, at: 200 m}]}\n  - {use: ball}\n"
+        "components:\n"
+        "  wire: {kind: cable, diameter: 10 mm, weight: 2.5 N/m, cn: 1.5, ct: 0, stiffness: 5 MN}\n"
+        "  light: {kind: cylinder, diameter: 60 mm, length: 0.5 m, buoyancy: -20 N, cn: 1.2}\n"
+        "  ball: {kind: sphere, diameter: 0.5 m, length: 0 m, buoyancy: -2 kN, cx: 0.5}\n"
+    )
+    exported = export_file(source, to)
+    other = tmp_path / f"tow{ENDINGS[to]}"
+    other.write_bytes(exported.content)
+    made = import_file(other, tmp_path / "back.yaml")
+    one = load(source).solve()
+    back = load(tmp_path / "back.yaml", text=made.text).solve()
+    assert back.body.depth == pytest.approx(one.body.depth, abs=0.02)
+    assert back.body.layback == pytest.approx(one.body.layback, abs=0.02)
+    assert back.tow_point.tension == pytest.approx(one.tow_point.tension, rel=2e-4)
+
+
+def test_a_list_comes_back(tmp_path):
+    water = tmp_path / "site.yaml"
+    lines = (LINES / "thermistor-string.yaml").read_text().splitlines()
+    start = lines.index("environment:")
+    end = next(i for i in range(start + 1, len(lines)) if lines[i][:1].isalpha())
+    water.write_text("\n".join(lines[start:end]) + "\n")
+    _, one, other, _ = there_and_back(tmp_path, "thermistor-string", "csv", water)
+    assert other["top"]["depth"] == pytest.approx(one["top"]["depth"], abs=0.01)
+    assert len(other["clamps"]) == len(one["clamps"])
+
+
+def test_the_matrices_are_those_of_that_program(tmp_path):
+    path = tmp_path / "m.mat"
+    path.write_bytes(export_file(LINES / "cdms-1.yaml", "mdd").content)
+    found = loadmat(path)
+    assert found["H"].shape == (4, 21)
+    assert found["H"][:, 1] == pytest.approx([10.0, 0.007, 0.0, 1.0])
+    assert found["B"][0, 0] == pytest.approx(682.0)
+    assert found["ME"][0, 1] == pytest.approx(1.38e11, rel=1e-3)
+    assert np.isinf(found["ME"][0, 0])
+    assert len(found["moorele"]) == 21
+    assert found["z"].ravel() == pytest.approx([525.0, 325.0, 0.0])
+    assert found["U"].ravel() == pytest.approx([1.5, 0.6, 0.1])
+    assert "lost" in found
+
+
+def test_the_head_says_what_is_lost(tmp_path):
+    exported = export_file(LINES / "chain-and-rope-surface.yaml", "cbl")
+    head = exported.content.decode().split("*/")[0]
+    for each in exported.lost:
+        assert each in " ".join(head.split())
+    assert any("full drag" in each for each in exported.lost)
+
+
+@pytest.mark.parametrize("to", ENDINGS)
+def test_what_is_towed_in_air_stays(to):
+    with pytest.raises(UsageError, match="towed in air"):
+        export_file(LINES / "helicopter-bird.yaml", to)
+
+
+def test_no_program_of_that_name():
+    with pytest.raises(UsageError, match="`orca` is no program"):
+        export_file(LINES / "cdms-1.yaml", "orca")

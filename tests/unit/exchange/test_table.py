@@ -1,0 +1,237 @@
+"""Lists in CSV and workbooks: headings in two languages, both directions, what people write."""
+
+import io
+import zipfile
+
+import pytest
+
+from calm.case import load
+from calm.errors import InputError
+from calm.exchange.importing import Options, import_file
+from calm.exchange.table.cells import number
+
+SITE = """\
+environment:
+  depth: 200 m
+  current: {columns: [depth m, u m/s, v m/s], rows: [[0, 0.4, 0], [200, 0.1, 0]]}
+"""
+
+ENGLISH = """\
+Item,Length (m),Diameter (mm),Wet weight (kg),Cd,Qty
+Ball 40 in,1.04,1016,-433,0.65,1
+1/2 in shackle,0.05,25,0.3,1.3,2
+8 mm wire,100,8,24,1.3,1
+AR861 release,1.0,130,22,1.2,1
+13 mm chain,5,46,16,1.3,1
+Anchor,0.4,,900,,1
+Total,107.6,,529.6,,
+"""
+
+FRENCH = """\
+Désignation;Longueur (m);Diamètre (mm);Poids dans l'eau (kg);Poids dans l'air (kg);Cx;Nombre
+Ancre;0,4;;900;1030;;1
+Chaîne de 13 mm;5;46;16;18;1,3;1
+Largueur AR861;1,0;130;22;36;1,2;1
+Câble de 8 mm;100;8;24;30;1,3;1
+Manille 1/2";0,05;25;0,3;0,4;1,3;2
+Bouée 40";1,04;1016;-433;150;0,65;1
+TOTAL;107,6;;529,6;;;
+"""
+
+
+@pytest.fixture
+def site(tmp_path):
+    path = tmp_path / "site.yaml"
+    path.write_text(SITE)
+    return path
+
+
+@pytest.fixture
+def read(tmp_path, site):
+    def read(text, name="list.csv", environment=site, **options):
+        path = tmp_path / name
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return import_file(
+            path, tmp_path / "m.yaml", environment=environment, options=Options(**options)
+        )
+
+    return read
+
+
+def pieces(made, tmp_path):
+    return load(tmp_path / "m.yaml", text=made.text).file.pieces
+
+
+def test_english_and_french_say_the_same(read, tmp_path):
+    answers = []
+    for text in (ENGLISH, FRENCH):
+        made = read(text)
+        mooring = load(tmp_path / "m.yaml", text=made.text)
+        answers.append(mooring.solve().to_dict())
+        wire = next(piece.component for piece in mooring.file.pieces if piece.length == 100.0)
+        assert wire.weight == pytest.approx(24 * 9.80665 / 100)
+        assert wire.diameter == pytest.approx(0.008)
+        assert [piece.component.role for piece in mooring.file.pieces] == [
+            "float", "connector", "connector", "line", "release", "line", "anchor",
+        ]  # fmt: skip
+        assert any("a sum" in each.what for each in made.dropped)
+        assert "whole length" in made.guessed[0].what
+    one, other = answers
+    assert one["top"]["depth"] == pytest.approx(other["top"]["depth"], abs=1e-6)
+    assert one["anchor"]["tension"] == pytest.approx(other["anchor"]["tension"], rel=1e-6)
+
+
+def test_semicolons_tabs_and_an_old_encoding(read):
+    tabs = ENGLISH.replace(",", "\t")
+    assert "count: 2" in read(tabs).text
+    assert "Bouée" in read(FRENCH.encode("cp1252")).text
+
+
+def test_columns_may_be_named(read, tmp_path):
+    text = ENGLISH.replace("Item", "A").replace("Wet weight (kg)", "W").replace("Length (m)", "L1")
+    with pytest.raises(InputError, match="no headings that CALM knows"):
+        read(text)
+    made = read(text, columns={"name": "A", "weight": "W", "length": "L1"})
+    assert len(pieces(made, tmp_path)) == 7
+    with pytest.raises(InputError, match="no column is called `Zebra`"):
+        read(ENGLISH, columns={"name": "Zebra"})
+    with pytest.raises(InputError, match="did you mean `length`"):
+        read(ENGLISH, columns={"lenght": "Length (m)"})
+
+
+def test_weights_that_are_those_of_a_metre(read, tmp_path):
+    """By the heading, or since they are the same at different lengths."""
+    headed = ENGLISH.replace("Wet weight (kg)", "Wet weight (kg/m)").replace(
+        "100,8,24", "100,8,0.24"
+    )
+    wire = pieces(read(headed), tmp_path)[3].component
+    assert wire.weight == pytest.approx(0.24 * 9.80665)
+    same = ENGLISH.replace("100,8,24", "60,8,0.24").replace(
+        "AR861", "8 mm wire,40,8,0.24,1.3,1\nAR861"
+    )
+    lines = [piece.component for piece in pieces(read(same), tmp_path) if piece.length == 60.0]
+    assert lines[0].weight == pytest.approx(0.24 * 9.80665)
+
+
+def test_names_without_a_heading_units_below_and_no_anchor(read, tmp_path):
+    """As a list of an institute has it: a title, units in a row of their own, no anchor."""
+    text = (
+        "Site 3,July 2022\n160,m design depth\n\n,Weight,Wet Weight,Length\n,(kg),(kg),(m)\n\n"
+        '4 balls,3.5,-83.3,1.5\n1/2" shackle,0.37,0.32,0.05\n1/4" Tenex,0.74,0.19,24\n'
+        '1" chain,38.6,33.7,2\nestimated stretch,0.005\n'
+    )
+    made = read(text)
+    told = [str(each) for each in made.guessed]
+    assert "line.anchor: the list has none" in told
+    assert any("from its name" in each for each in told)
+    assert any("gives no size" in each for each in told)
+    assert any("without length and weight" in str(each) for each in made.dropped)
+    tenex = pieces(made, tmp_path)[2].component
+    assert tenex.diameter == pytest.approx(0.00635)
+    assert load(tmp_path / "m.yaml", text=made.text).solve()
+
+
+def test_clamps_by_a_column(read, tmp_path):
+    text = ENGLISH.replace("Qty", "Clamped at (m)").replace(",1\n", ",\n").replace(",2\n", ",\n")
+    text = text.replace("AR861", "Logger,0.3,40,0.5,1.2,25\nAR861")
+    (clamp,) = pieces(read(text), tmp_path)[2].clamps
+    assert (clamp.use, clamp.at) == ("logger", 25.0)
+
+
+CELLS = {
+    "12.5": 12.5, "12,5": 12.5, "-3": -3.0, "−3": -3.0, "1 250": 1250.0, "1,250.5": 1250.5,
+    "1e3": 1000.0, ".5": 0.5, "'7": 7.0, "~30": 30.0, "≈ 4,2 kg": 4.2, "25 m": 25.0, "ca. 3": 3.0,
+    "": None, "-": None, "n/a": None, "NaN": None, "see note": None,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("cell", CELLS)
+def test_numbers_as_people_write_them(cell):
+    assert number(cell)[0] == CELLS[cell]
+
+
+def test_a_number_with_words_is_told(read):
+    made = read(ENGLISH.replace(",22,1.2", ",22 kg,1.2"))
+    assert any("`22 kg` read as 22" in each.what for each in made.guessed)
+
+
+REFUSED = {
+    "words for a number": (ENGLISH.replace(",22,1.2", ",heavy,1.2"), "`heavy` is no number"),
+    "a line without length": (ENGLISH.replace("8 mm wire,100", "8 mm wire,"), "needs its length"),
+    "no weight": (ENGLISH.replace(",-433,", ",,"), "its buoyancy is missing"),
+    "nothing floats": (
+        "Item,Length,Wet weight (kg)\nbar,1,3\nrod,1,3\n", "no end of the list is a float"
+    ),
+    "one piece": ("Item,Length,Wet weight (kg)\nAnchor,1,300\n", "has 1 pieces"),
+    "no table": ("a,b,c\nd,e,f\ng,h,i\n", "no headings"),
+    "a thousand thousands": (ENGLISH.replace(",1.3,2", ",1.3,1000000"), "1000000 of them"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_what_is_missing_is_named(case, read):
+    text, message = REFUSED[case]
+    with pytest.raises(InputError) as error:
+        read(text)
+    assert message in str(error.value)
+
+
+def test_an_environment_is_needed(read):
+    with pytest.raises(InputError, match="has no environment"):
+        read(ENGLISH, environment=None)
+
+
+def test_a_workbook_is_read(read, tmp_path):
+    openpyxl = pytest.importorskip("openpyxl", reason="writes the workbook")
+    pytest.importorskip("python_calamine", reason="needs the extra `sheets`")
+    book = openpyxl.Workbook()
+    for row in ENGLISH.splitlines():
+        cells = [
+            float(cell) if cell.replace(".", "").isdigit() else cell for cell in row.split(",")
+        ]
+        book.active.append(cells)
+    content = io.BytesIO()
+    book.save(content)
+    assert len(pieces(read(content.getvalue(), "list.xlsx"), tmp_path)) == 7
+
+
+def test_a_damaged_workbook_is_refused(read):
+    content = io.BytesIO()
+    with zipfile.ZipFile(content, "w") as archive:
+        archive.writestr("nothing", "here")
+    for damaged in (content.getvalue(), content.getvalue()[:30]):
+        with pytest.raises(InputError, match="workbook"):
+            read(damaged, "list.xlsx")
+
+
+MOORDS = """\
+type,name,serial,bottom_height,height,length,section,bool_line,buoyancy,width,diameter,drag,\
+material,comment,top_height,bool_clampon,total_buoyancy,num_inline,id,height_along_inline,\
+clamped_to_name,clamped_to_serial,bool_fit,inline_bottom,inline_top,passive_weight,passive_drag,\
+mooring
+anchors,3 Wheels,,0.0,,0.55,,False,-1350.0,1.0,0.0,1.3,1,,0.55,False,-1350.0,1,0,,,,,,,,,M1
+wires,3/8 wire rope,,0.55,,50.0,A,True,-16.5,0.009,0.0,1.3,1,,50.55,False,-17,2,1,,,,,,,,,M1
+miscs,Logger,2927,,20.0,0.31,A,False,-0.25,0.11,0.0,1.3,5,,,True,,2,4,19.45,3/8 wire rope,,True,\
+0.55,50.55,False,False,M1
+rigging,16mm BS,,50.55,,0.06,,False,-0.65,0.025,0.0,1.3,1,,50.61,False,-0.65,3,2,,,,,,,,,M1
+floats,41in ORE,,50.61,,1.04,,False,433.0,0.0,1.04,0.65,1,,51.65,False,433.0,4,3,,,,,,,,,M1
+"""
+
+
+def test_a_design_of_moords(read, tmp_path):
+    made = read(MOORDS)
+    assert made.format == "moords"
+    top, shackle, wire, anchor = pieces(made, tmp_path)
+    assert top.component.cx == 0.65
+    assert shackle.component.role == "connector"
+    assert wire.component.weight == pytest.approx(0.33 * 9.80665)
+    assert wire.component.stiffness == pytest.approx(1.38e11 * 3.14159265 / 4 * 0.009**2)
+    assert wire.clamps[0].at == pytest.approx(50.0 - 19.45)
+    assert anchor.component.weight == pytest.approx(1350 * 9.80665)
+    answer = load(tmp_path / "m.yaml", text=made.text).solve().to_dict()
+    assert answer["status"] == "converged"
+
+
+def test_a_design_of_moords_with_a_bad_number(read):
+    with pytest.raises(InputError, match="drag is `much`"):
+        read(MOORDS.replace("1.04,0.65", "1.04,much"))

@@ -1,0 +1,212 @@
+"""Anchors located from simulated surveys, whose truth is known."""
+
+from math import acosh
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from calm.errors import UsageError
+from calm.locate import Sound, Survey, locate
+from calm.locate.ellipsoid import FLATTENING, SEMI_MAJOR, Frame
+
+LATITUDE, LONGITUDE, DEPTH, TRANSDUCER = 48.3, -5.2, 2000.0, 5.0
+HERE = Frame(LATITUDE, LONGITUDE)
+ANCHOR = HERE.place(np.array([LATITUDE]), np.array([LONGITUDE]), np.array([DEPTH]))[0]
+ONE = Sound.constant(1500.0)
+
+
+def survey(bearing, distance, error=0.0, *, times=None, scale=1.0):
+    """Ranges from places at a bearing [degrees] and distance [m] from above the anchor."""
+    bearing, distance = np.broadcast_arrays(np.radians(bearing), distance)
+    flat = np.column_stack([distance * np.sin(bearing), distance * np.cos(bearing), 0.0 * distance])
+    latitude, longitude, _ = np.array([HERE.position(place) for place in flat]).T
+    ships = HERE.place(latitude, longitude, np.full(len(flat), TRANSDUCER))
+    ranges = scale * np.linalg.norm(ships - ANCHOR, axis=1) + error
+    measured = ranges if times is None else 2.0 * ranges / times
+    lines = tuple(range(2, len(flat) + 2))
+    return Survey(
+        Path("r.csv"), lines, latitude, longitude, measured, times is not None, TRANSDUCER
+    )
+
+
+def missed(located):
+    """East and north [m] from the truth to what was found."""
+    latitude, longitude = np.array([located.latitude]), np.array([located.longitude])
+    return (HERE.place(latitude, longitude, np.array([DEPTH]))[0] - ANCHOR)[:2]
+
+
+ROUND = np.arange(0.0, 360.0, 30.0)
+
+
+def test_exact_ranges_give_the_place():
+    located = locate(survey(ROUND, 1500.0), ONE)
+    assert np.linalg.norm(missed(located)) < 1e-3
+    assert located.depth == pytest.approx(DEPTH, abs=1e-3)
+    assert located.used.all()
+    assert located.warnings == ()
+
+
+def test_two_way_times_and_a_profile():
+    # the ship's distance matters little to the mean: a straight ray passes all depths evenly
+    profile = Sound(np.array([0.0, 100.0, 2000.0]), np.array([1520.0, 1490.0, 1510.0]))
+    mean = profile.mean(TRANSDUCER, DEPTH)
+    located = locate(survey(ROUND, 1500.0, times=mean), profile)
+    assert located.depth == pytest.approx(DEPTH, abs=1e-3)
+    assert located.sound_speed == pytest.approx(mean, abs=1e-6)
+
+
+def test_the_harmonic_mean_of_a_linear_profile():
+    # ∫dz/c of c = c0 + g z is ln(c2/c1)/g
+    profile = Sound(np.array([0.0, 4000.0]), np.array([1500.0, 1568.0]))
+    slowness = np.log(1568.0 / 1500.0) / 0.017 / 4000.0
+    assert profile.mean(0.0, 4000.0) == pytest.approx(1.0 / slowness, rel=1e-12)
+
+
+def test_bent_rays_cost_less_than_a_metre():
+    # Exact times between two points of a linear profile: t = arccosh(1 + g² s²/(2 c1 c2))/g.
+    gradient, top = 0.017, 1500.0
+    profile = Sound(np.array([0.0, 4000.0]), np.array([top, top + 4000.0 * gradient]))
+    plain = survey(ROUND, 2000.0)
+    speeds = [top + gradient * depth for depth in (TRANSDUCER, DEPTH)]
+    times = [
+        2.0 * acosh(1.0 + (gradient * s) ** 2 / (2.0 * speeds[0] * speeds[1])) / gradient
+        for s in plain.measured
+    ]
+    bent = Survey(
+        plain.path, plain.line, plain.latitude, plain.longitude, np.array(times), True, TRANSDUCER
+    )
+    located = locate(bent, profile)
+    # the bent ray is the faster by some 0.01 % of its time at 45 degrees: a fraction of a metre
+    assert np.linalg.norm(missed(located)) < 0.05
+    assert located.depth == pytest.approx(DEPTH, abs=0.5)
+
+
+def test_intervals_cover_as_often_as_they_say():
+    random = np.random.default_rng(20)
+    surveys, within, deep = 60, 0, 0
+    for _ in range(surveys):
+        error = random.normal(0.0, 2.0, 10)
+        located = locate(
+            survey(random.uniform(0, 360, 10), random.uniform(800, 1800, 10), error), ONE
+        )
+        major, minor, bearing = located.ellipse
+        along = np.array([np.sin(np.radians(bearing)), np.cos(np.radians(bearing))])
+        away = missed(located)
+        aside = away @ [along[1], -along[0]]
+        within += (away @ along / major) ** 2 + (aside / minor) ** 2 <= 1.0
+        deep += abs(located.depth - DEPTH) <= located.depth_95
+    # 95 % of 60: 57, three standard deviations are 5
+    assert within >= 52
+    assert deep >= 52
+
+
+def test_outliers_are_found_and_do_not_move_the_place():
+    random = np.random.default_rng(21)
+    for wrong in ([3], [1, 8], [0, 4, 9]):
+        error = random.normal(0.0, 1.0, 12)
+        error[wrong] += [150.0, -60.0, 400.0][: len(wrong)]
+        located = locate(survey(ROUND, random.uniform(900, 1800, 12), error), ONE)
+        assert np.flatnonzero(~located.used).tolist() == wrong
+        assert np.linalg.norm(missed(located)) < 3.0
+        document = located.to_dict()
+        assert [one["line"] for one in document["outliers"]] == [i + 2 for i in wrong]
+        assert len(document["residuals"]) == 12
+
+
+def test_a_given_depth_is_not_sought():
+    located = locate(survey([0.0, 120.0, 240.0], 1500.0), ONE, depth=DEPTH)
+    assert located.depth == pytest.approx(DEPTH, abs=1e-6)
+    assert located.depth_95 == 0.0
+    assert np.linalg.norm(missed(located)) < 1e-3
+
+
+def test_as_many_ranges_as_unknowns_give_no_interval():
+    located = locate(survey([0.0, 120.0, 240.0], 1500.0), ONE)
+    assert located.depth == pytest.approx(DEPTH, abs=1e-3)
+    assert located.to_dict()["horizontal_95"] is None
+    assert any("no more ranges than unknowns" in each for each in located.warnings)
+
+
+def test_too_few_ranges_are_refused():
+    with pytest.raises(UsageError, match=r"2 ranges; 3 are needed .* or 2 with --depth"):
+        locate(survey([0.0, 120.0], 1500.0), ONE)
+    with pytest.raises(UsageError, match="1 range; 2 are needed to find a place"):
+        locate(survey([0.0], 1500.0), ONE, depth=DEPTH)
+
+
+@pytest.mark.parametrize(
+    ("bearing", "distance", "said"),
+    [
+        (np.linspace(0.0, 100.0, 10), 1500.0, "one side"),
+        (ROUND, 150.0, "nearly above"),
+        (ROUND, 9000.0, "from afar"),
+    ],
+)
+def test_poor_geometry_is_reported(bearing, distance, said):
+    assert any(said in each for each in locate(survey(bearing, distance), ONE).warnings)
+
+
+def test_a_straight_track_leaves_two_places_or_a_circle_of_them():
+    # along a line 600 m east of the anchor
+    north = np.linspace(-1500.0, 1500.0, 10)
+    bearing = np.degrees(np.arctan2(600.0, north))
+    track = survey(bearing, np.hypot(600.0, north), np.tile([0.3, -0.3], 5))
+    given = locate(track, ONE, depth=DEPTH)
+    assert any("along one line" in each for each in given.warnings)
+    assert any("fits nearly as well, 1200 m away" in each for each in given.warnings)
+    sought = locate(track, ONE)
+    assert any("so do nearer ones that are deeper" in each for each in sought.warnings)
+    assert sought.to_dict()["horizontal_95"] is None
+    assert sought.to_dict()["depth_95"] is None
+
+
+@pytest.mark.parametrize("scale", [0.5, 2.0])
+def test_one_way_for_two_way_is_refused(scale):
+    random = np.random.default_rng(22)
+    distance = random.uniform(800, 2500, 12)
+    with pytest.raises(UsageError, match="fit far better as"):
+        locate(survey(ROUND, distance, random.normal(0.0, 1.0, 12), times=1500.0, scale=scale), ONE)
+
+
+def test_a_wrong_speed_of_sound_is_reported():
+    random = np.random.default_rng(23)
+    distance = np.tile([300.0, 1500.0, 3500.0], 4)
+    located = locate(survey(ROUND, distance, random.normal(0.0, 0.5, 12), times=1470.0), ONE)
+    assert any("is the speed of sound 14" in each for each in located.warnings)
+
+
+def test_a_survey_across_the_date_line():
+    frame = Frame(10.0, 180.0)
+    places = 1500.0 * np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0.7, 0.7, 0]])
+    latitude, longitude, _ = np.array([frame.position(place) for place in places]).T
+    assert longitude.min() < -179.0 < 179.0 < longitude.max()
+    anchor = frame.place(np.array([10.0]), np.array([180.0]), np.array([3000.0]))[0]
+    ships = frame.place(latitude, longitude, np.zeros(5))
+    ranges = np.linalg.norm(ships - anchor, axis=1)
+    survey = Survey(Path("r.csv"), (2, 3, 4, 5, 6), latitude, longitude, ranges, False, 0.0)
+    located = locate(survey, ONE)
+    assert abs(located.longitude) == pytest.approx(180.0, abs=1e-7)
+    assert located.depth == pytest.approx(3000.0, abs=1e-3)
+
+
+def test_distances_are_those_of_the_ellipsoid():
+    # 20 km along a meridian and along a parallel, by their radii of curvature; the chord is
+    # shorter than the arc by s³/24R², 8 mm
+    square = FLATTENING * (2.0 - FLATTENING)
+    phi = np.linspace(48.3, 48.48, 2001)
+    root = 1.0 - square * np.sin(np.radians(phi)) ** 2
+    arc = np.trapezoid(SEMI_MAJOR * (1.0 - square) / root**1.5, np.radians(phi))
+    north = HERE.place(np.array([48.48]), np.array([LONGITUDE]), np.zeros(1))[0]
+    assert np.linalg.norm(north) == pytest.approx(arc, abs=0.02)
+    across = SEMI_MAJOR / np.sqrt(root[0]) * np.cos(np.radians(LATITUDE))
+    chord = 2.0 * across * np.sin(np.radians(0.25) / 2.0)
+    east = HERE.place(np.array([LATITUDE]), np.array([LONGITUDE + 0.25]), np.zeros(1))[0]
+    assert np.linalg.norm(east) == pytest.approx(chord, abs=1e-6)
+
+
+def test_there_and_back():
+    for place in ([0.0, 0.0, 0.0], [15_000.0, -9_000.0, -5_000.0], [-30_000.0, 20_000.0, 40.0]):
+        latitude, longitude, depth = HERE.position(np.array(place))
+        again = HERE.place(np.array([latitude]), np.array([longitude]), np.array([depth]))[0]
+        assert again == pytest.approx(place, abs=1e-6)
