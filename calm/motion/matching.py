@@ -96,13 +96,11 @@ def matched_by_place(
     miss = np.abs(
         np.array([sensors[i].nominal for i in order])[:, None] - still[np.array(down)][None, :]
     )
-    chosen = _cheapest(miss)
-    whole = float(miss[np.arange(len(order)), chosen].sum())
+    chosen, whole = _cheapest(miss)
     for row in range(len(order)):
         without = miss.copy()
         without[row, chosen[row]] = np.inf
-        other = _cheapest(without)
-        cost = float(without[np.arange(len(order)), other].sum())
+        other, cost = _cheapest(without)
         if cost - whole < CERTAIN:
             first, second = labels[down[chosen[row]]], labels[down[other[row]]]
             sensor = sensors[order[row]]
@@ -113,18 +111,20 @@ def matched_by_place(
     return {int(i): down[j] for i, j in zip(order, chosen, strict=True)}
 
 
-def _cheapest(miss: Floats) -> list[int]:
-    """Columns, rising, one for each row, whose sum is least."""
+def _cheapest(miss: Floats) -> tuple[list[int], float]:
+    """Columns, rising, one for each row, whose sum is least, and that sum; infinite without any."""
     rows, columns = miss.shape
     best = np.full((rows + 1, columns + 1), np.inf)
     best[0] = 0.0
     for i in range(rows):
         for j in range(columns):
             best[i + 1, j + 1] = min(best[i + 1, j], best[i, j] + miss[i, j])
+    if np.isinf(best[rows, columns]):
+        return [], float("inf")
     chosen, j = [], columns
     for i in range(rows, 0, -1):
         while best[i, j - 1] == best[i, j]:
             j -= 1
         chosen.append(j - 1)
         j -= 1
-    return chosen[::-1]
+    return chosen[::-1], float(best[rows, columns])

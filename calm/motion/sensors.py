@@ -136,8 +136,8 @@ def _understood(
     if len(others) > 1:
         raise UnreadableError(f"`{name}` is not of times and instruments: {variable.dims}")
     along = others[0] if others else None
-    if along is None and len(single) == 1 and labels_along(dataset, str(single[0])):
-        along = str(single[0])
+    if along is None:  # one instrument, which still may say what or where it is
+        along = next((str(dim) for dim in single if _tells(dataset, str(dim), seabed)), None)
     unit = "pressure" if is_pressure else "length"
     factor = factor_of(variable, unit) / (PASCALS_PER_DBAR if is_pressure else 1.0)
     squeezed = [dim for dim in single if dim != along]
@@ -175,6 +175,11 @@ def _understood(
         )
         for j in range(values.shape[1])
     ]
+
+
+def _tells(dataset: xr.Dataset, dimension: str, seabed: float) -> bool:
+    places = places_along(dataset, dimension, seabed)
+    return labels_along(dataset, dimension) is not None or places is not None
 
 
 def _find(dataset: xr.Dataset) -> tuple[str, bool]:

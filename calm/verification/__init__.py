@@ -5,6 +5,7 @@ read from a file. `calm.verification.case` tells what a case is.
 """
 
 from calm.verification import (
+    anchor_drop,
     bourget_marichal,
     braconnot,
     calm_paper,
@@ -44,6 +45,7 @@ SOURCES: tuple[Source, ...] = (
     drag_curves.SOURCE,
     strumming_factors.SOURCE,
     sea_water.SOURCE,
+    anchor_drop.SOURCE,
     calm_paper.SOURCE,
 )
 """Every source, the solver's own first."""

@@ -290,3 +290,18 @@ def test_currents_that_cannot_be_are_left_out_and_named(calm, given, folder):
         meanings = result["status"].attrs["flag_meanings"].split()
         assert meanings[int(result["status"][9])] == "implausible-current"
         assert (result["status"].values != 0).sum() == 1
+
+
+def test_sensors_are_found_by_nominal_depth_in_order_down_the_line(calm, given, truth, folder):
+    attributes = {"standard_name": "sea_water_pressure", "units": "dbar"}
+    place = {"units": "m", "standard_name": "depth", "positive": "down", "axis": "Z"}
+    coordinates = {"TIME": np.array(stamps(), "M8[ns]"), "DEPTH": ("DEPTH", [59, 149, 249], place)}
+    values = {"PRES": (("TIME", "DEPTH"), dbar(truth[1]), attributes)}
+    xarray.Dataset(values, coordinates).to_netcdf(folder / "os.nc", engine="h5netcdf")
+    done = calm(*COMMAND, "--pressures", "os.nc", "--match", "depth", "-o", "d.nc", "--json", "-")
+    assert done.code == 0, done.err  # as many sensors as instruments: no other order is possible
+    assert [one["label"] for one in json.loads(done.out)["sensors"]] == list(NAMES)
+    middle = xarray.open_dataset(folder / "os.nc", engine="h5netcdf").isel(DEPTH=[1])
+    middle.assign_coords(DEPTH=("DEPTH", [105.0], place)).to_netcdf(folder / "one.nc")
+    apart = calm(*COMMAND, "--pressures", "one.nc", "--match", "depth", "-o", "e.nc")
+    assert apart.code == 2 and "may be `middle` or `upper`" in apart.err

@@ -15,6 +15,7 @@ from calm.drop.fall import Fineness, Ship, fall, settle, towed
 from calm.drop.motion import Anchor
 from calm.drop.record import rest_difference
 from calm.shipped import shipped_folder
+from calm.solve import Towing, solve_tow
 
 COARSE = Fineness(bars=50, steps=50)
 
@@ -178,6 +179,18 @@ def test_the_stated_errors_hold_against_a_finer_chain(loaded):
         assert abs(plan.tow_past + fine.states[-1].node[-1, :2] @ (east, north)) <= (
             plan.distance_error
         )
+
+
+def test_a_line_towed_below_the_surface_is_that_of_the_tow(loaded):
+    text = LEAN.format(depth=400, length=120, current=0.0).replace("mass: 300 kg", "mass: 560 kg")
+    mooring = loaded(text)
+    line, water = mooring.line, mooring.water
+    start = towed(line, water, Anchor(8000.0, 400.0), Ship(0.0, 1.5), Fineness(100, 50))
+    tow = solve_tow(line.reversed(), water, Towing(0.0, 1.5))
+    # the tow's free end comes first, as the chain's; its own accuracy is 5e-5 of the line
+    assert tow.position[0, 2] < -20.0
+    assert start.node[0] == pytest.approx(tow.position[0], abs=2e-3 * 172.0)
+    assert start.tension[-1] == pytest.approx(tow.tension[-1], rel=0.01)
 
 
 def test_nothing_is_lost_where_the_chain_is_cut_finer(loaded):

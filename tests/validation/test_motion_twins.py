@@ -1,4 +1,4 @@
-"""Twins: a mooring whose drag, offsets and currents are made, and measured with made errors.
+"""Twins: a mooring whose drag, offsets and currents are made, and measured with errors and gaps.
 
 Whatever is drawn from the laws that `calm.motion` assumes must lie within its intervals as often as
 these say. The line is that of docs/field/dune2; everything that was measured is made.
@@ -71,6 +71,7 @@ def twin(mooring, seed):
     noise = prior.NOISE * random.standard_normal((TIMES, len(USED)))
     pressure = surface[:, sensor] + offset + noise
     pressure[random.random(pressure.shape) < 0.05] = np.nan
+    flow[random.random(flow.shape) < 0.03] = np.nan
     measured = Measured(
         time=np.datetime64("2026-01-01", "ns") + np.arange(TIMES) * np.timedelta64(1, "h"),
         label=USED,

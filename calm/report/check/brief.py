@@ -41,6 +41,9 @@ _SIGNS = {State.FAIL: "!", State.WARN: "~", State.UNKNOWN: "?"}
 _TOLD = 12
 """So many failures, or warnings, are told of a mooring; a report has them all."""
 _NAMED = 3
+"""Components that one reason accepts something of are named up to so many."""
+_LACKING = 60
+"""Components that lack a figure are named up to so many."""
 
 
 def check_part(assessments: Sequence[Assessment]) -> Part:
@@ -86,10 +89,13 @@ def _accepted(assessment: Assessment) -> Iterator[Span]:
         why = f"{accept.reason}{f' ({by})' if by else ''}.{ends}"
         reasons.setdefault((finding.rule, why), []).append(finding.component or "the line")
     for (rule, why), labels in reasons.items():
-        named = ", ".join(labels[:_NAMED])
-        if len(labels) > _NAMED:
-            named += f" and {len(labels) - _NAMED} more"
+        named = _named(labels, _NAMED)
         yield Span(f"{SIGNS[State.ACCEPTED]} {rule} of {named} is accepted: {why}", quiet=True)
+
+
+def _named(labels: Sequence[str], most: int) -> str:
+    more = f" and {len(labels) - most} more" if len(labels) > most else ""
+    return ", ".join(labels[:most]) + more
 
 
 def _departing(assessment: Assessment) -> Iterator[Span]:
@@ -203,7 +209,5 @@ def _missing(findings: Sequence[Finding]) -> Iterator[Line]:
         lacking = groups.setdefault((finding.rule, finding.remedy or ""), {})
         lacking[finding.component] = None
     for (rule, remedy), names in groups.items():
-        named = ", ".join(list(names)[:_NAMED])
-        if len(names) > _NAMED:
-            named += f" and {len(names) - _NAMED} more"
+        named = _named(list(names), _LACKING)
         yield (Span(f"? {rule} of {named} is unknown. {remedy}", quiet=True),)

@@ -1,0 +1,68 @@
+"""What is named from the residuals of sensors, and what is not."""
+
+import numpy as np
+import pytest
+
+from calm.motion.doubts import doubts, false_currents, said_of_currents
+from calm.motion.moment import Common
+
+TIMES = 100
+TIME = np.datetime64("2026-03-01", "ns") + np.arange(TIMES) * np.timedelta64(1, "h")
+NOISE = 0.2 * np.random.default_rng(1).standard_normal((TIMES, 3))
+LABELS = ("upper", "middle", "lower")
+
+
+def named(residual, offset=(0.0, 0.0, 0.0), down=None):
+    down = np.zeros(TIMES) if down is None else down
+    common = Common({}, 0.0, np.array(offset), np.eye(4), 1.0, np.eye(3))
+    return doubts(LABELS, TIME, residual, down, common)
+
+
+def test_noise_is_not_named():
+    assert named(NOISE) == []
+    assert named(np.full((TIMES, 3), np.nan)) == []
+
+
+@pytest.mark.parametrize("size", [4.0, -4.0])
+def test_a_step_is_named_with_its_size_and_time(size):
+    residual = NOISE.copy()
+    residual[60:, 1] += size
+    (said,) = named(residual)
+    assert said.startswith(f"middle: steps by {size:+.0f}"[:-1])
+    assert "about 2026-03-03T11:00: a clamp that slipped" in said
+
+
+def test_a_drift_is_named_with_all_of_it():
+    residual = NOISE.copy()
+    residual[:, 2] -= 6.0 * np.arange(TIMES) / (TIMES - 1)
+    (said,) = named(residual)
+    assert said.startswith("lower: drifts by -6.1 m over the record")
+
+
+def test_strong_currents_say_nothing_of_sensors():
+    residual, down = NOISE.copy(), np.arange(TIMES) * 1.0
+    residual[60:, 1] += 4.0  # only where the knockdown is above its median
+    assert named(residual, down=down) == []
+
+
+def test_two_sensors_cannot_tell_which_of_them_it_is():
+    residual = NOISE[:, :2].copy()
+    residual[60:, 1] += 4.0
+    common = Common({}, 0.0, np.zeros(2), np.eye(3), 1.0, np.eye(3))
+    (said,) = doubts(LABELS[:2], TIME, residual, np.zeros(TIMES), common)
+    assert "two cannot tell" in said
+
+
+def test_an_offset_that_is_too_large_is_named():
+    (said,) = named(NOISE, offset=(0.0, -2.6, 2.4))
+    assert said.startswith("middle: -2.6 m off throughout")
+
+
+def test_currents_that_look_false_are_listed_with_their_times():
+    doubt = np.zeros((TIMES, 2))
+    doubt[[7, 9], 1] = 0.6, 0.51
+    doubt[8] = 0.5
+    false = false_currents(("a", "b"), TIME, doubt)
+    assert list(false) == ["b"] and false["b"].tolist() == TIME[[7, 9]].tolist()
+    (said,) = said_of_currents(false, TIMES)
+    assert "current at b" in said and "2 of 100 times, first at 2026-03-01T07:00" in said

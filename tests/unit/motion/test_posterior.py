@@ -1,0 +1,78 @@
+"""What pressures make of the currents, against the same law written out in full."""
+
+import numpy as np
+import pytest
+
+from calm.motion import prior
+from calm.motion.measured import Measured
+from calm.motion.moment import Common, Linear, posterior
+
+STILL = np.array([50.0, 100.0, 180.0])  # of three points; the first and the last have sensors
+THERE = np.array([80.0, 120.0, 185.0])
+SLOPE = np.array([[30.0, 15.0], [12.0, 14.0], [1.0, 4.0]])
+COMMON = np.array([[20.0], [15.0], [4.0]])
+SPREAD = np.array([[0.02, 0.004], [0.004, 0.01]])
+READ = np.array([93.0, 186.5])
+
+
+def given(tide=None):
+    one = Measured(
+        np.array(["2026-03-01"], "M8[ns]"), ("a", "c"), np.array([0, 2]), READ[None],
+        np.zeros((1, 2)), np.array([-1, -1]), np.array([-1, -1]), np.zeros((1, 2)),
+        np.zeros((1, 2)), np.zeros((1, 2), np.int8), tide,
+    )  # fmt: skip
+    covariance = np.diag([0.1, 0.8, 0.5, 0.6]) ** 2  # factor, datum, two offsets
+    common = Common({"cable_drag": 1.1}, 0.4, np.array([0.3, -0.2]), covariance, 1.0, np.eye(2))
+    at = Linear(np.array([[0.05, -0.02]]), THERE[None], SLOPE[None], COMMON[None])
+    return one, at, common
+
+
+@pytest.mark.parametrize("tide", [None, np.array([0.7])])
+def test_the_posterior_is_that_of_all_unknowns_written_out(tide):
+    one, at, common = given(tide)
+    found = posterior(one, at, SPREAD[None], common, STILL)
+    # unknowns: two logarithms, sea, factor, datum, two offsets, three errors of the line
+    sea = prior.TIDE if tide is None else prior.RESIDUAL_TIDE
+    down = prior.WORST * (THERE - STILL)
+    alike = np.exp(-np.abs(STILL[:, None] - STILL[None]) / (0.25 * np.ptp(STILL)))
+    # the law is of the exponential kind only between a point and a sensor
+    bent = np.outer(down, down) * alike
+    covariance = np.zeros((10, 10))
+    covariance[:2, :2], covariance[2, 2] = SPREAD, sea**2
+    covariance[3:7, 3:7], covariance[7:, 7:] = common.covariance, bent
+    depth = np.hstack(
+        [SLOPE, np.ones((3, 1)), COMMON, np.ones((3, 1)), np.zeros((3, 2)), np.eye(3)]
+    )
+    seen = depth[[0, 2]].copy()
+    seen[:, 5:7] = np.eye(2)
+    level = THERE - SLOPE @ at.logs[0] + common.datum + (0.0 if tide is None else tide[0])
+    expected = seen @ covariance @ seen.T + prior.NOISE**2 * np.eye(2)
+    innovation = READ - level[[0, 2]] - common.offset
+    gain = covariance @ seen.T @ np.linalg.inv(expected)
+    state, left = gain @ innovation, covariance - gain @ seen @ covariance
+    assert found.innovation[0] == pytest.approx(innovation)
+    assert found.expected[0] == pytest.approx(expected)
+    assert found.logs[0] == pytest.approx(state[:2])
+    assert found.sea[0] == pytest.approx(state[2] + (0.0 if tide is None else tide[0]))
+    assert found.depth[0] == pytest.approx(level + depth @ state)
+    assert found.variance[0] == pytest.approx(np.diag(depth @ left @ depth.T))
+    density = innovation @ np.linalg.solve(expected, innovation) + np.linalg.slogdet(expected)[1]
+    assert found.evidence[0] == pytest.approx(-0.5 * density)
+    assert found.current[0] == pytest.approx(state[:2].mean())
+
+
+def test_a_spike_says_nothing_and_a_lost_line_has_no_depths():
+    one, at, common = given()
+    alone = posterior(one, at, SPREAD[None], common, STILL, spike=0)
+    assert abs(alone.depth[0, 0] - READ[0]) > 5.0 > abs(alone.depth[0, 2] - READ[1])
+    lost = Linear(at.logs, np.full((1, 3), np.nan), np.zeros((1, 3, 2)), np.zeros((1, 3, 1)))
+    none = posterior(one, lost, SPREAD[None], common, STILL)
+    assert np.isnan(none.depth).all() and none.evidence[0] == -np.inf
+
+
+def test_slopes_lead_from_the_old_state_to_the_new():
+    _, at, _ = given()
+    logs, depth = np.array([[0.15, 0.08]]), np.array([[86.0, 123.0, 185.9]])
+    moved = at.moved(logs, depth)
+    back = np.einsum("npg,ng->np", moved.slope, logs - at.logs)
+    assert back == pytest.approx(depth - THERE)
