@@ -313,3 +313,30 @@ def test_octave_cells_and_ranges_are_read():
     assert found["moorele"] == [["ball"], ["rope"]]
     assert found["z"].tolist() == [0.0, 5.0, 10.0]
     assert found["n"].tolist() == [[1.0, 2.0, 3.0]]
+
+
+NASTY = ['"]\n  - {use: x}', "a: b # c", "- [1, 2]", "{use: x}", "\x1b[31mred", "null", "é↑ 🐟"]
+
+
+def test_names_of_all_kinds_are_texts_in_the_file(tmp_path):
+    """Whatever a name holds, it stands as a name in a file that reads."""
+    names = [*NASTY[:6], NAMES[6]]
+    path = tmp_path / "design.mat"
+    write_matlab(path, mooring(moorele=names), names="cell")
+    made = import_file(path, tmp_path / "design.yaml")
+    pieces = load(tmp_path / "design.yaml", text=made.text).file.pieces
+    assert [piece.component.name or piece.use for piece in pieces[1:4]] == [
+        "a: b # c", "- [1, 2]", "{use: x}",
+    ]  # fmt: skip
+    assert pieces[0].component.name == '"] - {use: x}'
+    assert "\x1b" not in made.text
+
+
+def test_clamps_of_a_tow_count_from_the_lower_end(tmp_path):
+    """The file leads from the body up: the second element is the wire."""
+    hung = mooring()
+    clamps = {name: hung[name] for name in ("HCO", "BCO", "CdCO", "mooreleCO")}
+    data = tow(**clamps, Jobj=np.array([[2]]), Pobj=np.array([[0.25]]))
+    design = read(tmp_path, data)
+    (clamp,) = design.items[0].clamps
+    assert clamp.at == pytest.approx(75.0)
