@@ -94,13 +94,16 @@ def _breakable(text: str) -> str:
 
 
 def _kinds(columns: Sequence[Column]) -> list[str]:
-    """The attribute of every cell of a column: figures, or words that want room."""
+    """The attribute of every cell of a column: figures, or words, the more the wider it is."""
     from markupsafe import Markup
 
-    classes = (
-        "number" if each.numeric else "sentence" if each.share > 2 else "" for each in columns
-    )
-    return [Markup(f' class="{name}"' if name else "") for name in classes]
+    def kind(column: Column) -> str:
+        if column.numeric:
+            return "number"
+        return "sentence" if column.share > 2 else "words" if column.share > 1 else ""
+
+    kinds = map(kind, columns)
+    return [Markup(f' class="{each}"' if each else "") for each in kinds]
 
 
 def _is_of(block: Any, kind: str) -> bool:
