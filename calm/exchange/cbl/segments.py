@@ -56,7 +56,7 @@ def _pieces(
     made: list[tuple[float, Component]] = []
     for part in range(count):
         depth = max(lower - length * (part + 0.5) / count, 0.0)
-        component = makers.material(material, depth, _speed(water, depth))
+        component = makers.material(material, length, depth, _speed(water, depth))
         if made and _alike(made[-1][1], component):
             made[-1] = (made[-1][0] + length / count, made[-1][1])
         else:
