@@ -19,14 +19,24 @@ def without_the_users_catalogue(tmp_path_factory: pytest.TempPathFactory) -> Non
     os.environ["CALM_CATALOG_DIR"] = str(tmp_path_factory.mktemp("catalogue") / "none")
 
 
+@pytest.fixture(scope="session", autouse=True)
+def march_compiled() -> None:
+    """The march compiled, where numba is there: the same digits, sooner.
+
+    `CALM_COMPILED=never` has the tests march as the laws stand.
+    """
+    pace.expect(pace.COLD)
+
+
 @pytest.fixture(autouse=True)
-def march_as_it_stands() -> Iterator[None]:
-    """A test that has the march compiled leaves it as it stands for the next."""
+def march_as_before() -> Iterator[None]:
+    """A test that marches otherwise leaves the march as it was."""
+    fast = pace.is_fast()
     yield
-    pace.march_fast(False)
+    pace.march_fast(fast)
 
 
 @pytest.fixture
-def march_compiled() -> None:
-    """The march compiled, where numba is there: the same digits, sooner."""
-    pace.expect(pace.COLD)
+def march_as_it_stands() -> None:
+    """The march of `calm run`."""
+    pace.march_fast(False)

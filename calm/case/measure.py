@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,16 +24,30 @@ def clamps_down(pieces: Sequence[Piece]) -> list[Clamp]:
     return [clamp for piece in pieces for clamp in sorted(piece.clamps, key=lambda clamp: clamp.at)]
 
 
-def components_of(
-    pieces: Sequence[Piece], solution: Solution, still: Solution | None = None
-) -> Components:
-    """The pieces that are solved for, first-listed first.
+class Measured(NamedTuple):
+    """The n pieces that are solved for, first-listed first.
 
-    Parameters
+    Attributes
     ----------
-    pieces : in the order of the file, an anchor left out
-    still : the same line in still water, for the knockdown
+    top, bottom : (n, 3) their ends, from the line's end and from the surface up [m]
+    tension_top, tension_bottom, tension, least : at the ends, the greatest and the least of
+        what hangs, NaN where nothing does [N]
+    tilt : [degrees]
+    knockdown : below the same line in still water [m]; NaN where that is not known
     """
+
+    top: Floats
+    bottom: Floats
+    tension_top: Floats
+    tension_bottom: Floats
+    tension: Floats
+    least: Floats
+    tilt: Floats
+    knockdown: Floats
+
+
+def measured(solution: Solution, still: Solution | None = None) -> Measured:
+    """The pieces of a solution; `still` is the same line in still water, for the knockdown."""
     towed = solution.line.towed
     ahead = slice(None, None, -1) if towed else slice(None)
     first, last = solution.piece_nodes.T
@@ -50,13 +65,36 @@ def components_of(
     head = head_count(solution.line)
     if head and (top[0] != bottom[head - 1]).any():
         lean[:head] = _tilt(top[0] - bottom[head - 1])
-    knockdown = np.full(len(pieces), np.nan)
+    knockdown = np.full(len(first), np.nan)
     if still is not None:
         knockdown = still.position[still.piece_nodes[:, 0], 2] - top[:, 2]
+    return Measured(
+        top=top,
+        bottom=bottom,
+        tension_top=tension[upper],
+        tension_bottom=tension[lower],
+        tension=greatest,
+        least=np.where(np.isfinite(least), least, np.nan),
+        tilt=lean,
+        knockdown=knockdown,
+    )
+
+
+def components_of(
+    pieces: Sequence[Piece], solution: Solution, still: Solution | None = None
+) -> Components:
+    """The pieces that are solved for, first-listed first.
+
+    Parameters
+    ----------
+    pieces : in the order of the file, an anchor left out
+    still : the same line in still water, for the knockdown
+    """
+    ahead = slice(None, None, -1) if solution.line.towed else slice(None)
+    found = measured(solution, still)
     stretched = np.zeros(len(pieces))
     np.add.at(stretched, solution.element_piece, solution.cut * (1.0 + solution.strain))
     breaking, working = (_figures(pieces, name) for name in ("breaking_load", "working_load"))
-    pulled = np.where(greatest > 0, greatest, np.nan)
     return Components(
         part=list(pieces),
         index=np.array([piece.index for piece in pieces]),
@@ -66,20 +104,20 @@ def components_of(
         role=[piece.component.role for piece in pieces],
         length=stretched[ahead],
         cut_length=solution.line.length[ahead],
-        depth_top=-top[:, 2],
-        depth_bottom=-bottom[:, 2],
-        x_top=top[:, 0],
-        y_top=top[:, 1],
-        x_bottom=bottom[:, 0],
-        y_bottom=bottom[:, 1],
-        tension_top=tension[upper],
-        tension_bottom=tension[lower],
-        tension=greatest,
-        least_tension=np.where(np.isfinite(least), least, np.nan),
-        tilt=lean,
-        knockdown=knockdown,
-        safety_factor=breaking / pulled,
-        utilisation=greatest / working,
+        depth_top=-found.top[:, 2],
+        depth_bottom=-found.bottom[:, 2],
+        x_top=found.top[:, 0],
+        y_top=found.top[:, 1],
+        x_bottom=found.bottom[:, 0],
+        y_bottom=found.bottom[:, 1],
+        tension_top=found.tension_top,
+        tension_bottom=found.tension_bottom,
+        tension=found.tension,
+        least_tension=found.least,
+        tilt=found.tilt,
+        knockdown=found.knockdown,
+        safety_factor=breaking / np.where(found.tension > 0, found.tension, np.nan),
+        utilisation=found.tension / working,
         reynolds=_reynolds(pieces, solution)[ahead] * _figures(pieces, "diameter"),
     )
 

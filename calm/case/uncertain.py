@@ -10,13 +10,14 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from math import hypot
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from calm.case.chaos import Indices, sobol_indices
 from calm.case.draws import CAUSES, SAMPLES, Draw, checked_samples, drawn, draws_of, normals_of
-from calm.case.measure import components_of
+from calm.case.measure import measured
 from calm.case.moored import anchor_load
 from calm.errors import NoEquilibrium
 from calm.physics.line import Floats
@@ -176,14 +177,14 @@ def _figures(
 
 def _figures_of(mooring: Mooring) -> tuple[Floats, tuple[float, float]]:
     solution = mooring.equilibrium(mooring.water)
-    rows = components_of(mooring.file.pieces[:-1], solution, mooring.still_beside(solution))
+    rows = measured(solution, mooring.still_beside(solution))
     load = anchor_load(mooring, solution)
-    pieces = [rows.depth_top, rows.knockdown, rows.tilt, rows.tension]
-    anchor = [float(rows.depth_bottom[-1]), 0.0, 0.0, load.tension, 0.0]
-    x, y = rows.x_top, rows.y_top
-    excursion = float(np.hypot(x[0], y[0]))
-    pieces.append((x * x[0] + y * y[0]) / excursion if excursion else np.zeros(len(rows)))
-    return np.column_stack([np.stack(pieces), anchor]), (load.tension, load.required_weight)
+    x, y, z = rows.top.T
+    excursion = hypot(x[0], y[0])
+    offset = (x * x[0] + y * y[0]) / excursion if excursion else np.zeros(len(x))
+    pieces = np.stack([-z, rows.knockdown, rows.tilt, rows.tension, offset])
+    anchor = [-rows.bottom[-1, 2], 0.0, 0.0, load.tension, 0.0]
+    return np.column_stack([pieces, anchor]), (load.tension, load.required_weight)
 
 
 def _contributions(quantity: str, indices: Indices | None) -> tuple[Contribution, ...]:

@@ -27,7 +27,8 @@ class Item:
     index : of the piece, of a clamp that of the piece it is on
     use, label, role, kind : as in the file
     name : of the component, None where it gives none
-    clamped_on : label of the piece that a clamp is on; None of a piece
+    clamped_on, at : label of the piece that a clamp is on, and how far from its top [m]; None of a
+        piece
     cut_length : along the line [m]; None of a cable that no length fits
     dry_mass : in air [kg]; None where it is not known and does not follow
     wet_weight : in water of 1025 kg/m³ under the gravity of the file [N], + down; None where the
@@ -46,6 +47,7 @@ class Item:
     dry_mass: float | None
     wet_weight: float | None
     lift_mass: float | None
+    at: float | None = None
 
 
 @dataclass(frozen=True)
@@ -124,6 +126,7 @@ def _items(piece: Piece, length: float | None, gravity: float) -> Iterator[Item]
             dry_mass=mass,
             wet_weight=_wet_weight(clamp.component, along, gravity),
             lift_mass=None,
+            at=clamp.at,
         )
 
 

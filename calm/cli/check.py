@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from datetime import date, datetime
 from functools import cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from calm.cli.check_files import Design, read_designs
 from calm.cli.exit_codes import ExitCode, gravest
@@ -101,15 +101,15 @@ def check(
         narrate(f"not checked, since towed: {', '.join(map(str, tows))}")
     drawn = report is not None and earlier is None  # one that is compared is drawn with that
     judged = _judged(designs, workers, drawn, draws)
-    assessments = [assessment for assessment, _ in judged]
+    assessments = [each.assessment for each in judged]
     for design, assessment in zip(designs, assessments, strict=True):
         of_files = (notice for one in design.moorings for notice in one.file.notices)
         for notice in dict.fromkeys((*of_files, *assessment.notices)):
             narrate(f"{design.path}: {notice}")
-    sections = [section for _, section in judged if section is not None]
+    drawings = [each.drawn for each in judged if each.drawn is not None]
     if earlier is not None and against is not None:
-        sections = [_beside(against, earlier, designs[0], assessments[0])]
-    _answer(assessments, sections, outputs, report)
+        drawings = [_beside(against, earlier, designs[0], assessments[0])]
+    _answer(assessments, drawings, outputs, report)
     return gravest(_code(each, allow_unknown) for each in assessments)
 
 
@@ -146,13 +146,34 @@ def _read(
     return designs, tows, earlier
 
 
-def _beside(path: Path, earlier: Mooring, design: Design, assessment: Assessment) -> Section:
+class Drawn(NamedTuple):
+    """A mooring's part of the report: as blocks, and as the page shows them."""
+
+    section: Section
+    leaf: str
+
+
+class Judged(NamedTuple):
+    """A mooring that is judged, and its part of the report where there is one."""
+
+    assessment: Assessment
+    drawn: Drawn | None
+
+
+def _beside(path: Path, earlier: Mooring, design: Design, assessment: Assessment) -> Drawn:
     """The section of a mooring, with what differs from an earlier design."""
     from calm.checks.comparison import comparison_of
     from calm.report.check.section import mooring_section
 
     names = str(path), str(design.path)
-    return mooring_section(assessment, comparison_of(names, earlier, design.moorings[0]))
+    return _drawn(mooring_section(assessment, comparison_of(names, earlier, design.moorings[0])), 1)
+
+
+def _drawn(section: Section, number: int) -> Drawn:
+    """The `number`th section of a report."""
+    from calm.report.html import leaf
+
+    return Drawn(section, leaf(section, number))
 
 
 def _check_report(folder: Path, json: Path | None, given: Sequence[Path]) -> None:
@@ -173,7 +194,7 @@ def _check_report(folder: Path, json: Path | None, given: Sequence[Path]) -> Non
 
 def _judged(
     designs: Sequence[Design], workers: int | None, drawn: bool, draws: tuple[int, int] | None
-) -> list[tuple[Assessment, Section | None]]:
+) -> list[Judged]:
     """All of them on one day: that of the report, today where it has none.
 
     Many moorings are shared out whole, each judged and drawn where it was solved; of a few, their
@@ -187,33 +208,40 @@ def _judged(
     stands = [(design.name, mooring, day) for design in designs for mooring in design.moorings]
     expect_many(SOLVES * len(stands))
     if len(designs) > FEW:
-        whole = [(design, day, drawn, draws) for design in designs]
+        if drawn:
+            from calm.report.check.panels import sheet
+
+            sheet()  # loaded and laid out before other processes are
+        whole = [(number, design, day, drawn, draws) for number, design in enumerate(designs, 1)]
         return mapped(_solve_and_conclude, whole, workers, "moorings judged")
     solved = iter(mapped(_stand, stands, workers, "environments solved"))
     shared = partial(mapped, workers=workers, what="blocks of samples solved")
     return [
-        _concluded(design.name, [next(solved) for _ in design.moorings], day, drawn, draws, shared)
-        for design in designs
+        _concluded(
+            number, design.name, [next(solved) for _ in design.moorings], day, drawn, draws, shared
+        )
+        for number, design in enumerate(designs, 1)
     ]
 
 
 def _solve_and_conclude(
-    task: tuple[Design, date, bool, tuple[int, int] | None],
-) -> tuple[Assessment, Section | None]:
-    design, day, drawn, draws = task
+    task: tuple[int, Design, date, bool, tuple[int, int] | None],
+) -> Judged:
+    number, design, day, drawn, draws = task
     stands = [_stand((design.name, mooring, day)) for mooring in design.moorings]
-    return _concluded(design.name, stands, day, drawn, draws, map)
+    return _concluded(number, design.name, stands, day, drawn, draws, map)
 
 
 def _concluded(
+    number: int,
     name: str,
     stands: Sequence[Stand],
     day: date,
     drawn: bool,
     draws: tuple[int, int] | None,
     shared: Mapped,
-) -> tuple[Assessment, Section | None]:
-    """What is judged of a mooring as a whole, and its section of the report where that is drawn.
+) -> Judged:
+    """What is judged of a mooring as a whole, and the `number`th section of the report.
 
     `draws` are samples and seed of the probabilities, where they are asked for; `shared` has blocks
     of them solved.
@@ -226,7 +254,7 @@ def _concluded(
         from calm.checks.likelihood import with_probabilities
 
         assessment = with_probabilities(assessment, *draws, shared)
-    return assessment, mooring_section(assessment) if drawn else None
+    return Judged(assessment, _drawn(mooring_section(assessment), number) if drawn else None)
 
 
 def _stand(task: tuple[str, Mooring, date]) -> Stand:
@@ -244,7 +272,7 @@ def _stand(task: tuple[str, Mooring, date]) -> Stand:
 
 def _answer(
     assessments: Sequence[Assessment],
-    sections: Sequence[Section],
+    drawings: Sequence[Drawn],
     outputs: Outputs,
     folder: Path | None,
 ) -> None:
@@ -260,17 +288,18 @@ def _answer(
     from calm.report.pdf import report_pdf
 
     document = cache(lambda: check_document(assessments))
+    sections = [each.section for each in drawings]
     with ThreadPoolExecutor(1) as beside:
         pdf = None if folder is None else beside.submit(report_pdf, sections)
         outputs.write_answer(document, check_part(assessments))
         if folder is not None and pdf is not None:
-            files = _report_files(assessments, sections, document())
+            files = _report_files(assessments, drawings, document())
             write_report(folder, files | {"report.pdf": pdf.result()})
             narrate(f"the report is in {folder}")
 
 
 def _report_files(
-    assessments: Sequence[Assessment], sections: Sequence[Section], document: dict[str, Any]
+    assessments: Sequence[Assessment], drawings: Sequence[Drawn], document: dict[str, Any]
 ) -> dict[str, bytes]:
     """What the folder of a report has, but for its PDF."""
     from calm.report.check.csv import checks_csv, inventory_csv
@@ -278,7 +307,9 @@ def _report_files(
     from calm.report.html import report_html
 
     texts = {
-        "report.html": report_html(sections),
+        "report.html": report_html(
+            [each.section for each in drawings], [each.leaf for each in drawings]
+        ),
         "report.json": to_json([document]),
         "checks.csv": checks_csv(assessments),
         "inventory.csv": inventory_csv(assessments),

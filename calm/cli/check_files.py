@@ -29,8 +29,9 @@ def read_designs(
     environments: Sequence[str] | None,
     catalogs: Sequence[Path],
     workers: int | None,
+    command: str = "calm check",
 ) -> tuple[list[Design], list[Path]]:
-    """Every mooring in every environment, and which of the files are tows, which have no check.
+    """Every mooring in every environment, and which of the files are tows, which a command leaves.
 
     Parameters
     ----------
@@ -53,7 +54,7 @@ def read_designs(
     read, tows = _loaded(asked, catalogs, workers)
     moored = [file for file in files if file not in tows]
     if not moored:
-        raise UsageError(f"calm check is for moorings; towed: {', '.join(map(str, tows))}")
+        raise UsageError(f"{command} is for moorings; towed: {', '.join(map(str, tows))}")
     if environments is None:
         others = [(file, name) for file in moored for name in read[file, None].file.variants]
         read |= _loaded(others, catalogs, workers)[0]

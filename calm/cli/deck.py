@@ -77,7 +77,7 @@ def deck(
     check_folder(output)
     moment()
     ship = quantities({"ship_speed": (ship_speed, "speed"), "streamed": (streamed, "length")})
-    designs, tows = read_designs(files, environment, catalog or [], None)
+    designs, tows = read_designs(files, environment, catalog or [], None, "calm deck")
     if tows:
         narrate(f"not drawn, since towed: {', '.join(map(str, tows))}")
     folders = _folders(designs, output)

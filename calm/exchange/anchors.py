@@ -9,8 +9,10 @@ from calm.case import Mooring, load
 from calm.errors import CalmError
 from calm.exchange.design import Component, Design
 from calm.exchange.writing import written
+from calm.units import KILOGRAM_FORCE
 
 _HOLDS = 1e8  # N: holds whatever is tied to it
+_IN_WATER = (1.0 - 1025.0 / 7850.0) * KILOGRAM_FORCE  # N of a kilogram of steel
 _STEPS = 2  # digits that a guessed weight keeps
 
 
@@ -21,12 +23,15 @@ def hold(design: Design, environment: list[str] | None, output: Path) -> None:
     the line has no equilibrium, that is for `calm run` to say.
     """
     anchor = design.items[-1].component if design.items and design.tow is None else None
-    if anchor is None or anchor.kind != "anchor" or "mass" in anchor.figures:
+    if anchor is None or anchor.kind != "anchor":
         return
-    given = anchor.figures.get("weight")
+    mass, weight = anchor.figures.get("mass"), anchor.figures.get("weight")
+    given = weight if weight is not None or mass is None else _IN_WATER * float(mass)
     pull, required = _pull(design, anchor, environment, output)
     if isinstance(given, float) and (pull is None or pull <= given):
         return
+    anchor.figures.pop("mass", None)
+    anchor.guesses.pop("mass", None)
     if pull is None:
         anchor.figures["weight"], reason = _HOLDS, "the file gives no weight; this holds anything"
     else:
@@ -43,7 +48,8 @@ def _pull(
     design: Design, anchor: Component, environment: list[str] | None, output: Path
 ) -> tuple[float | None, float]:
     """What the line pulls up with, and the weight that such a pull asks for [N]."""
-    given = anchor.figures.get("weight")
+    figures = dict(anchor.figures)
+    anchor.figures.pop("mass", None)
     anchor.figures["weight"] = _HOLDS
     try:
         mooring = load(output, text=written(design, "", environment).text)
@@ -52,10 +58,7 @@ def _pull(
     except (CalmError, AssertionError):
         return None, 0.0
     finally:
-        if given is None:
-            del anchor.figures["weight"]
-        else:
-            anchor.figures["weight"] = given
+        anchor.figures = figures
     return float(vertical["vertical"]), float(vertical["required_weight"])
 
 

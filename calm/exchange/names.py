@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from calm.exchange.design import Component
 
 _LONGEST = 40
+_NO_IDS = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}  # other words in YAML
 _SIGNS = {'"': "in ", "″": "in ", "↑": " up ", "↓": " down ", "+": " ", "&": " and ", "µ": "u"}
 
 
@@ -37,7 +38,9 @@ def ids_of(components: Iterable[Component], taken: Iterable[str] = ()) -> dict[i
             continue
         says = component.says()
         if says not in said:
-            base = kebab(component.name) or component.kind
+            base = kebab(component.name)
+            if base in _NO_IDS or not any(sign.isalpha() for sign in base):
+                base = f"{component.kind}-{base}".rstrip("-")
             chosen, number = base, 1
             while chosen in known:
                 number += 1

@@ -42,6 +42,7 @@ class _Page:
 
     def add(self, line: str = "", guess: str = "", where: str = "", comment: str = "") -> None:
         if guess:
+            guess = one_line(guess)
             self.guessed.append(Remark(where, guess))
             line += f"  # guessed: {guess}"
         elif comment:

@@ -65,10 +65,12 @@ def align(before: Sequence[Known], after: Sequence[Known]) -> Alignment:
     in_order = _longest_rise([pairs[i] for i in sorted(pairs)])
     fixed = [(-1, -1), *((i, pairs[i]) for i in sorted(pairs) if pairs[i] in in_order)]
     taken = set(pairs.values())
+    ways = min((len(part.contents) for part in (*before, *after)), default=0)
     for (i, j), (k, m) in pairwise((*fixed, (len(before), len(after)))):
         left = [n for n in range(i + 1, k) if n not in pairs]
         right = [n for n in range(j + 1, m) if n not in taken]
-        _pair_between(before, after, left, right, pairs)
+        for way in range(ways):
+            _pair_between(before, after, left, right, way, pairs)
     removed = [i for i in range(len(before)) if i not in pairs]
     added = sorted(set(range(len(after))) - set(pairs.values()))
     for i in removed.copy():
@@ -96,20 +98,22 @@ def _pair_between(
     after: Sequence[Known],
     left: list[int],
     right: list[int],
+    way: int,
     pairs: dict[int, int],
 ) -> None:
-    """Pair what stands between two parts that are known: ever more loosely, in order."""
-    ways = min((len(part.contents) for part in (*before, *after)), default=0)
-    for way in range(ways):
-        keys = [before[i].contents[way] for i in left], [after[j].contents[way] for j in right]
-        found = [
-            (left[block.a + n], right[block.b + n])
-            for block in SequenceMatcher(None, *keys, autojunk=False).get_matching_blocks()
-            for n in range(block.size)
-        ]
-        pairs.update(found)
-        left = [i for i in left if i not in pairs]
-        right = [j for j in right if j not in {j for _, j in found}]
+    """Pair in order what is alike in one way between two parts that are known; take it out."""
+    if not left or not right:
+        return
+    keys = [before[i].contents[way] for i in left], [after[j].contents[way] for j in right]
+    found = {
+        left[block.a + n]: right[block.b + n]
+        for block in SequenceMatcher(None, *keys, autojunk=False).get_matching_blocks()
+        for n in range(block.size)
+    }
+    pairs.update(found)
+    taken = set(found.values())
+    left[:] = [i for i in left if i not in found]
+    right[:] = [j for j in right if j not in taken]
 
 
 def _longest_rise(values: Iterable[int]) -> frozenset[int]:

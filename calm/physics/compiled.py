@@ -96,7 +96,7 @@ def _packer(kind: Any) -> Callable[[Any], Any]:
         return packed
     (item,) = get_args(kind)
     of = np.dtype(np.float64) if item is float else record_type(item)
-    return lambda part: np.array(list(part), of)
+    return lambda part: np.array(part if isinstance(part, np.ndarray) else list(part), of)
 
 
 @cache

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from calm.physics.compiled import packed
 from calm.physics.line import Line
 from calm.physics.stretch import Knot
 from calm.physics.strumming import AT_REST, Vibration
+
+if TYPE_CHECKING:
+    from calm.physics.reynolds import DragCurve
 
 
 class Load(NamedTuple):
@@ -55,7 +58,7 @@ class Rod:
     lengths: tuple[float, ...]
     loads: tuple[Load, ...]
 
-    @cached_property
+    @property
     def length(self) -> float:
         return sum(self.lengths)
 
@@ -164,12 +167,11 @@ class Track:
     @property
     def landing(self) -> int:
         """The first stage that may come down on the seabed: none below it is buoyant."""
-        lifting = [
-            i
-            for i, stage in enumerate(self.stages)
-            if any(load.buoyancy > 0.0 for load in loads_of(stage))
-        ]
-        return lifting[-1] + 1 if lifting else 0
+        for i in range(len(self.stages), 0, -1):
+            for load in loads_of(self.stages[i - 1]):
+                if load.buoyancy > 0.0:
+                    return i
+        return 0
 
     @staticmethod
     def of(line: Line, frequency: float = 0.0) -> Track:
@@ -177,14 +179,14 @@ class Track:
 
         `frequency` is that of the cables that strum [Hz].
         """
-        head, rows = head_count(line), _Rows(line)
+        head, rows = head_count(line), _Rows(line, frequency)
         parts: list[Part] = [_rod(rows, range(head))] if head else []
         knots: list[Knot] = []
         for piece, flexible in enumerate(line.flexible.tolist()[head:], head):
             if flexible:
                 curve = line.elongation[piece] if line.elongation else None
                 mine = () if curve is None else curve.knots
-                parts.extend(_cable_parts(rows, piece, frequency, len(knots), len(mine)))
+                parts.extend(_cable_parts(rows, piece, len(knots), len(mine)))
                 knots += mine
             else:
                 parts.append(_rod(rows, range(piece, piece + 1)))
@@ -215,60 +217,67 @@ def head_count(line: Line) -> int:
 
 
 class _Rows:
-    """The columns of a line as lists of numbers, which are looked up far faster one by one.
+    """A line by rows of plain numbers, which are looked up far faster than arrays one by one.
 
-    `clamps` are those of each piece, from its top.
+    Attributes
+    ----------
+    length, clamp_at : as in `Line`
+    rigid, clamp : of each piece, and of each clamp, what comes after the length in a `Load`
+    cable : of each piece, what comes between the length and the knots in a `Cable`
+    beat : of each piece, as in `Cable`
+    clamps : of each piece, from its top
     """
 
-    def __init__(self, line: Line) -> None:
-        self.line = line
+    def __init__(self, line: Line, frequency: float) -> None:
+        pieces, clamps = len(line.length), len(line.clamp_at)
         self.length: list[float] = line.length.tolist()
-        self.buoyancy: list[float] = line.buoyancy.tolist()
-        self.volume: list[float] = line.volume.tolist()
-        self.normal_drag: list[float] = line.normal_drag.tolist()
-        self.tangential_drag: list[float] = line.tangential_drag.tolist()
-        self.compliance: list[float] = line.compliance.tolist()
-        self.thinning: list[float] = line.thinning.tolist()
-        self.lift: list[float] = line.lift.tolist()
-        self.diameter: list[float] = line.diameter.tolist()
         self.clamp_at: list[float] = line.clamp_at.tolist()
-        self.clamp_buoyancy: list[float] = line.clamp_buoyancy.tolist()
-        self.clamp_volume: list[float] = line.clamp_volume.tolist()
-        self.clamp_drag: list[float] = line.clamp_drag.tolist()
-        self.clamp_lift: list[float] = line.clamp_lift.tolist()
-        self.directional: list[bool] = line.directional.tolist()
-        self.clamp_piece: list[int] = line.clamp_piece.tolist()
+        self.rigid = _rows(
+            pieces, line.buoyancy, line.volume, line.normal_drag, line.tangential_drag,
+            line.directional, line.lift, 0.0, 0.0, *_followed(line.drag_curve),
+        )  # fmt: skip
+        self.clamp = _rows(
+            clamps, line.clamp_buoyancy, line.clamp_volume, line.clamp_drag, 0.0,
+            False, line.clamp_lift, 0.0, 0.0, *_followed(line.clamp_drag_curve),
+        )  # fmt: skip
+        self.cable = _rows(
+            pieces, line.buoyancy, line.volume, line.normal_drag, line.tangential_drag,
+            line.compliance, line.thinning, line.friction.law,
+        )  # fmt: skip
+        strums = line.strumming is not None
+        self.beat: list[float] = (frequency * line.diameter * strums).tolist()
         self.clamps: dict[int, list[int]] = {}
+        on = line.clamp_piece.tolist()
         for clamp in np.argsort(line.clamp_at, kind="stable").tolist():
-            self.clamps.setdefault(self.clamp_piece[clamp], []).append(clamp)
+            self.clamps.setdefault(on[clamp], []).append(clamp)
+
+    def clamp_load(self, m: int, piece: int, at: float = 0.0, lever: float = 0.5) -> Load:
+        """A clamp on a piece."""
+        return Load(piece, m, at, lever, 0.0, *self.clamp[m])
 
 
-def _clamp_load(rows: _Rows, m: int, at: float = 0.0, lever: float = 0.5) -> Load:
-    curves = rows.line.clamp_drag_curve
-    curve = curves[m] if curves else None
-    return Load(
-        piece=rows.clamp_piece[m],
-        clamp=m,
-        at=at,
-        lever=lever,
-        length=0.0,
-        buoyancy=rows.clamp_buoyancy[m],
-        volume=rows.clamp_volume[m],
-        normal_drag=rows.clamp_drag[m],
-        tangential_drag=0.0,
-        directional=False,
-        lift=rows.clamp_lift[m],
-        push_east=0.0,
-        push_north=0.0,
-        diameter=0.0 if curve is None else curve.diameter,
-        lengthening=0.0 if curve is None else curve.lengthening,
+def _rows(count: int, *columns: Any) -> list[tuple[Any, ...]]:
+    """Columns, or single values throughout, row by row."""
+    values = (
+        column.tolist() if isinstance(column, np.ndarray) else [column] * count
+        for column in columns
+    )
+    return list(zip(*values, strict=True))
+
+
+def _followed(curves: Sequence[DragCurve | None]) -> tuple[Any, Any]:
+    """The columns `diameter` and `lengthening` of loads that follow a curve, or 0 for none."""
+    if not curves:
+        return 0.0, 0.0
+    return (
+        np.array([0.0 if curve is None else curve.diameter for curve in curves]),
+        np.array([0.0 if curve is None else curve.lengthening for curve in curves]),
     )
 
 
 def _rod(rows: _Rows, pieces: range) -> Rod:
     lengths = tuple(rows.length[p] for p in pieces)
     total = sum(lengths)
-    curves = rows.line.drag_curve
     loads, top = [], 0.0
 
     def lever(at: float) -> float:
@@ -276,57 +285,23 @@ def _rod(rows: _Rows, pieces: range) -> Rod:
 
     for piece, length in zip(pieces, lengths, strict=True):
         middle = top + 0.5 * length
-        curve = curves[piece] if curves else None
-        loads.append(
-            Load(
-                piece=piece,
-                clamp=-1,
-                at=middle,
-                lever=lever(middle),
-                length=length,
-                buoyancy=rows.buoyancy[piece],
-                volume=rows.volume[piece],
-                normal_drag=rows.normal_drag[piece],
-                tangential_drag=rows.tangential_drag[piece],
-                directional=rows.directional[piece],
-                lift=rows.lift[piece],
-                push_east=0.0,
-                push_north=0.0,
-                diameter=0.0 if curve is None else curve.diameter,
-                lengthening=0.0 if curve is None else curve.lengthening,
-            )
-        )
+        loads.append(Load(piece, -1, middle, lever(middle), length, *rows.rigid[piece]))
         for m in rows.clamps.get(piece, ()):
             at = top + rows.clamp_at[m]
-            loads.append(_clamp_load(rows, m, at, lever(at)))
+            loads.append(rows.clamp_load(m, piece, at, lever(at)))
         top += length
     return Rod(tuple(pieces), lengths, tuple(loads))
 
 
-def _cable_parts(
-    rows: _Rows, piece: int, frequency: float, first_knot: int, knots: int
-) -> Iterable[Part]:
+def _cable_parts(rows: _Rows, piece: int, first_knot: int, knots: int) -> Iterable[Part]:
     start, end = 0.0, rows.length[piece]
-    stretch = Cable(
-        piece=piece,
-        length=end,
-        buoyancy=rows.buoyancy[piece],
-        volume=rows.volume[piece],
-        normal_drag=rows.normal_drag[piece],
-        tangential_drag=rows.tangential_drag[piece],
-        compliance=rows.compliance[piece],
-        thinning=rows.thinning[piece],
-        friction=rows.line.friction.law,
-        first_knot=first_knot,
-        end_knot=first_knot + knots,
-        beat=frequency * rows.diameter[piece] if rows.line.strumming is not None else 0.0,
-    )
+    figures = (*rows.cable[piece], first_knot, first_knot + knots, rows.beat[piece])
     rounding = 1e-12 * end  # a clamp so near to an end, or to another, is there
     for m in rows.clamps.get(piece, ()):
         at = rows.clamp_at[m]
         if at - start > rounding:
-            yield stretch._replace(length=at - start)
+            yield Cable(piece, at - start, *figures)
             start = at
-        yield _clamp_load(rows, m)
+        yield rows.clamp_load(m, piece)
     if end - start > rounding or end == 0.0:
-        yield stretch._replace(length=end - start)
+        yield Cable(piece, end - start, *figures)

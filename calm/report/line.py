@@ -45,20 +45,23 @@ class Mark(StrEnum):
 _STATES = {Mark.NONE: None, Mark.NEAR: State.WARN, Mark.BEYOND: State.FAIL}
 
 
-def line_table(result: Result | TowResult, names: tuple[str, ...], note: str) -> Table:
+def line_table(
+    result: Result | TowResult, names: tuple[str, ...], note: str, *, places: bool = False
+) -> Table:
     """The line from its first-listed end, each clamped instrument indented below its piece.
 
     Parameters
     ----------
     names : of the quantities in each row
     note : how to read them
+    places : whether a clamp says where on its piece it sits, in place of a length
     """
     columns = (
         Column("no.", numeric=True, narrow=False),
         Column("piece", short=""),
         *map(quantity_column, names),
     )
-    return Table("", columns, tuple(_rows(result, names)), note, dense=True)
+    return Table("", columns, tuple(_rows(result, names, places)), note, dense=True)
 
 
 def quantity_column(name: str) -> Column:
@@ -100,7 +103,9 @@ def safety_mark(result: Result | TowResult, record: ComponentRow) -> Mark:
     return Mark.BEYOND if beyond else Mark.NONE
 
 
-def _rows(result: Result | TowResult, names: tuple[str, ...]) -> Iterator[tuple[Cell, ...]]:
+def _rows(
+    result: Result | TowResult, names: tuple[str, ...], places: bool
+) -> Iterator[tuple[Cell, ...]]:
     for number, (piece, clamps) in enumerate(rows_down(result)):
         figures = _figures(result, piece, piece.depth_top, piece.x_top, piece.y_top)
         figures |= {"length": piece.length, "safety_factor": piece.safety_factor}
@@ -116,7 +121,15 @@ def _rows(result: Result | TowResult, names: tuple[str, ...]) -> Iterator[tuple[
             marks = {"tilt": tilt_mark(component, clamp.tilt)}
             strong = component.role == "instrument"
             label = Cell(clamp.label, indented=True, strong=strong)
-            yield Cell(), label, *_cells(names, figures, marks)
+            cells = [*_cells(names, figures, marks)]
+            if places:
+                cells[names.index("length")] = Cell(place_text(clamp.part.at))
+            yield Cell(), label, *cells
+
+
+def place_text(at: float) -> str:
+    """Where a clamp sits, from the top of its piece [m], as it stands among lengths."""
+    return f"at {QUANTITIES['at'].format(at)}"
 
 
 def _figures(

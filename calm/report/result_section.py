@@ -34,7 +34,7 @@ def result_report(result: Result | TowResult, uncertain: Uncertain | None = None
     """Schematic, table, drawing and inputs of one result, and how sure its figures are."""
     from calm.report.schematic import schematic_svg
 
-    said, file = sheet(result), result.file
+    said, file = sheet(result, places=True), result.file
     water = result.tow.water if isinstance(result, TowResult) else result.mooring.water
     environment = file.environment.name or "own"
     drawing = figure_svg(draw(result, uncertain))

@@ -51,9 +51,11 @@ class Sheet:
     convergence: str
 
 
-def sheet(result: Result | TowResult) -> Sheet:
-    """What a mooring or a tow says."""
-    return _tow(result) if isinstance(result, TowResult) else _mooring(result)
+def sheet(result: Result | TowResult, *, places: bool = False) -> Sheet:
+    """What a mooring or a tow says; in a report its clamps have their places on their pieces."""
+    if isinstance(result, TowResult):
+        return _tow(result, places)
+    return _mooring(result, places)
 
 
 def result_part(result: Result | TowResult) -> Part:
@@ -71,11 +73,13 @@ def _summary(result: Result | TowResult, *lines: Line) -> tuple[Prose, ...]:
     return (Prose(lines), *warned)
 
 
-def _mooring(result: Result) -> Sheet:
+def _mooring(result: Result, places: bool) -> Sheet:
     depth = say("depth", result.file.environment.depth)
     return Sheet(
         title=f"{result.name}: {_TYPES[result.type]}, {depth} of water",
-        table=line_table(result, _MOORING_COLUMNS, f"Depth, height and offset: {_NOTE}"),
+        table=line_table(
+            result, _MOORING_COLUMNS, f"Depth, height and offset: {_NOTE}", places=places
+        ),
         summary=_mooring_summary(result),
         convergence=_convergence(result, "anchor"),
     )
@@ -111,10 +115,10 @@ def _mooring_summary(result: Result) -> tuple[Prose, ...]:
     )
 
 
-def _tow(result: TowResult) -> Sheet:
+def _tow(result: TowResult, places: bool) -> Sheet:
     return Sheet(
         title=f"{result.name}: tow at {say('speed', result.speed)} towards {result.toward:.0f}°",
-        table=line_table(result, _TOW_COLUMNS, f"Depth and layback: {_NOTE}"),
+        table=line_table(result, _TOW_COLUMNS, f"Depth and layback: {_NOTE}", places=places),
         summary=_tow_summary(result),
         convergence=_convergence(result, "tow point"),
     )

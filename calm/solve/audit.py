@@ -12,12 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from calm.physics.compiled import packed
+from calm.physics.compiled import packed, record_type
 from calm.physics.line import Floats, Integers, Line
 from calm.physics.pace import is_fast, paced
 from calm.physics.referee import Body, Moored, Shape, element_loads, strumming, worst_moment
 from calm.physics.reference import REFERENCE_DENSITY
-from calm.physics.reynolds import DragCurve
 from calm.physics.stretch import Knot
 from calm.physics.strumming import AT_REST
 from calm.physics.track import head_count
@@ -27,11 +26,57 @@ LARGEST_CLOSURE = 1e-6
 LARGEST_MOMENT = 1e-8
 
 
-def loads(solution: Solution) -> Floats:
-    """(k, 3) buoyancy and drag of every element [N]; a rigid piece's at its own middle."""
-    written = _taken(np.zeros((3, len(solution.cut))))
-    paced(element_loads)(_moored(solution, solution.carried), _shape(solution), written)
-    return np.array(written).T
+class Audit:
+    """A solution laid out once, as it is loaded, for all its checks.
+
+    Attributes
+    ----------
+    loads : (k, 3) buoyancy and drag of every element [N]; a rigid piece's at its own middle
+    """
+
+    def __init__(self, solution: Solution) -> None:
+        self._solution = solution
+        self._moored, self._shape = _moored(solution), _shape(solution)
+        written = _taken(np.zeros((3, len(solution.cut))))
+        paced(element_loads)(self._moored, self._shape, written)
+        self._written = written
+        self.loads: Floats = np.array(written).T
+
+    def closure(self) -> float:
+        """Relative departure of the sum of the loads from the force at the line's end.
+
+        Where the line lies on the seabed, the loads above its touchdown must leave no vertical
+        force there: but a downward one where a rigid piece or clamp stands, and an upward one that
+        the weight of a rigid piece lying there holds down. Friction on what lies takes its share
+        of the horizontal force.
+        """
+        solution = self._solution
+        hanging = solution.hanging
+        load = self.loads[:hanging]
+        total = load.sum(axis=0)
+        scale = max(float(solution.tension[-1]), 1e-3 * float(np.abs(load).sum()), 1e-300)
+        if solution.landed:
+            if _points(solution, hanging - 1):
+                total[2] = max(total[2], 0.0)
+            if _points(solution, hanging):
+                total[2] = min(total[2], 0.0)
+            tension = float(np.hypot(total[0], total[1]))
+            held = min(solution.settings.seabed_friction * _weight_on_seabed(solution), tension)
+            total[:2] *= 1.0 - held / tension if tension > 0.0 else 0.0
+        return float(np.linalg.norm(total - solution.force[-1])) / scale
+
+    def moment_residual(self) -> float:
+        """Largest angle between an element's axis and the mean of the forces at its ends [rad].
+
+        The forces follow from the loads. Or, where that is larger, departure of a cable's strain
+        from what these forces ask for. Both beyond the rounding of the coordinates.
+        """
+        solution = self._solution
+        rounding = 32.0 * float(np.finfo(float).eps * np.abs(solution.position).max())
+        worst = paced(worst_moment)(
+            self._moored, self._shape, self._written, solution.hanging, rounding
+        )
+        return float(worst)
 
 
 def _taken(columns: Floats | Integers) -> Any:
@@ -39,68 +84,65 @@ def _taken(columns: Floats | Integers) -> Any:
     return columns if is_fast() else columns.tolist()
 
 
-def _moored(solution: Solution, line: Line) -> Moored:
-    water = solution.water
+def _moored(solution: Solution) -> Moored:
+    water, line = solution.water, solution.carried
     bodies, knots = bodies_of(line)
     law = line.strumming
     moored = Moored(
-        bodies,
+        bodies if is_fast() else list(map(Body._make, bodies.tolist())),
         knots,
         len(line.length),
         head_count(line),
         line.friction.law,
         AT_REST if law is None else law.vibration(0.0),
         0.0 if law is None else solution.frequency,
-        water.level.tolist(),
-        water.u.tolist(),
-        water.v.tolist(),
-        water.w.tolist(),
-        water.density.tolist(),
+        _taken(water.level),
+        _taken(water.u),
+        _taken(water.v),
+        _taken(water.w),
+        _taken(water.density),
         water.gravity,
-        water.viscosity_level.tolist(),
-        water.viscosity.tolist(),
+        _taken(water.viscosity_level),
+        _taken(water.viscosity),
     )
     return packed(moored) if is_fast() else moored
 
 
-def bodies_of(line: Line) -> tuple[list[Body], list[Knot]]:
-    """The pieces of a line and its clamps, and the knots of its elongation curves."""
-    rows: Any = zip(*(getattr(line, name).tolist() for name in _COLUMNS), strict=True)
+def bodies_of(line: Line) -> tuple[Any, list[Knot]]:
+    """The pieces of a line and, after them, its clamps, and the knots of its elongation curves.
+
+    The bodies are an array of records, one each `Body`.
+    """
+    pieces = len(line.length)
+    bodies: Any = np.zeros(pieces + len(line.clamp_at), record_type(Body))
+    for name in _OF_PIECE:
+        bodies[name][:pieces] = getattr(line, name)
+    for name, column in _OF_CLAMP.items():
+        bodies[name][pieces:] = getattr(line, column)
+    for first, curves in ((0, line.drag_curve), (pieces, line.clamp_drag_curve)):
+        for place, curve in enumerate(curves, first):
+            if curve is not None:
+                bodies["smooth"][place] = curve.diameter
+                bodies["lengthening"][place] = curve.lengthening
     knots: list[Knot] = []
-    bodies = []
-    for piece, row in enumerate(rows):
-        smooth = line.drag_curve[piece] if line.drag_curve else None
-        stretch = line.elongation[piece] if line.elongation else None
-        first = len(knots)
-        knots += () if stretch is None else stretch.knots
-        diameter, lengthening = _followed(smooth)
-        bodies.append(Body._make((*row, diameter, lengthening, first, len(knots))))
-    for clamp in range(len(line.clamp_at)):
-        smooth = line.clamp_drag_curve[clamp] if line.clamp_drag_curve else None
-        diameter, lengthening = _followed(smooth)
-        bodies.append(
-            _RIGID._replace(
-                buoyancy=float(line.clamp_buoyancy[clamp]),
-                volume=float(line.clamp_volume[clamp]),
-                normal_drag=float(line.clamp_drag[clamp]),
-                lift=float(line.clamp_lift[clamp]),
-                smooth=diameter,
-                lengthening=lengthening,
-            )
-        )
+    for piece, stretch in enumerate(line.elongation):
+        if stretch is not None:
+            bodies["first_knot"][piece] = len(knots)
+            knots += stretch.knots
+            bodies["end_knot"][piece] = len(knots)
     return bodies, knots
 
 
-def _followed(curve: DragCurve | None) -> tuple[float, float]:
-    """Diameter [m] and lengthening of a drag curve; 0 without."""
-    return (0.0, 0.0) if curve is None else (curve.diameter, curve.lengthening)
-
-
-_COLUMNS = (
+_OF_PIECE = (
     "flexible", "length", "buoyancy", "volume", "normal_drag", "tangential_drag", "directional",
     "compliance", "thinning", "lift", "push_east", "push_north", "diameter",
 )  # fmt: skip
-_RIGID = Body(0, 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0)
+_OF_CLAMP = {
+    "buoyancy": "clamp_buoyancy",
+    "volume": "clamp_volume",
+    "normal_drag": "clamp_drag",
+    "lift": "clamp_lift",
+}
 
 
 def _shape(solution: Solution) -> Shape:
@@ -152,29 +194,6 @@ def _flow(solution: Solution) -> Floats:
     return current
 
 
-def closure(solution: Solution, load: Floats) -> float:
-    """Relative departure of the recomputed `loads`' sum from the force at the line's end.
-
-    Where the line lies on the seabed, the loads above its touchdown must leave no vertical force
-    there: but a downward one where a rigid piece or clamp stands, and an upward one that the
-    weight of a rigid piece lying there holds down. Friction on what lies takes its share of the
-    horizontal force.
-    """
-    hanging = solution.hanging
-    load = load[:hanging]
-    total = load.sum(axis=0)
-    scale = max(float(solution.tension[-1]), 1e-3 * float(np.abs(load).sum()), 1e-300)
-    if solution.landed:
-        if _points(solution, hanging - 1):
-            total[2] = max(total[2], 0.0)
-        if _points(solution, hanging):
-            total[2] = min(total[2], 0.0)
-        tension = float(np.hypot(total[0], total[1]))
-        held = min(solution.settings.seabed_friction * _weight_on_seabed(solution), tension)
-        total[:2] *= 1.0 - held / tension if tension > 0.0 else 0.0
-    return float(np.linalg.norm(total - solution.force[-1])) / scale
-
-
 def _points(solution: Solution, element: int) -> bool:
     """Whether the seabed can bear on an element at a point: a rigid piece or a clamp."""
     if element == len(solution.element_piece):
@@ -198,15 +217,3 @@ def _weight_on_seabed(solution: Solution) -> float:
     here = clamp[clamp >= 0]
     lift[clamp >= 0] = line.clamp_buoyancy[here] + excess * line.clamp_volume[here]
     return float(-lift.sum())
-
-
-def moment_residual(solution: Solution, load: Floats) -> float:
-    """Largest angle between an element's axis and the mean of the forces at its ends [rad].
-
-    The forces follow from the recomputed `loads`. Or, where that is larger, departure of a cable's
-    strain from what these forces ask for. Both beyond the rounding of the coordinates.
-    """
-    rounding = 32.0 * float(np.finfo(float).eps * np.abs(solution.position).max())
-    forces = _taken(np.ascontiguousarray(load.T))
-    moored, shape = _moored(solution, solution.line), _shape(solution)
-    return float(paced(worst_moment)(moored, shape, forces, solution.hanging, rounding))

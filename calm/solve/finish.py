@@ -9,7 +9,7 @@ import numpy as np
 
 from calm.physics.line import REFERENCE_DENSITY, Floats, Line
 from calm.physics.track import Load
-from calm.solve import audit
+from calm.solve.audit import LARGEST_CLOSURE, LARGEST_MOMENT, Audit
 from calm.solve.closing import Closed, Closing
 from calm.solve.refine import Refined
 from calm.solve.solution import Solution, nodes_of
@@ -129,19 +129,13 @@ def _carried(line: Line, changed: Iterable[Load]) -> Line:
 
 def _audited(solution: Solution) -> Solution:
     """The solution with its closure and moment residual; refused where a check fails."""
-    load = audit.loads(solution)
-    solution = replace(
-        solution,
-        closure=audit.closure(solution, load),
-        moment_residual=audit.moment_residual(solution, load),
-    )
-    if not solution.closure <= audit.LARGEST_CLOSURE:
+    audit = Audit(solution)
+    closure, moment_residual = audit.closure(), audit.moment_residual()
+    solution = replace(solution, closure=closure, moment_residual=moment_residual)
+    if not closure <= LARGEST_CLOSURE:
         raise Status.NOT_CONVERGED.because(
-            "The loads do not sum to the force at the line's end: they are "
-            f"{solution.closure:.1e} off."
+            f"The loads do not sum to the force at the line's end: they are {closure:.1e} off."
         )
-    if not solution.moment_residual <= audit.LARGEST_MOMENT:
-        raise Status.NOT_CONVERGED.because(
-            f"A piece is {solution.moment_residual:.1e} rad out of balance."
-        )
+    if not moment_residual <= LARGEST_MOMENT:
+        raise Status.NOT_CONVERGED.because(f"A piece is {moment_residual:.1e} rad out of balance.")
     return solution

@@ -24,7 +24,7 @@ from calm.physics.line import Floats, Line, Water
 from calm.physics.march import Cuts
 from calm.physics.state import MarchError
 from calm.physics.track import head_count
-from calm.solve import audit
+from calm.solve.audit import LARGEST_CLOSURE, Audit
 from calm.solve.free_march import Falling, FallingAnchor, Moving, Rising
 from calm.solve.free_search import Place, terminal
 from calm.solve.solution import Settings, Solution, nodes_of
@@ -140,9 +140,9 @@ def _recorded(moving: Moving, place: Place, cuts: Cuts, settings: Settings) -> F
         lift_error=nan,
         pull_error=nan,
     )
-    left = audit.loads(solution).sum(axis=0) + moving.anchor_force(flow)
+    left = Audit(solution).loads.sum(axis=0) + moving.anchor_force(flow)
     closure = float(np.linalg.norm(left)) / moving.weight
-    if not closure <= audit.LARGEST_CLOSURE:
+    if not closure <= LARGEST_CLOSURE:
         raise Status.NOT_CONVERGED.because(
             f"The loads on the moving line do not cancel: they are {closure:.1e} off."
         )

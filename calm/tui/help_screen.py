@@ -14,7 +14,8 @@ from textual.containers import ScrollableContainer, VerticalScroll
 from textual.screen import ModalScreen, Screen
 from textual.widgets import Input, Static, TextArea
 
-from calm.tui.actions import PLACES, actions_in, bindings, shown_keys
+from calm.tui.action_table import PLACES
+from calm.tui.actions import actions_in, bindings, shown_keys
 from calm.tui.signs import LOOKS
 
 _SIGNS = "Signs: " + ", ".join(f"{look.sign} {look.word}" for look in LOOKS.values())

@@ -46,6 +46,8 @@ def open_session(
     else:
         if path is not None and not path.absolute().parent.is_dir():
             raise UsageError(f"cannot write {path}: there is no folder {path.absolute().parent}")
+        text = ""
+    if not text.strip("\ufeff \t\r\n"):
         text = Draft.empty().text
     session = Session(file, text, environment=environment, catalogs=catalogs)
     _refuse_other_files(session)

@@ -7,7 +7,8 @@ from functools import partial
 
 from textual.command import DiscoveryHit, Hit, Hits, Provider
 
-from calm.tui.actions import ACTIONS, Action, shown_key
+from calm.tui.action_table import ACTIONS, Action
+from calm.tui.actions import shown_key
 
 _PLACES = ("line", "anywhere")
 

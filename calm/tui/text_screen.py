@@ -17,6 +17,7 @@ from calm.errors import Problem
 from calm.files.editing.retyped import retyped
 from calm.tui.actions import bindings, hints
 from calm.tui.bars import KeyBar
+from calm.tui.dialogs import Asked, Sheet
 from calm.tui.messages import is_elsewhere, mistakes, said
 from calm.tui.screen import DraftScreen
 from calm.tui.workspace import Workspace
@@ -68,9 +69,10 @@ class TextPart(Vertical):
     }
     """
 
-    def __init__(self, workspace: Workspace) -> None:
+    def __init__(self, workspace: Workspace, line: int) -> None:
         super().__init__()
         self.workspace, self.session = workspace, workspace.session
+        self._line, self._sought = line, ""
         self._problems: tuple[Problem, ...] = ()
         self._next = 0
         self._begun = self.session.draft.text
@@ -83,11 +85,14 @@ class TextPart(Vertical):
             yield Static(id="mistakes-text")
 
     def on_mount(self) -> None:
-        """The cursor to the first mistake."""
+        """The cursor to the first mistake, or to the piece that it was on."""
         self.show_view()
         self.text_area.focus()
         if self._here:
             self.next_problem()
+        else:
+            row = _row(self.session.draft.text, self._line)
+            self.text_area.move_cursor((row, 0), center=True)
 
     @property
     def text_area(self) -> TextArea:
@@ -158,6 +163,26 @@ class TextPart(Vertical):
 
     show_draft = replaced
 
+    def find(self, words: str = "") -> None:
+        """Select where words are next, from the cursor on and then from the top; case is ignored.
+
+        Without any, those that were sought last.
+        """
+        self._sought = words or self._sought
+        if not self._sought:
+            self.workspace.tell("Ctrl+F says what is to be found")
+            return
+        area, sought = self.text_area, self._sought.lower()
+        lines, (row, column) = area.document.lines, area.selection.end
+        for number in range(len(lines) + 1):
+            here = (row + number) % len(lines)
+            start = lines[here].lower().find(sought, 0 if number else column)
+            if start >= 0:
+                area.move_cursor((here, start), center=True)
+                area.move_cursor((here, start + len(sought)), select=True)
+                return
+        self.workspace.tell(f"{self._sought}: not in the text", wrong=True)
+
     def next_problem(self) -> None:
         """Put the cursor on the next mistake."""
         if self._problems and not self._here:
@@ -176,8 +201,8 @@ class TextScreen(DraftScreen):
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("text")]
 
-    def __init__(self, workspace: Workspace) -> None:
-        self.text = TextPart(workspace)
+    def __init__(self, workspace: Workspace, line: int = 1) -> None:
+        self.text = TextPart(workspace, line)
         super().__init__(workspace, self.text, self.text)
 
     def on_mount(self) -> None:
@@ -187,6 +212,20 @@ class TextScreen(DraftScreen):
     def action_next_problem(self) -> None:
         """Put the cursor on the next mistake."""
         self.text.next_problem()
+
+    def action_find(self) -> None:
+        """Ask for words, and go to them."""
+
+        def take(texts: dict[str, str] | None) -> None:
+            if texts is not None:
+                self.text.find(texts["words"])
+
+        asked = [Asked("words", "Find", placeholder="a label, a key, a number")]
+        self.app.push_screen(Sheet("Find in the text", "F3 goes to the next place.", asked), take)
+
+    def action_find_next(self) -> None:
+        """To the next place of what was sought."""
+        self.text.find()
 
     def action_back(self) -> None:
         """To the line, if the text has one."""

@@ -147,6 +147,49 @@ def test_nothing_is_wider_than_the_page(opened, section):
         assert page.evaluate("document.documentElement.scrollWidth") <= 800
 
 
+def test_a_phone_shows_it_legibly(opened, section):
+    with opened(report_html([section])) as page:
+        page.set_viewport_size({"width": 390, "height": 844})
+        assert page.evaluate("document.documentElement.scrollWidth") <= 390
+        assert page.evaluate(OVERLAPS) == []
+        letters = page.evaluate(
+            """() => [...document.querySelectorAll("svg text")]
+              .filter((one) => one.textContent.trim())
+              .map((one) => one.getBoundingClientRect().height)"""
+        )
+        assert min(letters) >= 8.0
+        cells = page.evaluate(
+            """() => [...document.querySelectorAll(".wide td:not(.number)")]
+              .filter((one) => one.textContent.length > 12 && one.checkVisibility())
+              .map((one) => one.getBoundingClientRect().width)"""
+        )
+        assert min(cells) >= 60.0
+
+
+def test_no_head_stands_at_the_end_of_a_printed_page(opened, section):
+    with opened(report_html([section, replace(section, name="Another mooring")])) as page:
+        heads = page.locator("h2, h3, h4, caption").all_inner_texts()
+        heads += [" ".join(row.split()) for row in page.locator("thead tr").all_inner_texts()]
+        content = page.pdf(prefer_css_page_size=True)
+    document = pypdfium2.PdfDocument(content)
+    for printed in document:
+        text = printed.get_textpage().get_text_range()
+        lines = ["".join(line.split()) for line in text.splitlines() if line.strip()]
+        lines = [line for line in lines if not line.replace("/", "").isdigit()]
+        ends = ["".join(head.split()) for head in heads if head.strip()]
+        assert not lines or lines[-1] not in ends
+    document.close()
+
+
+def test_the_place_of_a_clamp_is_told(opened, tmp_path):
+    with opened(report_html([mooring_section(judged(LINES / "deep-current-meters.yaml"))])) as page:
+        assert page.locator("svg text", has_text="at 100.00").count() == 1
+        for title in ("Table of the line", "Pieces for the deck"):
+            table = page.locator("table", has=page.locator("caption", has_text=title))
+            row = table.locator("tr", has_text="MicroCAT 400 m")
+            assert "at 100.00" in row.inner_text()
+
+
 def test_names_that_mean_harm_are_text(opened, tmp_path):
     with opened(report_html([mooring_section(judged_hostile(tmp_path))])) as page:
         text = page.evaluate("document.body.textContent")

@@ -227,13 +227,23 @@ def _heed_interrupts():
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
+IN_SMALL_BLOCKS = """
+import runpy
+import sys
+from calm.batch import run
+run.BLOCK = 64
+sys.argv[0] = "calm"
+runpy.run_module("calm", run_name="__main__")
+"""
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="sends signals as POSIX has them")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_signals_leave_what_can_be_resumed(write_mooring, folder, number):
     # one by one it is slow enough to be caught at it
-    (folder / "long.csv").write_text(still_water(20_000))
+    (folder / "long.csv").write_text(still_water(4_000))
     file = write_mooring()
-    command = [sys.executable, "-m", "calm", "batch", file, "--currents", "long.csv",
+    command = [sys.executable, "-c", IN_SMALL_BLOCKS, "batch", file, "--currents", "long.csv",
                "-o", "r.nc", "--workers", "1"]  # fmt: skip
     process = subprocess.Popen(
         command, stderr=subprocess.PIPE, text=True,
@@ -247,7 +257,7 @@ def test_signals_leave_what_can_be_resumed(write_mooring, folder, number):
     told = process.communicate(timeout=600)[1]
     assert process.returncode == 75, told
     # a block of these takes a while; how far it comes is for the machine to say
-    assert re.search(r"interrupted; \d[\d ]* of 20 000 profiles are done", told)
+    assert re.search(r"interrupted; \d[\d ]* of 4 000 profiles are done", told)
 
 
 @pytest.mark.slow  # it compiles the kernel anew

@@ -222,10 +222,12 @@ def test_nothing_is_written_of_what_cannot_be(calm, folder, change, code, compla
 def test_usage(calm, folder, write_mooring):
     write_mooring()
     (folder / "file").write_text("")
+    (folder / "tow.yaml").write_text("tow: {speed: 2 m/s, toward: 0}\nline: [{use: shackle-13}]\n")
     for words, complaint in (
         (("m.yaml",), "output"),
         (("m.yaml", "-o", "out", "--page", "a5"), "a5"),
         (("m.yaml", "-o", "file"), "is no folder"),
+        (("tow.yaml", "-o", "out"), "calm deck is for moorings; towed: tow.yaml"),
         (("m.yaml", "-o", "out", "--ship-speed", "2"), "--ship-speed: `2` needs a unit: `2 m/s`?"),
         (("m.yaml", "-o", "out", "--ship-speed", "0 m/s"), "it must be faster"),
         (("m.yaml", "-o", "out", "--streamed", "2 km"), "give less than its length"),

@@ -4,6 +4,7 @@ import asyncio
 from contextlib import asynccontextmanager
 
 import pytest
+from textual._compositor import Compositor
 from textual._context import active_app
 from textual.pilot import Pilot
 
@@ -37,6 +38,7 @@ components:
   weight: {kind: anchor, weight: 5000 N}
 """
 
+PAINT = Compositor.render_update
 TERMINAL = {"TERM": "xterm-256color"}
 
 NAMES = {
@@ -78,6 +80,22 @@ def no_clock(monkeypatch):
     """Nothing is waited for by the clock."""
     monkeypatch.setattr("textual.pilot.wait_for_idle", at_rest)
     monkeypatch.setattr("textual.app.wait_for_idle", at_once)
+
+
+@pytest.fixture(autouse=True)
+def unpainted(monkeypatch):
+    """No terminal is there to be painted: what a test looks at is painted then, and at its end."""
+
+    def leave(compositor, **_):
+        compositor._dirty_regions.clear()
+
+    monkeypatch.setattr(Compositor, "render_update", leave)
+
+
+@pytest.fixture
+def painted(monkeypatch, unpainted):
+    """Every change is painted at once, as in a terminal."""
+    monkeypatch.setattr(Compositor, "render_update", PAINT)
 
 
 @pytest.fixture(autouse=True)
@@ -169,6 +187,8 @@ async def driven(path=None, size=(120, 36), *, environ=TERMINAL, environment=Non
         driver = Driver(app, pilot)
         await driver.settle()
         yield driver
+        if app.is_running:
+            assert driver.screen
 
 
 @pytest.fixture

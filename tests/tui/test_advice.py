@@ -129,7 +129,7 @@ def test_advice_is_shown_and_taken_by_key(drive, folder):
     drive(story, path)
 
 
-def test_what_changed_since_the_file_was_saved(drive, folder):
+def test_what_changed_since_the_file_was_saved(drive, folder, painted):
     path = folder / "light.yaml"
     path.write_text(LIGHT, encoding="utf-8")
 

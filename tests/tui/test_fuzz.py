@@ -12,6 +12,8 @@ from calm.tui.app import BuildApp
 from calm.tui.session import Session
 from tests.tui.conftest import MOORING, driven
 
+pytestmark = pytest.mark.usefixtures("painted")
+
 KEYS = [
     "up", "down", "left", "right", "home", "end", "pageup", "pagedown", "enter", "escape", "tab",
     "shift+tab", "space", "shift+up", "shift+down", "delete", "backspace", "insert", "alt+up",
@@ -166,7 +168,7 @@ async def first_screen(driver):
     assert driver.app.screen is driver.builder
 
 
-@pytest.mark.parametrize("count", [200, pytest.param(1000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [60, pytest.param(1000, marks=pytest.mark.slow)])
 @pytest.mark.parametrize(("seed", "text"), [(7, MOORING), (2026, UGLY)])
 def test_keys_at_random_change_what_they_are_about(small, monkeypatch, seed, text, count):
     small.write_bytes(text.encode())
@@ -202,7 +204,7 @@ def test_keys_at_random_in_the_text_are_undone(small, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("seed", "count"), [(1, 200), *(pytest.param(n, 400, marks=pytest.mark.slow) for n in (1, 2))]
+    ("seed", "count"), [(1, 60), *(pytest.param(n, 400, marks=pytest.mark.slow) for n in (1, 2))]
 )
 def test_keys_at_random_while_another_program_writes_the_file(
     small, folder, monkeypatch, seed, count

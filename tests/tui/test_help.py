@@ -2,7 +2,8 @@
 
 import pytest
 
-from calm.tui.actions import PLACES, actions_in, shown_key, shown_keys
+from calm.tui.action_table import PLACES
+from calm.tui.actions import actions_in, shown_key, shown_keys
 from calm.tui.catalogue.component_screen import ComponentScreen
 from calm.tui.catalogue.pane import CataloguePane
 from calm.tui.cycle import Cycle

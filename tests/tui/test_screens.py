@@ -11,6 +11,8 @@ from calm.tui.field import Field
 from calm.tui.text_screen import TextScreen
 from tests.tui.conftest import MOORING
 
+pytestmark = pytest.mark.usefixtures("painted")
+
 
 def test_the_palette_finds_an_action_by_its_name(drive, small):
     async def story(driver):

@@ -13,6 +13,8 @@ import pytest
 
 from calm.shipped import shipped_folder
 
+pytestmark = pytest.mark.usefixtures("painted")
+
 KEPT = Path(__file__).parent / "snapshots"
 STORIES = {
     "line": ((140, 40), "upward-adcp-300m", ["down", "down", "down"]),

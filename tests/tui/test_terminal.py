@@ -14,6 +14,7 @@ import pexpect
 import pyte
 import pytest
 
+from calm.files.editing import Draft
 from calm.shipped import shipped_folder
 
 ESCAPE_DELAY = 0.1  # seconds; as textual has it
@@ -129,12 +130,29 @@ def fill_table(terminal, rows):
             terminal.press(text, ENTER)
 
 
-def test_build_the_deep_mooring_from_nothing(tmp_path, monkeypatch):
-    monkeypatch.setenv("CALM_COMPILED", "always")  # the line is judged after every key
-    from calm.files.editing import Draft
+OF_THE_SHORT_LINE = {
+    "top float", "wire 1", "meter 300 m", "wire 2", "parafil 3", "back-up glass", "releases",
+    "three wheels",
+}  # fmt: skip
 
+
+def short_line(text):
+    """The deep mooring with eight of its pieces: of every kind of them one."""
+    draft = Draft(text.partition("checks:\n")[0])
+    labels = [item.values["label"] for item in draft.items]
+    draft = draft.put(labels.index("parafil 3"), "length", "3600 m")
+    return draft.delete(i for i, label in enumerate(labels) if label not in OF_THE_SHORT_LINE)
+
+
+@pytest.mark.parametrize(
+    "line", [short_line, pytest.param(Draft, marks=pytest.mark.slow, id="all of it")]
+)
+def test_build_the_deep_mooring_from_nothing(tmp_path, monkeypatch, line):
+    monkeypatch.setenv("CALM_COMPILED", "always")  # the line is judged after every key
     shipped = shipped_folder("lines") / "deep-current-meters.yaml"
-    wanted = Draft(shipped.read_text(encoding="utf-8"))
+    wanted = line(shipped.read_text(encoding="utf-8"))
+    given = tmp_path / "given.yaml"
+    given.write_text(wanted.text, encoding="utf-8")
     file = tmp_path / "mine.yaml"
     terminal = Terminal(file, columns=80, rows=24)
     terminal.wait("mine.yaml", "? help")
@@ -169,8 +187,7 @@ def test_build_the_deep_mooring_from_nothing(tmp_path, monkeypatch):
     terminal.end()
     assert terminal.child.exitstatus == 0
 
-    built, given = run_json(file), run_json(shipped)
-    assert built == given
+    assert run_json(file) == run_json(given)
 
 
 def test_keys_that_come_in_one_parcel_are_not_mixed_up(tmp_path):

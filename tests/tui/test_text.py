@@ -1,6 +1,7 @@
 """The file as text: what is not typed over stays byte for byte, and nothing in it is obeyed."""
 
 import pytest
+from textual.widgets import TextArea
 
 from calm.tui.text_screen import TextScreen
 from tests.tui.conftest import MOORING
@@ -124,3 +125,43 @@ def test_the_text_goes_to_its_ends(drive, small):
         assert area.cursor_location == (0, 0)
 
     drive(story, small)
+
+
+def test_the_text_opens_at_the_piece_and_finds_words(drive, small):
+    async def story(driver):
+        await driver.press("end", "up", "t")
+        area = driver.app.screen.query_one(TextArea)
+        row, _ = area.cursor_location
+        assert area.document.lines[row].strip() == "- {use: releaser}"
+        await driver.press("f3")
+        assert "Ctrl+F says" in driver.screen
+        await driver.press("ctrl+f")
+        await driver.type("LOGGER")
+        await driver.press("enter")
+        assert area.selected_text == "logger" and area.cursor_location[0] > row
+        found = [area.cursor_location]
+        for _ in range(4):
+            await driver.press("f3")
+            found.append(area.cursor_location)
+        assert len(set(found[:4])) == 4 and found[4] == found[0]  # it begins again from the top
+        await driver.press("ctrl+f")
+        await driver.type("nowhere")
+        await driver.press("enter")
+        assert "nowhere: not in the text" in driver.screen
+        assert driver.text == small.read_text()
+
+    drive(story, small)
+
+
+@pytest.mark.parametrize("text", ["", " \n\n", "\ufeff"])
+def test_a_file_without_anything_offers_a_start(drive, folder, text):
+    path = folder / "touched.yaml"
+    path.write_text(text, encoding="utf-8")
+
+    async def story(driver):
+        assert "b   begins with a mooring" in driver.screen
+        await driver.press("b", "1", "ctrl+s")
+        await driver.settle()
+        assert path.read_text(encoding="utf-8").startswith("# A sub-surface mooring")
+
+    drive(story, path)

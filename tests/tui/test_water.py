@@ -771,3 +771,23 @@ def test_an_arrow_takes_what_is_typed_as_in_a_spreadsheet(drive, folder):
         assert "[90, 0.1, 0]" in driver.text and (grid.cursor, grid.column) == (1, 1)
 
     drive(story, path)
+
+
+def test_no_row_is_proposed_below_the_seabed(drive, folder):
+    table = "{columns: [depth m, speed m/s, toward deg], rows: [[0, 0.5, 90], [95, 0.1, 90]]}"
+    path = folder / "table.yaml"
+    path.write_text(MOORING.replace("{speed: 0.5 m/s, toward: 90 deg}", table), encoding="utf-8")
+
+    def depths(driver):
+        return [row[0] for row in driver.session.draft.value(("environment", "current", "rows"))]
+
+    async def story(driver):
+        await driver.press("w")
+        cells = driver.app.screen.query_one("#current-table").cells
+        cells.focus()
+        await driver.press("end", "down", "a", "escape")
+        assert depths(driver) == ["0", "95", "100"]
+        await driver.press("a", "escape")
+        assert depths(driver) == ["0", "95", "97.5", "100"]
+
+    drive(story, path)

@@ -18,8 +18,6 @@ from tests.validation.agreement import closure, difference
 from tests.validation.cables import Folded, NoContinuousSolution
 from tests.validation.closing import solve_continuous
 
-pytestmark = pytest.mark.usefixtures("march_compiled")
-
 
 @pytest.mark.parametrize("wanted", [5, pytest.param(15, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("law", [Friction.HOERNER, Friction.CONSTANT])

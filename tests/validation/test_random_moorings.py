@@ -21,8 +21,6 @@ from tests.validation.agreement import closure, difference
 from tests.validation.cables import Folded, NoContinuousSolution
 from tests.validation.closing import solve_continuous
 
-pytestmark = pytest.mark.usefixtures("march_compiled")
-
 STANDING = 20
 BLOCKS = [*range(2), *(pytest.param(block, marks=pytest.mark.slow) for block in range(2, 12))]
 

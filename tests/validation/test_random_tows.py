@@ -22,8 +22,6 @@ from tests.validation.cables import Folded, NoContinuousSolution
 from tests.validation.random_tows import tow
 from tests.validation.towed import HalfOut, Passing, solve_continuous_tow
 
-pytestmark = pytest.mark.usefixtures("march_compiled")
-
 TOWED = 5
 BLOCKS = [*range(2), *(pytest.param(block, marks=pytest.mark.slow) for block in range(2, 12))]
 

@@ -19,8 +19,6 @@ from tests.validation.agreement import closure, difference
 from tests.validation.closing import Equilibrium, solve_continuous
 from tests.validation.towed import Passing, Towed, solve_continuous_tow
 
-pytestmark = pytest.mark.usefixtures("march_compiled")
-
 LINES = sorted((Path(__file__).parents[2] / "lines").glob("*.yaml"))
 TOWS = [path for path in LINES if "\ntow:" in path.read_text(encoding="utf-8")]
 MOORINGS = [path for path in LINES if path not in TOWS]

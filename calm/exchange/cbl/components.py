@@ -15,6 +15,7 @@ from calm.units import KILOGRAM_FORCE
 
 _REFERENCE_DENSITY = 1025.0  # in which CALM's net forces are
 _TOO_WIDE = 20.0  # times what mass and weight say: no cable, whatever its fairing
+_ROPE = 10.0  # m: what is shorter may be a frame, whose diameter is that of its drag
 _FASTEST = 10.0  # m/s: a drag tabulated beyond it counts on depth
 _DYNAMICS = (
     "ei", "gj", "am", "amn", "amt", "can", "cat", "cmn", "cmt", "bn", "bt", "b", "cg", "cl",
@@ -31,8 +32,10 @@ class Makers:
     gravity: float
     dropped: list[Remark]
 
-    def material(self, definition: Definition, depth: float, speed: float) -> Component:
-        """Of a cable: its drag at a depth [m] and a speed [m/s], where it depends on them."""
+    def material(
+        self, definition: Definition, length: float, depth: float, speed: float
+    ) -> Component:
+        """Of a cable of a length [m]: its drag at a depth [m] and a speed [m/s]."""
         values, name = definition.values, definition.name
         across, inside = number(values, "d") or number(values, "diam"), number(values, "id")
         if across <= 0.0:
@@ -56,7 +59,11 @@ class Makers:
         if mass:
             figures["mass"] = mass
         component = Component(name, kind, figures)
-        if mass and _TOO_WIDE * (mass - weight / self.gravity) < _REFERENCE_DENSITY * area:
+        if (
+            mass
+            and length > _ROPE
+            and _TOO_WIDE * (mass - weight / self.gravity) < _REFERENCE_DENSITY * area
+        ):
             component.guesses["diameter"] = (
                 f"kept as it stands: a metre of it displaces {_REFERENCE_DENSITY * area:.3g} kg of "
                 f"water, but has a mass of {mass:.3g} kg and weighs {weight:.3g} N"
@@ -106,9 +113,9 @@ class Makers:
         figures: dict[str, Figure] = {}
         wet, mass = number(values, "wet"), number(values, "m") or number(values, "mass")
         if wet > 0.0:
-            figures["weight"] = wet
-            if mass * self.gravity > wet:
-                figures["mass"] = mass
+            figures["weight"], known = self._at_reference(wet, mass)
+            if known:
+                figures["mass"] = known
         elif mass > 0.0:
             figures["mass"] = mass
         mu = number(values, "mu") or friction

@@ -7,11 +7,11 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
-from calm.exchange.cbl.components import Makers, counts_on_depth, varies
-from calm.exchange.cbl.problem import Definition, Problem, Segment, Terminal, read_problem
-from calm.exchange.cbl.tokens import Token
+from calm.exchange.cbl.components import Makers
+from calm.exchange.cbl.problem import Problem, Segment, Terminal, read_problem
+from calm.exchange.cbl.segments import defined, laid
 from calm.exchange.cbl.water import number, value_at, water_of
-from calm.exchange.design import Component, Design, Hung, Item, Remark, Tow, Water
+from calm.exchange.design import Design, Item, Remark, Tow
 from calm.exchange.refusal import refused
 
 _REFUSED = {
@@ -30,8 +30,6 @@ _HEADS = re.compile(
     re.MULTILINE,
 )
 _FORCES = ("x-force", "y-force", "z-force", "x-thrust", "y-thrust", "z-thrust")
-_PARTS = 12  # lengths of a segment whose drag changes with depth
-_CHANGE = 0.02  # of a drag that is worth two lengths
 _NOTE = (
     "cn and ct are its Cdn and Cdt, counted alike: on the diameter, and on the surface of a metre. "
     "See docs/import-cable.md."
@@ -70,7 +68,7 @@ def read_cbl(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> 
     density = number(problem.environment, "rho") or number(problem.environment, "density")
     gravity = number(problem.environment, "gravity", 9.81)
     makers = Makers(density or 1025.0, gravity, design.dropped)
-    items = _line(problem, segments, makers, design)
+    items = laid(problem, segments, makers, design)
     if kind == "towing":
         _lay_tow(problem, ends, items, makers, design)
     else:
@@ -113,126 +111,6 @@ def _refuse_other_shapes(
                 raise values[key].token.refuse(f"`{key}` pulls at the line from outside")
 
 
-def _line(problem: Problem, segments: list[Segment], makers: Makers, design: Design) -> list[Item]:
-    """The pieces between the ends, from the lower one up."""
-    assert design.water is not None
-    items: list[Item] = []
-    below = 0.0
-    seabed = design.water.depth or sum(number(each.values, "length") for each in segments)
-    for segment in segments:
-        length = number(segment.values, "length")
-        if length <= 0.0:
-            raise segment.token.refuse("a segment has no length")
-        material = _defined(problem.materials, segment.values.get("material"), segment.token)
-        clamps = _clamps(problem, segment, length, makers)
-        items += _pieces(material, length, seabed - below, clamps, makers, design.water)
-        below += length
-        for key in ("top-spool-length", "bottom-spool-length"):
-            if number(segment.values, key) > 0.0:
-                design.dropped.append(Remark(f"segment of {material.name}", f"{key}: on a winch"))
-        joint = segment.connector
-        if joint is not None and joint.text.lower() not in ("pinned", "spliced"):
-            items.append(Item(makers.connector(_named(problem.connectors, joint, "connector"))))
-    return items
-
-
-def _pieces(
-    material: Definition,
-    length: float,
-    lower: float,
-    clamps: list[tuple[float, Component]],
-    makers: Makers,
-    water: Water,
-) -> list[Item]:
-    """A segment as one piece, or as several where its drag changes with depth; lower end first.
-
-    Parameters
-    ----------
-    lower : depth of its lower end, standing upright [m]
-    clamps : height above its lower end, and what hangs there
-    """
-    count = _PARTS if varies(material) else 1
-    made: list[tuple[float, Component]] = []
-    for part in range(count):
-        depth = max(lower - length * (part + 0.5) / count, 0.0)
-        component = makers.material(material, depth, _speed(water, depth))
-        if made and _alike(made[-1][1], component):
-            made[-1] = (made[-1][0] + length / count, made[-1][1])
-        else:
-            made.append((length / count, component))
-    items, start = [], 0.0
-    for part_length, component in made:
-        guess = "its drag at the depth where it stands upright" if len(made) > 1 else ""
-        item = Item(component, part_length, guess=guess)
-        end = start + part_length
-        last = component is made[-1][1]
-        for height, hung in clamps:
-            if start <= height < end or (last and height >= end):
-                item.clamps.append(Hung(hung, min(max(end - height, 0.0), part_length)))
-        item.clamps.sort(key=lambda clamp: clamp.at)
-        items.append(item)
-        start = end
-    for key in ("cdn", "cdt"):
-        value = material.values.get(key)
-        if value is not None and value.rows and not counts_on_depth(value):
-            for item in items:
-                speed = f"{_speed(water, lower - length / 2.0):.3g} m/s"
-                item.guess = item.guess or f"{key} is a table by speed: its value at {speed}"
-    return items
-
-
-def _alike(one: Component, other: Component) -> bool:
-    for key in ("cn", "ct"):
-        a, b = float(one.figures[key]), float(other.figures[key])
-        if abs(a - b) > _CHANGE * max(abs(a), abs(b)):
-            return False
-    return True
-
-
-def _speed(water: Water, depth: float) -> float:
-    """Of the current at the level next to a depth [m/s]."""
-    if not water.current:
-        return 0.0
-    row = min(water.current, key=lambda each: abs(each[0] - depth))
-    return math.hypot(row[1], row[2])
-
-
-def _clamps(
-    problem: Problem, segment: Segment, length: float, makers: Makers
-) -> list[tuple[float, Component]]:
-    """What hangs on the nodes of a segment, with the height above its lower end."""
-    if not segment.attachments:
-        return []
-    heights = _heights(segment, length)
-    found = []
-    for attachment in segment.attachments:
-        component = makers.connector(_named(problem.connectors, attachment.token, "connector"))
-        for node in attachment.nodes:
-            if not 1 <= node <= len(heights):
-                raise attachment.token.refuse(
-                    f"node {node}: the segment has nodes 1 to {len(heights)}"
-                )
-            found.append((heights[node - 1], component))
-    return found
-
-
-def _heights(segment: Segment, length: float) -> list[float]:
-    """Of the nodes of a segment above its lower end [m]."""
-    nodes = segment.values.get("nodes")
-    if nodes is None or not nodes.rows or any(len(row) != 2 for row in nodes.rows):
-        raise segment.token.refuse("attachments need `nodes = (count, share)`")
-    heights = [0.0]
-    for count, share in nodes.rows:
-        number_, part = round(count.at()), share.at() * length
-        if not 2 <= number_ <= 1_000_000:
-            raise nodes.token.refuse("a segment needs two nodes at least")
-        start = heights[-1]
-        heights += [start + part * k / (number_ - 1) for k in range(1, number_)]
-    if abs(heights[-1] - length) > 1e-3 * length:
-        raise nodes.token.refuse(f"the nodes reach over {heights[-1]:g} m of {length:g} m")
-    return heights
-
-
 def _lay_mooring(
     problem: Problem,
     kind: str,
@@ -253,7 +131,7 @@ def _lay_mooring(
     top = upper.values.get("buoy") or upper.values.get("platform")
     if top is None:
         raise upper.token.refuse("the upper end is no buoy")
-    buoy = _defined(problem.buoys, top, upper.token)
+    buoy = defined(problem.buoys, top, upper.token)
     afloat = kind == "surface" or (
         kind == "general"
         and sum(
@@ -296,7 +174,7 @@ def _lay_tow(
     if speed == 0.0:
         raise ship.token.refuse("the ship of this tow does not move")
     design.tow = Tow(speed, math.degrees(math.atan2(east, north)) % 360.0)
-    buoy = _defined(problem.buoys, towed, body.token)
+    buoy = defined(problem.buoys, towed, body.token)
     design.items = [*items[::-1], Item(makers.buoy(buoy, afloat=False))]
     _drop_dynamics(ends, design)
 
@@ -307,20 +185,3 @@ def _drop_dynamics(ends: list[Terminal], design: Design) -> None:
         found = [key for key in end.values if key not in known]
         if found:
             design.dropped.append(Remark("terminal", ", ".join(found)))
-
-
-def _defined(definitions: dict[str, Definition], value: object, token: Token) -> Definition:
-    text = getattr(value, "text", "")
-    if not text:
-        raise token.refuse("a name is missing: a material, or a buoy")
-    found = definitions.get(text)
-    if found is None:
-        raise getattr(value, "token", token).refuse(f"`{text}` is defined nowhere")
-    return found
-
-
-def _named(definitions: dict[str, Definition], token: Token, what: str) -> Definition:
-    found = definitions.get(token.text)
-    if found is None:
-        raise token.refuse(f"the {what} `{token.text}` is defined nowhere")
-    return found

@@ -11,6 +11,7 @@ from calm.exchange.words import is_chain, role_of
 from calm.units import KILOGRAM_FORCE
 
 _REFERENCE_DENSITY = 1025.0
+_SLIGHT = 1e-6  # by which a hull takes more than its net buoyancy
 _SOFT = 1e10  # Pa: the modulus of a rope is below, of a wire above
 _HARD = re.compile(r"\bwire|\bchain|\bsteel", re.I)
 
@@ -50,6 +51,27 @@ def rigid(element: Element) -> Component:
             "so its drag is missing"
         )
     return component
+
+
+def rides_by_buoyancy(component: Component) -> None:
+    """Let a float ride as that program has it: it sinks, and drags, by the buoyancy it uses.
+
+    Its hull displaces no more than its net buoyancy takes, in proportion to the draft.
+    """
+    figures = component.figures
+    lift, height = float(figures.get("buoyancy", 0.0)), float(figures.get("length", 0.0))
+    if component.kind not in ("sphere", "cylinder", "body") or lift <= 0.0 or height <= 0.0:
+        return
+    across = float(figures.get("diameter", 0.0))
+    shown = {
+        "sphere": math.pi / 4.0 * across**2,
+        "cylinder": across * height,
+        "body": float(figures.get("drag_area", 0.0)),
+    }
+    figures.pop("mass", None)
+    volume = (1.0 + _SLIGHT) * lift / (_REFERENCE_DENSITY * KILOGRAM_FORCE)
+    component.hull = ((0.0, 0.0, 0.0), (height, volume, shown[component.kind]))
+    component.comment = "At the surface it sinks, and drags, in proportion to the buoyancy it uses."
 
 
 def _is_too_small(element: Element) -> bool:

@@ -9,7 +9,7 @@ from pathlib import Path
 from calm.exchange.design import Design, Hung, Item, Remark, Tow
 from calm.exchange.mdd.elements import Element, read_elements
 from calm.exchange.mdd.matfile import read_variables
-from calm.exchange.mdd.pieces import anchor_of, component_of, rigid
+from calm.exchange.mdd.pieces import anchor_of, component_of, rides_by_buoyancy, rigid
 from calm.exchange.mdd.value import Value, numbers
 from calm.exchange.mdd.water import read_water
 from calm.exchange.refusal import refused
@@ -19,6 +19,7 @@ _WANTED = frozenset(
     + [f"{name}{end}" for name in ("H", "B", "Wt", "Cd", "ME", "moorele") for end in ("", "t")]
     + ["Usp", "Vsp", "afh"]
 )
+_STRETCHED = 1.2  # times its length, a line may reach the surface
 _APART = 0.02  # m and share of the piece by which the two places of a clamp may differ
 _NOTE = (
     "cn and cx are its Cd. That program has no drag along a line or cylinder worth the name, so "
@@ -80,6 +81,9 @@ def _lay_mooring(
         raise refused(path, f"element {last.number}, {last.name}, is no anchor with a weight")
     design.items = [_item(element) for element in elements[:-1]]
     design.items.append(Item(anchor_of(last)))
+    depth = design.water.depth if design.water is not None else None
+    if depth is None or _STRETCHED * sum(_length(item) for item in design.items) >= depth:
+        rides_by_buoyancy(design.items[0].component)
 
 
 def _lay_tow(

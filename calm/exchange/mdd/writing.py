@@ -53,6 +53,10 @@ def mdd_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
         variables["Wt"] = columns[7:8]
     variables |= _water(design)
     variables |= _clamps(design, lost)
+    if design.wind[0]:
+        lost.append("wind")
+    if design.afloat[0]:
+        lost.append("the hull of the float: there it sinks in proportion to the buoyancy it uses")
     told = remarks(design, lost)
     variables["lost"] = _texts([f"by CALM from {design.name}; lost:", *told])
     content = io.BytesIO()

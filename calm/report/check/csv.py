@@ -42,7 +42,7 @@ INVENTORY_HEADER = (
     "kind",
     "clamped_on",
     QUANTITIES["cut_length"].header,
-    *(QUANTITIES[name].header for name in ("dry_mass", "wet_weight", "lift_mass")),
+    *(QUANTITIES[name].header for name in ("dry_mass", "wet_weight", "lift_mass", "at")),
 )
 """First row of `inventory_csv`; weights in water are positive downward."""
 
@@ -94,4 +94,5 @@ def _items(assessment: Assessment) -> Iterator[Sequence[object]]:
             item.dry_mass,
             item.wet_weight,
             item.lift_mass,
+            item.at,
         )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from calm.quantities import QUANTITIES
 from calm.report.blocks import Cell, Column, Table
-from calm.report.line import figure_cell, quantity_column
+from calm.report.line import figure_cell, place_text, quantity_column
 
 if TYPE_CHECKING:
     from calm.checks.inventory import Item
@@ -20,6 +20,7 @@ def deck_table(items: Sequence[Item]) -> Table:
             Cell("" if item.clamped_on else str(item.index)),
             Cell(item.label, indented=item.clamped_on is not None),
             Cell(item.name or item.use),
+            Cell("" if item.at is None else place_text(item.at)),
             figure_cell("cut_length", item.cut_length),
             figure_cell("mass", item.dry_mass),
             figure_cell("wet_weight", item.wet_weight),
@@ -31,12 +32,16 @@ def deck_table(items: Sequence[Item]) -> Table:
         Column("no.", numeric=True),
         Column("piece"),
         Column("component"),
+        Column("on its piece", "m", numeric=True),
         quantity_column("cut_length"),
         quantity_column("dry_mass"),
         quantity_column("wet_weight"),
         quantity_column("lift_mass"),
     )
-    note = "Weight in water: + down. Mass of the lift: of the piece with what is clamped on it."
+    note = (
+        "On its piece: where a clamp sits, from the top of it. Weight in water: + down. Mass of "
+        "the lift: of the piece with what is clamped on it."
+    )
     return Table("Pieces for the deck", columns, rows, note)
 
 

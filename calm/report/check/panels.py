@@ -90,15 +90,15 @@ class Panels:
 def panels() -> Iterator[Panels]:
     """The empty sheet of this process, for one drawing at a time."""
     with _LOCK:
-        sheet = _sheet()
         try:
-            yield sheet
+            yield sheet()
         finally:
-            sheet.clear()
+            sheet().clear()
 
 
 @cache
-def _sheet() -> Panels:
+def sheet() -> Panels:
+    """The sheet of this process, and of those that are forked from it."""
     return Panels()
 
 

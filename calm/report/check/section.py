@@ -130,7 +130,7 @@ def _line(assessment: Assessment) -> Iterator[Block]:
     title = f"Schematic, environment: {stand.environment}" if stand else "Schematic"
     yield Figure(title, schematic_svg(assessment.mooring.file, result), tall=True)
     if stand is not None and result is not None:
-        said = sheet(result)
+        said = sheet(result, places=True)
         yield replace(said.table, title=f"Table of the line, environment: {stand.environment}")
         yield from (*said.summary, Prose((said.convergence,)))
 

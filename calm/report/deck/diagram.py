@@ -124,7 +124,7 @@ def _fill(
 ) -> None:
     """Draw a page: its head, its columns, its title block, on the last one the legend."""
     width, height = paper.size
-    _text(page, MARGIN, MARGIN + 0.4 * _TITLE, title, _TITLE, bold=True)
+    page.letters(MARGIN, MARGIN + 0.4 * _TITLE, title, size=_TITLE, bold=True)
     for number, column in columns:
         _column(page, column, paper, paper.left(number), first=number == 0)
     bottom = height - MARGIN - block.height
@@ -142,7 +142,7 @@ def _column(page: Pen, column: ColumnOf, paper: Paper, left: float, *, first: bo
         lines = (*filter(None, words), QUANTITIES[name].display_unit)
         for number, word in enumerate(lines):
             y = top - 8.0 - 8.4 * (len(lines) - 1 - number)
-            _text(page, right, y, word, SMALL, SOFT, anchor="end")
+            page.letters(right, y, word, size=SMALL, colour=SOFT, anchor="end")
     page.line(left, top - 2.0, left + paper.column_width, top - 2.0, stroke=FAINT)
     pen = page.draw("g", stroke=INK, stroke_width=0.9, stroke_linejoin="round", fill=INK)
     x = left + _LINE_AT
@@ -151,7 +151,7 @@ def _column(page: Pen, column: ColumnOf, paper: Paper, left: float, *, first: bo
     elif first:
         water = pen.group(left, 0.0)
         draw_surface(water, PICTURE, top + 7.0)
-        _text(page, left + PICTURE, top + 7.0, "sea surface", FONT, SOFT)
+        page.letters(left + PICTURE, top + 7.0, "sea surface", size=FONT, colour=SOFT)
     for placed in column.entries:
         _entry(page, pen, placed, x, left, rights)
     if column.below:
@@ -159,7 +159,7 @@ def _column(page: Pen, column: ColumnOf, paper: Paper, left: float, *, first: bo
     else:
         ground = pen.group(left, 0.0)
         draw_seabed(ground, PICTURE, column.end)
-        _text(page, left + PICTURE, column.end + 9.0, "seabed", FONT, SOFT)
+        page.letters(left + PICTURE, column.end + 9.0, "seabed", size=FONT, colour=SOFT)
 
 
 def _continued(page: Pen, x: float, top: float, left: float, words: str) -> None:
@@ -169,7 +169,7 @@ def _continued(page: Pen, x: float, top: float, left: float, words: str) -> None
         "rect", x=left + PICTURE - 4.0, y=top + 2.0, width=78.0, height=CONTINUED - 4.0,
         fill="white", stroke=INK, stroke_width=0.8,
     )  # fmt: skip
-    _text(page, left + PICTURE, top + CONTINUED / 2, words, FONT, bold=True)
+    page.letters(left + PICTURE, top + CONTINUED / 2, words, size=FONT, bold=True)
 
 
 def _entry(
@@ -198,9 +198,9 @@ def _entry(
     lines += [(text, SOFT, False) for text in placed.name]
     y = middle - LEADING * (len(lines) - 1) / 2
     for number, (text, colour, bold) in enumerate(lines):
-        _text(page, start, y + LEADING * number, text, FONT, colour, bold=bold)
+        page.letters(start, y + LEADING * number, text, size=FONT, colour=colour, bold=bold)
     for text, right in zip(entry.cells, rights, strict=True):
-        _text(page, right, y, text, FONT, anchor="end")
+        page.letters(right, y, text, size=FONT, anchor="end")
 
 
 def _rights(paper: Paper, left: float) -> list[float]:
@@ -222,7 +222,7 @@ def _legend(
     left = paper.left(number if not columns or shared else number + 1)
     rows = -(-len(legend) // _LEGEND_COLUMNS)
     top = bottom - rows * _LEGEND_ROW
-    _text(page, left, top - LEADING, "Symbols", FONT, bold=True)
+    page.letters(left, top - LEADING, "Symbols", size=FONT, bold=True)
     pen = page.draw("g", stroke=INK, stroke_width=0.9, stroke_linejoin="round", fill=INK)
     step = paper.column_width / _LEGEND_COLUMNS
     for place, sign in enumerate(legend):
@@ -233,7 +233,7 @@ def _legend(
         else:
             figure = figure_of(Sign(sign.symbol))
             figure.draw(pen.group(x, y, min(0.5, 20.0 / figure.height)))
-        _text(page, x + 18.0, y, _WORDS[sign.symbol], FONT)
+        page.letters(x + 18.0, y, _WORDS[sign.symbol], size=FONT)
 
 
 def _picture(width: float, height: float, title: str) -> Pen:
@@ -257,23 +257,3 @@ def _picture(width: float, height: float, title: str) -> Pen:
 def _written(picture: Pen) -> str:
     ElementTree.indent(picture.element)
     return ElementTree.tostring(picture.element, encoding="unicode") + "\n"
-
-
-def _text(
-    page: Pen,
-    x: float,
-    y: float,
-    text: str,
-    size: float,
-    colour: str = INK,
-    *,
-    bold: bool = False,
-    anchor: str = "start",
-) -> None:
-    """A text whole, its middle at `y`."""
-    if text:
-        weight = {"font_weight": "bold"} if bold else {}
-        page.draw(
-            "text", x=x, y=y + 0.35 * size, font_size=size, fill=colour, text_anchor=anchor,
-            **weight,
-        ).element.text = text  # fmt: skip

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from calm.files.alignment import own_labels
 from calm.quantities import QUANTITIES
+from calm.report.line import place_text
 from calm.report.schematic.parts import one_line
 from calm.report.schematic.sign import LINES, Sign, Symbol, sign_of
 
@@ -130,7 +131,7 @@ def _said(one: Hung, own: str) -> str:
 def _cells(one: Hung) -> tuple[str, str, str, str]:
     depth, height = (QUANTITIES["depth"].format(value) for value in (one.depth, one.height))
     if one.on is not None:
-        return f"at {QUANTITIES['at'].format(one.at)}", "", depth, height
+        return place_text(one.at or 0.0), "", depth, height
     cut, stretched = (QUANTITIES["length"].format(value) for value in
                       (one.cut_length, one.stretched))  # fmt: skip
     return cut, stretched, depth, height

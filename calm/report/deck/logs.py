@@ -47,6 +47,10 @@ def recovery_part(deck: Deck) -> Part:
         said.append("The rise of the line is not known; the order is that of the line.")
     elif rise.time_to_surface is None:
         said.append("Freed, the line does not rise by itself; the order is that of the line.")
+    elif rise.time_to_surface == 0.0:
+        said.append(
+            "Its float is at the surface; what comes up from below is listed with its time."
+        )
     else:
         first = rise.time_to_surface / 60.0
         said.append(

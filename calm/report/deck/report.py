@@ -33,7 +33,7 @@ def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report
     said = (*deck.notes, *notes)
     if said:
         parts.append(Part("To be known", (Prose(said, State.WARN),)))
-    parts.append(Part("Inputs", (origin([deck.file]), PageBreak())))
+    parts.append(Part("Inputs", (origin([deck.file]),)))
     parts += (Part(part.title, (*part.blocks, PageBreak())) for part in _sheets(deck))
     subtitle = f"{deck.order}, environment: {deck.environment}"
     section = Section(deck.file.name, tuple(parts))

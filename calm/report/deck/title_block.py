@@ -55,10 +55,10 @@ class TitleBlock:
                     "rect", x=x, y=y, width=step, height=height, fill="none", stroke=INK,
                     stroke_width=0.6,
                 )  # fmt: skip
-                _write(page, x + _PAD, y + 6.0, name, SMALL, SOFT)
+                page.letters(x + _PAD, y + 6.0, name, size=SMALL, colour=SOFT)
                 shown = (self.sheet,) if name == "sheet" else lines
                 for line, text in enumerate(shown):
-                    _write(page, x + _PAD, y + 6.0 + LEADING * (line + 1), text, FONT, INK)
+                    page.letters(x + _PAD, y + 6.0 + LEADING * (line + 1), text, size=FONT)
             y += height
 
 
@@ -75,8 +75,3 @@ def title_block_of(deck: Deck, paper: Paper) -> TitleBlock:
 
 def _height(row: tuple[tuple[str, tuple[str, ...]], ...]) -> float:
     return 8.0 + LEADING * max(1, *(len(lines) for _, lines in row)) + 3.0
-
-
-def _write(page: Pen, x: float, y: float, text: str, size: float, colour: str) -> None:
-    if text:
-        page.draw("text", x=x, y=y + 0.35 * size, font_size=size, fill=colour).element.text = text

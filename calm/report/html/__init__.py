@@ -15,21 +15,29 @@ if TYPE_CHECKING:
 
     from calm.case import Result, TowResult
     from calm.case.uncertain import Uncertain
-    from calm.report.blocks import Report, Section
+    from calm.report.blocks import Column, Report, Section
 
 _LONG_WORD = re.compile(r"(\S{20,})")
 _STEP = 10  # signs after which a long word may break
 
 
-def report_html(sections: Sequence[Section]) -> str:
+def report_html(sections: Sequence[Section], leaves: Sequence[str] | None = None) -> str:
     """The report of a design check, the section of each mooring in order.
 
     Every text is escaped. The page asks for nothing: style, script and drawings stand in it. It is
-    whole without its script, which sorts and chooses among the checks.
+    whole without its script, which sorts and chooses among the checks. `leaves` are the sections
+    as `leaf` has them, where they are made already.
     """
     from calm.report.check.section import check_report
 
-    return page(check_report(sections))
+    return page(check_report(sections), leaves)
+
+
+def leaf(section: Section, number: int) -> str:
+    """What the page shows of a section, the `number`th from 1."""
+    template = _environment().get_template("parts.html.jinja")
+    shown: str = template.module.parts(section.parts, f"m{number}")  # type: ignore[attr-defined]
+    return shown
 
 
 def result_html(result: Result | TowResult, uncertain: Uncertain | None = None) -> str:
@@ -39,11 +47,14 @@ def result_html(result: Result | TowResult, uncertain: Uncertain | None = None) 
     return page(result_report(result, uncertain))
 
 
-def page(report: Report) -> str:
+def page(report: Report, leaves: Sequence[str] | None = None) -> str:
     """Any report as a page; a text that is no Unicode shows question marks."""
+    leaves = leaves or [leaf(section, at) for at, section in enumerate(report.sections, 1)]
     template = _environment().get_template("page.html.jinja")
     texts = {name: _text(name) for name in ("page.css", "page.js")}
-    html = template.render(report=report, style=texts["page.css"], script=texts["page.js"])
+    html = template.render(
+        report=report, leaves=leaves, style=texts["page.css"], script=texts["page.js"]
+    )
     return html.encode("utf-8", "replace").decode("utf-8")
 
 
@@ -58,7 +69,7 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"set_apart": set_apart, "breakable": _breakable}
+    environment.filters |= {"set_apart": set_apart, "breakable": _breakable, "kinds": _kinds}
     environment.tests["of"] = _is_of
     return environment
 
@@ -66,6 +77,9 @@ def _environment() -> Environment:
 def _breakable(text: str) -> str:
     """The text escaped; a word too long for a column may break, and is still one when copied."""
     from markupsafe import Markup, escape
+
+    if len(text) < 2 * _STEP:
+        return escape(text)
 
     def broken(word: str) -> Markup:
         steps = range(0, len(word), _STEP)
@@ -77,6 +91,19 @@ def _breakable(text: str) -> str:
         return escape(text)
     words[1::2] = map(broken, long)
     return Markup("").join(words)
+
+
+def _kinds(columns: Sequence[Column]) -> list[str]:
+    """The attribute of every cell of a column: figures, or words, the more the wider it is."""
+    from markupsafe import Markup
+
+    def kind(column: Column) -> str:
+        if column.numeric:
+            return "number"
+        return "sentence" if column.share > 2 else "words" if column.share > 1 else ""
+
+    kinds = map(kind, columns)
+    return [Markup(f' class="{each}"' if each else "") for each in kinds]
 
 
 def _is_of(block: Any, kind: str) -> bool:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from calm.quantities import QUANTITIES, say
 from calm.report.labels import alike, together
+from calm.report.line import place_text
 from calm.report.schematic.levels import Levels, levels_of
 from calm.report.schematic.sign import BALLS, Sign, Symbol, sign_of
 from calm.report.signs import printable
@@ -147,6 +148,10 @@ class _Cells:
         """Of a place that has no length."""
         return ("", *self.of(math.nan, depth)[1:])
 
+    def clamped(self, at: float, depth: float) -> tuple[str, ...]:
+        """Of a clamp: how far down its piece it sits, in place of a length."""
+        return (place_text(at), *self.of(math.nan, depth)[1:])
+
     def of(self, length: float, depth: float) -> tuple[str, ...]:
         """Of a piece."""
         height = math.nan if self._bottom is None else self._bottom - depth
@@ -161,7 +166,7 @@ def _part(cells: _Cells, levels: Levels, piece: Piece, length: float, depth: flo
     clamps = tuple(
         Clamped(
             sign_of(clamp.use, clamp.label, clamp.component),
-            _row(clamp, cells.at(levels.clamps[clamp.place])),
+            _row(clamp, cells.clamped(clamp.at, levels.clamps[clamp.place])),
         )
         for clamp in sorted(piece.clamps, key=lambda clamp: clamp.at)
     )

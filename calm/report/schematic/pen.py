@@ -70,8 +70,27 @@ class Pen:
         anchor: str = "start",
     ) -> None:
         """A text in a width, its middle at `y`; one that is cut has the whole for its title."""
+        shown = shortened(text, width, size, bold=bold)
+        pen = self.letters(x, y, shown, size=size, colour=colour, bold=bold, anchor=anchor)
+        if shown != text:
+            pen.element.text = None
+            pen.title(text)
+            pen.element[-1].tail = shown
+
+    def letters(
+        self,
+        x: float,
+        y: float,
+        text: str,
+        *,
+        size: float,
+        colour: str = INK,
+        bold: bool = False,
+        anchor: str = "start",
+    ) -> Pen:
+        """A text whole, its middle at `y`; nothing is drawn of an empty one."""
         if not text:
-            return
+            return self
         weight = {"font_weight": "bold"} if bold else {}
         pen = self.draw(
             "text",
@@ -82,12 +101,8 @@ class Pen:
             text_anchor=anchor,
             **weight,
         )
-        shown = shortened(text, width, size, bold=bold)
-        if shown == text:
-            pen.element.text = text
-        else:
-            pen.title(text)
-            pen.element[-1].tail = shown
+        pen.element.text = text
+        return pen
 
 
 def _text(value: float | str) -> str:

@@ -9,7 +9,8 @@ from textual.binding import BindingType
 from textual.events import DescendantFocus, Key
 
 from calm.files.components import KINDS
-from calm.tui.actions import Place, bindings, hints
+from calm.tui.action_table import Place
+from calm.tui.actions import bindings, hints
 from calm.tui.bars import KeyBar
 from calm.tui.catalogue.pane import CataloguePane
 from calm.tui.line.advising import Advising
@@ -92,6 +93,13 @@ class BuilderScreen(DraftScreen):
         elif focused is not None and self.query_one(CataloguePane) in focused.ancestors_with_self:
             place = "catalogue"
         self.query_one(KeyBar).show_keys(hints(place))
+
+    def action_suspend(self) -> None:
+        """Back to the shell; undo where there is none, or a value is typed."""
+        if self.part.is_typing or self.app.is_web or self.app.is_headless:
+            self.action_undo()
+        else:
+            self.app.action_suspend_process()
 
     def action_picture(self, tab: Tab) -> None:
         """Show another picture."""
@@ -229,7 +237,9 @@ class BuilderScreen(DraftScreen):
         """The file as text."""
         from calm.tui.text_screen import TextScreen
 
-        self.app.push_screen(TextScreen(self.workspace), self._back)
+        spot = self.body.line.table.spot
+        line = 1 if spot is None else self.workspace.session.item(spot).line
+        self.app.push_screen(TextScreen(self.workspace, line), self._back)
 
     def _back(self, _: None) -> None:
         """Another screen may have changed the draft."""

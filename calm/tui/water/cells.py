@@ -25,6 +25,8 @@ _WIDTH = 14
 _LEAD = 2
 _AS_TEXT = "this table is edited in the text of the file (t)"
 _DIGITS = frozenset("0123456789.-+")
+_STEP = 10.0
+"""How much deeper [m] a row below the last is."""
 
 
 class Cells(Listing, can_focus=True):
@@ -64,6 +66,7 @@ class Cells(Listing, can_focus=True):
         super().__init__()
         self.columns: tuple[str, ...] = ()
         self.rows: Rows = ()
+        self.seabed: float | None = None
 
     def show(self, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
         """Show other rows, the cursor where it was if there is such a cell."""
@@ -142,10 +145,20 @@ class Cells(Listing, can_focus=True):
         if not self.columns:
             return
         at = self.cursor + below if self.rows else 0
-        new = _between(self.columns, self.rows, at)
+        at = min(at, len(self.rows) - 1) if self._ends_at_the_seabed(at) else at
+        new = _between(self.columns, self.rows, at, self.seabed)
         self.change([*self.rows[:at], new, *self.rows[at:]], "a row more")
         self.cursor, self.column = at, 0
         self.post_message(self.Wanted())
+
+    def _ends_at_the_seabed(self, at: int) -> bool:
+        """Whether a row at a place would be of a depth below the seabed."""
+        if self.seabed is None or not self.rows or at < len(self.rows):
+            return False
+        try:
+            return float(self.rows[-1][0]) >= self.seabed
+        except ValueError:
+            return False
 
     def action_drop_row(self) -> None:
         """Take the row out; the last one stays."""
@@ -194,8 +207,11 @@ class Cells(Listing, can_focus=True):
         return Strip(segments).adjust_cell_length(width, style)
 
 
-def _between(columns: Sequence[str], rows: Rows, at: int) -> tuple[str, ...]:
-    """Values half-way between those above and below, where both are numbers."""
+def _between(columns: Sequence[str], rows: Rows, at: int, seabed: float | None) -> tuple[str, ...]:
+    """Values half-way between those above and below, where both are numbers.
+
+    Below the last row they are its own, a step deeper but not below the `seabed` [m].
+    """
     if not rows:
         return ("0",) * len(columns)
     above, below = rows[max(at - 1, 0)], rows[min(at, len(rows) - 1)]
@@ -204,6 +220,7 @@ def _between(columns: Sequence[str], rows: Rows, at: int) -> tuple[str, ...]:
     except ValueError:
         return above
     if at == len(rows):
-        return (f"{pairs[0][0] + 10:g}", *above[1:])
+        deeper = pairs[0][0] + _STEP
+        return (f"{deeper if seabed is None else min(deeper, seabed):g}", *above[1:])
     halves = (half_way(column, *pair) for column, pair in zip(columns, pairs, strict=True))
     return tuple(f"{half:g}" for half in halves)

@@ -64,8 +64,11 @@ class Grid(Vertical):
         """What is edited."""
         return self.query_one(CellEditor)
 
-    def show(self, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-        """Show other rows."""
+    def show(
+        self, columns: Sequence[str], rows: Sequence[Sequence[str]], seabed: float | None = None
+    ) -> None:
+        """Show other rows; new ones are not proposed below the `seabed` [m]."""
+        self.cells.seabed = seabed
         self.cells.show(columns, rows)
         self.cells.styles.height = len(rows) + 1
 

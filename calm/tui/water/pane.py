@@ -166,7 +166,7 @@ class WaterPane(Horizontal):
         for grid in self.query(Grid):
             place = _place(grid)
             grid.set_class(not self._is_shown(place, "table"), "gone")
-            grid.show(*water.table(*place))
+            grid.show(*water.table(*place), seabed=water.depth)
 
     def _is_shown(self, place: Place, form: str = "") -> bool:
         """Whether a part of the form is of use as the water is given, in this form of its own."""

@@ -1,6 +1,8 @@
-"""Runs batches in processes that are killed; started by `test_run.py`, prints what came of it.
+"""Runs batches in processes that are killed; started by `test_interrupted.py`.
 
-python killed.py FOLDER ENDING moments|steps
+    python killed.py FOLDER ENDING KILLS|steps
+
+Prints what came of so many kills at moments of chance, or of one before every step.
 """
 
 import json
@@ -22,7 +24,6 @@ from calm.batch.profiles import Batch
 from calm.batch.run import run_batch
 from tests.unit.batch.made import PLAIN, MadeRecord, content, made_mooring
 
-KILLS = 20
 TOUCHES = {"open", "os.rename", "os.remove", "os.rmdir", "os.mkdir", "os.truncate", "shutil.rmtree"}
 
 
@@ -41,11 +42,11 @@ def ended(child):
     return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
 
 
-def at_moments(mooring, record, output, duration):
+def at_moments(mooring, record, output, duration, kills):
     """Kill at moments that a seed chooses, until enough have left a block, or a result."""
     random = np.random.default_rng(20240229)
     results, hit, kept = [], 0, 0
-    while kept < KILLS:
+    while kept < kills:
         child = start(mooring, record, output, 16)
         time.sleep(random.uniform(0.0, duration))
         os.kill(child, signal.SIGKILL)
@@ -131,9 +132,9 @@ if __name__ == "__main__":
     wanted = finished(mooring, record, folder / f"undisturbed{ending}", block)
     duration = time.perf_counter() - began
     output = folder / f"killed{ending}"
-    if how == "moments":
-        told = at_moments(mooring, record, output, duration)
-    else:
+    if how == "steps":
         told = at_steps(mooring, record, output)
+    else:
+        told = at_moments(mooring, record, output, duration, int(how))
     results = told.pop("results")
     print(json.dumps({**told, "finished": len(results), "same": all(r == wanted for r in results)}))

@@ -266,6 +266,21 @@ def test_towed_lines_turn_round_and_ships_at_rest_move(tmp_path):
     assert "- [500, 0.833333333, 0]" in made.text
 
 
+@pytest.mark.parametrize("anchor", ["wet = 50", "m = 20", "wet = 50 m = 20", "color = red"])
+def test_an_anchor_that_would_be_lifted_holds(anchor, tmp_path):
+    made = imported(tmp_path, SMALL.replace("wet = 5000", anchor))
+    answer = solved(tmp_path, made)
+    assert answer["anchor"]["weight"] >= answer["anchor"]["required_weight"]
+    assert [each.where for each in made.guessed] == ["components.clump.weight"]
+
+
+def test_a_rope_in_inches_is_pointed_out(tmp_path):
+    made = imported(tmp_path, SMALL.replace("d = 0.01", "d = 0.375"))
+    assert "kept as it stands" in made.guessed[0].what
+    short = SMALL.replace("length = 50", "length = 5").replace("d = 0.01", "d = 0.375")
+    assert imported(tmp_path, short).guessed == ()
+
+
 def test_what_has_no_use_is_listed(tmp_path):
     text = SMALL.replace("EA = 1e6", "EA = 1e6 EI = 20 GJ = 5 am = 0.08")
     text = text.replace("depth = 100", "depth = 100 x-wave = (1, 8, 0) bottom-stiffness = 100")

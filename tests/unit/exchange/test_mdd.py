@@ -109,6 +109,37 @@ def test_it_leans_as_that_program_printed(tmp_path):
     assert answer["anchor"]["angle"] == pytest.approx(9.1, abs=0.3)
 
 
+def test_it_floats_as_that_program_printed(tmp_path):
+    """CDMS-2: 52 % of the float used, whose middle is at 1999.95 m, 413.4 and 67.8 m away; the
+    third meter at 1052.61 m; 1442 kg at the anchor, 263 of them sideways; from the users guide.
+
+    Those are answers of its older law of drag, which lacks the downward part of the drag across a
+    line: 2 to 3 % of the pull. Heights hardly know of it."""
+    balls = 22
+    size = [[2, 0, 2, 0], [5, 0.03, 0, 1], [2, 0.2, 0, 0], [450, 0.009, 0, 1]]
+    size += [[0.08, 0.025, 0, 2], [500, 0.008, 0, 1], [2, 0.2, 0, 0], [958.8, 0.019, 0, 1]]
+    size += [[0.51, 0, 0.51, 0]] * balls + [[2, 0.2, 0, 0], [10, 0.019, 0, 1]]
+    size += [[0.08, 0.025, 0, 2], [5, 0.03, 0, 1], [0.15, 1, 0, 0]]
+    lift = [2470, -4.12, -20, -0.33, -0.3, -0.19, -20, -0.03, *[23] * balls, -20, -0.03, -0.3]
+    drag = [0.5, 1.3, 1.2, 1.3, 1.3, 1.3, 1.2, 1.3, *[0.95] * balls, 1.2, 1.3, 1.3, 1.3, 1.3]
+    modulus = np.full(len(size), np.inf)
+    modulus[[1, 3, 5, -2]] = 1.38e11
+    modulus[[7, -4]] = 3.45e8
+    water = {"U": [1.0, 0.8, 0.5, 0.25, 0.1], "V": [0.2, 0.1, 0.05, 0.05, 0.0]}
+    water |= {"W": [0.0, 0.1, 0.1, 0.05, 0.0], "z": [2000, 1900, 1800, 1000, 0]}
+    line = {"H": np.array(size, float).T, "B": [*lift, -4.12, 454.55], "Cd": drag, "ME": modulus}
+    made = imported(tmp_path, {name: np.array(value) for name, value in (water | line).items()})
+    answer = load(tmp_path / "design.yaml", text=made.text).solve().to_dict()
+    assert answer["type"] == "surface"
+    assert answer["top"]["used_buoyancy"] == pytest.approx(0.52, abs=0.01)
+    assert 2000 - (answer["top"]["depth"] + 1.0) == pytest.approx(1999.95, abs=0.05)
+    assert answer["top"]["x"] == pytest.approx(413.4, rel=0.02)
+    assert answer["top"]["y"] == pytest.approx(67.8, rel=0.03)
+    assert 2000 - (answer["components"][6]["depth_top"] + 1.0) == pytest.approx(1052.61, abs=0.6)
+    assert answer["anchor"]["tension"] / KILOGRAM == pytest.approx(1442, rel=0.015)
+    assert answer["anchor"]["horizontal"] / KILOGRAM == pytest.approx(263, rel=0.035)
+
+
 @pytest.mark.parametrize("sign", [1, -1])
 def test_an_anchor_weighs_whatever_its_sign(sign, tmp_path):
     lift = mooring()["B"].copy()
@@ -313,3 +344,30 @@ def test_octave_cells_and_ranges_are_read():
     assert found["moorele"] == [["ball"], ["rope"]]
     assert found["z"].tolist() == [0.0, 5.0, 10.0]
     assert found["n"].tolist() == [[1.0, 2.0, 3.0]]
+
+
+NASTY = ['"]\n  - {use: x}', "a: b # c", "- [1, 2]", "{use: x}", "\x1b[31mred", "null", "é↑ 🐟"]
+
+
+def test_names_of_all_kinds_are_texts_in_the_file(tmp_path):
+    """Whatever a name holds, it stands as a name in a file that reads."""
+    names = [*NASTY[:6], NAMES[6]]
+    path = tmp_path / "design.mat"
+    write_matlab(path, mooring(moorele=names), names="cell")
+    made = import_file(path, tmp_path / "design.yaml")
+    pieces = load(tmp_path / "design.yaml", text=made.text).file.pieces
+    assert [piece.component.name or piece.use for piece in pieces[1:4]] == [
+        "a: b # c", "- [1, 2]", "{use: x}",
+    ]  # fmt: skip
+    assert pieces[0].component.name == '"] - {use: x}'
+    assert "\x1b" not in made.text
+
+
+def test_clamps_of_a_tow_count_from_the_lower_end(tmp_path):
+    """The file leads from the body up: the second element is the wire."""
+    hung = mooring()
+    clamps = {name: hung[name] for name in ("HCO", "BCO", "CdCO", "mooreleCO")}
+    data = tow(**clamps, Jobj=np.array([[2]]), Pobj=np.array([[0.25]]))
+    design = read(tmp_path, data)
+    (clamp,) = design.items[0].clamps
+    assert clamp.at == pytest.approx(75.0)

@@ -6,7 +6,7 @@ from calm.physics import pace
 
 
 @pytest.fixture(autouse=True)
-def as_nobody_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+def as_nobody_asked(monkeypatch: pytest.MonkeyPatch, march_as_it_stands: None) -> None:
     monkeypatch.delenv("CALM_COMPILED", raising=False)
 
 

@@ -41,8 +41,8 @@ Small line
  ( ^ )     ADCP float     adcp-float      1.00   24.8    75.2
    U       shackle 1–2    shackle     2 × 0.10   25.8    74.2
    │       wire           wire           50.00   26.0    74.0
-   ├─[#]     upper        Recorder               36.0    64.0
-   ├─[#]     ctd          Recorder               46.0    54.0
+   ├─[#]     upper        Recorder    at 10.00   36.0    64.0
+   ├─[#]     ctd          Recorder    at 20.00   46.0    54.0
  (ooo)     glass 1–3      glass       3 × 0.50   76.0    24.0
  [R|R]     release A      release         1.00   77.5    22.5
            release B      release         1.00   78.5    21.5
