@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from calm.cli.check_files import Design, read_designs
 from calm.cli.exit_codes import ExitCode, gravest
 from calm.cli.outputs import OutputPath, Outputs
-from calm.cli.run import check_draws
+from calm.cli.run import draws_of
 from calm.cli.streams import narrate
 from calm.cli.workers import FEW, mapped
 from calm.errors import InputError, Problem, UsageError, internal_failure
@@ -89,10 +89,7 @@ def check(
         raise UsageError(f"--workers: {workers} is not 1 or more")
     if against is not None and (report is None or len(files) > 1):
         raise UsageError("--against compares one mooring with an earlier design in its --report")
-    draws = None
-    if uncertainty:
-        check_draws(samples, seed)
-        draws = samples, seed
+    draws = draws_of(uncertainty, samples, seed)
     if report is not None:
         given = [*files, *map(Path, environment or ()), *(catalog or ()), *filter(None, [against])]
         _check_report(report, json, given)

@@ -91,28 +91,33 @@ def run(
     """
     outputs = Outputs(tuple(files), json, csv, plot, html, pdf, netcdf)
     outputs.check()
-    if uncertainty:
-        check_draws(samples, seed)
+    draws = draws_of(uncertainty, samples, seed)
     lines = read_files(files, environment, catalog or [])
     for option, is_asked in (("--explain", explain), ("--uncertainty", uncertainty)):
         if is_asked:
             _refuse_tows(option, files, lines)
-    draws = (samples, seed) if uncertainty else None
     return solve_and_show(lines, outputs, explain=explain, schematic=schematic, draws=draws)
 
 
-def check_draws(samples: int, seed: int) -> None:
-    """Refuse a number of samples that is no power of two, and a seed below zero.
+def draws_of(uncertainty: bool, samples: int, seed: int) -> tuple[int, int] | None:
+    """Samples and seed by which to say how sure the figures are; None where that is not asked.
 
     Raises
     ------
     UsageError
+        A number of samples that is no power of two; a seed below zero; either without need.
     """
-    from calm.case.draws import checked_samples
+    from calm.case.draws import SAMPLES, checked_samples
 
+    if not uncertainty:
+        for option, value, usual in (("--samples", samples, SAMPLES), ("--seed", seed, 0)):
+            if value != usual:
+                raise UsageError(f"{option}: {value} is for --uncertainty, which is not asked for")
+        return None
     checked_samples(samples)
     if seed < 0:
         raise UsageError(f"--seed: {seed} is below 0")
+    return samples, seed
 
 
 def read_files(

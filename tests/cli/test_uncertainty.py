@@ -96,3 +96,10 @@ def test_a_check_refuses_samples_that_are_no_power_of_two(calm, write_mooring):
     done = calm("check", write_mooring(), "--uncertainty", "--samples", "99")
     assert done.code == 2
     assert "99 is no power of two" in done.err
+
+
+def test_samples_without_uncertainty_are_refused(calm, write_mooring):
+    path = write_mooring()
+    for command in ("run", "check"):
+        done = calm(command, path, "--samples", 64)
+        assert done.code == 2 and "--samples: 64 is for --uncertainty" in done.err

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from calm.errors import UsageError
 from calm.motion.currents import Currents
 from calm.motion.joined import common_times, interpolated, joined
 from calm.motion.sensors import Sensor
@@ -56,3 +57,9 @@ def test_records_are_joined_level_by_level_from_the_top_down():
     assert one.depth[1].tolist() == [22.0, 53.0]
     assert one.tide == pytest.approx([-0.2, 0.0, 0.2, 0.0])  # about its mean
     assert one.false.tolist() == [False, False, True, False]
+
+
+def test_records_that_share_no_time_are_refused():
+    here, later = currents(hours(0, 1), [0.1, 0.2]), [sensor("a", hours(50, 51), [20, 21])]
+    with pytest.raises(UsageError, match="no time has both a current and a pressure"):
+        joined([here], later, [0], ("a",), np.array([20.0]), np.timedelta64(2, "h"))

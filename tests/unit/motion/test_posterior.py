@@ -1,11 +1,14 @@
 """What pressures make of the currents, against the same law written out in full."""
 
+from dataclasses import replace
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from calm.motion import prior
 from calm.motion.measured import Measured
-from calm.motion.moment import Common, Linear, posterior
+from calm.motion.moment import Common, Linear, Moments, posterior
 
 STILL = np.array([50.0, 100.0, 180.0])  # of three points; the first and the last have sensors
 THERE = np.array([80.0, 120.0, 185.0])
@@ -76,3 +79,35 @@ def test_slopes_lead_from_the_old_state_to_the_new():
     moved = at.moved(logs, depth)
     back = np.einsum("npg,ng->np", moved.slope, logs - at.logs)
     assert back == pytest.approx(depth - THERE)
+
+
+def test_the_errors_of_the_currents_are_those_of_the_table():
+    one = replace(given()[0], u=np.array([[0.3, 0.4]]), v=np.array([[0.4, np.nan]]),
+                  flag=np.array([[3, 1]], np.int8))  # fmt: skip
+    common = replace(given()[2], scale=2.0, gap=np.array([[0.11, 0.12], [0.13, 0.14]]))
+    way = Moments(one, SimpleNamespace(), {}).way(np.array([[10.0, 90.0]]), common)
+    whole, shear = prior.CURRENT**2, prior.SHEAR**2
+    own = [prior.LEVEL[3] ** 2 + (prior.STEADY / 0.5) ** 2, 0.14**2]
+    expected = whole + shear * np.array([[1.0, -1.0], [-1.0, 1.0]]) + np.diag(own)
+    assert way.spread[0] == pytest.approx(4.0 * expected)
+    assert way.u.tolist() == [[0.3, 0.3]] and way.v.tolist() == [[0.4, 0.4]]
+    other = Moments(one, SimpleNamespace(), {}).way(np.array([[10.0, 90.0]]), common, (0,))
+    assert np.isnan(other.u).all()  # nothing is left to take it from
+
+
+def test_slopes_are_those_of_the_line():
+    one = replace(given()[0], u=np.array([[0.5, 0.2]]))
+    gain = np.array([[40.0, 2.0], [10.0, 8.0]])
+
+    def line(factor):
+        return SimpleNamespace(depths=lambda level, u, v: 100.0 + factor * u @ gain.T)
+
+    moments = Moments(one, line(1.0), {"cable_drag": line(np.exp(0.05))})
+    way = moments.way(np.array([[10.0, 90.0]]), given()[2])
+    logs = np.array([[0.1, -0.1]])
+    there = moments.depths(way, logs)
+    assert there[0] == pytest.approx(100.0 + gain @ (np.exp([0.1, -0.1]) * [0.5, 0.2]))
+    slope = gain * np.exp([0.1, -0.1]) * [0.5, 0.2]
+    assert moments.slopes(way, logs, there)[0] == pytest.approx(slope, rel=0.03)
+    none = moments.depths(way, 0.0 * logs)
+    assert moments.common_slopes(way, none)[0, :, 0] == pytest.approx(gain @ [0.5, 0.2], rel=0.03)
