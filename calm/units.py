@@ -147,7 +147,8 @@ _TWINS = _MASS_AND_FORCE | {force: mass for mass, force in _MASS_AND_FORCE.items
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4}(?![\d.]))?")
 _FRACTION = re.compile(r"([+-]?)(?:(\d+)\s+)?(\d+)\s*/\s*(\d+)(?![\d.])")
 _COMMA = re.compile(r"([+-]?\d+),(\d+)(?=$|[^\d,])")
-_UNIT = re.compile(r"(?:[A-Za-zµ°%][A-Za-z_µ°%]*|[*/()]|\^-?[1-4](?!\d)|1(?=/))+")
+# a word ends where no more of it follows: else the ways to part one double with every letter
+_UNIT = re.compile(r"(?:[A-Za-zµ°%][A-Za-z_µ°%]*(?![A-Za-z_µ°%])|[*/()]|\^-?[1-4](?!\d)|1(?=/))+")
 _SUPERSCRIPTS = str.maketrans("⁻¹²³⁴", "-1234")
 _LONGEST = 60
 _LARGEST = 1e30  # so that products of a few of them are numbers still

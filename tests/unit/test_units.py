@@ -170,3 +170,9 @@ def test_everyday_units_do_without_pint() -> None:
         "sys.exit('pint' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+@pytest.mark.parametrize("unit", ["%" * 50 + " kN", "a" * 55 + "?", "m" * 30 + "²" * 9 + "!"])
+def test_a_unit_of_many_letters_that_cannot_be_one_is_refused_at_once(unit: str) -> None:
+    with pytest.raises(QuantityError):  # one that tries every way to part it never ends
+        unit_factor(unit, "force")
