@@ -22,6 +22,9 @@ LONG = 1e6
 PUSHED = 1e-4
 """Of all weights: what a bar at rest is pushed with at least, to be laid down."""
 _FALLS = 3
+HANDED = 0.6
+"""Share of the anchor's weight that the ship still bears in the second step, the same share of that
+in the third, and so on: it is let go, and not thrown."""
 _GROWTH = 1.3
 _REST_GROWTH = 1.6
 _SHORTEST = 1e-9
@@ -34,11 +37,6 @@ class Fineness:
 
     bars: int
     steps: int
-
-    @property
-    def halved(self) -> Fineness:
-        """With bars and steps twice as long."""
-        return Fineness(self.bars // 2, self.steps // 2)
 
 
 @dataclass(frozen=True)
@@ -105,14 +103,21 @@ def fall(line: Line, water: Water, anchor: Anchor, start: State, fineness: Finen
     mover = Mover(chain_of(line, fineness.bars), _sea(water), anchor)
     bottom = line.anchor_height - water.depth
     way = water.depth / fineness.steps
-    states, step = [start], 0.02 * way
+    states, step = [start], 0.005 * way
     while states[-1].node[-1, 2] > bottom:
         if len(states) > _MOST * fineness.steps:
             raise Status.ANCHOR_LIFTS.because(
                 f"The anchor weighs {anchor.weight:.0f} N in water and does not draw the line to "
                 "the seabed."
             )
-        state = _stepped(mover, states[-1], step, water.depth)
+        # let go at once, without inertia, the anchor would be upon the line beside it
+        borne = HANDED ** (len(states) - 1)
+        falling = (
+            mover
+            if borne < 1e-3
+            else replace(mover, anchor=replace(anchor, weight=(1.0 - borne) * anchor.weight))
+        )
+        state = _stepped(falling, states[-1], step, water.depth)
         step = state.time - states[-1].time
         if state.node[-1, 2] <= bottom:
             # the seabed would stop what is above the anchor in the part of the step beyond it

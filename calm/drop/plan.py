@@ -27,8 +27,8 @@ class DropPlan:
     fall_time : until the anchor stands on the seabed
     fall_back : how far from where it was let go it lands, towards the float
     aside : how far it lands to the right of that direction, seen from where it was let go
-    time_error, distance_error : of `fall_time` and of `fall_back`, `aside`: what halving the steps
-        and the bars changed, and half as much again
+    time_error, distance_error : of `fall_time` and of `fall_back`, `aside`: what steps of twice the
+        length change and what bars of twice the length do, together, and a quarter more
     fall_time_band, fall_back_band : with the anchor's drag halved and doubled, the less first
     touchdown_speed : of the anchor as it meets the seabed
     greatest_tension : in the line, from letting go to the touchdown

@@ -24,6 +24,8 @@ SHIP_SPEED = 1.0
 FINE = Fineness(bars=100, steps=100)
 DRAG_BAND = 2.0
 """By how many times the anchor's drag may be more, or less, than given."""
+CAUTION = 1.25
+"""By how much the stated errors are more than what steps and bars of twice the length change."""
 BLOCK_CD = 1.05
 """Of a cube that falls with a face ahead (Hoerner, Fluid-Dynamic Drag, 1965)."""
 SLOWEST_SHIP = 0.05
@@ -66,34 +68,35 @@ def drop_plan(
     falling = with_axial_clamps(mooring.line, mooring.file.pieces[:-1])
     water = mooring.water
 
-    def let_fall(fineness: Fineness) -> tuple[State, Course]:
-        start = towed(falling, water, anchor, ship, fineness)
-        return start, fall(falling, water, anchor, start, fineness)
+    def let_go(start: State, drag: float, fineness: Fineness) -> Course:
+        return fall(falling, water, replace(anchor, drag=drag), start, fineness)
 
-    start, drop = let_fall(fineness)
-    coarse_start, coarse = let_fall(fineness.halved)
+    start = towed(falling, water, anchor, ship, fineness)
+    drop = let_go(start, anchor.drag, fineness)
+    longer = replace(fineness, steps=fineness.steps // 2)
+    slower = let_go(start, anchor.drag, longer)
+    fewer = replace(fineness, bars=fineness.bars // 2)
+    coarser = let_go(towed(falling, water, anchor, ship, fewer), anchor.drag, fewer)
     rest = settle(mooring.line, water, anchor, drop.states[-1], fineness)
     difference = None if result is None else rest_difference(result, rest)
     toward = start.node[0, :2] / np.linalg.norm(start.node[0, :2])
     others = [
-        fall(
-            falling,
-            water,
-            replace(anchor, drag=anchor.drag * factor),
-            coarse_start,
-            fineness.halved,
-        )
+        let_go(start, anchor.drag * factor, longer).states[-1]
         for factor in (1.0 / DRAG_BAND, DRAG_BAND)
     ]
-    landed, nearly = drop.states[-1], coarse.states[-1]
+    landed, late = drop.states[-1], slower.states[-1]
     back, aside = _split(landed, toward)
-    shifts = [_split(nearly, toward)[i] - (back, aside)[i] for i in (0, 1)]
-    backs = [_split(other.states[-1], toward)[0] - shifts[0] for other in others]
-    times = [other.states[-1].time - nearly.time + landed.time for other in others]
+    # of steps twice as long, and of bars
+    missed = [
+        np.subtract(_split(other.states[-1], toward), (back, aside)) for other in (slower, coarser)
+    ]
+    delays = [other.states[-1].time - landed.time for other in (slower, coarser)]
+    backs = [_split(other, toward)[0] - float(missed[0][0]) for other in others]
+    times = [other.time - late.time + landed.time for other in others]
     way = np.array([sin(radians(course)), cos(radians(course))])
-    let_go = -landed.node[-1, :2]
+    released = -landed.node[-1, :2]
     run, run_time = _run(water, way, ship_speed, float(np.linalg.norm(start.node[0, :2])))
-    past = float(let_go @ way)
+    past = float(released @ way)
     pulls = pulls_of(mooring.file.pieces, drop)
     return DropPlan(
         mooring=mooring,
@@ -104,8 +107,8 @@ def drop_plan(
         fall_time=landed.time,
         fall_back=back,
         aside=aside,
-        time_error=1.5 * abs(nearly.time - landed.time),
-        distance_error=1.5 * hypot(*shifts),
+        time_error=CAUTION * sum(map(abs, delays)),
+        distance_error=CAUTION * sum(float(np.linalg.norm(each)) for each in missed),
         fall_time_band=(min(times), max(times)),
         fall_back_band=(min(*backs, back), max(*backs, back)),
         touchdown_speed=-float(landed.velocity[-1, 2]),
@@ -113,8 +116,8 @@ def drop_plan(
         tow_past=past,
         run_in=run - past,
         run_time=run_time,
-        let_go=(float(let_go[0]), float(let_go[1])),
-        start=(float(let_go[0] - run * way[0]), float(let_go[1] - run * way[1])),
+        let_go=(float(released[0]), float(released[1])),
+        start=(float(released[0] - run * way[0]), float(released[1] - run * way[1])),
         anchor_drag=anchor.drag,
         drag_known=mooring.file.anchor.kt is not None,
         path=path_of(drop, toward, mooring.line.anchor_height),

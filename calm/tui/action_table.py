@@ -189,6 +189,13 @@ ACTIONS: tuple[Action, ...] = (
         "begin",
         "Begin an empty line with a mooring: deep, shelf, ADCP, taut or slack surface; a tow.",
     ),
+    Action(
+        "anywhere",
+        "papers",
+        "P",
+        "papers",
+        "Bill and totals; write the report of the check, or the sheets for the deck.",
+    ),
     Action("anywhere", "history", "h", "history", "What was done, and back to before any of it."),
     Action("anywhere", "text", "t", "text", "The file as text, with its mistakes."),
     Action("anywhere", "app.save", "ctrl+s,s", "save", "Save the file.", 9),

@@ -176,8 +176,8 @@ def _notes(plan: DropPlan) -> tuple[str, ...]:
     notes = [
         "The line is a chain without inertia: what it does in the first 20 s, and the jerk at the "
         "touchdown, are not in these figures; nor is what waves do.",
-        "± is what bars and steps of half the length change, and half as much again; the current "
-        "and the drag of the anchor are known less well.",
+        "± is what bars and what steps of twice the length change, together, and a quarter more; "
+        "the current and the drag of the anchor are known less well.",
     ]
     if plan.rest_difference is not None:
         notes.append(

@@ -145,6 +145,12 @@ class BuilderScreen(DraftScreen):
         """Fill in what is not known of the components."""
         Filling(self.app, self.body.line).ask()
 
+    def action_papers(self) -> None:
+        """Show the bill, or have report and sheets written."""
+        from calm.tui.line.papers import Papers
+
+        Papers(self.app, self.body.line).offer()
+
     def action_begin(self) -> None:
         """Begin an empty line with a mooring."""
         from calm.files.starts import start
