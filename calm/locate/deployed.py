@@ -9,9 +9,6 @@ from calm.files import read_mooring
 from calm.files.editing import Draft, EditError, WorkingFile
 from calm.locate.fit import Located
 
-NEAR = 20_000.0
-"""How far from its planned position a mooring is not deployed unawares [m]."""
-
 
 def with_deployed(path: Path, located: Located, water_depth: float) -> tuple[WorkingFile, str]:
     """A mooring file, and its text with the place in its `deployed`.
