@@ -404,7 +404,7 @@ def test_a_file_changed_by_another_program_is_read_again(drive, small):
 
 def test_the_text_view_shows_what_is_read_again(drive, small):
     async def story(driver):
-        await driver.press("t")
+        await driver.press("t", "ctrl+home")
         text = await theirs(driver, small)
         await driver.press("#")
         assert driver.text == "#" + text
