@@ -54,7 +54,7 @@ async def at_rest(*_):
     """
     app = active_app.get()
     pilot, quiet = Pilot(app), 0
-    while quiet < 2 and not app._exit:
+    while quiet < 2 and not app._exit and app._exception is None:
         if app.has_keys_waiting:  # what goes round the queues meanwhile would hold them up
             if app.screen._callbacks:
                 app.screen._on_timer_update()

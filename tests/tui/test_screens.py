@@ -80,7 +80,7 @@ def test_a_mistake_in_another_file_is_told_with_its_name(drive, small, folder):
         assert isinstance(screen, TextScreen)
         assert "now.csv, line 3:5" in driver.screen
         assert "1 mistake in now.csv" in driver.screen.splitlines()[0]
-        await driver.press("down", "f8")
+        await driver.press("ctrl+home", "down", "f8")
         assert screen.text.text_area.cursor_location[0] == 1
         assert "no mistakes in small.yaml itself" in driver.screen.splitlines()[-1]
         await driver.press("escape")
@@ -116,7 +116,7 @@ def test_mistakes_of_this_file_and_of_another_are_told_apart(drive, small, folde
 def test_what_is_typed_in_the_text_is_one_step_to_undo(drive, small):
     async def story(driver):
         before = driver.text
-        await driver.press("t", "enter", "number_sign", "a", "b", "escape")
+        await driver.press("t", "ctrl+home", "enter", "number_sign", "a", "b", "escape")
         assert driver.text == before.replace("# A", "\n#ab# A", 1)
         await driver.press("u")
         assert driver.text == before

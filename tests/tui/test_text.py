@@ -18,7 +18,7 @@ def ugly(small):
 
 def test_one_key_changes_one_line_and_undo_gives_it_back(drive, ugly):
     async def story(driver):
-        await driver.press("t", "down", "end", "space")
+        await driver.press("t", "ctrl+home", "down", "end", "space")
         assert driver.text == UGLY.replace("name: Small\r\n", "name: Small \r\n")
         await driver.press("down", "end", "x")
         typed = UGLY.replace("Small\r\n", "Small \r\n")
@@ -33,7 +33,7 @@ def test_one_key_changes_one_line_and_undo_gives_it_back(drive, ugly):
 
 def test_lines_are_added_and_taken_out_between_others(drive, ugly):
     async def story(driver):
-        await driver.press("t", "end", "enter", "number_sign", "enter")
+        await driver.press("t", "ctrl+home", "end", "enter", "number_sign", "enter")
         first = UGLY.index("\n") + 1
         assert driver.text == UGLY[: first - 1] + "\n#\n" + UGLY[first - 1 :]
         await driver.press("ctrl+shift+k", "up", "ctrl+shift+k")
@@ -72,7 +72,7 @@ def test_what_a_file_says_is_no_markup(drive, small):
 
 def test_a_draft_that_is_replaced_is_shown(drive, small):
     async def story(driver):
-        await driver.press("t", "down", "number_sign")
+        await driver.press("t", "ctrl+home", "down", "number_sign")
         screen = driver.app.screen
         theirs = MOORING.replace("100 m", "150 m").replace("\n", "\r\n")
         driver.session.write(theirs)
@@ -90,7 +90,7 @@ def test_a_draft_that_is_replaced_is_shown(drive, small):
 
 def test_text_that_was_just_typed_is_taken(drive, small):
     async def story(driver):
-        await driver.press("t")
+        await driver.press("t", "ctrl+home")
         screen = driver.app.screen
         screen.text.text_area.insert("# mine\n", (0, 0))
         assert screen.part.is_typing
@@ -102,7 +102,7 @@ def test_text_that_was_just_typed_is_taken(drive, small):
 
 def test_a_line_that_was_typed_is_taken_back(drive, small):
     async def story(driver):
-        await driver.press("t")
+        await driver.press("t", "ctrl+home")
         area = driver.app.screen.text.text_area
         await driver.press("end", "enter", "x", "ctrl+z", "y", "ctrl+z")
         await driver.settle()
@@ -117,7 +117,7 @@ def test_a_line_that_was_typed_is_taken_back(drive, small):
 
 def test_the_text_goes_to_its_ends(drive, small):
     async def story(driver):
-        await driver.press("t")
+        await driver.press("t", "ctrl+home")
         area = driver.app.screen.text.text_area
         await driver.press("ctrl+end")
         assert area.cursor_location == area.document.end

@@ -243,8 +243,10 @@ class BuilderScreen(DraftScreen):
         """The file as text."""
         from calm.tui.text_screen import TextScreen
 
-        spot = self.body.line.table.spot
-        line = 1 if spot is None else self.workspace.session.item(spot).line
+        spot, session = self.body.line.table.spot, self.workspace.session
+        line = 1
+        if spot is not None and spot in session.spots():  # a broken text has no rows
+            line = session.item(spot).line
         self.app.push_screen(TextScreen(self.workspace, line), self._back)
 
     def _back(self, _: None) -> None:
