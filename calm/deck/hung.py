@@ -74,6 +74,11 @@ def hung_of(result: Result) -> tuple[Hung, ...]:
     return tuple(found)
 
 
+def depth_of(row: ComponentRow | ClampRow) -> float:
+    """Of the upper end of a piece, or of the place of a clamp [m]."""
+    return row.depth if isinstance(row, ClampRow) else row.depth_top
+
+
 def _hung(
     part: Piece | Clamp,
     piece: ComponentRow,
@@ -83,7 +88,7 @@ def _hung(
 ) -> Hung:
     item = items.get(part.label)
     clamp = row.part if isinstance(row, ClampRow) else None
-    depth = row.depth if isinstance(row, ClampRow) else row.depth_top
+    depth = depth_of(row)
     return Hung(
         part=part,
         index=piece.index,

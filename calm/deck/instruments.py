@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from calm.case.columns import ClampRow, ComponentRow
+from calm.deck.hung import depth_of
 
 if TYPE_CHECKING:
     from calm.case import Result
+    from calm.case.columns import ClampRow, ComponentRow
     from calm.deck.hung import Hung
     from calm.files import Place
 
@@ -54,7 +55,7 @@ def posted(parts: Sequence[Hung], results: Sequence[tuple[str, Result]]) -> tupl
         if one.role not in ("instrument", "release"):
             continue
         there = [(name, places[one.part.place]) for name, places in rows]
-        depths = [Extreme(_depth(row), name) for name, row in there]
+        depths = [Extreme(depth_of(row), name) for name, row in there]
         knockdown = there[0][1].knockdown
         still = None if knockdown != knockdown else one.depth - knockdown
         found.append(
@@ -72,7 +73,3 @@ def posted(parts: Sequence[Hung], results: Sequence[tuple[str, Result]]) -> tupl
 def _rows(result: Result) -> dict[Place, ComponentRow | ClampRow]:
     every: list[ComponentRow | ClampRow] = [*result.components, *result.clamps]
     return {row.place: row for row in every}
-
-
-def _depth(row: ComponentRow | ClampRow) -> float:
-    return row.depth if isinstance(row, ClampRow) else row.depth_top

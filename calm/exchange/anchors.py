@@ -9,10 +9,10 @@ from calm.case import Mooring, load
 from calm.errors import CalmError
 from calm.exchange.design import Component, Design
 from calm.exchange.writing import written
-from calm.units import KILOGRAM_FORCE
+from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY, STEEL_DENSITY
 
 _HOLDS = 1e8  # N: holds whatever is tied to it
-_IN_WATER = (1.0 - 1025.0 / 7850.0) * KILOGRAM_FORCE  # N of a kilogram of steel
+_IN_WATER = (1.0 - CATALOGUE_DENSITY / STEEL_DENSITY) * STANDARD_GRAVITY  # N of a kilogram of steel
 _STEPS = 2  # digits that a guessed weight keeps
 
 

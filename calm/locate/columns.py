@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from calm.errors import InputError, Problem
+from calm.files.current_csv import is_content
 from calm.files.document import read_text
 from calm.files.explain import shown, unknown
 from calm.files.tables import heading
@@ -53,7 +54,7 @@ def read_columns(path: Path, known: Units, example: str, problems: list[Problem]
     lines = [
         (number, line)
         for number, line in enumerate(read_text(path).splitlines(), 1)
-        if line.strip() and not line.lstrip().startswith("#")
+        if is_content(line)
     ]
     if not lines:
         raise InputError([Problem(str(path), 0, 0, f"is empty; it begins with `{example}`")])

@@ -8,6 +8,7 @@ import numpy as np
 
 from calm.checks.finding import State
 from calm.report.blocks import Block, Cell, Column, Note, Pairs, Part, Prose, Table
+from calm.report.title_block import degrees_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,9 +45,11 @@ def located_part(located: Located, water_depth: float) -> Part:
 def _figures(located: Located, water_depth: float) -> tuple[tuple[str, str], ...]:
     major, minor, bearing = located.ellipse
     known = np.isfinite(major)
+    latitude = degrees_text(located.latitude, "NS", 1)
+    longitude = degrees_text(located.longitude, "EW", 1)
     pairs = [
         ("Latitude, longitude", f"{located.latitude:.6f}, {located.longitude:.6f}"),
-        ("", f"{_minutes(located.latitude, 'NS')}  {_minutes(located.longitude, 'EW')}"),
+        ("", f"{latitude}  {longitude}"),
         (
             "Within, with 95 %",
             f"{major:.1f} m by {minor:.1f} m, the longer towards {round(bearing) % 180:03d}°"
@@ -66,11 +69,6 @@ def _interval(located: Located) -> str:
     if located.depth_given:
         return ", as given"
     return f" ± {located.depth_95:.1f} m with 95 %" if np.isfinite(located.depth_95) else ""
-
-
-def _minutes(degrees: float, signs: str) -> str:
-    whole, rest = divmod(round(abs(degrees) * 60_000), 60_000)
-    return f"{whole:d}° {rest / 1000:06.3f}′ {signs[degrees < 0.0]}"
 
 
 def _residuals(located: Located) -> Table:

@@ -58,11 +58,11 @@ def title_pairs(file: MooringFile) -> list[tuple[str, str]]:
 
 def position_text(position: Position) -> str:
     """A position as ships write it: degrees and minutes to a thousandth, some 2 m."""
-    latitude = _degrees(position.latitude, "N", "S", 2)
-    return f"{latitude}, {_degrees((position.longitude + 180.0) % 360.0 - 180.0, 'E', 'W', 3)}"
+    latitude = degrees_text(position.latitude, "NS", 2)
+    return f"{latitude}, {degrees_text((position.longitude + 180.0) % 360.0 - 180.0, 'EW', 3)}"
 
 
-def _degrees(value: float, positive: str, negative: str, digits: int) -> str:
-    whole, minutes = divmod(round(abs(value) * 60_000), 60_000)
-    side = negative if value < 0.0 else positive
-    return f"{whole:0{digits}d}° {minutes / 1000:06.3f}′ {side}"
+def degrees_text(degrees: float, sides: str, digits: int) -> str:
+    """Degrees, of so many digits at least, and minutes to a thousandth; `sides` are + and -."""
+    whole, minutes = divmod(round(abs(degrees) * 60_000), 60_000)
+    return f"{whole:0{digits}d}° {minutes / 1000:06.3f}′ {sides[degrees < 0.0]}"

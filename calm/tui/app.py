@@ -165,9 +165,10 @@ class BuildApp(InTurn):
 
     def action_help(self) -> None:
         """All keys."""
-        from calm.tui.help_screen import HelpScreen
+        from calm.tui.dialogs import LongText
+        from calm.tui.help_screen import all_keys
 
-        self.push_screen(HelpScreen())
+        self.push_screen(LongText(all_keys()))
 
     # judging
 

@@ -1,15 +1,15 @@
-"""Questions put over the screen: one of some answers, or some texts."""
+"""What is put over the screen: one of some answers, some texts to enter, a text to read."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from textual import on
 from textual.app import ComposeResult
 from textual.binding import BindingType
-from textual.containers import Vertical
+from textual.containers import Vertical, VerticalScroll
 from textual.events import Key
 from textual.markup import escape
 from textual.screen import ModalScreen
@@ -17,7 +17,10 @@ from textual.widgets import Static
 
 from calm.tui.actions import bindings
 from calm.tui.checking import Check, anything
-from calm.tui.field import Field
+from calm.tui.field import Field, all_settled
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
 
 _FRAME = """
     align: center middle;
@@ -144,12 +147,34 @@ class Sheet(ModalScreen[dict[str, str] | None]):
     def action_take(self) -> None:
         """Give the texts, if all are good."""
         fields = list(self.query(Field))
-        wrong = [field for field in fields if not field.settle()]
-        if wrong:
-            wrong[0].focus_input()
-        else:
+        if all_settled(fields):
             self.dismiss({field.key: field.text for field in fields})
 
     def action_leave(self) -> None:
         """Give nothing."""
         self.dismiss(None)
+
+
+class LongText(ModalScreen[None]):
+    """A text over the screen, scrolled where it is longer; of tables, `wide`."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings("help")]
+    DEFAULT_CSS = """
+    LongText {
+        align: center middle;
+        & > VerticalScroll {
+            width: 84; max-width: 100%; height: 90%; padding: 1 2; background: $panel;
+            border-left: outer $primary; scrollbar-size-vertical: 1;
+        }
+        &.-wide > VerticalScroll { width: 110; }
+    }
+    """
+
+    def __init__(self, text: RenderableType, *, wide: bool = False) -> None:
+        super().__init__(classes="-wide" if wide else None)
+        self._text = text
+
+    def compose(self) -> ComposeResult:
+        """The text."""
+        with VerticalScroll():
+            yield Static(self._text)

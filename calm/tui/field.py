@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from textual import events, on
@@ -11,6 +12,14 @@ from textual.message import Message
 from textual.widgets import Input, Static
 
 from calm.tui.checking import Check, Reading, anything
+
+
+def all_settled(fields: Iterable[Field]) -> bool:
+    """Whether all texts are good, and taken; of those that are not the first gets the focus."""
+    wrong = [field for field in fields if not field.settle()]
+    if wrong:
+        wrong[0].focus_input()
+    return not wrong
 
 
 class Field(Horizontal):

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import ClassVar
 
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
-from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
-from textual.containers import ScrollableContainer, VerticalScroll
-from textual.screen import ModalScreen, Screen
-from textual.widgets import Input, Static, TextArea
+from textual.containers import ScrollableContainer
+from textual.screen import Screen
+from textual.widgets import Input, TextArea
 
 from calm.tui.action_table import PLACES
-from calm.tui.actions import actions_in, bindings, shown_keys
+from calm.tui.actions import actions_in, shown_keys
 from calm.tui.signs import LOOKS
 
 _SIGNS = "Signs: " + ", ".join(f"{look.sign} {look.word}" for look in LOOKS.values())
@@ -33,27 +31,8 @@ _OF_TEXTUAL: dict[str, Iterable[BindingType]] = {
 """Keys that CALM leaves to the widgets it is made of; their meanings are told by them."""
 
 
-class HelpScreen(ModalScreen[None]):
-    """The list of keys, made of the list of actions."""
-
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("help")]
-    DEFAULT_CSS = """
-    HelpScreen {
-        align: center middle;
-        & > VerticalScroll {
-            width: 84; max-width: 100%; height: 90%; padding: 1 2; background: $panel;
-            border-left: outer $primary; scrollbar-size-vertical: 1;
-        }
-    }
-    """
-
-    def compose(self) -> ComposeResult:
-        """One long text."""
-        with VerticalScroll():
-            yield Static(_text())
-
-
-def _text() -> RenderableType:
+def all_keys() -> RenderableType:
+    """Every key, by where it works."""
     parts: list[RenderableType] = [Text("Keys", style="bold"), Text(_GROUND), Text(_SIGNS)]
     for place, title in PLACES.items():
         rows = [(action.keys, action.meaning) for action in actions_in(place)]

@@ -7,8 +7,7 @@ from calm.tui.actions import actions_in, shown_key, shown_keys
 from calm.tui.catalogue.component_screen import ComponentScreen
 from calm.tui.catalogue.pane import CataloguePane
 from calm.tui.cycle import Cycle
-from calm.tui.dialogs import Question, Sheet
-from calm.tui.help_screen import HelpScreen
+from calm.tui.dialogs import LongText, Question, Sheet
 from calm.tui.line.builder import BuilderScreen
 from calm.tui.line.cell_editor import CellEditor
 from calm.tui.line.pane import LinePane
@@ -31,7 +30,7 @@ OWNERS = {
     "area": YamlArea,
     "sheet": Sheet,
     "question": Question,
-    "help": HelpScreen,
+    "help": LongText,
 }
 
 
@@ -73,7 +72,7 @@ OPENED = {
 async def help_of(driver):
     """The help by its headings, each with its keys and their meanings."""
     await driver.press("question_mark")
-    assert isinstance(driver.app.screen, HelpScreen)
+    assert isinstance(driver.app.screen, LongText)
     found, heading = {}, ""
     for line in driver.screen.splitlines():
         line = line[9:92]  # within its frame, in the middle

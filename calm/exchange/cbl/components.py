@@ -11,9 +11,9 @@ from calm.exchange.cbl.water import number, value_at
 from calm.exchange.design import Component, Figure, Remark
 from calm.exchange.refusal import refused
 from calm.exchange.words import is_chain, role_of
+from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
-_REFERENCE_DENSITY = 1025.0  # in which CALM's net forces are
 _TOO_WIDE = 20.0  # times what mass and weight say: no cable, whatever its fairing
 _ROPE = 10.0  # m: what is shorter may be a frame, whose diameter is that of its drag
 _FASTEST = 10.0  # m/s: a drag tabulated beyond it counts on depth
@@ -62,10 +62,10 @@ class Makers:
         if (
             mass
             and length > _ROPE
-            and _TOO_WIDE * (mass - weight / self.gravity) < _REFERENCE_DENSITY * area
+            and _TOO_WIDE * (mass - weight / self.gravity) < CATALOGUE_DENSITY * area
         ):
             component.guesses["diameter"] = (
-                f"kept as it stands: a metre of it displaces {_REFERENCE_DENSITY * area:.3g} kg of "
+                f"kept as it stands: a metre of it displaces {CATALOGUE_DENSITY * area:.3g} kg of "
                 f"water, but has a mass of {mass:.3g} kg and weighs {weight:.3g} N"
             )
         self._stretch(component, definition, area - bore)
@@ -180,7 +180,7 @@ class Makers:
         if mass * KILOGRAM_FORCE < wet or mass <= 0.0:
             return wet, 0.0
         volume = (mass - wet / self.gravity) / self.density
-        return wet + (self.density - _REFERENCE_DENSITY) * self.gravity * volume, mass
+        return wet + (self.density - CATALOGUE_DENSITY) * self.gravity * volume, mass
 
     def _drag(self, values: Values, key: str, depth: float, speed: float) -> float:
         value = values.get(key)

@@ -10,9 +10,10 @@ from pathlib import Path
 from calm.exchange.cbl.components import Makers
 from calm.exchange.cbl.problem import Problem, Segment, Terminal, read_problem
 from calm.exchange.cbl.segments import defined, laid
-from calm.exchange.cbl.water import number, value_at, water_of
+from calm.exchange.cbl.water import USUAL_GRAVITY, number, value_at, water_of
 from calm.exchange.design import Design, Item, Remark, Tow
 from calm.exchange.refusal import refused
+from calm.files.definition import CATALOGUE_DENSITY
 
 _REFUSED = {
     "horizontal": "a horizontal array with an anchor at each end",
@@ -66,8 +67,8 @@ def read_cbl(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> 
     if problem.analysis:
         design.dropped.append(Remark("analysis parameters", "how that program is to solve it"))
     density = number(problem.environment, "rho") or number(problem.environment, "density")
-    gravity = number(problem.environment, "gravity", 9.81)
-    makers = Makers(density or 1025.0, gravity, design.dropped)
+    gravity = number(problem.environment, "gravity", USUAL_GRAVITY)
+    makers = Makers(density or CATALOGUE_DENSITY, gravity, design.dropped)
     items = laid(problem, segments, makers, design)
     if kind == "towing":
         _lay_tow(problem, ends, items, makers, design)

@@ -9,7 +9,7 @@ from itertools import pairwise
 from calm.exchange.cbl.problem import Value, Values
 from calm.exchange.design import Remark, Water
 
-_USUAL_GRAVITY = 9.81
+USUAL_GRAVITY = 9.81
 _FINEST = 1e-4  # share of the fastest current by which levels may miss a formula
 _HALVINGS = 8
 _DIGITS = 9  # of a speed in m/s
@@ -34,7 +34,7 @@ def water_of(environment: Values, deepest: float, dropped: list[Remark]) -> Wate
     depth = number(environment, "depth")
     water = Water(depth if depth > 0.0 else None)
     water.density = number(environment, "rho") or number(environment, "density") or None
-    water.gravity = number(environment, "gravity", _USUAL_GRAVITY)
+    water.gravity = number(environment, "gravity", USUAL_GRAVITY)
     water.current = current_of(environment, depth if depth > 0.0 else deepest)
     east, north = (number(environment, f"{axis}-wind") for axis in "xy")
     if east or north:

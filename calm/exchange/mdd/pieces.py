@@ -8,9 +8,9 @@ import re
 from calm.exchange.design import Component, Figure
 from calm.exchange.mdd.elements import Element
 from calm.exchange.words import is_chain, role_of
+from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
-_REFERENCE_DENSITY = 1025.0
 _SLIGHT = 1e-6  # by which a hull takes more than its net buoyancy
 _SOFT = 1e10  # Pa: the modulus of a rope is below, of a wire above
 _HARD = re.compile(r"\bwire|\bchain|\bsteel", re.I)
@@ -69,7 +69,7 @@ def rides_by_buoyancy(component: Component) -> None:
         "body": float(figures.get("drag_area", 0.0)),
     }
     figures.pop("mass", None)
-    volume = (1.0 + _SLIGHT) * lift / (_REFERENCE_DENSITY * KILOGRAM_FORCE)
+    volume = (1.0 + _SLIGHT) * lift / (CATALOGUE_DENSITY * KILOGRAM_FORCE)
     component.hull = ((0.0, 0.0, 0.0), (height, volume, shown[component.kind]))
     component.comment = "At the surface it sinks, and drags, in proportion to the buoyancy it uses."
 
@@ -80,7 +80,7 @@ def _is_too_small(element: Element) -> bool:
         volume = math.pi * element.diameter**2 * max(element.diameter / 6.0, element.length / 4.0)
     else:
         volume = math.pi * element.width**2 * element.length / 4.0
-    return element.lift > _REFERENCE_DENSITY * volume
+    return element.lift > CATALOGUE_DENSITY * volume
 
 
 def _flexible(element: Element) -> Component:

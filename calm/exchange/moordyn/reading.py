@@ -9,6 +9,7 @@ from calm.exchange.design import Component, Design, Figure, Item, Remark, Water
 from calm.exchange.moordyn.sections import Row, Sections, read_sections
 from calm.exchange.refusal import refused
 from calm.exchange.words import is_chain
+from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 
 _FIXED, _FREE = ("fix", "anchor"), ("free", "connect", "point")
 _CURRENTS = "current_profile.txt"
@@ -114,8 +115,8 @@ def _water(sections: Sections, points: dict[str, Row], path: Path) -> Water:
     if depth <= 0.0:
         raise refused(path, "gives no depth of the water (`WtrDpth`)")
     water = Water(depth)
-    water.density = _option(options, "wtrdnsty", "rhow", "rho", default=1025.0)
-    water.gravity = _option(options, "g", "gravity", default=9.80665)
+    water.density = _option(options, "wtrdnsty", "rhow", "rho", default=CATALOGUE_DENSITY)
+    water.gravity = _option(options, "g", "gravity", default=STANDARD_GRAVITY)
     beside = path.with_name(_CURRENTS)
     if options.get("currents", "0") not in ("0", "none") and beside.is_file():
         water.current = _currents(beside)
@@ -152,7 +153,7 @@ def _cable(kind: Row, density: float, gravity: float) -> Component:
         raise kind.refuse("a line type has no diameter")
     mass = kind.number("mass")
     volume = math.pi / 4.0 * across**2
-    wet = (mass - 1025.0 * volume) * gravity
+    wet = (mass - CATALOGUE_DENSITY * volume) * gravity
     figures: dict[str, Figure] = {
         "diameter": across, "cn": kind.number("cd", 0.0), "ct": kind.number("cdt", 0.0),
     }  # fmt: skip
@@ -173,7 +174,7 @@ def _point(point: Row, design: Design) -> Item | None:
     figures = _figures(point)
     if not any(figures[key] for key in ("mass", "volume", "drag_area")):
         return None
-    lifts = 1025.0 * float(figures["volume"]) > float(figures["mass"])
+    lifts = CATALOGUE_DENSITY * float(figures["volume"]) > float(figures["mass"])
     figures["role"] = "float" if lifts else "instrument"
     return Item(Component(f"point {point.words['id']}", "body", figures))
 
@@ -193,7 +194,7 @@ def _upper_end(top: Row, items: list[Item], design: Design) -> Item:
     assert design.water is not None and design.water.depth is not None
     if _is(top, _FREE):
         figures = _figures(top)
-        if 1025.0 * float(figures["volume"]) <= float(figures["mass"]):
+        if CATALOGUE_DENSITY * float(figures["volume"]) <= float(figures["mass"]):
             raise top.refuse("the upper end is free, and does not float")
         return Item(Component(f"point {top.words['id']}", "body", {**figures, "role": "float"}))
     depth = 0.0 - top.number("z")
@@ -202,7 +203,7 @@ def _upper_end(top: Row, items: list[Item], design: Design) -> Item:
             f"the upper end is held {depth:g} m deep: a platform's; CALM has lines under a float"
         )
     lift = 1.5 * sum(_weight(item) for item in items) + 1e4
-    volume = lift / (1025.0 * 9.80665)
+    volume = lift / (CATALOGUE_DENSITY * STANDARD_GRAVITY)
     across = (6.0 * volume / math.pi) ** (1.0 / 3.0)
     component = Component(
         "float", "sphere",
@@ -217,7 +218,7 @@ def _weight(item: Item) -> float:
     figures = item.component.figures
     mass, volume = float(figures.get("mass", 0.0)), float(figures.get("volume", 0.0))
     if item.length is None:
-        return max((mass - 1025.0 * volume) * 9.81, 0.0)
+        return max((mass - CATALOGUE_DENSITY * volume) * 9.81, 0.0)
     return float(figures.get("weight", 0.0)) * item.length
 
 

@@ -61,7 +61,12 @@ def diagram_pages(deck: Deck, paper: Paper) -> list[str]:
     two clamps; where a line goes on, both ends carry the same letter. No text is cut: long ones
     wrap. The same deck gives the same text.
     """
-    return [_written(_page(*page)) for page in _drawn(deck, paper)]
+    written = []
+    for page in _drawn(deck, paper):
+        picture = _picture(*paper.size, one_line(deck.file.name))
+        _fill(picture, *page)
+        written.append(_written(picture))
+    return written
 
 
 def diagram_svg(deck: Deck, paper: Paper) -> str:
@@ -98,19 +103,6 @@ def _drawn(deck: Deck, paper: Paper) -> list[_Page]:
         (title, paper, block.of_page(number, count), page, legend, number == count)
         for number, page in enumerate(pages, 1)
     ]
-
-
-def _page(
-    title: str,
-    paper: Paper,
-    block: TitleBlock,
-    columns: list[tuple[int, ColumnOf]],
-    legend: tuple[Sign, ...],
-    is_last: bool,
-) -> Pen:
-    picture = _picture(*paper.size, title)
-    _fill(picture, title, paper, block, columns, legend, is_last)
-    return picture
 
 
 def _fill(

@@ -17,7 +17,7 @@ from calm.tui.actions import bindings, hints
 from calm.tui.bars import KeyBar, TitleBar
 from calm.tui.catalogue.component_form import defined, form_fields, id_check
 from calm.tui.cycle import Cycle
-from calm.tui.field import Field
+from calm.tui.field import Field, all_settled
 
 Defined = tuple[str, dict[str, str]]
 
@@ -153,9 +153,7 @@ class ComponentScreen(Screen[Defined | None]):
 
     def action_accept(self) -> None:
         """Give the component, if it is one."""
-        wrong = [field for field in self._fields() if not field.settle()]
-        if wrong:
-            wrong[0].focus_input()
+        if not all_settled(self._fields()):
             return
         component, problems = defined(*self._all())
         if component is None:

@@ -153,8 +153,8 @@ class BuilderScreen(DraftScreen):
 
     def action_begin(self) -> None:
         """Begin an empty line with a mooring."""
-        from calm.files.starts import start
-        from calm.tui.line.questions import beginning, kind_of
+        from calm.files.starts import STARTS, start
+        from calm.tui.line.questions import beginning
 
         session = self.workspace.session
         if session.draft.items:
@@ -163,8 +163,8 @@ class BuilderScreen(DraftScreen):
 
         def take(answer: str | None) -> None:
             if answer is not None:
-                text = start(kind_of(answer))
-                self.body.line.attempt(lambda: session.write(text, f"begin with {answer}"))
+                kind = list(STARTS)[int(answer) - 1]
+                self.body.line.attempt(lambda: session.write(start(kind), f"begin with {kind}"))
 
         self.app.push_screen(beginning(), take)
 

@@ -32,7 +32,7 @@ class Comparing:
             return
         session = self._workspace.session
         if session.changed:
-            self._judge(session.history.saved_text, "what was saved")
+            self._judge(session.history.saved_text, None)
         else:
             self._pictures.put_beside(None)
             self._workspace.tell("Nothing has changed since it was saved")
@@ -53,27 +53,29 @@ class Comparing:
             except (CalmError, OSError) as error:
                 self._workspace.tell(str(error), wrong=True)
             else:
-                self._judge(text, texts["file"])
+                self._judge(text, Path(texts["file"]))
 
         asked = [Asked("file", "File", placeholder="other.yaml")]
         text = "Its line is drawn dashed beside this one; no name takes it away again."
         self._app.push_screen(Sheet("Compare with another file", text, asked), take)
 
-    def _judge(self, text: str, name: str) -> None:
+    def _judge(self, text: str, file: Path | None) -> None:
+        """Judge a text beside the line's: of another file, or of its own as it was saved."""
         view = self._workspace.view
         if view is None or not self._workspace.is_fresh:
             self._workspace.tell("The line is still being judged; ask again")
             return
         catalogs = self._workspace.session.catalogs
-        is_own = name == "what was saved"
+        name = "what was saved" if file is None else str(file)
 
         def work() -> None:
             from calm.tui.advice import differences
             from calm.tui.live import judge, judge_fully
 
-            path = view.path if is_own else Path(name)
-            environment, keep = (view.environment, view) if is_own else (None, None)
-            before = judge(text, path, environment, catalogs, keep=keep)
+            if file is None:
+                before = judge(text, view.path, view.environment, catalogs, keep=view)
+            else:
+                before = judge(text, file, None, catalogs)
             told = differences(judge_fully(before, catalogs), judge_fully(view, catalogs))
             told += ["", *changed_lines(text, view.text)]
             self._line.call_later(self._show, name, before, told)

@@ -15,7 +15,7 @@ from textual.widgets import Static
 
 from calm.tui.actions import bindings, hints
 from calm.tui.bars import KeyBar, TitleBar
-from calm.tui.field import Field
+from calm.tui.field import Field, all_settled
 from calm.tui.line.missing_figures import Missing
 
 Filled = tuple[dict[tuple[str, str], str], str]
@@ -87,10 +87,7 @@ class MissingScreen(Screen[Filled | None]):
 
     def action_accept(self) -> None:
         """Give what was filled in, if all of it is good."""
-        fields = list(self.query(Field))
-        wrong = [field for field in fields if not field.settle()]
-        if wrong:
-            wrong[0].focus_input()
+        if not all_settled(self.query(Field)):
             return
         texts = {asked: field.text for field, asked in self._asked.items() if field.text}
         self.dismiss((texts, self.query_one("#source", Field).text))

@@ -7,20 +7,13 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from textual.app import App, ComposeResult
-from textual.binding import BindingType
-from textual.containers import VerticalScroll
-from textual.screen import ModalScreen
-from textual.widgets import Static
+from textual.app import App
 
-from calm.tui.actions import bindings
 from calm.tui.checking import needed
-from calm.tui.dialogs import Answer, Asked, Question, Sheet
+from calm.tui.dialogs import Answer, Asked, LongText, Question, Sheet
 from calm.tui.line.pane import LinePane
 
 if TYPE_CHECKING:
-    from typing import ClassVar
-
     from rich.console import RenderableType
 
     from calm.case import Result
@@ -49,7 +42,7 @@ class Papers:
 
         def take(answer: str | None) -> None:
             if answer == "bill":
-                self._app.push_screen(BillScreen(result))
+                self._app.push_screen(LongText(_bill(result), wide=True))
             elif answer is not None:
                 self._ask_where(answer)
 
@@ -91,30 +84,6 @@ class Papers:
 
         tell(f"Writing {folder} …")
         self._line.run_worker(work, thread=True, group="papers", exit_on_error=False)
-
-
-class BillScreen(ModalScreen[None]):
-    """What a mooring is made of, and what it comes to."""
-
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings("help")]
-    DEFAULT_CSS = """
-    BillScreen {
-        align: center middle;
-        & > VerticalScroll {
-            width: 110; max-width: 100%; height: 90%; padding: 1 2; background: $panel;
-            border-left: outer $primary; scrollbar-size-vertical: 1;
-        }
-    }
-    """
-
-    def __init__(self, result: Result) -> None:
-        super().__init__()
-        self._result = result
-
-    def compose(self) -> ComposeResult:
-        """One table and the sums below it."""
-        with VerticalScroll():
-            yield Static(_bill(self._result))
 
 
 def _bill(result: Result) -> RenderableType:

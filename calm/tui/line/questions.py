@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from calm.files.starts import STARTS, Start
+from calm.files.starts import STARTS
 from calm.tui.dialogs import Answer, Asked, Question, Sheet
 from calm.tui.session import Session
 
@@ -10,15 +10,13 @@ _MOST_STEPS = 9
 
 
 def beginning() -> Question:
-    """Which mooring an empty line begins with; it answers with the name of one of `STARTS`."""
-    answers = [Answer(str(n), f"{kind}: {STARTS[kind]}", kind) for n, kind in enumerate(STARTS, 1)]
+    """Which mooring an empty line begins with; it answers with its number in `STARTS`, from 1."""
+    answers = [
+        Answer(str(number), f"{kind}: {meaning}", str(number))
+        for number, (kind, meaning) in enumerate(STARTS.items(), 1)
+    ]
     text = "Each stands as it is: change its depth, current and pieces to yours."
     return Question("Begin with", text, answers)
-
-
-def kind_of(answer: str) -> Start:
-    """The kind that was answered."""
-    return next(kind for kind in STARTS if kind == answer)
 
 
 def history(session: Session) -> Question:
