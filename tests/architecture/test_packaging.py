@@ -124,7 +124,11 @@ def test_constraints_name_every_direct_dependency() -> None:
     wanted = [
         *settings["build-system"]["requires"],
         *settings["project"]["dependencies"],
-        *settings["project"]["optional-dependencies"]["dev"],
+        *(
+            wanted
+            for extra in ("dev", "docs", "release", "browser", "cluster", "sheets")
+            for wanted in settings["project"]["optional-dependencies"][extra]
+        ),
     ]
     pinned = {
         line.partition("==")[0].lower()

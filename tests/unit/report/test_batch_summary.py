@@ -101,7 +101,7 @@ def test_the_document_is_strict_json_and_says_all(summary):
 
 
 def test_the_document_is_that_of_the_docs(made, mooring):
-    page = Path(__file__).parents[3] / "docs" / "batch-statistics.md"
+    page = Path(__file__).parents[3] / "docs" / "reference" / "batch-statistics.md"
     shown = json.loads(re.search(r"```json\n(.*?)```", page.read_text(encoding="utf-8"), re.S)[1])
     said = summary_document(summarize(made.assign_attrs(currents="a record"), mooring))
     assert said.keys() == shown.keys()

@@ -1,0 +1,45 @@
+"""Build the manual as a site that needs no network: pages, the made ones too, and a zip of it.
+
+python docs/make_site.py [-o FOLDER]    # default dist/site, and dist/site.zip beside it
+
+Warnings are errors. Needs the extra `docs`.
+"""
+
+import argparse
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+DOCS = Path(__file__).resolve().parent
+ROOT = DOCS.parent
+
+
+def stage(folder: Path) -> None:
+    """Copy what is written by hand to where the made pages join it."""
+    shutil.copytree(DOCS, folder, ignore=shutil.ignore_patterns("*.py", "__pycache__", "*.nc"))
+    shutil.copy(DOCS / "conf.py", folder)
+
+
+def build(target: Path) -> None:
+    """Make the site in the folder `target`, and the zip beside it; exit 1 where Sphinx warns."""
+    with tempfile.TemporaryDirectory() as work:
+        sources, site = Path(work) / "sources", Path(work) / "site"
+        stage(sources)
+        options = ["-b", "html", "-W", "--keep-going", "-q", "-j", "2"]
+        sphinx = [sys.executable, "-m", "sphinx", *options, sources, site]
+        if subprocess.run(sphinx, check=False).returncode:
+            sys.exit("the site is not built: mend what is named above")
+        for rest in (".buildinfo", ".doctrees", "objects.inv"):
+            place = site / rest
+            shutil.rmtree(place) if place.is_dir() else place.unlink(missing_ok=True)
+        shutil.rmtree(target, ignore_errors=True)
+        shutil.copytree(site, target)
+    shutil.make_archive(str(target), "zip", target)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description="Build the manual as a site.")
+    parser.add_argument("-o", dest="target", type=Path, default=ROOT / "dist" / "site")
+    build(parser.parse_args().target)
