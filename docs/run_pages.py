@@ -8,9 +8,10 @@ A page runs from top to bottom in an empty folder with `lines/` of the checkout 
 
 - a block ``sh`` runs in bash; ``python`` runs, too;
 - a block ``text`` right below one is what it prints on standard output. A line `…` stands for any
-  lines, `…` in a line for any words; writing keeps the lines above and below one such line;
+  lines, `…` in a line for any words; writing takes the lines that begin as those shown;
 - a block of any language below `<!-- file: NAME -->` is written to that file;
-- a block ``diff`` below `<!-- edit: NAME -->` changes lines of that file: those with - to those with +;
+- a block ``diff`` below `<!-- edit: NAME -->` changes lines of that file, those with - to those
+  with +;
 - `<!-- exit: 1 -->` above a block is the exit code it ends with when that is not 0,
   `<!-- not run: REASON -->` leaves a block out;
 - a picture of the page whose file a command has made, `pictures/NAME`, is kept beside the page.
@@ -125,13 +126,23 @@ def agrees(shown: str, printed: str) -> bool:
 
 
 def renewed(shown: str, printed: str) -> str:
-    """What to show now: as many lines above and below the elision as before, or everything."""
-    lines, now = shown.splitlines(keepends=True), printed.splitlines(keepends=True)
-    at = [number for number, line in enumerate(lines) if line.strip() == ELISION]
-    if len(at) != 1 or len(lines) > len(now):
-        return printed
-    below = len(lines) - at[0] - 1
-    return "".join([*now[: at[0]], lines[at[0]], *now[len(now) - below :]])
+    """What to show now: the lines that begin as those shown did, or everything printed."""
+    rest, now = printed.splitlines(keepends=True), []
+    for line in shown.splitlines(keepends=True):
+        if line.strip() == ELISION:
+            now.append(line)
+            continue
+        found = [number for number, candidate in enumerate(rest) if stem(candidate) == stem(line)]
+        if not found:
+            return printed
+        now.append(line if agrees(line, rest[found[0]]) else rest[found[0]])
+        rest = rest[found[0] + 1 :]
+    return "".join(now) or printed
+
+
+def stem(line: str) -> str:
+    """What a line begins with, up to its first figure."""
+    return re.split(r"[\d…]", line)[0].rstrip()
 
 
 def follow(page: Path, *, check: bool) -> None:
@@ -159,9 +170,9 @@ def follow(page: Path, *, check: bool) -> None:
             elif (
                 block.language == "text"
                 and not text[below : block.start - len("```text\n")].strip()
+                and not agrees(block.text, printed)
             ):
-                if not agrees(block.text, printed):
-                    changes.append((block, renewed(block.text, printed)))
+                changes.append((block, renewed(block.text, printed)))
         if check and changes:
             raise PageError(
                 "".join(f"shown:\n{block.text}printed:\n{now}" for block, now in changes)
