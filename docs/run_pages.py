@@ -4,7 +4,8 @@ python docs/run_pages.py                     # write outputs and pictures into a
 python docs/run_pages.py PAGE...             # into these
 python docs/run_pages.py --check [PAGE...]   # exit 1 where a page shows something else
 
-A page runs from top to bottom in an empty folder with `lines/` of the checkout in it:
+A page runs from top to bottom in a folder with nothing but `lines/` and `docs/field/` of the
+checkout:
 
 - a block ``sh`` runs in bash; ``python`` runs, too;
 - a block ``text`` right below one is what it prints on standard output. A line `…` stands for any
@@ -158,6 +159,8 @@ def follow(page: Path, *, check: bool) -> None:
     with tempfile.TemporaryDirectory() as name:
         folder, printed, below = Path(name), "", -1
         (folder / "lines").symlink_to(DOCS.parent / "lines")
+        (folder / "docs").mkdir()
+        (folder / "docs" / "field").symlink_to(DOCS / "field")
         for block in blocks(text):
             if block.order == "file":
                 (folder / block.what).write_text(block.text, encoding="utf-8")
