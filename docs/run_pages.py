@@ -128,6 +128,8 @@ def agrees(shown: str, printed: str) -> bool:
 
 def renewed(shown: str, printed: str) -> str:
     """What to show now: the lines that begin as those shown did, or everything printed."""
+    if ELISION not in shown:
+        return printed
     rest, now = printed.splitlines(keepends=True), []
     for line in shown.splitlines(keepends=True):
         if line.strip() == ELISION:
@@ -175,13 +177,13 @@ def follow(page: Path, *, check: bool) -> None:
                 and not text[below : block.start - len("```text\n")].strip()
                 and not agrees(block.text, printed)
             ):
-                changes.append((block, renewed(block.text, printed)))
+                changes.append((block, printed))
         if check and changes:
             raise PageError(
-                "".join(f"shown:\n{block.text}printed:\n{now}" for block, now in changes)
+                "".join(f"shown:\n{block.text}printed:\n{printed}" for block, printed in changes)
             )
-        for block, now in reversed(changes):
-            text = text[: block.start] + now + text[block.end :]
+        for block, printed in reversed(changes):
+            text = text[: block.start] + renewed(block.text, printed) + text[block.end :]
         keep_pictures(page, text, folder, check=check)
     if changes:
         page.write_text(text, encoding="utf-8")
