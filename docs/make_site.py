@@ -1,6 +1,9 @@
 """Build the manual as a site that needs no network: pages, the made ones too, and a zip of it.
 
-python docs/make_site.py [-o FOLDER]    # default dist/site, and dist/site.zip beside it
+python docs/make_site.py [-o FOLDER]
+
+The default is docs/_site, which `calm docs --open` shows and a wheel carries. FOLDER.zip beside it
+is the same in one file.
 
 Warnings are errors. Needs the extra `docs`.
 """
@@ -13,12 +16,13 @@ import tempfile
 from pathlib import Path
 
 DOCS = Path(__file__).resolve().parent
-ROOT = DOCS.parent
 
 
 def stage(folder: Path) -> None:
     """Copy what is written by hand to where the made pages join it."""
-    shutil.copytree(DOCS, folder, ignore=shutil.ignore_patterns("*.py", "__pycache__", "*.nc"))
+    shutil.copytree(
+        DOCS, folder, ignore=shutil.ignore_patterns("*.py", "__pycache__", "*.nc", "_site*")
+    )
     shutil.copy(DOCS / "conf.py", folder)
 
 
@@ -41,5 +45,5 @@ def build(target: Path) -> None:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description="Build the manual as a site.")
-    parser.add_argument("-o", dest="target", type=Path, default=ROOT / "dist" / "site")
+    parser.add_argument("-o", dest="target", type=Path, default=DOCS / "_site")
     build(parser.parse_args().target)
