@@ -15,6 +15,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+from pages import api, components, keys, results
+
 DOCS = Path(__file__).resolve().parent
 
 
@@ -26,11 +28,26 @@ def stage(folder: Path) -> None:
     shutil.copy(DOCS / "conf.py", folder)
 
 
+def make(folder: Path) -> None:
+    """Write the pages that are made from the program and its data."""
+    made = {
+        "reference/keys": keys.page(),
+        "reference/results": results.page(),
+        "reference/api": api.page(),
+        **{f"reference/components/{name}": text for name, text in components.pages().items()},
+    }
+    for name, text in made.items():
+        page = folder / f"{name}.md"
+        page.parent.mkdir(parents=True, exist_ok=True)
+        page.write_text(text, encoding="utf-8")
+
+
 def build(target: Path) -> None:
     """Make the site in the folder `target`, and the zip beside it; exit 1 where Sphinx warns."""
     with tempfile.TemporaryDirectory() as work:
         sources, site = Path(work) / "sources", Path(work) / "site"
         stage(sources)
+        make(sources)
         options = ["-b", "html", "-W", "--keep-going", "-q", "-j", "2"]
         sphinx = [sys.executable, "-m", "sphinx", *options, sources, site]
         if subprocess.run(sphinx, check=False).returncode:

@@ -38,7 +38,7 @@ def mooring_schema() -> Schema:
     fields |= schemas.pop("Equipment")["properties"]
     schemas |= {"Clamp": _clamp(fields), "Item": _item(fields, refs[LengthAt])}
     items = {"type": "array", "minItems": 1, "items": {"$ref": "#/$defs/Item"}}
-    schemas["Assembly"]["properties"]["parts"] = items
+    schemas["Assembly"]["properties"]["parts"] = dict(items)
     variant = {key: value for key, value in schemas["EnvironmentKeys"].items() if key != "required"}
     top = schemas.pop("MooringKeys")
     top["properties"] |= {
