@@ -166,6 +166,7 @@ def test_signs_a_terminal_cannot_show_stop_nothing(calm_process, write_mooring):
     ("variables", "coloured"),
     [({}, False), ({"FORCE_COLOR": "1"}, True), ({"FORCE_COLOR": "1", "NO_COLOR": "1"}, False)],
 )
+@pytest.mark.thorough
 def test_colour_only_where_it_is_wanted(calm_process, write_mooring, variables, coloured):
     file = write_mooring(speed="2 m/s", buoyancy="4000 N")  # has a warning, which is red
     environment = os.environ | {"TERM": "xterm-16color"} | variables
