@@ -1,6 +1,9 @@
 """Build the manual as a site that needs no network: pages, the made ones too, and a zip of it.
 
-python docs/make_site.py [-o FOLDER]    # default dist/site, and dist/site.zip beside it
+python docs/make_site.py [-o FOLDER]
+
+The default is docs/_site, which `calm docs --open` shows and a wheel carries. FOLDER.zip beside it
+is the same in one file.
 
 Warnings are errors. Needs the extra `docs`.
 """
@@ -12,14 +15,31 @@ import sys
 import tempfile
 from pathlib import Path
 
+from pages import api, components, keys, results
+
 DOCS = Path(__file__).resolve().parent
-ROOT = DOCS.parent
 
 
 def stage(folder: Path) -> None:
     """Copy what is written by hand to where the made pages join it."""
-    shutil.copytree(DOCS, folder, ignore=shutil.ignore_patterns("*.py", "__pycache__", "*.nc"))
+    shutil.copytree(
+        DOCS, folder, ignore=shutil.ignore_patterns("*.py", "__pycache__", "*.nc", "_site*")
+    )
     shutil.copy(DOCS / "conf.py", folder)
+
+
+def make(folder: Path) -> None:
+    """Write the pages that are made from the program and its data."""
+    made = {
+        "reference/keys": keys.page(),
+        "reference/results": results.page(),
+        "reference/api": api.page(),
+        **{f"reference/components/{name}": text for name, text in components.pages().items()},
+    }
+    for name, text in made.items():
+        page = folder / f"{name}.md"
+        page.parent.mkdir(parents=True, exist_ok=True)
+        page.write_text(text, encoding="utf-8")
 
 
 def build(target: Path) -> None:
@@ -27,6 +47,7 @@ def build(target: Path) -> None:
     with tempfile.TemporaryDirectory() as work:
         sources, site = Path(work) / "sources", Path(work) / "site"
         stage(sources)
+        make(sources)
         options = ["-b", "html", "-W", "--keep-going", "-q", "-j", "2"]
         sphinx = [sys.executable, "-m", "sphinx", *options, sources, site]
         if subprocess.run(sphinx, check=False).returncode:
@@ -41,5 +62,5 @@ def build(target: Path) -> None:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description="Build the manual as a site.")
-    parser.add_argument("-o", dest="target", type=Path, default=ROOT / "dist" / "site")
+    parser.add_argument("-o", dest="target", type=Path, default=DOCS / "_site")
     build(parser.parse_args().target)

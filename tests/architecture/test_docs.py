@@ -95,6 +95,7 @@ def test_a_page_shows_what_the_command_prints(page: Path) -> None:
 @pytest.mark.parametrize(
     "page", [README, ROOT / "docs" / "how-to" / "python.md", TOW], ids=lambda page: page.name
 )
+@pytest.mark.thorough
 def test_python_examples_run(page: Path, tmp_path: Path) -> None:
     examples = blocks(page, "python")
     assert examples

@@ -25,6 +25,7 @@ def page(tmp_path):
     return follow
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("path", run_pages.pages(), ids=lambda path: path.stem)
 def test_a_page_prints_what_it_shows(path):
     run_pages.follow(path, check=True)

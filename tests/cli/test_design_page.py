@@ -19,6 +19,7 @@ SHOWN = re.findall(
 
 
 @pytest.mark.parametrize(("command", "shown"), SHOWN, ids=[command[-13:] for command, _ in SHOWN])
+@pytest.mark.thorough
 def test_the_page_shows_what_is_printed(command, shown):
     finished = subprocess.run(
         [sys.executable, "-m", "calm", *shlex.split(command)],
