@@ -9,7 +9,8 @@ from calm.case import Mooring
 from calm.drop.record import DepthReached, Moment, Path, Pull
 
 ASTRAY = 1e-3
-"""Share of the depth by which the line may come to rest elsewhere than its equilibrium."""
+"""Share of the depth by which the line may come to rest elsewhere than its equilibrium; beyond it
+nothing of what comes after the touchdown is shown."""
 
 
 @dataclass(frozen=True)
@@ -27,8 +28,9 @@ class DropPlan:
     fall_time : until the anchor stands on the seabed
     fall_back : how far from where it was let go it lands, towards the float
     aside : how far it lands to the right of that direction, seen from where it was let go
-    time_error, distance_error : of `fall_time` and of `fall_back`, `aside`: what steps of twice the
-        length change and what bars of twice the length do, together, and a quarter more
+    time_error, distance_error : of `fall_time` and of `fall_back`, `aside`: twice what steps of
+        twice the length change and bars of twice the length do, together; of the time 0.05 % at
+        least
     fall_time_band, fall_back_band : with the anchor's drag halved and doubled, the less first
     touchdown_speed : of the anchor as it meets the seabed
     greatest_tension : in the line, from letting go to the touchdown
@@ -37,9 +39,10 @@ class DropPlan:
     run_time : from the float over the side to the anchor let go
     let_go, start : where the anchor is let go and where the run begins, east and north of the
         target
-    anchor_drag : K of the anchor [N/(m/s)²]; `drag_known` is False where it is that of a cube of
-        its weight, since the file gives none
-    path, moments, depths, pulls : over time; shapes; of floats, instruments and releases; of pieces
+    anchor_drag : K of the anchor [N/(m/s)²]; `drag_known` is False where it is that of a cube,
+        since the file gives none
+    path, moments, depths, pulls : over time; shapes; of floats, instruments and releases, empty
+        where the line comes to rest away from its equilibrium; of pieces
     rest_difference : farthest that a piece comes to rest from its place in the equilibrium; None
         where still water leaves the line slack, so that it has no single one
     """
@@ -82,7 +85,7 @@ class DropPlan:
         said = []
         if not self.drag_known:
             said.append(
-                "The anchor gives no `kt`: its drag is taken to be that of a cube of its weight."
+                "The anchor gives no `kt`: its drag is taken to be that of a cube of its volume."
             )
         if self.rest_difference is None:
             said.append(
@@ -92,7 +95,8 @@ class DropPlan:
         elif self.rest_difference > ASTRAY * self.mooring.water.depth:
             said.append(
                 f"The line comes to rest {self.rest_difference:.2f} m from its equilibrium, more "
-                "than a thousandth of the depth: its depths at rest are not to be relied on."
+                "than a thousandth of the depth: the depths of instruments are not shown, and the "
+                "fall is to be doubted as well."
             )
         if self.mooring.line.strumming is not None:
             said.append("That cables strum is not in it: their drag is the one at rest.")

@@ -149,15 +149,18 @@ def path_of(drop: Course, toward: Floats, anchor_height: float) -> Path:
     )
 
 
-def moments_of(drop: Course, rest: Course, toward: Floats) -> tuple[Moment, ...]:
-    """Shapes at equal intervals from letting go to the touchdown, and at rest."""
+def moments_of(drop: Course, rest: Course | None, toward: Floats) -> tuple[Moment, ...]:
+    """Shapes at equal intervals from letting go to the touchdown, and at rest where that is known."""
     times = np.array([state.time for state in drop.states])
     chosen = [int(np.argmin(np.abs(times - t))) for t in np.linspace(0.0, times[-1], MOMENTS)]
     shown = [drop.states[i] for i in chosen]
     names = ["let go", *(f"after {state.time:.0f} s" for state in shown[1:-1]), "touchdown"]
+    if rest is not None:
+        shown.append(rest.states[-1])
+        names.append("at rest")
     return tuple(
         Moment(state.time, name, state.node[:, :2] @ toward, -state.node[:, 2])
-        for state, name in zip([*shown, rest.states[-1]], [*names, "at rest"], strict=True)
+        for state, name in zip(shown, names, strict=True)
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import ceil
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -56,7 +57,7 @@ def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
     given = (
         "as given"
         if plan.drag_known
-        else "of a cube of its weight, since the file gives it no `kt`"
+        else "of a cube of its volume, since the file gives it no `kt`"
     )
     side = "right" if plan.aside >= 0.0 else "left"
     return (
@@ -176,8 +177,8 @@ def _notes(plan: DropPlan) -> tuple[str, ...]:
     notes = [
         "The line is a chain without inertia: what it does in the first 20 s, and the jerk at the "
         "touchdown, are not in these figures; nor is what waves do.",
-        "± is what bars and what steps of twice the length change, together, and a quarter more; "
-        "the current and the drag of the anchor are known less well.",
+        "± is twice what bars and what steps of twice the length change, together; the current and "
+        "the drag of the anchor are known less well.",
     ]
     if plan.rest_difference is not None:
         notes.append(
@@ -199,7 +200,7 @@ def _minutes(seconds: float) -> str:
 
 
 def _error(value: float) -> str:
-    return f"{max(value, 1.0):.0f}"
+    return f"{max(ceil(value), 1)}"
 
 
 def east_north(place: tuple[float, float]) -> str:
