@@ -7,8 +7,6 @@ from dataclasses import dataclass, replace
 from math import isnan
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from calm.checks.finding import State, Verdict, at_least, at_most, rule, told, unknown, verdict_on
 from calm.checks.launch import Launch
 from calm.checks.limits import Citing

@@ -39,7 +39,7 @@ class Launch:
     tension_top, tension_bottom : (n,) of every piece above the anchor [N]; 0 of what stays at the
         surface
     anchor_drag_known : False where the anchor gives no `kt`: it is dragged as a cube
-    greatest_speed, greatest_tension : the speed [m/s] and the tension of every piece (n,) [N]; where
+    greatest_speed, greatest_tension : speed [m/s] and tension of every piece (n,) [N]; where
         the anchor's drag is not known those of one that has none, the most there can be
     tangles : the pieces that have, or part of which has, been overtaken by what was above
     in_still_water : whether the fall is that in still water, because a line that doubles back

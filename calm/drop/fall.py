@@ -177,8 +177,9 @@ def _stepped(mover: Mover, state: State, step: float, depth: float) -> State:
     """
     shortest = _SHORTEST * depth
     while step > shortest:
-        with suppress(NoStep):
-            return mover.stepped(state, step)
+        for gently in (False, True):
+            with suppress(NoStep):
+                return mover.stepped(state, step, gently)
         step *= 0.4
     raise Status.NOT_CONVERGED.because(
         f"The way of the line finds no next step, {state.time:.1f} s after it was let go."

@@ -5,8 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from calm.case import Mooring
 from calm.drop.record import DepthReached, Moment, Path, Pull
+from calm.files import Position
+from calm.physics.ellipsoid import Frame
 
 ASTRAY = 1e-3
 """Share of the depth by which the line may come to rest elsewhere than its equilibrium; beyond it
@@ -74,6 +78,18 @@ class DropPlan:
     pulls: tuple[Pull, ...] = field(repr=False)
     rest_difference: float | None
 
+    def position(self, place: tuple[float, float]) -> Position | None:
+        """The position of a place east and north of the target [m]; None where the target has none.
+
+        On WGS 84; by the tangent plane, within 1 m up to 10 km away.
+        """
+        target = self.mooring.file.position
+        if target is None:
+            return None
+        frame = Frame(target.latitude, target.longitude)
+        latitude, longitude, _ = frame.position(np.array([*place, 0.0]))
+        return Position.model_construct(latitude=latitude, longitude=longitude)
+
     @property
     def beyond_rating(self) -> tuple[DepthReached, ...]:
         """What comes deeper in the drop than it is made for."""
@@ -108,6 +124,7 @@ class DropPlan:
     def to_dict(self) -> dict[str, Any]:
         """The plan as JSON; figures in SI."""
         path = self.path
+        let_go, start = self.position(self.let_go), self.position(self.start)
         return {
             "fall_time": self.fall_time,
             "fall_back": self.fall_back,
@@ -135,6 +152,8 @@ class DropPlan:
             "run_time": self.run_time,
             "let_go": list(self.let_go),
             "start": list(self.start),
+            "let_go_position": None if let_go is None else let_go.model_dump(),
+            "start_position": None if start is None else start.model_dump(),
             "anchor_drag": self.anchor_drag,
             "anchor_drag_known": self.drag_known,
             "rest_difference": self.rest_difference,

@@ -20,8 +20,8 @@ from calm.solve import Status
 SHIP_SPEED = 1.0
 """Of a ship that tows the line out [m/s]: some two knots."""
 FINE = Fineness(bars=100, steps=100)
-REFINED = (1, 2, 4)
-"""Times as many bars, until the line comes to rest in its equilibrium."""
+FINEST = 4
+"""Times as many bars at most, until the line comes to rest in its equilibrium."""
 DRAG_BAND = 2.0
 """By how many times the anchor's drag may be more, or less, than given."""
 CAUTION = 2.0
@@ -71,15 +71,26 @@ def drop_plan(
     def let_go(start: State, drag: float, fineness: Fineness) -> Course:
         return fall(falling, water, replace(anchor, drag=drag), start, fineness)
 
-    for finer in REFINED:
-        fine = replace(fineness, bars=finer * fineness.bars)
+    def dropped(fine: Fineness) -> tuple[State, Course, Course, float | None]:
+        """The line as it is towed, its fall and its rest, and how far from its equilibrium."""
         start = towed(falling, water, anchor, ship, fine)
         drop = let_go(start, anchor.drag, fine)
         rest = settle(mooring.line, water, anchor, drop.states[-1], fine)
-        difference = None if result is None else rest_difference(result, rest)
-        astray = difference is not None and difference > ASTRAY * water.depth
-        if not astray:
+        return start, drop, rest, None if result is None else rest_difference(result, rest)
+
+    def is_astray(difference: float | None) -> bool:
+        return difference is not None and difference > ASTRAY * water.depth
+
+    fine = fineness
+    start, drop, rest, difference = dropped(fine)
+    while is_astray(difference) and fine.bars < FINEST * fineness.bars:
+        finer = replace(fine, bars=2 * fine.bars)
+        try:
+            start, drop, rest, difference = dropped(finer)
+        except NoEquilibrium:
             break
+        fine = finer
+    astray = is_astray(difference)
     longer = replace(fine, steps=fine.steps // 2)
     slower = let_go(start, anchor.drag, longer)
     fewer = replace(fine, bars=fine.bars // 2)

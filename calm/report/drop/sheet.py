@@ -12,6 +12,7 @@ from calm.drop.planning import DRAG_BAND
 from calm.quantities import QUANTITIES, say
 from calm.report.blocks import Block, Cell, Column, Figure, Note, Pairs, Part, Prose, Table
 from calm.report.drop.figures import drop_figure
+from calm.report.title_block import position_text
 
 if TYPE_CHECKING:
     from calm.drop import DropPlan
@@ -76,8 +77,8 @@ def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
             f"{abs(plan.aside):.0f} m to the {side}, seen from where it is let go",
         ),
         ("Float behind the ship when let go", f"{plan.streamed:.0f} m, {_bearing(plan.astern)}"),
-        ("Let go, from the target", east_north(plan.let_go)),
-        ("Start of the run, from the target", east_north(plan.start)),
+        ("Let go, from the target", whereabouts(plan, plan.let_go)),
+        ("Start of the run, from the target", whereabouts(plan, plan.start)),
         ("Speed at touchdown", say("speed", plan.touchdown_speed)),
         ("Greatest tension in the fall", _greatest(plan)),
         ("Drag of the anchor at 1 m/s", f"{plan.anchor_drag:.0f} N, {given}"),
@@ -203,10 +204,12 @@ def _error(value: float) -> str:
     return f"{max(ceil(value), 1)}"
 
 
-def east_north(place: tuple[float, float]) -> str:
-    """A place east and north of another [m], in words."""
+def whereabouts(plan: DropPlan, place: tuple[float, float]) -> str:
+    """A place east and north of the target [m], in words, with its position where that is known."""
     east, north = place
+    position = plan.position(place)
     return (
         f"{abs(north):.0f} m {'north' if north >= 0.0 else 'south'}, "
         f"{abs(east):.0f} m {'east' if east >= 0.0 else 'west'}"
+        + ("" if position is None else f"; {position_text(position)}")
     )
