@@ -95,6 +95,7 @@ def deck(calm, folder):
     ("pieces", "paper", "size"),
     [(2, "letter", (612, 792)), (43, "a3", (1191, 842)), (203, "a4", (595, 842))],
 )  # fmt: skip
+@pytest.mark.thorough
 def test_everything_is_on_the_pages(deck, pieces, paper, size):
     out, _ = deck(mooring(pieces), "--page", paper)
     blocks = max(pieces - 3, 0) // 5

@@ -148,6 +148,7 @@ def test_the_drag_of_the_anchor_is_what_matters(loaded):
     ],
     ids=lambda path: path.stem,
 )
+@pytest.mark.thorough
 def test_every_shipped_line_comes_to_rest_in_its_equilibrium(path):
     mooring = calm.load(path)
     if isinstance(mooring, Tow):
@@ -237,6 +238,7 @@ def test_turned_with_the_current_it_is_the_same(loaded):
     assert abs(turned.aside) < 1e-4
 
 
+@pytest.mark.thorough
 def test_the_stated_errors_hold_against_a_finer_chain(loaded):
     for text in (DYNAMIC, LEAN.format(depth=200, length=120, current=0.5)):
         mooring = loaded(text)
