@@ -22,7 +22,7 @@ class CalmError(Exception):
 class Problem:
     """One mistake in one place of a file.
 
-    `line` and `column` count from 1; 0 means the file as a whole. `lacks` tells, where nothing is
+    `line` and `column` count from 1; 0 means the file as a whole. `lacks` shows, where nothing is
     wrong but something is not there yet, what that is: ``no length on wire 2``.
     """
 
@@ -80,7 +80,7 @@ class NoEquilibrium(CalmError):
 
 
 def internal_failure(error: Exception) -> NoEquilibrium:
-    """CALM's own failure, told as a line that could not be solved: it does not stop the others."""
+    """CALM's own failure, reported as an unsolved line: it does not stop the others."""
     return NoEquilibrium(
         "internal-error",
         f"CALM failed ({type(error).__name__}: {error}).",

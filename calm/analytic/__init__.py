@@ -3,7 +3,7 @@
 `catenary`: a line in still water; `uniform`: lines in a uniform stream, without weight and heavy;
 `pode`: Pode's cable functions; `villain_guillot` and `unequal_drag`: towed cables whose drag is
 linear or quadratic in each component of the velocity; `chart`: Braconnot's charts. All SI and
-radians; each module tells its equations, their range and their source.
+radians; each module states its equations, their range and their source.
 """
 
 from calm.analytic import catenary as catenary

@@ -88,7 +88,7 @@ def chart_solve(
     """Every cable that has three given quantities, to 1e-9.
 
     A cable that turns by less than a hundredth of a radian is so nearly straight that its shape
-    (angles, height, distance, length) tells its tension with fewer digits than it has itself.
+    (angles, height, distance, length) gives its tension with fewer digits than it has itself.
 
     Parameters
     ----------

@@ -25,7 +25,7 @@ PATIENCE = "20s"
 """How long the scheduler may take to answer."""
 
 COMPILING = "calm: compiling"
-"""The topic of what workers tell meanwhile."""
+"""The topic of what workers report meanwhile."""
 
 ASKED_ANEW = 1.0
 """Seconds between two looks at how many workers there are."""

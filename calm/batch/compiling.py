@@ -1,4 +1,4 @@
-"""The kernel made ready before the first block, and what a person is told meanwhile."""
+"""The kernel made ready before the first block, and what is reported meanwhile."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class _Notice(event.Listener):
 
 
 def compile_kernel(batch: Batch, tell: Callable[[str], None]) -> None:
-    """Let the kernel be compiled, or fetched, and tell when it has to be compiled."""
+    """Let the kernel be compiled, or fetched, and report when it has to be compiled."""
     notice, started = _Notice(tell), perf_counter()
     with event.install_listener("numba:compile", notice):
         batch.solve(np.zeros((0, 1)), np.zeros((0, 1)), np.zeros(1), workers=1)

@@ -42,7 +42,7 @@ MOST_BLOCKS, LARGEST_BLOCK = 2048, 65536
 """Longer records have larger blocks, up to a size, as each makes a file for every variable."""
 
 LONG = 2.0
-"""Seconds after which a person is told what is going on."""
+"""Seconds after which progress is reported."""
 
 ATTEMPTS = 3
 """How often blocks are solved again that do not come back from the disk as they went there."""

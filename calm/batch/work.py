@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from calm.batch.records.record import Levels, Record
 
 FIRST, FEWEST = 256, 8
-"""Profiles that are solved before anybody is told, or may stop it: at first, and at least, where
+"""Profiles solved before progress is reported or a stop heeded: at first, and at least, where
 each is solved by itself. `SLICE` sets how many."""
 
 SLICE = 0.5

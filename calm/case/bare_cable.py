@@ -1,4 +1,4 @@
-"""A bare cable as it was seen to tow: what its angle tells of its vibration."""
+"""A bare cable as it was seen to tow: what its angle gives for its vibration."""
 
 from __future__ import annotations
 

@@ -55,7 +55,7 @@ def load(
 class Mooring:
     """A mooring as read from its file; `line` and `water` are what the solver takes.
 
-    They follow from the file where they are not given. `for_surface` tells whether it is meant to
+    They follow from the file where they are not given. `for_surface` shows whether it is meant to
     reach the surface, where that is known beforehand: a mooring that is judged with something
     changed is meant for what it was meant for. `memory` keeps what was solved for other states of
     the same file.

@@ -1,4 +1,4 @@
-"""What a solved mooring tells, in the names and units of the result format."""
+"""What a solved mooring shows, in the names and units of the result format."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def document_of(result: Result | TowResult, ends: dict[str, Any]) -> dict[str, Any]:
-    """The JSON object of a result, with what its kind tells of the line's ends."""
+    """The JSON object of a result, with what its kind gives for the line's ends."""
     from calm.version import __version__
 
     components, clamps = result.components.to_dicts(), result.clamps.to_dicts()

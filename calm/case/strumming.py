@@ -1,4 +1,4 @@
-"""What a solution tells of the strumming of its cables."""
+"""What a solution gives for the strumming of its cables."""
 
 from __future__ import annotations
 

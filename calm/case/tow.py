@@ -1,4 +1,4 @@
-"""A tow file, ready to be solved, and what it tells when it is."""
+"""A tow file, ready to be solved, and what it shows when it is."""
 
 from __future__ import annotations
 

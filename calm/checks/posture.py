@@ -145,7 +145,7 @@ def knockdown(mooring: Mooring) -> Iterator[Criterion]:
         return (
             f"The top is knocked down by {say('knockdown', sunk)}; "
             f"{say('knockdown', limit)} are allowed.",
-            "Add buoyancy at the top, or take drag off: `calm run --explain` tells which.",
+            "Add buoyancy at the top, or take drag off: `calm run --explain` shows which.",
         )
 
     yield Criterion(pieces_of(mooring)[0], "knockdown", limit, words)

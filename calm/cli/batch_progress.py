@@ -31,7 +31,7 @@ class Teller:
         print(text, file=sys.stderr, flush=True)
 
     def __call__(self, progress: Progress) -> None:
-        """Tell of it, unless something was told a moment ago."""
+        """Report it, unless something was reported a moment ago."""
         now = monotonic()
         if self._started is None:
             self._started = now
@@ -62,7 +62,7 @@ def bar(progress: Progress) -> str:
 def state(progress: Progress, seconds: float) -> str:
     """How many are done, the rate, the time that the rest takes at it, and the failures so far.
 
-    Those solved one by one are told as well, since they hold the others up.
+    Those solved one by one are reported as well, since they hold the others up.
     """
     from calm.batch.statuses import Ending
 

@@ -100,7 +100,7 @@ def _serve(
     from calm.tui.launch import open_session
     from calm.tui.serve import serve
 
-    open_session(file, environment, catalogs)  # what cannot be opened is told here
+    open_session(file, environment, catalogs)  # what cannot be opened is reported here
     words = [] if file is None else [str(file.absolute())]
     if environment is not None:
         words += ["--environment", environment]

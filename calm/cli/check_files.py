@@ -86,7 +86,7 @@ def _cut_alike(moorings: Sequence[Mooring]) -> tuple[Mooring, ...]:
     try:
         return first, *(Mooring(cut_like(each.file, first)) for each in others)
     except NoEquilibrium:
-        return tuple(moorings)  # the first is told not to stand, and why
+        return tuple(moorings)  # the first is reported not to stand, and why
 
 
 def _loaded(

@@ -212,7 +212,7 @@ def export(
 ) -> ExitCode:
     """Write a mooring or a tow for another program.
 
-    What the other program cannot be told is reported, and stands at the head of
+    What the other program cannot hold is reported, and stands at the head of
     the file. A piece that is cut to fit goes out with its cut length.
 
     Parameters

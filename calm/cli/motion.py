@@ -245,7 +245,7 @@ def read_measured(
     sea_level: Path | None,
     declination: float | None,
 ) -> tuple[Measured, list[str], dict[str, str]]:
-    """What was measured, on common times; what is said of it, and its source."""
+    """What was measured, on common times; what is reported about it, and its source."""
     from calm.files.explain import not_among
     from calm.motion.currents import read_currents
     from calm.motion.flags import parse_flags

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _Item = TypeVar("_Item")
 _NARROWEST = 40  # columns: figures are no longer cut, but wrapped by the terminal
-_PATIENCE = 1.0  # seconds before progress is told
+_PATIENCE = 1.0  # seconds before progress is reported
 _PACE = 0.1  # seconds between two tellings
 _WRITTEN_OUT = "calm-written-out"  # the handler of signs that a stream cannot carry
 _SIGNS = "°×–−→≤≥²³"  # those of the tables
@@ -86,7 +86,7 @@ def narrate(text: str) -> None:
 
 
 def progress(items: Iterable[_Item], what: str, total: int | None = None) -> Iterator[_Item]:
-    """The items one by one; when they take long, a terminal is told how many are done.
+    """The items one by one; when they take long, a terminal shows how many are done.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""``calm strumming``: what the angle of a bare towed cable tells of its vibration."""
+"""``calm strumming``: what the angle of a bare towed cable gives for its vibration."""
 
 from __future__ import annotations
 
@@ -39,8 +39,8 @@ def strumming(
     """Find how a bare towed cable vibrates from the angle at which it tows.
 
     Bourget & Marichal: a cable towed with nothing at its end is straight, and
-    its angle tells its drag coefficient C*; what C* is above that of a cable at
-    rest tells the amplitude a of its vibration. Quantities carry their units.
+    its angle shows its drag coefficient C*; what C* is above that of a cable at
+    rest shows the amplitude a of its vibration. Quantities carry their units.
 
     Parameters
     ----------

@@ -115,7 +115,7 @@ class DropPlan:
                 "fall is to be doubted as well."
             )
         if self.mooring.line.strumming is not None:
-            said.append("That cables strum is not in it: their drag is the one at rest.")
+            said.append("Strumming is left out: the drag of the cables is that at rest.")
         names = ", ".join(each.label for each in self.beyond_rating)
         if names:
             said.append(f"Deeper in the drop than made for: {names}.")

@@ -1,6 +1,6 @@
-"""Which part of one line is which of another: by label where that tells, else by content and order.
+"""Which part of one line is which of another: by label where it decides, else by content, order.
 
-A label tells where one part of each line has it. Those that `numbered` made are no labels: a
+A label decides where one part of each line has it. Those that `numbered` made are no labels: a
 shackle put in at the top renumbers all below it.
 """
 

@@ -174,7 +174,7 @@ def _understood(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
 
 
 def _turned(velocity: Velocity, declination: float | None) -> tuple[str, ...]:
-    """What is told of a current that counts from magnetic north."""
+    """What is reported of a current that counts from magnetic north."""
     counted = velocity.names if velocity.turn is None else velocity.names[1:]
     which = " and ".join(f"`{name}`" for name in counted)
     if velocity.magnetic and declination is None:

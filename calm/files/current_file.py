@@ -12,7 +12,7 @@ from calm.files.tables import CurrentTable
 
 
 def read_current_file(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
-    """The profile of a file at a time, and what to tell about it.
+    """The profile of a file at a time, and what to report about it.
 
     Raises
     ------

@@ -233,7 +233,7 @@ def _spacing(latitude: NDArray[Any], longitude: NDArray[Any], at: tuple[Any, ...
 
 
 def _drift(dataset: xr.Dataset, time: str | None, wanted: Place | None) -> tuple[str, ...]:
-    """What to tell of a record whose place changes with time, such as that of a drifter."""
+    """What to report about a record whose place changes with time, such as that of a drifter."""
     import numpy as np
 
     found = []

@@ -74,7 +74,7 @@ def read_density(
     problems: list[Problem],
     notices: list[str],
 ) -> float | DepthTable | SeaWater | None:
-    """The density of a section's `density:`; None, with its mistakes told, when it has any."""
+    """The density of a section's `density:`; None, with its mistakes reported, when it has any."""
     density = _RANGES[fluid]
     if isinstance(given, Table):
         report = report_at(section, "density")

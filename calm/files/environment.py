@@ -307,7 +307,7 @@ def _current(
 
 
 def _check_tables(section: Section, problems: list[Problem]) -> None:
-    """Look into the tables although other keys are wrong, so that all mistakes are told at once."""
+    """Look into the tables although other keys are wrong, to report all mistakes at once."""
     check_density(section, problems)
     table = table_of(section.data.get("current"))
     if table is not None:

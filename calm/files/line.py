@@ -45,7 +45,7 @@ _LIMITS = {
 class LineReader:
     """Expands line items; mistakes are added to `problems`, things worth telling to `notices`.
 
-    `towed` and `in_air` tell which keys and figures the line may have.
+    `towed` and `in_air` show which keys and figures the line may have.
     """
 
     def __init__(

@@ -67,7 +67,7 @@ RULES = {
         "weight in water and drag of what is clamped, in the current, the fall and the rise",
         "its `grip`, else its `breaking_load`; reported where neither is given",
         "The maker's figures of the clamp",
-        "the result does not tell the current at each clamp",
+        "the result does not hold the current at each clamp",
         figures=("grip",),
     ),
     "strength-steps": RuleText(
@@ -161,7 +161,7 @@ RULES = {
         "of the surface float",
         "above 0",
         "A float at the surface stands out of it",
-        "the result does not tell how the float lies in the water",
+        "the result does not hold how the float lies in the water",
     ),
     "watch-circle": RuleText(
         "Watch circle",
@@ -169,7 +169,7 @@ RULES = {
         "√(L² − depth²) with the line as stretched",
         "`maximum_excursion`; reported where that is not given",
         "Worst case √(L² - depth²), against the design's own `maximum_excursion`",
-        "the result does not tell the stretched length of the line",
+        "the result does not hold the stretched length of the line",
     ),
     "scope": RuleText(
         "Scope",
@@ -245,7 +245,7 @@ RULES = {
     "tangling": RuleText(
         "Tangling",
         "",
-        "whether a part overtakes what is ahead of it in the fall or the rise",
+        "whether a part overtakes the parts ahead in the fall or the rise",
         "a warning",
         "A default of this program: no part overtakes what is ahead",
         _ONCE,

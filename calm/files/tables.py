@@ -164,7 +164,7 @@ def heading(column: str) -> tuple[str, str]:
 
 
 def turned_notices(columns: Sequence[str], terms: Terms) -> tuple[str, ...]:
-    """What is told of a current whose columns counted from magnetic north."""
+    """What is reported of a current whose columns counted from magnetic north."""
     if terms.declination is None:
         return ()
     which = " and ".join(f"`{name}`" for name in sorted(magnetic_columns(columns)[1]))

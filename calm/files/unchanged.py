@@ -15,7 +15,7 @@ Stamp = tuple[tuple[str, int, int, int], ...]
 
 
 class Unchanged(Generic[T]):
-    """The last of what was read from files, told by their names, times and sizes."""
+    """The last of what was read from files, known by their names, times and sizes."""
 
     def __init__(self) -> None:
         self._last: tuple[Stamp, T] | None = None
@@ -32,7 +32,7 @@ class Unchanged(Generic[T]):
 
 
 def _stamp(paths: Sequence[Path]) -> Stamp | None:
-    """None where it would not tell a change."""
+    """None where it would not show a change."""
     try:
         found = [(str(path), path.stat()) for path in paths]
     except (OSError, ValueError):

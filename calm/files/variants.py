@@ -28,7 +28,7 @@ def choose_environment(
     """The `environment` of a file, or the chosen one laid over it, and its name; yet to be read.
 
     Variants that are not chosen, and the own environment where another one is, are checked here,
-    so that mistakes are told where they are. None where there is no environment.
+    so that mistakes are reported where they are. None where there is no environment.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What the angle of a bare towed cable tells of its vibration, as a table and as a document."""
+"""What the angle of a bare towed cable gives for its vibration, as a table and as a document."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ class Column:
 
 @dataclass(frozen=True)
 class Cell:
-    """A cell: its text, a smaller line below it, and the state it tells in colour and word.
+    """A cell: its text, a smaller line below it, and the state it shows in colour and word.
 
     `mark` is the sign behind a figure that is near a limit or beyond it. A cell may be indented
     below the row above it, and `strong` where the reader looks for it.
@@ -73,7 +73,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Pairs:
-    """What is said of each of several things: name and value, which may have several lines."""
+    """Of each of several things a name and a value, which may have several lines."""
 
     pairs: tuple[tuple[str, str], ...]
 

@@ -31,7 +31,7 @@ _STYLES = {
     State.UNKNOWN: "bold",
     State.FAIL: "bold red",
 }
-"""How a state looks; its word or its mark tells it without colour."""
+"""How a state looks; its word or its mark shows it without colour."""
 _QUIET = "dim"
 _WARNED = _STYLES[State.FAIL]
 

@@ -43,7 +43,7 @@ class Status(Enum):
     def because(
         self, message: str, piece: int | None = None, advice: str | None = None
     ) -> NoEquilibrium:
-        """The exception that tells this outcome, at a piece of the line where it has one.
+        """The exception that shows this outcome, at a piece of the line where it has one.
 
         `advice` is in place of the outcome's own, which is that for moorings.
         """

@@ -101,7 +101,7 @@ of wire between a sphere of 1.5 m at the surface and an anchor of 8896 N in wate
 in 1000 m of still water. Expected is what a program with inertia and added mass finds when the end
 bodies are dragged by |V|V, as CALM's are; WHOI Cable 3.12 drags them axis by axis and finds 233
 to 234 s and 107.9 m, that program with that drag 232.6 s and 108.3 m. The distance streamed is that
-of WHOI Cable's own static solution. Then the terminal speed, against the one of `calm check`, and
+of WHOI Cable's own static solution. Then the terminal speed, against that of `calm check`, and
 √(W/K) of a heavy sphere.""",
     (
         Case("streamed behind the ship", 894.8, "m", 0.5, "The chain's bars are 10 m long.",

@@ -70,7 +70,7 @@ class Wake:
 
 
 def towed(line: Line, water: Water, speed: float, settings: Settings = FINE) -> Wake:
-    """The wake of a line, listed from the ship, towed at a speed [m/s]; at `FINE` unless told."""
+    """The wake of a line, listed from the ship, towed at a speed [m/s]; at `FINE` by default."""
     solution = solve_tow(line, water, Towing(speed, 0.0), settings)
     x, _, z = solution.position[0].tolist()
     back, _, down = solution.force[-1].tolist()

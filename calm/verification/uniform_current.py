@@ -99,7 +99,7 @@ surface besides (C5).
 C1 and C2 are elementary: tan θ = D/B, T² = B² + D². C3 is a catenary on its side,
 cot φ = cot φ₀ + R s/T at constant T. C4 and C5 follow from T′ = w sin φ + F, T φ′ = w cos φ −
 R sin² φ by quadrature (relative error 1e-10), without CALM. In C4 the tension differs between two
-points by w times their difference in height. C5 tells the sign of the tangential drag. All with
+points by w times their difference in height. C5 shows the sign of the tangential drag. All with
 g = 9.81 m/s² and, but for C2, ρ = 1025 kg/m³; the march of CALM at an angle step of 0.1° is held
 against them.""",
     (

@@ -13,7 +13,7 @@ _DEPTH, _SCOPE = 540.0, 2.0
 
 
 def _radius() -> float:
-    """The radius told with the refusal of a line that has no unique shape [m]."""
+    """The radius reported with the refusal of a line that has no unique shape [m]."""
     rope = cable(_SCOPE * _DEPTH, 0.02, 1.0, 1.3, 0.0)
     try:
         solve_mooring(line_of(point(20_000.0, 100.0), rope), stream(_DEPTH, 0.0))
@@ -28,7 +28,7 @@ def _radius() -> float:
 SOURCE = Source(
     "Watch circle",
     """A surface mooring of scope 2 in 540 m of water without current (C22) is slack and has no
-unique shape: CALM refuses it with the status `slack` and tells the radius of its watch circle, at
+unique shape: CALM refuses it with the status `slack` and reports the radius of its watch circle, at
 most depth · √(scope² − 1). PacIOOS publishes 934 m, 1.73 times the depth, for that mooring.""",
     (
         Case("C22 radius", 934.0, "m", 0.002 * 934.0,

@@ -1,6 +1,6 @@
 """A stretch of cable in the lanes: the laws of `calm.physics.cable`, all lanes at once.
 
-The load of the last segment tells how the next one leans, to the order that its current needs.
+The load of the last segment gives the lean of the next, to the order that its current needs.
 Where a law is not made for all lanes at once each takes the segment by itself.
 """
 

@@ -12,7 +12,7 @@ import numba
 from calm.physics import compiled
 
 FLAGS = {"contract", "nsz", "arcp"}
-"""Liberties with arithmetic. Not with NaN, which tells a lane that has failed, nor with the order
+"""Liberties with arithmetic. Not with NaN, which shows a lane that has failed, nor with the order
 of sums: it might be another in the first lanes than in the last, and their digits with it."""
 
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": FLAGS, "_nrt": False}

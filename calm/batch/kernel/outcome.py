@@ -1,4 +1,4 @@
-"""What a solved case tells of its pieces and clamps."""
+"""What a solved case gives for its pieces and clamps."""
 
 from __future__ import annotations
 

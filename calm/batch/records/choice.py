@@ -65,7 +65,7 @@ def parse_place(text: str) -> Place:
 def choose_profiles(
     times: Times, period: Period | None, every: int, path: Path
 ) -> tuple[Index, tuple[str, ...]]:
-    """The indices of the profiles wanted, in the order of time, and what to tell about it.
+    """The indices of the profiles wanted, in the order of time, and what to report about it.
 
     Raises
     ------

@@ -32,7 +32,7 @@ Text = Iterator[tuple[int, str]]
 class CsvRecord(Record):
     """A record `time,depth[m],u[m/s],v[m/s]`, the levels of one time in lines that follow.
 
-    Parameters and errors are those of `open_record`; every mistake of the file is told. The
+    Parameters and errors are those of `open_record`; every mistake of the file is reported. The
     numbers stand in a file of the system's temporary folder until the record is closed.
     """
 

@@ -14,7 +14,7 @@ Floats = NDArray[np.float64]
 PERCENTILES = (50.0, 90.0, 99.0, 99.9)
 
 SHARES = np.geomspace(1.0, 1e-7, 57)
-"""Shares of the profiles for which an exceedance curve tells the value; eight to a decade."""
+"""Shares of the profiles for which an exceedance curve shows the value; eight to a decade."""
 
 MOST_INTERVALS = 1000
 """Intervals of time into which a series is gathered to be drawn."""
@@ -28,7 +28,7 @@ class Distribution:
     ----------
     count : n
     mean : each profile counts alike
-    percentiles : of `PERCENTILES`: linear between the order statistics, of which the one of rank
+    percentiles : of `PERCENTILES`: linear between the order statistics, of which that of rank
         1 + (n - 1) p is the p quantile (definition 7 of Hyndman and Fan 1996)
     maximum, time : the greatest value, and when it is first reached
     share, value : exceedance curve: the value that a share of the profiles reaches or exceeds,

@@ -1,6 +1,6 @@
 """Return levels: the value that a response exceeds once in so many years on average.
 
-Two ways to estimate them, each with its own rules, which are told with the levels:
+Two ways to estimate them, each with its own rules, which are reported with the levels:
 
 - GEV: the generalised extreme value distribution of the maxima of years (Coles 2001, chapter 3).
 - POT: the generalised Pareto distribution of independent peaks over a threshold (chapter 4).
@@ -37,7 +37,7 @@ PERIODS = (2, 10, 50, 100)
 """Return periods [years]."""
 
 EXTRAPOLATION = 4.0
-"""Times the length of a record beyond which no return level is told. Our choice: thirty
+"""Times the length of a record beyond which no return level is reported. Our choice: thirty
 years give the level of a hundred, and a year none beyond two."""
 
 LEAST_MAXIMA = 10
@@ -226,7 +226,7 @@ def _over(
 
 
 def _gaps(time: Times, values: Column, step: np.timedelta64) -> str:
-    """What is told of the share of a record that is missing."""
+    """What is reported of the share of a record that is missing."""
     room = 1.0 + float((time[-1] - time[0]) / step)
     missing = 1.0 - int(np.count_nonzero(np.isfinite(values))) / room
     if missing < _FEW_GAPS:

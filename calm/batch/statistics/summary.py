@@ -78,7 +78,7 @@ class Profile:
 
 @dataclass(frozen=True)
 class Summary:
-    """All that is said of a batch result.
+    """All that is reported about a batch result.
 
     Attributes
     ----------
@@ -208,7 +208,7 @@ RESPONSES: Mapping[str, Callable[[Series], Column]] = {
 """Knockdown of the top, tension at the anchor, greatest tilt of any part, offset of the top."""
 
 RANKED = ("knockdown", "anchor_tension", "tilt")
-"""The responses by which the worst profiles are told."""
+"""The responses by which the worst profiles are reported."""
 
 
 def _responses(

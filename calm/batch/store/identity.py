@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from calm.batch.records.record import Record
 
 MOST_TOLD = 5
-"""So many differences are told, and how many more there are."""
+"""So many differences are reported, and how many more there are."""
 
 _NO_MATTER = frozenset(
     {"path", "line", "column", "checks", "notices", "variants", "description", "current"}

@@ -53,7 +53,7 @@ def left_behind(output: Path) -> bool:
 
 
 def clear(output: Path) -> None:
-    """Remove the work on a result, as far as it can be; what tells that it is work goes last."""
+    """Remove the work on a result, as far as it can be; what marks it as work goes last."""
     folder = store_folder(output)
     if (folder / WORK).is_dir():
         with suppress(OSError):

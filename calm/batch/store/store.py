@@ -35,7 +35,7 @@ WORK = ".batch"
 """The folder of a store that its result is without."""
 
 IDENTITY = "input_resolved"
-"""The attribute of a result that tells, as JSON, what it was made from."""
+"""The attribute of a result that shows, as JSON, what it was made from."""
 
 Arrays = Mapping[str, NDArray[Any]]
 """Values of some profiles, by the names of the variables that go with time."""
@@ -186,7 +186,7 @@ def open_store(folder: Path, layout: Layout, block: int, identity: str) -> Store
 
 
 def refuse_another(path: Path, before: str, now: str) -> None:
-    """Refuse to go on with what was made from another input, and tell what differs.
+    """Refuse to go on with what was made from another input, and report what differs.
 
     Raises
     ------
@@ -199,7 +199,7 @@ def refuse_another(path: Path, before: str, now: str) -> None:
         told = differences(json.loads(before), json.loads(now))
     except ValueError:
         raise UsageError(
-            f"{path} is damaged: it no longer tells what it was made from. Remove it, and the same "
+            f"{path} is damaged: it no longer shows what it was made from. Remove it, and the same "
             "command begins anew"
         ) from None
     raise UsageError(

@@ -119,7 +119,7 @@ class Draft:
         return value if isinstance(value, str) else ""
 
     def insert(self, index: int, values: Mapping[str, Value], rows: Location = LINE) -> Draft:
-        """A new item above the one of an index, or below the last.
+        """A new item above that of an index, or below the last.
 
         `rows`, here and below, is the list meant: the line, or `clamps_of` one of its items.
         """
@@ -158,7 +158,7 @@ class Draft:
         return self._page.copy(rows, indices)
 
     def paste(self, index: int, snippets: Iterable[str], rows: Location = LINE) -> Draft:
-        """Items as `copy` gives them above the one of an index, or below the last."""
+        """Items as `copy` gives them above that of an index, or below the last."""
         self._stands(rows)
         worded = _worded(snippets)
         return self._add(rows, index, worded) if worded else self

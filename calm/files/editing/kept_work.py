@@ -1,6 +1,6 @@
 """Copies of unsaved work, each with a record of the session that keeps it.
 
-A copy is the text itself below a first line, a comment, that tells the host, the process and what
+A copy is the text itself below a first line, a comment, that shows the host, the process and what
 the file held when the work began. No two sessions keep their work under one name.
 """
 
@@ -121,9 +121,9 @@ def _read(place: Path) -> Kept:
 
 
 def _started(process: int) -> str:
-    """When a process began, in ticks since this machine did; empty where that is not told.
+    """When a process began, in ticks since this machine did; empty where that is not known.
 
-    It is not told of one that has ended, though its parent has not asked for that yet.
+    It is not known of one that has ended, though its parent has not asked for that yet.
     """
     try:
         told = Path(f"/proc/{process}/stat").read_text()

@@ -108,7 +108,7 @@ def worst_tables(summary: Summary) -> Iterator[Table | Prose]:
 
 
 def levels_tables(summary: Summary) -> Iterator[Table | Prose]:
-    """Return levels with their intervals, and why others are not told."""
+    """Return levels with their intervals, and why others are not given."""
     for response in summary.responses:
         name = QUANTITY[response.name]
         title = TITLES[response.name].capitalize()

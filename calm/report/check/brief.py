@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 _SIGNS = {State.FAIL: "!", State.WARN: "~", State.UNKNOWN: "?"}
 _TOLD = 12
-"""So many failures, or warnings, are told of a mooring; a report has them all."""
+"""So many failures, or warnings, are reported of a mooring; a report has them all."""
 _NAMED = 3
 """Components that one reason accepts something of are named up to so many."""
 _LACKING = 60

@@ -34,7 +34,7 @@ _LIMIT: dict[str, Any] = {"colors": "#b3261e", "linewidth": 2.0, "capstyle": "pr
 
 
 def check_figure(assessment: Assessment) -> str:
-    """The figure as SVG: five panels that share one legend, the environments told by line.
+    """The figure as SVG: five panels that share one legend, the environments distinguished by line.
 
     The elevation and the current are of one depth axis; an elevation lies in the plane of its own
     excursion. Tension is drawn over the distance along the line, with the load that each piece may

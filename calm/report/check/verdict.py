@@ -108,7 +108,7 @@ def limits_table(moorings: Sequence[tuple[str, Sequence[LimitKey]]]) -> Table:
 
 
 def unknown_table(findings: Iterable[Finding]) -> Table | None:
-    """What is unknown, piece by piece, and which figure would tell; None where nothing is."""
+    """What is unknown, piece by piece, and which figure would settle it; None where nothing is."""
     parts: dict[str, list[Finding]] = {}
     for finding in worst_by_part(findings):
         if finding.state is State.UNKNOWN:
@@ -133,7 +133,7 @@ def unknown_table(findings: Iterable[Finding]) -> Table | None:
     columns = (
         Column("component"),
         Column("not judged by"),
-        Column("what would tell", share=1.5),
+        Column("what would settle it", share=1.5),
         Column("what it bears or stands there", share=1.5),
     )
     return Table("Unknown, piece by piece", columns, rows, sortable=True)

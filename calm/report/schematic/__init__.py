@@ -61,7 +61,7 @@ def schematic_svg(file: MooringFile, result: Result | TowResult | None = None) -
     file : MooringFile
         The line as read.
     result : Result or TowResult, optional
-        Its solution, which tells depths under load and in the current. Without it depths are those
+        Its solution, which shows depths under load and in the current. Without it depths are those
         of the upright, unstretched line; unknown in a tow and of a float at the surface.
     """
     schematic = schematic_of(file, result)

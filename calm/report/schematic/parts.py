@@ -111,7 +111,7 @@ def schematic_of(file: MooringFile, result: Result | TowResult | None = None) ->
     file : MooringFile
         The line as read.
     result : Result or TowResult, optional
-        Its solution, which tells depths under load and in the current.
+        Its solution, which shows depths under load and in the current.
     """
     levels = levels_of(file, result)
     bottom = file.environment.depth

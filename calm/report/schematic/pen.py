@@ -35,7 +35,7 @@ class Pen:
         return self.draw("g", transform=transform, **attributes)
 
     def title(self, text: str) -> None:
-        """What a reader is told who points at the element."""
+        """The text a reader sees who points at the element."""
         self.draw("title").element.text = text
 
     def line(self, x1: float, y1: float, x2: float, y2: float, **attributes: float | str) -> None:

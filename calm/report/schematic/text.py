@@ -75,7 +75,7 @@ def schematic_text(
     file : MooringFile
         The line as read.
     result : Result or TowResult, optional
-        Its solution, which tells depths under load and in the current; see `schematic_svg`.
+        Its solution, which shows depths under load and in the current; see `schematic_svg`.
     width : int
         Of the terminal [cells]; labels and names are cut to fit, from some 55 cells on.
     ascii_only : bool

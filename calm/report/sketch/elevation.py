@@ -92,7 +92,7 @@ def elevation(
 
 @dataclass(frozen=True)
 class _View:
-    """What is drawn: the plane, the depths of the edges, the line, and what is said of it."""
+    """What is drawn: the plane, the depths of the edges, the line, and its captions."""
 
     plane: Floats
     top: float

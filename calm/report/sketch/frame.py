@@ -150,7 +150,7 @@ def _end(labels: list[tuple[int, str]]) -> int:
 
 
 def ticks(low: float, high: float, most: int) -> list[float]:
-    """Round numbers from `low` to `high`: about so many, and not one alone, which tells nothing."""
+    """Round numbers from `low` to `high`: about so many, and not one alone, which shows nothing."""
     raw = (high - low) / max(most, 1)
     power = 10.0 ** floor(log10(raw))
     step = next(power * each for each in _STEPS if power * each >= raw * (1.0 - 1e-9))

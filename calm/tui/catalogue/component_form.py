@@ -66,7 +66,7 @@ def _form_field(
 
 
 def _members(annotation: Any) -> tuple[Any, ...]:
-    """The types of a union, without what is said of them."""
+    """The types of a union, without annotations."""
     if get_origin(annotation) in (Union, UnionType):
         return tuple(member for each in get_args(annotation) for member in _members(each))
     if hasattr(annotation, "__metadata__"):
