@@ -205,10 +205,6 @@ def _judged(
     stands = [(design.name, mooring, day) for design in designs for mooring in design.moorings]
     expect_many(SOLVES * len(stands))
     if len(designs) > FEW:
-        if drawn:
-            from calm.report.check.panels import sheet
-
-            sheet()  # loaded and laid out before other processes are
         whole = [(number, design, day, drawn, draws) for number, design in enumerate(designs, 1)]
         return mapped(_solve_and_conclude, whole, workers, "moorings judged")
     solved = iter(mapped(_stand, stands, workers, "environments solved"))
