@@ -81,7 +81,7 @@ def read_table(path: Path, columns: Mapping[str, str]) -> Design:
     if problems:
         raise refused(path, *problems)
     design.notes.append(
-        "A list says nothing of the water, and little of drag. See docs/import-table.md."
+        "A list says nothing of the water, and little of drag. See `calm docs import-table`."
     )
     design.in_kilograms = any(known[key].by_mass for key in ("buoyancy", "weight") if key in known)
     return design
