@@ -52,12 +52,11 @@ def batch(
 
     Each profile takes the place of the file's current. The result has every
     component and every clamped instrument at every time; a profile without
-    equilibrium is NaN with its status, and does not stop the others. What it says
-    on the whole is printed, and written as RESULT.summary.json and .html.
+    equilibrium is NaN with its status, and does not stop the others. Its statistics
+    are printed, and written as RESULT.summary.json and .html.
 
-    The work is kept in RESULT.part as it is done. After an interruption, whatever
-    it was, the same command solves what is missing; the exit code is 75 as long as
-    there is something.
+    The work is kept in RESULT.part. However a run is interrupted, the same command
+    resumes it; the exit code is 75 until everything is solved.
 
     Parameters
     ----------
@@ -70,7 +69,7 @@ def batch(
     time
         Only profiles from A to B, both included, as A/B, such as 2024-03/2024-05.
     every
-        Only every so many-th profile.
+        Only every Nth profile.
     at
         Latitude and longitude [degrees] of the column to take from a grid, as LAT,LON;
         the `position` of the mooring file unless given.
@@ -84,7 +83,7 @@ def batch(
     shape
         Store the shape of the line too.
     no_statistics
-        Leave the statistics out, as of a part of a longer record.
+        Leave the statistics out, for a part of a longer record.
     environment
         An environment named in the file, or an environment file, in place of its own.
     catalog

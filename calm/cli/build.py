@@ -45,14 +45,14 @@ def build(
     """Build or edit a mooring or a tow, and see it bend at every change.
 
     The line is a table, its picture and the design check beside it. The file keeps its
-    comments, its order and its units: what is not changed stays as it was written. What
-    is not saved is kept beside the file, and offered after a closed terminal, a crash or a
+    comments, its order and its units: what you do not change stays as it was written.
+    Unsaved work is kept beside the file, and offered after a closed terminal, a crash or a
     loss of power. Press ? for all keys.
 
     Parameters
     ----------
     file
-        A mooring file; it may be a new one. Without it, one that gets its name when saved.
+        A mooring file, old or new. Without it, a new file that is named when you save.
     environment
         An environment named in the file, or an environment file, to begin with.
     catalog
@@ -60,12 +60,13 @@ def build(
     serve
         Open it in a browser of this machine; other machines cannot reach it.
     port
-        Port of --serve, 8000 unless given. The address of the page, with the token that it needs,
+        Port of --serve, by default 8000. The address of the page, with the token that it needs,
         is printed; a tunnel may lead to it from any port.
     allow_host
-        A name under which a proxy hands the page of --serve on. Repeatable.
+        A host name under which a proxy forwards the page of --serve. Repeatable.
     idle_timeout
-        Minutes without a key after which a page of --serve is closed, its work kept; 0 for never.
+        Minutes without a key after which a page of --serve is closed, with its work kept; 0 for
+        never.
     """
     if serve:
         if not 0.0 <= idle_timeout < inf:

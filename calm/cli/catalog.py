@@ -73,8 +73,8 @@ def search(words: list[str], /, *, json: bool = False) -> ExitCode:
 def show_components(ids: list[str], /, *, json: bool = False) -> ExitCode:
     """Show every figure of components, where they come from, and what follows from them.
 
-    That is the net force in water, Kn and Kt, the drag at 1 m/s. Where several components are the
-    same thing by different sources, they stand beside one another with the one to use first.
+    That is the net force in water, Kn and Kt, the drag at 1 m/s. Components that are the same
+    thing by different sources stand side by side, that to use first.
 
     Parameters
     ----------
@@ -105,13 +105,12 @@ def show_components(ids: list[str], /, *, json: bool = False) -> ExitCode:
 def check(file: Path | None = None, /, *, json: bool = False) -> ExitCode:
     """Find what is physically impossible in a catalogue, and list what is missing.
 
-    Impossible is a sphere that lifts more than its volume, a rope heavier than a solid bar of its
-    diameter, a cable stiffer than steel; figures without a source are found, too. The exit code is
-    1 when there is a finding.
+    A sphere that lifts more than its volume, a rope heavier than a solid bar of its diameter and a
+    cable stiffer than steel are impossible; figures without a source are findings, too. The exit
+    code is 1 when there is a finding.
 
-    What is missing is a list, not a finding: the figures of each component without which a design
-    check has an unknown or the masses do not add up. Those that were looked for and that no source
-    prints are marked.
+    Missing figures are listed and are no finding: those without which a design check has an
+    unknown, or the masses do not add up. Figures that were searched for in vain are marked.
 
     Parameters
     ----------

@@ -78,7 +78,7 @@ def solve(
     k
         K = density × cd × diameter × speed² / (2 × weight), from 0 to 100.
     diameter
-        Diameter of the cable, in place of K as are the next three.
+        Diameter of the cable, in place of K, together with the next three.
     cd
         Drag coefficient of the cable.
     speed

@@ -50,11 +50,11 @@ def check(
 ) -> ExitCode:
     """Check designs: solve every mooring in every environment, and judge it by rule.
 
-    Each mooring is solved as given, in still water, and where its file asks for
-    it at high and low water, with growth on its cables, and with cables that
-    strum; then let go anchor last, released, and parted at each connection. The
-    exit code is 0 when every finding is a pass, a warning or accepted, 1 when a
-    rule fails or lacks a figure, 3 when a mooring has no equilibrium.
+    Each mooring is solved as given, in still water, with cables that strum and,
+    where its file asks for it, at high and low water and with growth; then launched
+    anchor last, released, and parted at each connection. The exit code is 0 when
+    every finding is a pass, a warning or accepted, 1 when a rule fails or lacks a
+    figure, 3 when a mooring has no equilibrium.
 
     Parameters
     ----------
@@ -72,16 +72,17 @@ def check(
     against
         An earlier design, with which the report compares the mooring; needs --report.
     allow_unknown
-        End with 0, too, where figures are unknown; what is shown and written stays the same.
+        End with exit code 0 although figures are unknown; what is shown and written stays
+        the same.
     uncertainty
-        Give every finding the probability that its limit is broken, with what the file gives
-        under uncertainty as unsure as it is, and list the designs by it.
+        Give every finding the probability that its limit is broken, with the input as unsure
+        as the file says under uncertainty, and list the designs by it.
     samples
         How many draws, a power of two.
     seed
         Of the draws; the same seed gives the same figures.
     workers
-        How many processes share the work; one on each core unless said.
+        How many processes share the work; by default one on each core.
     """
     outputs = Outputs(tuple(files), json)
     outputs.check()

@@ -53,7 +53,7 @@ def deck(
     files
         Mooring files.
     output
-        The folder; of several moorings each has one of its own in it, by its name.
+        The folder; each of several moorings gets a subfolder of its name.
     page
         The paper.
     environment

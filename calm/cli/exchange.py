@@ -38,9 +38,9 @@ def import_(
 ) -> ExitCode:
     """Make mooring files of other programs' designs.
 
-    The program is found from the content of the file. Every figure is that of the
-    file; what had to be guessed stands as a comment at its line, and is reported,
-    as is what was left out. What CALM cannot represent is refused by name, and then
+    The program is found from the content of the file. Every figure is taken from
+    the file. Guesses stand as comments at their lines, and are reported together
+    with what was left out. What CALM cannot represent is refused by name, and
     nothing is written.
 
     Parameters

@@ -43,11 +43,11 @@ def locate(
     json: OutputPath = None,
     output: Annotated[Path | None, Parameter(name=["--output", "-o"])] = None,
 ) -> ExitCode:
-    """Find where an anchor stands from acoustic ranges that a ship took about it.
+    """Find where an anchor lies from acoustic ranges taken by a ship.
 
-    Ranges that do not belong are found, named and left out. The place comes with
-    the ellipse that holds it with 95 %, the depth with its interval, and a warning
-    where the ship's positions leave them poorly known. Rays are taken as straight.
+    Outliers among the ranges are named and left out. The place comes with its 95 %
+    ellipse, the depth with its interval, and a warning where the ship's positions
+    leave them poorly known. Rays are taken as straight.
 
     Parameters
     ----------
@@ -60,9 +60,10 @@ def locate(
     transducer
         Depth of the ship's transducer.
     depth
-        Depth of the water at the anchor, where it is known; it is then not sought.
+        Depth of the water at the anchor, where it is known; otherwise it is
+        estimated.
     above_seabed
-        Height above the seabed of what answers, such as the release.
+        Height above the seabed of the transponder, such as the release.
     plot
         Draw the ranges as circles about the ship, with the place: .png, .svg or .pdf.
     json

@@ -59,14 +59,14 @@ def motion(
 ) -> ExitCode:
     """Estimate the depth of every instrument at every time from currents and pressures.
 
-    The currents move the line; what the pressures say beside that corrects the drag
-    for the whole record, and the current at each time. The result has the depth of
-    every component and clamped instrument with its standard deviation, and the
-    residuals of the sensors. A current meter of the line, known by its label, hangs
-    where the line has it.
+    The currents move the line; the pressures correct the drag for the whole record,
+    and the current at each time. The result has the depth of every component and
+    clamped instrument with its standard deviation, and the residuals of the
+    sensors. A current meter of the line, known by its label, hangs where the line
+    has it.
 
-    The work is kept as calm batch keeps it: after an interruption the same command
-    solves what is missing, and the exit code is 75 as long as there is something.
+    However a run is interrupted, the same command resumes it; the exit code is 75
+    until everything is solved.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def motion(
         `depth` and `depth_sd` added, and the result stands beside it as
         OUTPUT's name ending in .motion.nc.
     replace_depth
-        Let a `depth` that the file of `--onto` has be replaced in the copy.
+        Replace a `depth` that the file of `--onto` already has, in the copy.
     report
         Write a page and a PDF, motion.html and motion.pdf, in this folder.
     json

@@ -48,9 +48,9 @@ def run(
 ) -> ExitCode:
     """Solve moorings and tows, and print the table of each line.
 
-    All files are read first: if one of them cannot be used, its mistakes are
-    listed and nothing is solved. The table is printed unless - asks for JSON or
-    CSV; errors go to the standard error.
+    All files are read first: if one cannot be used, its mistakes are listed and
+    nothing is solved. The table is printed unless `-` asks for JSON or CSV; errors
+    go to the standard error.
 
     Parameters
     ----------
@@ -70,12 +70,12 @@ def run(
     plot
         Draw it, as .png or .svg; for several files p.png becomes p-FILE.png for each.
     html
-        Write a report of the line, its table, drawings and inputs, as one .html file
-        that needs no other; for several files one each, as with --plot.
+        Write a report of the line, its table, drawings and inputs, as one
+        self-contained .html file; for several files one each, as with --plot.
     pdf
         Write the same report as .pdf.
     explain
-        Tell how much of the knockdown each drag causes, and what more buoyancy, less
+        Show how much of the knockdown each drag causes, and what more buoyancy, less
         drag or another current would change; in the JSON too. Moorings only.
     schematic
         Draw the line, part by part and not to scale, above its table; where there is no

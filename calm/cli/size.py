@@ -40,9 +40,9 @@ def size(
 ) -> ExitCode:
     """Find the smallest change of a mooring that meets a target.
 
-    The changed mooring is solved as calm run solves it. A change of buoyancy
-    leaves size and drag as they are. The exit code is 3 when the target cannot be
-    met; why not, and how near it comes, is then reported.
+    The changed mooring is solved as calm run solves it. A change of buoyancy leaves
+    size and drag as they are. When the target cannot be met, the exit code is 3,
+    and the reason and the nearest value are reported.
 
     Parameters
     ----------
@@ -51,8 +51,8 @@ def size(
     target
         A quantity of a part of the line, <=, >= or =, and a limit with its unit.
     change
-        What to change: the label of a part, and its buoyancy, length or count.
-        A label that is numbered in the line stands, without its number, for all.
+        What to change: the label of a part, and its buoyancy, length or count. A
+        label without its number stands for all pieces numbered under it.
     between
         The least and the greatest value, with units; when not given, a buoyancy goes from 0
         to 100 times itself, a length to twice the water depth, a count to 1000.

@@ -40,7 +40,7 @@ def new(
     kind
         Of mooring: on the shelf, in the deep sea, an ADCP, a surface buoy, or a tow.
     record
-        Write a small made record, NetCDF, for `calm batch`; it needs --output.
+        Write a small synthetic record, NetCDF, for `calm batch`; needs --output.
     output
         The file to write; the standard output when not given.
     force

@@ -38,9 +38,9 @@ def strumming(
 ) -> ExitCode:
     """Find how a bare towed cable vibrates from the angle at which it tows.
 
-    Bourget & Marichal: a cable towed with nothing at its end is straight, and
-    its angle shows its drag coefficient C*; what C* is above that of a cable at
-    rest shows the amplitude a of its vibration. Quantities carry their units.
+    Bourget & Marichal: a cable towed with nothing at its end is straight, and its
+    angle gives its drag coefficient C*; the excess of C* over that of a cable at
+    rest gives the amplitude a of its vibration. Quantities carry their units.
 
     Parameters
     ----------

@@ -44,9 +44,9 @@ def tow(
 ) -> ExitCode:
     """Solve towed lines, at the speed of their file or at many speeds.
 
-    Without --speeds and --sensitivity it does what `calm run` does, for tows
-    only. With --speeds a speed without equilibrium is a row with its status; the
-    others are solved all the same, and the exit code is then 3.
+    Without --speeds and --sensitivity it does what `calm run` does, for tows only.
+    With --speeds, a speed without equilibrium is a row with its status and makes
+    the exit code 3; the others are solved all the same.
 
     Parameters
     ----------

@@ -35,10 +35,10 @@ def verify(
     Parameters
     ----------
     words
-        Only cases whose source or name has every one of these words or parts of words.
+        Only cases whose source or name contains all these words or parts of words.
     field
-        Estimate the depths of a real mooring at hidden sensors in place of it, and compare
-        them with what was measured: see `calm docs motion`.
+        Instead, estimate the depths of a real mooring at hidden sensors, and compare them
+        with the measured depths: see `calm docs motion`.
     json
         Write the figures, with the reason for each tolerance, as JSON, - to print it.
     """
