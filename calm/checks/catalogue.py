@@ -222,7 +222,7 @@ RULES: tuple[Callable[[Component], str | None], ...] = (
     is_too_strong,
     is_rated_below_the_ocean,
 )
-"""Every rule, in the order their findings are told."""
+"""Every rule, in the order their findings are reported."""
 
 
 def _listed(names: Iterable[str]) -> str:

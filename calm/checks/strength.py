@@ -140,7 +140,7 @@ def strength_steps(result: Result) -> Iterator[Verdict]:
     """Every weak link: a piece that bears less than half of what the cables on both its sides do.
 
     A line whose strength jumps carries weight for nothing, and parts at its weak link. Where there
-    is none, the piece that comes nearest to one is told. Chain is left out of the comparison: it is
+    is none, the piece nearest to one is reported. Chain is left out of the comparison: it is
     heavier than its load asks for, against wear.
     """
     factors, surface = result.file.checks.safety_factor, meant_for_the_surface(result)

@@ -88,7 +88,7 @@ def watch_circle(result: Result) -> Iterator[Verdict]:
 
 @rule("scope")
 def scope(result: Result) -> Iterator[Verdict]:
-    """Cut length over water depth of a line to the surface; it is told, and has no limit."""
+    """Cut length over water depth of a line to the surface; it is reported, and has no limit."""
     if not meant_for_the_surface(result):
         return
     depth = result.mooring.water.depth

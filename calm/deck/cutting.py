@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from calm.deck.hung import Hung
 
 LENGTH_ERROR = 0.005
-"""Share by which a length may be off: the tolerance, and the error whose effect is told."""
+"""Share by which a length may be off: the tolerance, and the error whose effect is reported."""
 
 LEAST_TOLERANCE = 0.02
 """Nobody measures a wire better than this on a deck [m]."""

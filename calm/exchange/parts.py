@@ -76,7 +76,7 @@ class Assembled:
     gravity : [m/s²]
     tow : speed [m/s], direction [degrees] and height of the sheave [m]
     afloat : whether the line reaches the surface, and whether its float has a draft there
-    unsaid : what no other program is told
+    unsaid : what no other program can hold
     solve : finds the equilibrium
     """
 

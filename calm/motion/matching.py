@@ -86,7 +86,7 @@ def matched_by_place(
     """
     lacking = [one.label or one.source for one in sensors if not np.isfinite(one.nominal)]
     if lacking:
-        raise UsageError(f"--match: no nominal height or depth is told of {', '.join(lacking)}")
+        raise UsageError(f"--match: no nominal height or depth is given for {', '.join(lacking)}")
     if len(sensors) > len(places):
         raise UsageError(
             f"--match: {len(sensors)} sensors, but the line has {len(places)} instruments"

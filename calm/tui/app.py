@@ -43,7 +43,7 @@ class BuildApp(InTurn):
     ----------
     session : the file that is built
     kept : work that an earlier session has kept and not saved, to be offered
-    environ : tells of the terminal
+    environ : describes the terminal
 
     Attributes
     ----------

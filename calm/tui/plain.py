@@ -49,7 +49,7 @@ def shows_all_signs(environ: Mapping[str, str], output: TextIO | None) -> bool:
 
     Parameters
     ----------
-    environ : whose locale tells of the terminal. Python puts a UTF-8 of its own into `LC_CTYPE`
+    environ : whose locale describes the terminal. Python puts a UTF-8 of its own into `LC_CTYPE`
         where the locale is ``C``, which says nothing; no locale at all says nothing either.
     output : where the screen is written to
     """

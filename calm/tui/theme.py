@@ -95,7 +95,7 @@ def themes() -> tuple[Theme, ...]:
 def choose_theme(environ: Mapping[str, str]) -> str:
     """The name of the theme for a terminal.
 
-    One that tells of 256 colours or more gets those of the application; another one keeps its own
+    One that reports 256 colours or more gets those of the application; another one keeps its own
     sixteen, which its owner has chosen to be legible. The ground is light where `COLORFGBG`, which
     many terminals set, names a light colour as the last of its two or three.
     """

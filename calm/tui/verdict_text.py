@@ -24,7 +24,7 @@ _MOST_NAMED = 2
 
 @dataclass(frozen=True)
 class Saying:
-    """A line of the verdict: a sign in front, a heading, the text, and the state it tells of.
+    """A line of the verdict: a sign in front, a heading, the text, and the state it reports.
 
     `pending` where the state may yet become another one.
     """

@@ -86,7 +86,7 @@ class Workspace:
         return self.session.name + (" (not saved)" if self.session.changed else "")
 
     def attempt(self, change: Callable[[], object]) -> tuple[bool, Place | None]:
-        """Make a change; whether it was made, and the row it leads to. What refuses it is told."""
+        """Make a change; whether it was made, and the row it leads to. A refusal is reported."""
         try:
             spot = change()
         except CalmError as error:

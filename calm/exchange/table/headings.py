@@ -54,7 +54,7 @@ _MASSES = {"kg", "g", "lb", "lbs", "t"}
 class Column:
     """A column: where it stands, its heading, and what its numbers are multiplied by.
 
-    `by_mass` tells of forces that are counted in kilograms, `per_metre` of figures of lines that
+    `by_mass` marks forces that are counted in kilograms, `per_metre` of figures of lines that
     are those of a metre; `known` whether the heading gives a unit.
     """
 

@@ -246,7 +246,7 @@ class LinePane(Vertical):
             self.attempt(lambda: self.session.paste(self.table.spot, below=bool(below)))
 
     def _chosen_of_a_kind(self) -> tuple[Place, ...]:
-        """What is chosen; nothing, and that is told, where clamps of other pieces are with pieces.
+        """What is chosen; nothing, with a report, where clamps of other pieces are with pieces.
 
         They have no place of their own among pieces that are pasted or moved.
         """

@@ -190,7 +190,7 @@ class WaterPane(Horizontal):
     # changes
 
     def change(self, make: Callable[[Water], Draft], label: str, told: str = "") -> bool:
-        """Change the file; what refuses is told. Whether it was changed."""
+        """Change the file; a refusal is reported. Whether it was changed."""
         is_made, _ = self.workspace.attempt(lambda: self.session.do(make(self.water), label))
         self.show_draft()
         if is_made:
@@ -226,7 +226,7 @@ class WaterPane(Horizontal):
         return any(part.is_typing for part in (*self.query(Field), *self.query(Grid)))
 
     def settle(self) -> bool:
-        """Take what is typed; the first bad value stays to be corrected, and is told."""
+        """Take what is typed; the first bad value stays to be corrected, and is reported."""
         for grid in self.query(Grid):
             typed = grid.is_typing
             reading = grid.settle()
