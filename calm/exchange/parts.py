@@ -292,16 +292,33 @@ def _unsaid(mooring: Mooring | Tow) -> tuple[str, ...]:
     return tuple(told)
 
 
-def area(part: Part, density: float | None = None) -> float:
-    """Drag coefficient times area [m²], of a cable per metre.
+def area(part: Part, density: float | None = None, *, along: bool = False) -> float:
+    """Drag coefficient times area [m²], across the line or along it, of a cable per metre.
 
     Parameters
     ----------
     density : of a program that knows one alone [kg/m³]: what drags there as the part does where
         it stands
     """
-    own = part.kn / (0.5 * REFERENCE_DENSITY)
+    own = (part.kt if along else part.kn) / (0.5 * REFERENCE_DENSITY)
     return own if density is None else own * part.density / density
+
+
+def flow_share(design: Assembled) -> float:
+    """Square of the current at the middle of the float over that at the end of the line.
+
+    For programs that have a float below the surface as a point there; 1 without an equilibrium.
+    """
+    try:
+        row = design.solve().components[0]
+    except NoEquilibrium:
+        return 1.0
+    depths, *parts = np.array(design.levels)[:, :4].T
+    middle, end = (
+        sum(float(np.interp(depth, depths, part)) ** 2 for part in parts)
+        for depth in ((row.depth_top + row.depth_bottom) / 2.0, row.depth_top)
+    )
+    return middle / end if end > 0.0 else 1.0
 
 
 def remarks(design: Assembled, more: Sequence[str]) -> tuple[str, ...]:

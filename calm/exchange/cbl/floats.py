@@ -5,10 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from math import pi, sqrt
 
-import numpy as np
-
-from calm.errors import NoEquilibrium
-from calm.exchange.parts import Assembled, Part, area, mass_of
+from calm.exchange.parts import Assembled, Part, area, flow_share, mass_of
 from calm.files import Body, Cylinder, Sphere
 from calm.files.rigid import Displacement
 from calm.physics.hull import Hull, cylindrical_hull, spherical_hull, tabulated_hull
@@ -54,7 +51,7 @@ def buoy_figures(part: Part, design: Assembled, density: float, lost: list[str])
     if floating:
         drag *= _drag_share(design, hull, mass, part.net, lift)
     elif design.tow is None:
-        drag *= _flow_share(design)
+        drag *= flow_share(design)
     size = f"type = sphere  d = {hull.height:.9g}"
     return f"{size}  m = {mass:.9g}  buoyancy = {lift:.9g}  Cdn = {drag:.9g}{wind}"
 
@@ -82,20 +79,6 @@ def _drag_share(design: Assembled, hull: Hull, mass: float, net: float, most: fl
     immersed = min(max((mass * design.gravity + used * net) / most, 0.0), 1.0)
     shown = hull.curve(immersed)[1]
     return seen / shown if shown > 0.0 else 1.0
-
-
-def _flow_share(design: Assembled) -> float:
-    """Square of the current at the middle of the float over that at the end of the line."""
-    try:
-        row = design.solve().components[0]
-    except NoEquilibrium:
-        return 1.0
-    depths, *parts = np.array(design.levels)[:, :4].T
-    middle, end = (
-        sum(float(np.interp(depth, depths, part)) ** 2 for part in parts)
-        for depth in ((row.depth_top + row.depth_bottom) / 2.0, row.depth_top)
-    )
-    return middle / end if end > 0.0 else 1.0
 
 
 def _turned(form: Displacement) -> tuple[str, list[tuple[float, float, float]]]:

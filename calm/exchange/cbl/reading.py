@@ -68,6 +68,9 @@ def read_cbl(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> 
         design.dropped.append(Remark("analysis parameters", "how that program is to solve it"))
     density = number(problem.environment, "rho") or number(problem.environment, "density")
     gravity = number(problem.environment, "gravity", USUAL_GRAVITY)
+    for key, value in (("density", density), ("gravity", gravity)):
+        if value < 0.0 or (key == "gravity" and value == 0.0):
+            raise refused(path, f"its {key} is {value:g}")
     makers = Makers(density or CATALOGUE_DENSITY, gravity, design.dropped)
     items = laid(problem, segments, makers, design)
     if kind == "towing":

@@ -159,7 +159,7 @@ def _material(problem: _Problem, part: Part) -> str:
     per = 1.0 if part.flexible else part.length
     wet, across = 0.0 - part.net / per, part.diameter or area(part) / per
     normal = area(part, problem.density) / per / across if across else 0.0
-    along = normal / pi * part.kt / part.kn if part.kn else 0.0
+    along = area(part, problem.density, along=True) / per / (pi * across) if across else 0.0
     figures = (
         f"d = {across:.9g}  m = {max(mass_of(part) / per, _LEAST_MASS):.9g}"
         f"  wet = {wet if abs(wet) > _LEAST_WEIGHT else _LEAST_WEIGHT:.9g}"

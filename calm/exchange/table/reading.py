@@ -125,9 +125,9 @@ def _water(sheets: Mapping[str, Rows], design: Design, path: Path) -> Water | No
 
 def _from_the_top(rows: list[Row], path: Path, design: Design) -> list[Row]:
     """The rows from the top down; lists lead either way, clamps stand behind their piece."""
-    if len(rows) < 2:
-        raise refused(path, f"has {len(rows)} pieces")
     pieces = [row for row in rows if "at" not in row.figures]
+    if len(pieces) < 2:
+        raise refused(path, f"has {len(pieces)} pieces")
     anchored = [i for i, row in enumerate(pieces) if row.is_anchor]
     if anchored and anchored[0] == 0 and anchored[-1] != len(pieces) - 1:
         design.notes.append("The list leads from the anchor up: here it is turned round.")

@@ -6,9 +6,6 @@ import csv
 import io
 
 from calm.exchange.parts import Assembled, Part, area, remarks
-from calm.physics.line import REFERENCE_DENSITY
-
-_HALF_DENSITY = 0.5 * REFERENCE_DENSITY
 
 HEADER = (
     "name", "label", "kind", "role", "clamped at[m]", "length[m]", "diameter[m]", "whole mass[kg]",
@@ -44,7 +41,7 @@ def _row(part: Part, at: str) -> list[str]:
     mass = "" if part.mass is None else f"{part.mass * whole:.9g}"
     stiffness = f"{part.stiffness:.9g}" if part.stiffness else ""
     diameter = f"{part.diameter:.9g}" if part.diameter else ""
-    along = f"{part.kt / _HALF_DENSITY * whole:.9g}" if part.directional else ""
+    along = f"{area(part, along=True) * whole:.9g}" if part.directional else ""
     figures = [diameter, mass, f"{part.buoyancy * whole:.9g}", f"{area(part) * whole:.9g}"]
     figures += [along, stiffness]
     words = [part.use, part.label, part.component.kind, part.role]
