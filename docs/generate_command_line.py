@@ -1,4 +1,4 @@
-"""Write `docs/command-line.md` from the help of the commands themselves.
+"""Write `docs/reference/command-line.md` from the help of the commands themselves.
 
 python docs/generate_command_line.py            # write it
 python docs/generate_command_line.py --check    # exit 1 where it is out of date
@@ -15,7 +15,7 @@ from cyclopts import App
 
 from calm.cli.main import app, main
 
-PAGE = Path(__file__).with_name("command-line.md")
+PAGE = Path(__file__).parent / "reference" / "command-line.md"
 HEAD = """# The command line
 
 Printed by `python docs/generate_command_line.py`; do not edit.

@@ -1,4 +1,4 @@
-"""Write `docs/verification.md` and its pictures from the cases of `calm verify`.
+"""Write `docs/explanation/verification.md` and its pictures from the cases of `calm verify`.
 
 python docs/generate_verification.py            # write them
 python docs/generate_verification.py --check    # exit 1 where the page is out of date
@@ -20,7 +20,7 @@ from calm.report.picture import image
 from calm.report.verification import COLUMNS, figures
 from calm.verification import SOURCES, Outcome, Source, cdms_1, convergence, drag_curves, s1000
 
-PAGE = Path(__file__).with_name("verification.md")
+PAGE = Path(__file__).parent / "explanation" / "verification.md"
 IMAGES = Path(__file__).with_name("images")
 HEAD = """# Verification
 
@@ -67,7 +67,7 @@ def section(source: Source) -> str:
     """A source: where its figures come from, its picture, a table for each tolerance."""
     parts = [f"## {source.title}", source.text]
     if source.picture:
-        parts.append(f"![{source.title}](images/{source.picture}.svg)")
+        parts.append(f"![{source.title}](../images/{source.picture}.svg)")
     for why, cases in groupby(source.cases, key=lambda case: case.why):
         parts.append(f"Tolerance: {why}")
         parts.append("\n".join(table([case.check() for case in cases])))

@@ -37,7 +37,7 @@ def verify(
         Only cases whose source or name has every one of these words or parts of words.
     field
         Estimate the depths of a real mooring at hidden sensors in place of it, and compare
-        them with what was measured: see docs/motion.md.
+        them with what was measured: see `calm docs motion`.
     json
         Write the figures, with the reason for each tolerance, as JSON, - to print it.
     """

@@ -12,7 +12,7 @@ import numpy as np
 from calm.errors import InputError, Problem
 from calm.files.explain import shown
 from calm.locate.columns import NUMBER, Row, lacking, read_columns
-from calm.locate.ellipsoid import Frame
+from calm.physics.ellipsoid import Frame
 from calm.physics.line import Floats
 
 EXAMPLE = "latitude[deg],longitude[deg],range[m]"

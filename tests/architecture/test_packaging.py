@@ -16,13 +16,14 @@ from hatchling.builders.wheel import WheelBuilder
 
 import calm
 from calm.cli import main
+from calm.version import commit_of
 
 ROOT = Path(__file__).resolve().parents[2]
 INSTALLED_AS = {
     "calm": "calm",
     "catalog": "calm/_shipped/catalog",
     "lines": "calm/_shipped/lines",
-    "docs/field": "calm/_shipped/field",
+    "docs": "calm/_shipped/docs",
 }
 
 
@@ -38,7 +39,10 @@ def checkout_files() -> dict[str, bytes]:
         f"{target}/{path.relative_to(ROOT / source).as_posix()}": path.read_bytes()
         for source, target in INSTALLED_AS.items()
         for path in (ROOT / source).rglob("*")
-        if path.is_file() and "__pycache__" not in path.parts
+        if path.is_file()
+        and "__pycache__" not in path.parts
+        and path.name != "_site.zip"
+        and not (source == "docs" and path.suffix == ".py")
     }
 
 
@@ -56,6 +60,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_the_wheel_holds_the_checkout_and_nothing_else(wheel: Path) -> None:
     built, wanted = wheel_files(wheel), checkout_files()
+    assert built.pop("calm/_shipped/commit", b"").decode().strip() == commit_of(ROOT)
     assert sorted(built) == sorted(wanted)
     assert built == wanted
 
@@ -107,7 +112,7 @@ def test_there_is_one_version(capsys: pytest.CaptureFixture[str]) -> None:
         calm.__version__,
         importlib.metadata.version("calm-mooring"),
         newest[1],
-        capsys.readouterr().out.split()[-1],
+        capsys.readouterr().out.split()[0],
     }
     assert versions == {calm.__version__}
 
@@ -124,7 +129,11 @@ def test_constraints_name_every_direct_dependency() -> None:
     wanted = [
         *settings["build-system"]["requires"],
         *settings["project"]["dependencies"],
-        *settings["project"]["optional-dependencies"]["dev"],
+        *(
+            wanted
+            for extra in ("dev", "docs", "release", "browser", "cluster", "sheets")
+            for wanted in settings["project"]["optional-dependencies"][extra]
+        ),
     ]
     pinned = {
         line.partition("==")[0].lower()

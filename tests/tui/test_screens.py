@@ -199,6 +199,7 @@ def test_every_picture(drive, small, key, words):
 
 
 @pytest.mark.parametrize("size", [(80, 24), (40, 12), (20, 5), (5, 3), (300, 100)])
+@pytest.mark.thorough
 def test_every_screen_at_every_size(drive, small, size):
     async def story(driver):
         for keys in (["a", "escape"], ["w", "escape"], ["o", "escape"], ["t", "escape"],
@@ -211,6 +212,7 @@ def test_every_screen_at_every_size(drive, small, size):
     drive(story, small, size=size)
 
 
+@pytest.mark.thorough
 def test_a_component_of_ones_own(drive, small):
     async def fill(driver, key, text):
         field = next(f for f in driver.app.screen.query(Field) if f.key == key)
@@ -290,6 +292,7 @@ def test_a_tow_is_edited_the_same_way(drive, folder):
     drive(story, path)
 
 
+@pytest.mark.thorough
 def test_a_tow_is_built_from_nothing(drive, folder):
     async def story(driver):
         await driver.press("T")

@@ -33,7 +33,7 @@ _HEADS = re.compile(
 _FORCES = ("x-force", "y-force", "z-force", "x-thrust", "y-thrust", "z-thrust")
 _NOTE = (
     "cn and ct are its Cdn and Cdt, counted alike: on the diameter, and on the surface of a metre. "
-    "See docs/import-cable.md."
+    "See `calm docs import-cable`."
 )
 
 

@@ -24,7 +24,7 @@ _STRETCHED = 1.2  # times its length, a line may reach the surface
 _APART = 0.02  # m and share of the piece by which the two places of a clamp may differ
 _NOTE = (
     "cn and cx are its Cd. That program has no drag along a line or cylinder worth the name, so "
-    "ct is 0. See docs/import-mdd.md."
+    "ct is 0. See `calm docs import-mdd`."
 )
 
 

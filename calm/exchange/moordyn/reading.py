@@ -16,7 +16,7 @@ _CURRENTS = "current_profile.txt"
 _NEAR, _NEAR_AT_LEAST = 0.05, 2.0
 """Share of the depth, and metres: an upper end as near the surface hangs under a float."""
 
-_NOTE = "cn and ct are its Cd and CdAx, counted alike. See docs/import-moordyn.md."
+_NOTE = "cn and ct are its Cd and CdAx, counted alike. See `calm docs import-moordyn`."
 
 
 def read_moordyn(path: Path) -> Design:

@@ -15,7 +15,9 @@ from calm.files.document import read_text
 
 _MARKS = {"name", "length", "buoyancy", "bool_line", "bool_clampon", "height_along_inline"}
 _SLIGHT = 1e-6  # m by which a clamp may stand off its piece
-_NOTE = "That program solves the equations of Mooring Design & Dynamics. See docs/import-table.md."
+_NOTE = (
+    "That program solves the equations of Mooring Design & Dynamics. See `calm docs import-table`."
+)
 
 
 def is_moords(content: bytes) -> bool:

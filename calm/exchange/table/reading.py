@@ -17,7 +17,7 @@ from calm.exchange.table.library import complete, is_library, key_of, read_libra
 from calm.exchange.table.rows import Row, count_lines, names_in, rows_of, weights_as_buoyancy
 from calm.exchange.table.sheet import Rows, read_sheets
 
-_NOTE = "A list says nothing of the water, and little of drag. See docs/import-table.md."
+_NOTE = "A list says nothing of the water, and little of drag. See `calm docs import-table`."
 _WATER = ("z", "U", "V", "W", "rho")  # headings of a sheet of Mooring Design & Dynamics
 _NAMES = 3  # at least, in a list of names alone
 

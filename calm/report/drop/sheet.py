@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import ceil
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +12,7 @@ from calm.drop.planning import DRAG_BAND
 from calm.quantities import QUANTITIES, say
 from calm.report.blocks import Block, Cell, Column, Figure, Note, Pairs, Part, Prose, Table
 from calm.report.drop.figures import drop_figure
+from calm.report.title_block import position_text
 
 if TYPE_CHECKING:
     from calm.drop import DropPlan
@@ -56,7 +58,7 @@ def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
     given = (
         "as given"
         if plan.drag_known
-        else "of a cube of its weight, since the file gives it no `kt`"
+        else "of a cube of its volume, since the file gives it no `kt`"
     )
     side = "right" if plan.aside >= 0.0 else "left"
     return (
@@ -75,8 +77,8 @@ def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
             f"{abs(plan.aside):.0f} m to the {side}, seen from where it is let go",
         ),
         ("Float behind the ship when let go", f"{plan.streamed:.0f} m, {_bearing(plan.astern)}"),
-        ("Let go, from the target", east_north(plan.let_go)),
-        ("Start of the run, from the target", east_north(plan.start)),
+        ("Let go, from the target", whereabouts(plan, plan.let_go)),
+        ("Start of the run, from the target", whereabouts(plan, plan.start)),
         ("Speed at touchdown", say("speed", plan.touchdown_speed)),
         ("Greatest tension in the fall", _greatest(plan)),
         ("Drag of the anchor at 1 m/s", f"{plan.anchor_drag:.0f} N, {given}"),
@@ -176,8 +178,8 @@ def _notes(plan: DropPlan) -> tuple[str, ...]:
     notes = [
         "The line is a chain without inertia: what it does in the first 20 s, and the jerk at the "
         "touchdown, are not in these figures; nor is what waves do.",
-        "± is what bars and what steps of twice the length change, together, and a quarter more; "
-        "the current and the drag of the anchor are known less well.",
+        "± is twice what bars and what steps of twice the length change, together; the current and "
+        "the drag of the anchor are known less well.",
     ]
     if plan.rest_difference is not None:
         notes.append(
@@ -199,13 +201,15 @@ def _minutes(seconds: float) -> str:
 
 
 def _error(value: float) -> str:
-    return f"{max(value, 1.0):.0f}"
+    return f"{max(ceil(value), 1)}"
 
 
-def east_north(place: tuple[float, float]) -> str:
-    """A place east and north of another [m], in words."""
+def whereabouts(plan: DropPlan, place: tuple[float, float]) -> str:
+    """A place east and north of the target [m], in words, with its position where that is known."""
     east, north = place
+    position = plan.position(place)
     return (
         f"{abs(north):.0f} m {'north' if north >= 0.0 else 'south'}, "
         f"{abs(east):.0f} m {'east' if east >= 0.0 else 'west'}"
+        + ("" if position is None else f"; {position_text(position)}")
     )

@@ -142,6 +142,7 @@ def test_formulas_without_a_value_are_refused(formula):
 
 
 @pytest.mark.parametrize("formula", ["(" * 5000 + "1" + ")" * 5000, "-" * 9000 + "1"])
+@pytest.mark.thorough
 def test_towers_of_signs_are_refused(formula):
     with pytest.raises(InputError, match="too deep"):
         constant(formula)

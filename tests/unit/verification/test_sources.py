@@ -36,6 +36,7 @@ def test_no_numbered_case_is_lost(number):
     assert any(f"C{number}" in case.name.split() for _, case in CASES)
 
 
+@pytest.mark.thorough
 def test_the_page_is_what_the_cases_say():
     finished = subprocess.run(
         [sys.executable, DOCS / "generate_verification.py", "--check"],
