@@ -131,7 +131,7 @@ def import_file(
         There is no such format.
     """
     options = options or Options()
-    chosen = format_of(path, format)
+    chosen = format_of(path, format, listed=options.elements is not None)
     if options.elements is not None and chosen.name != "table":
         raise refused(path, f"is of {chosen.program}; --elements is for lists")
     design = chosen.read(path, options)
@@ -155,8 +155,12 @@ def import_file(
     )  # fmt: skip
 
 
-def format_of(path: Path, name: str | None) -> Format:
+def format_of(path: Path, name: str | None, *, listed: bool = False) -> Format:
     """The format of a file: as named, or by its content.
+
+    Parameters
+    ----------
+    listed : whether what is of no other format is a list, be it of a single column
 
     Raises
     ------
@@ -177,7 +181,7 @@ def format_of(path: Path, name: str | None) -> Format:
     except OSError as error:
         raise refused(path, f"cannot be read: {error.strerror}") from None
     for each in FORMATS:
-        if each.recognises(path, content):
+        if each.recognises(path, content) or (listed and each is FORMATS[-1]):
             return each
     programs = ", ".join(f"{each.name} ({each.program})" for each in FORMATS)
     raise refused(path, f"is of no program that CALM reads: {programs}")

@@ -60,10 +60,9 @@ def read_cbl(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> 
     title = problem.description.get("title")
     design = Design("WHOI Cable", title.text if title and title.text else path.stem, [], None)
     design.notes.append(_NOTE)
-    design.water = water_of(problem.environment, length, design.dropped)
-    if "current-file" in problem.environment:
-        what = "its currents from a file of that program; give them with --environment"
-        design.dropped.append(Remark("current-file", what))
+    design.water = water_of(
+        problem.environment, length, design.dropped, folder=path.parent, allow_include=allow_include
+    )
     if problem.analysis:
         design.dropped.append(Remark("analysis parameters", "how that program is to solve it"))
     density = number(problem.environment, "rho") or number(problem.environment, "density")

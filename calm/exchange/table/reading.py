@@ -13,7 +13,7 @@ from calm.exchange.refusal import refused
 from calm.exchange.table.cells import number
 from calm.exchange.table.components import component_of
 from calm.exchange.table.headings import Headings, check_given, headings_of
-from calm.exchange.table.library import complete, is_library, key_of, read_library
+from calm.exchange.table.library import Library, complete, is_library, key_of, read_library
 from calm.exchange.table.rows import Row, count_lines, names_in, rows_of, weights_as_buoyancy
 from calm.exchange.table.sheet import Rows, read_sheets
 
@@ -41,6 +41,7 @@ def read_table(path: Path, columns: Mapping[str, str], elements: Path | None = N
         raise refused(
             path, "is a library of elements, no mooring; a list takes its figures: --elements FILE"
         )
+    library = read_library(elements) if elements is not None else {}
     design = Design("a list", path.stem, [], None, notes=[_NOTE])
     design.water = _water(sheets, design, path)
     problems: list[str] = []
@@ -48,14 +49,18 @@ def read_table(path: Path, columns: Mapping[str, str], elements: Path | None = N
     headings = None
     if chosen is not None:
         cells, headings = chosen
-        rows = rows_of(cells, headings, problems, design.dropped)
+        weighed = {"buoyancy", "weight"} & headings.columns.keys()
+        rows = rows_of(
+            cells, headings, problems, design.dropped,
+            bare=lambda name: bool(library) and (not weighed or key_of(name) in library),
+        )  # fmt: skip
         weights_as_buoyancy(rows, design.guessed)
         if headings.others:
             design.dropped.append(Remark("columns", ", ".join(headings.others)))
     else:
-        rows = _names(sheets, design, path, elements)
+        rows = _names(sheets, design, path, library)
     if elements is not None:
-        complete(rows, read_library(elements), elements.name)
+        complete(rows, library, elements.name)
     count_lines(rows, headings.columns if headings else {})
     rows = _from_the_top(rows, path, design)
     design.items = _items(rows, problems)
@@ -77,9 +82,7 @@ def _sheet(sheets: Mapping[str, Rows], columns: Mapping[str, str]) -> tuple[Rows
     return found[0] if found else None
 
 
-def _names(
-    sheets: Mapping[str, Rows], design: Design, path: Path, elements: Path | None
-) -> list[Row]:
+def _names(sheets: Mapping[str, Rows], design: Design, path: Path, library: Library) -> list[Row]:
     """The rows of a list that holds names alone, in the longest sheet.
 
     The first is the name of the mooring where the library has no such element.
@@ -91,13 +94,13 @@ def _names(
         raise refused(
             path, "has no headings that CALM knows; name them: --columns name=…,length=…,weight=…"
         )
-    if elements is None:
+    if not library:
         raise refused(
             path,
             f"holds names and no figures (`{rows[0].name}`, `{rows[1].name}` …); "
             "give the library of elements that they are those of: --elements FILE",
         )
-    if key_of(rows[0].name) not in read_library(elements):
+    if key_of(rows[0].name) not in library:
         if key_of(rows[0].name) != "name":
             design.name = rows[0].name
         rows = rows[1:]

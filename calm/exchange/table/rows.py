@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
 from calm.exchange.design import Remark
@@ -64,9 +64,19 @@ class Row:
 
 
 def rows_of(
-    cells: Rows, headings: Headings, problems: list[str], dropped: list[Remark]
+    cells: Rows,
+    headings: Headings,
+    problems: list[str],
+    dropped: list[Remark],
+    *,
+    bare: Callable[[str], bool] = lambda name: False,
 ) -> list[Row]:
-    """The rows below the headings; sums and rows without figures go to `dropped`."""
+    """The rows below the headings; sums and rows without figures go to `dropped`.
+
+    Parameters
+    ----------
+    bare : whether a name alone makes a piece, since a library has its figures
+    """
     rows: list[Row] = []
     known = headings.columns
     for place, each in enumerate(cells[headings.row + 1 :], headings.row + 2):
@@ -78,7 +88,7 @@ def rows_of(
             continue
         mistakes: list[str] = []
         row = _row(each, place, name, known, mistakes)
-        if not _ENOUGH & row.figures.keys() and not row.is_anchor:
+        if not (bare(name) or _ENOUGH & row.figures.keys() or row.is_anchor):
             dropped.append(Remark(f"row {place}", f"`{name}`, without length and weight"))
             continue
         problems += mistakes
