@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import atan2, cos, degrees, hypot, radians, sin
+from math import cos, hypot, radians, sin
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from calm.drop.plan import ASTRAY, DropPlan
 from calm.drop.record import depths_of, moments_of, path_of, pulls_of, rest_difference
 from calm.errors import NoEquilibrium, UsageError
 from calm.physics.line import Floats, Water
+from calm.quantities import bearing_of
 from calm.solve import Status
 
 SHIP_SPEED = 1.0
@@ -119,7 +120,7 @@ def drop_plan(
         ship_speed=ship_speed,
         course=course,
         streamed=float(np.linalg.norm(start.node[0, :2])),
-        astern=degrees(atan2(toward[0], toward[1])) % 360.0,
+        astern=bearing_of(*toward.tolist()),
         fall_time=landed.time,
         fall_back=back,
         aside=aside,
@@ -157,7 +158,7 @@ def _equilibrium(mooring: Mooring) -> Result | None:
 def _into_the_current(water: Water) -> float:
     """Course against the current at the surface, north where there is none [degrees]."""
     (east, north, _), _ = water.at(np.zeros(()))
-    return degrees(atan2(-east, -north)) % 360.0 if east or north else 0.0
+    return bearing_of(-east, -north) if east or north else 0.0
 
 
 def _ship(mooring: Mooring, speed: float, streamed: float | None, course: float) -> Ship:

@@ -10,6 +10,7 @@ from pathlib import Path
 from calm.exchange.cbl.currents import GriddedCurrent, gridded_current
 from calm.exchange.cbl.problem import Value, Values
 from calm.exchange.design import Remark, Water
+from calm.quantities import bearing_of
 
 USUAL_GRAVITY = 9.81
 _FINEST = 1e-4  # share of the fastest current by which levels may miss a formula
@@ -58,7 +59,7 @@ def water_of(
     water.current = _current(environment, gridded, depth if depth > 0.0 else deepest)
     east, north = (number(environment, f"{axis}-wind") for axis in "xy")
     if east or north:
-        water.wind = math.hypot(east, north), math.degrees(math.atan2(east, north)) % 360.0
+        water.wind = math.hypot(east, north), bearing_of(east, north)
     for what, keys in (("waves", _WAVES), ("how waves act", _DYNAMICS), ("the seabed", _SEABED)):
         found = [key for key in keys if key in environment]
         if found:

@@ -9,7 +9,7 @@ import numpy as np
 
 from calm.checks.finding import State
 from calm.drop.planning import DRAG_BAND
-from calm.quantities import QUANTITIES, say
+from calm.quantities import QUANTITIES, bearing_text, say
 from calm.report.blocks import Block, Cell, Column, Figure, Note, Pairs, Part, Prose, Table
 from calm.report.drop.figures import drop_figure
 from calm.report.title_block import position_text
@@ -43,9 +43,10 @@ def _instructions(plan: DropPlan) -> Prose:
     behind = "before" if plan.run_in >= 0.0 else "beyond"
     return Prose(
         (
-            f"Steam {_bearing(plan.course)} at {say('speed', plan.ship_speed)} over the ground. "
-            f"Put the float over the side {_metres(abs(plan.run_in))} {behind} the target and pay "
-            f"out the line as fast as the ship steams; that takes some {_minutes(plan.run_time)}.",
+            f"Steam towards {bearing_text(plan.course)} at {say('speed', plan.ship_speed)} over "
+            f"the ground. Put the float over the side {_metres(abs(plan.run_in))} {behind} the "
+            "target and pay out the line as fast as the ship steams; that takes some "
+            f"{_minutes(plan.run_time)}.",
             f"Let the anchor go {_metres(abs(plan.tow_past))} {beyond} the target, "
             f"with the float {_metres(plan.streamed)} behind it.",
         )
@@ -76,7 +77,10 @@ def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
             "Aside of that direction",
             f"{abs(plan.aside):.0f} m to the {side}, seen from where it is let go",
         ),
-        ("Float behind the ship when let go", f"{plan.streamed:.0f} m, {_bearing(plan.astern)}"),
+        (
+            "Float behind the ship when let go",
+            f"{plan.streamed:.0f} m, towards {bearing_text(plan.astern)}",
+        ),
         ("Let go, from the target", whereabouts(plan, plan.let_go)),
         ("Start of the run, from the target", whereabouts(plan, plan.start)),
         ("Speed at touchdown", say("speed", plan.touchdown_speed)),
@@ -186,10 +190,6 @@ def _notes(plan: DropPlan) -> tuple[str, ...]:
             f"The line comes to rest {plan.rest_difference:.2f} m at most from its equilibrium."
         )
     return tuple(notes)
-
-
-def _bearing(degrees: float) -> str:
-    return f"towards {round(degrees) % 360:03d}°"
 
 
 def _metres(distance: float) -> str:
