@@ -4,9 +4,11 @@ import os
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
+import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 README = ROOT / "README.md"
@@ -68,6 +70,31 @@ def test_every_command_is_explained_in_the_readme_or_the_manual() -> None:
         page.read_text(encoding="utf-8") for page in PAGES if page.name != "command-line.md"
     )
     assert not [command for command in commands if command not in explained]
+
+
+def test_the_readme_is_read_in_a_minute() -> None:
+    assert len(README.read_text(encoding="utf-8").splitlines()) < 150
+
+
+def test_the_citation_names_this_version_and_licence() -> None:
+    cited = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert (cited["version"], cited["license"]) == (project["version"], project["license"])
+    assert {"cff-version", "message", "title", "authors"} <= set(cited)
+
+
+def test_links_to_the_glossary_lead_to_a_term() -> None:
+    glossary = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8")
+    terms = {
+        term.lower().replace(" ", "-") for term in re.findall(r"^## (.+)$", glossary, re.MULTILINE)
+    }
+    linked = {
+        term
+        for page in PAGES
+        for term in re.findall(r"glossary\.md#([\w-]+)", page.read_text(encoding="utf-8"))
+    }
+    assert {"knockdown", "strumming", "back-up", "scope"} <= terms
+    assert linked <= terms
 
 
 def test_the_checks_run_the_commands_of_the_readme() -> None:
