@@ -7,6 +7,7 @@ the same and carries the same unit wherever it is shown.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import atan2, degrees
 
 
 @dataclass(frozen=True)
@@ -255,3 +256,13 @@ QUANTITIES = {quantity.name: quantity for quantity in _TABLE}
 def say(name: str, value: float | None) -> str:
     """A value of a quantity with its unit, for a sentence, e.g. ``113.2 m``."""
     return QUANTITIES[name].say(value)
+
+
+def bearing_of(east: float, north: float) -> float:
+    """Direction of a vector [degrees] clockwise from north, 0 to 360."""
+    return degrees(atan2(east, north)) % 360.0
+
+
+def bearing_text(bearing: float) -> str:
+    """A direction [degrees] as people write it: ``068°``."""
+    return f"{round(bearing) % 360:03d}°"

@@ -13,6 +13,7 @@ from calm.files.alignment import Alignment, Known, align, own_labels
 from calm.files.fields import Quantity
 from calm.files.mooring import Clamp, MooringFile, Piece
 from calm.files.tables import CurrentTable, DepthTable
+from calm.quantities import bearing_of
 from calm.units import DIMENSIONS, with_unit
 
 Value = float | str | None
@@ -243,7 +244,7 @@ def _figure(name: str, value: Any, dimension: str | None = None) -> Figure:
 def _of_current(table: CurrentTable) -> Figure:
     speeds = [math.hypot(u, v) for u, v in zip(table.u, table.v, strict=True)]
     fastest = max(range(len(speeds)), key=speeds.__getitem__)
-    toward = math.degrees(math.atan2(table.u[fastest], table.v[fastest])) % 360.0
+    toward = bearing_of(table.u[fastest], table.v[fastest])
     text = f"at most {speeds[fastest]:.3g} m/s at {table.depth[fastest]:g} m"
     if speeds[fastest] > 0.0:
         text += f" toward {toward:.0f}°"

@@ -14,6 +14,7 @@ from calm.exchange.cbl.water import USUAL_GRAVITY, number, value_at, water_of
 from calm.exchange.design import Design, Item, Remark, Tow
 from calm.exchange.refusal import refused
 from calm.files.definition import CATALOGUE_DENSITY
+from calm.quantities import bearing_of
 
 _REFUSED = {
     "horizontal": "a horizontal array with an anchor at each end",
@@ -174,7 +175,7 @@ def _lay_tow(
     speed = math.hypot(east, north)
     if speed == 0.0:
         raise ship.token.refuse("the ship of this tow does not move")
-    design.tow = Tow(speed, math.degrees(math.atan2(east, north)) % 360.0)
+    design.tow = Tow(speed, bearing_of(east, north))
     buoy = defined(problem.buoys, towed, body.token)
     design.items = [*items[::-1], Item(makers.buoy(buoy, afloat=False))]
     _drop_dynamics(ends, design)

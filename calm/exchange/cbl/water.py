@@ -8,6 +8,7 @@ from itertools import pairwise
 
 from calm.exchange.cbl.problem import Value, Values
 from calm.exchange.design import Remark, Water
+from calm.quantities import bearing_of
 
 USUAL_GRAVITY = 9.81
 _FINEST = 1e-4  # share of the fastest current by which levels may miss a formula
@@ -38,7 +39,7 @@ def water_of(environment: Values, deepest: float, dropped: list[Remark]) -> Wate
     water.current = current_of(environment, depth if depth > 0.0 else deepest)
     east, north = (number(environment, f"{axis}-wind") for axis in "xy")
     if east or north:
-        water.wind = math.hypot(east, north), math.degrees(math.atan2(east, north)) % 360.0
+        water.wind = math.hypot(east, north), bearing_of(east, north)
     for what, keys in (("waves", _WAVES), ("how waves act", _DYNAMICS), ("the seabed", _SEABED)):
         found = [key for key in keys if key in environment]
         if found:

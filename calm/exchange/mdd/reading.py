@@ -13,6 +13,7 @@ from calm.exchange.mdd.pieces import anchor_of, component_of, rides_by_buoyancy,
 from calm.exchange.mdd.value import Value, numbers
 from calm.exchange.mdd.water import read_water
 from calm.exchange.refusal import refused
+from calm.quantities import bearing_of
 
 _WANTED = frozenset(
     ["U", "V", "W", "z", "rho", "time", "ZCO", "Jobj", "Pobj", "mooreleCO", "HCO", "BCO", "CdCO"]
@@ -98,7 +99,7 @@ def _lay_tow(
     speed = math.hypot(east, north)
     if speed == 0.0:
         raise refused(path, "the ship of this tow does not move (`Usp`, `Vsp`)")
-    design.tow = Tow(speed, math.degrees(math.atan2(east, north)) % 360.0)
+    design.tow = Tow(speed, bearing_of(east, north))
     height = next(iter(_flat(variables.get("afh", []))), 0.0)
     if height > 0.0:
         what = f"an A-frame of {height:g} m is only drawn: the wire counts from the water"

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rich.text import Text
 
+from calm.quantities import bearing_of, bearing_text
 from calm.report.sketch.canvas import Canvas
 from calm.report.sketch.frame import AXIS, Frame, levels, number, ticks
-from calm.report.sketch.parts import SEABED, SURFACE, bearing, header_rows
+from calm.report.sketch.parts import SEABED, SURFACE, header_rows
 
 if TYPE_CHECKING:
     from calm.physics.line import Water
@@ -59,4 +60,4 @@ def current_profile(water: Water, width: int, height: int) -> list[Text]:
 def _direction(u: float, v: float, room: int) -> str:
     """Where it flows to: an arrow, and the degrees where there is room."""
     arrow = _ARROWS[round(np.degrees(np.arctan2(u, v)) / 45.0) % 8]
-    return arrow if room == 2 else f"{bearing(u, v)}{arrow}"
+    return arrow if room == 2 else f"{bearing_text(bearing_of(u, v))}{arrow}"

@@ -12,7 +12,7 @@ from rich.cells import cell_len
 from rich.text import Text
 
 from calm.case import Result
-from calm.quantities import say
+from calm.quantities import bearing_of, bearing_text, say
 from calm.report.drawing import along
 from calm.report.labels import Named, named_parts, names, spread
 from calm.report.plot_mooring import plane_of
@@ -27,7 +27,6 @@ from calm.report.sketch.parts import (
     SHIP,
     STILL,
     SURFACE,
-    bearing,
     header_rows,
     mark_parts,
 )
@@ -118,7 +117,7 @@ def _of_mooring(result: Result, beside: Sequence[Shape]) -> _View:
     moved = still is not None and still is not result.shape
     offset = hypot(top.x, top.y)
     deep = "top afloat" if result.type == "surface" else f"top {say('depth', top.depth)}"
-    towards = f" to {bearing(top.x, top.y)}" if offset >= 0.05 else ""
+    towards = f" to {bearing_text(bearing_of(top.x, top.y))}" if offset >= 0.05 else ""
     return _View(
         plane=plane,
         top=0.0,
@@ -130,7 +129,7 @@ def _of_mooring(result: Result, beside: Sequence[Shape]) -> _View:
         beside=[_points(shape, plane) for shape in beside],
         ship=None,
         said=f"{deep}, {say('offset', offset)} off{towards}",
-        along=f"m to {bearing(*plane)}",
+        along=f"m to {bearing_text(bearing_of(*plane))}",
     )
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from calm.errors import UsageError
 from calm.locate import Sound, Survey, locate
-from calm.locate.ellipsoid import FLATTENING, SEMI_MAJOR, Frame
+from calm.physics.ellipsoid import FLATTENING, SEMI_MAJOR, Frame
 
 LATITUDE, LONGITUDE, DEPTH, TRANSDUCER = 48.3, -5.2, 2000.0, 5.0
 HERE = Frame(LATITUDE, LONGITUDE)
