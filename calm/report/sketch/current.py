@@ -8,8 +8,9 @@ import numpy as np
 from rich.text import Text
 
 from calm.quantities import bearing_of, bearing_text
+from calm.report.graph.ticks import number, round_numbers
 from calm.report.sketch.canvas import Canvas
-from calm.report.sketch.frame import AXIS, Frame, levels, number, ticks
+from calm.report.sketch.frame import AXIS, Frame, levels
 from calm.report.sketch.parts import SEABED, SURFACE, header_rows
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ def current_profile(water: Water, width: int, height: int) -> list[Text]:
     canvas.text(frame.column, height - 2, "▒" * frame.columns, SEABED)
     frame.scale_down(values, gutter, foot)
     most = max(frame.columns // _COLUMNS_PER_TICK, 2)
-    frame.scale_across(ticks(0.0, right, most), "" if head else "m/s")
+    frame.scale_across(round_numbers(0.0, right, most), "" if head else "m/s")
     frame.line(zip(speeds.tolist(), depths.tolist(), strict=True), _STYLE)
     if beside:
         for value in values:

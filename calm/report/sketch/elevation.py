@@ -14,12 +14,13 @@ from rich.text import Text
 from calm.case import Result
 from calm.quantities import bearing_of, bearing_text, say
 from calm.report.drawing import along
+from calm.report.graph.ticks import number, round_numbers
 from calm.report.labels import Named, named_parts, names, spread
 from calm.report.plot_mooring import plane_of
 from calm.report.plot_tow import levels_of
 from calm.report.schematic.widths import ELLIPSIS
 from calm.report.sketch.canvas import Canvas
-from calm.report.sketch.frame import AXIS, COLUMNS_PER_TICK, Frame, levels, number, ticks
+from calm.report.sketch.frame import AXIS, COLUMNS_PER_TICK, Frame, levels
 from calm.report.sketch.parts import (
     LINE,
     OTHER,
@@ -77,7 +78,9 @@ def elevation(
     frame = Frame.within(canvas, head, gutter, (low, high), (view.top, view.bottom), room)
     _draw_water(frame, view)
     frame.scale_down(values, gutter, foot)
-    frame.scale_across(ticks(low, high, max(frame.columns // COLUMNS_PER_TICK, 2)), view.along, "m")
+    frame.scale_across(
+        round_numbers(low, high, max(frame.columns // COLUMNS_PER_TICK, 2)), view.along, "m"
+    )
     for other in view.beside:
         frame.line(other, OTHER, dash=3, gap=2)
     frame.line(view.still, STILL, dash=1, gap=2)

@@ -11,8 +11,9 @@ from rich.text import Text
 
 from calm.case import Result
 from calm.quantities import bearing_of, bearing_text, say
+from calm.report.graph.ticks import number, round_numbers
 from calm.report.sketch.canvas import ACROSS, DOWN, Canvas
-from calm.report.sketch.frame import AXIS, COLUMNS_PER_TICK, Frame, levels, number, ticks
+from calm.report.sketch.frame import AXIS, COLUMNS_PER_TICK, Frame, levels
 from calm.report.sketch.parts import LINE, OTHER, SHIP, STILL, header_rows, mark_parts
 
 if TYPE_CHECKING:
@@ -55,7 +56,7 @@ def plan(
     canvas.text(gutter, height - 2, "─" * (width - gutter), AXIS)
     frame.scale_down(values, gutter)
     frame.scale_across(
-        ticks(left, right, max(frame.columns // COLUMNS_PER_TICK, 2)), "m east", "m E"
+        round_numbers(left, right, max(frame.columns // COLUMNS_PER_TICK, 2)), "m east", "m E"
     )
     frame.line([(left, 0.0), (right, 0.0)], STILL, dash=1, gap=3)
     frame.line([(0.0, bottom), (0.0, top)], STILL, dash=1, gap=3)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from calm.verification import SOURCES
+from calm.verification import SOURCES, Kind
 
 DOCS = Path(__file__).resolve().parents[3] / "docs"
 CASES = [(source, case) for source in SOURCES for case in source.cases]
@@ -27,6 +27,14 @@ def test_every_figure_is_finite_and_every_tolerance_has_a_reason():
         assert 0.0 < case.tolerance < math.inf, case.name
         assert case.why.endswith("."), case.name
         assert source.text
+
+
+def test_the_points_a_curve_is_drawn_through_verify_nothing():
+    copied = [case.name for _, case in CASES if case.kind is Kind.BY_CONSTRUCTION]
+    assert all(case.why.startswith("The printed digits") <= (case.name in copied)
+               for _, case in CASES)  # fmt: skip
+    assert not any(name.startswith("C23 sphere") or "Cheng" in name for name in copied)
+    assert "C23 cylinder, Re 31.7, Wieselsberger" in copied
 
 
 @pytest.mark.parametrize(
