@@ -10,7 +10,7 @@ from calm.exchange.parts import Assembled, Part, area, mass_of, remarks
 from calm.exchange.words import is_chain
 from calm.files import Body, Chain, Cylinder, Sphere
 from calm.files.rigid import Displacement
-from calm.physics.line import REFERENCE_DENSITY
+from calm.physics.reference import REFERENCE_DENSITY
 
 _HALF_DENSITY = 0.5 * REFERENCE_DENSITY
 _RIGID = 1e8  # N: EA of what does not stretch

@@ -8,7 +8,7 @@ from math import pi, sqrt
 
 from calm.errors import UsageError
 from calm.exchange.parts import Assembled, Part, Path, Place, area, mass_of, remarks
-from calm.physics.line import REFERENCE_DENSITY
+from calm.physics.reference import REFERENCE_DENSITY
 
 CURRENTS = "current_profile.txt"
 """The name under which that program looks for the current, beside its input."""
