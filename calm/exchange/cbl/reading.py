@@ -61,14 +61,16 @@ def read_cbl(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> 
     title = problem.description.get("title")
     design = Design("WHOI Cable", title.text if title and title.text else path.stem, [], None)
     design.notes.append(_NOTE)
-    design.water = water_of(problem.environment, length, design.dropped)
-    if "current-file" in problem.environment:
-        what = "its currents from a file of that program; give them with --environment"
-        design.dropped.append(Remark("current-file", what))
+    design.water = water_of(
+        problem.environment, length, design.dropped, folder=path.parent, allow_include=allow_include
+    )
     if problem.analysis:
         design.dropped.append(Remark("analysis parameters", "how that program is to solve it"))
     density = number(problem.environment, "rho") or number(problem.environment, "density")
     gravity = number(problem.environment, "gravity", USUAL_GRAVITY)
+    for key, value in (("density", density), ("gravity", gravity)):
+        if value < 0.0 or (key == "gravity" and value == 0.0):
+            raise refused(path, f"its {key} is {value:g}")
     makers = Makers(density or CATALOGUE_DENSITY, gravity, design.dropped)
     items = laid(problem, segments, makers, design)
     if kind == "towing":

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from calm.exchange.design import Design, Hung, Item, Remark, Tow
 from calm.exchange.mdd.elements import Element, read_elements
+from calm.exchange.mdd.library import GROUPS
 from calm.exchange.mdd.matfile import read_variables
 from calm.exchange.mdd.pieces import anchor_of, component_of, rides_by_buoyancy, rigid
 from calm.exchange.mdd.value import Value, numbers
@@ -18,7 +19,7 @@ from calm.quantities import bearing_of
 _WANTED = frozenset(
     ["U", "V", "W", "z", "rho", "time", "ZCO", "Jobj", "Pobj", "mooreleCO", "HCO", "BCO", "CdCO"]
     + [f"{name}{end}" for name in ("H", "B", "Wt", "Cd", "ME", "moorele") for end in ("", "t")]
-    + ["Usp", "Vsp", "afh"]
+    + ["Usp", "Vsp", "afh", *GROUPS]
 )
 _STRETCHED = 1.2  # times its length, a line may reach the surface
 _APART = 0.02  # m and share of the piece by which the two places of a clamp may differ
@@ -38,6 +39,12 @@ def read_mdd(path: Path) -> Design:
     """
     variables = read_variables(path, _WANTED)
     sized = [name for name in ("H", "Ht") if name in variables and len(_flat(variables[name]))]
+    if not sized and any(group in variables for group in GROUPS):
+        raise refused(
+            path,
+            "is the element library of that program, no mooring; "
+            "a list takes its figures: --elements FILE",
+        )
     if not sized:
         raise refused(path, "holds no mooring (`H`) and no tow (`Ht`) of that program")
     towed = sized[0] == "Ht"
