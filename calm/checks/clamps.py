@@ -51,7 +51,7 @@ def clamp_grip_on_the_way(handling: Handling) -> Iterator[Verdict]:
         lift = _lift(part, handling.mooring, density)
         pulls = []
         if isinstance(launch, Launch):
-            pulls.append((abs(lift + drag * launch.fall_speed**2), " in the fall"))
+            pulls.append((abs(lift + drag * launch.greatest_speed**2), " in the fall"))
         if isinstance(rise, Recovery) and part.index <= rise.released:
             pulls.append((abs(lift - drag * rise.rise_speed**2), " in the rise"))
         if pulls:

@@ -28,7 +28,7 @@ def verify_field(outputs: Outputs) -> ExitCode:
     from calm.report.motion.document import factors_document, held_out_document
     from calm.shipped import shipped_folder
 
-    folder = shipped_folder("field") / "dune2"
+    folder = shipped_folder("docs") / "field" / "dune2"
     mooring = calm.load(folder / "mooring.yaml")
     assert isinstance(mooring, Mooring)
     measured, _, _ = read_measured(

@@ -88,11 +88,11 @@ def estimate_common(mooring: Mooring, measured: Measured, names: Sequence[str]) 
         down = here.begin.depth[good][:, part.point] - moments.forward.still[part.point]
         bend = 0.5 * np.einsum("nss->ns", currents) / np.maximum(down, 1.0)
         there = np.isfinite(part.depth[good])
-        left = np.where(there, here.before.innovation[good] - bend, 0.0)
+        left: Floats = np.where(there, here.before.innovation[good] - bend, 0.0)
         expected = here.before.expected[good]
         scale = _scale(left, expected, currents, common.scale)
         expected = expected + ((scale / common.scale) ** 2 - 1.0) * currents
-        inverse = np.linalg.inv(expected)
+        inverse = np.asarray(np.linalg.inv(expected), np.float64)
         misfit = np.einsum("ns,nst,nt->n", left, inverse, left)
         weight = (ROBUST + there.sum(axis=1)) / (ROBUST + misfit)
         fixed = np.concatenate(

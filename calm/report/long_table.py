@@ -36,8 +36,8 @@ class LongTable:
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """The lines, or the table of rich where a cell needs several."""
-        headings = [
-            (column.header.split("\n") if isinstance(column.header, Text) else [])
+        headings: list[list[Text]] = [
+            list(column.header.split("\n")) if isinstance(column.header, Text) else []
             for column in self._table.columns
         ]
         widths = [max((cell_len(one.plain) for one in lines), default=0) for lines in headings]

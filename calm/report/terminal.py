@@ -96,8 +96,8 @@ class _Printer:
             if len(row) < len(block.columns):
                 rows.append(([self._text(cell.text, "bold") for cell in row], style))
                 continue
-            cells = [self._cell(row[number], block.columns[number]) for number in chosen]
-            rows.append((cells, style))
+            said = [self._cell(row[number], block.columns[number]) for number in chosen]
+            rows.append((said, style))
         if len(rows) >= MANY:
             yield LongTable(grid, rows, gap)
         else:

@@ -168,6 +168,7 @@ def test_200_twins_lie_within_their_intervals(mooring):
     assert 0.92 <= np.mean([one[1] for one in twins]) <= 0.98
 
 
+@pytest.mark.thorough
 def test_what_a_block_holds_changes_nothing(mooring):
     measured, _, _ = twin(mooring, 5)
     task = Task(mooring, measured, estimate_common(mooring, measured.at(slice(0, 40)), NAMES))

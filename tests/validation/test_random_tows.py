@@ -26,7 +26,11 @@ from tests.validation.random_tows import tow
 from tests.validation.towed import HalfOut, Passing, solve_continuous_tow
 
 TOWED = 5
-BLOCKS = [*range(2), *(pytest.param(block, marks=pytest.mark.slow) for block in range(2, 12))]
+BLOCKS = [
+    0,
+    pytest.param(1, marks=pytest.mark.thorough),
+    *(pytest.param(block, marks=pytest.mark.slow) for block in range(2, 12)),
+]
 
 
 @pytest.mark.parametrize("block", BLOCKS)

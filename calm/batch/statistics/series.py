@@ -6,15 +6,12 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from tempfile import TemporaryFile
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.result import labels_of, readable, statuses_of
-
-if TYPE_CHECKING:
-    from xarray import Dataset
+from calm.batch.result import Stored, labels_of, readable, statuses_of, times_of
 
 Column = NDArray[np.floating[Any]]
 Times = NDArray[np.datetime64]
@@ -40,6 +37,7 @@ class Series:
     dataset : the result, opened without loading it
     folder : for the temporary file; the system's unless given
     check : called now and then while it is turned; what it raises ends that
+    source : its file, for messages
 
     Attributes
     ----------
@@ -56,12 +54,16 @@ class Series:
     """
 
     def __init__(
-        self, dataset: Dataset, folder: Path | None = None, check: Callable[[], None] = lambda: None
+        self,
+        dataset: Stored,
+        folder: Path | None = None,
+        check: Callable[[], None] = lambda: None,
+        source: Path = Path("the result"),
     ) -> None:
         self.dataset = dataset
-        self._source = Path(str(dataset.encoding.get("source", "the result")))
+        self._source = source
         self._check = check
-        self.time: Times = dataset["time"].values.astype("datetime64[ns]", copy=False)
+        self.time: Times = times_of(dataset)
         self.statuses = statuses_of(dataset)
         self.component_label = labels_of(dataset, "component_label")
         self.clamp_label = labels_of(dataset, "clamp_label")
@@ -171,7 +173,7 @@ class Series:
             for begin in range(0, len(self), _ROWS):
                 self._check()
                 with readable(self._source):
-                    block = variable[begin : begin + _ROWS].values.astype(_FIGURE, copy=False)
+                    block = np.asarray(variable[begin : begin + _ROWS], _FIGURE)
                 by_column = np.ascontiguousarray(block.T).reshape(len(columns), -1)
                 for column, values in zip(columns, by_column, strict=True):
                     self._turned.seek((column * len(self) + begin) * _FIGURE.itemsize)
