@@ -11,6 +11,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+MOST_PIECES = 2_000
+"""Of a line, and levels of its water: more are no mooring that anyone has."""
+
 Figure = float | str
 """A number in SI, or a word of the mooring file such as ``insensitive``."""
 
