@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import pi
+from math import cos, pi, radians, sin
 
 import numpy as np
 
@@ -148,21 +148,33 @@ def area(part: Part, density: float | None = None, *, along: bool = False) -> fl
     return own if density is None else own * part.density / density
 
 
-def flow_share(design: Assembled) -> float:
-    """Square of the current at the middle of the float over that at the end of the line.
+def as_point(design: Assembled, density: float) -> tuple[float, float]:
+    """Net force [N] and drag area [m²] of a float below the surface as a point at the line's end.
 
-    For programs that have a float below the surface as a point there; 1 without an equilibrium.
+    For programs that have it so: its drag acts in the flow at the end, not at its middle, and
+    knows no axis. Both are such that it pulls as it does here; its own without an equilibrium.
+
+    Parameters
+    ----------
+    density : of the water there [kg/m³]
     """
+    part = design.parts[0]
+    own = part.net, area(part, density)
     try:
         row = design.solve().components[0]
     except NoEquilibrium:
-        return 1.0
+        return own
     depths, *parts = np.array(design.levels)[:, :4].T
     middle, end = (
         sum(float(np.interp(depth, depths, part)) ** 2 for part in parts)
         for depth in ((row.depth_top + row.depth_bottom) / 2.0, row.depth_top)
     )
-    return middle / end if end > 0.0 else 1.0
+    if end == 0.0:
+        return own
+    if not part.directional or part.clamps:
+        return part.net, own[1] * middle / end
+    tilt = radians(row.tilt)
+    return row.tension_bottom * cos(tilt), row.tension_bottom * sin(tilt) / (0.5 * density * end)
 
 
 def remarks(design: Assembled, more: Sequence[str]) -> tuple[str, ...]:
