@@ -15,6 +15,7 @@ from calm.cli.build import BUILD_EXAMPLES, build
 from calm.cli.catalog import catalog
 from calm.cli.chart import chart
 from calm.cli.check import CHECK_EXAMPLES, check
+from calm.cli.completion import COMPLETION_EXAMPLES, completion
 from calm.cli.deck import DECK_EXAMPLES, deck
 from calm.cli.diff import DIFF_EXAMPLES, diff
 from calm.cli.docs import DOCS_EXAMPLES, docs
@@ -82,6 +83,7 @@ app.command(chart)
 app.command(verify, usage="Usage: calm verify [OPTIONS] [WORD...]", help_epilogue=VERIFY_EXAMPLES)
 app.command(new, help_epilogue=NEW_EXAMPLES)
 app.command(schema, help_epilogue=SCHEMA_EXAMPLES)
+app.command(completion, usage="Usage: calm completion SHELL", help_epilogue=COMPLETION_EXAMPLES)
 app.command(docs, usage="Usage: calm docs [OPTIONS] [PAGE]", help_epilogue=DOCS_EXAMPLES)
 
 
