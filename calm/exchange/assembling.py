@@ -7,7 +7,8 @@ import numpy as np
 from calm.case import Mooring, Tow
 from calm.errors import NoEquilibrium, UsageError
 from calm.exchange.parts import Assembled, Part
-from calm.physics.line import REFERENCE_DENSITY, Line, Water
+from calm.physics.line import Line, Water
+from calm.physics.reference import REFERENCE_DENSITY
 
 _DIGITS = 9  # of a speed in m/s
 

@@ -18,6 +18,11 @@ Figure = float | str
 """A number in SI, or a word of the mooring file such as ``insensitive``."""
 
 
+def one_line(text: str) -> str:
+    """A text without line breaks and without signs that no file and no terminal may get."""
+    return " ".join("".join(c if c.isprintable() else " " for c in text).split())
+
+
 @dataclass(frozen=True)
 class Remark:
     """Something guessed, or left out: where it stands, and what."""
@@ -26,7 +31,7 @@ class Remark:
     what: str
 
     def __str__(self) -> str:
-        return f"{self.where}: {self.what}"
+        return one_line(f"{self.where}: {self.what}")
 
 
 @dataclass(eq=False)
