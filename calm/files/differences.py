@@ -200,7 +200,9 @@ def _around(file: MooringFile) -> dict[str, Figure]:
     for name, part in parts.items():
         if part is not None:
             found |= {f"{name}.{key}": one for key, one in _figures(part).items()}
-    found["environments"] = _figure("environments", ", ".join(file.variants) or None)
+    for name, overlay in file.variants.items():
+        given = overlay if isinstance(overlay, dict) else {"": overlay}
+        found |= {f"environments.{name}.{key}": _text(_said(one)) for key, one in given.items()}
     found["releases"] = _figure("releases", file.releases or None)
     return found
 
