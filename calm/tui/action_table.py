@@ -318,8 +318,11 @@ ACTIONS: tuple[Action, ...] = (
     Action("form", "app.focus_previous", "up", "last", "To the one before.", palette=False),
     # what is put over a screen, or beside a name
     Action("choice", "turn(-1)", "left", "last", "The word before.", palette=False),
-    Action("choice", "turn(1)", "right,space,enter", "next", "The next word.", palette=False),
-    Action("given", "take", "enter", "take it", "Take the form that is shown.", palette=False),
+    Action("choice", "turn(1)", "right,space", "next", "The next word.", palette=False),
+    Action("choice", "app.focus_next", "enter", "go on", "To what is below.", palette=False),
+    Action(
+        "given", "take", "enter", "take it", "Take the form that is shown, and go on.", palette=False
+    ),
     Action("sheet", "take", "ctrl+s", "done", "Take all values.", palette=False),
     Action("sheet", "leave", "escape", "leave", "Leave all as it was.", palette=False),
     Action("sheet", "app.focus_next", "down", "next", "To the next value.", palette=False),

@@ -68,5 +68,5 @@ class Cycle(Widget, can_focus=True):
             (f"{self._title:<{self._width}}", "dim"),
             ("‹ " if self.has_focus else "  ", "dim"),
             (self.word, "reverse" if self.has_focus else ""),
-            (" ›" if self.has_focus else "", "dim"),
+            (" ›   ← → another, ↑ ↓ go on" if self.has_focus else "", "dim"),
         )

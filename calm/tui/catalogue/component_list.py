@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import zip_longest
 
 from rich.cells import cell_len, set_cell_size
 from rich.segment import Segment
@@ -59,11 +60,18 @@ class ComponentList(Listing, can_focus=False):
 
     def show(self, found: Sequence[Listed], index: Index, by: str | None = None) -> None:
         """List other components, the cursor on the first; `by` which figure they are sorted."""
+        before, columns = self.rows, self._columns()
+        cursor, is_other = self.cursor, index is not self._index
         self._index, self._by = index, by
         self._longest = max((len(each.id) for each in found), default=0)
         self.set_reactive(Listing.cursor, 0)
-        self.take_rows(found)
-        self.scroll_to(y=0, animate=False)
+        if is_other or columns != self._columns() or self.scroll_offset.y:
+            self.take_rows(found)
+            self.scroll_to(y=0, animate=False)
+        else:
+            pairs = zip_longest(before[: self.size.height], found[: self.size.height])
+            changed = [number for number, (old, new) in enumerate(pairs) if old is not new]
+            self.take_rows(found, {0, cursor, *changed})
         self.post_message(self.Moved())
 
     def on_click(self, event: events.Click) -> None:
@@ -77,8 +85,9 @@ class ComponentList(Listing, can_focus=False):
         else:
             self.cursor = number
 
-    def _columns(self, width: int) -> tuple[int, list[Column], int]:
+    def _columns(self) -> tuple[int, list[Column], int]:
         """Cells of the ids, the figures that have room beside them, cells left for the names."""
+        width = self.scrollable_content_region.width
         id_width = max(min(self._longest, width - _LEAD), 0)
         room, shown = width - _LEAD - id_width - 1, []
         for column in sorted(COLUMNS, key=lambda each: each.key != self._by):
@@ -91,7 +100,7 @@ class ComponentList(Listing, can_focus=False):
         """A row of the screen."""
         width = self.scrollable_content_region.width
         number, style = self.row_at(y), self.rich_style
-        id_width, columns, name_width = self._columns(width)
+        id_width, columns, name_width = self._columns()
         name_style = style + self.get_component_rich_style("component-list--name", partial=True)
         if y == 0:
             heads = [f"{each.heading:>{_FIGURE}} " for each in columns]

@@ -108,8 +108,11 @@ class ComponentScreen(Screen[Defined | None]):
         self._judge()
 
     @on(Field.Entered)
-    def _onward(self) -> None:
-        self.focus_next()
+    def _onward(self, event: Field.Entered) -> None:
+        if event.field is self._fields()[-1]:
+            self.action_accept()
+        else:
+            self.focus_next()
 
     def _fields(self) -> list[Field]:
         return list(self.query(Field))

@@ -117,7 +117,10 @@ class Index:
 
 
 def _rank(each: Listed, words: Sequence[str]) -> int:
-    """How well a component fits: its id, the beginning of it, all words in it, elsewhere."""
+    """How well a component fits: its id, the beginning of it, all words in it, elsewhere.
+
+    Of ids that have all words, one that begins with the first of them is nearer.
+    """
     if not words:
         return 0
     joined, id = "".join(words), _BETWEEN.sub("", each.id)
@@ -125,7 +128,9 @@ def _rank(each: Listed, words: Sequence[str]) -> int:
         return 0
     if id.startswith(joined):
         return 1
-    return 2 if all(word in each.id for word in words) else 3
+    if all(word in each.id for word in words):
+        return 2 if id.startswith(words[0]) else 3
+    return 4
 
 
 def _listed(entry: Entry, shipped: object) -> Listed:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
+from rich.text import Text
 from textual import on
 from textual.app import ComposeResult
 from textual.binding import BindingType
-from textual.containers import Horizontal, Vertical, VerticalScroll
+from textual.containers import Horizontal, Vertical
 from textual.message import Message
 from textual.widgets import Input, Static
 
@@ -19,6 +20,7 @@ from calm.tui.catalogue.figures import COLUMNS
 from calm.tui.catalogue.index import CLAMPABLE, WITH_LENGTH, Index, Listed
 from calm.tui.checking import anything, distance, length
 from calm.tui.field import Field
+from calm.tui.scrolled import Entry, ScrolledText
 
 Purpose = Literal["below", "above", "clamp", "replace"]
 """What the component is wanted for."""
@@ -44,7 +46,7 @@ class CataloguePane(Vertical):
         & #catalogue-search:focus { background: $surface; background-tint: $foreground 8%; }
         & #catalogue-ask { height: auto; display: none; }
         & #catalogue-found { height: 1fr; layout: vertical; }
-        & #catalogue-card { height: 1fr; padding: 0; margin-top: 1; scrollbar-size-vertical: 1; }
+        & #catalogue-card { height: 1fr; margin-top: 1; }
         &.-asking #catalogue-ask { display: block; }
     }
     .-narrow CataloguePane #catalogue-found { layout: horizontal; }
@@ -71,12 +73,13 @@ class CataloguePane(Vertical):
         self.recent: list[str] = []
         self._by: str | None = None
         self._asked: Listed | None = None
+        self._shown: Listed | None = None
         self._target = ""
 
     def compose(self) -> ComposeResult:
         """Title, search, what is asked for, and the list with its card."""
         yield Static(id="catalogue-title", markup=False)
-        yield Input(
+        yield Entry(
             id="catalogue-search",
             compact=True,
             placeholder="words: id, name, maker, kind, role; breaking>50kN",
@@ -86,8 +89,7 @@ class CataloguePane(Vertical):
             yield Field("label", "Label", anything, id="ask-label", placeholder="may stay empty")
         with Horizontal(id="catalogue-found"):
             yield ComponentList()
-            with VerticalScroll(id="catalogue-card", can_focus=False):
-                yield Static(id="catalogue-figures", markup=False)
+            yield ScrolledText(id="catalogue-card")
 
     @property
     def listing(self) -> ComponentList:
@@ -95,9 +97,9 @@ class CataloguePane(Vertical):
         return self.query_one(ComponentList)
 
     @property
-    def search(self) -> Input:
+    def search(self) -> Entry:
         """The words."""
-        return self.query_one("#catalogue-search", Input)
+        return self.query_one("#catalogue-search", Entry)
 
     def take_index(self, index: Index) -> None:
         """Search another catalogue."""
@@ -148,20 +150,21 @@ class CataloguePane(Vertical):
 
     @on(ComponentList.Moved)
     def _show_card(self) -> None:
-        card = self.query_one("#catalogue-figures", Static)
-        chosen = self.listing.chosen
+        card, chosen = self.query_one("#catalogue-card", ScrolledText), self.listing.chosen
+        if chosen is self._shown and chosen is not None:
+            return
+        self._shown = chosen
         if chosen is None or self.index is None:
-            card.update("Nothing has all these words.")
+            card.show("Nothing has all these words.")
             return
         from calm.report.catalogue import to_card
         from calm.report.terminal import shown
 
         try:
             catalogue = self.index.catalogue
-            card.update(shown(to_card(chosen.id, catalogue.get(chosen.id), catalogue)))
+            card.show(shown(to_card(chosen.id, catalogue.get(chosen.id), catalogue)))
         except CalmError as error:
-            card.update(str(error))
-        self.query_one("#catalogue-card", VerticalScroll).scroll_home(animate=False)
+            card.show(Text(str(error)))
 
     def action_sort(self) -> None:
         """Sort by the next of the figures, or by how well the words fit."""
@@ -204,6 +207,9 @@ class CataloguePane(Vertical):
     def _answered(self, event: Field.Entered) -> None:
         event.stop()
         first, label = self.query_one("#ask-length", Field), self.query_one("#ask-label", Field)
+        if event.field is first:
+            label.focus_input()
+            return
         if self._asked is None or not (first.settle() and label.settle()):
             return
         values = {"use": self._asked.id, first.key: first.text}

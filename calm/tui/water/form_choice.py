@@ -46,9 +46,11 @@ class FormChoice(Cycle):
         super().show(self.words[(here + by) % len(self.words)])
 
     def action_take(self) -> None:
-        """Take the form that is shown."""
+        """Take the form that is shown, and go on."""
         if self.word != self._given:
             self.post_message(self.Taken(self, self.word))
+        else:
+            self.screen.focus_next()
 
     @on(events.Click)
     def _press(self, event: events.Click) -> None:

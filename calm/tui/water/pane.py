@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from textual import on
+from textual import events, on
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical, VerticalScroll
 from textual.content import Content
@@ -23,6 +23,7 @@ from calm.tui.messages import said
 from calm.tui.profile import Profile
 from calm.tui.verdict_pane import state_word
 from calm.tui.water.form import (
+    CURRENT_COLUMNS,
     CURRENT_FORMS,
     DENSITY_FORMS,
     PROFILE_FORMS,
@@ -278,6 +279,14 @@ class WaterPane(Horizontal):
     def _tell_refusal(self, event: Grid.Refused) -> None:
         self.workspace.tell(event.reason, wrong=True)
 
+    def on_paste(self, event: events.Paste) -> None:
+        """A table that is pasted into no table of the form is the current, however it was given."""
+        if len(event.text.splitlines()) > 1 and self.settle():
+            grid = self.query_one("#current-table", Grid)
+            if self.water.form("current") != "table":
+                grid.show(CURRENT_COLUMNS, ())
+            grid.take_text(event.text)
+
     @on(FormChoice.Taken)
     def _take_form(self, event: FormChoice.Taken) -> None:
         place = _place(event.choice)
@@ -285,6 +294,7 @@ class WaterPane(Horizontal):
             self.post_message(self.FileWanted())
         else:
             self.give_in_form(place, event.form)
+            self.call_after_refresh(self.screen.focus_next)  # to what is shown for it
 
 
 def _place(part: Widget) -> Place:
