@@ -249,8 +249,17 @@ ACTIONS: tuple[Action, ...] = (
         1,
         palette=False,
     ),
+    Action(
+        "catalogue",
+        "mark",
+        "f3",
+        "favourite",
+        "Make it a favourite, or no more: those come first, in every file.",
+        2,
+        palette=False,
+    ),
     Action("catalogue", "take", "enter", "insert", "Put it into the line.", 0, palette=False),
-    Action("catalogue", "close", "escape", "close", "Back to the line.", 2, palette=False),
+    Action("catalogue", "close", "escape", "close", "Back to the line.", 3, palette=False),
     # the water
     Action("water", "next_environment", "f5", "environment", "The next environment.", 3),
     Action("water", "new_environment", "f6,ctrl+n", "new environment", "Add a named one.", 4),
@@ -321,7 +330,12 @@ ACTIONS: tuple[Action, ...] = (
     Action("choice", "turn(1)", "right,space", "next", "The next word.", palette=False),
     Action("choice", "app.focus_next", "enter", "go on", "To what is below.", palette=False),
     Action(
-        "given", "take", "enter", "take it", "Take the form that is shown, and go on.", palette=False
+        "given",
+        "take",
+        "enter",
+        "take it",
+        "Take the form that is shown, and go on.",
+        palette=False,
     ),
     Action("sheet", "take", "ctrl+s", "done", "Take all values.", palette=False),
     Action("sheet", "leave", "escape", "leave", "Leave all as it was.", palette=False),

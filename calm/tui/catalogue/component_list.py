@@ -14,7 +14,7 @@ from textual.strip import Strip
 from calm.tui.catalogue.figures import COLUMNS, Column
 from calm.tui.catalogue.index import Index, Listed
 from calm.tui.listing import Listing
-from calm.tui.signs import CURSOR, ROLES
+from calm.tui.signs import CURSOR, FAVOURITE, ROLES
 
 _LEAD, _FIGURE = 4, 8
 
@@ -52,20 +52,27 @@ class ComponentList(Listing, can_focus=False):
         self._longest = 0
         self._index: Index | None = None
         self._by: str | None = None
+        self._favourites: frozenset[str] = frozenset()
 
     @property
     def chosen(self) -> Listed | None:
         """The component under the cursor."""
         return self.rows[self.cursor] if self.rows else None
 
-    def show(self, found: Sequence[Listed], index: Index, by: str | None = None) -> None:
+    def show(
+        self,
+        found: Sequence[Listed],
+        index: Index,
+        by: str | None = None,
+        favourites: frozenset[str] = frozenset(),
+    ) -> None:
         """List other components, the cursor on the first; `by` which figure they are sorted."""
         before, columns = self.rows, self._columns()
-        cursor, is_other = self.cursor, index is not self._index
-        self._index, self._by = index, by
+        cursor, like = self.cursor, (self._index, self._favourites)
+        self._index, self._by, self._favourites = index, by, favourites
         self._longest = max((len(each.id) for each in found), default=0)
         self.set_reactive(Listing.cursor, 0)
-        if is_other or columns != self._columns() or self.scroll_offset.y:
+        if like != (index, favourites) or columns != self._columns() or self.scroll_offset.y:
             self.take_rows(found)
             self.scroll_to(y=0, animate=False)
         else:
@@ -113,12 +120,13 @@ class ComponentList(Listing, can_focus=False):
         if here:
             style += self.get_component_rich_style("component-list--cursor", partial=True)
             name_style += self.get_component_rich_style("component-list--cursor", partial=True)
+        star = FAVOURITE if each.id in self._favourites else " "
         look = "own" if each.own else "id"
         id_style = style + self.get_component_rich_style(f"component-list--{look}", partial=True)
         figures = self._index.figures(each.id)
         cells = [f"{column.shown(figures.get(column.key)):>{_FIGURE}} " for column in columns]
         segments = [
-            Segment(f"{CURSOR if here else ' '} {ROLES.get(each.role, ' ')} ", style),
+            Segment(f"{CURSOR if here else ' '}{star}{ROLES.get(each.role, ' ')} ", style),
             Segment(set_cell_size(each.id, id_width), id_style),
             Segment(f" {''.join(cells)}", style),
         ]

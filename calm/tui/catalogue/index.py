@@ -79,7 +79,7 @@ class Index:
         text: str,
         kinds: Iterable[str] | None = None,
         *,
-        recent: Sequence[str] = (),
+        first: Sequence[str] = (),
         by: str | None = None,
     ) -> list[Listed]:
         """Those that have every word of a text and keep every limit in it, as ``breaking>50kN``.
@@ -88,7 +88,7 @@ class Index:
 
         Parameters
         ----------
-        recent : ids used lately, which come before others that fit as well
+        first : ids that come before others which fit as well, as favourites, in their order
         by : the key of a column: the greatest first, what is not known last
         """
         asked = [(word.casefold(), wanted(word)) for word in text.split()]
@@ -105,11 +105,8 @@ class Index:
         ]
         if by is not None:
             return sorted(hits, key=lambda each: self._least_first(each.id, by))
-        lately = {id: number for number, id in enumerate(recent)}
-        return sorted(
-            hits,
-            key=lambda each: (_rank(each, words), lately.get(each.id, len(lately))),
-        )
+        places = {id: number for number, id in enumerate(first)}
+        return sorted(hits, key=lambda each: (_rank(each, words), places.get(each.id, len(places))))
 
     def _least_first(self, id: str, by: str) -> float:
         value = self.figures(id).get(by)

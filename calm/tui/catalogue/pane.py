@@ -18,6 +18,7 @@ from calm.tui.actions import bindings
 from calm.tui.catalogue.component_list import ComponentList
 from calm.tui.catalogue.figures import COLUMNS
 from calm.tui.catalogue.index import CLAMPABLE, WITH_LENGTH, Index, Listed
+from calm.tui.catalogue.remembered import Remembered
 from calm.tui.checking import anything, distance, length
 from calm.tui.field import Field
 from calm.tui.scrolled import Entry, ScrolledText
@@ -61,16 +62,24 @@ class CataloguePane(Vertical):
         purpose: Purpose
         values: dict[str, str]
 
+    @dataclass
+    class Told(Message):
+        """Something to be said in the last line."""
+
+        text: str
+        wrong: bool = False
+
     class Closed(Message):
         """Back to the line."""
 
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
         self.index: Index | None = None
+        self.remembered = Remembered()
         self.purpose: Purpose = "below"
         self.clampable = False
         self.towed = False
-        self.recent: list[str] = []
+        self._used: list[str] = []
         self._by: str | None = None
         self._asked: Listed | None = None
         self._shown: Listed | None = None
@@ -115,17 +124,18 @@ class CataloguePane(Vertical):
         self,
         purpose: Purpose,
         target: str,
-        recent: list[str],
+        used: list[str],
         *,
         clampable: bool = False,
         towed: bool = False,
     ) -> None:
         """Look for a component for the row called `target`, empty in an empty line.
 
-        What was used lately comes first. With `clampable`, only what can be clamped on a line.
+        Favourites come first, what was taken lately, and what is `used` in the line. With
+        `clampable`, only what can be clamped on a line.
         """
         self.purpose, self.clampable, self.towed = purpose, clampable, towed
-        self.recent = recent
+        self._used = used
         self._leave_asking()
         self.retitle(target)
         self._search()
@@ -145,8 +155,10 @@ class CataloguePane(Vertical):
         if self.index is None:
             return
         kinds = CLAMPABLE if self.clampable else None
-        found = self.index.search(self.search.value, kinds, recent=self.recent, by=self._by)
-        self.listing.show(found, self.index, self._by)
+        kept = self.remembered
+        first = [*dict.fromkeys([*kept.favourites, *kept.recent, *self._used])]
+        found = self.index.search(self.search.value, kinds, first=first, by=self._by)
+        self.listing.show(found, self.index, self._by, frozenset(kept.favourites))
 
     @on(ComponentList.Moved)
     def _show_card(self) -> None:
@@ -173,6 +185,19 @@ class CataloguePane(Vertical):
         self.retitle(self._target)
         self._search()
 
+    def action_mark(self) -> None:
+        """Make a favourite of the component, or no more."""
+        chosen = self.listing.chosen
+        if chosen is not None:
+            try:
+                is_one = self.remembered.mark(chosen.id)
+            except OSError as error:
+                self.post_message(self.Told(f"It could not be kept: {error}", wrong=True))
+            else:
+                became = "is a favourite now" if is_one else "is no favourite any more"
+                self.post_message(self.Told(f"{chosen.id} {became}"))
+            self._search()
+
     def action_choose(self, by: int) -> None:
         """Move the cursor of the list."""
         if self._asked is None:
@@ -190,8 +215,12 @@ class CataloguePane(Vertical):
         elif chosen.kind in WITH_LENGTH and self.purpose != "replace":
             self._ask(chosen, "length", "Length")
         else:
-            self.post_message(self.Taken(self.purpose, {"use": chosen.id}))
+            self._give({"use": chosen.id})
             self.search.action_select_all()
+
+    def _give(self, values: dict[str, str]) -> None:
+        self.remembered.take(values["use"])
+        self.post_message(self.Taken(self.purpose, values))
 
     def _ask(self, chosen: Listed, key: str, title: str) -> None:
         self._asked = chosen
@@ -216,7 +245,7 @@ class CataloguePane(Vertical):
         if label.text:
             values["label"] = label.text
         self._leave_asking()
-        self.post_message(self.Taken(self.purpose, values))
+        self._give(values)
         self.search.focus()
         self.search.action_select_all()
 
