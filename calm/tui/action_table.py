@@ -6,14 +6,15 @@ from dataclasses import dataclass
 from typing import Literal
 
 Place = Literal[
-    "anywhere", "line", "catalogue", "cell", "water", "grid", "choice", "given", "text", "area",
-    "form", "sheet", "question", "help",
+    "anywhere", "line", "verdict", "catalogue", "cell", "water", "grid", "choice", "given", "text",
+    "area", "form", "sheet", "question", "help",
 ]  # fmt: skip
 """Where the keys of an action work: what has the focus, or the screen it is on."""
 
 PLACES: dict[Place, str] = {
     "line": "The line",
     "anywhere": "Anywhere on the first screen",
+    "verdict": "The verdict, line by line",
     "cell": "While a value is edited in place",
     "catalogue": "The catalogue",
     "water": "The water",
@@ -119,6 +120,29 @@ ACTIONS: tuple[Action, ...] = (
     Action("line", "move_to_end(1)", "end", "bottom", "To the bottom.", palette=False),
     Action("line", "move_column(-1)", "left", "left", "To the column on the left.", palette=False),
     Action("line", "move_column(1)", "right", "right", "To the one on the right.", palette=False),
+    Action(
+        "line",
+        "back",
+        "escape",
+        "back",
+        "Back to the line of the verdict that led here.",
+        palette=False,
+    ),
+    # the verdict
+    Action(
+        "verdict", "move(-1)", "up", "up", "To the line above that leads to a row.", palette=False
+    ),
+    Action("verdict", "move(1)", "down", "down", "To the one below.", palette=False),
+    Action(
+        "verdict",
+        "go",
+        "enter",
+        "its row",
+        "To the row it is about; Esc leads back.",
+        0,
+        palette=False,
+    ),
+    Action("verdict", "leave", "escape", "line", "To the line.", 1, palette=False),
     # anywhere
     Action("anywhere", "undo", "u", "undo", "Undo the last change, as often as there is one.", 3),
     Action(
@@ -166,6 +190,13 @@ ACTIONS: tuple[Action, ...] = (
         "f",
         "missing figures",
         "Fill in the figures that are not known, piece by piece, with their source.",
+    ),
+    Action(
+        "anywhere",
+        "verdict",
+        "G",
+        "verdict",
+        "The verdict line by line: Enter goes to the row that a line is about, Esc back.",
     ),
     Action("anywhere", "search", "slash", "catalogue", "Search the catalogue."),
     Action("anywhere", "define", "o", "own component", "Define a component of one's own."),

@@ -12,12 +12,14 @@ from calm.tui.line.builder import BuilderScreen
 from calm.tui.line.cell_editor import CellEditor
 from calm.tui.line.pane import LinePane
 from calm.tui.text_screen import TextScreen, YamlArea
+from calm.tui.verdict_pane import VerdictPane
 from calm.tui.water.cells import Cells
 from calm.tui.water.form_choice import FormChoice
 from calm.tui.water.screen import WaterScreen
 
 OWNERS = {
     "line": LinePane,
+    "verdict": VerdictPane,
     "anywhere": BuilderScreen,
     "cell": CellEditor,
     "catalogue": CataloguePane,

@@ -65,7 +65,7 @@ class ComponentScreen(Screen[Defined | None]):
             with VerticalScroll(id="fields", can_focus=False):
                 if not self._begun:
                     check = id_check(self._own)
-                    yield Field("id", "id", check, id="id", placeholder="sphere-own-1250")
+                    yield Field("id", "id", check, id="id", placeholder="e.g. sphere-own-1250")
                     yield Cycle("kind", tuple(KINDS), self._kind, title_width=20)
                 yield Vertical(id="kind-fields")
             with VerticalScroll(id="outcome", can_focus=False):

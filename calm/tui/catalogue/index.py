@@ -19,6 +19,8 @@ from calm.tui.catalogue.synonyms import with_synonyms
 _ROLES = {"cable": "line", "chain": "line", "anchor": "anchor"}
 CLAMPABLE = frozenset({"sphere", "cylinder", "body"})
 WITH_LENGTH = frozenset({"cable", "chain"})
+_ELSEWHERE = 4
+"""The rank of a component whose id has not all words."""
 _BETWEEN = re.compile(r"[\s_-]+")
 
 
@@ -88,7 +90,7 @@ class Index:
 
         Parameters
         ----------
-        first : ids that come before others which fit as well, as favourites, in their order
+        first : ids, in their order, that come before all others but the one that is typed whole
         by : the key of a column: the greatest first, what is not known last
         """
         asked = [(word.casefold(), wanted(word)) for word in text.split()]
@@ -106,7 +108,13 @@ class Index:
         if by is not None:
             return sorted(hits, key=lambda each: self._least_first(each.id, by))
         places = {id: number for number, id in enumerate(first)}
-        return sorted(hits, key=lambda each: (_rank(each, words), places.get(each.id, len(places))))
+
+        def order(each: Listed) -> tuple[bool, int, int]:
+            rank = _rank(each, words)
+            place = places.get(each.id, len(places)) if rank < _ELSEWHERE else len(places)
+            return rank > 0, place, rank
+
+        return sorted(hits, key=order)
 
     def _least_first(self, id: str, by: str) -> float:
         value = self.figures(id).get(by)
@@ -127,7 +135,7 @@ def _rank(each: Listed, words: Sequence[str]) -> int:
         return 1
     if all(word in each.id for word in words):
         return 2 if id.startswith(words[0]) else 3
-    return 4
+    return _ELSEWHERE
 
 
 def _listed(entry: Entry, shipped: object) -> Listed:

@@ -114,11 +114,15 @@ class CataloguePane(Vertical):
         """Search another catalogue."""
         self.index = index
         if self.display or not self.listing.rows:
-            chosen = self.listing.chosen
-            self._search()
-            ids = [each.id for each in self.listing.rows]
-            if chosen is not None and chosen.id in ids:
-                self.listing.cursor = ids.index(chosen.id)
+            self._search_again()
+
+    def _search_again(self) -> None:
+        """Search for the same, the cursor on the component it was on."""
+        chosen = self.listing.chosen
+        self._search()
+        ids = [each.id for each in self.listing.rows]
+        if chosen is not None and chosen.id in ids:
+            self.listing.cursor = ids.index(chosen.id)
 
     def open(
         self,
@@ -196,7 +200,7 @@ class CataloguePane(Vertical):
             else:
                 became = "is a favourite now" if is_one else "is no favourite any more"
                 self.post_message(self.Told(f"{chosen.id} {became}"))
-            self._search()
+            self._search_again()
 
     def action_choose(self, by: int) -> None:
         """Move the cursor of the list."""
@@ -227,7 +231,7 @@ class CataloguePane(Vertical):
         self.add_class("-asking")
         first = self.query_one("#ask-length", Field)
         check = distance() if key == "at" else length(towed=self.towed)
-        placeholder = "2 m, from the top of the piece" if key == "at" else "480 m, or fit 105 m"
+        placeholder = "e.g. 2 m down the piece" if key == "at" else "e.g. 480 m, or fit 105 m"
         first.ask(key, title, check, placeholder)
         self.query_one("#ask-label", Field).reset("")
         first.focus_input()

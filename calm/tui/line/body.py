@@ -89,6 +89,25 @@ class LineBody(Horizontal):
         parts.append(state(self.workspace.view, old=not self.workspace.is_fresh))
         return f"{self.workspace.called}  {name}".rstrip(), "   ".join(parts)
 
+    # from the verdict to a row, and back
+
+    @on(VerdictPane.RowWanted)
+    def _go_to_row(self, event: VerdictPane.RowWanted) -> None:
+        self.screen.remove_class("-reading")
+        table = self.line.table
+        rows = {row.spot: number for number, row in enumerate(table.rows)}
+        numbers = sorted(rows[place] for place in event.places if place in rows)
+        if numbers:  # again and again: the next of them
+            table.cursor = next((each for each in numbers if each > table.cursor), numbers[0])
+            self.workspace.tell(event.told)
+            self.line.came_from_verdict = True
+        table.focus()
+
+    @on(LinePane.BackWanted)
+    def _back_to_verdict(self) -> None:
+        self.screen.add_class("-reading")
+        self.verdict.focus()
+
     # components from the catalogue
 
     @on(LinePane.ComponentWanted)

@@ -200,8 +200,6 @@ class Grid(Vertical):
                 cells.action_edit()
         elif not cells.is_at_the_end:
             cells.go_on(1)
-            if cells.cursor == self._new:
-                cells.action_edit()
         elif cells.cursor == self._new and cells.has_room_below:
             before = cells.rows
             cells.action_add_row(1)

@@ -72,6 +72,7 @@ class WaterPane(Horizontal):
         self.workspace, self.session = workspace, workspace.session
         # what was written in forms that others took the place of, to be had back
         self._left: dict[tuple[str | None, Place, str], Value | None] = {}
+        self.goes_on = False  # to the first value of a form, which leaves what was told
 
     def compose(self) -> ComposeResult:
         """Form and profile."""
@@ -84,9 +85,9 @@ class WaterPane(Horizontal):
 
     def _parts(self) -> Iterator[Widget]:
         """The parts of the form; the id of each tells its place, as `_place` reads it."""
-        yield Field("depth", "Depth", _DEPTH, id="depth", placeholder="1100 m")
+        yield Field("depth", "Depth", _DEPTH, id="depth", placeholder="e.g. 1100 m")
         yield FormChoice("Density", DENSITY_FORMS, id="density-form")
-        yield Field("density", "", _DENSITY, id="density", placeholder="1025 kg/m^3")
+        yield Field("density", "", _DENSITY, id="density", placeholder="else 1025 kg/m^3")
         yield Grid(id="density-table")
         for name, kind in (("temperature", TEMPERATURE), ("salinity", SALINITY)):
             yield FormChoice(f"  {name}", PROFILE_FORMS, id=f"density-{name}-form")
@@ -96,7 +97,7 @@ class WaterPane(Horizontal):
         yield Field("speed", "  speed", _SPEED, id="current-speed")
         yield Field("toward", "  towards", _ANGLE, id="current-toward")
         yield Field("file", "  file", needed("a file"), id="current-file")
-        yield Field("time", "  time", id="current-time", placeholder="2026-03-01T06:00")
+        yield Field("time", "  time", id="current-time", placeholder="e.g. 2026-03-01T06")
         yield Grid(id="current-table")
         yield Field("speed", "Wind", _WIND, id="wind-speed", placeholder="none")
         yield Field("toward", "  towards", _TOWARD, id="wind-toward", placeholder="where it blows")
@@ -294,7 +295,18 @@ class WaterPane(Horizontal):
             self.post_message(self.FileWanted())
         else:
             self.give_in_form(place, event.form)
-            self.call_after_refresh(self.screen.focus_next)  # to what is shown for it
+            self.goes_on = True
+            self.call_after_refresh(self._first_of(place, event.form).focus)
+
+    def _first_of(self, place: Place, form: str) -> Widget:
+        """Where the value of a form begins; below it, where it has none."""
+        key = "-".join(place)
+        if form == "table":
+            return self.query_one(f"#{key}-table Cells")
+        if form == DENSITY_FORMS[2]:
+            return self.query_one("#density-temperature-form")
+        where = {"uniform": "current-speed", "still": "wind-speed"}.get(form, key)
+        return self.query_one(f"#{where}", Field).input
 
 
 def _place(part: Widget) -> Place:
