@@ -7,6 +7,7 @@ the same and carries the same unit wherever it is shown.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import atan2, ceil, degrees, floor, log10
 
 
 @dataclass(frozen=True)
@@ -255,3 +256,21 @@ QUANTITIES = {quantity.name: quantity for quantity in _TABLE}
 def say(name: str, value: float | None) -> str:
     """A value of a quantity with its unit, for a sentence, e.g. ``113.2 m``."""
     return QUANTITIES[name].say(value)
+
+
+def rounded(value: float, digits: int, *, up: bool) -> float:
+    """A value of so many digits that is not less, or not more, than another."""
+    if value == 0.0:
+        return 0.0
+    step = 10.0 ** (floor(log10(abs(value))) - digits + 1)
+    return float(f"{step * (ceil if up else floor)(value / step):.12g}")
+
+
+def bearing_of(east: float, north: float) -> float:
+    """Direction of a vector [degrees] clockwise from north, 0 to 360."""
+    return degrees(atan2(east, north)) % 360.0
+
+
+def bearing_text(bearing: float) -> str:
+    """A direction [degrees] as people write it: ``068°``."""
+    return f"{round(bearing) % 360:03d}°"

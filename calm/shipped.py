@@ -1,4 +1,4 @@
-"""Where the component catalogue, the example lines and the field data that come with CALM are.
+"""Where the component catalogue, the example lines and the manual that come with CALM are.
 
 Once installed they stand inside the package; in a checkout, beside it.
 """
@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Literal
 
 
-def shipped_folder(name: Literal["catalog", "lines", "field"]) -> Path:
-    """The folder of the shipped catalogue, lines or field data.
+def shipped_folder(name: Literal["catalog", "lines", "docs"]) -> Path:
+    """The folder of the shipped catalogue, lines or manual.
 
     Raises
     ------
@@ -19,8 +19,7 @@ def shipped_folder(name: Literal["catalog", "lines", "field"]) -> Path:
         The installation is incomplete.
     """
     package = Path(str(importlib.resources.files("calm")))
-    beside = package.parent / "docs" / name if name == "field" else package.parent / name
-    for folder in (package / "_shipped" / name, beside):
+    for folder in (package / "_shipped" / name, package.parent / name):
         if folder.is_dir():
             return folder
     raise FileNotFoundError(f"CALM's folder `{name}` is missing; install CALM again")

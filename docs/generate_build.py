@@ -1,4 +1,4 @@
-"""Draw the screens of the line builder that `docs/build.md` and the README show.
+"""Draw the screens of the line builder that `docs/how-to/build.md` shows.
 
 python docs/generate_build.py            # draw them
 python docs/generate_build.py --check    # exit 1 where one is out of date
@@ -19,7 +19,6 @@ from calm.tui.launch import open_session
 IMAGES = Path(__file__).with_name("images")
 LINES = Path(__file__).resolve().parents[1] / "lines"
 SCREENS: dict[str, tuple[str, tuple[int, int], tuple[str, ...]]] = {
-    "build": ("deep-current-meters", (150, 46), ("down", "down", "down")),
     "build-catalogue": ("upward-adcp-300m", (150, 40), ("a", *"twin", "space", *"release")),
     "build-water": ("deep-current-meters", (120, 32), ("w",)),
     "build-verdict": ("upward-adcp-300m", (110, 40), ("G", "down")),

@@ -1,7 +1,7 @@
-"""Write `docs/command-line.md` from the help of the commands themselves.
+"""Write `docs/reference/command-line.md` and `docs/calm.1`, the manual page, from the help.
 
-python docs/generate_command_line.py            # write it
-python docs/generate_command_line.py --check    # exit 1 where it is out of date
+python docs/generate_command_line.py            # write them
+python docs/generate_command_line.py --check    # exit 1 where one is out of date
 """
 
 import contextlib
@@ -14,8 +14,10 @@ from pathlib import Path
 from cyclopts import App
 
 from calm.cli.main import app, main
+from calm.version import __version__
 
-PAGE = Path(__file__).with_name("command-line.md")
+PAGE = Path(__file__).parent / "reference" / "command-line.md"
+MAN = Path(__file__).with_name("calm.1")
 HEAD = """# The command line
 
 Printed by `python docs/generate_command_line.py`; do not edit.
@@ -50,9 +52,40 @@ def page() -> str:
     return "\n".join([HEAD, *sections])
 
 
+def manual() -> str:
+    """The text of the manual page, in the macros of man."""
+    parts = [
+        f'.TH CALM 1 "" "calm {__version__}" "User Commands"',
+        ".SH NAME",
+        "calm \\- statics of oceanographic moorings and tows",
+        ".SH SYNOPSIS",
+        ".B calm",
+        ".I COMMAND",
+        "[\\fIOPTIONS\\fR] [\\fIFILE\\fR...]",
+    ]
+    for words in commands(app):
+        parts += [f".SH {' '.join(('calm', *words)).upper()}", ".nf", roff(help_of(words)), ".fi"]
+    parts += [
+        ".SH SEE ALSO",
+        "\\fBcalm docs\\fR prints where the manual is on this machine; "
+        "\\fBcalm docs \\-\\-open\\fR shows it in a browser.",
+    ]
+    return "\n".join(parts) + "\n"
+
+
+def roff(text: str) -> str:
+    """Text that man prints as it is: no frames, hyphens as typed, no line read as a request."""
+    lines = (line.strip("│╭╮╰╯─").rstrip() for line in text.splitlines())
+    escaped = (line.replace("\\", "\\e").replace("-", "\\-") for line in lines)
+    return "\n".join(f"\\&{line}" if line[:1] in (".", "'") else line for line in escaped)
+
+
 if __name__ == "__main__":
+    files = {PAGE: page(), MAN: manual()}
     if sys.argv[1:] == ["--check"]:
-        if not PAGE.exists() or PAGE.read_text(encoding="utf-8") != page():
-            sys.exit(f"{PAGE} is out of date; run python docs/generate_command_line.py")
+        for path, text in files.items():
+            if not path.exists() or path.read_text(encoding="utf-8") != text:
+                sys.exit(f"{path} is out of date; run python docs/generate_command_line.py")
     else:
-        PAGE.write_text(page(), encoding="utf-8")
+        for path, text in files.items():
+            path.write_text(text, encoding="utf-8")

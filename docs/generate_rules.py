@@ -1,4 +1,4 @@
-"""Write the table of the rules of the design check into `docs/check.md`.
+"""Write the table of the rules of the design check into `docs/reference/check.md`.
 
 python docs/generate_rules.py            # write it
 python docs/generate_rules.py --check    # exit 1 where it is out of date
@@ -9,7 +9,7 @@ from pathlib import Path
 
 from calm.files.rules import RULES
 
-PAGE = Path(__file__).with_name("check.md")
+PAGE = Path(__file__).parent / "reference" / "check.md"
 BEGIN, END = "<!-- rules -->\n", "<!-- rules end -->\n"
 
 

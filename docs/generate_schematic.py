@@ -1,4 +1,4 @@
-"""Write `docs/schematic.md` and its pictures from lines of `lines/`.
+"""Write `docs/reference/schematic.md` and its pictures from lines of `lines/`.
 
 python docs/generate_schematic.py            # write them
 python docs/generate_schematic.py --check    # exit 1 where one is out of date
@@ -11,7 +11,7 @@ import calm
 from calm.report.schematic import schematic_svg
 from calm.report.schematic.text import schematic_text
 
-PAGE = Path(__file__).with_name("schematic.md")
+PAGE = Path(__file__).parent / "reference" / "schematic.md"
 IMAGES = Path(__file__).with_name("images")
 LINES = Path(__file__).resolve().parents[1] / "lines"
 DRAWN = ("fit-top-depth", "taut-nylon-surface", "a-frame-sheared-tow")
@@ -22,7 +22,7 @@ Printed by `python docs/generate_schematic.py`; do not edit.
 The line in order from the top, not to scale: each piece and each clamped instrument with its
 label, its component, the length to cut, the depth and the height above the seabed of its upper end.
 
-![{first}](images/schematic-{drawn[0]}.svg)
+![{first}](../images/schematic-{drawn[0]}.svg)
 
 ## In the terminal
 
@@ -63,9 +63,9 @@ who points at it. The same input gives the same bytes.
 
 A float at the surface rides on it; a tow hangs from its ship, or from its helicopter:
 
-![{second}](images/schematic-{drawn[1]}.svg)
+![{second}](../images/schematic-{drawn[1]}.svg)
 
-![{third}](images/schematic-{drawn[2]}.svg)
+![{third}](../images/schematic-{drawn[2]}.svg)
 
 ## What it tells
 

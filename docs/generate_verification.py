@@ -1,7 +1,7 @@
-"""Write `docs/verification.md` and its pictures from the cases of `calm verify`.
+"""Write the pages of the verification and their pictures from the cases of `calm verify`.
 
 python docs/generate_verification.py            # write them
-python docs/generate_verification.py --check    # exit 1 where the page is out of date
+python docs/generate_verification.py --check    # exit 1 where a page is out of date
 
 Pictures are not compared: their bytes depend on the version of matplotlib.
 """
@@ -17,30 +17,55 @@ from matplotlib.figure import Figure
 
 from calm.physics.reynolds import cylinder_coefficient, sphere_coefficient
 from calm.report.picture import image
-from calm.report.verification import COLUMNS, figures
-from calm.verification import SOURCES, Outcome, Source, cdms_1, convergence, drag_curves, s1000
+from calm.report.verification import COLUMNS, by_kind, figures
+from calm.verification import (
+    SOURCES,
+    Kind,
+    Outcome,
+    Source,
+    cdms_1,
+    convergence,
+    drag_curves,
+    s1000,
+)
 
-PAGE = Path(__file__).with_name("verification.md")
+PAGE = Path(__file__).parent / "explanation" / "verification.md"
+FIGURES = Path(__file__).parent / "reference" / "verification-figures.md"
 IMAGES = Path(__file__).with_name("images")
 HEAD = """# Verification
 
 Printed by `python docs/generate_verification.py`; do not edit.
 
-`calm verify` computes {number} figures that others have printed, or that must hold for any line,
-and compares; it ends with exit code 1 when one is out of its tolerance. `calm verify cdms tension`
-takes those whose source or name has both words, `--json -` gives every digit. The cases live in
+`calm verify` computes {verifying} figures that are known without CALM, and compares. It ends with
+exit code 1 when one is out of its tolerance. `calm verify cdms tension` takes the figures whose
+source or name has both words; `--json -` gives every digit. The cases live in
 `calm/verification/`, one module for each source, and the tests run them.
 
-Each table stands below the reason for its tolerance. What was got, and the difference, are rounded
-a digit or two beyond the tolerance. C1 to C23 are the names of cases in the code and the tests.
+Not all agreement proves the same, so every figure says of which kind it is:
 
-Not here, because a figure alone does not tell it: the tests hold every mooring of `lines/` and
-hundreds of random moorings against an independent integration of the differential
-equations.
+| kind | figures | what it is |
+| --- | ---: | --- |
+{kinds}
 
-| source | figures |
-| --- | --- |
+{copied} more figures are met **by construction**: points that a curve of CALM is drawn through,
+figures that a law is fitted to, figures of a library that CALM calls. Agreement guards against
+slips of copying. They are checked, and not counted.
+
+`calm verify` is not all. The tests hold every mooring of `lines/` and hundreds of random moorings
+against an independent integration of the differential equations.
+
 {contents}
+
+[Every figure with its tolerance and the reason for it](../reference/verification-figures.md).
+"""
+FIGURES_HEAD = """# Verification: every figure
+
+Printed by `python docs/generate_verification.py`; do not edit.
+
+What `calm verify` compares. [Verification](../explanation/verification.md) says what agreement
+proves, and who printed or derived the figures. Each table stands below its kind and the reason for
+its tolerance. What CALM gets, and the difference, are rounded a digit or two beyond the tolerance.
+C1 to C23 are names of cases in the code and the tests.
 """
 ORDER_TWO = {"color": "grey", "linestyle": "--", "linewidth": 1, "label": "second order"}
 STYLES = {"SSMOOR": ("s", "#cc3311"), "MD&D": ("D", "#e69f00"), "independent": ("^", "#009e73")}
@@ -49,12 +74,26 @@ LINE = "#0b3c5d"
 
 def page() -> str:
     """The text of the page."""
-    contents = "\n".join(
-        f"| [{source.title}](#{anchor(source.title)}) | {len(source.cases)} |" for source in SOURCES
-    )
-    number = sum(len(source.cases) for source in SOURCES)
-    head = HEAD.format(number=number, contents=contents)
+    totals = by_kind(case for source in SOURCES for case in source.cases)
+    verifying = {kind: number for kind, number in totals.items() if kind.verifies}
+    head = HEAD.format(
+        verifying=sum(verifying.values()),
+        kinds="\n".join(f"| {kind} | {number} | {kind.meaning} |"
+                        for kind, number in verifying.items()),
+        copied=sum(totals.values()) - sum(verifying.values()),
+        contents=contents(),
+    )  # fmt: skip
     return "\n".join([head, *map(section, SOURCES)])
+
+
+def contents() -> str:
+    """A table of the sources, with the number of their figures of each kind."""
+    rows = [f"| source | {' | '.join(Kind)} |", f"| --- {'| ---: ' * len(Kind)}|"]
+    for source in SOURCES:
+        number = by_kind(source.cases)
+        numbers = (str(number.get(kind, "")) for kind in Kind)
+        rows.append(f"| [{source.title}](#{anchor(source.title)}) | {' | '.join(numbers)} |")
+    return "\n".join(rows)
 
 
 def anchor(title: str) -> str:
@@ -64,13 +103,27 @@ def anchor(title: str) -> str:
 
 
 def section(source: Source) -> str:
-    """A source: where its figures come from, its picture, a table for each tolerance."""
-    parts = [f"## {source.title}", source.text]
+    """A source: where its figures come from, its picture."""
+    figures_of_it = f"../reference/verification-figures.md#{anchor(source.title)}"
+    parts = [f"## {source.title}", source.text, f"[The figures]({figures_of_it})"]
     if source.picture:
-        parts.append(f"![{source.title}](images/{source.picture}.svg)")
-    for why, cases in groupby(source.cases, key=lambda case: case.why):
-        parts.append(f"Tolerance: {why}")
-        parts.append("\n".join(table([case.check() for case in cases])))
+        parts.append(f"![{source.title}](../images/{source.picture}.svg)")
+    return "\n\n".join(parts) + "\n"
+
+
+def figures_page() -> str:
+    """The text of the page of all figures."""
+    return "\n".join([FIGURES_HEAD, *map(figures_section, SOURCES)])
+
+
+def figures_section(source: Source) -> str:
+    """A table for each kind and tolerance of a source."""
+    parts = [f"## {source.title}"]
+    for kind in by_kind(source.cases):
+        cases = [case for case in source.cases if case.kind is kind]
+        for why, alike in groupby(cases, key=lambda case: case.why):
+            parts.append(f"**{kind.capitalize()}.** Tolerance: {why}")
+            parts.append("\n".join(table([case.check() for case in alike])))
     return "\n\n".join(parts) + "\n"
 
 
@@ -180,11 +233,14 @@ PICTURES: dict[str, Callable[[], Figure]] = {
 
 
 if __name__ == "__main__":
+    written = {PAGE: page(), FIGURES: figures_page()}
     if sys.argv[1:] == ["--check"]:
         missing = [name for name in PICTURES if not (IMAGES / f"{name}.svg").exists()]
-        if missing or not PAGE.exists() or PAGE.read_text(encoding="utf-8") != page():
-            sys.exit(f"{PAGE} is out of date; run python docs/generate_verification.py")
+        for path, text in written.items():
+            if missing or not path.exists() or path.read_text(encoding="utf-8") != text:
+                sys.exit(f"{path} is out of date; run python docs/generate_verification.py")
     else:
-        PAGE.write_text(page(), encoding="utf-8")
+        for path, text in written.items():
+            path.write_text(text, encoding="utf-8")
         for name, draw in PICTURES.items():
             (IMAGES / f"{name}.svg").write_bytes(image(draw(), ".svg"))

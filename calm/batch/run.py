@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, TypeVar
 from calm.batch.compiling import compile_kernel
 from calm.batch.dataset import layout_of
 from calm.batch.profiles import Batch
-from calm.batch.result import open_result, readable, statuses_of
+from calm.batch.result import readable, statuses_of, stored_result
 from calm.batch.shape import shape_of
 from calm.batch.statuses import Ending, endings
 from calm.batch.store.identity import identity_of, to_text
@@ -210,7 +210,7 @@ def _complete(
 
 def _found(output: Path) -> Outcome:
     """Of a finished result."""
-    with open_result(output) as result, readable(output):
+    with stored_result(output) as result, readable(output):
         return Outcome(statuses_of(result), True)
 
 

@@ -18,7 +18,10 @@ from calm.case.result import Result
 from calm.case.tow import Tow
 from calm.errors import NoEquilibrium
 from calm.files import MooringFile, read_mooring
-from calm.physics.line import REFERENCE_DENSITY, Line, Water
+from calm.files.definition import STEEL_DENSITY
+from calm.physics.drag import BLOCK_CD, area_drag
+from calm.physics.line import Line, Water
+from calm.physics.reference import REFERENCE_DENSITY
 from calm.solve import Settings, Solution, Status, fit_length, solve_mooring
 from calm.solve.closing import COARSE_STEP
 from calm.solve.standing import standing_lift, too_heavy
@@ -128,6 +131,21 @@ class Mooring:
             + excess * (part.component.displaced_volume or 0.0)
             for part in parts_of(self.file.pieces[-1:])
         )
+
+    @cached_property
+    def anchor_drag(self) -> float:
+        """K of the falling anchor, or where it gives none that of a cube [N/(m/s)²].
+
+        The cube has the volume that the anchor displaces, or that of steel of its weight.
+        """
+        anchor = self.file.anchor
+        if anchor.kt is not None:
+            return anchor.kt
+        volume = anchor.displaced_volume
+        if not volume:
+            density = anchor.material_density or STEEL_DENSITY
+            volume = self.anchor_weight / ((density - REFERENCE_DENSITY) * self.water.gravity)
+        return area_drag(max(volume, 0.0) ** (2.0 / 3.0), BLOCK_CD)
 
     def solve(self) -> Result:
         """Find the static equilibrium.

@@ -130,7 +130,7 @@ class Tow:
 
     @property
     def keys(self) -> TowKeys:
-        """The `tow:` of the file."""
+        """The keys of `tow` in the file."""
         assert self.file.tow is not None
         return self.file.tow
 

@@ -105,20 +105,27 @@ def _held_by(way: Sequence[Piece]) -> tuple[Piece, bool] | None:
 @rule("metals")
 def metals(handling: Handling) -> Iterator[Verdict]:
     """Metals far apart in the galvanic series that touch, wherever both materials are known."""
-    pieces = handling.mooring.file.pieces
+    warned: set[str] = set()
+    for base, noble, volts in unlike_metals(handling.mooring.file.pieces):
+        if base.label not in warned:
+            warned.add(base.label)
+            yield _corrodes(base, noble, volts)
+
+
+def unlike_metals(
+    pieces: Sequence[Piece],
+) -> Iterator[tuple[Piece | Clamp, Piece | Clamp, float]]:
+    """What touches of metals far apart in the galvanic series: base, noble, and how far [V]."""
     pairs: list[tuple[Piece | Clamp, Piece | Clamp]] = [*pairwise(pieces)]
     for piece in pieces:
         if not _has(piece, _INSULATED):
             pairs += [(piece, clamp) for clamp in piece.clamps]
-    warned: set[str] = set()
     for one, other in pairs:
         first, second = potential_of(one.component), potential_of(other.component)
         if first is None or second is None or abs(first - second) <= GREATEST_DIFFERENCE:
             continue
         base, noble = (one, other) if first < second else (other, one)
-        if base.label not in warned:
-            warned.add(base.label)
-            yield _corrodes(base, noble, abs(first - second))
+        yield base, noble, abs(first - second)
 
 
 def potential_of(component: Component) -> float | None:

@@ -12,7 +12,7 @@ from calm.checks.criterion import Judged, parts_of
 from calm.checks.finding import Verdict, at_most, rule, told
 from calm.checks.launch import Launch
 from calm.checks.recovery import Recovery
-from calm.physics.line import REFERENCE_DENSITY
+from calm.physics.reference import REFERENCE_DENSITY
 from calm.quantities import say
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def clamp_grip_on_the_way(handling: Handling) -> Iterator[Verdict]:
         lift = _lift(part, handling.mooring, density)
         pulls = []
         if isinstance(launch, Launch):
-            pulls.append((abs(lift + drag * launch.fall_speed**2), " in the fall"))
+            pulls.append((abs(lift + drag * launch.greatest_speed**2), " in the fall"))
         if isinstance(rise, Recovery) and part.index <= rise.released:
             pulls.append((abs(lift - drag * rise.rise_speed**2), " in the rise"))
         if pulls:

@@ -7,8 +7,6 @@ from dataclasses import dataclass, replace
 from math import isnan
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from calm.checks.finding import State, Verdict, at_least, at_most, rule, told, unknown, verdict_on
 from calm.checks.launch import Launch
 from calm.checks.limits import Citing
@@ -96,10 +94,11 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
     if isinstance(launch, NoEquilibrium):
         yield _unsolved("fall", launch)
         return
-    greatest = np.maximum(launch.tension_top, launch.tension_bottom)
-    for piece, tension in zip(handling.mooring.file.pieces, greatest.tolist(), strict=False):
+    most = "" if launch.anchor_drag_known else "at most "
+    greatest = launch.greatest_tension.tolist()
+    for piece, tension in zip(handling.mooring.file.pieces, greatest, strict=False):
         limit = lesser_load(piece.component, *factors)
-        bears = f"{piece.label} bears {say('tension', tension)} in the fall"
+        bears = f"{piece.label} bears {most}{say('tension', tension)} in the fall"
         if limit is None:
             yield unknown(
                 piece,
@@ -117,7 +116,7 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
             source = cite("launch_safety_factor")
             message = f"{bears}; its breaking load over {factors[1]:g} is {say('tension', limit)}."
         if tension > limit and not launch.anchor_drag_known:
-            message += " The anchor's own drag is not known: this is the greatest."
+            message += " That is of an anchor without drag; its own is not known."
             yield unknown(piece, message, "Give the anchor's `kt`.", tension)
             continue
         remedy = "Take a stronger one, or lower the anchor on a parachute or a wire."
@@ -145,8 +144,11 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
         limit = GREATEST_TOUCHDOWN_SPEED
         yield at_most(anchor, speed, limit, f"{message}.", remedy, State.WARN)
         return
-    message += ". Its own drag is not known: this is the greatest."
-    if speed <= GREATEST_TOUCHDOWN_SPEED:
+    message += (
+        ". Its own drag is not known: that is of a cube of its volume; without any it would be "
+        f"{say('speed', launch.greatest_speed)}."
+    )
+    if launch.greatest_speed <= GREATEST_TOUCHDOWN_SPEED:
         yield at_most(anchor, speed, GREATEST_TOUCHDOWN_SPEED, message, remedy, State.WARN)
     else:
         yield unknown(anchor, message, "Give the anchor's `kt`.", speed)

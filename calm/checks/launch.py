@@ -38,8 +38,9 @@ class Launch:
     drift : velocity to the east and to the north [m/s]
     tension_top, tension_bottom : (n,) of every piece above the anchor [N]; 0 of what stays at the
         surface
-    anchor_drag_known : False where the anchor gives no `kt`: it is taken to have no drag, and the
-        speed is the greatest there can be
+    anchor_drag_known : False where the anchor gives no `kt`: it is dragged as a cube
+    greatest_speed, greatest_tension : speed [m/s] and tension of every piece (n,) [N]; where
+        the anchor's drag is not known those of one that has none, the most there can be
     tangles : the pieces that have, or part of which has, been overtaken by what was above
     in_still_water : whether the fall is that in still water, because a line that doubles back
         finds no steady motion in this current
@@ -52,6 +53,8 @@ class Launch:
     tension_top: Floats
     tension_bottom: Floats
     anchor_drag_known: bool
+    greatest_speed: float
+    greatest_tension: Floats
     tangles: tuple[int, ...]
     in_still_water: bool = False
 
@@ -79,14 +82,18 @@ def launch_of(mooring: Mooring, result: Result) -> Launch:
     whole = with_axial_clamps(mooring.line, mooring.file.pieces[:-1])
     count = len(whole.length)
     first = head_count(whole) if result.type == "surface" else 0
-    line, kt = part_of(whole, first, count), mooring.file.anchor.kt
-    anchor = FallingAnchor(mooring.anchor_weight, kt or 0.0)
+    line, known = part_of(whole, first, count), mooring.file.anchor.kt is not None
+    anchor = FallingAnchor(mooring.anchor_weight, mooring.anchor_drag)
 
-    def fall(drag: float, water: Water) -> FreeMotion:
+    def fall(drag: float, water: Water, own: float = 1.0) -> FreeMotion:
         changed: Line = replace(line, tangential_drag=drag * line.tangential_drag)
-        return solve_fall(
-            changed, water, replace(anchor, drag=drag * anchor.drag), mooring.settings
-        )
+        falling = replace(anchor, drag=own * drag * anchor.drag)
+        return solve_fall(changed, water, falling, mooring.settings)
+
+    def falls(water: Water) -> tuple[FreeMotion, FreeMotion]:
+        """As it falls, and with the least drag that its anchor may have."""
+        motion = fall(1.0, water)
+        return motion, motion if known else fall(1.0, water, own=0.0)
 
     def speed(drag: float, water: Water) -> float:
         try:
@@ -96,21 +103,29 @@ def launch_of(mooring: Mooring, result: Result) -> Launch:
 
     water, still_water = mooring.water, False
     try:
-        motion = fall(1.0, water)
+        motion, fastest = falls(water)
     except NoEquilibrium:
         water, still_water = water.still(), True
-        motion = fall(1.0, water)
-    top, bottom = motion.solution.tension[motion.solution.piece_nodes.T]
+        motion, fastest = falls(water)
     still = np.zeros(first)
+    top, bottom = (np.concatenate([still, end]) for end in _tensions(motion))
     east, north, up = motion.velocity.tolist()
     return Launch(
         fall_speed=-up,
         fall_speed_band=(speed(AXIAL_DRAG_BAND, water), speed(1.0 / AXIAL_DRAG_BAND, water)),
         anchor_tension=float(motion.solution.tension[-1]),
         drift=(east, north),
-        tension_top=np.concatenate([still, top]),
-        tension_bottom=np.concatenate([still, bottom]),
-        anchor_drag_known=kt is not None,
+        tension_top=top,
+        tension_bottom=bottom,
+        anchor_drag_known=known,
+        greatest_speed=-float(fastest.velocity[2]),
+        greatest_tension=np.concatenate([still, np.maximum(*_tensions(fastest))]),
         tangles=tuple(first + piece for piece in motion.tangles),
         in_still_water=still_water,
     )
+
+
+def _tensions(motion: FreeMotion) -> Floats:
+    """(2, n) at the upper and at the lower end of every piece that falls [N]."""
+    found: Floats = motion.solution.tension[motion.solution.piece_nodes.T]
+    return found

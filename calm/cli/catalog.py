@@ -136,7 +136,7 @@ def check(file: Path | None = None, /, *, json: bool = False) -> ExitCode:
     else:
         show("".join(f"{finding.id}: {finding.message}\n" for finding in findings))
         show("".join(f"{each.id}: {told(each)}\n" for each in missing))
-        narrate(f"{len(definitions)} components checked, {len(findings)} findings")
+        narrate(f"components checked: {len(definitions)}; findings: {len(findings)}")
         if missing:
             narrate(summarised(missing))
     return ExitCode.FINDING if findings else ExitCode.DONE

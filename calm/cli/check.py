@@ -205,10 +205,9 @@ def _judged(
     stands = [(design.name, mooring, day) for design in designs for mooring in design.moorings]
     expect_many(SOLVES * len(stands))
     if len(designs) > FEW:
-        if drawn:
-            from calm.report.check.panels import sheet
-
-            sheet()  # loaded and laid out before other processes are
+        if drawn:  # loaded before other processes are
+            import calm.report.check.section
+            import calm.report.html  # noqa: F401
         whole = [(number, design, day, drawn, draws) for number, design in enumerate(designs, 1)]
         return mapped(_solve_and_conclude, whole, workers, "moorings judged")
     solved = iter(mapped(_stand, stands, workers, "environments solved"))

@@ -24,7 +24,7 @@ DECK_EXAMPLES = """Examples:
   calm deck mooring.yaml -o cruise/
   calm deck mooring.yaml -o cruise/ --page a3 --environment storm
   calm deck north.yaml south.yaml -o cruise/
-  calm deck mooring.yaml -o cruise/ --ship-speed "2 knot" --streamed "900 m"
+  calm deck mooring.yaml -o cruise/ --ship-speed "2 knot" --streamed "900 m" --course "245 deg"
   calm deck shallow.yaml -o cruise/ --order anchor-first"""
 
 
@@ -38,6 +38,7 @@ def deck(
     order: Literal["anchor-last", "anchor-first"] = "anchor-last",
     ship_speed: str = "1 m/s",
     streamed: str | None = None,
+    course: str | None = None,
     catalog: list[Path] | None = None,
 ) -> ExitCode:
     """Draw and list what goes to sea with moorings.
@@ -65,6 +66,9 @@ def deck(
     streamed
         Horizontal distance from the anchor to the top float as it is let go; that of the line as
         it is towed at that speed unless given.
+    course
+        Of the ship over the ground as it tows the line out; against the current at the surface
+        unless given.
     catalog
         A catalogue of your own; its components hide others of the same id. Repeatable.
     """
@@ -76,7 +80,13 @@ def deck(
 
     check_folder(output)
     moment()
-    ship = quantities({"ship_speed": (ship_speed, "speed"), "streamed": (streamed, "length")})
+    ship = quantities(
+        {
+            "ship_speed": (ship_speed, "speed"),
+            "streamed": (streamed, "length"),
+            "course": (course, "angle"),
+        }
+    )
     designs, tows = read_designs(files, environment, catalog or [], None, "calm deck")
     if tows:
         narrate(f"not drawn, since towed: {', '.join(map(str, tows))}")

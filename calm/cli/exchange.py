@@ -32,6 +32,7 @@ def import_(
     define: Annotated[list[str] | None, Parameter(name=["--define", "-D"])] = None,
     environment: Path | None = None,
     columns: str | None = None,
+    elements: Path | None = None,
     match_catalogue: bool = False,
     allow_include: bool = False,
     json: OutputPath = None,
@@ -59,6 +60,9 @@ def import_(
         An environment file, in place of what the file says of the water.
     columns
         The headings of a table by what they hold: name=Item,length=Len.
+    elements
+        A library of elements, with the figures that a list of names lacks: the mdcodes.mat of
+        Mooring Design & Dynamics, the table of moords, or a workbook.
     match_catalogue
         Use catalogue entries for components that agree with them in name and figures.
     allow_include
@@ -72,7 +76,7 @@ def import_(
 
     if not files:
         raise UsageError("calm import needs a file")
-    options = Options(_pairs("--define", define or []), _columns(columns), allow_include)
+    options = Options(_pairs("--define", define or []), _columns(columns), elements, allow_include)
     targets = _targets(files, output)
     if json is not None and json != STDOUT:
         check_destination(json)

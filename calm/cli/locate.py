@@ -16,6 +16,8 @@ from calm.errors import UsageError
 if TYPE_CHECKING:
     from calm.locate import Sound
 
+DEFAULT_SPEED = "1500 m/s"
+
 LOCATE_EXAMPLES = """Examples:
 
   calm locate ranges.csv
@@ -33,7 +35,7 @@ def locate(
     file: Path,
     /,
     *,
-    sound_speed: str = "1500 m/s",
+    sound_speed: str | None = None,
     transducer: str = "0 m",
     depth: str | None = None,
     above_seabed: str = "0 m",
@@ -54,7 +56,7 @@ def locate(
         transducer) and range[m], or time[s], there and back.
     sound_speed
         Speed of sound for times: a speed, or a CSV file with the columns depth[m] and
-        sound_speed[m/s].
+        sound_speed[m/s]; 1500 m/s unless given. Ranges in metres are taken as they are.
     transducer
         Depth of the ship's transducer.
     depth
@@ -66,7 +68,8 @@ def locate(
     json
         Write the place as JSON, - to print it.
     output
-        A mooring file: write position and depth into its `deployed:`.
+        A mooring file: write position and depth into its `deployed:`, and say how far that is from
+        its planned position.
     """
     from calm.locate import locate as found_at
     from calm.locate import read_ranges
@@ -93,8 +96,10 @@ def locate(
             "--transducer and --above-seabed are not negative, and what answers is deeper than "
             "the transducer"
         )
-    sound = _sound(sound_speed)
+    sound = _sound(sound_speed or DEFAULT_SPEED)
     survey = read_ranges(file, under)
+    if sound_speed is not None and not survey.timed:
+        narrate("--sound-speed is not used: ranges in metres are taken as they are")
     for notice in survey.notices:
         narrate(f"{file}: {notice}")
     located = found_at(survey, sound, answering)
@@ -103,7 +108,10 @@ def locate(
     if output is not None:
         from calm.locate.deployed import with_deployed
 
-        edited = with_deployed(output, located, water_depth)
+        working, text, beside = with_deployed(output, located, water_depth)
+        edited = working, text
+        for line in beside:
+            narrate(f"{output}: {line}")
     outputs.write_answer(
         lambda: {**located.to_dict(), "depth": water_depth}, located_part(located, water_depth)
     )

@@ -15,8 +15,10 @@ from calm.cli.build import BUILD_EXAMPLES, build
 from calm.cli.catalog import catalog
 from calm.cli.chart import chart
 from calm.cli.check import CHECK_EXAMPLES, check
+from calm.cli.completion import COMPLETION_EXAMPLES, completion
 from calm.cli.deck import DECK_EXAMPLES, deck
 from calm.cli.diff import DIFF_EXAMPLES, diff
+from calm.cli.docs import DOCS_EXAMPLES, docs
 from calm.cli.exchange import EXPORT_EXAMPLES, IMPORT_EXAMPLES, export, import_
 from calm.cli.exit_codes import ExitCode
 from calm.cli.locate import LOCATE_EXAMPLES, locate
@@ -42,9 +44,10 @@ finishes, 130 interrupted."""
 
 
 def _version() -> str:
-    from calm.version import __version__
+    from calm.version import __version__, built_from
 
-    return __version__
+    commit = built_from()
+    return f"{__version__} (commit {commit})" if commit else __version__
 
 
 app = App(
@@ -80,6 +83,8 @@ app.command(chart)
 app.command(verify, usage="Usage: calm verify [OPTIONS] [WORD...]", help_epilogue=VERIFY_EXAMPLES)
 app.command(new, help_epilogue=NEW_EXAMPLES)
 app.command(schema, help_epilogue=SCHEMA_EXAMPLES)
+app.command(completion, usage="Usage: calm completion SHELL", help_epilogue=COMPLETION_EXAMPLES)
+app.command(docs, usage="Usage: calm docs [OPTIONS] [PAGE]", help_epilogue=DOCS_EXAMPLES)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -1,4 +1,4 @@
-"""``calm verify``: published figures against what CALM computes."""
+"""``calm verify``: figures that are known without CALM against what it computes."""
 
 from __future__ import annotations
 
@@ -25,11 +25,12 @@ VERIFY_EXAMPLES = """Examples:
 def verify(
     words: list[str] | None = None, /, *, field: bool = False, json: OutputPath = None
 ) -> ExitCode:
-    """Compute published figures and compare.
+    """Compute figures that are known without CALM, and compare.
 
-    Closed forms, published charts and tables, moorings that other programs have
-    solved, and what must hold for any line. The exit code is 1 when a figure is
-    out of its tolerance.
+    Each figure is published, or comes from a closed form or an independent
+    integration, or is a property that any line must have. Those that CALM meets
+    by construction are checked and not counted. The exit code is 1 when a figure
+    is out of its tolerance.
 
     Parameters
     ----------
@@ -37,7 +38,7 @@ def verify(
         Only cases whose source or name has every one of these words or parts of words.
     field
         Estimate the depths of a real mooring at hidden sensors in place of it, and compare
-        them with what was measured: see docs/motion.md.
+        them with what was measured: see `calm docs motion`.
     json
         Write the figures, with the reason for each tolerance, as JSON, - to print it.
     """

@@ -19,7 +19,7 @@ def verify_field(outputs: Outputs) -> ExitCode:
     import calm
     from calm.case import Mooring
     from calm.checks.finding import State
-    from calm.cli.motion import fitted, parse_gap, read_measured
+    from calm.cli.motion_input import fitted, parse_gap, read_measured
     from calm.motion.forward import Forward
     from calm.motion.run import estimate_in_memory
     from calm.motion.study import intervals, judge_hidden, prepare
@@ -28,7 +28,7 @@ def verify_field(outputs: Outputs) -> ExitCode:
     from calm.report.motion.document import factors_document, held_out_document
     from calm.shipped import shipped_folder
 
-    folder = shipped_folder("field") / "dune2"
+    folder = shipped_folder("docs") / "field" / "dune2"
     mooring = calm.load(folder / "mooring.yaml")
     assert isinstance(mooring, Mooring)
     measured, _, _ = read_measured(

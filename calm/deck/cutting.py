@@ -10,6 +10,7 @@ from calm.deck.order import Order
 from calm.errors import NoEquilibrium
 from calm.files import Cable, Chain, Piece
 from calm.files.flexible import strain_under
+from calm.solve import expect_many
 
 if TYPE_CHECKING:
     from calm.case import Result
@@ -17,6 +18,9 @@ if TYPE_CHECKING:
 
 LENGTH_ERROR = 0.005
 """Share by which a length may be off: the tolerance, and the error whose effect is told."""
+
+ORDINARY = 20
+"""Pieces of a line whose solution takes as long as that of an ordinary one."""
 
 LEAST_TOLERANCE = 0.02
 """Nobody measures a wire better than this on a deck [m]."""
@@ -63,6 +67,7 @@ def cuts_of(result: Result, parts: Sequence[Hung], order: Order) -> tuple[Cut, .
     """All that is cut and marked, down the line."""
     cables = [one for one in parts if _is_cut(one)]
     count = len(cables)
+    expect_many(count * max(1.0, len(result.components) / ORDINARY))
     return tuple(
         _cut(result, one, number if order is Order.ANCHOR_LAST else count + 1 - number, count)
         for number, one in enumerate(cables, 1)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import ceil
 from typing import TYPE_CHECKING
 
+from calm.checks.arrangement import unlike_metals
 from calm.files import Cable, Chain, Piece
 
 if TYPE_CHECKING:
@@ -63,10 +65,11 @@ class Stock:
 
 
 def hardware_of(parts: Sequence[Hung]) -> tuple[Stock, ...]:
-    """The connectors of a line, the chains, and the pins and thimbles that belong to them.
+    """The connectors of a line, the chains, and what belongs to them.
 
-    A shackle has a pin, and one with a bolt and nut a cotter pin, where its definition says so. A
-    termination that names a thimble has one at each end.
+    A shackle has a bolt with nut and cotter pin, unless its definition says that its pin is screwed
+    in. A termination that names a thimble has one at each end. Where metals that corrode each other
+    touch, an isolator is between them and an anode at the baser one.
     """
     groups: dict[tuple[str, str], list[Hung]] = {}
     for one in parts:
@@ -76,6 +79,7 @@ def hardware_of(parts: Sequence[Hung]) -> tuple[Stock, ...]:
     found = [_stock(kind, use, group) for (kind, use), group in groups.items()]
     found += _pins(groups)
     found += _thimbles(parts)
+    found += _against_corrosion(parts)
     return tuple(sorted(found, key=lambda stock: ORDER.index(stock.kind)))
 
 
@@ -120,18 +124,34 @@ def _pins(groups: dict[tuple[str, str], list[Hung]]) -> Iterator[Stock]:
         if kind != "shackles":
             continue
         component, count = group[0].part.component, len(group)
-        pin = "bolt and nut" if _is_bolted(component) else "pin"
+        pin = "bolt and nut" if _is_bolted(component) else "screw pin"
         name = f"{pin} of {group[0].name}"
         yield Stock("pins", use, name, count, spares_of("pins", count), basis="one a shackle")
         if _is_bolted(component):
             name = f"cotter pin of {group[0].name}"
             spares = spares_of("cotter pins", count)
-            yield Stock("cotter pins", use, name, count, spares, basis="one a bolted shackle")
+            yield Stock("cotter pins", use, name, count, spares, basis="one a shackle with bolt")
 
 
 def _is_bolted(component: Component) -> bool:
-    words = f"{component.name or ''} {component.note or ''}".lower()
-    return "bolt" in words or "cotter" in words
+    return "screw" not in f"{component.name or ''} {component.note or ''}".lower()
+
+
+def _against_corrosion(parts: Sequence[Hung]) -> Iterator[Stock]:
+    """By what there is of unlike metals: `calm check` warns of the same contacts."""
+    pieces = [one.part for one in parts if isinstance(one.part, Piece)]
+    contacts = [(base, noble) for base, noble, _ in unlike_metals(pieces)]
+    names = Counter(tuple(sorted((base.use, noble.use))) for base, noble in contacts)
+    for (one, other), count in names.items():
+        yield Stock(
+            "isolators", "", f"isolator between {one} and {other}", count,
+            spares_of("isolators", count), basis="one a contact of unlike metals",
+        )  # fmt: skip
+    for use, count in Counter({base.label: base.use for base, _ in contacts}.values()).items():
+        yield Stock(
+            "anodes", use, f"anode on {use}", count, spares_of("anodes", count),
+            basis="one a piece of the baser metal",
+        )  # fmt: skip
 
 
 def _thimbles(parts: Sequence[Hung]) -> Iterator[Stock]:

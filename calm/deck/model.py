@@ -76,13 +76,15 @@ def deck_of(
     order: Order = Order.ANCHOR_LAST,
     ship_speed: float = SHIP_SPEED,
     streamed: float | None = None,
+    course: float | None = None,
 ) -> Deck:
     """The sheets of a mooring.
 
     Parameters
     ----------
     moorings : the same one in each environment, that of the sheets first, and cut alike in all
-    ship_speed, streamed : of the anchor drop, see `calm.drop.drop_plan` [m/s], [m]
+    ship_speed, streamed, course : of the anchor drop, see `calm.drop.drop_plan` [m/s], [m],
+        [degrees]
 
     Raises
     ------
@@ -113,7 +115,7 @@ def deck_of(
     if order is Order.ANCHOR_LAST:
         try:
             stands = result if result.mooring is first else None
-            plan = drop_plan(first, ship_speed, streamed, result=stands)
+            plan = drop_plan(first, ship_speed, streamed, course, result=stands)
         except NoEquilibrium as failure:
             plan = failure
             notes.append(f"The anchor drop is not planned: {failure}")

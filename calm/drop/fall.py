@@ -10,6 +10,7 @@ import numpy as np
 from calm.drop.chain import chain_of
 from calm.drop.loads import Sea
 from calm.drop.motion import Anchor, Mover, NoStep, State
+from calm.errors import UsageError
 from calm.physics.line import Line, Water
 from calm.solve import Status
 
@@ -19,6 +20,10 @@ AT_REST = 1e-7
 """Share of the depth by which nothing moves any more, however long one waits."""
 LONG = 1e6
 """The longest step [s]: at its end a line is at rest."""
+SLOWEST_FLOW = 0.01
+"""Past a line that is streamed less far than the ship's speed takes it [m/s]."""
+STREAMED_WITHIN = 1e-4
+"""Of the length of the line, to be streamed as far as asked."""
 PUSHED = 1e-4
 """Of all weights: what a bar at rest is pushed with at least, to be laid down."""
 _FALLS = 3
@@ -63,10 +68,15 @@ class Course:
 def towed(line: Line, water: Water, anchor: Anchor, ship: Ship, fineness: Fineness) -> State:
     """The line as it streams behind the ship, with its lower end at the surface, at the origin.
 
+    Streamed less far than the ship's speed takes it, it is as a slower ship streams it; farther,
+    its free end is held there.
+
     Raises
     ------
     NoEquilibrium
         ``not-converged`` where no steady shape is found.
+    UsageError
+        It streams farther than it is to be, however slow the ship.
     """
     flow = replace(water, u=water.u - ship.east, v=water.v - ship.north)
     mover = Mover(chain_of(line, fineness.bars), _sea(flow), anchor, held=True)
@@ -85,7 +95,8 @@ def towed(line: Line, water: Water, anchor: Anchor, ship: Ship, fineness: Finene
     )
     state = _settled(mover, state, 1e-3 * water.depth)[-1]
     if ship.streamed is not None:
-        state = _drawn(mover, state, ship.streamed)
+        nearer = ship.streamed < _streamed(state)
+        state = (_slowed if nearer else _drawn)(mover, state, ship.streamed)
     return replace(state, time=0.0, velocity=np.zeros_like(state.node))
 
 
@@ -166,8 +177,9 @@ def _stepped(mover: Mover, state: State, step: float, depth: float) -> State:
     """
     shortest = _SHORTEST * depth
     while step > shortest:
-        with suppress(NoStep):
-            return mover.stepped(state, step)
+        for gently in (False, True):
+            with suppress(NoStep):
+                return mover.stepped(state, step, gently)
         step *= 0.4
     raise Status.NOT_CONVERGED.because(
         f"The way of the line finds no next step, {state.time:.1f} s after it was let go."
@@ -214,6 +226,51 @@ def _laid_down(mover: Mover, state: State) -> State | None:
         else:
             node[: bar + 1] += np.linalg.norm(upward) * axis - upward
     return replace(state, node=node, velocity=np.zeros_like(node))
+
+
+def _streamed(state: State) -> float:
+    """Horizontal distance from the lower end to the free one [m]."""
+    return float(np.linalg.norm(state.node[0, :2] - state.node[-1, :2]))
+
+
+def _slowed(mover: Mover, state: State, streamed: float) -> State:
+    """The line in a flow so much slower that it streams to a distance [m].
+
+    A free end that is pushed nearer in the whole flow would bend the line as no rope bends.
+
+    Raises
+    ------
+    UsageError
+        It streams farther in a flow that hardly moves it.
+    """
+    from scipy.optimize import brentq
+
+    sea = mover.sea
+    reach = float(mover.chain.length.sum())
+    current, _ = sea.water.at(np.zeros(()))
+    whole = float(np.linalg.norm(current[:2]))
+
+    def excess(share: float) -> float:
+        nonlocal state
+        water = replace(sea.water, u=share * sea.water.u, v=share * sea.water.v)
+        slower = replace(mover, sea=replace(sea, water=water))
+        state = _settled(slower, replace(state, time=0.0), 1e-3 * water.depth)[-1]
+        return _streamed(state) - streamed
+
+    share, least = 1.0, min(SLOWEST_FLOW / whole, 0.5)
+    # downwards by halves: a jump to a far slower flow may fold the line
+    while excess(share := max(0.5 * share, least)) > 0.0:
+        if share == least:
+            raise UsageError(
+                f"behind a ship that hardly moves the line still streams {_streamed(state):.1f} m: "
+                f"it cannot be streamed to {streamed:g} m"
+            )
+    excess(brentq(excess, share, min(2.0 * share, 1.0), rtol=1e-7))
+    if abs(_streamed(state) - streamed) > STREAMED_WITHIN * reach:
+        raise Status.NOT_CONVERGED.because(
+            f"No speed of the ship streams the line to {streamed:g} m."
+        )
+    return state
 
 
 def _drawn(mover: Mover, state: State, streamed: float) -> State:

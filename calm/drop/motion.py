@@ -15,7 +15,8 @@ import numpy as np
 
 from calm.drop.chain import Chain
 from calm.drop.loads import SLOWEST, Loads, Sea, loads_on
-from calm.physics.line import REFERENCE_DENSITY, Floats, Integers
+from calm.physics.line import Floats, Integers
+from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.reynolds import Smooth, drag_variation
 
 MOST_ROUNDS = 16
@@ -87,11 +88,12 @@ class Mover:
     bedded: bool = True
     tether: Floats | None = None
 
-    def stepped(self, state: State, step: float) -> State:
+    def stepped(self, state: State, step: float, gently: bool = False) -> State:
         """The state a time later [s].
 
         A line at rest begins to move by rounds in which drag goes with the speed: they find the
-        way to where it goes with the square.
+        way to where it goes with the square. So does one that is to be moved `gently`, as if it
+        were at rest.
 
         Raises
         ------
@@ -99,14 +101,15 @@ class Mover:
             Where Newton's method does not find it.
         """
         variation = self.variation(state)
-        node = state.node + step * state.velocity
+        gently = gently or not state.velocity.any()
+        node = state.node + (0.0 if gently else step) * state.velocity
         if self.held:
             node[-1] = state.node[-1]
         if self.tether is not None:
             node[0, :2] = self.tether
         tension = state.tension.copy()
         reach = float(self.chain.length.sum())
-        slowest = SLOWEST if state.velocity.any() else GENTLE
+        slowest = GENTLE if gently else SLOWEST
         nearer = np.inf
         for _ in range(MOST_ROUNDS):
             change = self._change(state.node, node, tension, variation, step, slowest)

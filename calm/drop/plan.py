@@ -5,11 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from calm.case import Mooring
 from calm.drop.record import DepthReached, Moment, Path, Pull
+from calm.files import Position
+from calm.physics.ellipsoid import Frame
 
 ASTRAY = 1e-3
-"""Share of the depth by which the line may come to rest elsewhere than its equilibrium."""
+"""Share of the depth by which the line may come to rest elsewhere than its equilibrium; beyond it
+nothing of what comes after the touchdown is shown."""
 
 
 @dataclass(frozen=True)
@@ -27,8 +32,9 @@ class DropPlan:
     fall_time : until the anchor stands on the seabed
     fall_back : how far from where it was let go it lands, towards the float
     aside : how far it lands to the right of that direction, seen from where it was let go
-    time_error, distance_error : of `fall_time` and of `fall_back`, `aside`: what steps of twice the
-        length change and what bars of twice the length do, together, and a quarter more
+    time_error, distance_error : of `fall_time` and of `fall_back`, `aside`: twice what steps of
+        twice the length change and bars of twice the length do, together; of the time 0.05 % at
+        least
     fall_time_band, fall_back_band : with the anchor's drag halved and doubled, the less first
     touchdown_speed : of the anchor as it meets the seabed
     greatest_tension : in the line, from letting go to the touchdown
@@ -37,9 +43,10 @@ class DropPlan:
     run_time : from the float over the side to the anchor let go
     let_go, start : where the anchor is let go and where the run begins, east and north of the
         target
-    anchor_drag : K of the anchor [N/(m/s)²]; `drag_known` is False where it is that of a cube of
-        its weight, since the file gives none
-    path, moments, depths, pulls : over time; shapes; of floats, instruments and releases; of pieces
+    anchor_drag : K of the anchor [N/(m/s)²]; `drag_known` is False where it is that of a cube,
+        since the file gives none
+    path, moments, depths, pulls : over time; shapes; of floats, instruments and releases, empty
+        where the line comes to rest away from its equilibrium; of pieces
     rest_difference : farthest that a piece comes to rest from its place in the equilibrium; None
         where still water leaves the line slack, so that it has no single one
     """
@@ -71,6 +78,18 @@ class DropPlan:
     pulls: tuple[Pull, ...] = field(repr=False)
     rest_difference: float | None
 
+    def position(self, place: tuple[float, float]) -> Position | None:
+        """The position of a place east and north of the target [m]; None where the target has none.
+
+        On WGS 84; by the tangent plane, within 1 m up to 10 km away.
+        """
+        target = self.mooring.file.position
+        if target is None:
+            return None
+        frame = Frame(target.latitude, target.longitude)
+        latitude, longitude, _ = frame.position(np.array([*place, 0.0]))
+        return Position.model_construct(latitude=latitude, longitude=longitude)
+
     @property
     def beyond_rating(self) -> tuple[DepthReached, ...]:
         """What comes deeper in the drop than it is made for."""
@@ -82,7 +101,7 @@ class DropPlan:
         said = []
         if not self.drag_known:
             said.append(
-                "The anchor gives no `kt`: its drag is taken to be that of a cube of its weight."
+                "The anchor gives no `kt`: its drag is taken to be that of a cube of its volume."
             )
         if self.rest_difference is None:
             said.append(
@@ -92,7 +111,8 @@ class DropPlan:
         elif self.rest_difference > ASTRAY * self.mooring.water.depth:
             said.append(
                 f"The line comes to rest {self.rest_difference:.2f} m from its equilibrium, more "
-                "than a thousandth of the depth: its depths at rest are not to be relied on."
+                "than a thousandth of the depth: the depths of instruments are not shown, and the "
+                "fall is to be doubted as well."
             )
         if self.mooring.line.strumming is not None:
             said.append("That cables strum is not in it: their drag is the one at rest.")
@@ -104,6 +124,7 @@ class DropPlan:
     def to_dict(self) -> dict[str, Any]:
         """The plan as JSON; figures in SI."""
         path = self.path
+        let_go, start = self.position(self.let_go), self.position(self.start)
         return {
             "fall_time": self.fall_time,
             "fall_back": self.fall_back,
@@ -131,6 +152,8 @@ class DropPlan:
             "run_time": self.run_time,
             "let_go": list(self.let_go),
             "start": list(self.start),
+            "let_go_position": None if let_go is None else let_go.model_dump(),
+            "start_position": None if start is None else start.model_dump(),
             "anchor_drag": self.anchor_drag,
             "anchor_drag_known": self.drag_known,
             "rest_difference": self.rest_difference,

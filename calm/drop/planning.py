@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import atan2, cos, degrees, hypot, radians, sin
+from math import cos, hypot, radians, sin
 
 import numpy as np
 
@@ -11,23 +11,24 @@ from calm.assemble import with_axial_clamps
 from calm.case import Mooring, Result
 from calm.drop.fall import Course, Fineness, Ship, fall, settle, towed
 from calm.drop.motion import Anchor, State
-from calm.drop.plan import DropPlan
+from calm.drop.plan import ASTRAY, DropPlan
 from calm.drop.record import depths_of, moments_of, path_of, pulls_of, rest_difference
 from calm.errors import NoEquilibrium, UsageError
-from calm.files.definition import STEEL_DENSITY
-from calm.physics.drag import area_drag
-from calm.physics.line import REFERENCE_DENSITY, Floats, Water
+from calm.physics.line import Floats, Water
+from calm.quantities import bearing_of
 from calm.solve import Status
 
 SHIP_SPEED = 1.0
 """Of a ship that tows the line out [m/s]: some two knots."""
 FINE = Fineness(bars=100, steps=100)
+FINEST = 4
+"""Times as many bars at most, until the line comes to rest in its equilibrium."""
 DRAG_BAND = 2.0
 """By how many times the anchor's drag may be more, or less, than given."""
-CAUTION = 1.25
-"""By how much the stated errors are more than what steps and bars of twice the length change."""
-BLOCK_CD = 1.05
-"""Of a cube that falls with a face ahead (Hoerner, Fluid-Dynamic Drag, 1965)."""
+CAUTION = 2.0
+"""How many times what steps and bars of twice the length change the stated errors are."""
+LEAST_TIME_ERROR = 5e-4
+"""Of the fall time, where the changes by steps and bars happen to be small."""
 SLOWEST_SHIP = 0.05
 """Through the water, to stream a line at all [m/s]."""
 
@@ -64,21 +65,37 @@ def drop_plan(
         result = _equilibrium(mooring)
     course = _into_the_current(mooring.water) if course is None else course % 360.0
     ship = _ship(mooring, ship_speed, streamed, course)
-    anchor = Anchor(mooring.anchor_weight, _anchor_drag(mooring))
+    anchor = Anchor(mooring.anchor_weight, mooring.anchor_drag)
     falling = with_axial_clamps(mooring.line, mooring.file.pieces[:-1])
     water = mooring.water
 
     def let_go(start: State, drag: float, fineness: Fineness) -> Course:
         return fall(falling, water, replace(anchor, drag=drag), start, fineness)
 
-    start = towed(falling, water, anchor, ship, fineness)
-    drop = let_go(start, anchor.drag, fineness)
-    longer = replace(fineness, steps=fineness.steps // 2)
+    def dropped(fine: Fineness) -> tuple[State, Course, Course, float | None]:
+        """The line as it is towed, its fall and its rest, and how far from its equilibrium."""
+        start = towed(falling, water, anchor, ship, fine)
+        drop = let_go(start, anchor.drag, fine)
+        rest = settle(mooring.line, water, anchor, drop.states[-1], fine)
+        return start, drop, rest, None if result is None else rest_difference(result, rest)
+
+    def is_astray(difference: float | None) -> bool:
+        return difference is not None and difference > ASTRAY * water.depth
+
+    fine = fineness
+    start, drop, rest, difference = dropped(fine)
+    while is_astray(difference) and fine.bars < FINEST * fineness.bars:
+        finer = replace(fine, bars=2 * fine.bars)
+        try:
+            start, drop, rest, difference = dropped(finer)
+        except NoEquilibrium:
+            break
+        fine = finer
+    astray = is_astray(difference)
+    longer = replace(fine, steps=fine.steps // 2)
     slower = let_go(start, anchor.drag, longer)
-    fewer = replace(fineness, bars=fineness.bars // 2)
+    fewer = replace(fine, bars=fine.bars // 2)
     coarser = let_go(towed(falling, water, anchor, ship, fewer), anchor.drag, fewer)
-    rest = settle(mooring.line, water, anchor, drop.states[-1], fineness)
-    difference = None if result is None else rest_difference(result, rest)
     toward = start.node[0, :2] / np.linalg.norm(start.node[0, :2])
     others = [
         let_go(start, anchor.drag * factor, longer).states[-1]
@@ -103,11 +120,11 @@ def drop_plan(
         ship_speed=ship_speed,
         course=course,
         streamed=float(np.linalg.norm(start.node[0, :2])),
-        astern=degrees(atan2(toward[0], toward[1])) % 360.0,
+        astern=bearing_of(*toward.tolist()),
         fall_time=landed.time,
         fall_back=back,
         aside=aside,
-        time_error=CAUTION * sum(map(abs, delays)),
+        time_error=max(CAUTION * sum(map(abs, delays)), LEAST_TIME_ERROR * landed.time),
         distance_error=CAUTION * sum(float(np.linalg.norm(each)) for each in missed),
         fall_time_band=(min(times), max(times)),
         fall_back_band=(min(*backs, back), max(*backs, back)),
@@ -121,8 +138,8 @@ def drop_plan(
         anchor_drag=anchor.drag,
         drag_known=mooring.file.anchor.kt is not None,
         path=path_of(drop, toward, mooring.line.anchor_height),
-        moments=moments_of(drop, rest, toward),
-        depths=depths_of(mooring.file.pieces, drop, rest),
+        moments=moments_of(drop, None if astray else rest, toward),
+        depths=() if astray else depths_of(mooring.file.pieces, drop, rest),
         pulls=pulls,
         rest_difference=difference,
     )
@@ -141,7 +158,7 @@ def _equilibrium(mooring: Mooring) -> Result | None:
 def _into_the_current(water: Water) -> float:
     """Course against the current at the surface, north where there is none [degrees]."""
     (east, north, _), _ = water.at(np.zeros(()))
-    return degrees(atan2(-east, -north)) % 360.0 if east or north else 0.0
+    return bearing_of(-east, -north) if east or north else 0.0
 
 
 def _ship(mooring: Mooring, speed: float, streamed: float | None, course: float) -> Ship:
@@ -160,18 +177,6 @@ def _ship(mooring: Mooring, speed: float, streamed: float | None, course: float)
             "length"
         )
     return Ship(east, north, streamed)
-
-
-def _anchor_drag(mooring: Mooring) -> float:
-    """K of the anchor, or where it gives none that of a cube of its volume [N/(m/s)²]."""
-    given = mooring.file.anchor.kt
-    if given is not None:
-        return given
-    volume = mooring.file.anchor.displaced_volume
-    if not volume:
-        density = mooring.file.anchor.material_density or STEEL_DENSITY
-        volume = mooring.anchor_weight / ((density - REFERENCE_DENSITY) * mooring.water.gravity)
-    return area_drag(volume ** (2.0 / 3.0), BLOCK_CD)
 
 
 def _split(state: State, toward: Floats) -> tuple[float, float]:

@@ -116,7 +116,10 @@ def clamp_places(chain: Chain, state: State) -> Floats:
 
 
 def end_tensions(mover: Mover, state: State) -> Floats:
-    """(n, 2) in every bar at its upper and at its lower end [N]."""
+    """(n, 2) in every bar at its upper and at its lower end [N]; 0 in one that is pushed.
+
+    In the first moment the anchor pushes what is beside it, where a real line goes slack.
+    """
     on = mover.chain.elements
     loads, axis = mover.loads(state.node, state.velocity, state.tension, mover.variation(state))
     pull = state.tension[:, np.newaxis] * axis
@@ -125,7 +128,8 @@ def end_tensions(mover: Mover, state: State) -> Floats:
     below = np.zeros_like(pull)
     np.add.at(above, on.bar, (1.0 - lower) * loads.force)
     np.add.at(below, on.bar, lower * loads.force)
-    return np.stack([np.linalg.norm(pull + above, axis=1), np.linalg.norm(pull - below, axis=1)], 1)
+    ends = np.linalg.norm(np.stack([pull + above, pull - below], axis=1), axis=2)
+    return np.where(state.tension[:, np.newaxis] > 0.0, ends, 0.0)
 
 
 def path_of(drop: Course, toward: Floats, anchor_height: float) -> Path:
@@ -149,15 +153,18 @@ def path_of(drop: Course, toward: Floats, anchor_height: float) -> Path:
     )
 
 
-def moments_of(drop: Course, rest: Course, toward: Floats) -> tuple[Moment, ...]:
-    """Shapes at equal intervals from letting go to the touchdown, and at rest."""
+def moments_of(drop: Course, rest: Course | None, toward: Floats) -> tuple[Moment, ...]:
+    """Shapes at equal intervals from letting go to the touchdown, and at rest where known."""
     times = np.array([state.time for state in drop.states])
     chosen = [int(np.argmin(np.abs(times - t))) for t in np.linspace(0.0, times[-1], MOMENTS)]
     shown = [drop.states[i] for i in chosen]
     names = ["let go", *(f"after {state.time:.0f} s" for state in shown[1:-1]), "touchdown"]
+    if rest is not None:
+        shown.append(rest.states[-1])
+        names.append("at rest")
     return tuple(
         Moment(state.time, name, state.node[:, :2] @ toward, -state.node[:, 2])
-        for state, name in zip([*shown, rest.states[-1]], [*names, "at rest"], strict=True)
+        for state, name in zip(shown, names, strict=True)
     )
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 from calm.case import Mooring, load
@@ -10,10 +9,12 @@ from calm.errors import CalmError
 from calm.exchange.design import Component, Design
 from calm.exchange.writing import written
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY, STEEL_DENSITY
+from calm.quantities import rounded
 
 _HOLDS = 1e8  # N: holds whatever is tied to it
 _IN_WATER = (1.0 - CATALOGUE_DENSITY / STEEL_DENSITY) * STANDARD_GRAVITY  # N of a kilogram of steel
-_STEPS = 2  # digits that a guessed weight keeps
+_DIGITS = 2  # that a guessed weight keeps
+_LEAST = 100.0  # N of a guessed weight
 
 
 def hold(design: Design, environment: list[str] | None, output: Path) -> None:
@@ -35,7 +36,7 @@ def hold(design: Design, environment: list[str] | None, output: Path) -> None:
     if pull is None:
         anchor.figures["weight"], reason = _HOLDS, "the file gives no weight; this holds anything"
     else:
-        anchor.figures["weight"] = _rounded_up(required)
+        anchor.figures["weight"] = rounded(max(required, _LEAST), _DIGITS, up=True)
         reason = (
             "the file gives no weight; 1.5 × (V + H/0.6) in this current"
             if given is None
@@ -54,16 +55,9 @@ def _pull(
     try:
         mooring = load(output, text=written(design, "", environment).text)
         assert isinstance(mooring, Mooring)
-        vertical = mooring.solve().to_dict()["anchor"]
-    except (CalmError, AssertionError):
+        anchored = mooring.solve().anchor
+    except CalmError:
         return None, 0.0
     finally:
         anchor.figures = figures
-    return float(vertical["vertical"]), float(vertical["required_weight"])
-
-
-def _rounded_up(force: float) -> float:
-    """A force with two digits, never less than it is, nor than 100 N."""
-    force = max(force, 100.0)
-    step = 10.0 ** (math.floor(math.log10(force)) - _STEPS + 1)
-    return math.ceil(force / step) * step
+    return anchored.vertical, anchored.required_weight

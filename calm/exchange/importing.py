@@ -33,11 +33,13 @@ class Options:
     ----------
     defines : macros of WHOI Cable
     columns : the headings of a table, by what they hold
+    elements : a library with the figures that a table lacks
     allow_include : whether a file may include another from outside its folder
     """
 
     defines: Mapping[str, str] = field(default_factory=dict)
     columns: Mapping[str, str] = field(default_factory=dict)
+    elements: Path | None = None
     allow_include: bool = False
 
 
@@ -72,7 +74,7 @@ FORMATS = (
     ),
     Format(
         "table", "a list in CSV or a spreadsheet", lambda path, content: is_table(content),
-        lambda path, options: read_table(path, options.columns),
+        lambda path, options: read_table(path, options.columns, options.elements),
     ),
 )  # fmt: skip
 
@@ -128,8 +130,11 @@ def import_file(
     UsageError
         There is no such format.
     """
-    chosen = format_of(path, format)
-    design = chosen.read(path, options or Options())
+    options = options or Options()
+    chosen = format_of(path, format, listed=options.elements is not None)
+    if options.elements is not None and chosen.name != "table":
+        raise refused(path, f"is of {chosen.program}; --elements is for lists")
+    design = chosen.read(path, options)
     lines = None
     if environment is not None:
         lines = environment_lines(environment, output)
@@ -150,8 +155,12 @@ def import_file(
     )  # fmt: skip
 
 
-def format_of(path: Path, name: str | None) -> Format:
+def format_of(path: Path, name: str | None, *, listed: bool = False) -> Format:
     """The format of a file: as named, or by its content.
+
+    Parameters
+    ----------
+    listed : whether what is of no other format is a list, be it of a single column
 
     Raises
     ------
@@ -172,7 +181,7 @@ def format_of(path: Path, name: str | None) -> Format:
     except OSError as error:
         raise refused(path, f"cannot be read: {error.strerror}") from None
     for each in FORMATS:
-        if each.recognises(path, content):
+        if each.recognises(path, content) or (listed and each is FORMATS[-1]):
             return each
     programs = ", ".join(f"{each.name} ({each.program})" for each in FORMATS)
     raise refused(path, f"is of no program that CALM reads: {programs}")

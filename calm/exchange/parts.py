@@ -12,7 +12,8 @@ from calm.case import Mooring, Result, Tow, TowResult
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Anchor, Component, Sphere
 from calm.files.rigid import Displacement
-from calm.physics.line import REFERENCE_DENSITY, Line, Water
+from calm.physics.line import Line, Water
+from calm.physics.reference import REFERENCE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
 _DIGITS = 9  # of a speed in m/s
@@ -32,7 +33,8 @@ class Part:
     component : its definition
     flexible : whether it is a cable or chain, whose figures are per metre
     length : unstretched [m]
-    net : net force in the water where it stands upright, + up [N or N/m]
+    buoyancy : net force in water of the reference density, + up [N or N/m]
+    net, density : the same, and the density [kg/m³], in the water where it stands upright
     kn, kt : drag across and along it at 1 m/s and 1025 kg/m³ [N/(m/s)², per metre where flexible]
     directional : whether its drag depends on its axis
     stiffness : EA [N]; 0 where it does not stretch
@@ -45,7 +47,9 @@ class Part:
     component: Component
     flexible: bool
     length: float
+    buoyancy: float
     net: float
+    density: float
     kn: float
     kt: float
     directional: bool
@@ -76,6 +80,9 @@ class Assembled:
     gravity : [m/s²]
     tow : speed [m/s], direction [degrees] and height of the sheave [m]
     afloat : whether the line reaches the surface, and whether its float has a draft there
+    riding : share of its buoyancy that the float uses here, and of its drag that acts on it; 1, 1
+        below the surface
+    windage : of the float, what of it is in the air here [m²], and its drag coefficient there
     unsaid : what no other program is told
     solve : finds the equilibrium
     """
@@ -90,6 +97,8 @@ class Assembled:
     wind: tuple[float, float]
     tow: tuple[float, float, float] | None
     afloat: tuple[bool, bool]
+    riding: tuple[float, float]
+    windage: tuple[float, float]
     unsaid: tuple[str, ...]
     solve: Callable[[], Result | TowResult]
 
@@ -145,14 +154,16 @@ def assembled(mooring: Mooring | Tow) -> Assembled:
     parts = []
     for i in range(len(line.length)):
         piece = file.pieces[i]
-        excess = _excess(water, depths[i])
+        density = float(water.at(np.array(depths[i]))[1])
+        excess = (density - REFERENCE_DENSITY) * float(water.gravity)
         on = [k for k in range(len(line.clamp_at)) if line.clamp_piece[k] == i]
         clamps = tuple(
             (
                 Part(
                     clamp.use, clamp.label, clamp.component.role, clamp.component, False,
                     float(getattr(clamp.component, "length", 0.0)),
-                    float(line.clamp_buoyancy[k] + excess * line.clamp_volume[k]),
+                    float(line.clamp_buoyancy[k]),
+                    float(line.clamp_buoyancy[k] + excess * line.clamp_volume[k]), density,
                     float(line.clamp_drag[k]), float(line.clamp_drag[k]), False, 0.0,
                 ),
                 float(line.clamp_at[k]),
@@ -164,13 +175,14 @@ def assembled(mooring: Mooring | Tow) -> Assembled:
         parts.append(
             Part(
                 piece.use, piece.label, piece.component.role, piece.component,
-                bool(line.flexible[i]), float(line.length[i]),
-                float(line.buoyancy[i] + excess * line.volume[i]),
+                bool(line.flexible[i]), float(line.length[i]), float(line.buoyancy[i]),
+                float(line.buoyancy[i] + excess * line.volume[i]), density,
                 float(line.normal_drag[i]), float(line.tangential_drag[i]),
                 bool(line.directional[i]), stiffness, clamps,
             )
         )  # fmt: skip
     wind = file.environment.wind
+    riding, windage = _riding(mooring)
     anchor = None
     tow = None
     if isinstance(mooring, Tow):
@@ -189,6 +201,8 @@ def assembled(mooring: Mooring | Tow) -> Assembled:
         wind=(0.0, 0.0) if wind is None else (wind.speed, wind.toward),
         tow=tow,
         afloat=(_reaches(mooring), line.floating is not None and line.floating.hull is not None),
+        riding=riding,
+        windage=windage,
         unsaid=_unsaid(mooring),
         solve=mooring.solve,
     )
@@ -203,6 +217,25 @@ def _reaches(mooring: Mooring | Tow) -> bool:
     except NoEquilibrium:
         whole = mooring.line.anchor_height + float(mooring.line.length.sum())
         return whole >= float(mooring.water.depth)
+
+
+def _riding(mooring: Mooring | Tow) -> tuple[tuple[float, float], tuple[float, float]]:
+    """How the float stands at the surface here: `riding` and `windage` of `Assembled`."""
+    floating = mooring.line.floating
+    if not _reaches(mooring):
+        return (1.0, 1.0), (0.0, 1.0)
+    assert isinstance(mooring, Mooring)
+    try:
+        used = mooring.solve().top.used_buoyancy
+    except NoEquilibrium:
+        used = 1.0
+    if floating is None:
+        return (used, 1.0), (0.0, 1.0)
+    seen = floating.riding(used).drag
+    area = floating.wind_area
+    if area is None:
+        area = 0.0 if floating.hull is None else floating.hull.area * (1.0 - seen)
+    return (used, seen), (area, floating.wind_cd)
 
 
 def _secants(mooring: Mooring | Tow) -> dict[int, float]:
@@ -226,12 +259,6 @@ def _depths(line: Line, water: Water, towed: bool) -> list[float]:
     if not towed:
         below += float(water.depth) - line.anchor_height - float(line.length.sum())
     return [max(float(depth), 0.0) for depth in below]
-
-
-def _excess(water: Water, depth: float) -> float:
-    """What a displaced cubic metre lifts there more than in reference water [N/m³]."""
-    _, density = water.at(np.array(depth))
-    return (float(density) - REFERENCE_DENSITY) * float(water.gravity)
 
 
 def _levels(water: Water, deepest: float) -> tuple[tuple[float, float, float, float, float], ...]:
@@ -266,9 +293,33 @@ def _unsaid(mooring: Mooring | Tow) -> tuple[str, ...]:
     return tuple(told)
 
 
-def area(part: Part) -> float:
-    """Drag coefficient times area [m²], of a cable per metre."""
-    return part.kn / (0.5 * REFERENCE_DENSITY)
+def area(part: Part, density: float | None = None, *, along: bool = False) -> float:
+    """Drag coefficient times area [m²], across the line or along it, of a cable per metre.
+
+    Parameters
+    ----------
+    density : of a program that knows one alone [kg/m³]: what drags there as the part does where
+        it stands
+    """
+    own = (part.kt if along else part.kn) / (0.5 * REFERENCE_DENSITY)
+    return own if density is None else own * part.density / density
+
+
+def flow_share(design: Assembled) -> float:
+    """Square of the current at the middle of the float over that at the end of the line.
+
+    For programs that have a float below the surface as a point there; 1 without an equilibrium.
+    """
+    try:
+        row = design.solve().components[0]
+    except NoEquilibrium:
+        return 1.0
+    depths, *parts = np.array(design.levels)[:, :4].T
+    middle, end = (
+        sum(float(np.interp(depth, depths, part)) ** 2 for part in parts)
+        for depth in ((row.depth_top + row.depth_bottom) / 2.0, row.depth_top)
+    )
+    return middle / end if end > 0.0 else 1.0
 
 
 def remarks(design: Assembled, more: Sequence[str]) -> tuple[str, ...]:

@@ -144,6 +144,8 @@ def _write_water(page: _Page, water: Water) -> None:
         for row in water.current:
             values = row if up else row[:3]
             page.add(f"      - [{', '.join(number(value) for value in values)}]")
+    elif "current" in water.guesses:
+        _keyed(page, "current", "{speed: 0 m/s, toward: 0 deg}", water)
     if water.wind is not None:
         speed, toward = water.wind
         page.add(f"  wind: {{speed: {number(speed)} m/s, toward: {number(toward)} deg}}")

@@ -146,7 +146,8 @@ def _limit_keys(model: Model, prefix: str) -> Iterator[LimitKey]:
             yield from _limit_keys(value, f"{prefix}{name}.")
         elif default is not None:
             used = default.value if value is None else value
-            yield replace(default, name=prefix + name, value=used)
+            own = prefix or used != default.value
+            yield replace(default, name=prefix + name, value=used) if own else default
 
 
 @cache

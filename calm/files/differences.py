@@ -13,6 +13,7 @@ from calm.files.alignment import Alignment, Known, align, own_labels
 from calm.files.fields import Quantity
 from calm.files.mooring import Clamp, MooringFile, Piece
 from calm.files.tables import CurrentTable, DepthTable
+from calm.quantities import bearing_of
 from calm.units import DIMENSIONS, with_unit
 
 Value = float | str | None
@@ -199,7 +200,9 @@ def _around(file: MooringFile) -> dict[str, Figure]:
     for name, part in parts.items():
         if part is not None:
             found |= {f"{name}.{key}": one for key, one in _figures(part).items()}
-    found["environments"] = _figure("environments", ", ".join(file.variants) or None)
+    for name, overlay in file.variants.items():
+        given = overlay if isinstance(overlay, dict) else {"": overlay}
+        found |= {f"environments.{name}.{key}": _text(_said(one)) for key, one in given.items()}
     found["releases"] = _figure("releases", file.releases or None)
     return found
 
@@ -243,7 +246,7 @@ def _figure(name: str, value: Any, dimension: str | None = None) -> Figure:
 def _of_current(table: CurrentTable) -> Figure:
     speeds = [math.hypot(u, v) for u, v in zip(table.u, table.v, strict=True)]
     fastest = max(range(len(speeds)), key=speeds.__getitem__)
-    toward = math.degrees(math.atan2(table.u[fastest], table.v[fastest])) % 360.0
+    toward = bearing_of(table.u[fastest], table.v[fastest])
     text = f"at most {speeds[fastest]:.3g} m/s at {table.depth[fastest]:g} m"
     if speeds[fastest] > 0.0:
         text += f" toward {toward:.0f}°"

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Annotated, Literal, Protocol
+from typing import Annotated, Any, Literal, Protocol
 
 from pydantic import AfterValidator
 
@@ -159,11 +160,11 @@ class MooringFile:
 
     `pieces` lead from the top of a mooring to its anchor; in a tow, where `tow` is not None, from
     the ship to the towed body. `notices` tell what a person may want to know: a catalogue entry
-    hidden by a nearer one, levels dropped from a measured current. `variants` are the names of
-    the environments it gives besides its own, `accepts` what it accepts of the design check,
-    `uncertainty` how sure what it stands on is, `looser` the limits of components that its line
-    sets beyond those of their definitions. `document` is what its title block says, `releases` the
-    codes of the releases, `deployed` what went over the side.
+    hidden by a nearer one, levels dropped from a measured current. `variants` are the environments
+    it gives besides its own, by name, as they are written, `accepts` what it accepts of the design
+    check, `uncertainty` how sure what it stands on is, `looser` the limits of components that its
+    line sets beyond those of their definitions. `document` is what its title block says, `releases`
+    the codes of the releases, `deployed` what went over the side.
     """
 
     path: str
@@ -176,7 +177,7 @@ class MooringFile:
     solver: Solver
     checks: Checks
     notices: tuple[str, ...]
-    variants: tuple[str, ...] = ()
+    variants: Mapping[str, Any] = field(default_factory=dict)
     accepts: tuple[Accept, ...] = ()
     uncertainty: Uncertainty = field(default_factory=Uncertainty)
     looser: tuple[LimitKey, ...] = ()

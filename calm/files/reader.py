@@ -137,7 +137,7 @@ def read_mooring(
         uncertainty=keys.uncertainty or Uncertainty(),
         looser=tuple(reader.looser),
         notices=tuple(notices),
-        variants=tuple(keys.environments or ()),
+        variants=keys.environments or {},
         accepts=accepts,
         document=keys.document,
         releases=keys.releases or (),

@@ -15,6 +15,7 @@ from calm.files.definition import DENSITY
 from calm.files.explain import about_quantity, shown, unknown
 from calm.files.fields import Model, Quantity, Text
 from calm.files.section import Section
+from calm.quantities import bearing_of
 from calm.units import DIMENSIONS, QuantityError, unit_factor
 
 Report = Callable[[Sequence[str | int], str], Problem]
@@ -276,7 +277,7 @@ def turned_by(angle: float, u: float, v: float) -> tuple[float, float]:
 
 def speed_and_direction(u: float, v: float) -> tuple[float, float]:
     """Speed and direction [deg from north, 0 to 360] of a flow by its east and north parts."""
-    return math.hypot(u, v), math.degrees(math.atan2(u, v)) % 360
+    return math.hypot(u, v), bearing_of(u, v)
 
 
 def _read_columns(

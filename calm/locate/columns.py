@@ -13,11 +13,12 @@ from calm.files.current_csv import is_content
 from calm.files.document import read_text
 from calm.files.explain import shown, unknown
 from calm.files.tables import heading
+from calm.units import DIMENSIONS, QuantityError, unit_factor
 
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
-Units = Mapping[str, Mapping[str, float]]
-"""Of every column that is known: its units and their factors, the usual one first."""
+Dimensions = Mapping[str, str]
+"""Of every column that is known: its dimension, of `calm.units`."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ class Columns:
     others: Sequence[str]
 
 
-def read_columns(path: Path, known: Units, example: str, problems: list[Problem]) -> Columns:
+def read_columns(path: Path, known: Dimensions, example: str, problems: list[Problem]) -> Columns:
     """The cells of a file as they stand; mistakes of its form are added to `problems`.
 
     Cells are between commas, semicolons or tabs; empty lines and lines after ``#`` are left out.
@@ -85,7 +86,7 @@ def read_columns(path: Path, known: Units, example: str, problems: list[Problem]
 
 
 def _factors(
-    path: Path, line: int, header: Sequence[str], known: Units, problems: list[Problem]
+    path: Path, line: int, header: Sequence[str], known: Dimensions, problems: list[Problem]
 ) -> dict[str, float]:
     factors: dict[str, float] = {}
     for column in header:
@@ -93,19 +94,20 @@ def _factors(
         name = name.lower()
         if name not in known:
             continue
-        usual = next(iter(known[name]))
+        complaint, factor = "", 1.0
         if name in factors:
             complaint = f"column `{name}` is given twice"
         elif not unit:
+            usual = DIMENSIONS[known[name]].unit
             complaint = f"column `{name}` needs a unit; did you mean `{name}[{usual}]`?"
-        elif unit not in known[name]:
-            allowed = ", ".join(known[name])
-            complaint = f"column `{shown(column)}`: no such unit; allowed: {allowed}"
         else:
-            complaint = ""
+            try:
+                factor = unit_factor(unit, known[name])
+            except QuantityError as error:
+                complaint = f"column `{shown(column)}`: `{shown(unit)}` {error}"
         if complaint:
             problems.append(Problem(str(path), line, 1, complaint))
-        factors[name] = known[name].get(unit, 1.0)
+        factors[name] = factor
     return factors
 
 

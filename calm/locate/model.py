@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from calm.locate.ellipsoid import Frame
 from calm.locate.ranges import Survey
 from calm.locate.sound import Sound
+from calm.physics.ellipsoid import Frame
 from calm.physics.line import Floats
 
 

@@ -12,8 +12,9 @@ import numpy as np
 from calm.errors import InputError, Problem
 from calm.files.explain import shown
 from calm.locate.columns import NUMBER, Row, lacking, read_columns
-from calm.locate.ellipsoid import Frame
+from calm.physics.ellipsoid import Frame
 from calm.physics.line import Floats
+from calm.units import DIMENSIONS
 
 EXAMPLE = "latitude[deg],longitude[deg],range[m]"
 LONGEST = {"range": 25_000.0, "time": 35.0}
@@ -23,13 +24,7 @@ WIDEST = 50_000.0
 MOST_PROBLEMS = 20
 _UNANSWERED = frozenset({"", "nan", "na", "n/a", "-", "none", "null"})
 _FILLS = frozenset({"-9999", "-999", "-99", "9999", "99999", "999999", "-99999", "1e35", "1e+35"})
-_DEGREES = {"deg": 1.0, "degree": 1.0, "degrees": 1.0, "°": 1.0}
-_UNITS = {
-    "latitude": _DEGREES,
-    "longitude": _DEGREES,
-    "range": {"m": 1.0, "km": 1000.0},
-    "time": {"s": 1.0, "ms": 1e-3},
-}
+_COLUMNS = {"latitude": "angle", "longitude": "angle", "range": "length", "time": "time"}
 _EARTH = 111_200.0  # metres of a degree, about
 
 
@@ -80,7 +75,7 @@ def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
         With every mistake of the file, each with its line.
     """
     problems: list[Problem] = []
-    columns = read_columns(path, _UNITS, EXAMPLE, problems)
+    columns = read_columns(path, _COLUMNS, EXAMPLE, problems)
     heads = columns.factors
     problems += [
         lacking(path, name, "deg", columns)
@@ -158,7 +153,7 @@ def _refusal(name: str, text: str, factor: float) -> str:
         return "must be above 0; leave the cell blank where there was no answer"
     if not placed and value > LONGEST[name]:
         hint = "; did you mean `time[ms]`?" if name == "time" and factor == 1.0 else ""
-        unit = next(iter(_UNITS[name]))
+        unit = DIMENSIONS[_COLUMNS[name]].unit
         return f"is more than {LONGEST[name]:g} {unit}, farther than is answered{hint}"
     return ""
 

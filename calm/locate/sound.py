@@ -11,10 +11,11 @@ from calm.errors import InputError, Problem
 from calm.files.explain import shown
 from calm.locate.columns import NUMBER, lacking, read_columns
 from calm.physics.line import Floats
+from calm.units import DIMENSIONS
 
 SLOWEST, FASTEST = 1380.0, 1680.0
 """Of sound in natural waters [m/s]: near-freezing fresh water, the deepest trench."""
-_UNITS = {"depth": {"m": 1.0}, "sound_speed": {"m/s": 1.0}}
+_COLUMNS = {"depth": "length", "sound_speed": "speed"}
 _EXAMPLE = "depth[m],sound_speed[m/s]"
 
 
@@ -64,20 +65,21 @@ def read_sound(path: Path) -> Sound:
         With every mistake of the file: a depth that does not grow, a speed that no water has.
     """
     problems: list[Problem] = []
-    columns = read_columns(path, _UNITS, _EXAMPLE, problems)
-    for name, units in _UNITS.items():
+    columns = read_columns(path, _COLUMNS, _EXAMPLE, problems)
+    for name, dimension in _COLUMNS.items():
         if name not in columns.factors:
-            problems.append(lacking(path, name, next(iter(units)), columns))
+            problems.append(lacking(path, name, DIMENSIONS[dimension].unit, columns))
     depths: list[float] = []
     speeds: list[float] = []
     for row in columns.rows:
         for name, text in row.cells.items():
-            complaint = _complaint(name, text, depths)
+            factor = columns.factors[name]
+            complaint = _complaint(name, text, factor, depths)
             if complaint:
                 message = f"`{name}: {shown(text)}` {complaint}"
                 problems.append(Problem(str(path), row.line, 1, message))
             else:
-                (depths if name == "depth" else speeds).append(float(text))
+                (depths if name == "depth" else speeds).append(float(text) * factor)
     if not problems and not depths:
         problems.append(Problem(str(path), 0, 0, "there are no rows below the header"))
     if problems:
@@ -85,10 +87,10 @@ def read_sound(path: Path) -> Sound:
     return Sound(np.array(depths), np.array(speeds))
 
 
-def _complaint(name: str, text: str, depths: list[float]) -> str:
+def _complaint(name: str, text: str, factor: float, depths: list[float]) -> str:
     if not NUMBER.fullmatch(text):
         return "is no number"
-    value = float(text)
+    value = float(text) * factor
     if name == "depth":
         if value < 0.0 or (depths and value <= depths[-1]):
             return "depths count downwards from 0 and must increase"

@@ -20,6 +20,8 @@ CABLE_CN = 1.3
 CABLE_CT = {"smooth": 0.005, "rough": 0.009, "very-rough": 0.013}
 """On the wetted surface. Smooth: parallel fibre in a sheath, plastic-coated wire; rough: braided;
 very rough: laid strands."""
+BLOCK_CD = 1.05
+"""Of a cube that falls with a face ahead (Hoerner, Fluid-Dynamic Drag, 1965)."""
 
 _HALF_DENSITY = 0.5 * REFERENCE_DENSITY
 

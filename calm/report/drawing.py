@@ -24,15 +24,14 @@ WATER_COLOUR, SEABED_COLOUR = "#3399cc", "#d9c7a3"
 LEGEND: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "frameon": False}
 """A legend above the axes."""
 
-_MARKERS: dict[str, dict[str, Any]] = {
-    role: {"linestyle": "none", "marker": marker, "color": colour, "markersize": size}
-    for role, marker, colour, size in (
-        ("float", "o", "#e69f00", 7),
-        ("instrument", "s", "#cc3311", 4.5),
-        ("release", "D", "#009e73", 5),
-        ("anchor", "v", "black", 6),
-    )
+SIGNS = {
+    "float": ("o", 7.0, "#e69f00"),
+    "instrument": ("s", 4.5, "#cc3311"),
+    "release": ("D", 5.0, "#009e73"),
+    "anchor": ("v", 6.0, "black"),
 }
+"""Form, size [pt] and colour of the mark of a role."""
+
 _FONT_SIZE = 8.0  # points
 _LINE_HEIGHT = 1.3 * _FONT_SIZE / 72  # inches
 _LEAST_HEIGHT, _GREATEST_HEIGHT = 6.5, 20.0  # inches
@@ -76,7 +75,9 @@ def mark_parts(
     for role in NAMED_ROLES:
         points = [place(part) for part in parts if part.role == role]
         if points:
-            axes.plot(*zip(*points, strict=True), label=role, **_MARKERS[role])
+            sign, size, colour = SIGNS[role]
+            x, y = zip(*points, strict=True)
+            axes.plot(x, y, sign, label=role, color=colour, markersize=size)
 
 
 def write_names(

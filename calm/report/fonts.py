@@ -16,9 +16,11 @@ def font_folder() -> Path:
 
 def lacking(texts: Iterable[str]) -> str:
     """The signs of some texts that no font of a PDF has, each once, in order."""
-    known = _signs()
-    signs = dict.fromkeys(sign for text in texts for sign in text)
-    return "".join(sign for sign in signs if sign.isprintable() and ord(sign) not in known)
+    held, known = list(texts), _signs()
+    unknown = {sign for sign in set().union(*held) if sign.isprintable() and ord(sign) not in known}
+    if not unknown:  # as nearly always: a report has millions of signs
+        return ""
+    return "".join(dict.fromkeys(sign for text in held for sign in text if sign in unknown))
 
 
 def legible(text: str) -> str:
@@ -26,7 +28,8 @@ def legible(text: str) -> str:
 
     A single one would otherwise have all of a drawing's label shown in boxes.
     """
-    return text.translate(dict.fromkeys(map(ord, lacking([text])), "\ufffd"))
+    unknown = lacking([text])
+    return text.translate(dict.fromkeys(map(ord, unknown), "\ufffd")) if unknown else text
 
 
 @cache

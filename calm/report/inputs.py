@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calm.quantities import QUANTITIES
+from calm.quantities import QUANTITIES, bearing_of
 from calm.report.blocks import Cell, Column, Listing, Prose, Table
 from calm.report.provenance import input_hash, source_text, versions
 
@@ -63,7 +63,7 @@ def current_listing(name: str, water: Water) -> Listing:
     lines = [f"{'depth m':>10} {'speed m/s':>10} {'toward °':>10} {'upward m/s':>11}"]
     for level in chosen:
         u, v, w = water.u[level], water.v[level], water.w[level]
-        toward = np.degrees(np.arctan2(u, v)) % 360.0
+        toward = bearing_of(u, v)
         lines.append(f"{water.level[level]:10.1f} {hypot(u, v):10.3f} {toward:10.1f} {w:11.3f}")
     if len(chosen) < count:
         lines.append(f"{len(chosen)} of {count} levels")

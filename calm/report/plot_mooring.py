@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calm.quantities import QUANTITIES
+from calm.quantities import QUANTITIES, bearing_of, bearing_text
 from calm.report.drawing import (
     LEGEND,
     LINE_STYLE,
@@ -84,7 +84,7 @@ def _draw_elevation(axes: Axes, result: Result, plane: Floats, uncertain: Uncert
     low, high = (function(list(map(function, reach))) for function in (min, max))
     set_span(axes, min(0.0, low), max(0.0, high), depth)
     axes.set_ylim(1.03 * depth, min(-0.03 * depth, result.shape.depth.min()))
-    axes.set_xlabel(f"{QUANTITIES['offset'].label}, towards {_bearing(plane):.0f}°")
+    axes.set_xlabel(f"{QUANTITIES['offset'].label}, towards {bearing_text(bearing_of(*plane))}")
     axes.set_ylabel(QUANTITIES["depth"].label)
 
 
@@ -105,8 +105,3 @@ def _draw_current(axes: Axes, result: Result, plane: Floats) -> None:
     u, v = (np.interp(depth, water.level, speed) for speed in (water.u, water.v))
     draw_flow(axes, depth, u, v, plane)
     axes.set_xlabel(f"current {QUANTITIES['speed'].label}")
-
-
-def _bearing(plane: Floats) -> float:
-    """Degrees clockwise from north."""
-    return float(np.degrees(np.arctan2(plane[0], plane[1])) % 360.0)

@@ -23,8 +23,13 @@ def figure_svg(figure: Figure) -> str:
     Its style sheet would hold for all of a page; the drawing carries what it says as attributes.
     """
     text = image(figure, ".svg").decode("utf-8")
-    text = _NOT_XML.sub("\ufffd", _ASIDE.sub("", _PROLOGUE.sub("", text, count=1)))
+    text = within_xml(_ASIDE.sub("", _PROLOGUE.sub("", text, count=1)))
     return text.replace("<svg ", '<svg stroke-linejoin="round" ', 1)
+
+
+def within_xml(text: str) -> str:
+    """A drawing whose texts may hold any sign, with � for those that XML does not know."""
+    return _NOT_XML.sub("\ufffd", text)
 
 
 def set_apart(svg: str, prefix: str) -> str:

@@ -1,16 +1,17 @@
-"""What a verification found: a table for people, a document for programs."""
+"""What a verification found: tables for people, a document for programs."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
 from math import ceil, isnan, log10
 from typing import TYPE_CHECKING, Any
 
 from calm.checks.finding import State
-from calm.report.blocks import Block, Cell, Column, Heading, Part, Prose, Span, Table
+from calm.report.blocks import Block, Cell, Column, Heading, Line, Part, Prose, Span, Table
 
 if TYPE_CHECKING:
-    from calm.verification import Outcome, Source
+    from calm.verification import Case, Kind, Outcome, Source
 
     Findings = Sequence[tuple[Source, Sequence[Outcome]]]
 
@@ -20,7 +21,7 @@ _SMALL = 1e-3
 
 
 def verification_document(findings: Findings) -> dict[str, Any]:
-    """The JSON object: `calm`, how many cases were `checked` and are `out`, and the `cases`.
+    """The JSON object: `calm`, how many figures verify and were `checked`, how many are `out`.
 
     Parameters
     ----------
@@ -29,22 +30,34 @@ def verification_document(findings: Findings) -> dict[str, Any]:
     Returns
     -------
     dict
-        `cases` has an object each: `source`, `name`, `expected`, `got`, `difference`, `tolerance`,
-        `unit`, `why` (the reason for the tolerance), `within`, and `reason` where nothing was got.
+        `kinds` has the number of figures of each kind; those by construction are not `checked`.
+        `cases` has an object each: `source`, `name`, `kind`, `expected`, `got`, `difference`,
+        `tolerance`, `unit`, `why` (the reason for the tolerance), `within`, and `reason` where
+        nothing was got.
     """
     from calm.version import __version__
 
     cases = [_case(source, outcome) for source, outcomes in findings for outcome in outcomes]
+    kinds = by_kind(outcome.case for _, outcomes in findings for outcome in outcomes)
     return {
         "calm": __version__,
-        "checked": len(cases),
+        "checked": _verifying(kinds),
+        "kinds": {kind.value: number for kind, number in kinds.items()},
         "out": sum(not case["within"] for case in cases),
         "cases": cases,
     }
 
 
+def by_kind(cases: Iterable[Case]) -> dict[Kind, int]:
+    """How many cases there are of each kind, in the order of `Kind`; kinds without one left out."""
+    from calm.verification import Kind
+
+    number = Counter(case.kind for case in cases)
+    return {kind: number[kind] for kind in Kind if number[kind]}
+
+
 def verification_part(findings: Findings) -> Part:
-    """A table for each source, what is out marked with ``!``."""
+    """A table for each source and kind, what is out marked with ``!``."""
     of_sources = (block for source, outcomes in findings for block in _of_source(source, outcomes))
     return Part("", (*of_sources, _sum(findings)))
 
@@ -86,6 +99,7 @@ def _case(source: Source, outcome: Outcome) -> dict[str, Any]:
     return {
         "source": source.title,
         "name": case.name,
+        "kind": case.kind.value,
         "expected": case.expected,
         "got": outcome.got,
         "difference": outcome.difference,
@@ -99,27 +113,45 @@ def _case(source: Source, outcome: Outcome) -> dict[str, Any]:
 
 def _of_source(source: Source, outcomes: Sequence[Outcome]) -> Iterator[Block]:
     columns = tuple(Column(name, numeric=name not in ("case", "unit")) for name in COLUMNS)
-    rows = []
-    for outcome in outcomes:
-        name, *others = figures(outcome)
-        out = None if outcome.within else State.FAIL
-        label = name if outcome.within else f"! {name}"
-        rows.append(tuple(Cell(text, state=out) for text in (label, *others)))
     yield Heading(source.title)
-    yield Table("", columns, tuple(rows))
+    for kind in by_kind(outcome.case for outcome in outcomes):
+        rows = tuple(_row(outcome) for outcome in outcomes if outcome.case.kind is kind)
+        yield Table(_sentence(kind), columns, rows)
     reasons = [f"{outcome.case.name}: {outcome.reason}" for outcome in outcomes if outcome.reason]
     if reasons:
         yield Prose(tuple(reasons), State.WARN)
 
 
-def _count(things: Sequence[object], name: str) -> str:
-    return f"{len(things)} {name}{'s' if len(things) != 1 else ''}"
+def _row(outcome: Outcome) -> tuple[Cell, ...]:
+    name, *others = figures(outcome)
+    out = None if outcome.within else State.FAIL
+    label = name if outcome.within else f"! {name}"
+    return tuple(Cell(text, state=out) for text in (label, *others))
+
+
+def _sentence(text: str) -> str:
+    return text[:1].upper() + text[1:]
+
+
+def _verifying(kinds: dict[Kind, int]) -> int:
+    return sum(number for kind, number in kinds.items() if kind.verifies)
+
+
+def _count(number: int, name: str) -> str:
+    return f"{number} {name}{'s' if number != 1 else ''}"
 
 
 def _sum(findings: Findings) -> Prose:
     outcomes = [outcome for _, each in findings for outcome in each]
+    kinds = by_kind(outcome.case for outcome in outcomes)
     out = sum(not outcome.within for outcome in outcomes)
-    checked = f"Checked {_count(outcomes, 'figure')} of {_count(findings, 'source')}"
-    if out:
-        return Prose(((Span(f"{checked}: {out} out of tolerance", State.FAIL),),))
-    return Prose((f"{checked}: all within tolerance",))
+    checked = f"Checked {_count(_verifying(kinds), 'figure')} of {_count(len(findings), 'source')}"
+    found = f"{out} out of tolerance" if out else "all within tolerance"
+    totals = [f"{number} {kind}" for kind, number in kinds.items() if kind.verifies]
+    copied = sum(number for kind, number in kinds.items() if not kind.verifies)
+    lines: list[Line] = [(Span(f"{checked}: {found}", State.FAIL if out else None),)]
+    if totals:
+        lines.append(_sentence("; ".join(totals)))
+    if copied:
+        lines.append(f"Not counted: {_count(copied, 'figure')} met by construction")
+    return Prose(tuple(lines))

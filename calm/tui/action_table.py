@@ -105,6 +105,13 @@ ACTIONS: tuple[Action, ...] = (
     ),
     Action(
         "line",
+        "equipment",
+        "N",
+        "serial number",
+        "Serial number, calibration, sampling, battery and termination of the row.",
+    ),
+    Action(
+        "line",
         "next_finding",
         "f8,g",
         "next finding",
@@ -206,6 +213,13 @@ ACTIONS: tuple[Action, ...] = (
     Action("anywhere", "picture('schematic')", "4", "schematic", "The parts, not to scale."),
     Action("anywhere", "zoom", "z", "zoom", "Give the picture the whole screen, or take it back."),
     Action("anywhere", "mooring", "m", "name, place", "Name, description and position."),
+    Action(
+        "anywhere",
+        "document",
+        "M",
+        "document",
+        "Number, revision, author, ship and cruise, for the title block of drawings.",
+    ),
     Action(
         "anywhere",
         "tow",

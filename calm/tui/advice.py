@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from math import ceil, floor, log10
+from math import ceil
 from typing import TYPE_CHECKING
 
 from calm.case import Result
@@ -18,7 +18,7 @@ from calm.checks.finding import Finding, State
 from calm.errors import CalmError, UsageError
 from calm.files import Anchor, Catalogue, Piece
 from calm.files.editing import Draft
-from calm.quantities import QUANTITIES, say
+from calm.quantities import QUANTITIES, rounded, say
 from calm.solve import Status
 from calm.tui.live import View, judge
 
@@ -93,8 +93,9 @@ def sized(mooring: Mooring, target: str, change: str) -> Offer:
         if sizing.after is None or sizing.after.value == adjustment.now:
             raise UsageError(f"{target} is met as it is")
         value = sizing.after.value
-        rounded = value if adjustment.whole else _rounded(value, up=value > adjustment.now)
-        return draft.put(item, key, f"{rounded:.10g}{unit}")
+        if not adjustment.whole:
+            value = rounded(value, _DIGITS, up=value > adjustment.now)
+        return draft.put(item, key, f"{value:.10g}{unit}")
 
     return Offer(f"{change} so that {target}", f"{change} for {target}", make)
 
@@ -137,7 +138,7 @@ def _anchors(last: Piece, needed: float, catalogue: Catalogue | None) -> Iterato
         weight, id = min(heavy)
         title = f"anchor: {id}, {say('tension', weight)} in water; {say('tension', needed)} needed"
         yield Offer(title, f"use {id}", _put(item, "use", id))
-    weight = _rounded(needed, up=True)
+    weight = rounded(needed, _DIGITS, up=True)
     title = f"anchor: {last.use} made to weigh {say('tension', weight)} in water"
     yield Offer(title, "a heavier anchor", _put(item, "weight", f"{weight:g} N"))
 
@@ -229,11 +230,3 @@ def differences(before: View, after: View) -> list[str]:
         if counts[0] != counts[1]:
             told.append(f"{word} {counts[0]} → {counts[1]}")
     return told or ["nothing that is shown here changes"]
-
-
-def _rounded(value: float, *, up: bool) -> float:
-    """A value of three digits, not less (or not more) than another."""
-    if value == 0.0:
-        return 0.0
-    step = 10.0 ** (floor(log10(abs(value))) - _DIGITS + 1)
-    return float(f"{step * (ceil if up else floor)(value / step):.12g}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from datetime import date
 
 from calm.files.editing import Value
 from calm.files.fields import LENGTH, POSITIVE_LENGTH, Quantity
@@ -54,6 +55,15 @@ Check = Callable[[str], Reading]
 def anything(text: str) -> Reading:
     """Any text will do, without the blanks around it."""
     return Reading(" ".join(text.split()))
+
+
+def day(text: str) -> Reading:
+    """A day of the calendar, or nothing."""
+    tidy = text.strip()
+    try:
+        return Reading(tidy and date.fromisoformat(tidy).isoformat())
+    except ValueError:
+        return Reading("", "a day of the calendar is needed, as 2027-06-30")
 
 
 def needed(what: str) -> Check:

@@ -1,7 +1,7 @@
-"""Published cases: each figure with its source, and how CALM comes to it. Run by `calm verify`.
+"""Figures to reproduce, each with its source, its kind and how CALM comes to it: `calm verify`.
 
 One module for each source. Its `SOURCE` holds the cases; figures are inlined, so that nothing is
-read from a file. `calm.verification.case` tells what a case is.
+read from a file. `calm.verification.case` defines a case.
 """
 
 from calm.verification import (
@@ -25,6 +25,7 @@ from calm.verification import (
     watch_circle,
 )
 from calm.verification.case import Case as Case
+from calm.verification.case import Kind as Kind
 from calm.verification.case import Outcome as Outcome
 from calm.verification.case import Source as Source
 

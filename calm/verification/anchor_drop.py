@@ -12,9 +12,10 @@ from calm.drop.fall import Course, Fineness, Ship, fall, towed
 from calm.drop.motion import Anchor, State
 from calm.drop.record import end_tensions
 from calm.physics.hull import Floating, spherical_hull
-from calm.physics.line import REFERENCE_DENSITY, Line, Water
+from calm.physics.line import Line, Water
+from calm.physics.reference import REFERENCE_DENSITY
 from calm.solve import FallingAnchor, solve_fall
-from calm.verification.case import Case, Source
+from calm.verification.case import Case, Kind, Source
 from calm.verification.pieces import GRAVITY, Piece, cable, line_of, sphere_drag
 
 _FINE = Fineness(bars=100, steps=100)
@@ -105,17 +106,18 @@ of WHOI Cable's own static solution. Then the terminal speed, against the one of
 √(W/K) of a heavy sphere.""",
     (
         Case("streamed behind the ship", 894.8, "m", 0.5, "The chain's bars are 10 m long.",
-             lambda: float(-_start().node[0, 1])),
-        Case("fall time", 238.4, "s", 0.03 * 238.4, _INERTIA, lambda: _fall().states[-1].time),
-        Case("fall-back", 64.1, "m", 0.08 * 64.1, _INERTIA, _back),
-        Case("way of the float", 431.0, "m", 0.03 * 431.0, _INERTIA, _moved),
+             lambda: float(-_start().node[0, 1]), Kind.INDEPENDENT),
+        Case("fall time", 238.4, "s", 0.03 * 238.4, _INERTIA, lambda: _fall().states[-1].time,
+             Kind.INDEPENDENT),
+        Case("fall-back", 64.1, "m", 0.08 * 64.1, _INERTIA, _back, Kind.INDEPENDENT),
+        Case("way of the float", 431.0, "m", 0.03 * 431.0, _INERTIA, _moved, Kind.INDEPENDENT),
         Case("greatest tension at the anchor", 6245.0, "N", 0.03 * 6245.0, _INERTIA,
-             lambda: _pull(-1, 1)),
+             lambda: _pull(-1, 1), Kind.INDEPENDENT),
         Case("greatest tension below the float", 7432.0, "N", 0.03 * 7432.0, _INERTIA,
-             lambda: _pull(1, 0)),
+             lambda: _pull(1, 0), Kind.INDEPENDENT),
         Case("terminal speed less that of the design check", 0.0, "m/s", 2e-3,
              "Both are within 1e-4 of the speed; the line has had 2850 m to become plumb.",
-             lambda: _deep_fall()[0] - _deep_fall()[1]),
-        Case("speed of a heavy sphere", _ALONE, "m/s", 0.01, _THREAD, _alone),
+             lambda: _deep_fall()[0] - _deep_fall()[1], Kind.PROPERTY),
+        Case("speed of a heavy sphere", _ALONE, "m/s", 0.01, _THREAD, _alone, Kind.CLOSED_FORM),
     ),
 )  # fmt: skip

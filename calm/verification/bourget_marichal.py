@@ -11,7 +11,7 @@ import numpy as np
 from calm.physics.line import Line
 from calm.physics.strumming import BourgetMarichal
 from calm.solve import Settings
-from calm.verification.case import PRINTED, Case, Figure, Source, table
+from calm.verification.case import PRINTED, Case, Figure, Kind, Source, table
 from calm.verification.ends import Wake, towed
 from calm.verification.pieces import (
     GRAVITY,
@@ -89,24 +89,24 @@ f, printed 2/π on [0, π], must be 1/π: f(0) = 1.
 The paper computes 3.56 Hz and measured 4.07 Hz; CALM's 3.559 Hz is the former, and the gap of
 13 % is the model's. The same tow with a constant C of 1.2 was computed without CALM.""",
     (
-        *table(
-            [
-                Figure[Wake]("angle φ_n at the ship", "°", 1e-3, lambda wake: wake.angle),
-                Figure[Wake]("frequency", "Hz", 5.5e-4, lambda wake: wake.frequency),
-                Figure[Wake]("immersion of the sphere", "m", 5.5e-5, lambda wake: wake.depth),
-            ],
-            [("strumming", lambda: _example(True), (16.280, 3.559, 1.6529))],
-            _FITTED,
-        ),
+        Case("strumming: angle φ_n at the ship", 16.280, "°", 1e-3, _FITTED,
+             lambda: _example(True).angle, Kind.BY_CONSTRUCTION),
+        Case("strumming: frequency", 3.559, "Hz", 5.5e-4, _FITTED,
+             lambda: _example(True).frequency, Kind.CLOSED_FORM),
+        Case("strumming: immersion of the sphere", 1.6529, "m", 5.5e-5, _FITTED,
+             lambda: _example(True).depth, Kind.INDEPENDENT),
         Case("strumming: frequency, as the paper has it", 3.56, "Hz", 5.5e-3, PRINTED,
-             lambda: _example(True).frequency),
-        Case("strumming: C* at the sphere", 1.250, "", 1e-3, _FITTED, _at_the_sphere),
-        Case("strumming: C* at the ship", 3.0, "", 1e-9, "The model's ceiling.", _at_the_ship),
-        Case("a/D at 90°", 0.5, "", 1e-4, _FITTED, lambda: _LAW.amplitude(pi / 2.0)),
+             lambda: _example(True).frequency, Kind.PUBLISHED),
+        Case("strumming: C* at the sphere", 1.250, "", 1e-3, _FITTED, _at_the_sphere,
+             Kind.BY_CONSTRUCTION),
+        Case("strumming: C* at the ship", 3.0, "", 1e-9, "The model's ceiling.", _at_the_ship,
+             Kind.PUBLISHED),
+        Case("a/D at 90°", 0.5, "", 1e-4, _FITTED, lambda: _LAW.amplitude(pi / 2.0),
+             Kind.BY_CONSTRUCTION),
         *(
             Case(f"bare cable, {speed} m/s: a/D", expected, "", 0.05,
                  "Half a unit of the last digit the paper prints.",
-                 partial(_amplitude, speed))
+                 partial(_amplitude, speed), Kind.PUBLISHED)
             for speed, expected in ((0.6, 0.9), (2.0, 1.4))
         ),
         *table(
@@ -117,6 +117,7 @@ The paper computes 3.56 Hz and measured 4.07 Hz; CALM's 3.559 Hz is the former, 
             ],
             [("constant C = 1.2", lambda: _example(False), (24.362, 1.9191, 16.9495))],
             PRINTED,
+            Kind.INDEPENDENT,
         ),
     ),
 )  # fmt: skip

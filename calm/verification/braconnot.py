@@ -10,7 +10,7 @@ from calm.analytic.chart_branch import critical_angle
 from calm.analytic.chart_curve import CurvePoints, curve
 from calm.physics.line import Line, Water
 from calm.solve import Solution, solve_mooring
-from calm.verification.case import PRINTED, Case, Figure, Source, table
+from calm.verification.case import PRINTED, Case, Figure, Kind, Source, table
 from calm.verification.ends import FINE, Ends, Wake, finely, towed
 from calm.verification.pieces import Piece, deep_water, line_of, point, stream
 
@@ -120,11 +120,13 @@ against the march as well.""",
             [_READ[name] for name in ("L", "D", "phi_a", "T_A")],
             [("buoy as read off the charts", partial(_buoy, _K), (28.3, 18.5, 22.0, 250.0))],
             "2 % of the height or the tension and half a degree: how well a chart is read.",
+            Kind.PUBLISHED,
         ),
         *table(
             [_FIVE[name] for name in ("L", "D", "phi_a", "T_A")],
             [("buoy", partial(_buoy, _K), (28.467, 18.782, 22.027, 250.00))],
             PRINTED,
+            Kind.INDEPENDENT,
         ),
         *table(
             [
@@ -135,6 +137,7 @@ against the march as well.""",
             ],
             [("buoy", _below_the_surface, (20.0, 18.782, 250.00, 22.027))],
             "The cable is cut to 28.467 m, half a millimetre being the last digit of its length.",
+            Kind.INDEPENDENT,
         ),
         *table(
             [
@@ -145,6 +148,7 @@ against the march as well.""",
             ],
             [("buoy of 1000 N, afloat", _afloat, (338.0740, 661.9260))],
             "The cable is cut to 28.467 m, half a millimetre being the last digit of its length.",
+            Kind.INDEPENDENT,
         ),
         *table(
             [
@@ -153,11 +157,13 @@ against the march as well.""",
             ],
             [("buoy at its true K, 2.7", partial(_buoy, 2.7), (30.71, 21.50))],
             PRINTED,
+            Kind.INDEPENDENT,
         ),
         *table(
             [_TOWED[name] for name in ("H", "D", "phi_a", "T_A")],
             [("tow", partial(_tow, _K), (73.198, -67.215, 116.373, 63.401))],
             PRINTED,
+            Kind.INDEPENDENT,
         ),
         *table(
             [
@@ -168,9 +174,10 @@ against the march as well.""",
             ],
             [("tow", _towed, (73.198, -67.215, 140.0, 100.0))],
             "T_A and φ_A of the body are printed to 5e-4 N and 5e-4°.",
+            Kind.INDEPENDENT,
         ),
         Case("tow at 1 knot, K 3.176: depth H", 82.87, "m", 5.5e-3, PRINTED,
-             lambda: _tow(3.176).height),
+             lambda: _tow(3.176).height, Kind.INDEPENDENT),
         *table(
             [_EIGHT[name] for name in ("phi_b", "T_B", "H", "D")],
             [
@@ -179,6 +186,7 @@ against the march as well.""",
                  (107.31124, 105.978848, 91.9576956, 126.772138)),
             ],
             PRINTED,
+            Kind.INDEPENDENT,
         ),
         *table(
             [
@@ -188,8 +196,9 @@ against the march as well.""",
             ],
             [("curve at 75°", _point, (0.96945, 0.75437, 0.49348))],
             PRINTED,
+            Kind.INDEPENDENT,
         ),
         Case("critical angle, K 2.4", 144.4, "°", 0.055, PRINTED,
-             lambda: degrees(float(critical_angle(_K)))),
+             lambda: degrees(float(critical_angle(_K))), Kind.CLOSED_FORM),
     ),
 )  # fmt: skip

@@ -6,7 +6,7 @@ from functools import partial
 
 from calm.physics.drag import measured_drag
 from calm.physics.seawater import dynamic_viscosity
-from calm.verification.case import PRINTED, Case, Source
+from calm.verification.case import PRINTED, Case, Kind, Source
 
 _TEMPERATURES = (0, 5, 10, 15, 20, 25, 30)
 
@@ -40,12 +40,12 @@ a plate of that instrument's size bears out, so that K is 26.4 N/(m/s)².""",
             Case(f"viscosity, {temperature} °C, {salinity} g/kg", printed, "mPa s",
                  0.015 * printed,
                  "1.5 %, the accuracy of Sharqawy's formula; the table is of other measurements.",
-                 partial(_viscosity, temperature, salinity))
+                 partial(_viscosity, temperature, salinity), Kind.PUBLISHED)
             for salinity, row in _VISCOSITY
             for temperature, printed in zip(_TEMPERATURES, row, strict=True)
         ),
         Case("RCM4/RCM5: K", 2.694, "kgf/(m/s)²", 5.5e-4,
              PRINTED,
-             partial(measured_drag, _METER_SPEED, _METER_DRAG)),
+             partial(measured_drag, _METER_SPEED, _METER_DRAG), Kind.PUBLISHED),
     ),
 )  # fmt: skip

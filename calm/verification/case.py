@@ -1,9 +1,10 @@
-"""A published figure, how CALM comes to it, and what a check of it finds."""
+"""A figure to reproduce, how CALM comes to it, and what a check of it finds."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from enum import StrEnum
 from math import nan
 from typing import Generic, TypeVar
 
@@ -13,6 +14,38 @@ PRINTED = "Half a unit of the last digit printed, and a tenth."
 """The reason for a tolerance where CALM is exact beside the figure as printed."""
 
 
+class Kind(StrEnum):
+    """Where an expected figure comes from, and so how much its agreement proves."""
+
+    PUBLISHED = "published"
+    CLOSED_FORM = "closed form"
+    INDEPENDENT = "independent integration"
+    PROPERTY = "property"
+    BY_CONSTRUCTION = "by construction"
+
+    @property
+    def meaning(self) -> str:
+        """The kind in a sentence."""
+        return _MEANINGS[self]
+
+    @property
+    def verifies(self) -> bool:
+        """Whether agreement is evidence that CALM is right."""
+        return self is not Kind.BY_CONSTRUCTION
+
+
+_MEANINGS = {
+    Kind.PUBLISHED: "Someone printed it: a paper, a manual, a maker.",
+    Kind.CLOSED_FORM: "The value of a formula or the root of one, evaluated without CALM.",
+    Kind.INDEPENDENT: "From an integration that shares no code with CALM: a quadrature, a solver "
+    "of the differential equations, another program.",
+    Kind.PROPERTY: "Must hold for any line; needs no reference.",
+    Kind.BY_CONSTRUCTION: "A point that CALM's curve is drawn through or fitted to, or a figure of "
+    "the library that CALM calls. It guards against slips of copying and counts as no "
+    "verification.",
+}
+
+
 @dataclass(frozen=True)
 class Case:
     """One figure to reproduce.
@@ -20,11 +53,12 @@ class Case:
     Attributes
     ----------
     name : what the figure is, unique within its source
-    expected : the figure, as printed
+    expected : the figure, to the digits known
     unit : that of `expected`, as text for a reader; empty for a pure number
     tolerance : greatest difference allowed [unit], > 0
     why : the reason for the tolerance, a sentence
     got : computes CALM's figure [unit]; whatever it raises counts as a figure missed
+    kind : where `expected` comes from
     """
 
     name: str
@@ -33,6 +67,7 @@ class Case:
     tolerance: float
     why: str
     got: Callable[[], float]
+    kind: Kind
 
     def check(self) -> Outcome:
         """Compute the figure; never raises, but for what stops the whole program."""
@@ -107,12 +142,14 @@ class Figure(Generic[Answer]):
     of: Callable[[Answer], float]
     relative: bool = False
 
-    def case(self, row: str, expected: float, why: str, solve: Callable[[], Answer]) -> Case:
+    def case(
+        self, row: str, expected: float, why: str, solve: Callable[[], Answer], kind: Kind
+    ) -> Case:
         """The case of one cell of the table."""
         share = abs(expected) if self.relative else 1.0
         return Case(
             f"{row}: {self.name}", expected, self.unit, self.tolerance * share, why,
-            lambda: self.of(solve()),
+            lambda: self.of(solve()), kind,
         )  # fmt: skip
 
 
@@ -120,6 +157,7 @@ def table(
     figures: Sequence[Figure[Answer]],
     rows: Iterable[tuple[str, Callable[[], Answer], Sequence[float]]],
     why: str,
+    kind: Kind,
 ) -> tuple[Case, ...]:
     """The cases of a published table, row by row.
 
@@ -128,9 +166,10 @@ def table(
     figures : its columns
     rows : the name of each row, what solves it, and its printed figures, one for each column
     why : the reason for the tolerances
+    kind : where the figures come from
     """
     return tuple(
-        figure.case(name, value, why, solve)
+        figure.case(name, value, why, solve, kind)
         for name, solve, values in rows
         for figure, value in zip(figures, values, strict=True)
     )

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from calm.analytic.catenary import Catenary, between
 from calm.physics.line import Line
 from calm.solve import Solution, solve_mooring
-from calm.verification.case import PRINTED, Case, Figure, Source, table
+from calm.verification.case import PRINTED, Case, Figure, Kind, Source, table
 from calm.verification.ends import FINE, ends_of
 from calm.verification.pieces import Piece, line_of, point, stream
 
@@ -117,15 +117,22 @@ the line can be moored, against the march.""",
             [*_pulls(5.5e-4), _LOWER_END],
             [("C12 suspended", _suspended, (*_SUSPENDED, 30611.346, 291.876))],
             PRINTED,
+            Kind.CLOSED_FORM,
         ),
-        *table(_pulls(5.5e-4), [("C12 taut", _taut, (*_TAUT, 116583.005))], PRINTED),
+        *table(
+            _pulls(5.5e-4),
+            [("C12 taut", _taut, (*_TAUT, 116583.005))],
+            PRINTED,
+            Kind.CLOSED_FORM,
+        ),
         *table(
             [*_pulls(5.5e-7), _GROUNDED],
             [("C13 touchdown", _touchdown, (*_TOUCHDOWN, 3.508667, 3.674364))],
             PRINTED,
+            Kind.CLOSED_FORM,
         ),
         *(
-            Case(f"C14 level span: {name}", expected, unit, 5.5e-7, PRINTED, got)
+            Case(f"C14 level span: {name}", expected, unit, 5.5e-7, PRINTED, got, Kind.CLOSED_FORM)
             for name, expected, unit, got in (
                 ("horizontal pull", 3929.783686, "N", lambda: _number(_level().horizontal)),
                 ("greatest tension", 5131.588430, "N", lambda: float(_level().tension_top)),
@@ -139,11 +146,13 @@ the line can be moored, against the march.""",
                 ("C12 taut", lambda: _march(_TAUT, 490.0), (400.0, 300.0)),
             ],
             _MARCH,
+            Kind.CLOSED_FORM,
         ),
         *table(
             _LANDED,
             [("C13 touchdown", _march_to_the_seabed, (5.3, 3.424639, 3.674364, 0.763277))],
             _MARCH,
+            Kind.CLOSED_FORM,
         ),
     ),
 )  # fmt: skip

@@ -10,7 +10,7 @@ import numpy as np
 
 from calm.physics.line import Floats, Integers, Line, Water
 from calm.solve import solve_mooring
-from calm.verification.case import Case, Figure, Source, table
+from calm.verification.case import Case, Figure, Kind, Source, table
 from calm.verification.pieces import GRAVITY, HALF_DENSITY, Piece, cable, line_of, sphere_drag
 
 _SEABED = 525.0
@@ -158,22 +158,25 @@ drag and no tangential drag here; it agrees with the independent solution to 0.1
                 [_HEIGHT, *_tensions(0.02)],
                 [(f"C16 {name}", solved, (PROGRAMS[name][0], *PROGRAMS[name][2:]))],
                 _PROGRAM,
+                Kind.PUBLISHED,
             )
         ),
         Case("C16 both programs: offset of the sphere", 74.0, "m", 3.0,
              "71.0 m to 77.0 m: from SSMOOR's 71.0 past MD&D's 75.5 to the independent 76.8.",
-             lambda: _OFFSET.of(solved())),
+             lambda: _OFFSET.of(solved()), Kind.PUBLISHED),
         Case("C16 both programs: angle at the anchor", 9.3, "°", 0.25, f"9.1° to 9.5°. {_RANGE}",
-             lambda: solved().lean),
+             lambda: solved().lean, Kind.PUBLISHED),
         *table(
             [replace(_HEIGHT, tolerance=0.1), _OFFSET, *_tensions(0.002)],
             [("C16 independent solution", solved, PROGRAMS["independent"])],
             "Heights 0.1 m, offset 0.2 m, tensions 0.2 %: the figures printed for the mooring fix "
             "it no better.",
+            Kind.INDEPENDENT,
         ),
         *(
             Case(f"C16 independent solution: {name}", kgf, "kgf", 0.002 * kgf,
-                 "0.2 %: the figures printed for the mooring fix it no better.", got)
+                 "0.2 %: the figures printed for the mooring fix it no better.", got,
+                 Kind.INDEPENDENT)
             for name, kgf, got in (
                 ("anchor, horizontal", 131.6, lambda: solved().horizontal),
                 ("anchor, vertical", 804.4, lambda: solved().vertical),
@@ -181,10 +184,10 @@ drag and no tangential drag here; it agrees with the independent solution to 0.1
         ),
         Case("C16 printed: height of the first glass ball", 12.03, "m", 0.01,
              "The centimetre it is printed to; the line below it hardly leans.",
-             lambda: float(solved().centre[_FIRST_GLASS, 1])),
+             lambda: float(solved().centre[_FIRST_GLASS, 1]), Kind.PUBLISHED),
         Case("C16 printed: 98 m of Kevlar under load", 98.24, "m", 0.011,
              "The centimetre it is printed to, and 2 % of the stretch for its tension.",
-             lambda: float(solved().stretched[_FIRST_KEVLAR])),
+             lambda: float(solved().stretched[_FIRST_KEVLAR]), Kind.PUBLISHED),
     ),
     picture="verification-cdms-1",
 )  # fmt: skip

@@ -7,7 +7,7 @@ from math import atan2, hypot, log2, radians
 
 from calm.analytic.uniform import heavy_line
 from calm.solve import Settings, solve_mooring
-from calm.verification.case import Case, Source
+from calm.verification.case import Case, Kind, Source
 from calm.verification.pieces import cable, line_of, point, sphere_drag, stream
 
 ANGLE_STEPS = (4.0, 2.0, 1.0, 0.5, 0.25, 0.125)
@@ -49,12 +49,12 @@ march is of second order: half the step, a quarter of the error.""",
         *(
             Case(f"C20 order, {coarse:g}° to {fine:g}°", 2.0, "", 0.05,
                  "Terms of fourth order and the rest piece at the end stir it.",
-                 partial(_order, coarse, fine))
+                 partial(_order, coarse, fine), Kind.PROPERTY)
             for coarse, fine in ((2.0, 1.0), (1.0, 0.5), (0.5, 0.25))
         ),
         Case("C20 miss of the free end at 1°", 0.0, "m", 5e-5 * LENGTH,
              "What CALM promises at its default angle step: 5e-5 of the depth.",
-             partial(heavy_line_error, 1.0)),
+             partial(heavy_line_error, 1.0), Kind.CLOSED_FORM),
     ),
     picture="verification-convergence",
 )  # fmt: skip

@@ -11,7 +11,7 @@ from calm.physics.reynolds import (
     finite_length_factor_above,
     sphere_coefficient,
 )
-from calm.verification.case import PRINTED, Case, Source
+from calm.verification.case import PRINTED, Case, Kind, Source
 
 WIESELSBERGER = (
     (3.18, 4.87), (8.01, 2.94), (17.7, 2.12), (31.7, 1.73), (63.6, 1.48), (196.0, 1.27),
@@ -68,41 +68,41 @@ Moorings take these curves only where a component is declared smooth.""",
     (
         *(
             Case(f"C23 cylinder, Re {reynolds:g}, Wieselsberger", cn, "", _SHARE, _COPIED,
-                 partial(cylinder_coefficient, reynolds))
+                 partial(cylinder_coefficient, reynolds), Kind.BY_CONSTRUCTION)
             for reynolds, cn in WIESELSBERGER if reynolds <= MEASURED_UP_TO
         ),
         *(
             Case(f"C23 cylinder, Re {reynolds:g}, DNV", cn, "", _SHARE, _COPIED,
-                 partial(cylinder_coefficient, reynolds))
+                 partial(cylinder_coefficient, reynolds), Kind.BY_CONSTRUCTION)
             for reynolds, cn in DNV
         ),
         *(
             Case(f"C23 cylinder, Re {reynolds:g}, Cheng", round(cheng(reynolds), 4), "",
                  0.05 * cheng(reynolds),
                  "5 %, to which the fit and the measurements agree from Re 17 to 1.6e5.",
-                 partial(cylinder_coefficient, reynolds))
+                 partial(cylinder_coefficient, reynolds), Kind.CLOSED_FORM)
             for reynolds in (17.7, 63.6, 196.0, 892.0, 5.15e3, 1.5e4, 6.55e4, 1.07e5)
         ),
         *(
             Case(f"C23 κ, L/D {slenderness:g}, Re below 2e5", kappa, "", _SHARE, _COPIED,
-                 partial(finite_length_factor, slenderness))
+                 partial(finite_length_factor, slenderness), Kind.BY_CONSTRUCTION)
             for slenderness, kappa in zip(_SLENDERNESS, _KAPPA, strict=True)
         ),
         *(
             Case(f"C23 κ, L/D {slenderness:g}, Re above 2e5", kappa, "", _SHARE, _COPIED,
-                 partial(finite_length_factor_above, slenderness))
+                 partial(finite_length_factor_above, slenderness), Kind.BY_CONSTRUCTION)
             for slenderness, kappa in zip(_SLENDERNESS, _KAPPA_ABOVE, strict=True)
         ),
         Case("C23 κ, L/D 1, Wieselsberger", 0.52, "", 5.5e-3, PRINTED,
-             partial(finite_length_factor, 1.0)),
+             partial(finite_length_factor, 1.0), Kind.BY_CONSTRUCTION),
         *(
             Case(f"C23 end face, L/D {slenderness:g}", ct, "", _SHARE, _COPIED,
-                 partial(end_face_coefficient, slenderness))
+                 partial(end_face_coefficient, slenderness), Kind.BY_CONSTRUCTION)
             for slenderness, ct in _END_FACE
         ),
         *(
             Case(f"C23 sphere, Re {reynolds:g}", cx, "", 5.5e-4 if cx > 10.0 else 5.5e-5, PRINTED,
-                 partial(sphere_coefficient, reynolds))
+                 partial(sphere_coefficient, reynolds), Kind.CLOSED_FORM)
             for reynolds, cx in MORRISON
         ),
     ),

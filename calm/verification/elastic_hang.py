@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 from calm.solve import solve_mooring
-from calm.verification.case import Case, Source
+from calm.verification.case import Case, Kind, Source
 from calm.verification.ends import Ends, ends_of
 from calm.verification.pieces import Piece, line_of, point, stream
 
@@ -35,8 +35,9 @@ SOURCE = Source(
 EA 97 817.4 N (3.45e8 Pa on its section, the modulus of R. Dewey's *Mooring Design & Dynamics*):
 its elongation is (2000 L + 0.3 L²/2)/EA.""",
     (
-        Case("C15 elongation", 21.97973, "m", 5.5e-6, _WHY, lambda: _hanging().z - _LENGTH),
+        Case("C15 elongation", 21.97973, "m", 5.5e-6, _WHY, lambda: _hanging().z - _LENGTH,
+             Kind.CLOSED_FORM),
         Case("C15 tension at the lower end", _LOAD, "N", 1e-6, "Rounding.",
-             lambda: _hanging().tension),
+             lambda: _hanging().tension, Kind.CLOSED_FORM),
     ),
 )  # fmt: skip

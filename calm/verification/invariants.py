@@ -10,10 +10,11 @@ from math import cos, pi, radians, sin
 import numpy as np
 
 from calm.physics.friction import Friction
-from calm.physics.line import REFERENCE_DENSITY, Floats, Water
+from calm.physics.line import Floats, Water
+from calm.physics.reference import REFERENCE_DENSITY
 from calm.solve import Settings, Solution, solve_mooring
 from calm.verification import s1000
-from calm.verification.case import Case, Source
+from calm.verification.case import Case, Kind, Source
 from calm.verification.ends import FINE, towed
 from calm.verification.pieces import (
     GRAVITY,
@@ -205,7 +206,7 @@ def _undercurrent() -> Solution:
 
 
 def _nothing(name: str, tolerance: float, why: str, got: Callable[[], float]) -> Case:
-    return Case(f"C20 {name}", 0.0, "", tolerance, why, got)
+    return Case(f"C20 {name}", 0.0, "", tolerance, why, got, Kind.PROPERTY)
 
 
 _SAME = "The same segments: rounding, and 1e-9 of the depth where each search for the root stops."
@@ -244,7 +245,8 @@ gives the highest and reports the lowest; the one between them does not stand.""
                  "At an angle step of 0.01° the march errs by 1e-9 of the depth.", _split),
         *(
             Case(f"C20 three equilibria: depth of the {name}", depth, "m", 1e-6,
-                 "The roots are given to nine digits; CALM closes to 1e-9 of the depth.", got)
+                 "The roots are given to nine digits; CALM closes to 1e-9 of the depth.", got,
+                 Kind.CLOSED_FORM)
             for name, depth, got in (
                 ("highest", 10.0031998, lambda: -float(_undercurrent().position[0, 2])),
                 ("lowest", 61.4357069, lambda: float(_undercurrent().other_depth or 0.0)),

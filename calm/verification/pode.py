@@ -9,7 +9,7 @@ from math import degrees, radians
 from calm.analytic.pode import CableFunctions, cable_functions
 from calm.analytic.uniform import critical_angle, critical_weight_ratio, tension_ratio
 from calm.physics.friction import Friction
-from calm.verification.case import PRINTED, Case, Figure, Source, table
+from calm.verification.case import PRINTED, Case, Figure, Kind, Source, table
 from calm.verification.ends import Wake, towed
 from calm.verification.pieces import Piece, deep_water, line_of, point
 
@@ -78,7 +78,8 @@ def _tension(critical: float, angle: float, tau: float) -> Case:
         return float(tension_ratio(radians(angle), radians(90.0), ratio))
 
     return Case(
-        f"{_name(critical, 0.0, angle)}: τ, closed form", tau, "", 5.5e-7, PRINTED, got
+        f"{_name(critical, 0.0, angle)}: τ, closed form", tau, "", 5.5e-7, PRINTED, got,
+        Kind.INDEPENDENT,
     )  # fmt: skip
 
 
@@ -107,6 +108,7 @@ cos φc = √(1 + p²/4) − p/2, is E. E. Zajac's, too (Bell System Technical J
              for *given, tau, sigma, xi, eta in _TABLE
              for row in [(tau, sigma, xi, eta)]],
             PRINTED,
+            Kind.INDEPENDENT,
         ),
         *table(
             [
@@ -120,13 +122,14 @@ cos φc = √(1 + p²/4) − p/2, is E. E. Zajac's, too (Bell System Technical J
              for critical, f, angle, tau, sigma, xi, eta in _TABLE if f > 0.0],
             "The cable is cut to σ, printed to 5e-7; the march errs by 1e-7 of its length, some "
             "1e-6, at an angle step of 0.1°.",
+            Kind.INDEPENDENT,
         ),
         *(_tension(critical, angle, tau) for critical, f, angle, tau, *_ in _TABLE if f == 0.0),
         Case("C6 all rows: greatest |τ − 1 − p η − f σ|", 0.0, "", 1e-11,
-             "Exact; the quadratures go on to 1e-12.", _identity_missed),
+             "Exact; the quadratures go on to 1e-12.", _identity_missed, Kind.PROPERTY),
         *(
             Case(f"critical angle, p {ratio:g}", expected, "°", 5.5e-5, PRINTED,
-                 partial(_critical_angle, ratio))
+                 partial(_critical_angle, ratio), Kind.CLOSED_FORM)
             for ratio, expected in _CRITICAL
         ),
     ),

@@ -7,7 +7,7 @@ from math import log2, radians
 
 from calm.physics.line import Line
 from calm.solve import Settings, Solution, solve_mooring
-from calm.verification.case import Case, Figure, Source, table
+from calm.verification.case import Case, Figure, Kind, Source, table
 from calm.verification.pieces import HALF_DENSITY, cable, line_of, point, profile
 
 SEA = profile(1100.0, [(0.0, 1.0), (200.0, 0.6), (500.0, 0.2), (1100.0, 0.05)])
@@ -70,16 +70,18 @@ integration against them.""",
             [("S1000 at 1°", lambda: solved(1.0), _EXPECTED)],
             "What CALM promises at its default angle step: 5e-5 of the water depth, 2e-4 of the "
             "tension.",
+            Kind.INDEPENDENT,
         ),
         *table(
             _figures(1e-4, 1e-3),
             [("S1000 at 0.02°", lambda: solved(_FINEST), _EXPECTED)],
             "One unit of the last digit printed: half for its rounding, half for the march.",
+            Kind.INDEPENDENT,
         ),
         Case("S1000 order of convergence, 2° to 0.5°", 2.0, "", 0.25,
              "Second order, stirred by cuts at the levels of the profile, which shift the "
              "segments.",
-             lambda: _order(2.0, 0.5)),
+             lambda: _order(2.0, 0.5), Kind.PROPERTY),
     ),
     picture="verification-s1000",
 )  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 from calm.physics import seawater
-from calm.verification.case import PRINTED, Case, Source
+from calm.verification.case import PRINTED, Case, Kind, Source
 
 _TEMPERATURES = (0, 5, 10, 15, 20, 25, 30)
 
@@ -56,29 +56,30 @@ other measurements, and the accepted viscosity of pure water at 20 °C stand bes
     (
         *(
             Case(f"C23 dynamic viscosity, {temperature} °C, {salinity} g/kg", printed, "mPa s",
-                 5.5e-5, PRINTED, partial(_viscosity, temperature, salinity))
+                 5.5e-5, PRINTED, partial(_viscosity, temperature, salinity), Kind.CLOSED_FORM)
             for salinity, row in _VISCOSITY
             for temperature, printed in zip(_TEMPERATURES, row, strict=True)
         ),
         *(
             Case(f"C23 kinematic viscosity, {temperature} °C, 35", printed, "1e-6 m²/s", 5.5e-5,
-                 PRINTED, partial(_kinematic, temperature))
+                 PRINTED, partial(_kinematic, temperature), Kind.CLOSED_FORM)
             for temperature, printed in zip(_TEMPERATURES, _KINEMATIC, strict=True)
         ),
         Case("C23 dynamic viscosity, 10 °C, 30 g/kg, to six digits", 1.38238, "mPa s", 5.5e-6,
-             PRINTED, partial(_viscosity, 10, 30)),
+             PRINTED, partial(_viscosity, 10, 30), Kind.CLOSED_FORM),
         Case("C23 Dorsey 1940, 10 °C, 30 g/kg", 1.383779, "mPa s", 0.015 * 1.383779,
-             "1.5 %, the accuracy of the formula.", partial(_viscosity, 10, 30)),
+             "1.5 %, the accuracy of the formula.", partial(_viscosity, 10, 30), Kind.PUBLISHED),
         Case("C23 pure water, 20 °C, accepted", 1.0016, "mPa s", 0.015 * 1.0016,
-             "1.5 %, the accuracy of the formula.", partial(_viscosity, 20, 0)),
+             "1.5 %, the accuracy of the formula.", partial(_viscosity, 20, 0), Kind.PUBLISHED),
         *(
             Case(f"C23 density, SA {salinity}, CT {temperature:g}, {depth} m", printed, "kg/m³",
-                 5.5e-4, PRINTED, partial(_density, salinity, temperature, depth))
+                 5.5e-4, PRINTED, partial(_density, salinity, temperature, depth),
+                 Kind.BY_CONSTRUCTION)
             for salinity, temperature, depth, printed in _DENSITY
         ),
         *(
             Case(f"C23 gravity, latitude {latitude}°", printed, "m/s²", 5.5e-7, PRINTED,
-                 partial(seawater.gravity, latitude))
+                 partial(seawater.gravity, latitude), Kind.CLOSED_FORM)
             for latitude, printed in _GRAVITY
         ),
     ),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 from calm.physics.strumming import blevins, skop_griffin, vandiver
-from calm.verification.case import PRINTED, Case, Source
+from calm.verification.case import PRINTED, Case, Kind, Source
 
 _AMPLITUDES = (0.3, 0.5, 0.9, 1.0, 1.4)
 
@@ -18,7 +18,7 @@ overshoots what Griffin et al. (1984) measured on cables at sea: Cn of 2.4 to 3.
 times that at rest, the band of all three at A/D from 0.5 to 1.""",
     tuple(
         Case(f"{name}, A/D {amplitude:g}", printed, "", 5.5e-4,
-             PRINTED, partial(factor, amplitude))
+             PRINTED, partial(factor, amplitude), Kind.CLOSED_FORM)
         for name, factor, row in (
             ("Vandiver", vandiver, (1.597, 1.833, 2.220, 2.307, 2.626)),
             ("Blevins", blevins, (1.630, 2.050, 2.890, 3.100)),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache, partial
 
 from calm.solve import Settings
-from calm.verification.case import Figure, Source, table
+from calm.verification.case import Figure, Kind, Source, table
 from calm.verification.ends import Wake, towed
 from calm.verification.pieces import (
     HALF_DENSITY,
@@ -52,6 +52,7 @@ of it with a body of 2000 N in water and 0.05 m² of drag area (C8), friction
             ],
             "Half a unit of the last digit printed, and a tenth: a straight cable is exact "
             "whatever the angle step.",
+            Kind.CLOSED_FORM,
         ),
         *table(
             [
@@ -70,6 +71,7 @@ of it with a body of 2000 N in water and 0.05 m² of drag area (C8), friction
             ],
             "1e-6 of the length and of the tension, 1e-4° for the angle; the figures are printed "
             "to four decimals.",
+            Kind.INDEPENDENT,
         ),
     ),
 )

@@ -6,7 +6,7 @@ from functools import cache, partial
 from math import hypot
 
 from calm.physics.line import Line, Water
-from calm.verification.case import Case, Figure, Source, table
+from calm.verification.case import Case, Figure, Kind, Source, table
 from calm.verification.ends import Ends, finely
 from calm.verification.pieces import Piece, cable, line_of, point, sphere_drag, stream
 
@@ -66,7 +66,7 @@ def _identity(speed: float) -> Case:
     return Case(
         f"C4 heavy line, {speed} m/s: (T_top − T_bottom) / (w z_top)", 1.0, "", 1e-6,
         "Exact; the rods keep it to 1 − cos of half an angle step, 4e-7 at 0.1°.",
-        lambda: _fall(speed) / (_HEAVY * _rope_ends(_HEAVY, 0.0, speed).z),
+        lambda: _fall(speed) / (_HEAVY * _rope_ends(_HEAVY, 0.0, speed).z), Kind.PROPERTY,
     )  # fmt: skip
 
 
@@ -114,6 +114,7 @@ against them.""",
                 )
             ],
             _PRINTED,
+            Kind.CLOSED_FORM,
         ),
         *table(
             _thread(0.5, 5.5e-7, 5.5e-7, 5.5e-5),
@@ -122,6 +123,7 @@ against them.""",
                  (0.161321, 0.374174, 25.5398, 0.215569, 0.048857)),
             ],
             _PRINTED,
+            Kind.CLOSED_FORM,
         ),
         *table(
             [_TENSION, _ANGLE, _OFFSET, _KNOCKDOWN, _HORIZONTAL, _VERTICAL],
@@ -134,6 +136,7 @@ against them.""",
                 )
             ],
             _SEVEN_DIGITS,
+            Kind.CLOSED_FORM,
         ),
         *table(
             [_TENSION, _ANGLE, _OFFSET, _KNOCKDOWN],
@@ -146,6 +149,7 @@ against them.""",
                 )
             ],
             _SEVEN_DIGITS,
+            Kind.INDEPENDENT,
         ),
         *(_identity(speed) for speed in (0.3, 0.5, 1.0)),
         *table(
@@ -159,6 +163,7 @@ against them.""",
                 )
             ],
             _SEVEN_DIGITS,
+            Kind.INDEPENDENT,
         ),
     ),
 )  # fmt: skip

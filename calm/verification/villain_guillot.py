@@ -7,7 +7,7 @@ from math import cos, radians, sin
 
 from calm.analytic.station import Station
 from calm.analytic.villain_guillot import linear_cable
-from calm.verification.case import PRINTED, Figure, Source, table
+from calm.verification.case import PRINTED, Figure, Kind, Source, table
 
 _LENGTH, _UNIT = 1.25, 0.5
 """L and ℓ = T₀/√((μg)² + (kV)²) of the figure."""
@@ -42,5 +42,6 @@ shape are right.""",
             )
         ],
         PRINTED,
+        Kind.CLOSED_FORM,
     ),
 )

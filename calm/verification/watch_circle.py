@@ -6,7 +6,7 @@ import re
 
 from calm.errors import NoEquilibrium
 from calm.solve import solve_mooring
-from calm.verification.case import Case, Source
+from calm.verification.case import Case, Kind, Source
 from calm.verification.pieces import cable, line_of, point, stream
 
 _DEPTH, _SCOPE = 540.0, 2.0
@@ -32,6 +32,6 @@ unique shape: CALM refuses it with the status `slack` and tells the radius of it
 most depth · √(scope² − 1). PacIOOS publishes 934 m, 1.73 times the depth, for that mooring.""",
     (
         Case("C22 radius", 934.0, "m", 0.002 * 934.0,
-             "0.2 %: 1.73 is √3 to three digits.", _radius),
+             "0.2 %: 1.73 is √3 to three digits.", _radius, Kind.PUBLISHED),
     ),
 )  # fmt: skip

@@ -10,8 +10,8 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 README = ROOT / "README.md"
-TOW = ROOT / "docs" / "tow.md"
-PAGES = [README, *sorted((ROOT / "docs").glob("*.md"))]
+TOW = ROOT / "docs" / "how-to" / "tow.md"
+PAGES = [README, *sorted((ROOT / "docs").rglob("*.md"))]
 
 
 def blocks(page: Path, language: str) -> list[str]:
@@ -61,7 +61,7 @@ def test_the_rules_of_the_design_check_are_in_the_manual_as_they_are() -> None:
 
 
 def test_every_command_is_explained_in_the_readme_or_the_manual() -> None:
-    reference = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
+    reference = (ROOT / "docs" / "reference" / "command-line.md").read_text(encoding="utf-8")
     commands = [name for name in re.findall(r"^## (calm .+)$", reference, re.MULTILINE)]
     assert "calm run" in commands
     explained = "\n".join(
@@ -93,8 +93,9 @@ def test_a_page_shows_what_the_command_prints(page: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "page", [README, ROOT / "docs" / "python.md", TOW], ids=lambda page: page.name
+    "page", [README, ROOT / "docs" / "how-to" / "python.md", TOW], ids=lambda page: page.name
 )
+@pytest.mark.thorough
 def test_python_examples_run(page: Path, tmp_path: Path) -> None:
     examples = blocks(page, "python")
     assert examples
@@ -110,7 +111,9 @@ def test_python_examples_run(page: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "page", [README, ROOT / "docs" / "mooring-file.md", TOW], ids=lambda page: page.name
+    "page",
+    [README, ROOT / "docs" / "reference" / "mooring-file.md", TOW],
+    ids=lambda page: page.name,
 )
 def test_moorings_shown_are_solved(page: Path, tmp_path: Path) -> None:
     file = tmp_path / "mooring.yaml"

@@ -11,18 +11,20 @@ import zipfile
 from pathlib import Path
 
 import pytest
+import yaml
 from hatchling.builders.sdist import SdistBuilder
 from hatchling.builders.wheel import WheelBuilder
 
 import calm
 from calm.cli import main
+from calm.version import commit_of
 
 ROOT = Path(__file__).resolve().parents[2]
 INSTALLED_AS = {
     "calm": "calm",
     "catalog": "calm/_shipped/catalog",
     "lines": "calm/_shipped/lines",
-    "docs/field": "calm/_shipped/field",
+    "docs": "calm/_shipped/docs",
 }
 
 
@@ -38,14 +40,19 @@ def checkout_files() -> dict[str, bytes]:
         f"{target}/{path.relative_to(ROOT / source).as_posix()}": path.read_bytes()
         for source, target in INSTALLED_AS.items()
         for path in (ROOT / source).rglob("*")
-        if path.is_file() and "__pycache__" not in path.parts
+        if path.is_file()
+        and "__pycache__" not in path.parts
+        and path.name != "_site.zip"
+        and not (source == "docs" and path.suffix in (".py", ".1"))
     }
 
 
 def wheel_files(wheel: Path) -> dict[str, bytes]:
     with zipfile.ZipFile(wheel) as archive:
         return {
-            name: archive.read(name) for name in archive.namelist() if ".dist-info/" not in name
+            name: archive.read(name)
+            for name in archive.namelist()
+            if ".dist-info/" not in name and ".data/" not in name
         }
 
 
@@ -56,8 +63,15 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_the_wheel_holds_the_checkout_and_nothing_else(wheel: Path) -> None:
     built, wanted = wheel_files(wheel), checkout_files()
+    assert built.pop("calm/_shipped/commit", b"").decode().strip() == commit_of(ROOT)
     assert sorted(built) == sorted(wanted)
     assert built == wanted
+
+
+def test_the_wheel_installs_the_manual_page(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        (name,) = [name for name in archive.namelist() if name.endswith("share/man/man1/calm.1")]
+        assert archive.read(name) == (ROOT / "docs" / "calm.1").read_bytes()
 
 
 def test_the_source_distribution_builds_the_same_wheel(wheel: Path, tmp_path: Path) -> None:
@@ -107,7 +121,7 @@ def test_there_is_one_version(capsys: pytest.CaptureFixture[str]) -> None:
         calm.__version__,
         importlib.metadata.version("calm-mooring"),
         newest[1],
-        capsys.readouterr().out.split()[-1],
+        capsys.readouterr().out.split()[0],
     }
     assert versions == {calm.__version__}
 
@@ -124,7 +138,11 @@ def test_constraints_name_every_direct_dependency() -> None:
     wanted = [
         *settings["build-system"]["requires"],
         *settings["project"]["dependencies"],
-        *settings["project"]["optional-dependencies"]["dev"],
+        *(
+            wanted
+            for extra in ("dev", "docs", "release", "browser", "cluster", "sheets")
+            for wanted in settings["project"]["optional-dependencies"][extra]
+        ),
     ]
     pinned = {
         line.partition("==")[0].lower()
@@ -133,3 +151,15 @@ def test_constraints_name_every_direct_dependency() -> None:
     }
     missing = [name for name in wanted if re.split(r"[^\w.-]", name.lower())[0] not in pinned]
     assert not missing
+
+
+def test_the_conda_recipe_wants_what_the_wheel_wants() -> None:
+    named = {"matplotlib": "matplotlib-base", "typst": "typst-py"}
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    wanted = [dependency.lower().partition(">=") for dependency in project["dependencies"]]
+    recipe = yaml.safe_load((ROOT / "conda" / "recipe.yaml").read_text(encoding="utf-8"))
+    assert recipe["context"]["version"] == project["version"]
+    assert recipe["requirements"]["run"] == [
+        f"python {project['requires-python']}",
+        *(f"{named.get(name, name)} >={least}" for name, _, least in wanted),
+    ]

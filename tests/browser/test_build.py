@@ -17,6 +17,8 @@ import pytest
 
 from calm.shipped import shipped_folder
 
+pytestmark = pytest.mark.thorough
+
 pytest.importorskip("textual_serve")
 
 CHROMIUM = next(

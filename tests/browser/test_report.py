@@ -27,6 +27,8 @@ from tests.judged import (
     unaccepting,
 )
 
+pytestmark = pytest.mark.thorough
+
 CHROMIUM = next(
     filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
 )

@@ -88,6 +88,7 @@ def test_the_column_is_that_of_the_mooring_unless_another_is_asked_for(calm, wri
     assert (10.0 * own < other).all()
 
 
+@pytest.mark.thorough
 def test_none_converged_is_3_and_some_are_counted(calm, write_mooring, heavy, record, folder):
     done = calm("batch", heavy, "--currents", record, "-o", "heavy.nc")
     assert done.code == 3
@@ -239,6 +240,7 @@ runpy.run_module("calm", run_name="__main__")
 
 @pytest.mark.skipif(sys.platform == "win32", reason="sends signals as POSIX has them")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.thorough
 def test_signals_leave_what_can_be_resumed(write_mooring, folder, number):
     # one by one it is slow enough to be caught at it
     (folder / "long.csv").write_text(still_water(4_000))
@@ -310,6 +312,7 @@ def test_without_statistics_there_is_the_result_alone(calm, write_mooring, recor
     "largest", [0, 3000, *(pytest.param(n, marks=pytest.mark.slow) for n in (300, 30_000))]
 )
 @pytest.mark.parametrize("ending", [".nc", ".zarr"])
+@pytest.mark.thorough
 def test_files_that_cannot_grow_are_what_a_full_disk_is(
     calm, write_mooring, record, folder, largest, ending
 ):
@@ -372,6 +375,7 @@ def test_the_bar_goes_whatever_happens(calm, write_mooring, record, monkeypatch)
     assert shown.rpartition("[.....")[2].partition("\r\x1b[K")[2].startswith("calm: internal error")
 
 
+@pytest.mark.thorough
 def test_the_workers_of_a_scheduler(calm, write_mooring, record, folder):
     distributed = pytest.importorskip("distributed")
     with warnings.catch_warnings():  # dask leaves sockets to the collector

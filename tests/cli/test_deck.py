@@ -95,6 +95,7 @@ def deck(calm, folder):
     ("pieces", "paper", "size"),
     [(2, "letter", (612, 792)), (43, "a3", (1191, 842)), (203, "a4", (595, 842))],
 )  # fmt: skip
+@pytest.mark.thorough
 def test_everything_is_on_the_pages(deck, pieces, paper, size):
     out, _ = deck(mooring(pieces), "--page", paper)
     blocks = max(pieces - 3, 0) // 5
@@ -145,11 +146,19 @@ def test_the_anchor_drop_is_planned_for_the_ship(deck):
     text = mooring(8).replace("length: 10 m", "length: 60 m").replace("900 m", "100 m")
     text = text.replace("weight: 40 kN", "weight: 8 kN, kt: 300 N/(m/s)^2")
     plans = []
-    for words in ((), ("--ship-speed", "1.5 m/s", "--streamed", "50 m")):
+    text = text.replace("line:", "position: {latitude: 48 deg, longitude: -5 deg}\nline:", 1)
+    for words in ((), ("--ship-speed", "1.5 m/s", "--streamed", "50 m", "--course", "90 deg")):
         out, _ = deck(text, *words)
         plans.append(json.loads((out / "plan.json").read_text()))
         assert packed("Anchor drop plan") in "".join(pages_of((out / "deck.pdf").read_bytes())[0])
     assert [plan["ship_speed"] for plan in plans] == [1.0, 1.5]
+    assert [plan["course"] for plan in plans] == [270.0, 90.0]
+    # eastward from the west; degrees at 48° on WGS 84: 74 625 and 111 190 m
+    start, let_go = (plans[1][f"{place}_position"] for place in ("start", "let_go"))
+    assert start["longitude"] < -5.0 < let_go["longitude"]
+    east, north = plans[1]["let_go"]
+    assert let_go["longitude"] == pytest.approx(-5.0 + east / 74_625.0, abs=1e-6)
+    assert let_go["latitude"] == pytest.approx(48.0 + north / 111_190.0, abs=1e-6)
     assert plans[1]["streamed"] == pytest.approx(50.0, abs=0.1) != plans[0]["streamed"]
     assert {"fall_time", "fall_back", "fall_back_band", "tow_past", "run_in", "path"} <= set(
         plans[0]

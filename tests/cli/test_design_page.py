@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGE = ROOT / "docs" / "design.md"
+PAGE = ROOT / "docs" / "how-to" / "design.md"
 SHOWN = re.findall(
     r"^<!-- printed by: calm ([^\n]+) -->\n```text\n(.*?)^```$",
     PAGE.read_text(encoding="utf-8"),
@@ -19,6 +19,7 @@ SHOWN = re.findall(
 
 
 @pytest.mark.parametrize(("command", "shown"), SHOWN, ids=[command[-13:] for command, _ in SHOWN])
+@pytest.mark.thorough
 def test_the_page_shows_what_is_printed(command, shown):
     finished = subprocess.run(
         [sys.executable, "-m", "calm", *shlex.split(command)],

@@ -75,6 +75,21 @@ def test_the_table(calm, two):
     assert max(map(len, out.splitlines())) <= 80
 
 
+def test_named_environments_are_compared(calm, write_mooring, folder):
+    names = write_mooring("a.yaml"), write_mooring("b.yaml")
+    for name, speed in zip(names, ("0.8 m/s", "0.9 m/s"), strict=True):
+        with (folder / name).open("a") as text:
+            text.write(f"environments: {{storm: {{current: {{speed: {speed}, toward: 0}}}}}}\n")
+    document = json.loads(calm("diff", *names, "--json", "-").out)
+    assert document["changed"] == [
+        {
+            "where": "environments.storm.current",
+            "from": "speed: 0.8 m/s, toward: 0",
+            "to": "speed: 0.9 m/s, toward: 0",
+        }
+    ]
+
+
 def test_nothing_differs(calm, write_mooring):
     done = calm("diff", write_mooring("a.yaml"), write_mooring("b.yaml"))
     assert done.code == 0

@@ -9,6 +9,8 @@ import pytest
 
 from calm.cli import main
 
+pytestmark = pytest.mark.thorough
+
 HOSTILE = (
     "top [/x]",
     "ADCP [a]",

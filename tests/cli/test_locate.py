@@ -1,4 +1,5 @@
 import json
+import re
 
 import pytest
 
@@ -70,6 +71,31 @@ def test_it_is_written_into_the_mooring_and_nothing_else_changes(
     assert calm("diff", "m.yaml").code == 0
 
 
+def test_it_is_compared_with_the_plan(calm, ranges, write_mooring, folder):
+    def located(position, depth=2000):
+        write_mooring("m.yaml")
+        text = (folder / "m.yaml").read_text()
+        text = re.sub(r"depth: \d+ m", f"depth: {depth} m", text, count=1)
+        (folder / "m.yaml").write_text(f"position: {{{position}}}\n{text}")
+        return calm("locate", ranges(), "-o", "m.yaml", "--sound-speed", "1480 m/s")
+
+    # a thousandth of a degree south is 111 m on WGS 84
+    done = located("latitude: 48.301 deg, longitude: -5.2 deg")
+    assert done.code == 0
+    assert "m.yaml: 111 m towards 180° of the planned position" in done.err
+    assert "3.3 m less deep than planned" in done.err
+    assert "far from the planned" not in done.err
+    assert "--sound-speed is not used: ranges in metres are taken as they are" in done.err
+    done = located("latitude: 48.4 deg, longitude: -5.2 deg", depth=1500)
+    assert done.code == 0
+    assert "that is far from the planned position" in done.err
+    assert "the depth is far from the planned one" in done.err
+    done = located("latitude: -5.2 deg, longitude: 48.3 deg")
+    assert done.code == 2
+    assert "latitude and longitude are exchanged" in done.err
+    assert "deployed" not in (folder / "m.yaml").read_text()
+
+
 def test_a_file_that_cannot_take_it_is_refused_before_anything_is_written(
     calm, ranges, broken, folder
 ):
@@ -124,7 +150,7 @@ def test_every_mistake_at_once_with_its_line(calm, ranges):
         ("latitude[deg],longitude[deg]\n48.3,-5.2\n", "there is no column `range[m]` or `time[s]`"),
         ("lat[deg],longitude[deg],range[m]\n48.3,-5.2,1\n", "there is no column `latitude[deg]`"),
         ("latitude[deg],longitude[deg],time[s]\n48.3,-5.2,2750\n", "did you mean `time[ms]`?"),
-        ("latitude[deg],longitude[deg],range[ell]\n48.3,-5.2,1\n", "allowed: m, km"),
+        ("latitude[deg],longitude[deg],range[ell]\n48.3,-5.2,1\n", "range[ell]`: `ell` "),
         ("latitude[deg];longitude[deg];range[m]\n48,3;-5,2;2000\n", "decimal degrees are needed"),
         (RANGES.split("48.29")[0], "2 ranges; 3 are needed"),
     ],

@@ -5,13 +5,32 @@ import sys
 import pytest
 
 import calm as package
+from calm import version
 from calm.cli.exit_codes import ExitCode, gravest
 from calm.errors import UsageError
 
 
 def test_version(calm):
     done = calm("--version")
-    assert (done.code, done.out) == (0, f"{package.__version__}\n")
+    commit = version.built_from()
+    said = f"{package.__version__} (commit {commit})" if commit else package.__version__
+    assert (done.code, done.out) == (0, f"{said}\n")
+
+
+def test_the_commit_is_the_built_one_then_that_of_the_checkout(tmp_path, monkeypatch):
+    package = tmp_path / "calm"
+    (package / "_shipped").mkdir(parents=True)
+    monkeypatch.setattr(version, "__file__", str(package / "version.py"))
+    assert version.built_from() == ""
+    git = ["git", "-C", str(tmp_path), "-c", "user.name=A", "-c", "user.email=a@b"]
+    subprocess.run(["git", "init", "-q", str(tmp_path)], check=True)
+    subprocess.run([*git, "commit", "-q", "--allow-empty", "-m", "One"], check=True)
+    newest = subprocess.run(
+        [*git, "rev-parse", "--short", "HEAD"], check=True, capture_output=True, text=True
+    ).stdout.strip()
+    assert version.built_from() == newest
+    (package / "_shipped" / "commit").write_text("4c1fd21\n")
+    assert version.built_from() == "4c1fd21"
 
 
 def test_no_words_show_the_help(calm):
@@ -27,6 +46,7 @@ def test_no_words_show_the_help(calm):
         "strumming",
         "new",
         "schema",
+        "docs",
         "catalog",
         "catalog list",
         "catalog show",
@@ -146,6 +166,7 @@ def test_signs_a_terminal_cannot_show_stop_nothing(calm_process, write_mooring):
     ("variables", "coloured"),
     [({}, False), ({"FORCE_COLOR": "1"}, True), ({"FORCE_COLOR": "1", "NO_COLOR": "1"}, False)],
 )
+@pytest.mark.thorough
 def test_colour_only_where_it_is_wanted(calm_process, write_mooring, variables, coloured):
     file = write_mooring(speed="2 m/s", buoyancy="4000 N")  # has a warning, which is red
     environment = os.environ | {"TERM": "xterm-16color"} | variables

@@ -105,6 +105,7 @@ def test_depths_sensors_and_a_hidden_one(calm, given, truth, folder):
         assert (result["status"].values == 0).all()
 
 
+@pytest.mark.thorough
 def test_the_same_again_is_found_and_another_is_refused(calm, given, folder):
     words = (*COMMAND, "--pressures", "p.csv", "-o", "d.nc")
     first = calm(*words)
@@ -115,6 +116,7 @@ def test_the_same_again_is_found_and_another_is_refused(calm, given, folder):
     assert other.code == 2 and "was made from another input" in other.err
 
 
+@pytest.mark.thorough
 def test_cross_validation_hides_each_in_turn(calm, given):
     done = calm(*COMMAND, "--pressures", "p.csv", "-o", "d.nc", "--cross-validate", "--json", "-")
     assert done.code == 0, done.err
@@ -122,6 +124,7 @@ def test_cross_validation_hides_each_in_turn(calm, given):
 
 
 @pytest.mark.parametrize(("unit", "factor"), [("bar", 0.1), ("kPa", 10.0), ("Pa", 1e4)])
+@pytest.mark.thorough
 def test_declared_units_convert(calm, given, truth, unit, factor, folder):
     given("q.csv", unit=unit, factor=factor)
     done = calm(*COMMAND, "--pressures", "q.csv", "-o", "d.nc")
@@ -233,6 +236,7 @@ def test_depths_of_pressures_are_those_of_teos_10():
     assert depths == pytest.approx([9.94458, 595.82535, 992.09191], abs=1e-3)
 
 
+@pytest.mark.thorough
 def test_depths_go_onto_a_copy_of_a_users_own_file(calm, given, truth, folder):
     time = np.array(stamps(), "M8[ns]")
     own = xarray.Dataset(
@@ -260,6 +264,7 @@ def test_depths_go_onto_a_copy_of_a_users_own_file(calm, given, truth, folder):
     assert replaced.code == 0, replaced.err
 
 
+@pytest.mark.thorough
 def test_currents_that_look_false_are_named(calm, given, truth, folder):
     rows = (folder / "c.csv").read_text().splitlines()
     for hour in (15, 16, 40):

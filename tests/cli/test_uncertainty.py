@@ -2,6 +2,8 @@
 
 import json
 
+import pytest
+
 from calm.case.draws import CAUSES
 
 DRAWS = ("--uncertainty", "--samples", "64")
@@ -61,6 +63,7 @@ def test_what_cannot_be_drawn_is_refused(calm, write_mooring, heavy):
     assert calm("run", heavy, *DRAWS).code == 3
 
 
+@pytest.mark.thorough
 def test_every_finding_of_a_check_has_its_probability(calm, write_mooring):
     file = write_mooring()
     options = ("--allow-unknown", *DRAWS, "--json", "-")
@@ -76,6 +79,7 @@ def test_every_finding_of_a_check_has_its_probability(calm, write_mooring):
     ]
 
 
+@pytest.mark.thorough
 def test_designs_are_listed_by_their_probability(calm, write_mooring, folder):
     safe = write_mooring()
     text = (folder / safe).read_text(encoding="utf-8")

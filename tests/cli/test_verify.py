@@ -23,7 +23,7 @@ def test_all_within_tolerance(calm, cases):
     done = calm("verify")
     assert (done.code, done.err) == (0, "")
     assert "Good book" in done.out
-    assert done.out.endswith("Checked 2 figures of 1 source: all within tolerance\n")
+    assert done.out.endswith("Checked 2 figures of 1 source: all within tolerance\n2 published\n")
 
 
 def test_a_figure_out_of_tolerance_is_exit_code_1(calm, cases):

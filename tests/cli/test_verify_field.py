@@ -2,6 +2,10 @@
 
 import json
 
+import pytest
+
+pytestmark = pytest.mark.thorough
+
 
 def test_the_hidden_depths_of_a_real_mooring(calm):
     done = calm("verify", "--field", "--json", "-")

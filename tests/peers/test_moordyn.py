@@ -13,7 +13,7 @@ pytestmark = pytest.mark.peers
 SECONDS = 10
 
 
-@pytest.mark.parametrize("name", ["s1000", "cdms-1"])
+@pytest.mark.parametrize("name", ["s1000", "cdms-1", "tidal-adcp"])
 def test_the_line_stays_where_it_is(name, tmp_path, monkeypatch):
     """Its points move by less than 2e-4 of the depth; its segments are some metres long."""
     moordyn = pytest.importorskip("moordyn", reason="needs the extra `peers`")

@@ -13,6 +13,8 @@ from hypothesis import strategies as st
 from calm.files.editing import Draft, History, clamps_of
 from tests.property.ugly_files import UGLY
 
+pytestmark = pytest.mark.thorough
+
 LINES = Path(__file__).resolve().parents[2] / "lines"
 FILES = {path.stem: path.read_bytes().decode() for path in sorted(LINES.glob("*.yaml"))} | UGLY
 

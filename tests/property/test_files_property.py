@@ -131,6 +131,7 @@ def test_the_files_are_good(tmp_path: Path) -> None:
         max_size=4,
     ),
 )
+@pytest.mark.thorough
 def test_edits_of_the_text(tmp_path: Path, text: str, edits: list[tuple[int, int, str]]) -> None:
     for start, length, fragment in edits:
         text = text[:start] + fragment + text[start + length :]
@@ -177,6 +178,7 @@ KEYS = [
     key=st.none() | st.sampled_from(KEYS),
     environment=st.sampled_from([None, "storm", "sea", "none", "nowhere.yaml"]),
 )
+@pytest.mark.thorough
 def test_values_of_any_shape(
     tmp_path: Path,
     text_and_place: tuple[str, tuple[Any, ...]],

@@ -12,7 +12,7 @@ from calm.tui.app import BuildApp
 from calm.tui.session import Session
 from tests.tui.conftest import MOORING, driven
 
-pytestmark = pytest.mark.usefixtures("painted")
+pytestmark = [pytest.mark.thorough, pytest.mark.usefixtures("painted")]
 
 KEYS = [
     "up", "down", "left", "right", "home", "end", "pageup", "pagedown", "enter", "escape", "tab",

@@ -106,6 +106,7 @@ def test_the_help_has_every_key_with_its_meaning(drive, small):
     drive(story, small, size=(100, 320))
 
 
+@pytest.mark.thorough
 def test_the_help_has_every_key_that_is_bound(drive, small):
     async def story(driver):
         told = {key for rows in (await help_of(driver)).values() for keys, _ in rows

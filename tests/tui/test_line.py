@@ -267,6 +267,7 @@ def test_duplicate_and_move(drive, small):
     drive(story, small)
 
 
+@pytest.mark.thorough
 def test_a_piece_at_the_end_of_the_line_stays_there(drive, small):
     async def story(driver):
         before = driver.text

@@ -14,6 +14,7 @@ from tests.tui.test_terminals import SCREENS
 C = {"TERM": "xterm-256color", "LANG": "C"}
 
 
+@pytest.mark.thorough
 def test_every_screen_has_only_signs_that_the_terminal_has(drive, small):
     text = MOORING.replace("label: top float", "label: Boué 浮標")
     small.write_text(text, encoding="utf-8")

@@ -199,6 +199,7 @@ def test_every_picture(drive, small, key, words):
 
 
 @pytest.mark.parametrize("size", [(80, 24), (40, 12), (20, 5), (5, 3), (300, 100)])
+@pytest.mark.thorough
 def test_every_screen_at_every_size(drive, small, size):
     async def story(driver):
         for keys in (["a", "escape"], ["w", "escape"], ["o", "escape"], ["t", "escape"],
@@ -211,6 +212,7 @@ def test_every_screen_at_every_size(drive, small, size):
     drive(story, small, size=size)
 
 
+@pytest.mark.thorough
 def test_a_component_of_ones_own(drive, small):
     async def fill(driver, key, text):
         field = next(f for f in driver.app.screen.query(Field) if f.key == key)
@@ -264,6 +266,38 @@ def test_name_and_place(drive, small):
     drive(story, small)
 
 
+def test_the_document_and_the_equipment_of_a_row(drive, small):
+    async def story(driver):
+        await driver.press("M")
+        for text in ("M-17", "B", "soon"):
+            await driver.type(text)
+            await driver.press("enter")
+        assert "a day of the calendar is needed, as 2027-06-30" in driver.screen
+        await driver.press("ctrl+u")
+        await driver.type("2027-06-30")
+        for _ in range(7):
+            await driver.press("enter")
+        await driver.settle()
+        assert driver.session.draft.value(("document",)) == {
+            "id": "M-17", "revision": "B", "date": "2027-06-30",
+        }  # fmt: skip
+        await driver.press("=")
+        await driver.type("2")
+        await driver.press("enter", "N")
+        await driver.type("T1, T2")
+        for _ in range(5):
+            await driver.press("enter")
+        await driver.settle()
+        spot = driver.builder.body.line.table.spot
+        assert driver.session.draft.value(("line", spot.item, "serial")) == ["T1", "T2"]
+        assert driver.session.draft.problems == ()
+        await driver.press("N", "ctrl+u", *["enter"] * 5)
+        await driver.settle()
+        assert driver.session.draft.value(("line", spot.item, "serial")) is None
+
+    drive(story, small)
+
+
 def test_a_tow_is_edited_the_same_way(drive, folder):
     from calm.shipped import shipped_folder
 
@@ -290,6 +324,7 @@ def test_a_tow_is_edited_the_same_way(drive, folder):
     drive(story, path)
 
 
+@pytest.mark.thorough
 def test_a_tow_is_built_from_nothing(drive, folder):
     async def story(driver):
         await driver.press("T")

@@ -18,7 +18,10 @@ from calm.files.editing import Draft
 from calm.shipped import shipped_folder
 
 ESCAPE_DELAY = 0.1  # seconds; as textual has it
-pytestmark = pytest.mark.skipif(os.name != "posix", reason="there are no pseudo-terminals")
+pytestmark = [
+    pytest.mark.thorough,
+    pytest.mark.skipif(os.name != "posix", reason="there are no pseudo-terminals"),
+]
 
 PATIENCE = 600.0  # seconds; far more than anything takes, so that a busy machine fails nothing
 ENTER, ESCAPE, TAB, DOWN, UP, RIGHT = "\r", "\x1b", "\t", "\x1b[B", "\x1b[A", "\x1b[C"

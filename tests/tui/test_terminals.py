@@ -5,6 +5,8 @@ from rich.color import ColorType
 
 from calm.tui.theme import choose_theme
 
+pytestmark = pytest.mark.thorough
+
 SCREENS = ([], ["a"], ["escape", "w"], ["escape", "o"], ["escape", "t"],
            ["escape", "question_mark"], ["escape", "l"], ["escape", "3"], ["4"])  # fmt: skip
 OWN = (ColorType.DEFAULT, ColorType.STANDARD)

@@ -10,14 +10,17 @@ import calm
 from calm.assemble import with_axial_clamps
 from calm.case.tow import Tow
 from calm.checks.launch import launch_of
-from calm.drop import drop_plan
+from calm.drop import drop_plan, planning
 from calm.drop.fall import Fineness, Ship, fall, settle, towed
 from calm.drop.motion import Anchor
 from calm.drop.record import rest_difference
+from calm.errors import UsageError
 from calm.shipped import shipped_folder
 from calm.solve import Towing, solve_tow
+from tests.validation import drop_dynamics
 
 COARSE = Fineness(bars=50, steps=50)
+FEW = Fineness(bars=20, steps=20)
 
 DYNAMIC = """
 name: a wire and a surface sphere
@@ -70,6 +73,61 @@ def test_the_dynamic_program(loaded):
     assert plan.rest_difference is None  # slack in still water: no single shape at rest
 
 
+DEEP = """
+name: a light anchor on a long rope in a current
+environment:
+  depth: 4300 m
+  gravity: 9.81 m/s^2
+  current:
+    columns: [depth m, speed m/s, toward deg]
+    rows: [[0, 0.5, 0], [500, 0.25, 0], [4300, 0.05, 0]]
+components:
+  sphere: {kind: sphere, diameter: 1.2 m, mass: 400 kg, volume: 0.90477868 m^3}
+  rope: {kind: cable, diameter: 12 mm, weight: 0.3 N/m, cn: 1.3, ct: 0.005, stiffness: 1 MN}
+  clump: {kind: anchor, weight: 8000 N, kt: 700 N/(m/s)^2}
+line: [{use: sphere}, {use: rope, length: 4200 m}, {use: clump}]
+"""
+"""The ship steams south, against the current, which carries the falling line to the north."""
+
+
+@pytest.mark.parametrize(
+    ("text", "way", "wire", "top", "anchor", "current"),
+    [
+        (
+            DYNAMIC,
+            1.028,
+            drop_dynamics.Wire(1050.0, 0.01, 2.64, 0.32, 1.5, 0.01, 1e6),
+            drop_dynamics.Ball(1.5, 1200.0, 0.5 * 1025.0 * 0.3 * 1.7671459),
+            drop_dynamics.Ball(0.81, 1057.0, 264.1),
+            lambda depth: 0.0 * depth,
+        ),
+        (
+            DEEP,
+            -1.0,
+            drop_dynamics.Wire(4200.0, 0.012, 0.3, 0.13, 1.3, 0.005, 1e6),
+            drop_dynamics.Ball(1.2, 400.0, 0.5 * 1025.0 * 0.5 * 1.1309734),
+            drop_dynamics.Ball(0.6, 1000.0, 700.0),
+            lambda depth: np.interp(depth, [0.0, 500.0, 4300.0], [0.5, 0.25, 0.05]),
+        ),
+    ],
+    ids=["published", "deep in a current"],
+)
+def test_masses_and_springs_fall_as_far_and_as_long(loaded, text, way, wire, top, anchor, current):
+    mooring = loaded(text)
+    plan = drop_plan(mooring, ship_speed=abs(way), fineness=COARSE)
+    line, water = mooring.line, mooring.water
+    start = towed(line, water, Anchor(8000.0, 1.0), Ship(0.0, way), Fineness(24, 50)).node
+    sea = drop_dynamics.Sea(water.depth, float(water.density[0]), 9.81, current)
+    nodes = np.column_stack([-np.sign(way) * start[1:, 1], start[1:, 2]])
+    time, back, moved = drop_dynamics.dynamic_drop(
+        sea, wire, top, anchor, mooring.anchor_weight, nodes
+    )
+    # what leaving out inertia costs, and 24 segments there
+    assert plan.fall_time == pytest.approx(time, rel=0.015)
+    assert plan.fall_back == pytest.approx(back, rel=0.04)
+    assert plan.path.float_x[0] - plan.path.float_x[-1] == pytest.approx(moved, rel=0.02)
+
+
 def test_the_drag_of_the_anchor_is_what_matters(loaded):
     # That program's sensitivity, of end bodies axis by axis: half the drag of the anchor takes
     # the fall from 232 to 192 s, by a factor of 0.83.
@@ -90,6 +148,7 @@ def test_the_drag_of_the_anchor_is_what_matters(loaded):
     ],
     ids=lambda path: path.stem,
 )
+@pytest.mark.thorough
 def test_every_shipped_line_comes_to_rest_in_its_equilibrium(path):
     mooring = calm.load(path)
     if isinstance(mooring, Tow):
@@ -98,6 +157,16 @@ def test_every_shipped_line_comes_to_rest_in_its_equilibrium(path):
     assert rest_difference(mooring.solve(), rest) < 1e-3 * mooring.water.depth
     assert drop.states[-1].time > 0.0
 
+
+SHORT = """
+name: rope
+environment: {depth: 100 m}
+components:
+  ball: {kind: sphere, diameter: 0.8 m, mass: 100 kg, volume: 0.268 m^3}
+  rope: {kind: cable, diameter: 12 mm, weight: 0.2 N/m}
+  block: {kind: anchor, weight: 4 kN, kt: 200 N/(m/s)^2}
+line: [{use: ball}, {use: rope, length: 60 m}, {use: block}]
+"""
 
 LEAN = """
 name: lean
@@ -169,6 +238,7 @@ def test_turned_with_the_current_it_is_the_same(loaded):
     assert abs(turned.aside) < 1e-4
 
 
+@pytest.mark.thorough
 def test_the_stated_errors_hold_against_a_finer_chain(loaded):
     for text in (DYNAMIC, LEAN.format(depth=200, length=120, current=0.5)):
         mooring = loaded(text)
@@ -179,6 +249,39 @@ def test_the_stated_errors_hold_against_a_finer_chain(loaded):
         assert abs(plan.tow_past + fine.states[-1].node[-1, :2] @ (east, north)) <= (
             plan.distance_error
         )
+
+
+@pytest.mark.parametrize("streamed", [10.0, 30.0, 55.0, 60.5])
+def test_streamed_as_far_as_asked(loaded, streamed):
+    # at 2 m/s it streams to 60.6 m: nearer it hangs as behind a slower ship, farther it is held
+    mooring = loaded(SHORT)
+    line, water, anchor = mooring.line, mooring.water, Anchor(4000.0, 200.0)
+    start = towed(line, water, anchor, Ship(0.0, 2.0, streamed), FEW)
+    assert np.linalg.norm(start.node[0, :2]) == pytest.approx(streamed, abs=0.01)
+    assert start.tension.min() > 0.0
+    drop = fall(line, water, anchor, start, FEW)
+    assert drop.states[-1].time == pytest.approx(29.5, abs=1.5)
+
+
+def test_what_floats_cannot_be_streamed_less_far(loaded):
+    mooring = loaded(SHORT.replace("weight: 0.2 N/m", "buoyancy: 0.2 N/m"))
+    with pytest.raises(UsageError, match="it cannot be streamed to 30 m"):
+        drop_plan(mooring, ship_speed=2.0, streamed=30.0, fineness=FEW)
+
+
+def test_a_line_that_rests_astray_is_cut_finer(loaded, monkeypatch):
+    # one shape at rest that misses the equilibrium, and then all of them
+    mooring = loaded(SHORT)
+    differences = iter([1.0, 1e-3, 1.0, 1.0, 1.0])
+    monkeypatch.setattr(planning, "rest_difference", lambda *_: next(differences))
+    fine = drop_plan(mooring, fineness=FEW)
+    assert len(fine.moments[0].x) == 2 + 2 * FEW.bars
+    assert fine.rest_difference == 1e-3
+    assert fine.depths and [moment.name for moment in fine.moments][-1] == "at rest"
+    astray = drop_plan(mooring, fineness=FEW)
+    assert astray.depths == ()
+    assert [moment.name for moment in astray.moments][-1] == "touchdown"
+    assert any("the depths of instruments are not shown" in said for said in astray.warnings)
 
 
 def test_a_line_towed_below_the_surface_is_that_of_the_tow(loaded):

@@ -25,7 +25,11 @@ from tests.validation.cables import Folded, NoContinuousSolution
 from tests.validation.closing import solve_continuous
 
 AFLOAT = 6
-BLOCKS = [*range(2), *(pytest.param(block, marks=pytest.mark.slow) for block in range(2, 8))]
+BLOCKS = [
+    0,
+    pytest.param(1, marks=pytest.mark.thorough),
+    *(pytest.param(block, marks=pytest.mark.slow) for block in range(2, 8)),
+]
 
 
 @pytest.mark.parametrize("block", BLOCKS)

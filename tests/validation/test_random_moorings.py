@@ -22,7 +22,11 @@ from tests.validation.cables import Folded, NoContinuousSolution
 from tests.validation.closing import solve_continuous
 
 STANDING = 20
-BLOCKS = [*range(2), *(pytest.param(block, marks=pytest.mark.slow) for block in range(2, 12))]
+BLOCKS = [
+    0,
+    pytest.param(1, marks=pytest.mark.thorough),
+    *(pytest.param(block, marks=pytest.mark.slow) for block in range(2, 12)),
+]
 
 
 @pytest.mark.parametrize("block", BLOCKS)

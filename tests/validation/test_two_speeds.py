@@ -51,6 +51,7 @@ def digits(solve: Callable[[], Solution]) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+@pytest.mark.thorough
 def test_a_result_is_the_same_text(path) -> None:
     plain, compiled = both(lambda: json.dumps(calm.load(path).solve().to_dict()))
     assert plain == compiled

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from calm.batch.result import Stored
 from calm.batch.statistics.distribution import Distribution, distribution_of, envelope_of
 from calm.batch.statistics.extremes import Fit, Refusal, return_levels
 from calm.batch.statistics.judgement import RuleShare, equilibrium_share, shares_of
@@ -23,7 +24,7 @@ from calm.checks.posture import reaches_the_surface
 from calm.files.checks import LimitKey
 
 if TYPE_CHECKING:
-    from xarray import Dataset
+    pass
 
 WORST = 20
 """Profiles listed as the worst of a response."""
@@ -124,10 +125,11 @@ class Summary:
 
 
 def summarize(
-    dataset: Dataset,
+    dataset: Stored,
     mooring: Mooring,
     folder: Path | None = None,
     check: Callable[[], None] = lambda: None,
+    source: Path = Path("the result"),
 ) -> Summary:
     """Gather what a finished result says.
 
@@ -138,6 +140,7 @@ def summarize(
     folder : for a temporary file, as large as the result is without compression; the system's
         unless given
     check : called now and then while the result is read; what it raises ends that
+    source : the file of the result, for messages
 
     Profiles that were not solved are left out, and counted. All shares are of profiles: shares of
     time where the record is even. It takes some 35 bytes of memory a profile, however many
@@ -150,7 +153,7 @@ def summarize(
     UsageError
         The dataset is no result of `calm batch`, or cannot be read.
     """
-    with Series(dataset, folder, check) as series:
+    with Series(dataset, folder, check, source) as series:
         ended = endings(series.statuses)
         equilibrium = equilibrium_share(ended)
         unsolved = ended[Ending.NO_EQUILIBRIUM] + ended[Ending.NOT_CONVERGED]
@@ -178,13 +181,13 @@ def _parts(series: Series) -> Iterator[Part]:
     def of(values: Column) -> Distribution | None:
         return distribution_of(values, series.time)
 
-    for label in series.labels:
+    for seat in series.seats:
         yield Part(
-            label,
-            label in series.clamp_label,
-            of(series.knockdown(label)),
-            of(series.tilt(label)),
-            of(series.tension(label)),
+            series.label(seat),
+            seat.clamped,
+            of(series.knockdown(seat)),
+            of(series.tilt(seat)),
+            of(series.greatest_tension([seat])),
         )
 
 
@@ -194,8 +197,8 @@ def _anchor_tension(series: Series) -> Column:
 
 def _greatest_tilt(series: Series) -> Column:
     greatest = np.full(len(series), np.nan, np.float32)
-    for label in series.labels:
-        np.fmax(greatest, series.tilt(label), out=greatest)
+    for seat in series.seats:
+        np.fmax(greatest, series.tilt(seat), out=greatest)
     return greatest
 
 
@@ -255,5 +258,5 @@ def _profile(series: Series, index: int) -> Profile:
         anchor_tension=float(series.at("tension_top", index)[-1]),
         tilt=float(tilts[most]),
         offset=hypot(series.at("x_top", index)[0], series.at("y_top", index)[0]),
-        leaning=series.labels[most],
+        leaning=series.label(series.seats[most]),
     )

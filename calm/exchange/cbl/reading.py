@@ -14,6 +14,7 @@ from calm.exchange.cbl.water import USUAL_GRAVITY, number, value_at, water_of
 from calm.exchange.design import Design, Item, Remark, Tow
 from calm.exchange.refusal import refused
 from calm.files.definition import CATALOGUE_DENSITY
+from calm.quantities import bearing_of
 
 _REFUSED = {
     "horizontal": "a horizontal array with an anchor at each end",
@@ -33,7 +34,7 @@ _HEADS = re.compile(
 _FORCES = ("x-force", "y-force", "z-force", "x-thrust", "y-thrust", "z-thrust")
 _NOTE = (
     "cn and ct are its Cdn and Cdt, counted alike: on the diameter, and on the surface of a metre. "
-    "See docs/import-cable.md."
+    "See `calm docs import-cable`."
 )
 
 
@@ -60,14 +61,16 @@ def read_cbl(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> 
     title = problem.description.get("title")
     design = Design("WHOI Cable", title.text if title and title.text else path.stem, [], None)
     design.notes.append(_NOTE)
-    design.water = water_of(problem.environment, length, design.dropped)
-    if "current-file" in problem.environment:
-        what = "its currents from a file of that program; give them with --environment"
-        design.dropped.append(Remark("current-file", what))
+    design.water = water_of(
+        problem.environment, length, design.dropped, folder=path.parent, allow_include=allow_include
+    )
     if problem.analysis:
         design.dropped.append(Remark("analysis parameters", "how that program is to solve it"))
     density = number(problem.environment, "rho") or number(problem.environment, "density")
     gravity = number(problem.environment, "gravity", USUAL_GRAVITY)
+    for key, value in (("density", density), ("gravity", gravity)):
+        if value < 0.0 or (key == "gravity" and value == 0.0):
+            raise refused(path, f"its {key} is {value:g}")
     makers = Makers(density or CATALOGUE_DENSITY, gravity, design.dropped)
     items = laid(problem, segments, makers, design)
     if kind == "towing":
@@ -174,7 +177,7 @@ def _lay_tow(
     speed = math.hypot(east, north)
     if speed == 0.0:
         raise ship.token.refuse("the ship of this tow does not move")
-    design.tow = Tow(speed, math.degrees(math.atan2(east, north)) % 360.0)
+    design.tow = Tow(speed, bearing_of(east, north))
     buoy = defined(problem.buoys, towed, body.token)
     design.items = [*items[::-1], Item(makers.buoy(buoy, afloat=False))]
     _drop_dynamics(ends, design)

@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from itertools import pairwise
+from pathlib import Path
 
+from calm.exchange.cbl.currents import GriddedCurrent, gridded_current
 from calm.exchange.cbl.problem import Value, Values
 from calm.exchange.design import Remark, Water
+from calm.quantities import bearing_of
 
 USUAL_GRAVITY = 9.81
 _FINEST = 1e-4  # share of the fastest current by which levels may miss a formula
@@ -24,21 +27,39 @@ def number(values: Values, key: str, default: float = 0.0) -> float:
     return default if value is None else value.number(t=0.0)
 
 
-def water_of(environment: Values, deepest: float, dropped: list[Remark]) -> Water:
+def water_of(
+    environment: Values,
+    deepest: float,
+    dropped: list[Remark],
+    *,
+    folder: Path,
+    allow_include: bool,
+) -> Water:
     """Depth, density, gravity, current and wind.
 
     Parameters
     ----------
     deepest : of the line [m], for a tow whose file gives no depth
+    folder : of the problem, in which files of currents stand
+    allow_include : whether they may stand elsewhere
     """
     depth = number(environment, "depth")
     water = Water(depth if depth > 0.0 else None)
     water.density = number(environment, "rho") or number(environment, "density") or None
     water.gravity = number(environment, "gravity", USUAL_GRAVITY)
-    water.current = current_of(environment, depth if depth > 0.0 else deepest)
+    gridded = None
+    if "current-file" in environment:
+        value = environment["current-file"]
+        gridded = gridded_current(value, folder, allow_include=allow_include)
+        if gridded is None:
+            what = f"still water: its current-file `{value.text}` is not there"
+            water.guesses["current"] = what
+        else:
+            dropped += [Remark("current-file", each) for each in gridded.others]
+    water.current = _current(environment, gridded, depth if depth > 0.0 else deepest)
     east, north = (number(environment, f"{axis}-wind") for axis in "xy")
     if east or north:
-        water.wind = math.hypot(east, north), math.degrees(math.atan2(east, north)) % 360.0
+        water.wind = math.hypot(east, north), bearing_of(east, north)
     for what, keys in (("waves", _WAVES), ("how waves act", _DYNAMICS), ("the seabed", _SEABED)):
         found = [key for key in keys if key in environment]
         if found:
@@ -46,14 +67,14 @@ def water_of(environment: Values, deepest: float, dropped: list[Remark]) -> Wate
     return water
 
 
-def current_of(
-    environment: Values, deepest: float
+def _current(
+    environment: Values, gridded: GriddedCurrent | None, deepest: float
 ) -> tuple[tuple[float, float, float, float], ...]:
     """Rows of depth, and speed to the east (x), to the north (y) and up (z), at the time 0."""
-    axes = [_profile(environment, axis) for axis in "xyz"]
+    axes = [_profile(environment, axis, gridded) for axis in "xyz"]
     if not any(axes):
         return ()
-    angle = number(environment, "current-rotation")
+    angle = 0.0 if gridded else number(environment, "current-rotation")
 
     def at(depth: float) -> tuple[float, float, float]:
         x, y, z = (0.0 if axis is None else axis[0](depth) for axis in axes)
@@ -76,13 +97,16 @@ _Profile = tuple[Callable[[float], float], list[float]]
 """A speed by depth, and the depths between which it is linear."""
 
 
-def _profile(environment: Values, axis: str) -> _Profile | None:
-    value = environment.get(f"{axis}-current")
-    if value is None:
-        return None
+def _profile(environment: Values, axis: str, gridded: GriddedCurrent | None) -> _Profile | None:
     scale = number(environment, f"{axis}-current-scale", 1.0)
     if scale == 1.0:
         scale = number(environment, "current-scale", 1.0)
+    if gridded is not None:  # it is scaled there, but neither modulated nor turned
+        speed = gridded.axis("xyz".index(axis))
+        return (lambda depth: scale * speed(depth)), gridded.depth.tolist()
+    value = environment.get(f"{axis}-current")
+    if value is None:
+        return None
     modulation = environment.get(f"{axis}-current-modulation")
     if modulation is not None:
         scale *= value_at(modulation, 0.0)

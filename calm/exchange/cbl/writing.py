@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from itertools import pairwise
 from math import cos, pi, radians, sin, sqrt
 
+from calm.exchange.cbl.floats import buoy_figures
 from calm.exchange.parts import Assembled, Part, area, mass_of, remarks
 from calm.exchange.words import is_chain
-from calm.files import Body, Chain, Cylinder, Sphere
-from calm.files.rigid import Displacement
-from calm.physics.line import REFERENCE_DENSITY
+from calm.files import Chain
 
-_HALF_DENSITY = 0.5 * REFERENCE_DENSITY
 _RIGID = 1e8  # N: EA of what does not stretch
 _LEAST_MASS = 0.01  # kg per metre: what weighs and drags nothing still moves
 _LEAST_WEIGHT = 1e-6  # N per metre: a weight of 0 is worked out from the mass there
@@ -29,18 +26,19 @@ class _Load:
     mass: float = 0.0
     area: float = 0.0
 
-    def add(self, part: Part) -> None:
-        """Let a part act here, too."""
+    def add(self, part: Part, density: float) -> None:
+        """Let a part act here, too, in water of a density [kg/m³]."""
         self.names.append(part.use)
         self.net += part.net
         self.mass += mass_of(part)
-        self.area += area(part)
+        self.area += area(part, density)
 
 
 @dataclass
 class _Problem:
-    """The sections of the file, as they grow from the lower end up."""
+    """The sections of the file, as they grow from the lower end up, for water of one density."""
 
+    density: float
     materials: dict[str, str] = field(default_factory=dict)
     connectors: dict[str, str] = field(default_factory=dict)
     layout: list[str] = field(default_factory=list)
@@ -65,7 +63,7 @@ class _Problem:
         """What acts where the line has come to."""
         if self.load is None:
             self.load = _Load()
-        self.load.add(part)
+        self.load.add(part, self.density)
 
     def _join(self) -> None:
         """The connector for what acts here; where nothing does, the line goes on."""
@@ -85,10 +83,12 @@ class _Problem:
 def cbl_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
     """The content of the file, and what is lost in it."""
     lost: list[str] = []
-    problem = _Problem()
     density = sum(row[4] for row in design.levels) / len(design.levels)
+    problem = _Problem(density)
     if max(row[4] for row in design.levels) - min(row[4] for row in design.levels) > 1e-9:
-        lost.append("the profile of density: weights are those where each part stands upright")
+        lost.append(
+            "the profile of density: weights and drags are those where each part stands upright"
+        )
     parts = list(design.parts)
     if design.tow is None:
         buoy, parts = parts[0], parts[1:]
@@ -103,13 +103,19 @@ def cbl_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
     floating, has_draft = design.afloat
     if floating and not has_draft:
         lost.append("a float that has no draft, or full drag: there it floats at its draft")
+    if design.tow is not None and design.tow[2]:
+        lost.append("the height of the sheave: there the line begins at the surface")
+    if floating:
+        lost.append("how its drag grows with draft: its Cdn is such that it drags as here now")
+    elif design.tow is None:
+        lost.append("that the float drags at its middle: its Cdn is such that it drags as here now")
     if buoy.flexible:
         lost.append("the free end of the line: a small sphere without weight stands there")
     elif not floating and design.tow is None and buoy.length > 0.0:
         problem.segment(_link(problem), buoy.length)
     if problem.load is not None:
         problem.segment(_link(problem), 0.001)
-    text = _text(design, problem, _buoy(buoy, design, density, floating, lost), density, floating)
+    text = _text(design, problem, buoy_figures(buoy, design, density, lost), density, floating)
     told = remarks(design, lost)
     head = [f"{design.name}, by CALM; lost:", *(f"- {each}" for each in told)]
     comment = "\n   ".join(line.replace("*/", "* /") for line in head)
@@ -152,8 +158,8 @@ def _material(problem: _Problem, part: Part) -> str:
     """The material of a cable, a chain or a cylinder, per metre."""
     per = 1.0 if part.flexible else part.length
     wet, across = 0.0 - part.net / per, part.diameter or area(part) / per
-    normal = part.kn / per / (_HALF_DENSITY * across) if across else 0.0
-    along = part.kt / per / (_HALF_DENSITY * pi * across) if across else 0.0
+    normal = area(part, problem.density) / per / across if across else 0.0
+    along = area(part, problem.density, along=True) / per / (pi * across) if across else 0.0
     figures = (
         f"d = {across:.9g}  m = {max(mass_of(part) / per, _LEAST_MASS):.9g}"
         f"  wet = {wet if abs(wet) > _LEAST_WEIGHT else _LEAST_WEIGHT:.9g}"
@@ -164,58 +170,6 @@ def _material(problem: _Problem, part: Part) -> str:
     if isinstance(part.component, Chain) and not is_chain(name):
         name = f"chain_{name}"
     return _keep(problem.materials, name, figures)
-
-
-def _windage(part: Part) -> str:
-    """What of a float the wind blows on."""
-    component = part.component
-    if not isinstance(component, Sphere | Cylinder | Body):
-        return ""
-    shown = f"  Sw = {component.wind_area:.9g}" if component.wind_area else ""
-    return shown + (f"  Cdw = {component.wind_cd:.9g}" if component.wind_cd else "")
-
-
-def _buoy(part: Part, design: Assembled, density: float, floating: bool, lost: list[str]) -> str:
-    """The float of a mooring, or what is towed: its size, mass, buoyancy and drag."""
-    gravity = design.gravity
-    if part.flexible:
-        return "type = sphere  d = 0.001  m = 0.001  buoyancy = 0.01  Cdn = 0"
-    mass = max(mass_of(part), 1e-3)
-    lift = part.net + mass * gravity
-    if lift <= 0.0:
-        mass, lift = -part.net / gravity * 1.2, 0.2 * -part.net
-    hull = getattr(part.component, "hull", None)
-    wind = _windage(part)
-    if floating and isinstance(hull, Displacement):
-        return f"type = axisymmetric  m = {mass:.9g}  {_diameters(hull, part)}{wind}"
-    if floating and part.component.kind == "cylinder":
-        across, height = part.diameter, part.length
-        drag = area(part) / (across * height)
-        size = f"type = cylinder  d = {across:.9g}  h = {height:.9g}"
-        return f"{size}  m = {mass:.9g}  Cdn = {drag:.9g}{wind}"
-    if floating and not isinstance(part.component, Sphere):
-        lost.append("the hull of the float: it is a sphere of its drag")
-    across = part.diameter if isinstance(part.component, Sphere) else sqrt(4.0 * area(part) / pi)
-    across = max(across, 1e-3)
-    drag = area(part) / (pi / 4.0 * across**2)
-    size = f"type = sphere  d = {across:.9g}"
-    return f"{size}  m = {mass:.9g}  buoyancy = {lift:.9g}  Cdn = {drag:.9g}{wind}"
-
-
-def _diameters(hull: Displacement, part: Part) -> str:
-    """Levels and diameters of a hull of revolution that displaces what a table says."""
-    rows = hull.displacement
-    pairs = []
-    for (low, less, _), (high, more, _) in pairwise(rows):
-        across = sqrt(4.0 * (more - less) / (high - low) / pi)
-        pairs += [(low, across), (high - 1e-6, across)]
-    shown = sum(
-        (high - low) * across
-        for (low, across), (high, _) in zip(pairs[::2], pairs[1::2], strict=True)
-    )
-    drag = area(part) / shown if shown else 0.0
-    text = " ".join(f"({level:.9g}, {across:.9g})" for level, across in pairs)
-    return f"diameters = {text}  Cdn = {drag:.9g}"
 
 
 def _keep(known: dict[str, str], name: str, figures: str) -> str:

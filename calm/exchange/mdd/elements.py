@@ -47,6 +47,8 @@ class Element:
         return self.width or self.diameter
 
 
+_LARGEST = 1e9  # m, kg: of no piece
+
 MODULI = (1.38e11, 3.45e8, 8.0e8, 3.45e8, 6.9e8, 6.9e10, 7.6e10, 1.0e11)
 """Of the materials that the program numbers from 1: steel, nylon, Dacron, polypropylene,
 polyethylene, Kevlar, aluminium, Dyneema [Pa]."""
@@ -88,22 +90,22 @@ def read_elements(variables: Mapping[str, Value], suffix: str) -> tuple[list[Ele
                 number=i + 1,
             )
         )
-        problems += _mistakes(elements[-1])
+        problems += mistakes_of(elements[-1], f"element {i + 1}, {called[i]}")
     return elements, problems
 
 
-def _mistakes(element: Element) -> list[str]:
-    figures = {
+def mistakes_of(element: Element, where: str) -> list[str]:
+    """Figures that no piece of a mooring can have."""
+    sizes = {
         "length": element.length, "width": element.width, "diameter": element.diameter,
         "drag coefficient": element.cd,
     }  # fmt: skip
-    where = f"element {element.number}, {element.name}"
     wrong = [
         f"{where}: its {what} is {value:g}"
-        for what, value in figures.items()
-        if not math.isfinite(value) or value < 0.0
+        for what, value in sizes.items()
+        if not 0.0 <= value <= _LARGEST
     ]
-    if not math.isfinite(element.lift):
+    if not abs(element.lift) <= _LARGEST:
         wrong.append(f"{where}: its buoyancy is {element.lift:g}")
     return wrong
 

@@ -1,29 +1,30 @@
 """The variables of a `.mat` file, whatever program and version wrote it.
 
-Nothing in such a file is executed or unpickled: MATLAB 4 and 5 are read by scipy, 7.3 (HDF5) by
-h5py, Octave's text by a reader of this folder.
+Nothing in such a file is executed or unpickled: MATLAB 4 and 5 are read by scipy, HDF5 (MATLAB 7.3
+and Octave) by h5py, Octave's text, compressed or not, by a reader of this folder.
 """
 
 from __future__ import annotations
 
 import io
-import math
+import zlib
 from collections.abc import Collection
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
+from calm.exchange.mdd.hdf5 import is_hdf5, read_hdf5
 from calm.exchange.mdd.octave import is_octave_text, read_octave_text
-from calm.exchange.mdd.value import Value
+from calm.exchange.mdd.value import Value, fits
 from calm.exchange.refusal import refused
 from calm.files.document import read_content
 
 LARGEST = 200_000_000
 """Bytes of a file."""
 
-_MOST = 20_000_000  # elements of a variable
-_HDF5 = b"\x89HDF\r\n\x1a\n"
+_GZIP = b"\x1f\x8b"
+_OCTAVE_BINARY = b"Octave-1-"
+_HEAD = 70_000  # bytes by which a compressed file is recognised
 
 
 def read_variables(path: Path, wanted: Collection[str]) -> dict[str, Value]:
@@ -34,13 +35,17 @@ def read_variables(path: Path, wanted: Collection[str]) -> dict[str, Value]:
     InputError
         The file is no `.mat` file, or a damaged one.
     """
-    content = read_content(path, largest=LARGEST)
+    content = _inflated(read_content(path, largest=LARGEST), LARGEST + 1)
+    if len(content) > LARGEST:
+        raise refused(path, f"holds more than {LARGEST // 1_000_000} MB once it is decompressed")
+    if content.startswith(_OCTAVE_BINARY):
+        raise refused(path, "is in Octave's binary format; save it there with -v7, -hdf5 or -text")
     try:
         if is_octave_text(content):
             text = content.decode("utf-8", "replace")
             found = read_octave_text(text)
-        elif _HDF5 in (content[:8], content[512:520]):
-            found = _hdf5(content, wanted)
+        elif is_hdf5(content):
+            found = read_hdf5(content, wanted)
         else:
             found = _matlab(content, wanted)
     except MemoryError:
@@ -53,9 +58,20 @@ def read_variables(path: Path, wanted: Collection[str]) -> dict[str, Value]:
 
 def is_mat(content: bytes) -> bool:
     """Whether a file looks like one of MATLAB or Octave, by its first bytes."""
-    if is_octave_text(content) or content.startswith(b"MATLAB 5.0"):
+    content = _inflated(content, _HEAD)
+    if is_octave_text(content) or content.startswith((b"MATLAB 5.0", _OCTAVE_BINARY)):
         return True
-    return _HDF5 in (content[:8], content[512:520]) or _is_version_4(content)
+    return is_hdf5(content) or _is_version_4(content)
+
+
+def _inflated(content: bytes, most: int) -> bytes:
+    """The first bytes of what is compressed, as far as it is whole; other files as they are."""
+    if not content.startswith(_GZIP):
+        return content
+    try:
+        return zlib.decompressobj(wbits=31).decompress(content, most)
+    except zlib.error:
+        return content
 
 
 def _is_version_4(content: bytes) -> bool:
@@ -71,48 +87,7 @@ def _is_version_4(content: bytes) -> bool:
 def _matlab(content: bytes, wanted: Collection[str]) -> dict[str, Value]:
     from scipy.io import loadmat, whosmat
 
-    names = [name for name, shape, _ in whosmat(io.BytesIO(content)) if _fits(name, shape)]
+    names = [name for name, shape, _ in whosmat(io.BytesIO(content)) if fits(name, shape)]
     chosen = [name for name in names if name in wanted]
     found = loadmat(io.BytesIO(content), variable_names=chosen, struct_as_record=True)
     return {name: found[name] for name in chosen if name in found}
-
-
-def _hdf5(content: bytes, wanted: Collection[str]) -> dict[str, Value]:
-    import h5py
-
-    found: dict[str, Value] = {}
-    with h5py.File(io.BytesIO(content), "r") as file:
-        for name in wanted:
-            if isinstance(file.get(name, getlink=True), h5py.HardLink):
-                found[name] = _dataset(file, file[name])
-    return found
-
-
-def _dataset(file: Any, node: Any) -> Value:
-    """A dataset of MATLAB's, whose dimensions HDF5 turns round; Octave's stand in a group."""
-    import h5py
-
-    if isinstance(node, h5py.Group):
-        if not isinstance(node.get("value", getlink=True), h5py.HardLink):
-            return np.zeros((0, 0))
-        node = node["value"]
-    if not isinstance(node, h5py.Dataset) or node.is_virtual or node.external:
-        raise ValueError("a variable refers to another file")
-    if node.attrs.get("MATLAB_empty", 0):
-        return np.zeros((0, 0))
-    _fits(node.name, node.shape)
-    value = node[()]
-    if node.dtype == h5py.ref_dtype:
-        return [_dataset(file, file[each]) for each in np.asarray(value).ravel()]
-    array = np.asarray(value).T
-    kind = node.attrs.get("MATLAB_class", b"")
-    if kind in (b"char", "char"):
-        rows = np.atleast_2d(array)
-        return ["".join(chr(int(code)) for code in row).rstrip() for row in rows]
-    return array
-
-
-def _fits(name: str, shape: tuple[int, ...]) -> bool:
-    if math.prod(shape) > _MOST:
-        raise ValueError(f"`{name}` has {math.prod(shape)} elements")
-    return True

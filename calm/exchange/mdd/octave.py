@@ -6,10 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from calm.exchange.mdd.value import Value
+from calm.exchange.mdd.value import MOST, Value
 
 _CELL = "<cell-element>"
-_MOST = 20_000_000  # numbers of a variable
 
 
 def is_octave_text(content: bytes) -> bool:
@@ -81,12 +80,8 @@ def _value(name: str, kind: str, header: dict[str, str], rows: list[str]) -> Val
                    for word in row.replace(",", " ").split()]  # fmt: skip
     except ValueError:
         return None  # a structure, or complex numbers: none of those that matter here
-    if kind == "range" and len(numbers) == 3:
-        first, last, step = numbers
-        count = int((last - first) / step * (1 + 1e-12)) + 1 if step else 0
-        if not 0 <= count <= _MOST:
-            raise ValueError(f"the range `{name}` has {count} numbers")
-        return first + step * np.arange(count)
+    if kind.endswith("range") and len(numbers) == 3:
+        return spread(name, *numbers)
     if "scalar" in kind or kind == "bool":
         return np.array(numbers[:1]).reshape(1, -1)
     if "ndims" in header:
@@ -103,6 +98,20 @@ def _value(name: str, kind: str, header: dict[str, str], rows: list[str]) -> Val
     if lines and array.size % len(lines) == 0:  # the header was edited: the lines count
         return array.reshape(len(lines), -1)
     return _shaped(name, array, [size or 0 for size in stated], order="C")
+
+
+def spread(name: str, first: float, last: float, step: float) -> Value:
+    """The numbers of a range, the last among them where a step meets it.
+
+    Raises
+    ------
+    ValueError
+        There is no end of them.
+    """
+    count = (last - first) / step * (1 + 1e-12) + 1 if step else 0.0
+    if not 0.0 <= count <= MOST:
+        raise ValueError(f"the range `{name}` has {count:g} numbers")
+    return first + step * np.arange(int(count))
 
 
 def _whole(text: str) -> int | None:

@@ -12,6 +12,7 @@ from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
 _SLIGHT = 1e-6  # by which a hull takes more than its net buoyancy
+_FLAT = 1e-3  # m: height of a float that the file gives none
 _SOFT = 1e10  # Pa: the modulus of a rope is below, of a wire above
 _HARD = re.compile(r"\bwire|\bchain|\bsteel", re.I)
 
@@ -60,7 +61,7 @@ def rides_by_buoyancy(component: Component) -> None:
     """
     figures = component.figures
     lift, height = float(figures.get("buoyancy", 0.0)), float(figures.get("length", 0.0))
-    if component.kind not in ("sphere", "cylinder", "body") or lift <= 0.0 or height <= 0.0:
+    if component.kind not in ("sphere", "cylinder", "body") or lift <= 0.0:
         return
     across = float(figures.get("diameter", 0.0))
     shown = {
@@ -70,7 +71,7 @@ def rides_by_buoyancy(component: Component) -> None:
     }
     figures.pop("mass", None)
     volume = (1.0 + _SLIGHT) * lift / (CATALOGUE_DENSITY * KILOGRAM_FORCE)
-    component.hull = ((0.0, 0.0, 0.0), (height, volume, shown[component.kind]))
+    component.hull = ((0.0, 0.0, 0.0), (height or _FLAT, volume, shown[component.kind]))
     component.comment = "At the surface it sinks, and drags, in proportion to the buoyancy it uses."
 
 

@@ -8,22 +8,24 @@ from pathlib import Path
 
 from calm.exchange.design import Design, Hung, Item, Remark, Tow
 from calm.exchange.mdd.elements import Element, read_elements
+from calm.exchange.mdd.library import GROUPS
 from calm.exchange.mdd.matfile import read_variables
 from calm.exchange.mdd.pieces import anchor_of, component_of, rides_by_buoyancy, rigid
 from calm.exchange.mdd.value import Value, numbers
 from calm.exchange.mdd.water import read_water
 from calm.exchange.refusal import refused
+from calm.quantities import bearing_of
 
 _WANTED = frozenset(
     ["U", "V", "W", "z", "rho", "time", "ZCO", "Jobj", "Pobj", "mooreleCO", "HCO", "BCO", "CdCO"]
     + [f"{name}{end}" for name in ("H", "B", "Wt", "Cd", "ME", "moorele") for end in ("", "t")]
-    + ["Usp", "Vsp", "afh"]
+    + ["Usp", "Vsp", "afh", *GROUPS]
 )
 _STRETCHED = 1.2  # times its length, a line may reach the surface
 _APART = 0.02  # m and share of the piece by which the two places of a clamp may differ
 _NOTE = (
     "cn and cx are its Cd. That program has no drag along a line or cylinder worth the name, so "
-    "ct is 0. See docs/import-mdd.md."
+    "ct is 0. See `calm docs import-mdd`."
 )
 
 
@@ -37,6 +39,12 @@ def read_mdd(path: Path) -> Design:
     """
     variables = read_variables(path, _WANTED)
     sized = [name for name in ("H", "Ht") if name in variables and len(_flat(variables[name]))]
+    if not sized and any(group in variables for group in GROUPS):
+        raise refused(
+            path,
+            "is the element library of that program, no mooring; "
+            "a list takes its figures: --elements FILE",
+        )
     if not sized:
         raise refused(path, "holds no mooring (`H`) and no tow (`Ht`) of that program")
     towed = sized[0] == "Ht"
@@ -98,7 +106,7 @@ def _lay_tow(
     speed = math.hypot(east, north)
     if speed == 0.0:
         raise refused(path, "the ship of this tow does not move (`Usp`, `Vsp`)")
-    design.tow = Tow(speed, math.degrees(math.atan2(east, north)) % 360.0)
+    design.tow = Tow(speed, bearing_of(east, north))
     height = next(iter(_flat(variables.get("afh", []))), 0.0)
     if height > 0.0:
         what = f"an A-frame of {height:g} m is only drawn: the wire counts from the water"

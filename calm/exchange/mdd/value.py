@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -9,6 +10,9 @@ from numpy.typing import NDArray
 
 Value: TypeAlias = "NDArray[Any] | str | list[Value]"
 """Numbers or characters, a text, or the elements of a cell array."""
+
+MOST = 20_000_000
+"""Elements of a variable."""
 
 Floats = NDArray[np.float64]
 
@@ -28,6 +32,19 @@ def numbers(value: Value | None) -> Floats:
     if isinstance(value, list) and not value:
         return np.zeros((0, 0))
     raise ValueError("holds no real numbers")
+
+
+def fits(name: str, shape: tuple[int, ...]) -> bool:
+    """Whether a variable of a shape may be read at all.
+
+    Raises
+    ------
+    ValueError
+        It may not.
+    """
+    if math.prod(shape) > MOST:
+        raise ValueError(f"`{name}` has {math.prod(shape)} elements")
+    return True
 
 
 def names(value: Value | None) -> list[str]:

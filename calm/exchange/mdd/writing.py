@@ -9,11 +9,12 @@ import numpy as np
 
 from calm.exchange.parts import Assembled, Part, area, remarks
 from calm.files import Chain, Cylinder, Sphere
-from calm.physics.line import REFERENCE_DENSITY
+from calm.physics.reference import REFERENCE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
 _HALF_DENSITY = 0.5 * REFERENCE_DENSITY
 _LONGEST = 32  # characters of a name
+_LEAST_USED = 1e-3  # share of the buoyancy, for a float that hardly any is used of
 
 
 def mdd_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
@@ -23,6 +24,9 @@ def mdd_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
     lost: list[str] = []
     parts = list(design.parts)
     rows = [_element(part, lost) for part in parts]
+    if design.afloat[0]:
+        used, seen = design.riding
+        rows[0] = (*rows[0][:5], rows[0][5] * seen / max(used, _LEAST_USED), *rows[0][6:])
     names = [_name(part) for part in parts]
     variables: dict[str, object] = {}
     suffix = ""
@@ -56,7 +60,10 @@ def mdd_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
     if design.wind[0]:
         lost.append("wind")
     if design.afloat[0]:
-        lost.append("the hull of the float: there it sinks in proportion to the buoyancy it uses")
+        lost.append(
+            "the hull of the float: there it sinks, and drags, in proportion to the buoyancy it "
+            "uses; its Cd is such that it drags as here in this current"
+        )
     told = remarks(design, lost)
     variables["lost"] = _texts([f"by CALM from {design.name}; lost:", *told])
     content = io.BytesIO()

@@ -13,11 +13,10 @@ from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 
 _FIXED, _FREE = ("fix", "anchor"), ("free", "connect", "point")
 _CURRENTS = "current_profile.txt"
-_NEAR, _NEAR_AT_LEAST = (
-    0.05,
-    2.0,
-)  # m, of the depth: an upper end as near the surface hangs under a float
-_NOTE = "cn and ct are its Cd and CdAx, counted alike. See docs/import-moordyn.md."
+_NEAR, _NEAR_AT_LEAST = 0.05, 2.0
+"""Share of the depth, and metres: an upper end as near the surface hangs under a float."""
+
+_NOTE = "cn and ct are its Cd and CdAx, counted alike. See `calm docs import-moordyn`."
 
 
 def read_moordyn(path: Path) -> Design:
@@ -202,6 +201,11 @@ def _upper_end(top: Row, items: list[Item], design: Design) -> Item:
         raise top.refuse(
             f"the upper end is held {depth:g} m deep: a platform's; CALM has lines under a float"
         )
+    figures = _figures(top)
+    if CATALOGUE_DENSITY * float(figures["volume"]) > float(figures["mass"]):
+        guess = {"volume": "the file holds the upper end; here a float of its point, free to move"}
+        figures["role"] = "float"
+        return Item(Component(f"point {top.words['id']}", "body", figures, guess))
     lift = 1.5 * sum(_weight(item) for item in items) + 1e4
     volume = lift / (CATALOGUE_DENSITY * STANDARD_GRAVITY)
     across = (6.0 * volume / math.pi) ** (1.0 / 3.0)
@@ -218,7 +222,7 @@ def _weight(item: Item) -> float:
     figures = item.component.figures
     mass, volume = float(figures.get("mass", 0.0)), float(figures.get("volume", 0.0))
     if item.length is None:
-        return max((mass - CATALOGUE_DENSITY * volume) * 9.81, 0.0)
+        return max((mass - CATALOGUE_DENSITY * volume) * STANDARD_GRAVITY, 0.0)
     return float(figures.get("weight", 0.0)) * item.length
 
 

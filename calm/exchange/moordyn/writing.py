@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import groupby
 from math import pi, sqrt
 
 from calm.errors import UsageError
-from calm.exchange.parts import Assembled, Part, Path, Place, area, mass_of, remarks
-from calm.physics.line import REFERENCE_DENSITY
+from calm.exchange.parts import Assembled, Part, Path, Place, area, flow_share, mass_of, remarks
 
 CURRENTS = "current_profile.txt"
 """The name under which that program looks for the current, beside its input."""
 
-_HALF_DENSITY = 0.5 * REFERENCE_DENSITY
 _RIGID = 1e7  # N: EA of what does not stretch; stiffer lines need shorter steps
-_SHORT = 0.5  # m: rigid pieces in a row as long are a point
+_SHORT = 0.5  # m: what is rigid and shorter is softer in proportion, for the same reason
+_OWN = 0.5  # share of its mass with which a float moves the length that stands for its own
 _LENGTH, _MOST = 20.0, 60  # m of a length between two points, lengths of a cable
 _CLOSE = 0.5  # m: a clamp as close to a point stands there
 _SEGMENTS = 4  # of a length
@@ -24,18 +23,30 @@ _LEAST = 1e-3  # kg of mass and of displaced water per metre, for what has none
 
 @dataclass
 class _Load:
-    """Parts at one point, or in one stiff length: net force, mass and drag area together."""
+    """Parts at one point, or in one stiff length, in water of a density [kg/m³].
 
+    Net force [N], mass [kg], and drag areas across and along the line [m²] together.
+    """
+
+    density: float
     net: float = 0.0
     mass: float = 0.0
     area: float = 0.0
+    along: float = 0.0
 
-    def add(self, part: Part) -> None:
-        """Let a part, with what is clamped on it, be one of them."""
+    def add(self, part: Part, share: float = 1.0) -> None:
+        """Let a part, with what is clamped on it, be one of them; `share` is that of its drag."""
         for each in (part, *(clamp for clamp, _ in part.clamps)):
             self.net += each.net
             self.mass += mass_of(each)
-            self.area += area(each)
+            own = share if each is part else 1.0
+            self.area += own * area(each, self.density)
+            self.along += own * area(each, self.density, along=True)
+
+    def per_metre(self, length: float) -> _Load:
+        """The same, spread over a length [m]."""
+        figures = (self.net, self.mass, self.area, self.along)
+        return _Load(self.density, *(each / length for each in figures))
 
 
 @dataclass
@@ -48,7 +59,10 @@ class _System:
     types: dict[str, str] = field(default_factory=dict)
     points: list[str] = field(default_factory=list)
     lines: list[str] = field(default_factory=list)
-    load: _Load = field(default_factory=_Load)
+    load: _Load = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.load = _Load(self.density)
 
     def end_point(self, kind: str) -> int:
         """The point that the line has come to, with what acts there; its number."""
@@ -70,16 +84,16 @@ class _System:
         self.lines.append(
             f"{len(self.lines) + 1}  {chosen}  {below}  {below + 1}  {length:.9g}  {segments}  -"
         )
-        self.place, self.load = to, _Load()
+        self.place, self.load = to, _Load(self.density)
 
-    def figures(self, load: _Load, along: float, stiffness: float) -> str:
-        """A line type of what acts on a metre; `along` is its drag along it at 1 m/s."""
+    def figures(self, load: _Load, stiffness: float) -> str:
+        """A line type of what acts on a metre."""
         mass = max(load.mass, _LEAST - load.net / self.gravity)
         volume = (mass + load.net / self.gravity) / self.density
         across = sqrt(4.0 * volume / pi)
         return (
             f"{across:.9g}  {mass:.9g}  {stiffness or _RIGID:.9g}  -0.8  0"
-            f"  {load.area / across:.9g}  1.0  {along / (_HALF_DENSITY * pi * across):.9g}  0.0"
+            f"  {load.area / across:.9g}  1.0  {load.along / (pi * across):.9g}  0.0"
         )
 
 
@@ -98,22 +112,31 @@ def moordyn_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
     paths = design.paths()
     density = sum(row[4] for row in design.levels) / len(design.levels)
     system = _System(density, design.gravity, paths[-1].at(1.0))
-    lost = ["rigid pieces in a row: each row is one stiff length, or a point where it is short"]
+    lost = ["rigid pieces in a row: each row is one stiff length"]
     numbered = list(enumerate(design.parts))[::-1]
     for flexible, group in groupby(numbered, key=lambda pair: pair[1].flexible):
         members = list(group)
         if flexible:
             for i, part in members:
                 _lay(system, part, paths[i])
-        else:
-            upper = members[-1][0]
-            parts = [part for _, part in members]
-            _lay_rigid(system, parts, paths[upper].at(0.0), last=upper == 0)
+            continue
+        upper = members[-1][0]
+        if upper == 0:
+            members.pop()
+        if members:
+            _lay_rigid(system, [part for _, part in members], paths[members[-1][0]].at(0.0))
+        if upper == 0:
+            _lay_float(system, design, paths[0])
+    if design.wind[0]:
+        lost.append("wind")
     afloat, _ = design.afloat
     if afloat:
-        lost.append("the float: the upper end is held where it is")
+        lost.append(
+            "the hull of the float: the upper end is held where it is; its point keeps the float's "
+            "mass, volume and drag as it floats here"
+        )
     else:
-        lost.append("how high the float stands: it is a point at the end of the line")
+        lost.append("that the float drags at its middle: its point drags as it does here now")
     system.end_point("Fixed" if afloat else "Free")
     told = remarks(design, lost)
     return _text(design, system, density, told).encode(), told
@@ -124,8 +147,9 @@ def _lay(system: _System, part: Part, path: Path) -> None:
 
     It is cut into short lengths, too: that program begins with each hanging as in still water.
     """
-    load = _Load(part.net, mass_of(part), area(part))
-    figures = system.figures(load, part.kt, part.stiffness)
+    load = _Load(system.density)
+    load.add(replace(part, clamps=()))
+    figures = system.figures(load, part.stiffness)
     count = min(max(round(part.length / _LENGTH), 1), _MOST)
     cuts: dict[float, list[Part]] = {part.length * k / count: [] for k in range(count)}
     for clamp, at in part.clamps:
@@ -141,19 +165,40 @@ def _lay(system: _System, part: Part, path: Path) -> None:
             system.load.add(clamp)
 
 
-def _lay_rigid(system: _System, parts: list[Part], top: Place, *, last: bool) -> None:
-    """Rigid pieces in a row; the uppermost row is the point at the end."""
-    load, length = _Load(), sum(part.length for part in parts)
+def _lay_rigid(system: _System, parts: list[Part], top: Place) -> None:
+    """Rigid pieces in a row, from the lowest up."""
+    load, length = _Load(system.density), sum(part.length for part in parts)
     for part in parts:
         load.add(part)
-    if last or length <= _SHORT:
+    if length <= 0.0:
         for part in parts:
             system.load.add(part)
         return
-    per_metre = _Load(load.net / length, load.mass / length, load.area / length)
-    along = sum(part.kt for part in parts) / length
     name = _word("_and_".join(dict.fromkeys(part.use for part in parts[:2])))
-    system.line(name, system.figures(per_metre, along, _RIGID), length, top)
+    system.line(name, system.figures(load.per_metre(length), _stiff(length)), length, top)
+
+
+def _lay_float(system: _System, design: Assembled, path: Path) -> None:
+    """The uppermost piece: a point, on a stiff length as long as what of it is in the water.
+
+    That length takes a share of its mass, neutral in water, so that it is no lighter than it need
+    be for the steps of that program.
+    """
+    part, afloat = design.parts[0], design.afloat[0]
+    top, bottom = path.at(0.0), path.at(1.0)
+    below = bottom[2] / (bottom[2] - top[2]) if top[2] < 0.0 else 1.0
+    length = part.length * below
+    if length > 0.0:
+        own = _Load(system.density, mass=_OWN * mass_of(part)).per_metre(length)
+        figures = system.figures(own, _stiff(length))
+        system.line("float", figures, length, path.at(1.0 - below))
+        system.load.mass -= own.mass * length
+    system.load.add(part, design.riding[1] if afloat else flow_share(design))
+
+
+def _stiff(length: float) -> float:
+    """EA of a rigid length [N]."""
+    return _RIGID * min(length / _SHORT, 1.0)
 
 
 def _word(text: str) -> str:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import re
 
 _NUMBER = re.compile(r"[-+−]?\s*(?:\d{1,3}(?:[ \u00a0]\d{3})+|\d+)?(?:[.,]\d+)?(?:[eE][-+]?\d+)?")
-_NOTHING = {"", "-", "–", "—", "/", "n/a", "na", "nan", "none", "?", "nil", "x", "sans", "null"}
+_NOTHING = {
+    "", "-", "–", "—", "/", "*", "**", "n/a", "na", "nan", "none", "?", "nil", "x", "sans", "null",
+}  # fmt: skip
 
 
 def number(cell: str) -> tuple[float | None, str]:

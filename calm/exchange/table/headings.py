@@ -11,43 +11,56 @@ from pathlib import Path
 from calm.exchange.refusal import refused
 from calm.exchange.table.sheet import Rows
 from calm.files.explain import unknown
+from calm.units import KILOGRAM_FORCE
 
 COLUMNS = (
-    "name", "label", "kind", "role", "length", "diameter", "mass", "buoyancy", "weight", "cd",
-    "area", "stiffness", "breaking_load", "count", "at", "height",
+    "name", "label", "kind", "role", "length", "diameter", "width", "mass", "buoyancy", "weight",
+    "cd", "area", "drag_area", "tangential_area", "material", "stiffness", "breaking_load", "count",
+    "at", "height",
 )  # fmt: skip
 """What a column may hold, as `--columns` calls it."""
+
+WORDS = ("name", "label", "kind", "role")
+"""Columns that hold words."""
 
 _PATTERNS: tuple[tuple[str, str], ...] = (
     ("count", r"^(qty|quantity|count|number|no\.? of|nb|nombre|qte|quantite)\b"),
     ("at", r"clamped at|along|position sur|distance"),
-    ("area", r"drag area|area|surface|maitre.?couple|cd ?[x*.] ?a|cda"),
+    ("tangential_area", r"tangential cd x area"),
+    ("drag_area", r"drag area|\bcd ?[x*.]? ?a(rea)?\b|\bcda\b"),
+    ("area", r"area|surface|maitre.?couple"),
     ("cd", r"^(cd|cx|c_?d|cn)\b|drag|trainee"),
     ("breaking_load", r"break|rupture|\bmbl\b|strength|resistance"),
     ("stiffness", r"^ea\b|stiff|raideur"),
     ("buoyancy", r"buoy|flott|lift|portance|poussee"),
-    ("weight", r"wet ?weight|(weight|poids).*(water|wet|eau|immerg|submer|sea|mer)"),
+    ("weight", r"(weight|poids|masse?).*(water|wet|eau|immerg|submer|sea|mer)"),
+    ("weight", r"(wet|submerged|immersed).*(weight|mass)"),
     ("mass", r"(weight|poids).*\bair\b|\bmasse?\b|\bdry\b"),
     ("weight", r"^(weight|poids)\b"),
     ("mass", r"^(weight|poids)\b"),
-    ("diameter", r"diam|ø|width|largeur"),
+    ("diameter", r"diam|ø"),
+    ("width", r"width|largeur"),
     ("height", r"(height|hauteur|altitude).*(bottom|btm|fond|seabed|above)|bottom_height"),
     ("height", r"^altitude|^height$|^hauteur$"),
     ("length", r"^(length|longueur|long|len|l)\b|length|longueur"),
+    ("material", r"^(material|materiau)\b"),
     ("role", r"^(role|fonction|function)\b"),
     ("kind", r"^(kind|type|category|categorie|famille|family)\b"),
     ("label", r"^(label|etiquette|serial|s/?n|repere)\b"),
     ("name", r"name|^nom\b|item|element|description|designation|component|composant|materiel"),
     ("name", r"equip|instrument|piece|part"),
 )  # fmt: skip
-_UNIT_CELL = re.compile(r"\(?[A-Za-zµ°²^/0-9 .]{1,24}\)?$")
+_ALONG = re.compile(r"tangent|axial")  # a drag along the piece, which has a column of its own
 _UNITS = {
     "m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": 0.0254, "inch": 0.0254, "inches": 0.0254, "ft": 0.3048,
-    "kg": 1.0, "kgf": 9.80665, "g": 1e-3, "lb": 0.45359237, "lbs": 0.45359237,
-    "lbf": 4.4482216152605, "n": 1.0, "kn": 1e3, "dan": 10.0, "t": 1e3, "m2": 1.0, "m^2": 1.0,
-    "m²": 1.0, "cm2": 1e-4, "pouces": 0.0254,
+    "kg": 1.0, "kgf": KILOGRAM_FORCE, "g": 1e-3, "lb": 0.45359237, "lbs": 0.45359237,
+    "lbf": 0.45359237 * KILOGRAM_FORCE, "n": 1.0, "kn": 1e3, "dan": 10.0, "t": 1e3, "m2": 1.0,
+    "m^2": 1.0, "m²": 1.0, "cm2": 1e-4, "cm²": 1e-4, "pouces": 0.0254,
 }  # fmt: skip
 _MASSES = {"kg", "g", "lb", "lbs", "t"}
+_FORCES = {"buoyancy", "weight", "stiffness", "breaking_load"}
+_SEARCHED = 60  # rows in which the headings stand
+_MEASURES = {"length", "buoyancy", "weight", "mass"}
 
 
 @dataclass(frozen=True)
@@ -55,56 +68,74 @@ class Column:
     """A column: where it stands, its heading, and what its numbers are multiplied by.
 
     `by_mass` tells of forces that are counted in kilograms, `per_metre` of figures of lines that
-    are those of a metre; `known` whether the heading gives a unit.
+    are those of a metre, `known` whether the heading gives a unit; `whole` whether it says that
+    its figures are those of a whole piece.
     """
 
     index: int
     heading: str
-    factor: float
-    by_mass: bool
-    per_metre: bool
-    known: bool
+    factor: float = 1.0
+    by_mass: bool = False
+    per_metre: bool = False
+    known: bool = False
     whole: bool = False
 
 
-def headings_of(rows: Rows, given: Mapping[str, str], path: Path) -> tuple[int, dict[str, Column]]:
-    """The row of the headings, and the column of each thing that the list has.
+@dataclass(frozen=True)
+class Headings:
+    """The row of the headings, the column of each thing the list has, headings of the others."""
+
+    row: int
+    columns: dict[str, Column]
+    others: tuple[str, ...]
+
+
+def headings_of(rows: Rows, given: Mapping[str, str]) -> Headings | None:
+    """The headings of a sheet; None where no row has a name and a length or a force.
 
     Parameters
     ----------
     given : headings by what they hold, which come before those that are recognised
+    """
+    best: tuple[int, int, Headings] | None = None
+    for i in range(min(len(rows), _SEARCHED)):
+        cells = _with_units(rows, i)
+        found = _columns(cells, given)
+        if "name" not in found and len(found) >= 2:
+            index = _unnamed(rows, i, found)
+            if index is not None:
+                found["name"] = Column(index, "")
+        if "name" not in found or not _MEASURES & found.keys():
+            continue
+        merit = len(found), sum(column.known for column in found.values())
+        if best is None or merit > best[:2]:
+            taken = {column.index for column in found.values()}
+            others = tuple(
+                heading for index, heading in enumerate(rows[i]) if heading and index not in taken
+            )
+            best = *merit, Headings(i, found, others)
+    return best[2] if best else None
+
+
+def check_given(sheets: Mapping[str, Rows], given: Mapping[str, str], path: Path) -> None:
+    """Whether `--columns` names things of a piece, and headings that are there.
 
     Raises
     ------
     InputError
-        No row has a name and a length or a force, or a heading that is given is not there.
+        It does not.
     """
     for what in given:
         if what not in COLUMNS:
             raise refused(
                 path, unknown(f"--columns: `{what}` is nothing of a piece", what, COLUMNS)
             )
-    cells = {_plain(cell) for row in rows[:60] for cell in row}
+    cells = {
+        _plain(cell) for rows in sheets.values() for row in rows[:_SEARCHED] for cell in row
+    }  # fmt: skip
     for what, heading in given.items():
         if not any(cell.startswith(_plain(heading)) for cell in cells):
             raise refused(path, f"--columns: no column is called `{heading}` ({what})")
-    best: tuple[int, dict[str, Column]] | None = None
-    for i in range(min(len(rows), 60)):
-        found = _columns(_with_units(rows, i), given)
-        if (
-            "name" not in found
-            and len(found) >= 2
-            and (index := _unnamed(rows, i, found)) is not None
-        ):
-            found["name"] = Column(index, "", 1.0, False, False, False)
-        enough = "name" in found and {"length", "buoyancy", "weight", "mass"} & found.keys()
-        if enough and (best is None or len(found) > len(best[1])):
-            best = i, found
-    if best is None:
-        raise refused(
-            path, "has no headings that CALM knows; name them: --columns name=…,length=…,weight=…"
-        )
-    return best
 
 
 def _columns(row: list[str], given: Mapping[str, str]) -> dict[str, Column]:
@@ -121,10 +152,27 @@ def _columns(row: list[str], given: Mapping[str, str]) -> dict[str, Column]:
             found[what] = _column(what, matches[0], row[matches[0]])
     for what, pattern in _PATTERNS:
         for i, cell in enumerate(plain):
-            if what not in found and i not in taken and cell and re.search(pattern, cell):
+            along = what != "tangential_area" and _ALONG.search(cell)
+            if what in found or i in taken or not cell or along:
+                continue
+            if re.search(pattern, cell):
                 taken.add(i)
                 found[what] = _column(what, i, row[i])
+    _settle(found)
     return found
+
+
+def _settle(found: dict[str, Column]) -> None:
+    """A height is a length, and a weight beside a buoyancy one in air, where nothing else is."""
+    if "length" not in found and "height" in found and _plain(found["height"].heading) == "height":
+        found["length"] = found.pop("height")
+    plain_weight = re.match(r"(weight|poids)\b(?!.*(water|wet|eau))", _plain_of(found, "weight"))
+    if plain_weight and "buoyancy" in found and "mass" not in found:
+        found["mass"] = _column("mass", found["weight"].index, found.pop("weight").heading)
+
+
+def _plain_of(found: dict[str, Column], what: str) -> str:
+    return _plain(found[what].heading) if what in found else ""
 
 
 def _with_units(rows: Rows, i: int) -> list[str]:
@@ -132,10 +180,17 @@ def _with_units(rows: Rows, i: int) -> list[str]:
     row = rows[i]
     below = rows[i + 1] if i + 1 < len(rows) else []
     units = [cell for cell in below if cell]
-    if not units or not all(_UNIT_CELL.match(cell) for cell in units):
+    if not units or not all(_is_unit(cell) for cell in units):
         return row
     below = below + [""] * (len(row) - len(below))
     return [f"{cell} {unit}".strip() for cell, unit in zip(row, below, strict=False)]
+
+
+def _is_unit(cell: str) -> bool:
+    """Whether a cell below a heading goes with it: `(kg)`, `m`, `off btm (m)`."""
+    inside = re.search(r"\(([^()]*)\)\s*$", cell)
+    words = _plain(inside[1] if inside else cell, keep="²^/").split("/")[0].split()
+    return bool(words) and words[0] in _UNITS
 
 
 def _unnamed(rows: Rows, i: int, found: dict[str, Column]) -> int | None:
@@ -152,22 +207,29 @@ def _unnamed(rows: Rows, i: int, found: dict[str, Column]) -> int | None:
 
 
 def _column(what: str, index: int, heading: str) -> Column:
+    if what in WORDS:
+        return Column(index, heading)
     words = re.findall(r"[a-z]+(?:\^?2|²)?", _plain(heading, keep="²^/"))
     unit = next((word for word in reversed(words) if word in _UNITS and word != what), None)
-    if what == "name" or what in ("label", "kind", "role"):
-        unit = None
     per_metre = bool(re.search(r"/ ?m\b|per m|par m|lineique", _plain(heading, keep="/")))
     if per_metre and unit == "m":
         unit = next((word for word in words if word in _UNITS and word not in ("m", what)), None)
-    factor = _UNITS[unit] if unit else 1.0
-    by_mass = what in ("buoyancy", "weight") and (unit is None or unit in _MASSES)
-    whole = bool(re.search(r"whole|total", _plain(heading)))
-    return Column(index, heading, factor, by_mass, per_metre, unit is not None, whole)
+    by_mass = unit in _MASSES if unit else what in ("buoyancy", "weight")
+    return Column(
+        index=index,
+        heading=heading,
+        factor=_UNITS[unit] if unit else 1.0,
+        by_mass=by_mass and what in _FORCES,
+        per_metre=per_metre,
+        known=unit is not None,
+        whole=bool(re.search(r"whole|total", _plain(heading))),
+    )
 
 
 def _plain(text: str, keep: str = "") -> str:
     """A heading without accents and capitals, signs as blanks but for those that matter."""
-    decomposed = unicodedata.normalize("NFD", text.lower())
+    spaced = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)  # buoyancyPerMeter
+    decomposed = unicodedata.normalize("NFD", spaced.lower())
     letters = "".join(sign for sign in decomposed if not unicodedata.combining(sign))
     allowed = f"/.ø²^*_{keep}"
     return " ".join(

@@ -8,13 +8,16 @@ import math
 from pathlib import Path
 
 from calm.exchange.design import Component, Design, Hung, Item
-from calm.exchange.mdd.elements import MODULI, Element
+from calm.exchange.mdd.elements import MODULI, Element, mistakes_of
 from calm.exchange.mdd.pieces import anchor_of, component_of, rigid
 from calm.exchange.refusal import refused
 from calm.files.document import read_text
 
 _MARKS = {"name", "length", "buoyancy", "bool_line", "bool_clampon", "height_along_inline"}
-_NOTE = "That program solves the equations of Mooring Design & Dynamics. See docs/import-table.md."
+_SLIGHT = 1e-6  # m by which a clamp may stand off its piece
+_NOTE = (
+    "That program solves the equations of Mooring Design & Dynamics. See `calm docs import-table`."
+)
 
 
 def is_moords(content: bytes) -> bool:
@@ -35,36 +38,36 @@ def read_moords(path: Path) -> Design:
     if not rows or not rows[0].keys() >= _MARKS:
         raise refused(path, "is no design of moords: its headings are others")
     problems: list[str] = []
-    items: list[Item] = []
-    for place, row in enumerate(rows, 2):
-        element = _element(row, place, problems)
-        if row.get("bool_clampon") == "True":
-            if not items:
-                problems.append(f"row {place}: a clamp stands before the first piece")
-                continue
-            host = items[-1]
-            length = host.length or float(host.component.figures.get("length", 0.0))
-            at = length - _number(row, "height_along_inline", place, problems)
-            guess = "" if -1e-6 <= at <= length + 1e-6 else "its place was off the piece"
-            host.clamps.append(Hung(rigid(element), min(max(at, 0.0), length), guess))
-        elif not items:
-            anchor = anchor_of(element)
-            if not element.lift:
-                del anchor.figures["weight"]
-            items.append(Item(anchor))
-        else:
-            items.append(_item(element))
+    elements = [_element(row, place, problems) for place, row in enumerate(rows, 2)]
+    if not problems and rows[0].get("bool_clampon") == "True":
+        problems.append("row 2: a clamp stands before the first piece")
     if problems:
         raise refused(path, *problems)
+    items = [Item(_anchor(elements[0]))]
+    for row, element in zip(rows[1:], elements[1:], strict=True):
+        if row.get("bool_clampon") == "True":
+            _hang(items[-1], element, float(row["height_along_inline"] or 0.0))
+        else:
+            items.append(Item(component_of(element), element.length if element.is_line else None))
     for item in items:
         item.clamps.sort(key=lambda clamp: clamp.at)
     name = rows[0].get("mooring") or path.stem
     return Design("moords", name, items[::-1], None, notes=[_NOTE], in_kilograms=True)
 
 
-def _item(element: Element) -> Item:
-    component: Component = component_of(element)
-    return Item(component, element.length if element.is_line else None)
+def _anchor(element: Element) -> Component:
+    anchor = anchor_of(element)
+    if not element.lift:
+        del anchor.figures["weight"]
+    return anchor
+
+
+def _hang(host: Item, element: Element, height: float) -> None:
+    """Clamp an element on a piece, at a height above its lower end [m]."""
+    length = host.length or float(host.component.figures.get("length", 0.0))
+    at = length - height
+    guess = "" if -_SLIGHT <= at <= length + _SLIGHT else "its place was off the piece"
+    host.clamps.append(Hung(rigid(element), min(max(at, 0.0), length), guess))
 
 
 def _element(row: dict[str, str], place: int, problems: list[str]) -> Element:
@@ -76,7 +79,7 @@ def _element(row: dict[str, str], place: int, problems: list[str]) -> Element:
         length = 1.0
     material = _number(row, "material", place, problems)
     known = is_line and 1.0 <= material <= len(MODULI)
-    return Element(
+    element = Element(
         name=row["name"] or f"row {place}",
         length=length,
         width=_number(row, "width", place, problems),
@@ -89,6 +92,10 @@ def _element(row: dict[str, str], place: int, problems: list[str]) -> Element:
         modulus=MODULI[round(material) - 1] if known else None,
         number=place,
     )
+    problems += mistakes_of(element, f"row {place}, {element.name}")
+    if row.get("bool_clampon") == "True":
+        _number(row, "height_along_inline", place, problems)
+    return element
 
 
 def _number(row: dict[str, str], key: str, place: int, problems: list[str]) -> float:

@@ -2,177 +2,135 @@
 
 from __future__ import annotations
 
-import math
-import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 
-from calm.exchange.design import Component, Design, Figure, Hung, Item, Remark
+import numpy as np
+
+from calm.exchange.design import Component, Design, Hung, Item, Remark, Water
+from calm.exchange.mdd.water import read_water
 from calm.exchange.refusal import refused
 from calm.exchange.table.cells import number
-from calm.exchange.table.headings import Column, headings_of
-from calm.exchange.table.sheet import read_rows
-from calm.exchange.words import is_anchor, is_chain, is_line, role_of
-from calm.units import KILOGRAM_FORCE
+from calm.exchange.table.components import component_of
+from calm.exchange.table.headings import Headings, check_given, headings_of
+from calm.exchange.table.library import Library, complete, is_library, key_of, read_library
+from calm.exchange.table.rows import Row, count_lines, names_in, rows_of, weights_as_buoyancy
+from calm.exchange.table.sheet import Rows, read_sheets
 
-_TOTAL = re.compile(r"^(sub-?)?(total|totaux|sum|somme|ensemble)\b", re.I)
-_LINE_KINDS = re.compile(r"\b(cable|c[âa]ble|chain|cha[iî]ne|line|wire|rope|cordage)s?\b", re.I)
-_ANCHOR_KINDS = re.compile(r"\banchors?\b|\bancre|\blest\b", re.I)
-_MATERIAL_CD = {"cable": 1.3, "chain": 2.75}
-_RIGID_CD = {"sphere": 0.5, "cylinder": 1.2}
-_MOST = 1000  # of one row's count
+_NOTE = "A list says nothing of the water, and little of drag. See `calm docs import-table`."
+_WATER = ("z", "U", "V", "W", "rho")  # headings of a sheet of Mooring Design & Dynamics
+_NAMES = 3  # at least, in a list of names alone
 
 
-@dataclass
-class Row:
-    """A row of the list in SI: what it is called, its figures, and what was guessed in it."""
-
-    place: int
-    name: str
-    label: str
-    kind: str
-    role: str
-    figures: dict[str, float]
-    guesses: dict[str, str] = field(default_factory=dict)
-    per_metre: bool = False
-
-    @property
-    def is_anchor(self) -> bool:
-        """Whether it is the anchor."""
-        return bool(_ANCHOR_KINDS.search(f"{self.kind} {self.role}")) or is_anchor(self.name)
-
-    @property
-    def is_line(self) -> bool:
-        """Whether it is a cable or a chain."""
-        if self.kind:
-            return bool(_LINE_KINDS.search(self.kind))
-        return is_line(self.name)
-
-
-def read_table(path: Path, columns: Mapping[str, str]) -> Design:
+def read_table(path: Path, columns: Mapping[str, str], elements: Path | None = None) -> Design:
     """Read a CSV file or a workbook.
+
+    Parameters
+    ----------
+    columns : headings by what they hold
+    elements : a library with the figures that the list lacks
 
     Raises
     ------
     InputError
         No headings are recognised, a figure is missing, or no end is an anchor.
     """
-    cells = read_rows(path)
-    start, known = headings_of(cells, columns, path)
-    design = Design("a list", path.stem, [], None)
-    rows: list[Row] = []
+    sheets = read_sheets(path)
+    check_given(sheets, columns, path)
+    if elements is None and not columns and is_library(sheets):
+        raise refused(
+            path, "is a library of elements, no mooring; a list takes its figures: --elements FILE"
+        )
+    library = read_library(elements) if elements is not None else {}
+    design = Design("a list", path.stem, [], None, notes=[_NOTE])
+    design.water = _water(sheets, design, path)
     problems: list[str] = []
-    for place, each in enumerate(cells[start + 1 :], start + 2):
-        name = _cell(each, known.get("name"))
-        if not name:
-            continue
-        if _TOTAL.match(name):
-            design.dropped.append(Remark(f"row {place}", f"`{name}`, a sum"))
-            continue
-        read = _rows(each, place, name, known, problems)
-        if read and not {"length", "buoyancy"} & read[0].figures.keys() and not read[0].is_anchor:
-            design.dropped.append(Remark(f"row {place}", f"`{name}`, without length and weight"))
-            continue
-        rows += read
-    _count_lines(rows, known)
+    chosen = _sheet(sheets, columns)
+    headings = None
+    if chosen is not None:
+        cells, headings = chosen
+        weighed = {"buoyancy", "weight"} & headings.columns.keys()
+        rows = rows_of(
+            cells, headings, problems, design.dropped,
+            bare=lambda name: bool(library) and (not weighed or key_of(name) in library),
+        )  # fmt: skip
+        weights_as_buoyancy(rows, design.guessed)
+        if headings.others:
+            design.dropped.append(Remark("columns", ", ".join(headings.others)))
+    else:
+        rows = _names(sheets, design, path, library)
+    if elements is not None:
+        complete(rows, library, elements.name)
+    count_lines(rows, headings.columns if headings else {})
     rows = _from_the_top(rows, path, design)
-    design.items = _items(rows, known, problems)
+    design.items = _items(rows, problems)
     if problems:
         raise refused(path, *problems)
-    design.notes.append(
-        "A list says nothing of the water, and little of drag. See docs/import-table.md."
+    design.in_kilograms = headings is None or any(
+        headings.columns[key].by_mass for key in ("buoyancy", "weight") if key in headings.columns
     )
-    design.in_kilograms = any(known[key].by_mass for key in ("buoyancy", "weight") if key in known)
     return design
 
 
-def _cell(row: list[str], column: Column | None) -> str:
-    if column is None or column.index >= len(row):
-        return ""
-    return row[column.index].strip().removeprefix("'")
+def _sheet(sheets: Mapping[str, Rows], columns: Mapping[str, str]) -> tuple[Rows, Headings] | None:
+    """The longest sheet that has headings, and those."""
+    found = [
+        (rows, headings)
+        for rows in sorted(sheets.values(), key=len, reverse=True)
+        if (headings := headings_of(rows, columns)) is not None
+    ]
+    return found[0] if found else None
 
 
-def _rows(
-    cells: list[str],
-    place: int,
-    name: str,
-    known: dict[str, Column],
-    problems: list[str],
-) -> list[Row]:
-    """A row as often as it says."""
-    row = Row(
-        place, name, _cell(cells, known.get("label")), _cell(cells, known.get("kind")),
-        _cell(cells, known.get("role")), {},
-    )  # fmt: skip
-    for what, column in known.items():
-        if what in ("name", "label", "kind", "role"):
+def _names(sheets: Mapping[str, Rows], design: Design, path: Path, library: Library) -> list[Row]:
+    """The rows of a list that holds names alone, in the longest sheet.
+
+    The first is the name of the mooring where the library has no such element.
+    """
+    longest = max(sheets.values(), key=len, default=[])
+    rows = names_in(longest)
+    filled = sum(bool(cell) for row in longest for cell in row)
+    if len(rows) < _NAMES or 2 * len(rows) < filled:
+        raise refused(
+            path, "has no headings that CALM knows; name them: --columns name=…,length=…,weight=…"
+        )
+    if not library:
+        raise refused(
+            path,
+            f"holds names and no figures (`{rows[0].name}`, `{rows[1].name}` …); "
+            "give the library of elements that they are those of: --elements FILE",
+        )
+    if key_of(rows[0].name) not in library:
+        if key_of(rows[0].name) != "name":
+            design.name = rows[0].name
+        rows = rows[1:]
+    return rows
+
+
+def _water(sheets: Mapping[str, Rows], design: Design, path: Path) -> Water | None:
+    """The environment of a sheet of heights, `z`, as workbooks of that program have it."""
+    for rows in sheets.values():
+        headings = [cell.lower() for cell in rows[0]]
+        if not {"z", "u"} <= set(headings):
             continue
-        value, told = number(_cell(cells, column))
-        if value is None:
-            if told:
-                problems.append(f"row {place}, {name}: {column.heading}: {told}")
-            continue
-        if not math.isfinite(value):
-            problems.append(f"row {place}, {name}: {column.heading} is {value:g}")
-            continue
-        scale = KILOGRAM_FORCE if column.by_mass else 1.0
-        row.figures[what] = value * column.factor * scale
-        if told:
-            row.guesses[what] = told
-    if "weight" in row.figures:
-        weight = row.figures.pop("weight")
-        guess = row.guesses.pop("weight", "")
-        if "buoyancy" not in row.figures or not row.figures["buoyancy"]:
-            row.figures["buoyancy"] = 0.0 - weight
-            if guess:
-                row.guesses["buoyancy"] = guess
-    count = round(row.figures.pop("count", 1.0))
-    if not 1 <= count <= _MOST:
-        problems.append(f"row {place}, {name}: {count} of them")
-        return []
-    return [row] * count
-
-
-def _count_lines(rows: list[Row], known: dict[str, Column]) -> None:
-    """Forces and masses of lines per metre, where the list has those of the whole length."""
-    lines = [row for row in rows if row.is_line and row.figures.get("length", 0.0) > 0.0]
-    for what in ("buoyancy", "mass", "area"):
-        column = known.get(what) or (known.get("weight") if what == "buoyancy" else None)
-        if column is None or column.per_metre or not any(what in row.figures for row in lines):
-            continue
-        per_metre = not column.whole and _same_for_all_lengths(lines, what)
-        for row in {id(each): each for each in lines}.values():
-            if what not in row.figures or row.per_metre:
-                continue
-            if not per_metre:
-                row.figures[what] /= row.figures["length"]
-            if what == "buoyancy" and not column.whole:
-                row.guesses.setdefault(
-                    what,
-                    "taken for that of a metre: it is the same at different lengths"
-                    if per_metre
-                    else "the list's weight taken for that of the whole length",
-                )
-
-
-def _same_for_all_lengths(lines: list[Row], what: str) -> bool:
-    """Whether lines of one name and different lengths weigh the same: then that is of a metre."""
-    seen: dict[str, tuple[float, float]] = {}
-    for row in lines:
-        if what not in row.figures:
-            continue
-        length, value = seen.setdefault(row.name, (row.figures["length"], row.figures[what]))
-        if abs(length - row.figures["length"]) > 0.05 * length and value:
-            return abs(value - row.figures[what]) < 0.01 * abs(value)
-    return False
+        columns = {
+            name: np.array([number(row[i])[0] or 0.0 for row in rows[1:] if i < len(row)])
+            for name in _WATER
+            if name.lower() in headings and (i := headings.index(name.lower())) >= 0
+        }
+        try:
+            water, _ = read_water(columns, False, design.guessed)
+        except ValueError as error:
+            raise refused(path, str(error)) from None
+        return water
+    return None
 
 
 def _from_the_top(rows: list[Row], path: Path, design: Design) -> list[Row]:
     """The rows from the top down; lists lead either way, clamps stand behind their piece."""
-    if len(rows) < 2:
-        raise refused(path, f"has {len(rows)} pieces")
     pieces = [row for row in rows if "at" not in row.figures]
+    if len(pieces) < 2:
+        raise refused(path, f"has {len(pieces)} pieces")
     anchored = [i for i, row in enumerate(pieces) if row.is_anchor]
     if anchored and anchored[0] == 0 and anchored[-1] != len(pieces) - 1:
         design.notes.append("The list leads from the anchor up: here it is turned round.")
@@ -185,9 +143,8 @@ def _from_the_top(rows: list[Row], path: Path, design: Design) -> list[Row]:
     if lifts[0] < lifts[1]:
         design.notes.append("The list leads from the lower end up: here it is turned round.")
         rows = _turned(rows)
-    anchor = Row(0, "anchor", "", "anchor", "anchor", {})
     design.guessed.append(Remark("line.anchor", "the list has none"))
-    return [*rows, anchor]
+    return [*rows, Row(0, "anchor", kind="anchor", role="anchor")]
 
 
 def _turned(rows: list[Row]) -> list[Row]:
@@ -200,119 +157,14 @@ def _turned(rows: list[Row]) -> list[Row]:
     return [row for group in reversed(groups) for row in group]
 
 
-def _items(rows: list[Row], known: dict[str, Column], problems: list[str]) -> list[Item]:
+def _items(rows: list[Row], problems: list[str]) -> list[Item]:
     items: list[Item] = []
-    made: dict[int, Component] = {}
-    for number_, row in enumerate(rows):
-        last = number_ == len(rows) - 1
-        component = made.get(id(row))
-        if component is None:
-            component = made[id(row)] = _component(row, problems, anchor=last and row.is_anchor)
+    for row in rows:
+        component: Component = component_of(row, problems, anchor=row is rows[-1] and row.is_anchor)
         at = row.figures.get("at")
         if at is None:
             length = row.figures.get("length") if component.kind in ("cable", "chain") else None
-            items.append(Item(component, length, label=row.label))
+            items += [Item(component, length, label=row.label) for _ in range(row.count)]
         elif items:
             items[-1].clamps.append(Hung(component, at))
     return items
-
-
-def _component(row: Row, problems: list[str], *, anchor: bool) -> Component:
-    where = f"row {row.place}, {row.name}"
-    figures = row.figures
-    guesses = {key: text for key, text in row.guesses.items()}
-    if anchor:
-        kept: dict[str, Figure] = {}
-        if figures.get("buoyancy"):
-            kept["weight"] = abs(figures["buoyancy"])
-        elif figures.get("mass"):
-            kept["mass"] = figures["mass"]
-            guesses["mass"] = "taken for steel: the list gives no weight in water"
-        kept["length"] = figures.get("length", 0.0)
-        return Component(row.name, "anchor", kept, {k: v for k, v in guesses.items() if k in kept})
-    if row.is_line:
-        return _line(row, where, problems, guesses)
-    if "buoyancy" not in figures:
-        problems.append(f"{where}: its weight in water or its buoyancy is missing")
-    if figures.get("length", 0.0) < 0.0 or figures.get("diameter", 0.0) < 0.0:
-        problems.append(f"{where}: a length or diameter is negative")
-    lift = figures.get("buoyancy", 0.0)
-    across, length = figures.get("diameter", 0.0), figures.get("length", 0.0)
-    role = row.role if row.role in _ROLES else role_of(row.name, lift)
-    kept = {}
-    round_ = across > 0.0 and (lift > 0.0 or row.kind == "sphere") and length <= 1.5 * across
-    if "area" in figures:
-        kind, kept = "body", {"length": length, "drag_area": figures["area"], "cd": 1.0}
-        guesses["drag_area"] = guesses.get("area", "")
-    elif across <= 0.0 or (not round_ and length <= 0.0):
-        kind, kept = "body", {"length": length, "drag_area": 0.0, "cd": 1.0}
-        guesses["drag_area"] = "the list gives no size: it has no drag"
-    elif round_:
-        kind = "sphere"
-        kept = {"diameter": across, "length": length or across, "cx": figures.get("cd", 0.5)}
-    else:
-        kind = "cylinder"
-        kept = {"diameter": across, "length": length, "cn": figures.get("cd", 1.2)}
-    coefficient = {"sphere": "cx", "cylinder": "cn"}.get(kind)
-    if coefficient and "cd" not in figures:
-        guesses[coefficient] = f"the usual one of a {kind}"
-    elif coefficient and row.guesses.get("cd"):
-        guesses[coefficient] = row.guesses["cd"]
-    kept["buoyancy"] = lift
-    if figures.get("mass", 0.0) * KILOGRAM_FORCE >= max(-lift, 0.0) and figures.get("mass"):
-        kept["mass"] = figures["mass"]
-    if figures.get("breaking_load"):
-        kept["breaking_load"] = figures["breaking_load"]
-    kept["role"] = role
-    return Component(row.name, kind, kept, {k: v for k, v in guesses.items() if k in kept and v})
-
-
-_ROLES = ("float", "instrument", "release", "connector")
-
-
-def _line(row: Row, where: str, problems: list[str], guesses: dict[str, str]) -> Component:
-    figures = row.figures
-    if figures.get("length", 0.0) <= 0.0:
-        problems.append(f"{where}: a line needs its length")
-    across = figures.get("diameter", 0.0)
-    kind = "chain" if is_chain(f"{row.name} {row.kind}") else "cable"
-    if across <= 0.0:
-        across = _size_in(row.name)
-        if across <= 0.0:
-            problems.append(f"{where}: its diameter is missing")
-            across = 0.01
-        guesses["diameter"] = "from its name"
-    kept: dict[str, Figure] = {"diameter": across}
-    kept["cn"] = figures.get("cd", _MATERIAL_CD[kind])
-    if "area" in figures:
-        kept["cn"], kept["ct"] = figures["area"] / across, 0.0
-    elif "cd" not in figures:
-        guesses["cn"] = f"the usual one of a {kind}"
-    lift = figures.get("buoyancy")
-    if lift is None:
-        problems.append(f"{where}: its weight in water is missing")
-        lift = 0.0
-    if lift > 0.0:
-        kept["buoyancy"], kind = lift, "cable"
-    else:
-        kept["weight"] = 0.0 - lift
-        if "buoyancy" in guesses:
-            guesses["weight"] = guesses["buoyancy"]
-    if figures.get("mass", 0.0) * KILOGRAM_FORCE >= max(-lift, 0.0) and figures.get("mass"):
-        kept["mass"] = figures["mass"]
-    for key in ("stiffness", "breaking_load"):
-        if figures.get(key):
-            kept[key] = figures[key]
-    return Component(row.name, kind, kept, {k: v for k, v in guesses.items() if k in kept and v})
-
-
-def _size_in(name: str) -> float:
-    """A diameter in a name such as `8 mm wire` or `3/8" chain` [m]; 0 without one."""
-    found = re.search(r"(\d+(?:[.,]\d+)?)\s*mm\b", name, re.I)
-    if found:
-        return float(found[1].replace(",", ".")) / 1000.0
-    found = re.search(r"(?:(\d+)[ -])?(\d+)/(\d+)", name)
-    if found and int(found[3]):
-        return (int(found[1] or 0) + int(found[2]) / int(found[3])) * 0.0254
-    found = re.search(r"(\d+(?:[.,]\d+)?)\s*(?:\"|''|in\b|inch)", name, re.I)
-    return float(found[1].replace(",", ".")) * 0.0254 if found else 0.0

@@ -10,6 +10,7 @@ from calm.exchange.refusal import refused
 from calm.files.document import read_content
 
 _SPREADSHEETS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1")  # xlsx, xls
+_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 _LARGEST = 20_000_000
 _MOST_ROWS, _MOST_COLUMNS = 20_000, 500
 
@@ -26,13 +27,17 @@ def is_table(content: bytes) -> bool:
     """Whether a file is a workbook, or text whose lines are cut by the same sign."""
     if is_spreadsheet(content):
         return True
+    if content.startswith(_UTF_16):
+        content = content[: len(content) // 2 * 2].decode("utf-16", "replace").encode()
     lines = [line for line in content.split(b"\n")[:20] if line.strip()]
     cut = any(sum(sign in line for line in lines) >= 2 for sign in (b"\t", b";", b","))
     return b"\0" not in content and cut
 
 
-def read_rows(path: Path) -> Rows:
-    """The rows of a file; lines that begin with # are comments.
+def read_sheets(path: Path) -> dict[str, Rows]:
+    """The rows of every sheet by its name; lines that begin with # are comments.
+
+    A sheet without a cell is left out; text has one sheet, without a name.
 
     Raises
     ------
@@ -40,9 +45,16 @@ def read_rows(path: Path) -> Rows:
         It cannot be read.
     """
     content = read_content(path, largest=_LARGEST)
-    rows = _workbook(path, content) if is_spreadsheet(content) else _csv(path, content)
-    if len(rows) > _MOST_ROWS or any(len(row) > _MOST_COLUMNS for row in rows):
-        raise refused(path, f"has more than {_MOST_ROWS} rows or {_MOST_COLUMNS} columns")
+    workbook = is_spreadsheet(content)
+    sheets = _workbook(path, content) if workbook else {"": _csv(path, content)}
+    for rows in sheets.values():
+        if len(rows) > _MOST_ROWS or any(len(row) > _MOST_COLUMNS for row in rows):
+            raise refused(path, f"has more than {_MOST_ROWS} rows or {_MOST_COLUMNS} columns")
+    return {name: cleaned for name, rows in sheets.items() if (cleaned := _cleaned(rows))}
+
+
+def _cleaned(rows: Rows) -> Rows:
+    """Rows without blanks at the ends of cells, empty cells at the end, and comments."""
     cleaned = []
     for row in rows:
         cells = [" ".join(cell.split()) for cell in row]
@@ -54,22 +66,29 @@ def read_rows(path: Path) -> Rows:
 
 
 def _csv(path: Path, content: bytes) -> Rows:
-    if b"\0" in content:
-        raise refused(path, "is a binary file; a table in text or a workbook is needed")
+    lines = [line for line in _text(path, content).splitlines() if line.strip()]
+    plain = [line for line in lines if not line.startswith("#")]
+    # the sign that most lines have; commas may be decimal ones beside the others
+    delimiter = max("\t;,", key=lambda sign: sum(sign in line for line in plain[:200]))
     try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = content.decode("cp1252", "replace")
-    lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
-    signs = {sign: sum(line.count(sign) for line in lines[:20]) for sign in "\t;,"}
-    delimiter = "\t" if signs["\t"] else ";" if signs[";"] else ","
-    try:
-        return list(csv.reader(io.StringIO("\n".join(lines)), delimiter=delimiter))
+        return list(csv.reader(io.StringIO("\n".join(plain)), delimiter=delimiter))
     except csv.Error as error:
         raise refused(path, f"is no table: {error}") from None
 
 
-def _workbook(path: Path, content: bytes) -> Rows:
+def _text(path: Path, content: bytes) -> str:
+    """UTF-8, UTF-16 as Excel writes it with its mark, or else the Western encoding of Windows."""
+    if content.startswith(_UTF_16):
+        return content.decode("utf-16", "replace")
+    if b"\0" in content:
+        raise refused(path, "is a binary file; a table in text or a workbook is needed")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return content.decode("cp1252", "replace")
+
+
+def _workbook(path: Path, content: bytes) -> dict[str, Rows]:
     try:
         import python_calamine
     except ImportError:
@@ -78,11 +97,12 @@ def _workbook(path: Path, content: bytes) -> Rows:
         ) from None
     try:
         book = python_calamine.load_workbook(io.BytesIO(content))
-        sheets = [book.get_sheet_by_name(name).to_python() for name in book.sheet_names]
+        sheets = {name: book.get_sheet_by_name(name).to_python() for name in book.sheet_names}
     except Exception as error:  # of the library, for damaged files
         raise refused(path, f"is a damaged workbook ({error})") from None
-    filled = [sheet for sheet in sheets if sheet]
-    return [[_shown(cell) for cell in row] for row in max(filled, key=len)] if filled else []
+    return {
+        name: [[_shown(cell) for cell in row] for row in sheet] for name, sheet in sheets.items()
+    }
 
 
 def _shown(cell: object) -> str:

@@ -9,13 +9,16 @@ from calm.exchange.parts import Assembled, Part, area, remarks
 
 HEADER = (
     "name", "label", "kind", "role", "clamped at[m]", "length[m]", "diameter[m]", "whole mass[kg]",
-    "whole buoyancy[N]", "whole Cd x area[m^2]", "EA[N]",
+    "whole buoyancy[N]", "whole Cd x area[m^2]", "whole tangential Cd x area[m^2]", "EA[N]",
 )  # fmt: skip
 
 
 def csv_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
     """The content of the file, and what is lost in it."""
-    told = remarks(design, ("drag along pieces: one area stands for all", "the water"))
+    lost = ["the water", "hulls and wind: floats drag in full at the surface"]
+    if design.tow is not None:
+        lost.append("the speed of the ship: a list is a mooring's")
+    told = remarks(design, lost)
     text = io.StringIO()
     for line in (f"{design.name}, by CALM; lost:", *told):
         text.write(f"# {' '.join(line.split())}\n")
@@ -29,7 +32,7 @@ def csv_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
         anchor, weight = design.anchor
         mass = "" if anchor.mass is None else f"{anchor.mass:.9g}"
         shown = ["anchor", "anchor", "anchor", "anchor", "", f"{anchor.length:.9g}", "", mass]
-        writer.writerow([*shown, f"{-weight:.9g}", "", ""])
+        writer.writerow([*shown, f"{-weight:.9g}", "", "", ""])
     return text.getvalue().encode(), told
 
 
@@ -38,7 +41,9 @@ def _row(part: Part, at: str) -> list[str]:
     mass = "" if part.mass is None else f"{part.mass * whole:.9g}"
     stiffness = f"{part.stiffness:.9g}" if part.stiffness else ""
     diameter = f"{part.diameter:.9g}" if part.diameter else ""
-    figures = [diameter, mass, f"{part.net * whole:.9g}", f"{area(part) * whole:.9g}", stiffness]
+    along = f"{area(part, along=True) * whole:.9g}" if part.directional else ""
+    figures = [diameter, mass, f"{part.buoyancy * whole:.9g}", f"{area(part) * whole:.9g}"]
+    figures += [along, stiffness]
     words = [part.use, part.label, part.component.kind, part.role]
     return [_cell(word) for word in words] + [at, f"{part.length:.9g}", *figures]
 

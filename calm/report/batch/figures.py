@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from math import floor, log10
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -10,114 +12,138 @@ from calm.batch.statistics.summary import RESPONSES
 from calm.quantities import QUANTITIES
 from calm.report.batch.labels import QUANTITY, TITLES
 from calm.report.drawing import LINE_STYLE
-from calm.report.vector import figure_svg
+from calm.report.graph import (
+    Entry,
+    Graph,
+    Scale,
+    Stroke,
+    covering,
+    decades,
+    moments,
+    numbers,
+    seconds,
+    write_legend,
+)
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from calm.batch.statistics.distribution import Distribution
     from calm.batch.statistics.summary import Part, Response, Summary
 
-_WIDTH = 7.4  # inches: an A4 page between its margins
-_FONT_SIZE = 7.0  # points; the margins are for it: finding them takes as long as drawing twice
+_WIDTH = 533.0  # points: an A4 page between its margins
+_SIZE = 7.0  # points, of the letters
+_LEFT, _RIGHT, _BELOW, _GAP = 60.0, 6.0, 30.0, 14.0  # points: room around axes, and between them
 _MOST_NAMED = 7
-_LIMIT: dict[str, Any] = {"color": "#b3261e", "linewidth": 1.0, "linestyle": "--"}
+_LINE = str(LINE_STYLE["color"])
+_LIMIT = Stroke("#b3261e", 1.0, (4.0, 2.0))
 _COLOURS = ("#0b3c5d", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#a6761d", "#332288")
 
 
 def series_figure(summary: Summary) -> str:
     """Least and greatest value of every response in each interval of time, as SVG."""
-    from matplotlib.figure import Figure
+    tall = 108.0
+    graph = Graph(_WIDTH, len(RESPONSES) * (tall + _GAP) + 20.0, "responses through time", _SIZE)
+    begin = summary.responses[0].begin
+    across = covering(seconds(begin))
+    ticks = moments(begin[0], begin[-1], 7)
+    for number, response in enumerate(summary.responses):
+        quantity, limit = QUANTITIES[QUANTITY[response.name]], _limit_of(summary, response)
+        low, high = (quantity.scale * edge for edge in (response.low, response.high))
+        up = covering(low, high, [limit or np.nan])
+        top = 6.0 + number * (tall + _GAP)
+        axes = graph.axes(_LEFT, top, _WIDTH - _LEFT - _RIGHT, tall, across, up)
+        if np.array_equal(low, high, equal_nan=True):
+            axes.line(seconds(begin), high, Stroke(_LINE, 0.8))
+        else:
+            axes.band(seconds(begin), low, high, _LINE)
+        if limit is not None:
+            axes.level(limit, _LIMIT)
+        axes.frame(
+            ticks, numbers(up.low, up.high, 5),
+            beside=f"{TITLES[response.name]}\n[{quantity.display_unit}]",
+            grid=True, numbered=(number == len(RESPONSES) - 1, True),
+        )  # fmt: skip
+    return graph.svg()
 
-    figure = Figure(figsize=(_WIDTH, 1.7 * len(RESPONSES)))
-    figure.subplots_adjust(0.13, 0.04, 0.99, 0.99, hspace=0.12)
-    panels = figure.subplots(len(RESPONSES), 1, sharex=True)
-    for axes, response in zip(panels, summary.responses, strict=True):
-        _draw_series(axes, response)
-        _draw_limit(axes.axhline, summary, response)
-    return figure_svg(figure)
+
+class _Curve(NamedTuple):
+    """An exceedance curve, and how it is drawn."""
+
+    distribution: Distribution
+    stroke: Stroke
+    label: str = ""
+
+
+class _Shares(NamedTuple):
+    """A panel: what its curves show, of which quantity, and the limit on it."""
+
+    title: str
+    name: str
+    curves: Sequence[_Curve]
+    limit: float | None = None
 
 
 def exceedance_figure(summary: Summary) -> str:
     """Share of the profiles beyond each value: of the responses, as SVG."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(_WIDTH, 5.2))
-    figure.subplots_adjust(0.1, 0.08, 0.99, 0.98, hspace=0.27, wspace=0.06)
-    panels = figure.subplots(2, 2, sharey=True)
-    for axes, response in zip(panels.flat, summary.responses, strict=True):
-        if response.distribution is not None:
-            _draw_curve(axes, response.distribution, QUANTITY[response.name], **LINE_STYLE)
-        _draw_limit(axes.axvline, summary, response)
-        _name_shares(axes, TITLES[response.name], QUANTITY[response.name])
-    return figure_svg(figure)
+    panels = []
+    for response in summary.responses:
+        one, line = response.distribution, Stroke(_LINE, float(LINE_STYLE["linewidth"]))
+        curves = [] if one is None else [_Curve(one, line)]
+        limit = _limit_of(summary, response)
+        panels.append(_Shares(TITLES[response.name], QUANTITY[response.name], curves, limit))
+    return _shares("how often values are passed", panels, 150.0)
 
 
 def parts_figure(parts: list[Part]) -> str:
     """The same of the knockdown and the tilt of some parts, those that move most, as SVG."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(_WIDTH, 3.4))
-    figure.subplots_adjust(0.1, 0.12, 0.99, 0.98, wspace=0.06)
-    panels = figure.subplots(1, 2, sharey=True)
-    for axes, name in zip(panels, ("knockdown", "tilt"), strict=True):
+    panels = []
+    for name in ("knockdown", "tilt"):
         known = [(part.label, getattr(part, name)) for part in parts]
         curves = [(label, one) for label, one in known if one is not None]
         curves.sort(key=lambda curve: -curve[1].maximum)
-        for (_, one), colour in zip(curves, _COLOURS, strict=False):
-            _draw_curve(axes, one, name, color=colour, linewidth=1.2)
-        _name_shares(axes, name, name)
-        if curves:
-            _write_legend(axes, [label for label, _ in curves[:_MOST_NAMED]])
-    return figure_svg(figure)
+        drawn = [
+            _Curve(one, Stroke(colour), label)
+            for (label, one), colour in zip(curves[:_MOST_NAMED], _COLOURS, strict=False)
+        ]
+        panels.append(_Shares(name, name, drawn))
+    return _shares("how often parts pass values", panels, 200.0)
 
 
-def _draw_series(axes: Axes, response: Response) -> None:
-    quantity = QUANTITIES[QUANTITY[response.name]]
-    low, high = (quantity.scale * edge for edge in (response.low, response.high))
-    time = response.begin.astype("datetime64[s]")
-    if np.array_equal(low, high, equal_nan=True):
-        axes.plot(time, high, **LINE_STYLE | {"linewidth": 0.8})
-    else:
-        axes.fill_between(time, low, high, color=LINE_STYLE["color"], linewidth=0.4)
-    axes.set_ylabel(f"{TITLES[response.name]}\n[{quantity.display_unit}]")
-    _tidy(axes)
+def _shares(title: str, panels: Sequence[_Shares], tall: float) -> str:
+    """Panels two by two, with one scale of shares."""
+    rows, wide = -(-len(panels) // 2), (_WIDTH - _LEFT - _RIGHT - _GAP) / 2
+    graph = Graph(_WIDTH, rows * (tall + _BELOW) + 6.0, title, _SIZE)
+    least = min([0.1, *(each.distribution.share[-1] for one in panels for each in one.curves)])
+    up = Scale(100.0 * 10.0 ** floor(log10(least) + 1e-9), 100.0, logarithmic=True)
+    for number, panel in enumerate(panels):
+        row, column = divmod(number, 2)
+        quantity = QUANTITIES[panel.name]
+        values = [each.distribution.value * quantity.scale for each in panel.curves]
+        across = covering(*values, [np.nan if panel.limit is None else panel.limit])
+        left, top = _LEFT + column * (wide + _GAP), 6.0 + row * (tall + _BELOW)
+        axes = graph.axes(left, top, wide, tall, across, up)
+        for value, each in zip(values, panel.curves, strict=True):
+            axes.line(value, 100.0 * each.distribution.share, each.stroke)
+        if panel.limit is not None:
+            axes.plumb(panel.limit, _LIMIT)
+        axes.frame(
+            numbers(across.low, across.high, 6), decades(up.low, up.high),
+            below=f"{panel.title} [{quantity.display_unit}]",
+            beside="" if column else "reached or passed in [% of profiles]",
+            grid=True, numbered=(True, not column),
+        )  # fmt: skip
+        named = [Entry(each.label, line=each.stroke) for each in panel.curves if each.label]
+        write_legend(
+            graph.pen, named, left + 0.6 * wide, top + 4.0,
+            width=0.4 * wide, row=10.0, columns=1, size=_SIZE,
+        )  # fmt: skip
+    return graph.svg()
 
 
-def _draw_curve(axes: Axes, one: Distribution, name: str, **style: Any) -> None:
-    axes.plot(one.value * QUANTITIES[name].scale, 100.0 * one.share, **style)
-
-
-def _draw_limit(draw: Any, summary: Summary, response: Response) -> None:
-    """The limit of the design on a response, where it gives one."""
+def _limit_of(summary: Summary, response: Response) -> float | None:
+    """The limit of the design on a response, as it is shown; None where it gives none."""
     wanted = {"knockdown": "knockdown", "offset": "excursion"}.get(response.name)
     for rule in summary.rules:
         if rule.name == wanted:
             limit = rule.exceedances[0].limit.limit
-            draw((limit or 0.0) * QUANTITIES[QUANTITY[response.name]].scale, **_LIMIT)
-
-
-def _name_shares(axes: Axes, title: str, name: str) -> None:
-    axes.set_yscale("log", subs=[])  # ticks between the decades take most of the drawing
-    axes.set_ylim(top=100.0)
-    axes.yaxis.set_major_formatter("{x:g}")
-    axes.set_ylabel("reached or passed in [% of profiles]")
-    axes.label_outer()
-    axes.xaxis.set_tick_params(labelbottom=True)
-    axes.set_xlabel(f"{title} [{QUANTITIES[name].display_unit}]")
-    _tidy(axes)
-
-
-def _tidy(axes: Axes) -> None:
-    axes.grid(alpha=0.3)
-    axes.tick_params(labelsize=_FONT_SIZE)
-    axes.xaxis.label.set_fontsize(_FONT_SIZE)
-    axes.yaxis.label.set_fontsize(_FONT_SIZE)
-
-
-def _write_legend(axes: Axes, labels: list[str]) -> None:
-    """The texts are set when the legend stands, since they may be anything."""
-    legend = axes.legend(axes.get_lines(), ["·"] * len(labels), fontsize=_FONT_SIZE, frameon=False)
-    for entry, text in zip(legend.get_texts(), labels, strict=True):
-        entry.set_text(" ".join(text.split())[:24])
-        entry.set_parse_math(False)
+            return (limit or 0.0) * QUANTITIES[QUANTITY[response.name]].scale
+    return None

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from calm.batch.result import open_result
+from calm.batch.result import stored_result
 from calm.batch.statistics.summary import summarize
 from calm.report.batch.document import summary_document
 from calm.report.batch.page import summary_html
@@ -40,8 +40,8 @@ def write_summary(
     UsageError
         The result cannot be read.
     """
-    with open_result(result) as dataset:
-        summary = summarize(dataset, mooring, result.parent, check)
+    with stored_result(result) as stored:
+        summary = summarize(stored, mooring, result.parent, check, result)
     document, page = summary_paths(result)
     put(document, to_json([summary_document(summary)]).encode())
     put(page, summary_html(summary).encode())

@@ -136,6 +136,7 @@ def _launch(assessment: Assessment) -> dict[str, Any] | None:
         "fall_speed_band": list(launch.fall_speed_band),
         "anchor_tension": launch.anchor_tension,
         "anchor_drag_known": launch.anchor_drag_known,
+        "greatest_speed": launch.greatest_speed,
         "in_still_water": launch.in_still_water,
         "drift": list(launch.drift),
         "components": launch.components(),

@@ -3,34 +3,48 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from math import ceil
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from calm.checks.posture import meant_for_the_surface
 from calm.checks.strength import allowable_load
 from calm.quantities import QUANTITIES
-from calm.report.check.panels import panels
-from calm.report.drawing import SEABED_COLOUR, WATER_COLOUR, along, mark_parts
+from calm.report.drawing import SEABED_COLOUR, SIGNS, WATER_COLOUR, along
+from calm.report.graph import (
+    Entry,
+    Graph,
+    Scale,
+    Stroke,
+    counts,
+    covering,
+    numbers,
+    write_legend,
+)
+from calm.report.labels import NAMED_ROLES, named_parts
 from calm.report.plot_mooring import plane_of
-from calm.report.vector import figure_svg
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
-
     from calm.case import Result
     from calm.checks.assessment import Assessment
     from calm.checks.backup import Break
 
     Solved = Sequence[tuple[str, Result]]
 
+Floats = NDArray[np.float64]
+
+_SIZE = 7.0  # points, of the letters
+_WIDTH, _HEIGHT = 533.0, 576.0  # points: an A4 page between its margins
+_LEGEND_ROW, _LEGEND_COLUMNS = 13.5, 4
 _LEAST_SPAN = 0.1  # of the depth: a line that hardly leans is not drawn as if it did
 _FURTHEST_LIMIT = 4.0  # times the greatest tension; what is beyond is drawn at the edge
 _COLOURS = ("#0b3c5d", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#a6761d", "#332288")
-_DASHES: tuple[Any, ...] = ("-", (0, (6, 2)), (0, (1.5, 1.5)))
-_STILL: dict[str, Any] = {"color": "grey", "linestyle": (0, (3, 2)), "linewidth": 1.0}
-_LIMIT: dict[str, Any] = {"colors": "#b3261e", "linewidth": 2.0, "capstyle": "projecting"}
+_DASHES: tuple[tuple[float, ...], ...] = ((), (7.0, 2.5), (1.8, 1.8))
+_STILL = Stroke("grey", 1.0, (3.0, 2.0))
+_LIMIT = Stroke("#b3261e", 2.0, square=True)
+_UNJUDGED, _ENOUGH, _SHORT = "#b8bec4", "#8fb3cf", "#d98880"
 
 
 def check_figure(assessment: Assessment) -> str:
@@ -38,80 +52,105 @@ def check_figure(assessment: Assessment) -> str:
 
     The elevation and the current are of one depth axis; an elevation lies in the plane of its own
     excursion. Tension is drawn over the distance along the line, with the load that each piece may
-    bear. The breaks are drawn where the mooring has a release.
+    bear. The breaks are drawn where the mooring has a release. The panels keep their size: the
+    graph grows by the rows of the legend.
     """
     solved = [(stand.environment, stand.result) for stand in assessment.stands if stand.result]
-    with panels() as sheet:
-        _draw_elevation(sheet.elevation, solved)
-        _draw_current(sheet.current, solved)
-        _draw_tension(sheet.tension, solved)
-        _draw_plan(sheet.plan, solved)
-        sheet.breaks.set_visible(bool(assessment.backup))
-        if assessment.backup:
-            _draw_breaks(sheet.breaks, assessment.backup)
-        sheet.write_legend(_legend(sheet.elevation, [name for name, _ in solved]))
-        return figure_svg(sheet.figure)
+    entries = _legend(solved)
+    legend = ceil(len(entries) / _LEGEND_COLUMNS) * _LEGEND_ROW
+    title = f"{assessment.name}: elevation, current, tension, plan and breaks"
+    graph = Graph(_WIDTH, _HEIGHT + legend, title, _SIZE)
+    write_legend(
+        graph.pen, entries, 6.0, 3.0,
+        width=_WIDTH - 12.0, row=_LEGEND_ROW, columns=_LEGEND_COLUMNS, size=_SIZE,
+    )  # fmt: skip
+    top, lower = legend + 11.0, legend + 372.0
+    depths = _depths(solved)
+    _draw_elevation(graph, (42.0, top, 187.0, 310.0), solved, depths)
+    _draw_current(graph, (240.0, top, 72.0, 310.0), solved, depths)
+    _draw_tension(graph, (361.0, top, 165.0, 310.0), solved)
+    _draw_plan(graph, (42.0, lower, 187.0, 173.0), solved)
+    if assessment.backup:
+        _draw_breaks(graph, (288.0, lower, 238.0, 173.0), assessment.backup)
+    return graph.svg()
 
 
-def _legend(elevation: Axes, names: Sequence[str]) -> list[tuple[Line2D, str]]:
-    """A line and a name for each environment, and for what else the panels show."""
-    from matplotlib.lines import Line2D
-
-    environments = [(Line2D([], [], **_style(number)), name) for number, name in enumerate(names)]
-    limit = Line2D([], [], color=_LIMIT["colors"], linewidth=_LIMIT["linewidth"])
-    lines, labels = elevation.get_legend_handles_labels()
-    others = [
-        (line, label) for line, label in zip(lines, labels, strict=True) if isinstance(line, Line2D)
-    ]
-    return [*environments, *others, (limit, "limit")]
+Place = tuple[float, float, float, float]
+"""Left and upper edge, width and height of axes [pt]."""
 
 
-def _style(number: int) -> dict[str, Any]:
+def _legend(solved: Solved) -> list[Entry]:
+    """An entry for each environment, and for what else the panels show."""
+    entries = [Entry(name, line=_stroke(number)) for number, (name, _) in enumerate(solved)]
+    _, first = solved[0]
+    if first.still_shape is not None:
+        entries.append(Entry("still water", line=_STILL))
+    there = {part.role for part in named_parts(first)}
+    entries += [Entry(role, sign=SIGNS[role]) for role in NAMED_ROLES if role in there]
+    return [*entries, Entry("limit", line=_LIMIT)]
+
+
+def _stroke(number: int) -> Stroke:
     """Colour and dashes of an environment: no two of the first twenty-one are alike."""
     dashes = _DASHES[number // len(_COLOURS) % len(_DASHES)]
-    return {"color": _COLOURS[number % len(_COLOURS)], "linestyle": dashes, "linewidth": 1.2}
+    return Stroke(_COLOURS[number % len(_COLOURS)], 1.2, dashes)
 
 
-def _draw_elevation(axes: Axes, solved: Solved) -> None:
+def _depths(solved: Solved) -> Scale:
+    """Of the elevation and the current: from below the seabed to above the surface."""
     depth = max(result.mooring.water.depth for _, result in solved)
-    axes.axhline(0.0, color=WATER_COLOUR, linewidth=1.0)
-    axes.axhspan(depth, 1.05 * depth, color=SEABED_COLOUR)
+    highest = min(float(result.shape.depth.min()) for _, result in solved)
+    return Scale(1.03 * depth, min(-0.03 * depth, highest))
+
+
+def _draw_elevation(graph: Graph, place: Place, solved: Solved, depths: Scale) -> None:
     _, first = solved[0]
-    plane = plane_of(first)
-    if first.still_shape is not None:
-        still = along(first.still_shape.x, first.still_shape.y, plane)
-        axes.plot(still, first.still_shape.depth, label="still water", **_STILL)
-    furthest = [0.0]
-    for number, (_, result) in enumerate(solved):
-        offset = along(result.shape.x, result.shape.y, plane_of(result))
-        axes.plot(offset, result.shape.depth, **_style(number))
-        furthest += [float(offset.min()), float(offset.max())]
-    mark_parts(axes, first, lambda part: (float(along(part.x, part.y, plane)), part.depth))
-    start, end = min(furthest), max(furthest)
+    depth = depths.low / 1.03
+    offsets = [along(one.shape.x, one.shape.y, plane_of(one)) for _, one in solved]
+    start, end = (float(each) for each in _span([0.0], *offsets))
     span = max(end - start, _LEAST_SPAN * depth)
-    axes.set_xlim(start - 0.08 * span, start + 1.08 * span)
-    axes.set_ylim(1.03 * depth, min(-0.03 * depth, float(first.shape.depth.min())))
-    axes.set_xlabel(QUANTITIES["offset"].label)
-    axes.set_ylabel(QUANTITIES["depth"].label)
+    axes = graph.axes(*place, Scale(start - 0.08 * span, start + 1.08 * span), depths)
+    axes.strip(depth, depths.low, SEABED_COLOUR)
+    axes.level(0.0, Stroke(WATER_COLOUR, 1.0))
+    plane, still = plane_of(first), first.still_shape
+    if still is not None:
+        axes.line(along(still.x, still.y, plane), still.depth, _STILL)
+    for number, ((_, result), offset) in enumerate(zip(solved, offsets, strict=True)):
+        axes.line(offset, result.shape.depth, _stroke(number))
+    for part in named_parts(first):
+        axes.mark(float(along(part.x, part.y, plane)), part.depth, *SIGNS[part.role])
+    axes.frame(
+        numbers(axes.across.low, axes.across.high, 5), numbers(depths.low, depths.high, 9),
+        below=QUANTITIES["offset"].label, beside=QUANTITIES["depth"].label,
+    )  # fmt: skip
 
 
-def _draw_current(axes: Axes, solved: Solved) -> None:
-    for number, (_, result) in enumerate(solved):
+def _span(*values: Sequence[float] | Floats) -> tuple[float, float]:
+    """The least and the greatest of all of them."""
+    return min(float(np.min(each)) for each in values), max(float(np.max(each)) for each in values)
+
+
+def _draw_current(graph: Graph, place: Place, solved: Solved, depths: Scale) -> None:
+    profiles = []
+    for _, result in solved:
         water = result.mooring.water
         depth = np.union1d(np.linspace(0.0, water.depth, 60), water.level)
         depth = depth[(depth >= 0.0) & (depth <= water.depth)]
         u, v = (np.interp(depth, water.level, speed) for speed in (water.u, water.v))
-        axes.plot(np.hypot(u, v), depth, **_style(number))
-    axes.tick_params(labelleft=False)
-    axes.set_xlim(left=0.0)
-    axes.set_xlabel(f"current [{QUANTITIES['speed'].display_unit}]")
+        profiles.append((np.hypot(u, v), depth))
+    fastest = max(float(speed.max()) for speed, _ in profiles)
+    axes = graph.axes(*place, Scale(0.0, 1.05 * fastest or 1.0), depths)
+    for number, (speed, depth) in enumerate(profiles):
+        axes.line(speed, depth, _stroke(number))
+    axes.frame(
+        numbers(0.0, axes.across.high, 3), numbers(depths.low, depths.high, 9),
+        below=f"current [{QUANTITIES['speed'].display_unit}]", numbered=(True, False),
+    )  # fmt: skip
 
 
-def _draw_tension(axes: Axes, solved: Solved) -> None:
+def _draw_tension(graph: Graph, place: Place, solved: Solved) -> None:
     """Tension over the stretched length, and what the pieces may bear, where that is known."""
     greatest = max(float(result.shape.tension.max()) for _, result in solved)
-    for number, (_, result) in enumerate(solved):
-        axes.plot(result.shape.tension, _distance(result), **_style(number))
     _, first = solved[0]
     ends = np.concatenate([[0.0], np.cumsum(first.components.length[:-1])])
     factors, surface = first.file.checks.safety_factor, meant_for_the_surface(first)
@@ -120,45 +159,69 @@ def _draw_tension(axes: Axes, solved: Solved) -> None:
         for piece in first.file.pieces[:-1]
     ]
     edge = min(np.nanmax([*loads, greatest]), _FURTHEST_LIMIT * greatest)
-    axes.vlines(np.minimum(loads, edge), ends[:-1], ends[1:], **_LIMIT)
-    axes.set_xlim(0.0, 1.04 * edge)
-    axes.set_ylim(1.02 * float(ends[-1]), -0.02 * float(ends[-1]))
-    axes.set_xlabel(QUANTITIES["tension"].label)
-    axes.set_ylabel("distance along the line [m]")
+    distances = [_distance(result) for _, result in solved]
+    furthest = max(float(each[-1]) for each in (ends, *distances))
+    axes = graph.axes(*place, Scale(0.0, 1.04 * edge), Scale(1.02 * furthest, -0.02 * furthest))
+    for number, ((_, result), distance) in enumerate(zip(solved, distances, strict=True)):
+        axes.line(result.shape.tension, distance, _stroke(number))
+    axes.lines([np.minimum(loads, edge)] * 2, [ends[:-1], ends[1:]], _LIMIT)
+    axes.frame(
+        numbers(0.0, axes.across.high, 4), numbers(axes.up.low, axes.up.high, 9),
+        below=QUANTITIES["tension"].label, beside="distance along the line [m]",
+    )  # fmt: skip
 
 
-def _distance(result: Result) -> Any:
+def _distance(result: Result) -> Floats:
     """(k,) stretched length from the free end to each node [m]."""
     shape = result.shape
     steps = np.sqrt(np.diff(shape.x) ** 2 + np.diff(shape.y) ** 2 + np.diff(shape.depth) ** 2)
     return np.concatenate([[0.0], np.cumsum(steps)])
 
 
-def _draw_plan(axes: Axes, solved: Solved) -> None:
+def _draw_plan(graph: Graph, place: Place, solved: Solved) -> None:
+    """Both axes to one scale: the one whose range needs less is drawn wider."""
+    _, _, width, height = place
+    across, up = (
+        covering([0.0], *(getattr(result.shape, name) for _, result in solved)) for name in "xy"
+    )
+    scale = max((across.high - across.low) / width, (up.high - up.low) / height)
+    axes = graph.axes(*place, _widened(across, scale * width), _widened(up, scale * height))
     for number, (_, result) in enumerate(solved):
-        axes.plot(result.shape.x, result.shape.y, **_style(number))
-        axes.plot(result.top.x, result.top.y, "o", color=_style(number)["color"], markersize=3.5)
-    axes.plot(0.0, 0.0, "v", color="black", markersize=5)
-    axes.set_aspect("equal", adjustable="datalim")
-    axes.set_xlabel(QUANTITIES["x"].label)
-    axes.set_ylabel(QUANTITIES["y"].label)
+        stroke = _stroke(number)
+        axes.line(result.shape.x, result.shape.y, stroke)
+        axes.mark(result.top.x, result.top.y, "o", 3.5, stroke.colour)
+    axes.mark(0.0, 0.0, "v", 5.0, "black")
+    axes.frame(
+        numbers(axes.across.low, axes.across.high, 5), numbers(axes.up.low, axes.up.high, 6),
+        below=QUANTITIES["x"].label, beside=QUANTITIES["y"].label,
+    )  # fmt: skip
 
 
-def _draw_breaks(axes: Axes, backup: Sequence[Break]) -> None:
+def _widened(scale: Scale, extent: float) -> Scale:
+    """So far from edge to edge about the same middle."""
+    middle = (scale.low + scale.high) / 2
+    return Scale(middle - extent / 2, middle + extent / 2)
+
+
+def _draw_breaks(graph: Graph, place: Place, backup: Sequence[Break]) -> None:
     """What is left to lift after each break, and what is required; grey where it is not judged."""
-    from matplotlib.ticker import MaxNLocator
-
-    number = np.array([each.break_after for each in backup])
+    number = np.array([each.break_after for each in backup], dtype=np.float64)
     required = np.array([each.required for each in backup])
-    axes.bar(number, [each.margin for each in backup], color=[_colour(each) for each in backup])
-    axes.hlines(required, number - 0.5, number + 0.5, **_LIMIT)
-    axes.axhline(0.0, color="black", linewidth=0.6)
-    axes.xaxis.set_major_locator(MaxNLocator(8, integer=True))
-    axes.set_xlabel("break below piece no.")
-    axes.set_ylabel("back-up buoyancy left [N]")
+    margins = np.array([each.margin for each in backup])
+    axes = graph.axes(
+        *place, covering(number - 0.5, number + 0.5), covering([0.0], margins, required)
+    )
+    axes.bars(number, margins, 0.8, [_colour(each) for each in backup])
+    axes.lines([number - 0.5, number + 0.5], [required] * 2, _LIMIT)
+    axes.level(0.0, Stroke("black", 0.6))
+    axes.frame(
+        counts(backup[0].break_after, backup[-1].break_after, 8),
+        numbers(axes.up.low, axes.up.high, 6),
+        below="break below piece no.", beside="back-up buoyancy left [N]",
+    )  # fmt: skip
 
 
 def _colour(one: Break) -> str:
     if not one.judged:
-        return "#b8bec4"
-    return "#8fb3cf" if one.margin >= one.required else "#d98880"
+        return _UNJUDGED
+    return _ENOUGH if one.margin >= one.required else _SHORT

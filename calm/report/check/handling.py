@@ -63,7 +63,7 @@ def handling_summary(assessment: Assessment) -> Table:
             (Cell("Pull of the falling anchor"), Cell(say("tension", launch.anchor_tension))),
         ]
         if not launch.anchor_drag_known:
-            rows.append((Cell("Drag of the anchor"), Cell("unknown; it is left out")))
+            rows.append((Cell("Drag of the anchor"), Cell("unknown; that of a cube of its volume")))
     if assessment.recovery is not None:
         recovery = assessment.recovery
         time = recovery.time_to_surface

@@ -22,6 +22,12 @@ _SPARES = (
     "Spares: a tenth, rounded up, at least one; of shackles, pins and thimbles at least two. A "
     "default of this program."
 )
+_IMPLIED = (
+    "A shackle is taken to have a bolt, nut and cotter pin unless its name or note says screw pin; "
+    "a termination with a thimble to have one at each end. Where metals touch that corrode each "
+    "other (those of which calm check warns), there is an isolator at each contact and an anode on "
+    "each piece of the baser metal. Nothing else that the line does not list is counted."
+)
 
 
 def cutting_part(deck: Deck) -> Part:
@@ -102,8 +108,7 @@ def hardware_part(deck: Deck) -> Part:
     blocks: tuple[Block, ...] = (table,)
     if not deck.hardware:
         blocks = (Prose(("The line lists no hardware.",)),)
-    said = "What the line does not list, such as anodes, isolators and cotter pins, is not counted."
-    return Part("Hardware bill", (*blocks, Note((said,))))
+    return Part("Hardware bill", (*blocks, Note((_IMPLIED,))))
 
 
 def shipping_part(deck: Deck) -> Part:

@@ -8,7 +8,7 @@ from calm.deck.order import Order
 from calm.drop import DropPlan
 from calm.quantities import QUANTITIES, say
 from calm.report.blocks import Block, Cell, Column, Pairs, Part, Prose, Table
-from calm.report.drop.sheet import east_north
+from calm.report.drop.sheet import whereabouts
 from calm.report.title_block import position_text, title_pairs
 
 if TYPE_CHECKING:
@@ -141,7 +141,7 @@ def _positions(deck: Deck) -> Table:
     plan = deck.plan
     start = let_go = ""
     if isinstance(plan, DropPlan):
-        start, let_go = east_north(plan.start), east_north(plan.let_go)
+        start, let_go = whereabouts(plan, plan.start), whereabouts(plan, plan.let_go)
     rows = (
         (Cell("Target"), Cell(), Cell(target), Cell(depth), Cell()),
         (Cell("Fall-back target"), Cell(), Cell(), Cell(), Cell()),

@@ -43,7 +43,7 @@ def _draw_shapes(axes: Axes, plan: DropPlan) -> None:
     axes.axhline(0.0, color=_WATER, linewidth=1.0)
     axes.axhspan(depth, 1.06 * depth, color=_SEABED)
     shades = np.linspace(0.65, 0.0, len(plan.moments))
-    for moment, dashes, shade in zip(plan.moments, _DASHES, shades, strict=True):
+    for moment, dashes, shade in zip(plan.moments, _DASHES, shades, strict=False):
         axes.plot(
             moment.x, moment.depth, color=str(shade), linestyle=dashes, linewidth=1.1,
             label=moment.name,

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from math import ceil
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from calm.checks.finding import State
 from calm.drop.planning import DRAG_BAND
-from calm.quantities import QUANTITIES, say
+from calm.quantities import QUANTITIES, bearing_text, say
 from calm.report.blocks import Block, Cell, Column, Figure, Note, Pairs, Part, Prose, Table
 from calm.report.drop.figures import drop_figure
+from calm.report.title_block import position_text
 
 if TYPE_CHECKING:
     from calm.drop import DropPlan
@@ -41,9 +43,10 @@ def _instructions(plan: DropPlan) -> Prose:
     behind = "before" if plan.run_in >= 0.0 else "beyond"
     return Prose(
         (
-            f"Steam {_bearing(plan.course)} at {say('speed', plan.ship_speed)} over the ground. "
-            f"Put the float over the side {_metres(abs(plan.run_in))} {behind} the target and pay "
-            f"out the line as fast as the ship steams; that takes some {_minutes(plan.run_time)}.",
+            f"Steam towards {bearing_text(plan.course)} at {say('speed', plan.ship_speed)} over "
+            f"the ground. Put the float over the side {_metres(abs(plan.run_in))} {behind} the "
+            "target and pay out the line as fast as the ship steams; that takes some "
+            f"{_minutes(plan.run_time)}.",
             f"Let the anchor go {_metres(abs(plan.tow_past))} {beyond} the target, "
             f"with the float {_metres(plan.streamed)} behind it.",
         )
@@ -56,7 +59,7 @@ def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
     given = (
         "as given"
         if plan.drag_known
-        else "of a cube of its weight, since the file gives it no `kt`"
+        else "of a cube of its volume, since the file gives it no `kt`"
     )
     side = "right" if plan.aside >= 0.0 else "left"
     return (
@@ -74,9 +77,12 @@ def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
             "Aside of that direction",
             f"{abs(plan.aside):.0f} m to the {side}, seen from where it is let go",
         ),
-        ("Float behind the ship when let go", f"{plan.streamed:.0f} m, {_bearing(plan.astern)}"),
-        ("Let go, from the target", east_north(plan.let_go)),
-        ("Start of the run, from the target", east_north(plan.start)),
+        (
+            "Float behind the ship when let go",
+            f"{plan.streamed:.0f} m, towards {bearing_text(plan.astern)}",
+        ),
+        ("Let go, from the target", whereabouts(plan, plan.let_go)),
+        ("Start of the run, from the target", whereabouts(plan, plan.start)),
         ("Speed at touchdown", say("speed", plan.touchdown_speed)),
         ("Greatest tension in the fall", _greatest(plan)),
         ("Drag of the anchor at 1 m/s", f"{plan.anchor_drag:.0f} N, {given}"),
@@ -176,18 +182,14 @@ def _notes(plan: DropPlan) -> tuple[str, ...]:
     notes = [
         "The line is a chain without inertia: what it does in the first 20 s, and the jerk at the "
         "touchdown, are not in these figures; nor is what waves do.",
-        "± is what bars and what steps of twice the length change, together, and a quarter more; "
-        "the current and the drag of the anchor are known less well.",
+        "± is twice what bars and what steps of twice the length change, together; the current and "
+        "the drag of the anchor are known less well.",
     ]
     if plan.rest_difference is not None:
         notes.append(
             f"The line comes to rest {plan.rest_difference:.2f} m at most from its equilibrium."
         )
     return tuple(notes)
-
-
-def _bearing(degrees: float) -> str:
-    return f"towards {round(degrees) % 360:03d}°"
 
 
 def _metres(distance: float) -> str:
@@ -199,13 +201,15 @@ def _minutes(seconds: float) -> str:
 
 
 def _error(value: float) -> str:
-    return f"{max(value, 1.0):.0f}"
+    return f"{max(ceil(value), 1)}"
 
 
-def east_north(place: tuple[float, float]) -> str:
-    """A place east and north of another [m], in words."""
+def whereabouts(plan: DropPlan, place: tuple[float, float]) -> str:
+    """A place east and north of the target [m], in words, with its position where that is known."""
     east, north = place
+    position = plan.position(place)
     return (
         f"{abs(north):.0f} m {'north' if north >= 0.0 else 'south'}, "
         f"{abs(east):.0f} m {'east' if east >= 0.0 else 'west'}"
+        + ("" if position is None else f"; {position_text(position)}")
     )

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rich.text import Text
 
+from calm.quantities import bearing_of, bearing_text
+from calm.report.graph.ticks import number, round_numbers
 from calm.report.sketch.canvas import Canvas
-from calm.report.sketch.frame import AXIS, Frame, levels, number, ticks
-from calm.report.sketch.parts import SEABED, SURFACE, bearing, header_rows
+from calm.report.sketch.frame import AXIS, Frame, levels
+from calm.report.sketch.parts import SEABED, SURFACE, header_rows
 
 if TYPE_CHECKING:
     from calm.physics.line import Water
@@ -45,7 +47,7 @@ def current_profile(water: Water, width: int, height: int) -> list[Text]:
     canvas.text(frame.column, height - 2, "▒" * frame.columns, SEABED)
     frame.scale_down(values, gutter, foot)
     most = max(frame.columns // _COLUMNS_PER_TICK, 2)
-    frame.scale_across(ticks(0.0, right, most), "" if head else "m/s")
+    frame.scale_across(round_numbers(0.0, right, most), "" if head else "m/s")
     frame.line(zip(speeds.tolist(), depths.tolist(), strict=True), _STYLE)
     if beside:
         for value in values:
@@ -59,4 +61,4 @@ def current_profile(water: Water, width: int, height: int) -> list[Text]:
 def _direction(u: float, v: float, room: int) -> str:
     """Where it flows to: an arrow, and the degrees where there is room."""
     arrow = _ARROWS[round(np.degrees(np.arctan2(u, v)) / 45.0) % 8]
-    return arrow if room == 2 else f"{bearing(u, v)}{arrow}"
+    return arrow if room == 2 else f"{bearing_text(bearing_of(u, v))}{arrow}"

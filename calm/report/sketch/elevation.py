@@ -12,14 +12,15 @@ from rich.cells import cell_len
 from rich.text import Text
 
 from calm.case import Result
-from calm.quantities import say
+from calm.quantities import bearing_of, bearing_text, say
 from calm.report.drawing import along
+from calm.report.graph.ticks import number, round_numbers
 from calm.report.labels import Named, named_parts, names, spread
 from calm.report.plot_mooring import plane_of
 from calm.report.plot_tow import levels_of
 from calm.report.schematic.widths import ELLIPSIS
 from calm.report.sketch.canvas import Canvas
-from calm.report.sketch.frame import AXIS, COLUMNS_PER_TICK, Frame, levels, number, ticks
+from calm.report.sketch.frame import AXIS, COLUMNS_PER_TICK, Frame, levels
 from calm.report.sketch.parts import (
     LINE,
     OTHER,
@@ -27,7 +28,6 @@ from calm.report.sketch.parts import (
     SHIP,
     STILL,
     SURFACE,
-    bearing,
     header_rows,
     mark_parts,
 )
@@ -78,7 +78,9 @@ def elevation(
     frame = Frame.within(canvas, head, gutter, (low, high), (view.top, view.bottom), room)
     _draw_water(frame, view)
     frame.scale_down(values, gutter, foot)
-    frame.scale_across(ticks(low, high, max(frame.columns // COLUMNS_PER_TICK, 2)), view.along, "m")
+    frame.scale_across(
+        round_numbers(low, high, max(frame.columns // COLUMNS_PER_TICK, 2)), view.along, "m"
+    )
     for other in view.beside:
         frame.line(other, OTHER, dash=3, gap=2)
     frame.line(view.still, STILL, dash=1, gap=2)
@@ -118,7 +120,7 @@ def _of_mooring(result: Result, beside: Sequence[Shape]) -> _View:
     moved = still is not None and still is not result.shape
     offset = hypot(top.x, top.y)
     deep = "top afloat" if result.type == "surface" else f"top {say('depth', top.depth)}"
-    towards = f" to {bearing(top.x, top.y)}" if offset >= 0.05 else ""
+    towards = f" to {bearing_text(bearing_of(top.x, top.y))}" if offset >= 0.05 else ""
     return _View(
         plane=plane,
         top=0.0,
@@ -130,7 +132,7 @@ def _of_mooring(result: Result, beside: Sequence[Shape]) -> _View:
         beside=[_points(shape, plane) for shape in beside],
         ship=None,
         said=f"{deep}, {say('offset', offset)} off{towards}",
-        along=f"m to {bearing(*plane)}",
+        along=f"m to {bearing_text(bearing_of(*plane))}",
     )
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from math import ceil, floor, log10
 
+from calm.report.graph.ticks import number, round_numbers
 from calm.report.sketch.canvas import ACROSS, DOWN, Canvas
 
 AXIS = "white"
@@ -15,7 +15,6 @@ COLUMNS_PER_TICK = 8
 """Of a scale along the last row."""
 
 _ROWS_PER_TICK = 3
-_STEPS = (1.0, 2.0, 5.0, 10.0)
 
 
 @dataclass(frozen=True)
@@ -149,25 +148,6 @@ def _end(labels: list[tuple[int, str]]) -> int:
     return labels[-1][0] + len(labels[-1][1]) if labels else 0
 
 
-def ticks(low: float, high: float, most: int) -> list[float]:
-    """Round numbers from `low` to `high`: about so many, and not one alone, which tells nothing."""
-    raw = (high - low) / max(most, 1)
-    power = 10.0 ** floor(log10(raw))
-    step = next(power * each for each in _STEPS if power * each >= raw * (1.0 - 1e-9))
-    values = _multiples(step, low, high)
-    return values if len(values) > 1 else _multiples(step / 2.0, low, high)
-
-
-def _multiples(step: float, low: float, high: float) -> list[float]:
-    first, last = ceil(low / step - 1e-9), floor(high / step + 1e-9)
-    return [count * step for count in range(first, last + 1)]
-
-
 def levels(low: float, high: float, rows: int) -> list[float]:
     """Ticks for a scale so many rows high."""
-    return ticks(low, high, max(rows // _ROWS_PER_TICK, 1))
-
-
-def number(value: float) -> str:
-    """As a scale shows it."""
-    return f"{value:z.6g}" if abs(value) < 1e6 else f"{value:.0f}"
+    return round_numbers(low, high, max(rows // _ROWS_PER_TICK, 1))

@@ -51,8 +51,3 @@ def mark_parts(
         for part in parts:
             if part.role == role:
                 frame.mark(*place(part), sign, style)
-
-
-def bearing(east: float, north: float) -> str:
-    """A direction in degrees clockwise from north, as ``068°``."""
-    return f"{round(np.degrees(np.arctan2(east, north))) % 360:03d}°"

@@ -10,10 +10,11 @@ import numpy as np
 from rich.text import Text
 
 from calm.case import Result
-from calm.quantities import say
+from calm.quantities import bearing_of, bearing_text, say
+from calm.report.graph.ticks import number, round_numbers
 from calm.report.sketch.canvas import ACROSS, DOWN, Canvas
-from calm.report.sketch.frame import AXIS, COLUMNS_PER_TICK, Frame, levels, number, ticks
-from calm.report.sketch.parts import LINE, OTHER, SHIP, STILL, bearing, header_rows, mark_parts
+from calm.report.sketch.frame import AXIS, COLUMNS_PER_TICK, Frame, levels
+from calm.report.sketch.parts import LINE, OTHER, SHIP, STILL, header_rows, mark_parts
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -55,7 +56,7 @@ def plan(
     canvas.text(gutter, height - 2, "─" * (width - gutter), AXIS)
     frame.scale_down(values, gutter)
     frame.scale_across(
-        ticks(left, right, max(frame.columns // COLUMNS_PER_TICK, 2)), "m east", "m E"
+        round_numbers(left, right, max(frame.columns // COLUMNS_PER_TICK, 2)), "m east", "m E"
     )
     frame.line([(left, 0.0), (right, 0.0)], STILL, dash=1, gap=3)
     frame.line([(0.0, bottom), (0.0, top)], STILL, dash=1, gap=3)
@@ -75,7 +76,7 @@ def _said(result: Result | TowResult) -> str:
     else:
         x, y, what = float(result.shape.x[0]), float(result.shape.y[0]), "end"
     distance = hypot(x, y)
-    towards = f" to {bearing(x, y)}" if distance >= 0.05 else ""
+    towards = f" to {bearing_text(bearing_of(x, y))}" if distance >= 0.05 else ""
     return f"{what} {say('offset', distance)} off{towards}"
 
 

@@ -11,8 +11,9 @@ from calm.case import Result
 from calm.checks.posture import meant_for_the_surface
 from calm.checks.strength import allowable_load
 from calm.quantities import say
+from calm.report.graph.ticks import number, round_numbers
 from calm.report.sketch.canvas import DOWN, Canvas
-from calm.report.sketch.frame import AXIS, COLUMNS_PER_TICK, Frame, levels, number, ticks
+from calm.report.sketch.frame import AXIS, COLUMNS_PER_TICK, Frame, levels
 from calm.report.sketch.parts import LIMIT, LINE, header_rows
 
 if TYPE_CHECKING:
@@ -52,7 +53,7 @@ def tension(result: Result | TowResult, width: int, height: int) -> list[Text]:
     frame = Frame.within(canvas, head, gutter, (0.0, right), (0.0, length))
     canvas.text(gutter, height - 2, "─" * (width - gutter), AXIS)
     frame.scale_down(values, gutter)
-    frame.scale_across(ticks(0.0, right, max(frame.columns // COLUMNS_PER_TICK, 2)), unit)
+    frame.scale_across(round_numbers(0.0, right, max(frame.columns // COLUMNS_PER_TICK, 2)), unit)
     before = 0.0
     for row, load in _weakest(loads, length, rows * DOWN):
         if load <= _FARTHEST * greatest and (row % 2 == 0 or load != before):

@@ -276,6 +276,12 @@ class BuilderScreen(DraftScreen):
 
         self._ask(mooring_sheet(self.workspace.session.draft), "name and place")
 
+    def action_document(self) -> None:
+        """What the title block of the drawings says."""
+        from calm.tui.line.mooring_sheet import document_sheet
+
+        self._ask(document_sheet(self.workspace.session.draft), "the document")
+
     def action_tow(self) -> None:
         """Speed and course of a tow; a mooring becomes one."""
         from calm.tui.line.mooring_sheet import tow_sheet

@@ -1,4 +1,4 @@
-"""What is asked about a whole file: name, description and position; speed and course of a tow."""
+"""What is asked about a whole file: name and position, its document, speed and course of a tow."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import replace
 from calm.files.document import Location
 from calm.files.editing import Draft
 from calm.files.fields import LENGTH, Quantity
-from calm.tui.checking import anything, quantity
+from calm.tui.checking import anything, day, quantity
 from calm.tui.dialogs import Asked, Sheet
 
 _PLACES: dict[str, Location] = {
@@ -19,6 +19,20 @@ _PLACES: dict[str, Location] = {
     "speed": ("tow", "speed"),
     "toward": ("tow", "toward"),
     "height": ("tow", "height"),
+    **{
+        key: ("document", key)
+        for key in (
+            "id",
+            "revision",
+            "date",
+            "author",
+            "checked",
+            "approved",
+            "project",
+            "ship",
+            "cruise",
+        )
+    },
 }
 
 _LATITUDE = quantity(Quantity("angle", at_least=-90, at_most=90), optional=True)
@@ -38,6 +52,17 @@ _TOW = (
     ),
     Asked("height", "Sheave height", check=quantity(LENGTH, optional=True), placeholder="e.g. 3 m"),
 )
+_DOCUMENT = (
+    Asked("id", "Document", placeholder="M-2027-03"),
+    Asked("revision", "Revision", placeholder="B"),
+    Asked("date", "Date", check=day, placeholder="2027-06-30"),
+    Asked("author", "Author"),
+    Asked("checked", "Checked by"),
+    Asked("approved", "Approved by"),
+    Asked("project", "Project"),
+    Asked("ship", "Ship"),
+    Asked("cruise", "Cruise"),
+)
 _BEGIN_A_TOW = (
     "The line becomes a tow: it hangs from a ship, its pieces from the ship down, and has no "
     "anchor. Undo makes it a mooring again."
@@ -47,6 +72,11 @@ _BEGIN_A_TOW = (
 def mooring_sheet(draft: Draft) -> Sheet:
     """Name and place, as the file has them."""
     return Sheet("Name and place", "", _filled(draft, _NAME_AND_PLACE))
+
+
+def document_sheet(draft: Draft) -> Sheet:
+    """What the title block of the drawings says, as the file has it."""
+    return Sheet("The document", "For the title block of drawings.", _filled(draft, _DOCUMENT))
 
 
 def tow_sheet(draft: Draft) -> Sheet:

@@ -19,6 +19,7 @@ from calm.tui.catalogue.pane import Purpose
 from calm.tui.dialogs import Answer, Question
 from calm.tui.line.cell import Cell
 from calm.tui.line.cell_editor import CellEditor
+from calm.tui.line.equipment_sheet import equipment_changes, equipment_sheet
 from calm.tui.line.questions import naming
 from calm.tui.line.rows import table_rows
 from calm.tui.line.table import LineTable
@@ -192,6 +193,22 @@ class LinePane(Vertical):
         """Change the component of the row in its form."""
         if self.table.spot is not None and self.settle():
             self.post_message(self.ChangeWanted(self.session.item(self.table.spot).values["use"]))
+
+    def action_equipment(self) -> None:
+        """Serial number, calibration and more of the row."""
+        spot = self.table.spot
+        if spot is None or not self.settle():
+            return
+        place = ("line", spot.item, *(("clamps", spot.clamp) if spot.is_clamp else ()))
+        values = self.session.draft.value(place)
+        label = str(values.get("label") or values.get("use") or "")
+
+        def take(texts: dict[str, str] | None) -> None:
+            changed = equipment_changes(values, texts or {})
+            if changed:
+                self.attempt(lambda: self.session.put(spot, changed, f"equipment of {label}"))
+
+        self.app.push_screen(equipment_sheet(label, values, is_clamp=spot.is_clamp), take)
 
     def action_assemble(self) -> None:
         """Make an assembly of what is chosen."""

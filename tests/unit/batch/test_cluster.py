@@ -18,7 +18,7 @@ ROOT = Path(__file__).parents[3]
 
 # dask opens sockets and event loops in threads of its own, and leaves some to the collector: a
 # warning that is raised there as an error would leave it waiting
-pytestmark = pytest.mark.filterwarnings("ignore")
+pytestmark = [pytest.mark.thorough, pytest.mark.filterwarnings("ignore")]
 
 
 @pytest.fixture

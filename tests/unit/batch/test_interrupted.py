@@ -20,6 +20,8 @@ from calm.batch.statuses import Ending
 from calm.batch.work import Progress
 from tests.unit.batch.made import MadeRecord, content, made_mooring
 
+pytestmark = pytest.mark.thorough
+
 KILLED = Path(__file__).with_name("killed.py")
 
 

@@ -40,6 +40,7 @@ def assert_same(one: Profiles, other: Profiles, order: np.ndarray | slice = slic
             assert a[order].tobytes() == b.tobytes(), column.name
 
 
+@pytest.mark.thorough
 def test_neither_order_nor_company_nor_workers_change_a_bit(
     mooring: Mooring, monkeypatch: pytest.MonkeyPatch
 ) -> None:

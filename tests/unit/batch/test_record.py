@@ -40,6 +40,7 @@ def table(record: Record, i: int) -> CurrentTable:
 
 
 @pytest.mark.parametrize(("name", "ending"), LAYOUTS)
+@pytest.mark.thorough
 def test_every_profile_is_that_of_calm_run(tmp_path: Path, name: str, ending: str) -> None:
     path = write(name, tmp_path, ending)
     with opened(path) as record:
@@ -54,6 +55,7 @@ def test_every_profile_is_that_of_calm_run(tmp_path: Path, name: str, ending: st
 
 
 @pytest.mark.parametrize(("name", "ending"), LAYOUTS)
+@pytest.mark.thorough
 def test_blocks_are_bit_for_bit_parts_of_the_whole(tmp_path: Path, name: str, ending: str) -> None:
     path = write(name, tmp_path, ending)
     with opened(path) as record:
@@ -257,6 +259,7 @@ def test_profiles_out_of_order_are_put_in_it(tmp_path: Path) -> None:
         ({"every": 2}, [slice(0, 4, 2), slice(4, 8, 2)]),
     ],
 )
+@pytest.mark.thorough
 def test_what_is_compressed_together_is_read_once(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, choice: dict, windows: list[slice]
 ) -> None:

@@ -54,6 +54,7 @@ def test_the_result_is_what_solve_profiles_gives(tmp_path, mooring, record, endi
     assert not list(tmp_path.glob("*.part"))
 
 
+@pytest.mark.thorough
 def test_neither_workers_nor_order_change_a_byte(tmp_path, mooring, record):
     outputs = [tmp_path / "one.nc", tmp_path / "three.nc"]
     for output, workers in zip(outputs, (1, 3), strict=True):
@@ -61,6 +62,7 @@ def test_neither_workers_nor_order_change_a_byte(tmp_path, mooring, record):
     assert content(outputs[0]) == content(outputs[1])
 
 
+@pytest.mark.thorough
 def test_the_shape_passes_through_the_components(tmp_path, mooring, record):
     output, plain = tmp_path / "r.nc", tmp_path / "plain.nc"
     run_batch(mooring, record, output, shape=True)
@@ -108,6 +110,7 @@ def test_a_long_reading_is_told(tmp_path, mooring, record, monkeypatch):
     assert told == ["reading the record through, to know it again"]
 
 
+@pytest.mark.thorough
 def test_compiling_is_told_when_it_takes_place(tmp_path, mooring):
     """An index of the cache is there for every kind of processor, its code for this one may not."""
     program = (
@@ -134,6 +137,7 @@ def test_compiling_is_told_when_it_takes_place(tmp_path, mooring):
         assert bool(finished.stdout) == bool(expected)
 
 
+@pytest.mark.thorough
 def test_memory_does_not_grow_with_the_record(tmp_path, mooring):
     """Ten times the profiles: what is known of the blocks, of a thousand each, is some 6 bytes
     more of each; the results alone would be 300."""

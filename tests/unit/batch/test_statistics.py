@@ -205,6 +205,7 @@ def test_what_is_no_result_is_refused(mooring):
             summarize(other, mooring)
 
 
+@pytest.mark.thorough
 def test_memory_grows_by_a_few_columns_whatever_the_parts(mooring, tmp_path, monkeypatch):
     # of 46 columns; what does not grow is taken away by the difference of two lengths
     monkeypatch.setattr(series, "_ROWS", 1024)

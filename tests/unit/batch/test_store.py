@@ -11,6 +11,8 @@ from calm.batch.store.identity import differences, identity_of, to_text
 from calm.batch.store.store import open_store
 from tests.unit.batch.made import MadeRecord, content, made_mooring
 
+pytestmark = pytest.mark.thorough
+
 
 @pytest.fixture
 def store(tmp_path):

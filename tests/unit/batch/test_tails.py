@@ -91,6 +91,7 @@ def test_a_known_distribution_of_peaks_is_found_again(shape):
     assert low < 10.0 + stats.genpareto.isf(1e-3, shape, scale=2.0) < high
 
 
+@pytest.mark.thorough
 def test_most_intervals_hold_the_true_level():
     # 95 % of the intervals should; of 60, fewer than 52 is rarer than one in a thousand
     random, growth, held = np.random.default_rng(3), log(300.0), 0

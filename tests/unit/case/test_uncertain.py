@@ -235,6 +235,7 @@ def test_no_sample_stands():
         uncertain(calm.load("light.yaml", text=text).solve(), 64)
 
 
+@pytest.mark.thorough
 def test_the_figures_are_those_of_their_seed_however_they_are_shared_out():
     result = calm.load(LINES / "s1000.yaml").solve()
     once = uncertain(result, 64, seed=5).to_dict()

@@ -60,17 +60,21 @@ def test_the_band_of_the_drag_of_the_anchor(launched):
 
 
 def test_the_band_of_the_friction_along_the_line(launched):
-    launch = launched(FILE.replace(", kt: 400 N/(m/s)^2", ""), ct="0.01")
+    launch = launched(FILE.replace("kt: 400 N/(m/s)^2", "kt: 0 N/(m/s)^2"), ct="0.01")
     friction = 512.5 * pi * 0.01 * 0.01 * 300.0
     speeds = [sqrt(NET / (250.0 + times * friction)) for times in (1.0, 2.0, 0.5)]
     assert [launch.fall_speed, *launch.fall_speed_band] == pytest.approx(speeds, rel=1e-8)
 
 
-def test_an_anchor_of_unknown_drag_has_none(launched):
+def test_an_anchor_of_unknown_drag_is_a_cube_and_judged_as_if_it_had_none(launched):
     launch = launched(FILE.replace(", kt: 400 N/(m/s)^2", ""))
+    volume = 5000.0 / ((7850.0 - 1025.0) * 9.80665)
+    squared = NET / (250.0 + 0.5 * 1025.0 * 1.05 * volume ** (2 / 3))
     assert not launch.anchor_drag_known
-    assert launch.fall_speed == pytest.approx(sqrt(NET / 250.0), rel=1e-8)
-    assert launch.anchor_tension == pytest.approx(5000.0)
+    assert launch.fall_speed == pytest.approx(sqrt(squared), rel=1e-8)
+    assert launch.greatest_speed == pytest.approx(sqrt(NET / 250.0), rel=1e-8)
+    assert launch.greatest_tension[-1] == pytest.approx(5100.0)
+    assert launched().greatest_speed == launched().fall_speed
 
 
 def test_components_are_named_figures(launched):
@@ -92,6 +96,6 @@ def test_a_float_at_the_surface_stays_there():
 
 
 def test_a_fall_that_nothing_limits_has_no_speed(launched):
-    text = FILE.replace(", kt: 400 N/(m/s)^2", "").replace("kn: 200", "kn: 0")
+    text = FILE.replace("kt: 400 N/(m/s)^2", "kt: 0 N/(m/s)^2").replace("kn: 200", "kn: 0")
     with pytest.raises(NoEquilibrium, match="Nothing limits"):
         launched(text.replace("kn: 50", "kn: 0"))

@@ -63,6 +63,7 @@ def test_an_anchor_is_too_light_where_the_float_lifts_more():
     assert found.draws == (256, 0)
 
 
+@pytest.mark.thorough
 def test_the_top_is_too_shallow_where_the_water_is():
     # upright at 500 - 400 - stretch 7.6 m; 90 m is reached 2.4 m shallower, of 5 m a deviation
     found = judged(depth="1 %")
@@ -82,6 +83,7 @@ def test_a_sample_without_equilibrium_breaks_every_limit():
     assert probability(found, "anchor-weight", "anchor") > 0.99
 
 
+@pytest.mark.thorough
 def test_what_is_judged_once_is_counted_in_the_first_samples():
     found = judged(weight="20 kN", buoyancy="20 %")
     once = [one for one in found.findings if one.limit is not None]
@@ -95,6 +97,7 @@ def test_what_has_no_limit_has_no_probability():
         assert (one.probability is None) == (one.limit is None)
 
 
+@pytest.mark.thorough
 def test_the_order_and_the_share_of_the_blocks_change_nothing():
     shared = []
 

@@ -107,11 +107,28 @@ def test_hardware_is_counted_with_its_pins_and_thimbles(deck):
         ("shackles", "shackle-16"): (1, 2),
         ("pins", "shackle-13"): (1, 2),
         ("pins", "shackle-16"): (1, 2),
+        ("cotter pins", "shackle-13"): (1, 2),
+        ("cotter pins", "shackle-16"): (1, 2),
         ("rings", "ring-22-102"): (1, 1),
         ("thimbles", "wire"): (2, 2),
     }
     assert [spares_of("shackles", count) for count in (1, 20, 21)] == [2, 2, 3]
     assert [spares_of("rings", count) for count in (1, 10, 11)] == [1, 1, 2]
+
+
+def test_unlike_metals_have_isolators_and_anodes(tmp_path):
+    text = MOORING.replace("  release: {kind: body,", "  release: {kind: body, material: titanium,")
+    text = text.replace("  pack: {kind", "  pack: {material: aluminium, kind")
+    text = text.replace("shackle-16, serial: 4", "shackle-16, name: screw pin shackle")
+    (tmp_path / "m.yaml").write_text(text)
+    found = {one.name: one for one in deck_of([calm.load(tmp_path / "m.yaml")]).hardware}
+    # the lowest of three aluminium packs touches the titanium release, the highest the steel wire
+    isolators = [one.name for one in found.values() if one.kind == "isolators"]
+    assert isolators == ["isolator between pack and wire", "isolator between pack and release"]
+    anode = found["anode on pack"]
+    assert (anode.kind, anode.count, anode.spares) == ("anodes", 2, 1)
+    assert found["screw pin of screw pin shackle"].count == 1
+    assert "cotter pin of screw pin shackle" not in found
 
 
 def test_the_shipping_list_adds_up_and_says_what_it_lacks(deck):

@@ -142,6 +142,7 @@ def test_formulas_without_a_value_are_refused(formula):
 
 
 @pytest.mark.parametrize("formula", ["(" * 5000 + "1" + ")" * 5000, "-" * 9000 + "1"])
+@pytest.mark.thorough
 def test_towers_of_signs_are_refused(formula):
     with pytest.raises(InputError, match="too deep"):
         constant(formula)
@@ -311,6 +312,8 @@ REFUSED = {
     "an unknown name": ("d = 0.01", "d = DIAMETER", "-D DIAMETER="),
     "an odd sign": ("length = 50", "length = 50 @", "`@` has no place"),
     "no end of a block": ("{ buoy = ball }", "{ buoy = ball", "missing before `End`"),
+    "no gravity": ("gravity = 9.81", "gravity = 0", "its gravity is 0"),
+    "a light sea": ("rho = 1025", "rho = -1", "its density is -1"),
     "no end of a comment": ("Layout", "/* Layout", "a comment has no end"),
 }
 
@@ -359,6 +362,64 @@ def test_files_from_elsewhere_need_leave(tmp_path):
     assert imported(inside, text, allow_include=True).text
     (inside / "link.inc").symlink_to(tmp_path / "ropes.inc")
     assert "lies outside" in refusal(inside, text.replace("../ropes", "link"))
+
+
+GRID = "1 0 2  20 0 6  100 -50 2  100 -50 2\n"
+"""Steps, starts and counts of time, depth, x and y: 2 times, 6 depths, 2 by 2 places."""
+
+
+def gridded(tmp_path, count=2 * 2 * 2 * 6, head=GRID):
+    """Currents that grow by 1 m/s to the east in a time step, fall by 0.1 m/s in 20 m of depth, and
+    differ to the north by 0.2 m/s between the two places to the north; upward 0.01 m/s."""
+    rows = [
+        f"{0.5 - 0.1 * level + time} {0.1 * (2 * north - 1)} 0.01"
+        for time in range(2) for north in range(2) for _ in range(2) for level in range(6)
+    ]  # fmt: skip
+    (tmp_path / "flow.dat").write_text(head + "\n".join(rows[:count]))
+    return SMALL.replace("x-current = 0.5", "current-file = flow.dat  x-current-scale = 2")
+
+
+def test_currents_of_a_file_are_those_at_the_anchor_now(tmp_path):
+    made = imported(tmp_path, gridded(tmp_path))
+    rows = yaml.safe_load(made.text)["environment"]["current"]["rows"]
+    assert rows == [
+        [pytest.approx(each) for each in (depth, 2 * (0.5 - 0.005 * depth), 0.0, 0.01)]
+        for depth in (0, 20, 40, 60, 80, 100)
+    ]
+    told = "\n".join(str(each) for each in made.dropped)
+    assert "its later times" in told
+    assert "from place to place" in told
+    assert made.guessed == ()
+
+
+def test_currents_of_a_file_that_is_missing_are_guessed(tmp_path):
+    text = gridded(tmp_path)
+    (tmp_path / "flow.dat").unlink()
+    (guess,) = imported(tmp_path, text).guessed
+    assert guess.where == "environment.current"
+    assert "`flow.dat` is not there" in guess.what
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"count": 40}, "has 120 speeds, not 144"),
+        ({"head": "0 0 2 " + GRID[6:]}, "step, start and count"),
+        ({"head": GRID.replace("6", "900000000")}, "more than 2000000 speeds"),
+        ({"head": "a b c"}, "something else than numbers"),
+        ({"head": GRID + "nan "}, "without a value"),
+    ],
+)
+def test_a_file_of_currents_that_makes_no_sense_is_refused(change, message, tmp_path):
+    assert message in refusal(tmp_path, gridded(tmp_path, **change))
+
+
+def test_currents_from_elsewhere_need_leave(tmp_path):
+    inside = tmp_path / "inside"
+    inside.mkdir()
+    text = gridded(tmp_path).replace("flow.dat", '"../flow.dat"')
+    assert "lies outside the folder" in refusal(inside, text)
+    assert imported(inside, text, allow_include=True).guessed == ()
 
 
 HOSTILE = {

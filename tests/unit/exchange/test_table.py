@@ -48,9 +48,10 @@ def site(tmp_path):
 
 @pytest.fixture
 def read(tmp_path, site):
-    def read(text, name="list.csv", environment=site, **options):
+    def read(text, name="list.csv", environment=site, bom=False, **options):
         path = tmp_path / name
-        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        content = text if isinstance(text, bytes) else text.encode()
+        path.write_bytes(b"\xfe\xff" + content if bom else content)
         return import_file(
             path, tmp_path / "m.yaml", environment=environment, options=Options(**options)
         )
@@ -129,6 +130,168 @@ def test_names_without_a_heading_units_below_and_no_anchor(read, tmp_path):
     tenex = pieces(made, tmp_path)[2].component
     assert tenex.diameter == pytest.approx(0.00635)
     assert load(tmp_path / "m.yaml", text=made.text).solve()
+
+
+def test_weights_that_count_up_are_told(read, tmp_path):
+    """As Grelet's library has them, by name of its columns: negative for what sinks."""
+    text = (
+        "Category,Name,Mass (kg, Wet),Length (m),Projected area (m²),Normal drag coeff,"
+        "Tangential drag coeff,Breaking strength (kg)\n".replace("(kg, Wet)", "(kg Wet)")
+        + "Floats,FSAB 1200,486,1.25,1.23,0.5,0.5,\n"
+        "Terminals,Shackle 5/8,-0.635,0.05,0.001,1.3,0.1,18000\n"
+        "Ropes,8 mm wire,-18,100,0.008,1.3,0.1,3000\n"
+        "Releases,Release,-25,1.2,0.237,1.2,0.9,\n"
+        "Terminals,Shackle 5/8,-0.635,0.05,0.001,1.3,0.1,18000\n"
+    )
+    text = text.replace("8 mm wire,-18,100,0.008", "8 mm wire,-18,100,0.8")
+    made = read(text)
+    assert any("counted as buoyancy" in str(each) for each in made.guessed)
+    assert any("Tangential drag coeff" in str(each) for each in made.dropped)
+    ball, shackle, wire, *_ = (piece.component for piece in pieces(made, tmp_path))
+    assert ball.buoyancy == pytest.approx(486 * 9.80665)
+    assert (ball.drag_area, ball.cd) == (1.23, 0.5)
+    assert shackle.breaking_load == pytest.approx(18000 * 9.80665)
+    assert wire.weight == pytest.approx(0.18 * 9.80665)
+    assert wire.cn == pytest.approx(1.3)  # 0.8 m² of 100 m are the 8 mm of its name
+
+
+def test_widths_are_of_cylinders_and_diameters_of_spheres(read, tmp_path):
+    """As the tables of Mooring Design & Dynamics have it, with a row of units in centimetres."""
+    text = (
+        ",Buoyancy,Weight,Length,Width of,Diameter of,Drag Coef,Material\n"
+        ",(kg),(kg),(m),CYL(cm),SPH(cm),,\n"
+        "SB30,166,10,0.87,0,75,0.65,1\nRCM11,-5,10,0.75,13,0,1.3,1\n"
+        "3/8 Kevlar rope,-1,0,100,0.9,0,1.3,6\nTrain wheels anchor,-600,0,0.35,100,0,1.3,1\n"
+    )
+    ball, meter, rope, _ = (piece.component for piece in pieces(read(text), tmp_path))
+    assert (ball.kind, ball.diameter, ball.length, ball.mass) == ("sphere", 0.75, 0.87, 10.0)
+    assert (meter.kind, meter.diameter, meter.cn) == ("cylinder", 0.13, 1.3)
+    assert rope.stiffness == pytest.approx(6.9e10 * 3.14159265 / 4 * 0.009**2)
+
+
+def test_headings_of_the_r_package_are_known(read, tmp_path):
+    text = (
+        '"name","buoyancy","height","area","CD","code"\n"61in ORE",999,1.65,2.138,0.65,1\n'
+        '"SBE-16",-10,0.45,0.036,1.3,1\n"1/2 wire rope",-50,100,1.3,1.3,1\n'
+        '"anchor",-2000,0.3,1,1.3,1\n'
+    )
+    ball, meter, wire, _ = pieces(read(text), tmp_path)
+    assert (ball.length, meter.component.drag_area, meter.component.cd) == (1.65, 0.036, 1.3)
+    assert wire.length == 100.0
+    assert wire.component.diameter == pytest.approx(0.0127)
+
+
+def test_unicode_text_of_excel_is_read(read):
+    assert "Bouée" in read(FRENCH.encode("utf-16")).text
+    assert "count: 2" in read(ENGLISH.replace(",", "\t").encode("utf-16-be"), bom=True).text
+
+
+def test_the_sign_between_cells_is_the_one_of_most_lines(read, tmp_path):
+    text = ENGLISH.replace("8 mm wire", '"8 mm wire; galvanised; \t grey"')
+    assert len(pieces(read(text), tmp_path)) == 7
+
+
+LIBRARY = """\
+type,name,buoyancy_kg,length_m,width_m,diameter_m,drag,material,comment
+floats,41in ORE,433,1.04,0,1.04,0.65,1,
+wires,3/8 wire rope,-0.33,1,0.009,0,1.3,1,
+chains,1/2 Shackle,-0.3,0.05,0.025,0,1.3,1,
+anchors,2 Railway Wheels,-700,0.35,1,0,1.3,1,
+"""
+
+NAMES_ALONE = "CHAT3\n41in ORE\n1/2 shackle\n1/2 Shackle\n2 railway wheels\n"
+
+
+def test_a_list_of_names_takes_its_figures_from_a_library(read, tmp_path):
+    library = tmp_path / "elements.csv"
+    library.write_text(LIBRARY)
+    made = read(NAMES_ALONE, elements=library)
+    assert made.guessed == ()
+    mooring = load(tmp_path / "m.yaml", text=made.text)
+    ball, shackle, _, anchor = mooring.file.pieces
+    assert mooring.file.name == "CHAT3"
+    assert ball.component.buoyancy == pytest.approx(433 * 9.80665)
+    assert (shackle.component.kind, shackle.component.diameter) == ("cylinder", 0.025)
+    assert anchor.component.weight == pytest.approx(700 * 9.80665)
+
+
+def test_a_list_takes_from_a_library_what_it_lacks(read, tmp_path):
+    """Lengths stand in the list; figures of a line are those of a metre."""
+    library = tmp_path / "elements.csv"
+    library.write_text(LIBRARY)
+    text = "name,length\n41in ORE,1.5\n3/8 wire rope,80\n1/2 shackle,\n2 railway wheels,\n"
+    made = read(text, elements=library)
+    ball, wire, shackle, _ = pieces(made, tmp_path)
+    assert (ball.length, shackle.length, wire.length) == (1.5, 0.05, 80.0)
+    assert wire.component.weight == pytest.approx(0.33 * 9.80665)
+    assert wire.component.stiffness == pytest.approx(1.38e11 * 3.14159265 / 4 * 0.009**2)
+
+
+def test_a_library_of_that_program_is_read(read, tmp_path):
+    """Its rows are cut by bytes, as Octave counts an arrow for three."""
+    rows = {
+        "floats": "AF36↑ float      155.500  10.0 150.0   0.0  91.0 0.65 1",
+        "wires": "3/8 Kevlar          -0.023   0.0 100.0   0.9   0.0 1.30 6",
+        "anchors": "2 Railway Wheels  -700.000   0.0  35.0 100.0   0.0 1.30 1",
+    }
+    text = "# Created by Octave\n"
+    for group, row in rows.items():
+        text += f"# name: {group}\n# type: sq_string\n# elements: 1\n# length: 60\n{row}\n\n"
+    text += "# name: format\n# type: matrix\n# rows: 2\n# columns: 2\n 1 16\n 18 25\n"
+    library = tmp_path / "mdcodes.mat"
+    library.write_text(text)
+    made = read("name,length\nAF36↑ Float,\n3/8 kevlar,50\n2 railway wheels,\n", elements=library)
+    ball, rope, _ = pieces(made, tmp_path)
+    assert ball.component.diameter == 0.91
+    assert rope.component.stiffness == pytest.approx(6.9e10 * 3.14159265 / 4 * 0.009**2)
+    with pytest.raises(InputError, match="is the element library of that program, no mooring"):
+        import_file(library, tmp_path / "m.yaml")
+
+
+LIBRARY_REFUSED = {
+    "names without a library": (
+        NAMES_ALONE.replace("\n", ";\n"),
+        False,
+        "holds names and no figures",
+    ),
+    "a name it lacks": (NAMES_ALONE.replace("41in ORE", "42in ORE"), True, "has `41in ore`"),
+    "a line without length": (NAMES_ALONE.replace("1/2 shackle", "3/8 wire rope"), True, "length"),
+    "a library for a mooring": (LIBRARY, False, "is a library of elements, no mooring"),
+    "a library for another program": ("MATLAB 5.0 MAT-file", True, "--elements is for lists"),
+}
+
+
+@pytest.mark.parametrize("case", LIBRARY_REFUSED)
+def test_what_a_library_cannot_give_is_named(case, read, tmp_path):
+    text, given, message = LIBRARY_REFUSED[case]
+    library = tmp_path / "elements.csv"
+    library.write_text(LIBRARY)
+    with pytest.raises(InputError) as error:
+        read(text, elements=library if given else None)
+    assert message in str(error.value)
+
+
+def test_a_workbook_may_bring_its_water(tmp_path):
+    """As those of Mooring Design & Dynamics do: the elements, and a sheet of heights and speeds."""
+    openpyxl = pytest.importorskip("openpyxl", reason="writes the workbook")
+    pytest.importorskip("python_calamine", reason="needs the extra `sheets`")
+    book = openpyxl.Workbook()
+    for row in (
+        ("Element", "Buoyancy", "Length", "Width", "Diameter", "Flag", "Cd", "ME"),
+        ("41in ORE", 433, 1.04, 0, 1.04, 0, 0.65, None),
+        ("3/8 wire rope", -33, 100, 0.009, 0, 1, 1.3, 1.38e11),
+        ("2 Railway Wheels anchor", -700, 0.35, 1, 0, 0, 1.3, None),
+    ):
+        book.active.append(row)
+    water = book.create_sheet("water")
+    for row in (("z", "U", "V", "W", "rho"), (150, 0.5, 0.1, 0, 1025), (0, 0, 0, 0, 1025)):
+        water.append(row)
+    book.save(tmp_path / "design.xlsx")
+    made = import_file(tmp_path / "design.xlsx", tmp_path / "m.yaml")
+    mooring = load(tmp_path / "m.yaml", text=made.text)
+    assert mooring.file.environment.depth == 150.0
+    assert mooring.solve().to_dict()["top"]["y"] > 0.0
+    assert any("Flag, ME" in str(each) for each in made.dropped)
 
 
 def test_clamps_by_a_column(read, tmp_path):

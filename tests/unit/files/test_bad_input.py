@@ -527,6 +527,7 @@ def test_anchor_within_itself(mistakes: Mistakes) -> None:
     assert (line, column) == (1, 7)
 
 
+@pytest.mark.thorough
 def test_assembly_bomb_is_refused_at_once(mistakes: Mistakes) -> None:
     # Twice as many pieces at each of 40 levels: 10^12, were they made.
     levels = "".join(

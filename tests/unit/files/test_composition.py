@@ -77,6 +77,7 @@ def assert_places(text: str, root: Node) -> None:
 
 @needs_libyaml
 @pytest.mark.parametrize("name", FILES)
+@pytest.mark.thorough
 def test_files_are_the_same_by_both_parsers(name: str) -> None:
     text = FILES[name].removeprefix("\ufeff")
     for each in (

@@ -7,6 +7,7 @@ import jsonschema
 import pytest
 
 from calm.files import MooringFile, mooring_schema
+from calm.files.schema_words import EXAMPLES, MEANINGS
 from tests.core_yaml import loaded
 
 from . import test_strumming, test_tow
@@ -165,3 +166,35 @@ def test_fields_are_described() -> None:
         "date", "hull", "k_surface", "lift", "manufacturer", "material", "name", "part_number",
         "slack", "surface", "wind_area", "wind_cd",
     }  # fmt: skip
+
+
+def keys(schema: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    """The form of every key of every model, by `model.key`."""
+    models = {"": schema, **schema["$defs"]}
+    return {
+        f"{model}.{key}": form
+        for model, definition in models.items()
+        for key, form in definition.get("properties", {}).items()
+    }
+
+
+def test_every_key_has_a_meaning_and_an_example_that_is_accepted() -> None:
+    schema = mooring_schema()
+    found = keys(schema)
+    assert len(found) > 400
+    chosen = {name: form for name, form in found.items() if "const" not in form}
+    assert not [name for name, form in chosen.items() if "description" not in form]
+    assert not [name for name, form in chosen.items() if "examples" not in form]
+    refused = {
+        name: example
+        for name, form in chosen.items()
+        for example in form["examples"]
+        if not jsonschema.Draft202012Validator({"$defs": schema["$defs"], **form}).is_valid(example)
+    }
+    assert not refused
+
+
+def test_no_word_is_said_of_a_key_that_does_not_exist() -> None:
+    known = keys(mooring_schema())
+    names = {name.rpartition(".")[2] for name in known} | set(known)
+    assert not (MEANINGS.keys() | EXAMPLES.keys()) - names

@@ -8,7 +8,7 @@ import pytest
 
 from calm.errors import UsageError
 from calm.locate import Sound, Survey, locate
-from calm.locate.ellipsoid import FLATTENING, SEMI_MAJOR, Frame
+from calm.physics.ellipsoid import FLATTENING, SEMI_MAJOR, Frame
 
 LATITUDE, LONGITUDE, DEPTH, TRANSDUCER = 48.3, -5.2, 2000.0, 5.0
 HERE = Frame(LATITUDE, LONGITUDE)
@@ -82,6 +82,7 @@ def test_bent_rays_cost_less_than_a_metre():
     assert located.depth == pytest.approx(DEPTH, abs=0.5)
 
 
+@pytest.mark.thorough
 def test_intervals_cover_as_often_as_they_say():
     random = np.random.default_rng(20)
     surveys, within, deep = 60, 0, 0
@@ -162,6 +163,7 @@ def test_a_straight_track_leaves_two_places_or_a_circle_of_them():
 
 
 @pytest.mark.parametrize("scale", [0.5, 2.0])
+@pytest.mark.thorough
 def test_one_way_for_two_way_is_refused(scale):
     random = np.random.default_rng(22)
     distance = random.uniform(800, 2500, 12)

@@ -101,7 +101,7 @@ def test_the_document_is_strict_json_and_says_all(summary):
 
 
 def test_the_document_is_that_of_the_docs(made, mooring):
-    page = Path(__file__).parents[3] / "docs" / "batch-statistics.md"
+    page = Path(__file__).parents[3] / "docs" / "reference" / "batch-statistics.md"
     shown = json.loads(re.search(r"```json\n(.*?)```", page.read_text(encoding="utf-8"), re.S)[1])
     said = summary_document(summarize(made.assign_attrs(currents="a record"), mooring))
     assert said.keys() == shown.keys()
@@ -210,6 +210,7 @@ def test_the_page_says_all(summary):
     assert "Ferro and Segers" in html
 
 
+@pytest.mark.thorough
 def test_the_same_result_makes_the_same_page(made, mooring, summary):
     again = summarize(made, mooring)
     assert summary_html(again) == summary_html(summary)
@@ -223,6 +224,7 @@ def test_names_that_mean_harm_are_shown_as_text(tmp_path):
     assert html.count("</body>") == 1
 
 
+@pytest.mark.thorough
 def test_the_files_stand_beside_the_result(made, mooring, tmp_path):
     result = tmp_path / "north.2001.nc"
     made.isel(time=slice(0, 200)).to_netcdf(result, engine="h5netcdf")

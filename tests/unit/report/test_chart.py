@@ -43,6 +43,7 @@ def shown_texts(figure: Figure) -> list[tuple[str, Bbox]]:
     ]
 
 
+@pytest.mark.thorough
 def test_no_text_covers_another(plate: Figure) -> None:
     texts = shown_texts(plate)
     assert len(texts) > 60
@@ -77,6 +78,7 @@ def line_labelled(figure: Figure, text: str, colour: str) -> np.ndarray:
 @pytest.mark.parametrize(
     ("text", "colour", "value"), [("1.3", BLUE, 1.3), ("0.6", GREEN, 0.6), ("1.5", RED, 1.5)]
 )
+@pytest.mark.thorough
 def test_a_locus_holds_the_points_of_its_ratio(text: str, colour: str, value: float) -> None:
     locus = line_labelled(draw_chart(0.6), text, colour)
     phi = np.radians(np.linspace(0.0, 100.0, 20001))
@@ -107,10 +109,12 @@ def test_negative_ratios_carry_their_sign() -> None:
 
 
 @pytest.mark.parametrize(("suffix", "head"), [(".PNG", b"\x89PNG"), (".pdf", b"%PDF")])
+@pytest.mark.thorough
 def test_formats(suffix: str, head: bytes) -> None:
     assert chart_picture(0.15, "below-90", suffix).startswith(head)
 
 
+@pytest.mark.thorough
 def test_a_drawing_is_the_same_file_each_time_and_its_texts_are_texts() -> None:
     drawing = chart_picture(0.6, "below-90", ".svg")
     assert re.search(r"<text[^>]*>45°</text>", drawing.decode())

@@ -245,6 +245,7 @@ for content in (report_html(sections).encode(), report_pdf(sections)):
 """
 
 
+@pytest.mark.thorough
 def test_the_same_input_gives_the_same_bytes():
     def digests(seed):
         environment = {**os.environ, "PYTHONHASHSEED": seed}

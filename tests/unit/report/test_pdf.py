@@ -34,6 +34,7 @@ def pages():
         document.close()
 
 
+@pytest.mark.thorough
 def test_each_mooring_begins_a_page(sections, pages):
     texts = pages(report_pdf(sections))
     starts = [number for number, text in enumerate(texts) if "Judgement" in text]
@@ -67,6 +68,7 @@ def test_names_that_mean_harm_are_text(tmp_path, pages):
     assert text.count("long") > 60
 
 
+@pytest.mark.thorough
 def test_the_date_is_that_of_the_environment(sections, monkeypatch):
     monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
     undated = report_pdf(sections)

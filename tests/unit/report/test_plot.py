@@ -27,6 +27,7 @@ def test_names_do_not_overlap(result):
     assert not any(a.overlaps(b) for a, b in combinations(boxes, 2))
 
 
+@pytest.mark.thorough
 def test_many_names_at_one_depth_do_not_overlap(make_result):
     result = make_result()
     wire = result.mooring.file.pieces[2]
@@ -75,6 +76,7 @@ def test_png_and_svg(result):
     assert picture(result, ".SVG") == svg
 
 
+@pytest.mark.thorough
 def test_labels_are_no_formulas_and_need_no_glyph(make_result):
     result = make_result()
     result.components[0].label = "float $x^$ \U0001f6df"

@@ -79,6 +79,7 @@ ANCHOR = item("anchor-wheels-4")
 
 @pytest.mark.parametrize("path", LINES, ids=lambda path: path.stem)
 @pytest.mark.parametrize("solved", [False, True])
+@pytest.mark.thorough
 def test_every_piece_and_clamp_of_a_shipped_line_is_named(path, solved):
     line = calm.load(path)
     svg = schematic_svg(line.file, line.solve() if solved else None)

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from calm.verification.case import Figure, table
+from calm.verification.case import Figure, Kind, table
 from tests.unit.verification.fakes import BAD, GOOD, case, failing
 
 
@@ -41,15 +41,17 @@ def test_a_table_gives_a_case_for_every_cell():
         ("slow", lambda: (1.0, 100.0), (1.05, 100.0)),
         ("fast", lambda: (2.0, 9.0), (2.0, 50.0)),
     ]
-    cases = table(figures, rows, "Read off a plot.")
+    cases = table(figures, rows, "Read off a plot.", Kind.PUBLISHED)
     assert [each.name for each in cases] == ["slow: x", "slow: T", "fast: x", "fast: T"]
     assert [each.tolerance for each in cases] == pytest.approx([0.1, 2.0, 0.1, 1.0])
     assert [each.check().within for each in cases] == [True, True, True, False]
     assert {each.why for each in cases} == {"Read off a plot."}
+    assert {each.kind for each in cases} == {Kind.PUBLISHED}
 
 
 def test_a_row_needs_a_figure_for_every_column():
     with pytest.raises(ValueError, match="shorter"):
         table(
-            [Figure("x", "m", 0.1, float), Figure("y", "m", 0.1, float)], [("a", float, (1,))], ""
-        )
+            [Figure("x", "m", 0.1, float), Figure("y", "m", 0.1, float)], [("a", float, (1,))], "",
+            Kind.PUBLISHED,
+        )  # fmt: skip

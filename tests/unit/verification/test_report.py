@@ -7,6 +7,7 @@ from rich.console import Console
 
 from calm.report.terminal import shown
 from calm.report.verification import figures, verification_document, verification_part
+from calm.verification import Kind, Source
 from tests.unit.verification.fakes import BAD, GOOD, case, failing
 
 
@@ -45,7 +46,8 @@ def test_the_document_has_every_case():
     assert (document["checked"], document["out"]) == (5, 2)
     first, out, raised = (document["cases"][i] for i in (0, 2, 3))
     assert first == {
-        "source": "Good book", "name": "length", "expected": 1.0, "got": 1.0, "difference": 0.0,
+        "source": "Good book", "name": "length", "kind": "published", "expected": 1.0, "got": 1.0,
+        "difference": 0.0,
         "tolerance": 1e-3, "unit": "m", "why": "Printed so.", "within": True, "reason": None,
     }  # fmt: skip
     assert (out["got"], out["within"]) == (1.25, False)
@@ -57,5 +59,24 @@ def test_the_table_marks_what_is_out():
     assert "! length" in text
     assert "! tension: ArithmeticError: no such line" in text
     assert text.count("!") == 3
-    assert text.rstrip().endswith("Checked 5 figures of 2 sources: 2 out of tolerance")
-    assert printed(verification_part(findings(GOOD))).rstrip().endswith("all within tolerance")
+    assert "Checked 5 figures of 2 sources: 2 out of tolerance\n5 published" in text
+    assert "all within tolerance" in printed(verification_part(findings(GOOD)))
+
+
+def test_totals_by_kind_leave_out_what_is_met_by_construction():
+    source = Source("A curve", "Drawn.", tuple(
+        case(f"{kind} {number}", kind=kind)
+        for kind, wanted in ((Kind.BY_CONSTRUCTION, 3), (Kind.PROPERTY, 2), (Kind.PUBLISHED, 1))
+        for number in range(wanted)
+    ))  # fmt: skip
+    text = printed(verification_part(findings(source)))
+    assert text.index("\nPublished") < text.index("\nProperty") < text.index("\nBy construction")
+    assert text.rstrip().endswith(
+        "Checked 3 figures of 1 source: all within tolerance\n"
+        "1 published; 2 property\n"
+        "Not counted: 3 figures met by construction"
+    )
+    document = verification_document(findings(source))
+    assert (document["checked"], document["out"]) == (3, 0)
+    assert document["kinds"] == {"published": 1, "property": 2, "by construction": 3}
+    assert document["cases"][0]["kind"] == "by construction"

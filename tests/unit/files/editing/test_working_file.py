@@ -388,6 +388,7 @@ for _ in range(40):
 """
 
 
+@pytest.mark.thorough
 def test_a_kill_leaves_whole_files(path: Path) -> None:
     """A session is killed at random while it saves and autosaves without a pause.
 

@@ -1,7 +1,9 @@
 import pytest
 
+from calm.report.graph.ticks import number
+from calm.report.graph.ticks import round_numbers as ticks
 from calm.report.sketch.canvas import Canvas
-from calm.report.sketch.frame import Frame, Scale, levels, number, ticks
+from calm.report.sketch.frame import Frame, Scale, levels
 
 
 def frame(width: int = 12, height: int = 7) -> Frame:

@@ -1,0 +1,123 @@
+"""Element libraries: figures by name, for lists that hold names alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from calm.exchange.mdd.library import read_entries
+from calm.exchange.mdd.matfile import is_mat
+from calm.exchange.refusal import refused
+from calm.exchange.table.headings import headings_of
+from calm.exchange.table.rows import Row, rows_of, weights_as_buoyancy
+from calm.exchange.table.sheet import Rows, read_sheets
+from calm.exchange.words import is_line
+from calm.files.document import read_content
+from calm.files.explain import nearest
+from calm.units import KILOGRAM_FORCE
+
+_NOT_THEIRS = ("at", "count", "height")  # of an element, whatever the heading says
+_A_METRE = 1e-6  # m by which the length of a line's figures may miss a metre
+_SHEETS = 3  # with headings of their own make a library
+
+
+@dataclass(frozen=True)
+class Element:
+    """An element of a library: its figures in SI, those of a line per metre."""
+
+    name: str
+    is_line: bool
+    figures: dict[str, float]
+
+
+Library = Mapping[str, Element]
+"""Elements by their name without capitals and blanks."""
+
+
+def read_library(path: Path) -> Library:
+    """The elements of Mooring Design & Dynamics' `mdcodes.mat`, or of a table or workbook.
+
+    Of several elements of one name the first holds.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or holds no elements.
+    """
+    content = read_content(path, largest=200_000_000)
+    elements = _of_matrices(path) if is_mat(content) else _of_sheets(path)
+    library: dict[str, Element] = {}
+    for element in elements:
+        library.setdefault(key_of(element.name), element)
+    return library
+
+
+def is_library(sheets: Mapping[str, Rows]) -> bool:
+    """Whether sheets are a library: several with headings, or the table of moords."""
+    headed = [found for rows in sheets.values() if (found := headings_of(rows, {})) is not None]
+    moords = {"buoyancy_kg", "length_m", "width_m", "diameter_m"}
+    return len(headed) >= _SHEETS or any(
+        moords <= {column.heading for column in found.columns.values()} for found in headed
+    )
+
+
+def key_of(name: str) -> str:
+    """A name as a library is searched for it."""
+    return "".join(name.lower().split())
+
+
+def complete(rows: Iterable[Row], library: Library, source: str) -> None:
+    """Give rows the figures that they lack, those of the element of their name."""
+    for row in rows:
+        element = library.get(key_of(row.name))
+        if element is None:
+            near = nearest(row.name.lower(), [each.name.lower() for each in library.values()])
+            if "buoyancy" not in row.figures and near is not None:
+                row.hint = f"; {source} has `{near}`"
+            elif "buoyancy" not in row.figures:
+                row.hint = f"; {source} has no element of that name"
+            continue
+        row.line = element.is_line
+        for what, value in element.figures.items():
+            if what in row.figures or (element.is_line and what == "length"):
+                continue
+            row.figures[what] = value
+            if element.is_line:
+                row.metre.add(what)
+
+
+def _of_matrices(path: Path) -> Iterable[Element]:
+    for entry in read_entries(path):
+        figures = {
+            "buoyancy": entry.lift * KILOGRAM_FORCE, "length": entry.length, "width": entry.width,
+            "diameter": entry.diameter, "cd": entry.cd, "material": entry.material,
+        }  # fmt: skip
+        yield Element(entry.name, entry.is_line, figures)
+
+
+def _of_sheets(path: Path) -> Iterable[Element]:
+    found = False
+    for title, cells in read_sheets(path).items():
+        headings = headings_of(cells, {})
+        if headings is None:
+            continue
+        rows = rows_of(cells, headings, [], [])
+        weights_as_buoyancy(rows, [])
+        for row in rows:
+            found = True
+            yield Element(row.name, _is_line(row, title), _figures(row))
+    if not found:
+        raise refused(path, "holds no elements: no sheet has headings that CALM knows")
+
+
+def _is_line(row: Row, title: str) -> bool:
+    """Whether an element is a line, whose figures are those of a metre."""
+    floats = row.figures.get("buoyancy", 0.0) > 0.0 and row.figures.get("diameter", 0.0) > 0.0
+    if abs(row.figures.get("length", 1.0) - 1.0) > _A_METRE or (floats and "width" in row.figures):
+        return False
+    return bool(row.metre) or row.is_line or is_line(title)
+
+
+def _figures(row: Row) -> dict[str, float]:
+    return {what: value for what, value in row.figures.items() if what not in _NOT_THEIRS}

@@ -1,0 +1,19 @@
+"""Graphs for the pages of a report, as SVG: drawn many times, without a plotting library.
+
+Lengths are in points (1/72 inch); the upper left corner of a graph is its origin.
+"""
+
+from calm.report.graph.axes import Axes as Axes
+from calm.report.graph.axes import Graph as Graph
+from calm.report.graph.legend import Entry as Entry
+from calm.report.graph.legend import write_legend as write_legend
+from calm.report.graph.scale import Scale as Scale
+from calm.report.graph.scale import covering as covering
+from calm.report.graph.style import Stroke as Stroke
+from calm.report.graph.style import draw_mark as draw_mark
+from calm.report.graph.ticks import Tick as Tick
+from calm.report.graph.ticks import counts as counts
+from calm.report.graph.ticks import decades as decades
+from calm.report.graph.ticks import moments as moments
+from calm.report.graph.ticks import numbers as numbers
+from calm.report.graph.ticks import seconds as seconds

@@ -1,0 +1,90 @@
+"""Write `docs/images/builder.svg`, a recording of the line builder, by pressing its keys.
+
+python docs/generate_recording.py
+"""
+
+import asyncio
+import os
+import re
+import shutil
+import tempfile
+from pathlib import Path
+
+from calm.shipped import shipped_folder
+from calm.tui.app import BuildApp
+from calm.tui.launch import open_session
+
+TARGET = Path(__file__).parent / "images" / "builder.svg"
+SIZE = (118, 34)
+LINE = "fit-top-depth"
+STORY: tuple[tuple[str, tuple[str, ...]], ...] = (
+    ("A mooring, its shape, its verdict", ()),
+    ("The wire below the float …", ("down", "down", "down", "down")),
+    ("… and below it a component from the catalogue", ("a", *"sbe37")),
+    ("It hangs in the line, and all figures follow", ("enter", "escape")),
+    ("Taken back", ("u",)),
+    ("A longer wire", ("up", "up", "up", "up", "l", *"520", "enter")),
+    ("Tension along the line", ("3",)),
+    ("The water", ("w",)),
+)
+SECONDS = 2.4
+
+
+async def frames(folder: Path) -> list[str]:
+    """The screen after each step of the story, as SVG."""
+    file = folder / f"{LINE}.yaml"
+    shutil.copy(shipped_folder("lines") / file.name, file)
+    session, kept = open_session(file)
+    app = BuildApp(session, kept=kept, environ={"TERM": "xterm-256color"})
+    found = []
+    async with app.run_test(size=SIZE) as pilot:
+        for title, keys in STORY:
+            await pilot.press(*keys)
+            for _ in range(8):
+                await pilot.pause(0.1)
+                await app.workers.wait_for_complete()
+            found.append(app.export_screenshot(title=title))
+    return found
+
+
+def animated(pictures: list[str]) -> str:
+    """One SVG that shows the pictures one after the other, for ever, and fetches nothing."""
+    total = SECONDS * len(pictures)
+    share = 100.0 / len(pictures)
+    size = re.search(r'viewBox="([^"]*)"', pictures[0])
+    assert size is not None
+    style = (
+        f".frame {{ visibility: hidden; animation: show {total:g}s step-end infinite; }}\n"
+        "@keyframes show { 0% { visibility: visible; } "
+        f"{share:g}% {{ visibility: hidden; }} }}\n"
+        + "".join(
+            f".frame-{n} {{ animation-delay: {n * SECONDS:g}s; }}\n" for n in range(len(pictures))
+        )
+        + "@media print { .frame-0 { visibility: visible; animation: none; } }"
+    )
+    bodies = "".join(
+        f'<g class="frame frame-{number}">{_alone(picture, number)}</g>\n'
+        for number, picture in enumerate(pictures)
+    )
+    return (
+        f'<svg viewBox="{size[1]}" xmlns="http://www.w3.org/2000/svg">\n'
+        f"<title>The line builder</title>\n<style>{style}</style>\n{bodies}</svg>\n"
+    )
+
+
+def _alone(picture: str, number: int) -> str:
+    """What is inside a picture, without fonts to fetch, its names apart from the others'."""
+    picture = re.sub(r"\s*@font-face \{.*?\}", "", picture, flags=re.DOTALL)
+    picture = re.sub(r"\s*<!-- Generated .*?-->", "", picture)
+    picture = re.sub(r"terminal-\d+", f"t{number}", picture)
+    inside = re.search(r"<svg[^>]*>(.*)</svg>", picture, flags=re.DOTALL)
+    assert inside is not None
+    return inside[1]
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as name:
+        os.environ.update(XDG_STATE_HOME=f"{name}/state", XDG_CONFIG_HOME=f"{name}/configuration")
+        os.chdir(name)
+        recorded = asyncio.run(frames(Path(name)))
+    TARGET.write_text(animated(recorded), encoding="utf-8")

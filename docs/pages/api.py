@@ -1,0 +1,35 @@
+"""What Python programs use of CALM, by autodoc."""
+
+HEAD = """# Python API
+
+What a program imports, from the docstrings. [CALM in Python](../how-to/python.md) shows how it goes
+together. Quantities are SI, angles in degrees; arrays are NumPy's, their shapes in brackets.
+"""
+_SECTIONS = {
+    "Read, solve, check": ["calm.load", "calm.check"],
+    "Moorings": ["calm.Mooring", "calm.Result"],
+    "Tows": ["calm.Tow", "calm.TowResult"],
+    "Parts of a result": [
+        "calm.case.columns.Components", "calm.case.columns.Clamps", "calm.case.columns.Shape",
+        "calm.case.result.Top", "calm.case.result.AnchorLoad", "calm.case.result.Accuracy",
+        "calm.case.result.Strumming", "calm.case.band.StrummingBand",
+    ],
+    "Many profiles": ["calm.solve_profiles", "calm.Profiles"],
+    "Errors": [
+        "calm.CalmError", "calm.InputError", "calm.UsageError", "calm.NoEquilibrium",
+        "calm.errors.Problem",
+    ],
+}  # fmt: skip
+
+
+def page() -> str:
+    """The text of the page."""
+    parts = [HEAD]
+    for title, names in _SECTIONS.items():
+        parts.append(f"## {title}\n\n```{{eval-rst}}")
+        for name in names:
+            kind = "class" if name.rpartition(".")[2][0].isupper() else "function"
+            members = "\n   :members:" if kind == "class" else ""
+            parts.append(f".. auto{kind}:: {name}{members}\n")
+        parts.append("```\n")
+    return "\n".join(parts)

@@ -1,0 +1,224 @@
+"""The gallery: a page for each file of `lines/`, made from it."""
+
+import contextlib
+import io
+import os
+import re
+import shlex
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+import calm
+from calm.cli.exit_codes import ExitCode
+from calm.cli.main import main
+from calm.report.picture import image
+from calm.report.plot import draw
+from calm.report.schematic import schematic_svg
+from calm.shipped import shipped_folder
+from pages import pictures
+
+HEAD = """# Gallery
+
+The moorings and tows of the folder `lines/`, each with its file, its shape, its schematic, what
+CALM says of it, and one thing to try. Everything on these pages is made from the files.
+
+"""
+
+
+@dataclass(frozen=True)
+class Try:
+    """One thing to try: why, the commands, and where what they print gets interesting."""
+
+    why: str
+    commands: tuple[str, ...]
+    start: str = ""
+    picture: Callable[[], Figure] | None = None
+    seen: str = ""
+
+
+_SPEEDS = "calm tow {file} --speeds"
+TRIES = {
+    "a-frame-sheared-tow": Try(
+        "What counts is the speed past the line. Tow it faster:",
+        (f'{_SPEEDS} "1 knot:4 knot:1 knot"',),
+        picture=pictures.out_and_back,
+        seen="Out with the current and back against it at the same speed over the ground: the net "
+        "runs at another depth, on the other side of the wake.",
+    ),
+    "bourget-marichal-sphere": Try(
+        "The paper gives the depth of the sphere at several speeds. Compare:",
+        ("calm verify bourget",),
+    ),
+    "braconnot-buoy": Try(
+        "The charts from which the example comes are a command of their own:",
+        ("calm verify braconnot buoy",),
+    ),
+    "cdms-1": Try(
+        "Two other programs have printed tensions of this line. Compare:",
+        ("calm verify cdms tension",),
+    ),
+    "chain-and-rope-surface": Try(
+        "How sure are its figures? The current, the drags and the depth are not known exactly:",
+        ("calm run {file} --uncertainty --samples 256",),
+        start="How sure",
+    ),
+    "deep-current-meters": Try(
+        "Which part of the line costs most knockdown?",
+        ("calm run {file} --explain",),
+        start="What makes",
+    ),
+    "depressor-fit-depth": Try(
+        "The wire was paid out for one speed. Where does the sonar run at others?",
+        (f'{_SPEEDS} "3 knot:8 knot:1 knot"',),
+    ),
+    "fit-top-depth": Try(
+        "The rope is cut for still water. Where does the top stand in a storm?",
+        ("calm run {file} --environment storm",),
+        start="Top ",
+    ),
+    "helicopter-bird": Try(
+        "How fast may the helicopter fly before the bird trails too far behind?",
+        (f'{_SPEEDS} "20 knot:80 knot:20 knot"',),
+    ),
+    "receiver-line": Try(
+        "A short line hardly moves. What moves it all the same?",
+        ("calm run {file} --explain",),
+        start="What makes",
+    ),
+    "s1000": Try(
+        "Its continuous solution is known. How far is CALM from it, by angle step?",
+        ("calm verify s1000",),
+    ),
+    "sediment-trap-undercurrent": Try(
+        "Traps are worth nothing beyond 10° of tilt. What causes theirs?",
+        ("calm run {file} --explain",),
+        start="What makes",
+    ),
+    "taut-nylon-surface": Try(
+        "The stiffness of the nylon matters most. How much?",
+        ("calm run {file} --uncertainty --samples 256",),
+        start="How sure",
+    ),
+    "thermistor-string": Try(
+        "How much buoyancy keeps the recorders within a metre of their depths?",
+        ('calm size {file} --target "knockdown(top) <= 1 m" --change "top float.buoyancy"',),
+    ),
+    "tidal-adcp": Try(
+        "The tide turns. Solve the ebb:",
+        ("calm run {file} --environment ebb",),
+        start="Top ",
+    ),
+    "upward-adcp-300m": Try(
+        "Solve it in every profile of a record:",
+        (
+            "calm new --record -o record.nc",
+            "calm batch {file} --currents record.nc -o moved.nc",
+        ),
+        picture=pictures.year,
+        seen="Every hour of a made year, 8760 profiles: tides move the float little, an eddy that "
+        "passes knocks it down. Solved by `calm.solve_profiles` in less than a second.",
+    ),
+    "veering-current": Try(
+        "Draw it; the plan is the picture in which the current is seen:",
+        ("calm run {file} --plot veering.png",),
+        start="Top ",
+        picture=pictures.veering_plan,
+        seen="The line from above, coloured by depth, beside the current in the same colours: "
+        "where the current turns, the line bends.",
+    ),
+}
+
+
+def pages() -> dict[str, str | bytes]:
+    """The pages and their pictures, by path in the gallery.
+
+    Raises
+    ------
+    KeyError
+        A file of `lines/` has nothing to try.
+    """
+    files = sorted(shipped_folder("lines").glob("*.yaml"))
+    made: dict[str, str | bytes] = {}
+    entries, rows = [], []
+    for file in files:
+        solved = calm.load(file).solve()
+        made[f"{file.stem}.md"] = _page(file, solved.name, made)
+        made[f"{file.stem}.svg"] = image(draw(solved), ".svg")
+        made[f"{file.stem}-schematic.svg"] = schematic_svg(solved.file, solved).encode()
+        first = _comment(file).partition(". ")[0].partition(": ")
+        told = (first[2] or first[0]).rstrip(".")
+        rows.append(f"- [{solved.name}]({file.stem}.md): {told[:1].lower()}{told[1:]}")
+        entries.append(file.stem)
+    listing, contents = "\n".join(rows), "\n".join(entries)
+    made["index.md"] = f"{HEAD}{listing}\n\n```{{toctree}}\n:hidden:\n\n{contents}\n```\n"
+    return made
+
+
+def _page(file: Path, name: str, made: dict[str, str | bytes]) -> str:
+    tried = TRIES[file.stem]
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder) / file.name
+        copy.write_bytes(file.read_bytes())
+        with contextlib.chdir(folder):
+            table = _printed(f"calm run {file.name}")
+            towed = "\ntow:" in file.read_text(encoding="utf-8")
+            verdict = "" if towed else _printed(f"calm check {file.name} --allow-unknown")
+            commands = [command.format(file=file.name) for command in tried.commands]
+            outcome = [_printed(command) for command in commands][-1]
+    outcome = outcome[outcome.find(tried.start) :] if tried.start in outcome else outcome
+    parts = [
+        f"# {name}",
+        _comment(file),
+        f"## Its shape\n\n![The shape of {name}]({file.stem}.svg)",
+        f"```text\n{table}\n```",
+    ]
+    if verdict:
+        parts.append(f"## The verdict\n\n`calm check {file.name}` says:\n\n```text\n{verdict}\n```")
+    parts.append(f"## One thing to try\n\n{tried.why}\n\n```sh\n" + "\n".join(commands) + "\n```")
+    parts.append(f"```text\n{outcome}\n```")
+    if tried.picture is not None:
+        picture = f"{file.stem}-seen.svg"
+        made[picture] = image(tried.picture(), ".svg")
+        parts.append(f"![What is to be seen]({picture})\n\n{tried.seen}")
+    text = file.read_text(encoding="utf-8").rstrip()
+    parts.append(f"## The file\n\n`lines/{file.name}`:\n\n```yaml\n{text}\n```")
+    parts.append(f"## Its schematic\n\n![The schematic of {name}]({file.stem}-schematic.svg)")
+    return "\n\n".join(parts) + "\n"
+
+
+def _comment(file: Path) -> str:
+    """The comment at the head of a file, which says what it shows."""
+    lines = []
+    for line in file.read_text(encoding="utf-8").splitlines():
+        if not line.startswith("#"):
+            break
+        lines.append(line[1:].removeprefix(" "))
+    return "\n".join(lines).strip()
+
+
+def _printed(command: str) -> str:
+    """What a command prints on a page of 100 columns, without the blanks at the ends of lines.
+
+    Raises
+    ------
+    RuntimeError
+        The command fails.
+    """
+    os.environ.update(COLUMNS="100", NO_COLOR="1", TERM="dumb")
+    printed, narrated = (io.TextIOWrapper(io.BytesIO(), "utf-8") for _ in range(2))
+    with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(narrated):
+        code = main(shlex.split(command)[1:])
+    if code not in (ExitCode.DONE, ExitCode.FINDING):
+        raise RuntimeError(f"{command}: exit code {int(code)}\n{_text(narrated)}")
+    text = _text(printed) or _text(narrated)
+    return re.sub(r" +$", "", text.strip("\n"), flags=re.MULTILINE)
+
+
+def _text(stream: io.TextIOWrapper) -> str:
+    """What was written to a stream."""
+    stream.seek(0)
+    return stream.read()

@@ -1,0 +1,150 @@
+"""The names in results: of JSON, CSV and NetCDF, with units, from results themselves."""
+
+import io
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import xarray as xr
+
+import calm
+from calm.dataset.variables import OF_CLAMP, OF_COMPONENT, OF_ENDS, OF_NODE
+from calm.motion.run import OF_MOTION
+from calm.quantities import QUANTITIES
+from calm.report.csv import HEADER
+from calm.report.netcdf import result_netcdf
+from calm.shipped import shipped_folder
+from pages.markdown import code, plain, table
+
+HEAD = """# Names in results
+
+What `calm run`, `calm tow`, `calm batch` and `calm motion` write, with units: SI and degrees. x is
+east and y north of the anchor, or of the tow point; depths are positive downwards. What is unknown
+is `null` in JSON, empty in CSV, NaN in NetCDF. The JSON of other commands is on their pages:
+[`calm check`](check.md#json), [`calm batch`](batch-statistics.md),
+[`calm deck`](../how-to/deck.md), [`calm locate`](../how-to/locate.md),
+[`calm diff`](../how-to/diff.md).
+"""
+_MOORED, _TOWED = "fit-top-depth", "depressor-fit-depth"
+_MEANINGS = {
+    "calm": ("", "the version of CALM"),
+    "name": ("", "the name of the mooring"),
+    "type": ("", "`subsurface`, `surface` or `tow`"),
+    "status": ("", "`converged`, or [what else](messages.md#statuses)"),
+    "iterations": ("", "marches along the line until it closed"),
+    "segments": ("", "segments of the line as solved"),
+    "miss": ("m", "how far the line ends from its anchor"),
+    "closure": ("", "sum of the forces that is left, as a share of the greatest"),
+    "accuracy.depth": ("m", "worst error expected of any depth or offset"),
+    "accuracy.tension": ("N", "worst error expected of any tension"),
+    "accuracy.anchor": ("N", "the same of the vertical and horizontal pull on the anchor"),
+    "accuracy.required_weight": ("N", "the same of the weight that the anchor needs"),
+    "strumming": ("", "`frequency`, `cn_min` and `cn_max`, where a law of strumming is chosen"),
+    "strumming_band": ("", "`null` where a law of strumming is chosen"),
+    "strumming_band.factor": ("", "what the Cn of every cable is multiplied by"),
+    "strumming_band.status": ("", "of that line"),
+    "other_equilibrium": ("", "depth of the free end in the other one, and its line on the seabed"),
+    "index": ("", "of the piece in the file, from 0"),
+    "use": ("", "the component's id"),
+    "label": ("", "its name in this line"),
+    "reynolds": ("", "Reynolds number of the flow across it"),
+    "shape.depth": ("m", "of every node, free end first"),
+    "warnings": ("", "[sentences](messages.md#warnings)"),
+    "toward": ("deg", "where the ship goes to, clockwise from north"),
+    "body.tension": ("N", "pull on the towed body"),
+    "tow_point.tension": ("N", "pull on the ship"),
+    "cn_min": ("", "least Cn of the cables as they strum"),
+    "cn_max": ("", "greatest Cn of the cables as they strum"),
+}
+
+
+def page() -> str:
+    """The text of the page."""
+    moored, towed = (
+        calm.load(shipped_folder("lines") / f"{name}.yaml").solve() for name in (_MOORED, _TOWED)
+    )
+    parts = [HEAD]
+    of_mooring = dict(_keys(moored.to_dict()))
+    parts += ["## JSON of a mooring", table(("key", "unit", "meaning"), map(_json, of_mooring))]
+    own = [key for key in _keys(towed.to_dict()) if key[0] not in of_mooring]
+    parts += [
+        "## JSON of a tow",
+        "The keys of a mooring, but in place of `top` and `anchor`:",
+        table(("key", "unit", "meaning"), (_json(key) for key, _ in own)),
+        "## CSV",
+        "A row for each piece and each clamped instrument:",
+        table(("column", "meaning"), map(_column, HEADER)),
+        "## NetCDF of one equilibrium",
+        table(("variable", "dimensions", "unit", "meaning"), _netcdf(result_netcdf(moored))),
+        "A tow has in place of the figures of its ends:",
+        table(
+            ("variable", "dimensions", "unit", "meaning"),
+            [row for row in _netcdf(result_netcdf(towed)) if "ship" in row[3] or "tow" in row[3]],
+        ),
+        "## NetCDF and zarr of a batch",
+        table(("variable", "dimensions", "unit", "meaning"), _batch()),
+        "## More of `calm motion`",
+        table(("variable", "dimensions", "unit", "meaning"), _motion()),
+    ]
+    return "\n\n".join(parts)
+
+
+def _keys(document: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
+    """The keys of a JSON object down to its values; of a list of objects, those of the first."""
+    for key, value in document.items():
+        if isinstance(value, dict):
+            yield from _keys(value, f"{before}{key}.")
+        elif isinstance(value, list) and value and isinstance(value[0], dict):
+            yield from _keys(value[0], f"{before}{key}[].")
+        elif value != []:
+            yield f"{before}{key}", value
+
+
+def _json(key: str) -> tuple[str, str, str]:
+    last = key.rpartition(".")[2]
+    if key in _MEANINGS or last in _MEANINGS:
+        unit, meaning = _MEANINGS.get(key) or _MEANINGS[last]
+        return code(key), unit, meaning
+    quantity = QUANTITIES[last]
+    return code(key), quantity.unit, plain(quantity.meaning)
+
+
+def _column(header: str) -> tuple[str, str]:
+    name = header.partition("[")[0]
+    if name in ("mooring", "part"):
+        return code(header), {"mooring": "its name", "part": "`component` or `clamp`"}[name]
+    return code(header), _json(name)[2]
+
+
+def _netcdf(content: bytes) -> list[tuple[str, str, str, str]]:
+    with xr.open_dataset(io.BytesIO(content), engine="h5netcdf") as dataset:
+        return [
+            _variable(str(name), map(str, one.dims), one.attrs)
+            for name, one in dataset.variables.items()
+        ]
+
+
+def _variable(name: str, dimensions: Any, attributes: Mapping[str, Any]) -> tuple[str, ...]:
+    unit = attributes.get("units", "")
+    return code(name), ", ".join(dimensions), unit, plain(attributes.get("long_name", ""))
+
+
+def _batch() -> Iterator[tuple[str, ...]]:
+    yield code("time"), "time", "", "time of the profile"
+    for dimension, quantities in {
+        "component": OF_COMPONENT, "clamp": OF_CLAMP, "": OF_ENDS, "node": OF_NODE
+    }.items():  # fmt: skip
+        for name, (unit, meaning, _) in quantities.items():
+            yield _variable(
+                name, filter(None, ("time", dimension)), {"units": unit, "long_name": meaning}
+            )
+    yield (
+        code("status"),
+        "time",
+        "",
+        "0 where there is an equilibrium, else as `flag_meanings` says",
+    )
+
+
+def _motion() -> Iterator[tuple[str, ...]]:
+    for name, (dimensions, (unit, meaning, _)) in OF_MOTION.items():
+        yield _variable(name, ("time", *dimensions), {"units": unit, "long_name": meaning})
