@@ -38,7 +38,7 @@ class Value:
     def number(self, **values: float) -> float:
         """A formula's value; `values` are those of the names it may hold."""
         if self.formula is None:
-            raise self.token.refuse(f"a number is missing behind `{self.token.text} =`")
+            raise self.token.refuse(f"a number is missing after `{self.token.text} =`")
         return self.formula.at(**values)
 
 
@@ -192,7 +192,7 @@ def _value(words: Words, key: Token) -> Value:
 def _word(words: Words, key: Token) -> str:
     token = words.take()
     if token.kind not in ("name", "text", "number"):
-        raise key.refuse(f"a name is missing behind `{key.text} =`")
+        raise key.refuse(f"a name is missing after `{key.text} =`")
     text = token.text
     while words.next.kind == "sign" and words.next.text == "-" and words.ahead(1).kind == "name":
         words.take()
