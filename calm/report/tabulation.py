@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from calm.case.sweep import Variation
 
 FIGURES = ("depth", "layback", "tension", "angle", "body_tension", "frequency")
-"""What a row gives for a result: depth and layback of the body, tension and angle at the ship."""
+"""What a row tells of a result: depth and layback of the body, tension and angle at the ship."""
 
 _HEADINGS = {"body_tension": "tension\nat body"}
 _NOTE = "Depth and layback: of the body. Tension and angle: at the tow point, from the horizontal."
 _DIGITS = 4
-_WARNED = "!: with warnings, which --json lists."
+_WARNED = "!: with warnings, which --json reports."
 _KNOTS = replace(QUANTITIES["speed"], display="knot", scale=1.0 / KNOT)
 
 
