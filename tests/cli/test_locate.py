@@ -153,6 +153,7 @@ def test_every_mistake_at_once_with_its_line(calm, ranges):
         ("latitude[deg],longitude[deg],range[ell]\n48.3,-5.2,1\n", "range[ell]`: `ell` "),
         ("latitude[deg];longitude[deg];range[m]\n48,3;-5,2;2000\n", "decimal degrees are needed"),
         (RANGES.split("48.29")[0], "2 ranges; 3 are needed"),
+        (re.sub(r"\d+\.\d$", "90.0", RANGES, flags=re.M), "the ranges meet nowhere"),
     ],
 )
 def test_files_that_are_none(calm, ranges, text, said):
