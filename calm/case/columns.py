@@ -197,7 +197,8 @@ class Clamps(Columns[ClampRow]):
     use, label : (m,)
     depth, x, y, knockdown : (m,) [m]
     tension : (m,) the greater of those above and below [N]
-    tilt : (m,) of the piece's axis there [degrees]
+    tilt : (m,) of the pull in the line, of the sum of those above and below; on a rigid piece that
+        of the piece [degrees]
     """
 
     record = ClampRow

@@ -136,6 +136,10 @@ def clamps_of(pieces: Sequence[Piece], solution: Solution, still: Solution | Non
     if still is not None:
         before = still.position[np.flatnonzero(still.element_clamp >= 0)]
         knockdown = before[:, 2] - position[:, 2]
+    # on a rigid piece it leans as that does, on a cable as the line pulls, above and below it alike
+    pull = solution.force[elements] + solution.force[elements + 1]
+    towed = solution.line.towed
+    cable = solution.line.flexible[solution.element_piece[elements]]
     clamps = [order[m] for m in which]
     return Clamps(
         part=clamps,
@@ -146,7 +150,7 @@ def clamps_of(pieces: Sequence[Piece], solution: Solution, still: Solution | Non
         x=position[:, 0],
         y=position[:, 1],
         tension=np.maximum(solution.tension[elements], solution.tension[elements + 1]),
-        tilt=shape_of(solution).tilt[elements],
+        tilt=np.where(cable, _tilt(-pull if towed else pull), measured(solution).tilt[index]),
         knockdown=knockdown,
     )
 

@@ -20,7 +20,8 @@ from calm.errors import NoEquilibrium
 from calm.files import MooringFile, read_mooring
 from calm.files.definition import STEEL_DENSITY
 from calm.physics.drag import BLOCK_CD, area_drag
-from calm.physics.line import REFERENCE_DENSITY, Line, Water
+from calm.physics.line import Line, Water
+from calm.physics.reference import REFERENCE_DENSITY
 from calm.solve import Settings, Solution, Status, fit_length, solve_mooring
 from calm.solve.closing import COARSE_STEP
 from calm.solve.standing import standing_lift, too_heavy

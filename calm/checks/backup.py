@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from calm.assemble import net_buoyancy
 from calm.errors import NoEquilibrium
@@ -67,6 +70,18 @@ class Loss:
     place: Place
 
 
+def _lift_to_the_release(mooring: Mooring) -> Floats:
+    """(n,) net force [N] of each piece down to the lowest release, where the line stands upright.
+
+    None of a line without a release, or one that no length fits.
+    """
+    release = mooring.file.release
+    if release is not None:
+        with suppress(NoEquilibrium):
+            return standing_lift(mooring.line, mooring.water)[: release + 1]
+    return np.zeros(0)
+
+
 def losses_of(mooring: Mooring) -> tuple[Loss, ...]:
     """The loss of each buoyant piece or clamp above the lowest release, from the top.
 
@@ -74,17 +89,11 @@ def losses_of(mooring: Mooring) -> tuple[Loss, ...]:
     `SHELLS`, weighs what that material does in water; another is taken to be gone, and a cable is
     not lost. The others lift what they do where the line stands upright.
     """
-    release = mooring.file.release
-    if release is None:
-        return ()
-    try:
-        lift = standing_lift(mooring.line, mooring.water)[: release + 1]
-    except NoEquilibrium:
-        return ()
+    lift = _lift_to_the_release(mooring)
     gravity = mooring.water.gravity
     weight = float(-lift[lift < 0.0].sum())
     losses = []
-    for piece in mooring.file.pieces[: release + 1]:
+    for piece in mooring.file.pieces[: lift.size]:
         own = () if isinstance(piece.component, Cable | Chain) else (piece,)
         for part in (*own, *piece.clamps):
             lifted = net_buoyancy(part.component, gravity)
@@ -129,13 +138,10 @@ def breaks_of(mooring: Mooring) -> tuple[Break, ...]:
     release, leaves the release on the seabed in any design, and is not judged. Where that is the
     whole line, the last break is.
     """
-    release = mooring.file.release
-    if release is None:
+    lift = _lift_to_the_release(mooring)
+    if not lift.size:
         return ()
-    try:
-        lift = standing_lift(mooring.line, mooring.water)[: release + 1]
-    except NoEquilibrium:
-        return ()
+    release = lift.size - 1
     beyond_help = _beyond_help(mooring.file.pieces[:release], lift[:release])
     judged = set(range(release)) - set(beyond_help) or {release - 1}
     breaks = []

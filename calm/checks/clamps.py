@@ -12,7 +12,7 @@ from calm.checks.criterion import Judged, parts_of
 from calm.checks.finding import Verdict, at_most, rule, told
 from calm.checks.launch import Launch
 from calm.checks.recovery import Recovery
-from calm.physics.line import REFERENCE_DENSITY
+from calm.physics.reference import REFERENCE_DENSITY
 from calm.quantities import say
 
 if TYPE_CHECKING:

@@ -22,7 +22,8 @@ import numpy as np
 
 from calm.assemble import with_axial_clamps
 from calm.errors import NoEquilibrium
-from calm.physics.line import REFERENCE_DENSITY, Booleans, Floats, Line, Water
+from calm.physics.line import Booleans, Floats, Line, Water
+from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.track import head_count
 from calm.solve import FreeMotion, Settings, part_of, solve_rise
 

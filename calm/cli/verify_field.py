@@ -19,7 +19,7 @@ def verify_field(outputs: Outputs) -> ExitCode:
     import calm
     from calm.case import Mooring
     from calm.checks.finding import State
-    from calm.cli.motion import fitted, parse_gap, read_measured
+    from calm.cli.motion_input import fitted, parse_gap, read_measured
     from calm.motion.forward import Forward
     from calm.motion.run import estimate_in_memory
     from calm.motion.study import intervals, judge_hidden, prepare

@@ -9,7 +9,8 @@ import numpy as np
 
 from calm.drop.chain import Chain
 from calm.physics.friction import Friction
-from calm.physics.line import REFERENCE_DENSITY, Floats, Water
+from calm.physics.line import Floats, Water
+from calm.physics.reference import REFERENCE_DENSITY
 
 SLOWEST = 1e-3
 """Speed below which drag goes with the speed and not with its square [m/s]; else a line at rest

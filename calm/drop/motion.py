@@ -15,7 +15,8 @@ import numpy as np
 
 from calm.drop.chain import Chain
 from calm.drop.loads import SLOWEST, Loads, Sea, loads_on
-from calm.physics.line import REFERENCE_DENSITY, Floats, Integers
+from calm.physics.line import Floats, Integers
+from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.reynolds import Smooth, drag_variation
 
 MOST_ROUNDS = 16

@@ -12,7 +12,8 @@ from calm.case import Mooring, Result, Tow, TowResult
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Anchor, Component, Sphere
 from calm.files.rigid import Displacement
-from calm.physics.line import REFERENCE_DENSITY, Line, Water
+from calm.physics.line import Line, Water
+from calm.physics.reference import REFERENCE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
 _DIGITS = 9  # of a speed in m/s

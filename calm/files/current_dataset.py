@@ -16,8 +16,10 @@ from calm.files.current_variables import (
     factor_of,
     find_velocity,
     holdings,
+    refuse_ragged,
 )
 from calm.files.current_vectors import with_components
+from calm.files.quality_flags import flag_variable, flags_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -64,6 +66,7 @@ class CurrentDataset:
     rules: tuple[str, ...]
     source: dict[str, str]
     _parts: tuple[tuple[xr.DataArray, float], ...]
+    _flags: tuple[xr.DataArray, ...]
     _turn: float | None
     _declination: float
     _levels: Levels
@@ -110,6 +113,19 @@ class CurrentDataset:
         depth = self._levels.depths(self._time, index)
         return CurrentArrays(depth, first, second, up[0] if up else None)
 
+    def flags(self, index: slice | NDArray[np.intp]) -> NDArray[np.int8] | None:
+        """(n, k) the worse quality flags of both components at some times; None without flags."""
+        import numpy as np
+
+        if self._time is None or not self._flags:
+            return None
+        first = self._parts[0][0].isel({self._time: index}).transpose(self._time, ...)
+        worst = np.zeros(first.shape, np.int8)
+        for variable in self._flags:
+            own = variable.broadcast_like(self._parts[0][0]).isel({self._time: index})
+            worst = np.maximum(worst, flags_of(own.transpose(*first.dims)))
+        return worst.reshape(len(worst), -1)
+
     def _values(self, variable: xr.DataArray, index: Any) -> NDArray[np.float64]:
         """Times by levels, contiguous, so that equal values give equal results in any company."""
         if self._time is None:
@@ -140,6 +156,7 @@ def understand(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
 def _understood(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
     dataset = with_components(dataset)
     velocity = find_velocity(dataset, regular=is_regular(dataset))
+    refuse_ragged(dataset, velocity.names[0])
     turned = _turned(velocity, terms.declination)
     name_of_time = find_times(dataset, velocity.names[0])
     times = None if name_of_time is None else read_times(dataset, name_of_time)
@@ -157,7 +174,9 @@ def _understood(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
     notices = [*column.notes]
     if name_of_time is not None:
         notices += zone_notices(dataset, name_of_time)
-    if any(str(name).lower().endswith("_qc") for name in dataset.variables):
+    flags = (flag_variable(dataset, name) for name in velocity.names)
+    flags_beside = tuple(one for one in flags if one is not None)
+    if flags_beside:
         notices.append(FLAGS)
     return CurrentDataset(
         times=times,
@@ -166,6 +185,7 @@ def _understood(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
         rules=(*velocity.notes, *levels.notes),
         source=source,
         _parts=tuple(_parts(dataset, velocity)),
+        _flags=flags_beside,
         _turn=velocity.turn,
         _declination=terms.declination or 0.0,
         _levels=levels,

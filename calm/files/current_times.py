@@ -102,9 +102,21 @@ def _decoded(times: xr.DataArray) -> NDArray[Any]:
     except (ValueError, OverflowError):
         raise refusal from None
     if decoded.dtype.kind != "M":
-        raise refusal
+        raise _no_date(times) if decoded.dtype.kind == "O" else refusal
     known = decoded[~np.isnat(decoded)]
     first, last = np.datetime64(_FIRST), np.datetime64(_LAST)
     if known.size and not first <= known.min() <= known.max() < last:
         raise UnreadableError(f"the times in `{times.name}` are not all between {first} and {last}")
     return decoded
+
+
+def _no_date(times: xr.DataArray) -> UnreadableError:
+    """What is said where the unit of times is understood, but not all of their values."""
+    import numpy as np
+
+    values = times.values.ravel()
+    worst = values[np.nanargmax(np.abs(values - np.nanmedian(values)))]
+    return UnreadableError(
+        f"`{times.name}` has {worst:.10g} among its times, in `{times.attrs['units']}`: no date "
+        f"between {_FIRST} and {_LAST}"
+    )

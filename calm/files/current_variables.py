@@ -226,3 +226,22 @@ def _believed(dataset: xr.Dataset, name: str, sought: _Sought) -> str:
     if reason is not None:
         raise UnreadableError(f"`{name}` {reason}")
     return name
+
+
+def refuse_ragged(dataset: xr.Dataset, name: str) -> None:
+    """Refuse what has the readings of several instruments one after the other.
+
+    Raises
+    ------
+    UnreadableError
+        With the index that says which reading is whose.
+    """
+    for index, variable in dataset.variables.items():
+        counted = variable.attrs.get("instance_dimension")
+        if counted and variable.dims[:1] == dataset[name].dims[:1]:
+            many = dataset.sizes.get(counted, 2)
+            if many > 1:
+                raise UnreadableError(
+                    f"`{name}` has {many} instruments one after the other (`{index}` says whose a "
+                    "reading is): give the file of each instrument"
+                )

@@ -21,7 +21,7 @@ from calm.files.current_times import find_times, read_times
 from calm.files.current_values import known_values
 from calm.files.current_variables import UnreadableError, factor_of, find_velocity
 from calm.files.current_vectors import with_components
-from calm.motion.flags import flag_variable, flags_of
+from calm.files.quality_flags import flag_variable, flags_of
 from calm.motion.labelled import labels_along
 from calm.physics.line import Floats
 
@@ -86,7 +86,8 @@ def read_currents(
             with open_record(path, seabed=seabed, at=place, declination=declination) as record:
                 depth, u, v, _ = record.profiles(0, record.count)
                 depth = np.broadcast_to(depth, u.shape).copy()
-                flag = np.zeros(u.shape, np.int8)
+                marks = record.flags(0, record.count)
+                flag = np.zeros(u.shape, np.int8) if marks is None else marks
                 time = np.asarray(record.time)
             mine = Currents(time, depth, ("",) * u.shape[1], u, v, flag, path.name)
         found.append(_plausible(mine, maximum_speed))

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.motion import prior
-from calm.motion.moment import Common
+from calm.motion.unknowns import Common
 from calm.physics.line import Floats
 
 Times = NDArray[np.datetime64]
@@ -23,6 +23,8 @@ FEWEST = 8
 """Times on either side of a step."""
 FALSE = 0.5
 """Probability from which the current of a level is named as false."""
+CERTAIN, LIKELY = 0.95, 0.5
+"""Probabilities that a sensor hangs elsewhere from which it is named alone, and named at all."""
 FAR_OFFSET = 2.5
 """Offsets of a sensor that are named, in deviations of what is expected."""
 
@@ -43,8 +45,9 @@ def doubts(
     time : (n,)
     residual : (n, s) measured less estimated depths [m]
     down : (n,) knockdown [m]
-    common : offsets and datum
+    common : offsets of the sensors, and how far they have moved
     """
+    throughout = np.isin(common.since, time[:1])
     said = []
     known = np.isfinite(down)
     calm = known & (down <= (np.median(down[known]) if known.any() else 0.0))
@@ -57,7 +60,7 @@ def doubts(
     if changes:
         # what one sensor does wrong shows in the others the other way round
         _, label, (size, kind, when) = max(changes)
-        among = "" if len(labels) > 2 else ", or the other sensor the other way: two cannot tell"
+        among = _or_another(label, labels, common)
         if kind == "step":
             said.append(
                 f"{label}: steps by {size:+.1f} m about {np.datetime_as_string(when, 'm')}: a "
@@ -65,13 +68,39 @@ def doubts(
             )
         else:
             said.append(f"{label}: drifts by {size:+.1f} m over the record{among}")
-    for label, offset in zip(labels, common.offset, strict=True):
+    for j, label in enumerate(labels):
+        offset = common.offset[j] + common.moved[j] * throughout[j]
         if abs(offset) > FAR_OFFSET * prior.OFFSET:
             said.append(
                 f"{label}: {offset:+.1f} m off throughout: its zero, or a length or a place on the "
-                "line that is wrong"
+                f"line that is wrong{_or_another(label, labels, common)}"
+            )
+        elif (
+            not throughout[j]
+            and common.elsewhere[j] > LIKELY
+            and not any(one.startswith(f"{label}: ") for one in said)
+        ):
+            said.append(
+                f"{label}: hangs {abs(common.moved[j]):.1f} m {_way(common.moved[j])} its place "
+                f"from {np.datetime_as_string(common.since[j], 'm')} on: a clamp that slipped"
             )
     return said
+
+
+def _or_another(label: str, labels: Sequence[str], common: Common) -> str:
+    """Which other sensor it may be as well, as far as the pressures can tell."""
+    if common.elsewhere[labels.index(label)] > CERTAIN:
+        return ""
+    pairs = zip(labels, common.elsewhere, strict=True)
+    others = [other for other, chance in pairs if chance > 1.0 - CERTAIN and other != label]
+    if not others and len(labels) == 2:
+        others = [other for other in labels if other != label]
+    named = ", ".join(others)
+    return f", or {named} the other way: they cannot tell" if named else ""
+
+
+def _way(moved: float) -> str:
+    return "below" if moved > 0.0 else "above"
 
 
 def _change(time: Times, residual: Floats) -> tuple[float, str, np.datetime64] | None:

@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 from calm.motion import prior
 from calm.motion.mixture import Mixture
-from calm.motion.moment import Common, Linear, Moments, Posterior, Way, posterior, settled
+from calm.motion.moment import Moments, Way
+from calm.motion.posterior import Linear, Posterior, posterior, settled
+from calm.motion.unknowns import Common
 from calm.physics.line import Floats
 
 NEGLIGIBLE = 0.02

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from calm.errors import UsageError
 from calm.files.explain import unknown
+from calm.files.quality_flags import MISSING
 from calm.motion.currents import Currents
-from calm.motion.flags import MISSING
 from calm.motion.measured import FREE, Measured
 from calm.motion.sensors import Sensor
 from calm.physics.line import Floats
@@ -21,7 +21,8 @@ Times = NDArray[np.datetime64]
 def common_times(currents: Sequence[Currents], sensors: Sequence[Sensor]) -> Times:
     """Those of the first current; of the others, and then of the sensors, what is far from these.
 
-    Far is more than half of the median step of what is there already.
+    Far is more than half of the median step of what is there already; of readings less than a
+    quarter apart, as those of a burst, the first is taken.
     """
     times = currents[0].time
     others: list[Currents | Sensor] = [*currents[1:], *sensors]
@@ -30,8 +31,18 @@ def common_times(currents: Sequence[Currents], sensors: Sequence[Sensor]) -> Tim
         after = np.clip(np.searchsorted(times, other.time), 0, len(times) - 1)
         before = np.maximum(after - 1, 0)
         apart = np.minimum(np.abs(times[after] - other.time), np.abs(times[before] - other.time))
-        times = np.unique(np.concatenate([times, other.time[apart > step / 2]]))
+        times = np.unique(np.concatenate([times, _sparse(other.time[apart > step / 2], step / 4)]))
     return times
+
+
+def _sparse(times: Times, step: np.timedelta64) -> Times:
+    """Those of rising times that are further than a step from the last one taken."""
+    taken: list[np.datetime64] = []
+    at = 0
+    while at < len(times):
+        taken.append(times[at])
+        at = int(np.searchsorted(times, times[at] + step, "right"))
+    return np.array(taken, "M8[ns]")
 
 
 def interpolated(time: Times, value: Floats, wanted: Times, gap: np.timedelta64) -> Floats:

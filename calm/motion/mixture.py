@@ -11,7 +11,8 @@ from calm.physics.line import Floats
 
 if TYPE_CHECKING:
     from calm.motion.estimate import Estimate
-    from calm.motion.moment import Moments, Posterior, Way
+    from calm.motion.moment import Moments, Way
+    from calm.motion.posterior import Posterior
 
     Explanation = tuple[NDArray[np.int64], Floats, Way, Posterior, tuple[int, ...]]
 

@@ -42,6 +42,9 @@ DATUM = 0.01
 """Of the depth of the water, as a share of it: what all depths may be wrong by alike."""
 OFFSET = 1.0
 """Of the offset of a sensor [m]."""
+ELSEWHERE, MISPLACED, SLIPPED = 20.0, 0.01, 0.01
+"""How far from its place in the file a sensor is that is not there [m], and the probabilities that
+it is so from the beginning, and that its clamp slips during the record."""
 TIDE = 1.0
 """Of tide and air pressure [m]; where the sea level is given, `RESIDUAL_TIDE`."""
 RESIDUAL_TIDE = 0.15

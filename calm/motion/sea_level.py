@@ -13,7 +13,7 @@ from calm.files.current_netcdf import open_current, reading
 from calm.files.current_times import find_times, read_times
 from calm.files.current_values import known_values
 from calm.files.current_variables import UnreadableError, factor_of, holdings
-from calm.motion.sensors import read_table
+from calm.motion.tables import read_table
 from calm.physics.line import Floats
 
 _STANDARD = (

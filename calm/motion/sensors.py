@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -17,12 +16,13 @@ from calm.files.current_file import holds_arrays
 from calm.files.current_netcdf import open_current, reading
 from calm.files.current_times import find_times, read_times
 from calm.files.current_values import known_values
-from calm.files.current_variables import UnreadableError, factor_of, holdings
-from calm.files.times import TimeChoiceError, parse_time
-from calm.motion.flags import INTERPOLATED, flag_variable, flags_of
+from calm.files.current_variables import UnreadableError, factor_of, holdings, refuse_ragged
+from calm.files.current_words import words_of
+from calm.files.quality_flags import flag_variable, flags_of
+from calm.motion.flags import INTERPOLATED
 from calm.motion.labelled import labels_along, places_along
+from calm.motion.tables import read_table
 from calm.physics.line import Floats
-from calm.units import QuantityError, unit_factor
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,8 +31,9 @@ PASCALS_PER_DBAR = 1e4
 
 _PRESSURES = ("sea_water_pressure_due_to_sea_water", "sea_water_pressure")
 _USUAL = ("PRES_REL", "PRES", "pressure", "pres")
-_MOST_PROBLEMS = 20
-_HEADED = re.compile(r"(.*?)\s*[\[(]([^\])]*)[\])]\s*")
+_NOT_MEASURED = re.compile(
+    r"\binferred\b|\binterpolated (from|between|using)\b|\bneighbou?r(s|ing)?\b|\bby calm\b"
+)
 
 
 @dataclass(frozen=True)
@@ -138,6 +139,10 @@ def _understood(
     along = others[0] if others else None
     if along is None:  # one instrument, which still may say what or where it is
         along = next((str(dim) for dim in single if _tells(dataset, str(dim), seabed)), None)
+    refuse_ragged(dataset, name)
+    words = words_of(variable, "long_name", "comment")
+    if _NOT_MEASURED.search(words):
+        raise UnreadableError(f"`{name}` is no measurement by its own words: {words[:120]}")
     unit = "pressure" if is_pressure else "length"
     factor = factor_of(variable, unit) / (PASCALS_PER_DBAR if is_pressure else 1.0)
     squeezed = [dim for dim in single if dim != along]
@@ -186,10 +191,11 @@ def _find(dataset: xr.Dataset) -> tuple[str, bool]:
     """The variable of the pressures, or else of the depths; whether it is the former."""
     for standard in _PRESSURES:
         found = [str(name) for name in dataset.cf.standard_names.get(standard, [])]
-        if len(found) > 1:
+        usual = [name for name in _USUAL if name in found]
+        if len(found) > 1 and not usual:
             raise UnreadableError(f"several variables are {standard}: {', '.join(found)}")
         if found:
-            return found[0], True
+            return (usual or found)[0], True
     for name in _USUAL:
         if name in dataset.data_vars:
             return name, True
@@ -221,87 +227,3 @@ def _from_csv(path: Path, latitude: float) -> list[Sensor]:
         )
         for j, (label, dimension) in enumerate(columns)
     ]
-
-
-def read_table(
-    path: Path, dimensions: Sequence[str], example: str
-) -> tuple[NDArray[np.datetime64], list[tuple[str, str]], Floats]:
-    """A CSV table of times and quantities, each column headed by its name and its unit.
-
-    Parameters
-    ----------
-    dimensions : what the columns may be, of `calm.units.DIMENSIONS`
-    example : of a heading
-
-    Returns
-    -------
-    (n,) times, rising; of each column its name and what it is; (n, c) values in SI, NaN in gaps.
-
-    Raises
-    ------
-    InputError
-        With every mistake.
-    """
-    try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            lines = [(i, row) for i, row in enumerate(csv.reader(file), 1) if any(row)]
-    except UnicodeDecodeError:
-        raise InputError([Problem(str(path), 0, 0, "is not UTF-8 text")]) from None
-    except (OSError, csv.Error) as error:
-        raise InputError([Problem(str(path), 0, 0, f"cannot be read: {error}")]) from None
-    lines = [(i, row) for i, row in lines if not row[0].lstrip().startswith("#")]
-    if len(lines) < 2:
-        raise InputError([Problem(str(path), 0, 0, "is empty")])
-    (number, head), *body = lines
-    if head[0].strip().lower() != "time" or len(head) < 2:
-        message = f"is no table over time; its heading should be `time,{example}`"
-        raise InputError([Problem(str(path), number, 1, message)])
-    problems: list[Problem] = []
-    columns, factors = [], []
-    for j, text in enumerate(head[1:], 2):
-        try:
-            label, dimension, factor = _column(text.strip(), dimensions, example)
-        except ValueError as error:
-            problems.append(Problem(str(path), number, j, str(error)))
-        else:
-            columns.append((label, dimension))
-            factors.append(factor)
-    times = np.full(len(body), np.datetime64("NaT"), "M8[ns]")
-    values = np.full((len(body), len(head) - 1), np.nan)
-    for i, (line, row) in enumerate(body):
-        try:
-            times[i] = np.datetime64(parse_time(row[0]).replace(tzinfo=None), "ns")
-        except TimeChoiceError as error:
-            problems.append(Problem(str(path), line, 1, str(error)))
-        if len(row) != len(head):
-            message = f"has {len(row)} cells under a heading of {len(head)}"
-            problems.append(Problem(str(path), line, 1, message))
-            continue
-        for j, cell in enumerate(row[1:]):
-            try:
-                values[i, j] = float(cell) if cell.strip() else np.nan
-            except ValueError:
-                problems.append(Problem(str(path), line, j + 2, f"`{cell[:40]}` is no number"))
-    if problems:
-        raise InputError(problems[:_MOST_PROBLEMS])
-    order = np.argsort(times, kind="stable")
-    return times[order], columns, values[order] * factors
-
-
-def _column(text: str, dimensions: Sequence[str], example: str) -> tuple[str, str, float]:
-    """Name of a column, what it is, and its factor to SI.
-
-    Raises
-    ------
-    ValueError
-        It has no unit, or that of something else.
-    """
-    headed = _HEADED.fullmatch(text)
-    if headed is None:
-        raise ValueError(f"`{text}` needs a unit, as in `{example}`")
-    for dimension in dimensions:
-        try:
-            return headed[1], dimension, unit_factor(headed[2].strip(), dimension)
-        except QuantityError:
-            continue
-    raise ValueError(f"`{headed[2]}` is no unit for it; write it as in `{example}`")

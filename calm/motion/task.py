@@ -17,7 +17,8 @@ from calm.case import Mooring
 from calm.motion.estimate import estimated
 from calm.motion.forward import Forward, points
 from calm.motion.measured import FREE, Measured
-from calm.motion.moment import Common, Moments
+from calm.motion.moment import Moments
+from calm.motion.unknowns import Common
 from calm.motion.whole_record import forwards_of
 from calm.physics.line import Floats
 

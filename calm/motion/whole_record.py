@@ -6,13 +6,17 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from calm.case import Mooring
 from calm.motion import prior
 from calm.motion.filled import gap_errors
 from calm.motion.forward import Forward
 from calm.motion.measured import Measured
-from calm.motion.moment import STEP, Common, Moments, settled
+from calm.motion.moment import STEP, Moments
+from calm.motion.posterior import settled
+from calm.motion.slipped import Evidence, first_time, placed
+from calm.motion.unknowns import Common
 from calm.physics.line import Floats, Integers
 
 MOST_TIMES = 500
@@ -47,12 +51,14 @@ def assumed(mooring: Mooring, measured: Measured, names: Sequence[str]) -> Commo
         *(prior.FACTORS[name][1] for name in names),
         prior.DATUM * mooring.water.depth,
         *[prior.OFFSET] * sensors,
+        *[0.0] * sensors,
     ]
     factors = {name: float(np.exp(prior.FACTORS[name][0])) for name in names}
     moments = Moments(measured, Forward(mooring, factors), {})
     level = moments.levels(np.tile(moments.forward.still, (len(measured.time), 1)))
     gap = gap_errors(level, measured.u, measured.v, moments.group)
-    return Common(factors, 0.0, np.zeros(sensors), np.diag(np.square(spread)), 1.0, gap)
+    none, never = np.zeros(sensors), np.full(sensors, "NaT", "M8[ns]")
+    return Common(factors, 0.0, none, none, never, none, np.diag(np.square(spread)), 1.0, gap)
 
 
 def estimate_common(mooring: Mooring, measured: Measured, names: Sequence[str]) -> Common:
@@ -70,41 +76,84 @@ def estimate_common(mooring: Mooring, measured: Measured, names: Sequence[str]) 
     known = assumed(mooring, part, names)
     if not len(part.time):
         return known
-    beforehand = np.linalg.inv(known.covariance)
-    centre = _vector(known)
-    common = replace(known, covariance=np.zeros_like(known.covariance))
-    for turn in range(TURNS):
+    common, sensors = known, len(part.label)
+    for _ in range(TURNS):
         moments = Moments(part, *forwards_of(mooring, common))
-        here = settled(moments, common)
+        here = settled(moments, replace(common, covariance=np.zeros_like(known.covariance)))
         good = np.isfinite(here.begin.depth).all(axis=1)
+        if not good.any():
+            return known
         slope = here.begin.slope[good][:, part.point]
         currents = slope @ here.way.spread[good] @ slope.transpose(0, 2, 1)
         down = here.begin.depth[good][:, part.point] - moments.forward.still[part.point]
         bend = 0.5 * np.einsum("nss->ns", currents) / np.maximum(down, 1.0)
         there = np.isfinite(part.depth[good])
-        left = np.where(there, here.before.innovation[good] - bend, 0.0)
+        left: Floats = np.where(there, here.before.innovation[good] - bend, 0.0)
         expected = here.before.expected[good]
         scale = _scale(left, expected, currents, common.scale)
         expected = expected + ((scale / common.scale) ** 2 - 1.0) * currents
-        inverse = np.linalg.inv(expected)
-        seen = np.concatenate(
+        inverse = np.asarray(np.linalg.inv(expected), np.float64)
+        misfit = np.einsum("ns,nst,nt->n", left, inverse, left)
+        weight = (ROBUST + there.sum(axis=1)) / (ROBUST + misfit)
+        fixed = np.concatenate(
             [
                 here.begin.common[good][:, part.point],
                 np.ones((*left.shape, 1)),
-                np.broadcast_to(np.eye(left.shape[1]), (*left.shape, left.shape[1])),
+                np.broadcast_to(np.eye(sensors), (*left.shape, sensors)),
             ],
             axis=2,
         )
-        misfit = np.einsum("ns,nst,nt->n", left, inverse, left)
-        weight = (ROBUST + there.sum(axis=1)) / (ROBUST + misfit)
-        normal = np.einsum("n,nsq,nst,ntr->qr", weight, seen, inverse, seen)
-        pull = np.einsum("n,nsq,nst,nt->nq", weight, seen, inverse, left)
-        alike = _alike(pull[:, 0]) if names else 1.0
-        covariance = np.linalg.inv(normal / alike + beforehand)
-        value = _vector(common)
-        value = value + covariance @ (pull.sum(axis=0) / alike + beforehand @ (centre - value))
-        common = _moved(common, value, covariance * (turn == TURNS - 1), scale)
+        time = part.time[good]
+        depth, still = here.begin.depth[good], moments.forward.still
+        moves = common.fall(time, depth, still, part.point)
+        whole = fixed @ common.value[:-sensors] + moves * common.moved
+        raw: Floats = np.where(there, left + whole, 0.0)
+        evidence = Evidence(raw, fixed, inverse, weight, there)
+        alike = _alike(evidence.pulls(fixed, left)[:, 0]) if names else 1.0
+        begun = replace(known, scale=scale, since=np.full(sensors, measured.time[0]))
+        fall = begun.fall(time, depth, still, part.point)
+        common = _placed(begun, evidence, fall, time, alike)
     return common
+
+
+def _placed(
+    known: Common, evidence: Evidence, fall: Floats, time: NDArray[np.datetime64], alike: float
+) -> Common:
+    """What is common by the linear law of all times, over all ways the sensors may hang.
+
+    Parameters
+    ----------
+    known : beforehand
+    fall : (n, s) change of the depth of each sensor with how far down the line it has moved
+    time : (n,) of the evidence
+    alike : so many times that follow each other have the same error, as far as factors go
+    """
+    sensors = fall.shape[1]
+    fixed = len(known.value) - sensors
+    first = first_time(evidence, fall, known.value[:fixed], known.covariance[:fixed, :fixed])
+    fall = np.where(np.arange(len(time))[:, None] >= first, fall, 0.0)
+    seen = np.concatenate([evidence.seen, fall[:, :, None] * np.eye(sensors)], axis=2)
+    normal, pull = evidence.normal(seen), evidence.pulls(seen, evidence.left).sum(axis=0)
+    free = np.linalg.solve(normal + np.eye(len(normal)) / prior.ELSEWHERE**2, pull)
+    rest = evidence.pulls(evidence.seen, evidence.left - seen @ free)[:, fixed - sensors :]
+    longest = max(_alike(column) for column in rest.T)
+    found = placed(
+        normal / alike, pull / alike, known.value, known.covariance, first, len(time),
+        max(longest / alike, 1.0),
+    )  # fmt: skip
+    names, count = list(known.factors), len(known.factors)
+    logs = np.clip(found.mean[:count], -FURTHEST, FURTHEST)
+    offset, moved = found.mean[count + 1 :].reshape(2, sensors)
+    return replace(
+        known,
+        factors={name: float(np.exp(log)) for name, log in zip(names, logs, strict=True)},
+        datum=float(found.mean[count]),
+        offset=offset,
+        moved=moved,
+        since=np.where(first > 0, time[first], known.since),
+        elsewhere=found.elsewhere,
+        covariance=found.covariance,
+    )
 
 
 def _chosen(measured: Measured) -> Integers:
@@ -114,19 +163,6 @@ def _chosen(measured: Measured) -> Integers:
     if len(used) <= MOST_TIMES:
         return used
     return used[np.linspace(0, len(used) - 1, MOST_TIMES).round().astype(np.int64)]
-
-
-def _vector(common: Common) -> Floats:
-    logs = np.log(list(common.factors.values()))
-    return np.concatenate([logs, [common.datum], common.offset])
-
-
-def _moved(known: Common, value: Floats, covariance: Floats, scale: float) -> Common:
-    names, count = list(known.factors), len(known.factors)
-    logs = np.clip(value[:count], -FURTHEST, FURTHEST)
-    factors = {name: float(np.exp(log)) for name, log in zip(names, logs, strict=True)}
-    offset = value[count + 1 :]
-    return Common(factors, float(value[count]), offset, covariance, scale, known.gap)
 
 
 def _scale(left: Floats, expected: Floats, currents: Floats, scale: float) -> float:

@@ -243,12 +243,14 @@ def strumming(
 
 
 def worst_moment(
-    moored: Moored, shape: Shape, loads: Sequence[list[float]], hanging: int, rounding: float
-) -> float:
+    moored: Moored, shape: Shape, loads: Sequence[list[float]], hanging: int, rounding: float,
+    least: float,
+) -> float:  # fmt: skip
     """Largest angle between an element's axis and the mean of the forces at its ends [rad].
 
     Or, where that is larger, departure of a cable's strain from what these forces ask for. Both
-    beyond the `rounding` of the coordinates [m]; of the first `hanging` elements.
+    beyond the `rounding` of the coordinates [m]; of the first `hanging` elements. A force across a
+    segment that is no more than `least` [N] turns it out of nothing.
     """
     east, north, up = loads[0], loads[1], loads[2]
     worst = 0.0
@@ -270,9 +272,10 @@ def worst_moment(
             # the ends of a very short segment are rounded by more than the limit
             length = sqrt(dx * dx + dy * dy + dz * dz)
             angle = angle_against(dx, dy, dz, hx, hy, hz)
-            worst = max(worst, angle - rounding / max(length, rounding))
+            middle = sqrt(hx * hx + hy * hy + hz * hz)
+            blurred = rounding / max(length, rounding) + least / max(middle, least)
+            worst = max(worst, angle - blurred)
             if cable:
-                middle = sqrt(hx * hx + hy * hy + hz * hz)
                 growth = sqrt(bx * bx + by * by + bz * bz) - sqrt(fx * fx + fy * fy + fz * fz)
                 strain = expected_strain(moored, body, middle, 0.5 * growth)
                 worst = max(worst, abs(length / cut - 1.0 - strain) - rounding / cut)

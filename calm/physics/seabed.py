@@ -7,10 +7,10 @@ from dataclasses import replace
 from math import sqrt
 
 from calm.physics.cable import strain_at
-from calm.physics.line import REFERENCE_DENSITY
 from calm.physics.march import End
 from calm.physics.pace import is_fast, paced
 from calm.physics.profile import Profile, water_at
+from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.state import Record, write_element, write_node
 from calm.physics.stretch import Knot, mean_curve_strain
 from calm.physics.track import CABLE, Cable, Course, Track

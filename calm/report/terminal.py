@@ -22,6 +22,7 @@ from calm.report.blocks import (
     Prose,
     Table,
 )
+from calm.report.long_table import MANY, LongTable, Row
 from calm.report.signs import in_ascii, printable
 
 _STYLES = {
@@ -84,18 +85,25 @@ class _Printer:
     def _table(self, block: Table) -> Iterator[RenderableType]:
         if block.title:
             yield self._text(block.title, "bold")
-        rows = _grid(gap=1 if block.dense else 2)
+        gap = 1 if block.dense else 2
+        grid = _grid(gap=gap)
         chosen = [number for number, column in enumerate(block.columns) if column.narrow]
         for number in chosen:
-            self._add_column(rows, block.columns[number])
+            self._add_column(grid, block.columns[number])
+        rows: list[Row] = []
         for count, row in enumerate(block.rows, 1):
             style = "bold" if count > len(block.rows) - block.totals else ""
             if len(row) < len(block.columns):
-                rows.add_row(*(self._text(cell.text, "bold") for cell in row), style=style)
+                rows.append(([self._text(cell.text, "bold") for cell in row], style))
                 continue
-            cells = (self._cell(row[number], block.columns[number]) for number in chosen)
-            rows.add_row(*cells, style=style)
-        yield rows
+            said = [self._cell(row[number], block.columns[number]) for number in chosen]
+            rows.append((said, style))
+        if len(rows) >= MANY:
+            yield LongTable(grid, rows, gap)
+        else:
+            for cells, style in rows:
+                grid.add_row(*cells, style=style)
+            yield grid
         if block.note:
             yield self._text(block.note, _QUIET)
 

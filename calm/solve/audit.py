@@ -69,13 +69,17 @@ class Audit:
         """Largest angle between an element's axis and the mean of the forces at its ends [rad].
 
         The forces follow from the loads. Or, where that is larger, departure of a cable's strain
-        from what these forces ask for. Both beyond the rounding of the coordinates.
+        from what these forces ask for. Both beyond the rounding of the coordinates. Towards a limp
+        end the tension vanishes, and with it what sets the direction: there counts what the force
+        across the line is beyond the rounding of the greatest tension.
         """
         solution = self._solution
-        rounding = 32.0 * float(np.finfo(float).eps * np.abs(solution.position).max())
+        rounding = 32.0 * float(np.finfo(float).eps)
         worst = paced(worst_moment)(
-            self._moored, self._shape, self._written, solution.hanging, rounding
-        )
+            self._moored, self._shape, self._written, solution.hanging,
+            rounding * float(np.abs(solution.position).max()),
+            max(rounding * float(solution.tension.max()), 1e-300),
+        )  # fmt: skip
         return float(worst)
 
 

@@ -7,12 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from calm.physics.line import REFERENCE_DENSITY, Floats, Line
+from calm.physics.line import Floats, Line
+from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.track import Load
 from calm.solve.audit import LARGEST_CLOSURE, LARGEST_MOMENT, Audit
 from calm.solve.closing import Closed, Closing
 from calm.solve.refine import Refined
-from calm.solve.solution import Solution, nodes_of
+from calm.solve.solution import Solution, nodes_of, sizes
 from calm.solve.status import Status
 
 UNSEEN = 1e-9
@@ -114,7 +115,7 @@ def _buoyancy_in_use(closing: Closing, fine: Closed) -> tuple[float, float]:
 def _greatest_force(closing: Closing, fine: Closed, force: Floats) -> float:
     """The greatest tension, or buoyancy of a float whose share in use is sought [N]."""
     lift = closing.line.buoyancy[list(fine.root.unknown.shares(fine.root.x))]
-    return max(float(np.linalg.norm(force, axis=1).max()), float(lift.max(initial=0.0)))
+    return max(float(sizes(force).max()), float(lift.max(initial=0.0)))
 
 
 def _carried(line: Line, changed: Iterable[Load]) -> Line:

@@ -149,14 +149,16 @@ def _growth(closing: Closing, depth: float) -> float:
     A current that only weakens does not grow; one that turns does, by what is new in it.
     """
     water, levels = closing.water, closing.water.level
-    current = np.column_stack([water.u, water.v, water.w])
+    current = np.stack([water.u, water.v, water.w], axis=1)
     upper, lower = current[:-1], current[1:]
-    square = np.maximum(np.sum(upper**2, axis=1), 1e-300)
-    left = np.clip(np.sum(upper * lower, axis=1) / square, 0.0, 1.0)
-    new = np.linalg.norm(lower - left[:, None] * upper, axis=1)
-    new[new <= ROUNDING * np.linalg.norm(lower, axis=1)] = 0.0
-    rise = (new / np.diff(levels))[levels[1:] > depth]
-    speed = float(np.linalg.norm(current, axis=1).max())
+    squares = (current * current).sum(axis=1)
+    left = (upper * lower).sum(axis=1) / np.maximum(squares[:-1], 1e-300)
+    new = lower - np.minimum(np.maximum(left, 0.0), 1.0)[:, None] * upper
+    growth = np.sqrt((new * new).sum(axis=1))
+    speeds = np.sqrt(squares)
+    growth[growth <= ROUNDING * speeds[1:]] = 0.0
+    rise = (growth / (levels[1:] - levels[:-1]))[levels[1:] > depth]
+    speed = float(speeds.max())
     return float(rise.max(initial=0.0)) / max(speed, 1e-300)
 
 

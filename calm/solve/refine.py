@@ -139,20 +139,26 @@ def _abrupt(line: Line, fine: Closed, levels: Floats) -> tuple[float, float]:
     if not between.any():
         return 0.0, 0.0
     length = np.where(segment, cut, 1.0)[:, None]
-    apart = 0.5 * (length[1:] + length[:-1])
     # of place and force together: columns 0 to 2, and 3 to 5
-    slope = np.diff(np.diff(np.hstack([position, force]), axis=0) / length, axis=0) / apart
-    bend = np.diff(slope, axis=0) * length[1:-1] ** 2 / 8.0
+    nodes = np.concatenate([position, force], axis=1)
+    added = (nodes[1:] - nodes[:-1]) / length
+    slope = (added[1:] - added[:-1]) / (0.5 * (length[1:] + length[:-1]))
+    bend = (slope[1:] - slope[:-1]) * length[1:-1] ** 2 / 8.0
     bend = bend.reshape(-1, 2, 3)
     size = np.sqrt(np.einsum("ijk,ijk->ij", bend, bend))
     around = np.full((len(size) + 4, 2), -1.0)
     np.copyto(around[2:-2], size, where=between[:, None])
     usual = np.maximum(around[:-4], around[4:])
     abrupt = between[:, None] & (usual >= 0.0) & (size > usual)
+    here = np.flatnonzero(abrupt.any(axis=1))
+    if not here.size:
+        return 0.0, 0.0
+    bend, size, usual, abrupt = bend[here], size[here], usual[here], abrupt[here]
     share = np.divide(size - usual, size, out=np.zeros_like(size), where=abrupt)
-    strayed, lost = np.moveaxis(share[:, :, None] * bend, 1, 0)
+    strayed, lost = share[:, 0, None] * bend[:, 0], share[:, 1, None] * bend[:, 1]
     # what a force adds to the tension there, and where the line hangs from in the end
-    tension = sizes(force[1:])[:, None]
-    axis = np.divide(force[1:], tension, out=np.zeros_like(force[1:]), where=tension > 0.0)
-    along = np.maximum(np.abs((lost * axis[1:-1]).sum(axis=1)), np.abs(lost @ axis[-1]))
+    pulled = force[[*here + 2, -1]]
+    tension = sizes(pulled)[:, None]
+    axis = np.divide(pulled, tension, out=np.zeros_like(pulled), where=tension > 0.0)
+    along = np.maximum(np.abs((lost * axis[:-1]).sum(axis=1)), np.abs(lost @ axis[-1]))
     return float(sizes(strayed).max()), float(along.max())

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from calm.errors import NoEquilibrium
-from calm.physics.line import REFERENCE_DENSITY, Floats, Line, Water
+from calm.physics.line import Floats, Line, Water
+from calm.physics.reference import REFERENCE_DENSITY
 from calm.solve.status import Status
 
 

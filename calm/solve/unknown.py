@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from calm.physics.hull import Floating, Riding
-from calm.physics.line import REFERENCE_DENSITY
+from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.track import Load, Rod, Track, loads_of
 
 

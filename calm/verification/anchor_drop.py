@@ -12,7 +12,8 @@ from calm.drop.fall import Course, Fineness, Ship, fall, towed
 from calm.drop.motion import Anchor, State
 from calm.drop.record import end_tensions
 from calm.physics.hull import Floating, spherical_hull
-from calm.physics.line import REFERENCE_DENSITY, Line, Water
+from calm.physics.line import Line, Water
+from calm.physics.reference import REFERENCE_DENSITY
 from calm.solve import FallingAnchor, solve_fall
 from calm.verification.case import Case, Kind, Source
 from calm.verification.pieces import GRAVITY, Piece, cable, line_of, sphere_drag

@@ -10,7 +10,8 @@ from math import cos, pi, radians, sin
 import numpy as np
 
 from calm.physics.friction import Friction
-from calm.physics.line import REFERENCE_DENSITY, Floats, Water
+from calm.physics.line import Floats, Water
+from calm.physics.reference import REFERENCE_DENSITY
 from calm.solve import Settings, Solution, solve_mooring
 from calm.verification import s1000
 from calm.verification.case import Case, Kind, Source

@@ -8,7 +8,8 @@ from math import cos, inf, pi, sin
 
 import numpy as np
 
-from calm.physics.line import REFERENCE_DENSITY, Floats, Line, Water
+from calm.physics.line import Floats, Line, Water
+from calm.physics.reference import REFERENCE_DENSITY
 
 GRAVITY = 9.81
 """[m/s²] of every case that does not name another."""

@@ -11,15 +11,18 @@ import pytest
 
 import calm
 from calm.motion import prior
+from calm.motion.doubts import doubts
 from calm.motion.forward import Forward, points
 from calm.motion.matching import labels_of
 from calm.motion.measured import Measured
+from calm.motion.study import knockdown
 from calm.motion.task import Task
 from calm.motion.whole_record import estimate_common
 
 FIELD = Path(__file__).parents[2] / "docs" / "field" / "dune2"
 LEVELS = ("Aquadopp 626", "Aquadopp 426", "Aquadopp 226", "Aquadopp 26")
 USED = ("Aquadopp 626", "Aquadopp 26")
+THREE = ("Aquadopp 626", "Aquadopp 226", "Aquadopp 26")
 BETWEEN = ("solo 575", "Aquadopp 426", "Aquadopp 226")
 NAMES = ("cable_drag", "rigid_drag")
 TIMES = 80
@@ -40,8 +43,12 @@ def wandering(random, count, memory=0.9):
     return series
 
 
-def twin(mooring, seed):
-    """What was measured, and the truth: logarithms of the factors, depths of all points [m]."""
+def twin(mooring, seed, used=USED, slip=None):
+    """What was measured, and the truth: logarithms of the factors, depths of all points [m].
+
+    Of a slip: the label of a used sensor, how far down the line it is from its place in the file
+    [m], from which time on.
+    """
     random = np.random.default_rng(seed)
     logs = 0.15 * random.standard_normal(2)
     forward = Forward(mooring, dict(zip(NAMES, np.exp(logs), strict=True)))
@@ -64,22 +71,29 @@ def twin(mooring, seed):
     turned = random.random(u.shape) < prior.FALSE[1]  # a tilted meter's direction
     angle = turned * random.uniform(0.5, np.pi, u.shape)
     flow = (u + 1j * v) * np.exp(-error + 1j * angle)
-    sensor = np.array([labels.index(label) for label in USED])
+    sensor = np.array([labels.index(label) for label in used])
     sea = 0.8 * np.sin(2.0 * np.pi * np.arange(TIMES) / 12.42) + 0.3 * wandering(random, 1)[:, 0]
     surface = depth + 3.0 * random.standard_normal() + sea[:, None]
-    offset = prior.OFFSET * random.standard_normal(len(USED))
-    noise = prior.NOISE * random.standard_normal((TIMES, len(USED)))
+    offset = prior.OFFSET * random.standard_normal(len(used))
+    noise = prior.NOISE * random.standard_normal((TIMES, len(used)))
     pressure = surface[:, sensor] + offset + noise
+    if slip is not None:
+        label, down, start = slip
+        down_the_line, column = np.argsort(forward.still), used.index(label)
+        place = forward.still[sensor[column]] + np.array([0.0, down])
+        for time in range(start, TIMES):
+            along = forward.still[down_the_line], surface[time, down_the_line]
+            pressure[time, column] += np.diff(np.interp(place, *along))[0]
     pressure[random.random(pressure.shape) < 0.05] = np.nan
     flow[random.random(flow.shape) < 0.03] = np.nan
     measured = Measured(
         time=np.datetime64("2026-01-01", "ns") + np.arange(TIMES) * np.timedelta64(1, "h"),
-        label=USED,
+        label=used,
         point=sensor,
         depth=pressure,
         level_depth=np.full(u.shape, np.nan),
         level_point=at,
-        level_sensor=np.array([USED.index(label) if label in USED else -1 for label in LEVELS]),
+        level_sensor=np.array([used.index(label) if label in used else -1 for label in LEVELS]),
         u=flow.real,
         v=flow.imag,
         flag=np.ones(u.shape, np.int8),
@@ -87,23 +101,63 @@ def twin(mooring, seed):
     return measured, logs, surface
 
 
-def recovered(mooring, seed):
-    """Of one twin: errors of the factors in deviations; whether each depth is in its band."""
-    measured, logs, depth = twin(mooring, seed)
+def recovered(mooring, seed, used=USED, slip=None):
+    """Of one twin: errors of the factors in deviations; which depths are in their bands; doubts."""
+    measured, logs, depth = twin(mooring, seed, used, slip)
     common = estimate_common(mooring, measured, NAMES)
     deviation = np.sqrt(np.diag(common.covariance))[: len(NAMES)]
     missed = (np.log(list(common.factors.values())) - logs) / deviation
     profiles, more = Task(mooring, measured, common).columns(0, TIMES)
     labels = labels_of(mooring)
-    hidden = [labels.index(label) for label in BETWEEN]
+    hidden = [labels.index(label) for label in BETWEEN if label not in used]
     off = np.abs(profiles.clamp_depth[:, hidden] - depth[:, hidden])
-    return missed, off <= 1.96 * more["clamp_depth_sd"][:, hidden]
+    inside = off <= 1.96 * more["clamp_depth_sd"][:, hidden]
+    said = doubts(used, measured.time, more["residual"], knockdown(measured), common)
+    return missed, inside, said
 
 
 def test_a_twin_is_recovered(mooring):
-    missed, inside = recovered(mooring, 3)
+    missed, inside, said = recovered(mooring, 3)
     assert (np.abs(missed) < 3.0).all()
-    assert inside.mean() > 0.8
+    assert inside.mean() > 0.8 and not said
+
+
+SLIPS = (12.0, -9.0, 20.0, -15.0)  # down the line [m]
+
+
+@pytest.mark.parametrize(("label", "down", "start", "said"), [
+    ("Aquadopp 226", 12.0, 0, "m off throughout"),
+    ("Aquadopp 626", -9.0, 40, "a clamp that slipped"),
+])  # fmt: skip
+def test_a_sensor_that_is_not_where_the_file_says_is_named_and_bends_nothing(
+    mooring, label, down, start, said
+):
+    missed, inside, doubted = recovered(mooring, 0, THREE, (label, down, start))
+    (found,) = doubted
+    assert found.startswith(f"{label}: ") and said in found and "cannot tell" not in found
+    assert (np.abs(missed) < 2.0).all()
+    assert inside.mean() > 0.9
+
+
+def test_of_two_sensors_too_the_one_that_hangs_elsewhere_leaves_the_bands_honest(mooring):
+    _, plain, _ = recovered(mooring, 0)
+    missed, inside, doubted = recovered(mooring, 0, USED, ("Aquadopp 26", -9.0, 0))
+    assert doubted[0].startswith("Aquadopp 26: -")
+    assert (np.abs(missed) < 2.0).all()
+    assert inside.mean() >= plain.mean() - 0.05
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("begins", [lambda seed: 0, lambda seed: 30 + seed % 20])
+def test_100_twins_with_a_sensor_elsewhere_lie_within_their_intervals(mooring, begins):
+    twins = [
+        (THREE[seed % 3], recovered(mooring, seed, THREE, (THREE[seed % 3], down, begins(seed))))
+        for seed, down in enumerate(SLIPS * 25)
+    ]
+    missed = np.array([one[0] for _, one in twins])
+    assert (np.abs(missed) <= 1.96).mean() >= 0.88
+    assert np.mean([one[1] for _, one in twins]) >= 0.92
+    assert np.mean([any(label in said for said in one[2]) for label, one in twins]) >= 0.95
 
 
 @pytest.mark.slow

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from calm.case import Mooring
-from calm.physics.line import REFERENCE_DENSITY, Floats, Line, Water
+from calm.physics.line import Floats, Line, Water
+from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.track import Cable, Rod, Track, loads_of
 from calm.solve.standing import standing_lift
 

@@ -14,8 +14,9 @@ from math import nan
 from typing import Any, NamedTuple
 
 from calm.physics.element import drag_share
-from calm.physics.line import REFERENCE_DENSITY, Floats, Integers
+from calm.physics.line import Floats, Integers
 from calm.physics.profile import Sea, water_at
+from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.state import State
 
 LANES = 16

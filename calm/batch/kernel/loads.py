@@ -7,9 +7,10 @@ from math import sqrt
 from calm.batch.kernel import lane
 from calm.batch.kernel.lane import LANES, SINGLY, Tables, look_up, lost
 from calm.batch.kernel.layout import Way
-from calm.physics.line import REFERENCE_DENSITY, Floats
+from calm.physics.line import Floats
+from calm.physics.load import load_force, load_lift, load_variation, speed_across
 from calm.physics.profile import viscosity_at
-from calm.physics.rod import load_force, load_lift, load_variation, speed_across
+from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.track import Load
 
 IN_WATER, AFLOAT, ABOVE_FLOAT = range(3)

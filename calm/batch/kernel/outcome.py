@@ -101,7 +101,7 @@ def write_case(way: Way, shape: Floats, used: float, results: Results, case: int
             clamps[case, 0, m] = -shape[a + 2]
             clamps[case, 1, m], clamps[case, 2, m] = shape[a], shape[a + 1]
             clamps[case, 3, m] = max(upper, lower)
-            clamps[case, 4, m] = tilt_of(shape[a + 6], shape[a + 7], -shape[a + 8])
+            clamps[case, 4, m] = tilt_of(fx + gx, fy + gy, fz + gz)
         if n + 1 == stages or piece_of(course, n + 1) != p:
             if piece_length[p] > 0.0:
                 pieces[case, TILT, p] = tilt_of(

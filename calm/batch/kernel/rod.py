@@ -28,7 +28,8 @@ from calm.batch.kernel.loads import (
 )
 from calm.physics.element import axis_against, few_steps_share
 from calm.physics.line import Floats
-from calm.physics.rod import force_at, load_force, load_lift, next_axis, speed_across
+from calm.physics.load import force_at, load_force, load_lift, speed_across
+from calm.physics.rod_axis import next_axis
 from calm.physics.track import Load, Stage
 
 

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from calm.batch.records.choice import Period, choose_profiles, part
 from calm.batch.records.record import RULES, Levels, Record
 from calm.errors import InputError, Problem
@@ -54,6 +57,11 @@ class ArrayRecord(Record):
         depth = arrays.depth[mine] if self._current.moves else arrays.depth
         w = None if arrays.w is None else arrays.w[mine]
         return depth, arrays.u[mine], arrays.v[mine], w
+
+    def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
+        """See `Record`."""
+        with reading(self._path):
+            return self._current.flags(part(self._index, start, stop))
 
     def _window(self, start: int, stop: int) -> tuple[int, int, CurrentArrays]:
         """The profiles around those wanted that are decompressed with them, and which they are."""

@@ -60,6 +60,10 @@ class Record(ABC):
             The file is damaged there.
         """
 
+    def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
+        """(m, k) quality flags of the currents of some profiles; None where it has none."""
+        return None
+
     @abstractmethod
     def close(self) -> None:
         """Leave the file."""

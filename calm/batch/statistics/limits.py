@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from calm.batch.statistics.series import Column, Series
+from calm.batch.statistics.series import Column, Seat, Series
 from calm.case import Mooring
 from calm.checks.criterion import AT_SURFACE, Criterion, Judged
 from calm.checks.finding import Rule, State
@@ -101,26 +101,31 @@ def top_knockdown(series: Series) -> Column:
     return series.column("knockdown", 0)
 
 
+def _seat(part: Judged) -> Seat:
+    return Seat(part.index) if part.clamp is None else Seat(part.clamp, True)
+
+
 def _greatest_tension(series: Series, part: Judged, mooring: Mooring) -> Column:
-    clamps = mooring.file.pieces[part.index].clamps
-    return series.greatest_tension([part.label, *(clamp.label for clamp in clamps)])
+    pieces = mooring.file.pieces
+    first = sum(len(piece.clamps) for piece in pieces[: part.index])
+    clamps = range(first, first + len(pieces[part.index].clamps))
+    return series.greatest_tension([_seat(part), *(Seat(clamp, True) for clamp in clamps)])
 
 
 def _least_tension(series: Series, part: Judged, mooring: Mooring) -> Column:
     """Of the ends of a piece; NaN where all of it lies on the seabed."""
-    lies = series.depth(part.label) >= mooring.water.depth * (1.0 - _LYING)
-    least = series.least_tension(part.label)
+    lies = series.depth(_seat(part)) >= mooring.water.depth * (1.0 - _LYING)
+    least = series.least_tension(_seat(part))
     least[lies] = np.nan
     return least
 
 
 def _greatest_depth(series: Series, part: Judged, mooring: Mooring) -> Column:
     """Of both ends of a piece, the lower one being the upper one of the piece below."""
-    depth = series.depth(part.label)
+    depth = series.depth(_seat(part))
     floats = depth <= (AT_SURFACE if reaches_the_surface(mooring) else -np.inf)
     if part.clamp is None:
-        below = mooring.file.pieces[part.index + 1].label
-        np.maximum(depth, series.depth(below), out=depth)
+        np.maximum(depth, series.depth(Seat(part.index + 1)), out=depth)
     depth[floats] = np.nan
     return depth
 
@@ -157,7 +162,7 @@ _VALUES: dict[str, Callable[[Series, Judged, Mooring], Column]] = {
     "tension": _greatest_tension,
     "tension_bottom": lambda series, part, _: series.column("tension_bottom", part.index),
     "least_tension": _least_tension,
-    "tilt": lambda series, part, _: series.tilt(part.label),
+    "tilt": lambda series, part, _: series.tilt(_seat(part)),
     "depth": _greatest_depth,
     "top_depth": lambda series, _, __: series.column("depth_top", 0),
     "knockdown": lambda series, _, __: top_knockdown(series),

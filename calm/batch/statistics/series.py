@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from tempfile import TemporaryFile
 from types import TracebackType
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,19 @@ _COLUMNS = (
 )  # fmt: skip
 _ROWS = 32768  # profiles turned at a time
 _FIGURE = np.dtype(np.float32)
+
+
+class Seat(NamedTuple):
+    """Where a part of the line has its column in a result.
+
+    Attributes
+    ----------
+    number : from the top, among the components or among the clamps
+    clamped : which of the two
+    """
+
+    number: int
+    clamped: bool = False
 
 
 class Series:
@@ -90,9 +103,14 @@ class Series:
         return len(self.time)
 
     @property
-    def labels(self) -> tuple[str, ...]:
+    def seats(self) -> tuple[Seat, ...]:
         """Of the components, then of the clamps."""
-        return (*self.component_label, *self.clamp_label)
+        components, clamps = len(self.component_label), len(self.clamp_label)
+        return (*map(Seat, range(components)), *(Seat(each, True) for each in range(clamps)))
+
+    def label(self, seat: Seat) -> str:
+        """What a part is called."""
+        return (self.clamp_label if seat.clamped else self.component_label)[seat.number]
 
     def ends(self, name: str) -> Column:
         """(n,) of a variable of the whole line, such as `anchor_vertical`."""
@@ -110,57 +128,44 @@ class Series:
             values.append(np.frombuffer(self._turned.read(_FIGURE.itemsize), _FIGURE)[0])
         return np.array(values, _FIGURE)
 
-    def depth(self, label: str) -> Column:
+    def depth(self, seat: Seat) -> Column:
         """(n,) depth of the upper end of a component, or of a clamp [m]."""
-        prefix, index = self._place(label)
-        return self.column("clamp_depth" if prefix else "depth_top", index)
+        return self.column("clamp_depth" if seat.clamped else "depth_top", seat.number)
 
-    def knockdown(self, label: str) -> Column:
+    def knockdown(self, seat: Seat) -> Column:
         """(n,) how much deeper than in still water [m]."""
-        prefix, index = self._place(label)
-        return self.column(f"{prefix}knockdown", index)
+        return self.column("clamp_knockdown" if seat.clamped else "knockdown", seat.number)
 
-    def tilt(self, label: str) -> Column:
+    def tilt(self, seat: Seat) -> Column:
         """(n,) from the vertical [degrees]."""
-        prefix, index = self._place(label)
-        return self.column(f"{prefix}tilt", index)
+        return self.column("clamp_tilt" if seat.clamped else "tilt", seat.number)
 
-    def tension(self, label: str) -> Column:
-        """(n,) the greater of those at both ends of a component, or at a clamp [N]."""
-        return self.greatest_tension([label])
-
-    def greatest_tension(self, labels: Sequence[str]) -> Column:
+    def greatest_tension(self, seats: Sequence[Seat]) -> Column:
         """(n,) the greatest of those at the ends of components and at clamps [N]."""
-        return self._gathered(np.maximum, labels)
+        return self._gathered(np.maximum, seats)
 
-    def least_tension(self, label: str) -> Column:
+    def least_tension(self, seat: Seat) -> Column:
         """(n,) the lesser of those at both ends of a component, or at a clamp [N]."""
-        return self._gathered(np.minimum, [label])
+        return self._gathered(np.minimum, [seat])
 
-    def _gathered(self, choose: np.ufunc, labels: Sequence[str]) -> Column:
-        first, *others = (column for label in labels for column in self._tensions(label))
+    def _gathered(self, choose: np.ufunc, seats: Sequence[Seat]) -> Column:
+        first, *others = (column for seat in seats for column in self._tensions(seat))
         chosen, tension = self._read(first), None
         for other in others:
             tension = self._read(other, tension)
             choose(chosen, tension, out=chosen)
         return chosen
 
-    def _tensions(self, label: str) -> tuple[int, ...]:
+    def _tensions(self, seat: Seat) -> tuple[int, ...]:
         """The columns of the tensions of a part."""
-        prefix, index = self._place(label)
-        names = ("clamp_tension",) if prefix else ("tension_top", "tension_bottom")
-        return tuple(self._columns[name][index] for name in names)
+        names = ("clamp_tension",) if seat.clamped else ("tension_top", "tension_bottom")
+        return tuple(self._columns[name][seat.number] for name in names)
 
     def _read(self, column: int, into: Column | None = None) -> Column:
         values = np.empty(len(self), _FIGURE) if into is None else into
         self._turned.seek(column * values.nbytes)
         self._turned.readinto(values.data)
         return values
-
-    def _place(self, label: str) -> tuple[str, int]:
-        if label in self.component_label:
-            return "", self.component_label.index(label)
-        return "clamp_", self.clamp_label.index(label)
 
     def _turn(self) -> None:
         first = 0

@@ -181,13 +181,13 @@ def _parts(series: Series) -> Iterator[Part]:
     def of(values: Column) -> Distribution | None:
         return distribution_of(values, series.time)
 
-    for label in series.labels:
+    for seat in series.seats:
         yield Part(
-            label,
-            label in series.clamp_label,
-            of(series.knockdown(label)),
-            of(series.tilt(label)),
-            of(series.tension(label)),
+            series.label(seat),
+            seat.clamped,
+            of(series.knockdown(seat)),
+            of(series.tilt(seat)),
+            of(series.greatest_tension([seat])),
         )
 
 
@@ -197,8 +197,8 @@ def _anchor_tension(series: Series) -> Column:
 
 def _greatest_tilt(series: Series) -> Column:
     greatest = np.full(len(series), np.nan, np.float32)
-    for label in series.labels:
-        np.fmax(greatest, series.tilt(label), out=greatest)
+    for seat in series.seats:
+        np.fmax(greatest, series.tilt(seat), out=greatest)
     return greatest
 
 
@@ -258,5 +258,5 @@ def _profile(series: Series, index: int) -> Profile:
         anchor_tension=float(series.at("tension_top", index)[-1]),
         tilt=float(tilts[most]),
         offset=hypot(series.at("x_top", index)[0], series.at("y_top", index)[0]),
-        leaning=series.labels[most],
+        leaning=series.label(series.seats[most]),
     )

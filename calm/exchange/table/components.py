@@ -9,7 +9,7 @@ from calm.exchange.design import Component, Figure
 from calm.exchange.mdd.elements import MODULI
 from calm.exchange.table.rows import Row
 from calm.exchange.words import is_chain, role_of
-from calm.physics.line import REFERENCE_DENSITY
+from calm.physics.reference import REFERENCE_DENSITY
 from calm.units import KILOGRAM_FORCE
 
 _USUAL = {"cable": 1.3, "chain": 2.75, "sphere": 0.5, "cylinder": 1.2}

@@ -15,8 +15,8 @@ PLACE, TENSION = 1e-4, 2e-4
 """What is promised, as shares of the water depth and of the tension."""
 TILT = 0.1
 """Degrees; of a piece, whose ends are off by 1e-4 of the water depth at most."""
-CLAMP_TILT = 1.0
-"""Degrees; `calm run` gives that of the segment above, which turns by a degree."""
+CLAMP_TILT = np.degrees(TENSION)
+"""Degrees; of the pull in the line, whose direction is as good as its size."""
 
 
 def shipped(name: str) -> Mooring:

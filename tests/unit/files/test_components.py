@@ -12,7 +12,7 @@ from calm.files.definition import CATALOGUE_DENSITY
 from calm.files.document import Document
 from calm.files.entries import Entry
 from calm.files.section import Section
-from calm.physics.line import REFERENCE_DENSITY
+from calm.physics.reference import REFERENCE_DENSITY
 
 G = 9.80665
 

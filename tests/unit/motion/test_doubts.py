@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from calm.motion.doubts import doubts, false_currents, said_of_currents
-from calm.motion.moment import Common
+from calm.motion.unknowns import Common
 
 TIMES = 100
 TIME = np.datetime64("2026-03-01", "ns") + np.arange(TIMES) * np.timedelta64(1, "h")
@@ -14,8 +14,17 @@ LABELS = ("upper", "middle", "lower")
 
 def named(residual, offset=(0.0, 0.0, 0.0), down=None):
     down = np.zeros(TIMES) if down is None else down
-    common = Common({}, 0.0, np.array(offset), np.eye(4), 1.0, np.eye(3))
-    return doubts(LABELS, TIME, residual, down, common)
+    return doubts(LABELS, TIME, residual, down, common(offset))
+
+
+def common(offset, elsewhere=None, moved=None, since=None):
+    count = len(offset)
+    none, never = np.zeros(count), np.full(count, "NaT", "M8[ns]")
+    return Common(
+        {}, 0.0, np.array(offset), none if moved is None else np.array(moved),
+        never if since is None else np.array(since), none if elsewhere is None else
+        np.array(elsewhere), np.eye(2 * count + 1), 1.0, np.eye(3),
+    )  # fmt: skip
 
 
 def test_noise_is_not_named():
@@ -48,14 +57,26 @@ def test_strong_currents_say_nothing_of_sensors():
 def test_two_sensors_cannot_tell_which_of_them_it_is():
     residual = NOISE[:, :2].copy()
     residual[60:, 1] += 4.0
-    common = Common({}, 0.0, np.zeros(2), np.eye(3), 1.0, np.eye(3))
-    (said,) = doubts(LABELS[:2], TIME, residual, np.zeros(TIMES), common)
-    assert "two cannot tell" in said
+    for elsewhere, also in (((0.0, 0.0), True), ((0.4, 0.6), True), ((0.0, 0.99), False)):
+        known = common(np.zeros(2), elsewhere)
+        (said,) = doubts(LABELS[:2], TIME, residual, np.zeros(TIMES), known)
+        assert said.startswith("middle: steps by +4")
+        assert ("or upper the other way: they cannot tell" in said) == also
 
 
 def test_an_offset_that_is_too_large_is_named():
     (said,) = named(NOISE, offset=(0.0, -2.6, 2.4))
     assert said.startswith("middle: -2.6 m off throughout")
+
+
+def test_a_sensor_that_hangs_elsewhere_is_named_where_only_strong_currents_show_it():
+    moved, since = (12.0, -9.0, 5.0), TIME[[0, 40, 40]]
+    known = common((0.5, 0.0, 0.0), (0.9, 0.97, 0.3), moved, since)
+    said = doubts(LABELS, TIME, NOISE, np.zeros(TIMES), known)
+    assert said[0].startswith("upper: +12.5 m off throughout")
+    assert "or middle, lower the other way: they cannot tell" in said[0]
+    assert said[1].startswith("middle: hangs 9.0 m above its place from 2026-03-02T16:00 on")
+    assert len(said) == 2
 
 
 def test_currents_that_look_false_are_listed_with_their_times():

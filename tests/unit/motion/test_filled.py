@@ -35,3 +35,13 @@ def test_few_times_say_nothing_and_equal_levels_are_not_without_error():
     assert (gap_errors(level, same, same, np.arange(4)) == prior.GAP).all()
     many = [np.repeat(one, 2, axis=0) for one in (level, same, same)]
     assert (gap_errors(*many, np.arange(4)) == prior.LEVEL[1]).all()
+
+
+@pytest.mark.parametrize("gap", [0, 1, 2])
+def test_times_with_a_gap_in_any_of_depth_u_and_v_say_nothing_of_neighbours(gap):
+    # every second time would say that the second level is ten times as fast
+    speed = np.tile([0.8, 0.7, 0.6, 0.5], (60, 1))
+    speed[::2, 1] *= 10.0
+    given = [np.tile(LEVEL, (60, 1)), speed, speed.copy()]
+    given[gap][::2, 3] = np.nan
+    assert gap_errors(*given, np.arange(4))[1, 1] == prior.LEVEL[1]

@@ -1,5 +1,7 @@
 """Values at common times, and which times these are."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -40,6 +42,12 @@ def test_times_are_those_of_the_first_current_and_what_is_far_from_it():
     assert common_times([first], [other]).tolist() == hours(0, 1, 2, 2.6, 3.0).tolist()
 
 
+def test_a_burst_far_from_the_currents_is_one_time():
+    first, burst = currents(hours(0, 1, 2), [0.1, 0.2, 0.3]), hours(2.7, 2.71, 2.72, 2.94, 2.96)
+    found = common_times([first], [sensor("a", burst, np.ones(5))])
+    assert found.tolist() == hours(0, 1, 2, 2.7, 2.96).tolist()
+
+
 def test_records_are_joined_level_by_level_from_the_top_down():
     low = currents(hours(0, 1, 2), [0.1, 0.2, 0.3], depth=(90.0,))
     high = currents(hours(1, 2, 3), [0.5, 0.6, 0.7], depth=(10.0,), false=np.array([0, 1, 0], bool))
@@ -63,3 +71,14 @@ def test_records_that_share_no_time_are_refused():
     here, later = currents(hours(0, 1), [0.1, 0.2]), [sensor("a", hours(50, 51), [20, 21])]
     with pytest.raises(UsageError, match="no time has both a current and a pressure"):
         joined([here], later, [0], ("a",), np.array([20.0]), np.timedelta64(2, "h"))
+
+
+@pytest.mark.parametrize("lost", ["u", "v"])
+def test_half_a_current_is_none(lost):
+    here = currents(hours(0, 1), [0.1, 0.2])
+    here = replace(here, **{lost: np.full((2, 1), np.nan)})
+    with pytest.raises(UsageError, match="no time has both a current and a pressure"):
+        joined(
+            [here], [sensor("a", hours(0, 1), [20, 21])], [0], ("a",), np.array([20.0]),
+            np.timedelta64(2, "h"),
+        )  # fmt: skip

@@ -8,7 +8,9 @@ import pytest
 
 from calm.motion import prior
 from calm.motion.measured import Measured
-from calm.motion.moment import Common, Linear, Moments, posterior
+from calm.motion.moment import Moments
+from calm.motion.posterior import Linear, posterior
+from calm.motion.unknowns import Common
 
 STILL = np.array([50.0, 100.0, 180.0])  # of three points; the first and the last have sensors
 THERE = np.array([80.0, 120.0, 185.0])
@@ -16,6 +18,8 @@ SLOPE = np.array([[30.0, 15.0], [12.0, 14.0], [1.0, 4.0]])
 COMMON = np.array([[20.0], [15.0], [4.0]])
 SPREAD = np.array([[0.02, 0.004], [0.004, 0.01]])
 READ = np.array([93.0, 186.5])
+FALL = (185.0 - 120.0) / (180.0 - 100.0)  # of the line at the second sensor
+SINCE = "2026-02-28"  # it has moved before the time
 
 
 def given(tide=None):
@@ -24,8 +28,11 @@ def given(tide=None):
         np.zeros((1, 2)), np.array([-1, -1]), np.array([-1, -1]), np.zeros((1, 2)),
         np.zeros((1, 2)), np.zeros((1, 2), np.int8), tide,
     )  # fmt: skip
-    covariance = np.diag([0.1, 0.8, 0.5, 0.6]) ** 2  # factor, datum, two offsets
-    common = Common({"cable_drag": 1.1}, 0.4, np.array([0.3, -0.2]), covariance, 1.0, np.eye(2))
+    covariance = np.diag([0.1, 0.8, 0.5, 0.6, 0.0, 0.9]) ** 2  # factor, datum, offsets, steps
+    common = Common(
+        {"cable_drag": 1.1}, 0.4, np.array([0.3, -0.2]), np.array([0.0, 0.7]),
+        np.array(["NaT", SINCE], "M8[ns]"), np.zeros(2), covariance, 1.0, np.eye(2),
+    )  # fmt: skip
     at = Linear(np.array([[0.05, -0.02]]), THERE[None], SLOPE[None], COMMON[None])
     return one, at, common
 
@@ -34,23 +41,23 @@ def given(tide=None):
 def test_the_posterior_is_that_of_all_unknowns_written_out(tide):
     one, at, common = given(tide)
     found = posterior(one, at, SPREAD[None], common, STILL)
-    # unknowns: two logarithms, sea, factor, datum, two offsets, three errors of the line
+    # unknowns: two logarithms, sea, factor, datum, two offsets, two steps, three errors of the line
     sea = prior.TIDE if tide is None else prior.RESIDUAL_TIDE
     down = prior.WORST * (THERE - STILL)
     alike = np.exp(-np.abs(STILL[:, None] - STILL[None]) / (0.25 * np.ptp(STILL)))
     # the law is of the exponential kind only between a point and a sensor
     bent = np.outer(down, down) * alike
-    covariance = np.zeros((10, 10))
+    covariance = np.zeros((12, 12))
     covariance[:2, :2], covariance[2, 2] = SPREAD, sea**2
-    covariance[3:7, 3:7], covariance[7:, 7:] = common.covariance, bent
+    covariance[3:9, 3:9], covariance[9:, 9:] = common.covariance, bent
     depth = np.hstack(
-        [SLOPE, np.ones((3, 1)), COMMON, np.ones((3, 1)), np.zeros((3, 2)), np.eye(3)]
+        [SLOPE, np.ones((3, 1)), COMMON, np.ones((3, 1)), np.zeros((3, 4)), np.eye(3)]
     )
     seen = depth[[0, 2]].copy()
-    seen[:, 5:7] = np.eye(2)
+    seen[:, 5:7], seen[1, 8] = np.eye(2), FALL
     level = THERE - SLOPE @ at.logs[0] + common.datum + (0.0 if tide is None else tide[0])
     expected = seen @ covariance @ seen.T + prior.NOISE**2 * np.eye(2)
-    innovation = READ - level[[0, 2]] - common.offset
+    innovation = READ - level[[0, 2]] - common.offset - [0.0, 0.7 * FALL]
     gain = covariance @ seen.T @ np.linalg.inv(expected)
     state, left = gain @ innovation, covariance - gain @ seen @ covariance
     assert found.innovation[0] == pytest.approx(innovation)

@@ -1,0 +1,165 @@
+"""Sensors that do not hang where the file says: from the beginning, or from some time on.
+
+The normal prior of an offset, a metre, cannot believe in a clamp that sits ten metres lower: it
+would bend the factors and the datum instead. So every way the sensors may hang is a normal prior of
+its own: all as the file says, or one or two of them elsewhere, throughout or from the time on at
+which their record says so most clearly. The pressures weigh these ways, and the mean and the
+covariance of the mixture are taken. Where two sensors cannot tell which of them it is, the
+covariance is as wide as that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import chain, combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.motion import prior
+from calm.physics.line import Floats, Integers
+
+FEWEST = 4
+"""Readings of a sensor before and after its clamp slips, at least."""
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What each time says of the common unknowns x, by the linear law left = seen (x - 0).
+
+    Attributes
+    ----------
+    left : (n, s) measured less computed depths where the unknowns are 0 [m]; 0 of no reading
+    seen : (n, s, q) their slopes with the unknowns; no moves are among these
+    inverse : (n, s, s) of the covariance of `left` beside the unknowns
+    weight : (n,) what a time counts
+    known : (n, s) whether there is a reading
+    """
+
+    left: Floats
+    seen: Floats
+    inverse: Floats
+    weight: Floats
+    known: NDArray[np.bool_]
+
+    def pulls(self, seen: Floats, left: Floats) -> Floats:
+        """(n, q) slopes of the logarithm of the likelihood of each time."""
+        pull: Floats = np.einsum("n,nsq,nst,nt->nq", self.weight, seen, self.inverse, left)
+        return pull
+
+    def normal(self, seen: Floats) -> Floats:
+        """(q, q) the information of all times."""
+        heavy = self.weight[:, None, None] * self.inverse
+        matrix: Floats = np.einsum("nsq,nsr->qr", seen, heavy @ seen)
+        return matrix
+
+
+def first_time(evidence: Evidence, fall: Floats, mean: Floats, covariance: Floats) -> Integers:
+    """(s,) the time from which on each sensor most likely hangs elsewhere, if it does.
+
+    0 is throughout; -1 where it has too few readings. Each is weighed beside all that is known
+    beforehand.
+
+    Parameters
+    ----------
+    fall : (n, s) change of the depth of each sensor with how far it has moved
+    mean, covariance : (q,), (q, q) of the unknowns beforehand, without moves
+    """
+    count = len(fall)
+    if not count:
+        return np.full(fall.shape[1], -1)
+    before = np.linalg.inv(covariance)
+    inverse = np.linalg.inv(evidence.normal(evidence.seen) + before)
+    pull = evidence.pulls(evidence.seen, evidence.left).sum(axis=0)
+    left = evidence.left - evidence.seen @ (inverse @ (pull + before @ mean))
+    heavy = evidence.weight[:, None, None] * evidence.inverse
+    own = _from_there_on(fall * (heavy @ left[:, :, None])[:, :, 0])
+    cross = _from_there_on(evidence.seen.transpose(0, 2, 1) @ (heavy * fall[:, None, :]))
+    alone = _from_there_on(fall**2 * np.einsum("nss->ns", heavy))
+    size = np.maximum(alone - np.einsum("nqs,qr,nrs->ns", cross, inverse, cross), 0.0)
+    wide = prior.ELSEWHERE**2
+    gain = 0.5 * own**2 / (size + 1.0 / wide) - 0.5 * np.log1p(wide * size)
+    gain[1:] += np.log(prior.SLIPPED / count)
+    gain[0] += np.log(prior.MISPLACED)
+    after = _from_there_on(evidence.known.astype(float))
+    can = (after >= FEWEST) & (after[:1] - after >= FEWEST)
+    can[0] = after[0] >= FEWEST
+    first: Integers = np.where(can.any(axis=0), np.where(can, gain, -np.inf).argmax(axis=0), -1)
+    return first
+
+
+@dataclass(frozen=True)
+class Placed:
+    """The common unknowns over all ways the sensors may hang.
+
+    Attributes
+    ----------
+    mean, covariance : (q,), (q, q), moves included
+    elsewhere : (s,) see `calm.motion.unknowns.Common`
+    """
+
+    mean: Floats
+    covariance: Floats
+    elsewhere: Floats
+
+
+def placed(
+    normal: Floats, pull: Floats, mean: Floats, covariance: Floats, first: Integers,
+    times: int, alike: float,
+) -> Placed:  # fmt: skip
+    """The mixture over all ways the sensors may hang.
+
+    Parameters
+    ----------
+    normal, pull : (q, q), (q,) information of the record on the unknowns, moves included
+    mean, covariance : (q,), (q, q) beforehand, where every sensor hangs as the file says
+    first : (s,) of `first_time`
+    times : number of times at which a clamp may slip
+    alike : by how much less than `normal` says the record tells where a sensor hangs
+    """
+    sensors, count = len(first), len(mean)
+    offset, moved = count - 2 * sensors, count - sensors
+    told = []
+    for way in _ways(np.flatnonzero(first >= 0)):
+        spread = covariance.copy()
+        chance = 0.0
+        for sensor in way:
+            spread[moved + sensor, moved + sensor] = prior.ELSEWHERE**2
+            if first[sensor]:
+                chance += np.log(prior.SLIPPED / times)
+            else:  # its zero may be wrong as well as its place
+                spread[offset + sensor, offset + sensor] += prior.ELSEWHERE**2
+                chance += np.log(prior.MISPLACED)
+        free = np.flatnonzero(np.diag(spread) > 0.0)
+        part = np.ix_(free, free)
+        before = np.linalg.inv(spread[part])
+        centre = before @ mean[free]
+        known = np.linalg.inv(normal[part] / alike + before)
+        drawn = pull[free] / alike + centre
+        log = chance + 0.5 * (drawn @ known @ drawn - mean[free] @ centre)
+        log += 0.5 * (np.linalg.slogdet(known)[1] + np.linalg.slogdet(before)[1])
+        found, whole = np.zeros(count), np.zeros((count, count))
+        whole[part] = np.linalg.inv(normal[part] + before)
+        found[free] = whole[part] @ (pull[free] + centre)
+        told.append((log, way, found, whole))
+    weights = np.exp([log - max(one[0] for one in told) for log, *_ in told])
+    weights /= weights.sum()
+    centre = np.sum([w * one[2] for w, one in zip(weights, told, strict=True)], axis=0)
+    spread, elsewhere = np.zeros((count, count)), np.zeros(sensors)
+    for weight, (_, way, found, whole) in zip(weights, told, strict=True):
+        off = found - centre
+        spread += weight * (whole + np.outer(off, off))
+        elsewhere[list(way)] += weight
+    return Placed(centre, spread, elsewhere)
+
+
+def _ways(sensors: Integers) -> Iterator[tuple[int, ...]]:
+    """None of them elsewhere, one or two."""
+    return chain.from_iterable(combinations(sensors.tolist(), size) for size in range(3))
+
+
+def _from_there_on(values: Floats) -> Floats:
+    """Sums over the first axis from each place to the end."""
+    sums: Floats = np.cumsum(values[::-1], axis=0)[::-1]
+    return sums

@@ -1,0 +1,201 @@
+"""How a rigid body leans: the axis about whose middle no force turns it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf, sqrt
+
+from calm.physics.element import Vector, axis_along, drag_share
+from calm.physics.load import force_at, load_lift, load_variation, speed_across
+from calm.physics.profile import Sea, viscosity_at, water_at
+from calm.physics.reference import REFERENCE_DENSITY
+from calm.physics.reynolds import Smooth, varying_share
+from calm.physics.state import MarchError, State
+from calm.physics.track import Load, Stage
+
+_PASSES = 200
+_HALVINGS = 60
+_NOTHING = 1e-12
+
+
+def rod_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) -> Vector:
+    """Axis for which the moments about the rod's middle vanish.
+
+    With several loads q_i at distances a_i from the top the rule of one load becomes
+    t ∥ F + Σ (1 - a_i/L) q_i. The normal drags are gathered into one current and one coefficient
+    that reproduce their sum at the present axis, so each pass solves a single element exactly,
+    its drag curve included, and only shear along the rod is left to the passes; where several
+    drags follow curves, these are, too.
+
+    Raises
+    ------
+    MarchError
+        Where the passes do not settle.
+    """
+    _, _, _, _, _, _, rise, _ = state
+    tx, ty, tz = 0.0, 0.0, rise
+    pace, earlier = 1.0, inf
+    for _ in range(_PASSES):
+        x, y, z = next_axis(rod, loads, sea, state, tx, ty, tz)
+        change = abs(x - tx) + abs(y - ty) + abs(z - tz)
+        if change < 1e-12:
+            return x, y, z
+        if change > 0.7 * earlier:
+            pace *= 0.5
+        earlier = change
+        if pace < 1.0:
+            x, y, z = tx + pace * (x - tx), ty + pace * (y - ty), tz + pace * (z - tz)
+            size = sqrt(x * x + y * y + z * z)
+            if size == 0.0:
+                break
+            x, y, z = x / size, y / size, z / size
+        tx, ty, tz = x, y, z
+    return bracketed_axis(rod, loads, sea, state)
+
+
+def bracketed_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) -> Vector:
+    """The axis of `rod_axis` where the water changes so much along the rod that passes stall.
+
+    The depths of the loads, and with them the water, follow from the axis's rise alone. For the
+    water at a rise s the axis that balances has a rise r(s) between -1 and 1, so that r(s) - s
+    falls through zero in between, which is bisected. Where r jumps there, as it does for a float
+    that lends nothing of its buoyancy where the current begins, no force turns it.
+
+    Raises
+    ------
+    MarchError
+        Where a force does.
+    """
+    low, high = -1.0, 1.0
+    tx, ty, tz = 0.0, 0.0, -1.0
+    east, north = 1.0, 0.0
+    for _ in range(_HALVINGS):
+        rise = 0.5 * (low + high)
+        tx, ty, tz = _axis_in_water_at(rod, loads, sea, state, rise, tx, ty, tz)
+        if tx != 0.0 or ty != 0.0:
+            across = sqrt(tx * tx + ty * ty)
+            east, north = tx / across, ty / across
+        if abs(tz - rise) < 1e-14:
+            return tx, ty, tz
+        low, high = (rise, high) if tz > rise else (low, rise)
+    across = sqrt(max(1.0 - low * low, 0.0))
+    tx, ty, tz = across * east, across * north, low
+    if _turning(rod, loads, sea, state, tx, ty, tz) > _NOTHING:
+        raise MarchError("a rigid piece finds no balance")
+    return tx, ty, tz
+
+
+def _axis_in_water_at(
+    rod: Stage,
+    loads: Sequence[Load],
+    sea: Sea,
+    state: State,
+    rise: float,
+    tx: float,
+    ty: float,
+    tz: float,
+) -> Vector:
+    """The axis that balances in the water of the depths that the loads have at a rise."""
+    pace, earlier = 1.0, inf
+    for _ in range(_PASSES):
+        x, y, z = _following_axis(rod, loads, sea, state, rise, tx, ty, tz)
+        change = abs(x - tx) + abs(y - ty) + abs(z - tz)
+        if change < 1e-15:
+            return x, y, z
+        if change > 0.7 * earlier:
+            pace *= 0.7
+        earlier = change
+        x, y, z = tx + pace * (x - tx), ty + pace * (y - ty), tz + pace * (z - tz)
+        size = sqrt(x * x + y * y + z * z)
+        if size == 0.0:
+            return tx, ty, tz
+        tx, ty, tz = x / size, y / size, z / size
+    return tx, ty, tz
+
+
+def _turning(
+    rod: Stage, loads: Sequence[Load], sea: Sea, state: State, tx: float, ty: float, tz: float
+) -> float:
+    """The force that turns a rod of axis t about its middle, as a share of its lifts and drags."""
+    _, _, z, fx, fy, fz, _, level = state
+    own = 0.0
+    for i in range(rod.first, rod.first + rod.size):
+        load = loads[i]
+        qx, qy, qz = force_at(load, sea, -z - load.at * tz, level, tx, ty, tz)
+        fx, fy, fz = fx + load.lever * qx, fy + load.lever * qy, fz + load.lever * qz
+        own += load.lever * (load.normal_drag + abs(load.buoyancy))
+    return speed_across(fx, fy, fz, tx, ty, tz) / own if own > 0.0 else 0.0
+
+
+def next_axis(
+    rod: Stage,
+    loads: Sequence[Load],
+    sea: Sea,
+    state: State,
+    tx: float,
+    ty: float,
+    tz: float,
+) -> Vector:
+    """The axis of a rod whose loads are looked up, and gathered, at another one: see `rod_axis`."""
+    return _following_axis(rod, loads, sea, state, tz, tx, ty, tz)
+
+
+def _following_axis(
+    rod: Stage,
+    loads: Sequence[Load],
+    sea: Sea,
+    state: State,
+    rise: float,
+    tx: float,
+    ty: float,
+    tz: float,
+) -> Vector:
+    """`next_axis` with the loads looked up where they are at a rise."""
+    _, _, z, fx, fy, fz, _, level = state
+    ax, ay, az = fx, fy, fz
+    normals = 0
+    k = smooth = 0.0
+    total = gx = gy = gz = 0.0
+    u = v = w = 0.0
+    curve = Smooth(0.0, 0.0)
+    for i in range(rod.first, rod.first + rod.size):
+        load = loads[i]
+        lever = load.lever
+        depth = -z - load.at * rise
+        flow_u, flow_v, flow_w, density, _ = water_at(sea, depth, level)
+        squared = flow_u * flow_u + flow_v * flow_v + flow_w * flow_w
+        ax, ay = ax + lever * load.push_east, ay + lever * load.push_north
+        az += lever * load_lift(load, squared, density, sea.gravity)
+        kn = lever * density / REFERENCE_DENSITY * load.normal_drag
+        varied, smooth = 1.0, 0.0
+        if load.diameter > 0.0:
+            viscosity = viscosity_at(sea, depth)
+            smooth = load.diameter / viscosity
+            varied = load_variation(load, viscosity, flow_u, flow_v, flow_w, tx, ty, tz)
+        if not load.directional:
+            drag = varied * kn * sqrt(squared)
+            ax, ay, az = ax + drag * flow_u, ay + drag * flow_v, az + drag * flow_w
+            continue
+        normals += 1
+        k, u, v, w, curve = kn, flow_u, flow_v, flow_w, Smooth(smooth, load.lengthening)
+        if rod.size > 1:
+            share = varied * kn * speed_across(u, v, w, tx, ty, tz)
+            total += share
+            gx, gy, gz = gx + share * u, gy + share * v, gz + share * w
+    if normals == 1 and curve.reynolds > 0.0:
+        c = varying_share(ax, ay, az, k, curve, u, v, w)
+    else:
+        if normals != 1:
+            k = u = v = w = 0.0
+            if total > 0.0:
+                u, v, w = gx / total, gy / total, gz / total
+                across = speed_across(u, v, w, tx, ty, tz)
+                k = total / across if across > 0.0 else 0.0
+        c = drag_share(ax, ay, az, k, u, v, w)
+    tx, ty, tz = axis_along(ax, ay, az, c, u, v, w)
+    mx, my, mz = fx, fy, fz
+    for i in range(rod.first, rod.first + rod.size):
+        load = loads[i]
+        qx, qy, qz = force_at(load, sea, -z - load.at * rise, level, tx, ty, tz)
+        mx, my, mz = mx + load.lever * qx, my + load.lever * qy, mz + load.lever * qz
+    return (-tx, -ty, -tz) if mx * tx + my * ty + mz * tz > 0.0 else (tx, ty, tz)

@@ -1,0 +1,139 @@
+"""Files as IMOS and OceanSITES lay them out: pressures, and the flags of currents."""
+
+import numpy as np
+import pytest
+import xarray
+
+from calm.errors import InputError
+from calm.motion.currents import read_currents
+from calm.motion.sensors import depth_of, read_sensors
+
+TIMES = 6
+DAYS = 25182.0 + np.arange(TIMES) / 24.0  # 2018-12-13
+SINCE = {"standard_name": "time", "units": "days since 1950-01-01 00:00:00 UTC", "axis": "T"}
+DBAR = np.linspace(43.4, 43.9, TIMES)
+FLAG_VALUES = np.arange(10, dtype=np.float32)
+IMOS = "sea_water_pressure_due_to_sea_water"
+
+
+def instrument(name="PRES_REL", standard=IMOS, units="dbar", values=DBAR, **more):
+    """One instrument's file, its flags in a variable of their own."""
+    flags = np.ones(TIMES, np.float32)
+    flags[2], flags[3] = 4, 8
+    told = {
+        "standard_name": standard,
+        "units": units,
+        "ancillary_variables": f"{name}_quality_control",
+    }
+    return xarray.Dataset(
+        {
+            name: ("TIME", np.float32(values), {**told, **more}),
+            f"{name}_quality_control": ("TIME", flags, {"flag_values": FLAG_VALUES}),
+            "NOMINAL_DEPTH": ((), 44.0, {"standard_name": "depth", "units": "m"}),
+        },
+        {"TIME": ("TIME", DAYS, SINCE)},
+    )
+
+
+def read(path, dataset, flags=(1, 2)):
+    dataset.to_netcdf(path / "a.nc", engine="h5netcdf")
+    return read_sensors([f"ADCP={path / 'a.nc'}"], frozenset(flags), -32.0, 61.0)
+
+
+def test_an_instrument_of_imos(tmp_path):
+    (one,) = read(tmp_path, instrument())
+    assert one.label == "ADCP" and one.nominal == 44.0 and one.dropped == 2
+    depth = np.where(np.isin(np.arange(TIMES), (2, 3)), np.nan, depth_of(DBAR, -32.0))
+    assert one.depth == pytest.approx(depth, abs=1e-5, nan_ok=True)
+    (wide,) = read(tmp_path, instrument(), (1, 2, 4))
+    assert wide.dropped == 1
+
+
+def test_of_several_pressures_the_usual_one_counts(tmp_path):
+    many = instrument()
+    for name, by in (("PRES", 10.1325), ("PRES_REL_max", 3.0), ("PRES_HR", 5.0)):
+        many[name] = ("TIME", np.float32(DBAR + by), dict(many["PRES_REL"].attrs))
+    (one,) = read(tmp_path, many)
+    assert one.depth[0] == pytest.approx(depth_of(DBAR, -32.0)[0], abs=1e-4)
+
+
+def test_an_instrument_of_oceansites(tmp_path):
+    one = xarray.Dataset(
+        {
+            "PRES": (("TIME", "DEPTH", "LATITUDE", "LONGITUDE"), DBAR.reshape(-1, 1, 1, 1),
+                     {"standard_name": "sea_water_pressure", "units": "decibar"}),
+            "PRES_QC": (("TIME", "DEPTH", "LATITUDE", "LONGITUDE"),
+                        np.array([1, 2, 3, 9, 8, 1], np.int8).reshape(-1, 1, 1, 1)),
+        },
+        {
+            "TIME": ("TIME", DAYS, {**SINCE, "units": "days since 1950-01-01T00:00:00Z"}),
+            "DEPTH": ("DEPTH", [44.0], {"standard_name": "depth", "units": "meters"}),
+            "LATITUDE": ("LATITUDE", [-32.0]), "LONGITUDE": ("LONGITUDE", [115.0]),
+        },
+    )  # fmt: skip
+    (found,) = read(tmp_path, one)
+    assert found.nominal == 44.0
+    assert np.isfinite(found.depth).tolist() == [True, True, False, False, False, True]
+
+
+INFERRED = "depthPP: Depth inferred from 2 neighbouring pressure sensors SBE37 @24m and WQM @55m."
+
+
+def ragged():
+    whole = instrument().drop_vars(["NOMINAL_DEPTH", "PRES_REL_quality_control"])
+    whole = whole.rename_dims(TIME="OBSERVATION")
+    index = np.repeat([0, 1], TIMES // 2)
+    whole["instrument_index"] = ("OBSERVATION", index, {"instance_dimension": "INSTRUMENT"})
+    whole["NOMINAL_DEPTH"] = ("INSTRUMENT", [20.0, 50.0], {"units": "m"})
+    return whole
+
+
+def out_of_time():
+    one = instrument()
+    one["TIME"] = ("TIME", np.where(np.arange(TIMES) == 3, -712224.4, DAYS), SINCE)
+    return one
+
+
+@pytest.mark.parametrize(("dataset", "said"), [
+    (lambda: instrument("DEPTH", "depth", "m", comment=INFERRED), "is no measurement"),
+    (lambda: instrument("DEPTH", "depth", "m", long_name="depth estimated by CALM"), "by calm"),
+    (ragged, "2 instruments one after the other"),
+    (out_of_time, "-712224.4 among its times"),
+    (lambda: instrument(units=""), "unit"),
+    (lambda: instrument(units="degC"), "unit"),
+    (lambda: instrument("TEMP", "sea_water_temperature"), "holds no pressures"),
+])  # fmt: skip
+def test_what_is_no_pressure_of_one_instrument_is_refused(tmp_path, dataset, said):
+    with pytest.raises(InputError) as refused:
+        read(tmp_path, dataset())
+    assert said in str(refused.value)
+
+
+@pytest.mark.parametrize(("unit", "factor"), [("dbar", 1.0), ("bar", 0.1), ("kPa", 10.0)])
+def test_declared_units_of_netcdf_convert(tmp_path, unit, factor):
+    (one,) = read(tmp_path, instrument(units=unit, values=DBAR * factor))
+    assert one.depth[0] == pytest.approx(depth_of(DBAR, -32.0)[0], abs=1e-4)
+
+
+def test_the_worse_flag_of_both_components_of_a_profile_counts(tmp_path):
+    u_flag = np.ones((TIMES, 3), np.float32)
+    v_flag = u_flag.copy()
+    u_flag[1, 0], v_flag[1, 0], v_flag[4, 2] = 3, 4, 2
+    variables = {"DEPTH": ("TIME", np.full(TIMES, 44.0), {"standard_name": "depth", "units": "m"})}
+    for name, way, flags in (("UCUR", "east", u_flag), ("VCUR", "north", v_flag)):
+        variables[name] = (("TIME", "HEIGHT_ABOVE_SENSOR"), np.full((TIMES, 3), 0.2), {
+            "standard_name": f"{way}ward_sea_water_velocity", "units": "m s-1",
+            "ancillary_variables": f"{name}_quality_control",
+        })  # fmt: skip
+        variables[f"{name}_quality_control"] = (
+            ("TIME", "HEIGHT_ABOVE_SENSOR"), flags, {"flag_values": FLAG_VALUES},
+        )  # fmt: skip
+    places = [3.0, 5.0, 7.0]
+    height = {"standard_name": "height", "units": "m", "positive": "up", "axis": "Z",
+              "long_name": "height_above_sensor", "reference_datum": "sensor"}  # fmt: skip
+    coordinates = {"TIME": ("TIME", DAYS, SINCE),
+                   "HEIGHT_ABOVE_SENSOR": ("HEIGHT_ABOVE_SENSOR", places, height)}  # fmt: skip
+    xarray.Dataset(variables, coordinates).to_netcdf(tmp_path / "c.nc", engine="h5netcdf")
+    (found,) = read_currents([tmp_path / "c.nc"], 61.0, None, None, 5.0)
+    assert found.flag.tolist() == np.maximum(u_flag, v_flag).tolist()
+    assert found.depth[0] == pytest.approx([41.0, 39.0, 37.0])

@@ -1,0 +1,111 @@
+"""Where sensors hang, against normal densities written out over all readings at once."""
+
+import numpy as np
+import pytest
+from scipy.stats import multivariate_normal
+
+from calm.motion import prior
+from calm.motion.slipped import Evidence, first_time, placed
+from calm.motion.unknowns import Common
+
+TIMES, SENSORS = 12, 3
+RANDOM = np.random.default_rng(3)
+DRAG = RANDOM.uniform(0.0, 30.0, (TIMES, SENSORS)) * [1.0, 0.6, 0.1]
+FALL = RANDOM.uniform(0.6, 1.0, (TIMES, SENSORS))
+SEEN = np.concatenate(
+    [DRAG[:, :, None], np.ones((TIMES, SENSORS, 1)), np.tile(np.eye(SENSORS), (TIMES, 1, 1))], 2
+)  # a factor, the datum, three offsets
+ERROR = np.array([[2.0, 0.8, 0.3], [0.8, 1.5, 0.2], [0.3, 0.2, 1.0]])
+BEFORE = np.square([0.15, 8.0, 1.0, 1.0, 1.0])
+
+
+def evidence(left, known=None):
+    known = np.ones((TIMES, SENSORS), bool) if known is None else known
+    inverse = np.tile(np.linalg.inv(ERROR), (TIMES, 1, 1))
+    return Evidence(left, SEEN, inverse, np.ones(TIMES), known)
+
+
+def read(slipped=None, by=0.0, start=0):
+    random = np.random.default_rng(8)
+    left = random.multivariate_normal(np.zeros(SENSORS), ERROR, TIMES)
+    left += SEEN @ [0.1, 5.0, 0.6, -0.4, 0.3]
+    if slipped is not None:
+        left[start:, slipped] += by * FALL[start:, slipped]
+    return left
+
+
+@pytest.mark.parametrize("start", [0, 5, 8])
+@pytest.mark.parametrize("sensor", [0, 2])
+def test_the_time_from_which_on_a_sensor_hangs_elsewhere_is_found(sensor, start):
+    first = first_time(evidence(read(sensor, 15.0, start)), FALL, np.zeros(5), np.diag(BEFORE))
+    assert first[sensor] == start
+
+
+def test_a_sensor_with_few_readings_on_one_side_has_slipped_at_none_of_them():
+    known = np.ones((TIMES, SENSORS), bool)
+    known[:9, 1], known[:, 2] = False, False
+    left = np.where(known, read(0, 15.0, 10), 0.0)
+    first = first_time(evidence(left, known), FALL, np.zeros(5), np.diag(BEFORE))
+    assert first[0] <= 8 and first[1:].tolist() == [-1, -1]
+
+
+def test_all_ways_the_sensors_may_hang_count_by_their_densities():
+    first = np.array([0, 7, -1])  # throughout; from the eighth time on; never
+    left = read(1, 5.0, 7)
+    fall = np.where(np.arange(TIMES)[:, None] >= first, FALL, 0.0)
+    seen = np.concatenate([SEEN, fall[:, :, None] * np.eye(SENSORS)], 2)
+    given = evidence(left)
+    mean = np.array([0.02, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+    covariance = np.diag([*BEFORE, 0.0, 0.0, 0.0])
+    found = placed(
+        given.normal(seen), given.pulls(seen, left).sum(axis=0), mean, covariance, first, TIMES, 1.0
+    )
+    slopes, wide = seen.reshape(-1, 8), prior.ELSEWHERE**2
+    told = []
+    for way in ((), (0,), (1,), (0, 1)):
+        spread, chance = covariance.copy(), 1.0
+        if 0 in way:
+            spread[5, 5], spread[2, 2] = wide, spread[2, 2] + wide
+            chance *= prior.MISPLACED
+        if 1 in way:
+            spread[6, 6] = wide
+            chance *= prior.SLIPPED / TIMES
+        expected = slopes @ spread @ slopes.T + np.kron(np.eye(TIMES), ERROR)
+        density = multivariate_normal(slopes @ mean, expected).pdf(left.ravel())
+        gain = spread @ slopes.T @ np.linalg.inv(expected)
+        at = mean + gain @ (left.ravel() - slopes @ mean)
+        told.append((chance * density, at, spread - gain @ slopes @ spread))
+    weights = np.array([one[0] for one in told]) / sum(one[0] for one in told)
+    assert 0.05 < weights[2] < 0.95  # neither sure of the slip nor of none
+    centre = sum(w * one[1] for w, one in zip(weights, told, strict=True))
+    whole = sum(
+        w * (one[2] + np.outer(one[1] - centre, one[1] - centre))
+        for w, one in zip(weights, told, strict=True)
+    )
+    assert found.mean == pytest.approx(centre, abs=1e-9)
+    assert found.covariance == pytest.approx(whole, abs=1e-8)
+    assert found.elsewhere == pytest.approx([weights[1] + weights[3], weights[2] + weights[3], 0.0])
+
+
+def test_errors_that_repeat_make_it_less_sure_where_a_sensor_hangs():
+    left, first = read(1, 7.0, 7), np.array([-1, 7, -1])
+    fall = np.where(np.arange(TIMES)[:, None] >= 7, FALL, 0.0) * [0.0, 1.0, 0.0]
+    seen = np.concatenate([SEEN, fall[:, :, None] * np.eye(SENSORS)], 2)
+    given = evidence(left)
+    law = given.normal(seen), given.pulls(seen, left).sum(axis=0)
+    before = np.zeros(8), np.diag([*BEFORE, 0.0, 0.0, 0.0])
+    sure, less = (placed(*law, *before, first, TIMES, alike).elsewhere[1] for alike in (1.0, 5.0))
+    assert sure > 0.9 > 0.3 > less
+
+
+def test_a_sensor_that_has_moved_falls_with_the_slope_of_the_line_there():
+    still = np.array([100.0, 200.0, 202.0, 300.0])
+    depth = np.array([[150.0, 230.0, 231.0, 310.0], [100.0, 200.0, 202.0, 300.0]])
+    time = np.array(["2026-01-01", "2026-01-02"], "M8[ns]")
+    none = np.zeros(4)
+    since = np.array(["2026-01-01", "2026-01-02", "NaT", "2026-01-01"], "M8[ns]")
+    common = Common({}, 0.0, none, none, since, none, np.eye(9), 1.0, np.eye(1))
+    fall = common.fall(time, depth, still, np.array([1, 1, 1, 3]))
+    # between the nearest points that are 5 m away at least; at an end, from there to the next
+    assert fall[0] == pytest.approx([(310.0 - 150.0) / 200.0, 0.0, 0.0, (310.0 - 231.0) / 98.0])
+    assert fall[1] == pytest.approx([1.0, 1.0, 0.0, 1.0])
