@@ -11,8 +11,16 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+MOST_PIECES = 2_000
+"""Of a line, and levels of its water: more are no mooring that anyone has."""
+
 Figure = float | str
 """A number in SI, or a word of the mooring file such as ``insensitive``."""
+
+
+def one_line(text: str) -> str:
+    """A text without line breaks and without signs that no file and no terminal may get."""
+    return " ".join("".join(c if c.isprintable() else " " for c in text).split())
 
 
 @dataclass(frozen=True)
@@ -23,7 +31,7 @@ class Remark:
     what: str
 
     def __str__(self) -> str:
-        return f"{self.where}: {self.what}"
+        return one_line(f"{self.where}: {self.what}")
 
 
 @dataclass(eq=False)

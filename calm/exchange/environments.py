@@ -6,8 +6,9 @@ import os
 from pathlib import Path
 from typing import Any
 
+from calm.exchange.design import one_line
 from calm.exchange.refusal import refused
-from calm.exchange.writing import one_line, quoted
+from calm.exchange.writing import quoted
 from calm.files.document import read_document
 
 

@@ -8,10 +8,11 @@ from pathlib import Path
 
 from calm.case import load
 from calm.errors import UsageError
+from calm.exchange.assembling import assembled
 from calm.exchange.cbl.writing import cbl_file
 from calm.exchange.mdd.writing import mdd_file
 from calm.exchange.moordyn.writing import CURRENTS, current_profile, moordyn_file
-from calm.exchange.parts import Assembled, assembled
+from calm.exchange.parts import Assembled
 from calm.exchange.table.writing import csv_file
 from calm.files.explain import unknown
 

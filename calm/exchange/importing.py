@@ -9,7 +9,7 @@ from pathlib import Path
 from calm.errors import InputError, Problem, UsageError
 from calm.exchange.anchors import hold
 from calm.exchange.cbl.reading import is_cbl, read_cbl
-from calm.exchange.design import Design, Record, Remark
+from calm.exchange.design import MOST_PIECES, Design, Record, Remark
 from calm.exchange.environments import environment_lines
 from calm.exchange.matching import Match, match
 from calm.exchange.mdd.matfile import is_mat
@@ -135,6 +135,10 @@ def import_file(
     if options.elements is not None and chosen.name != "table":
         raise refused(path, f"is of {chosen.program}; --elements is for lists")
     design = chosen.read(path, options)
+    levels = 0 if design.water is None else len(design.water.current)
+    for what, count in (("pieces", len(design.items)), ("levels of current", levels)):
+        if count > MOST_PIECES:
+            raise refused(path, f"has {count} {what}; more than {MOST_PIECES} are not imported")
     lines = None
     if environment is not None:
         lines = environment_lines(environment, output)

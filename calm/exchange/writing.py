@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass, field
 from textwrap import wrap
 
-from calm.exchange.design import Component, Design, Figure, Item, Remark, Water
+from calm.exchange.design import Component, Design, Figure, Item, Remark, Water, one_line
 from calm.exchange.names import ids_of
 from calm.files import Catalogue
 from calm.units import KILOGRAM_FORCE
@@ -114,11 +114,6 @@ def quoted(text: str) -> str:
     if _PLAIN.match(text) and text == text.strip() and text.lower() not in _WORDS_OF_YAML:
         return text
     return json.dumps(text, ensure_ascii=False)
-
-
-def one_line(text: str) -> str:
-    """A text without line breaks and without signs that no file may hold."""
-    return " ".join("".join(c if c.isprintable() else " " for c in text).split())
 
 
 def _write_water(page: _Page, water: Water) -> None:

@@ -138,6 +138,36 @@ def test_a_file_never_takes_the_place_of_its_source(calm, folder, design):
     assert (folder / "a.mat").read_bytes() == before
 
 
+LIST = "Item,Length (m),Diameter (mm),Wet weight (kg),\x1b[31mColour [/x]\n"
+LIST += "Ball \x1b[31m,1,1000,-400,\n8 mm wire,100,8,24,\n"
+LIST += "Total \x1b[31m[red],1,1,1,\nAnchor,0.4,,900,\n"
+
+
+def test_no_sign_of_a_file_rules_the_terminal(calm, folder):
+    (folder / "a.csv").write_text(LIST)
+    (folder / "b.csv").write_text(LIST.replace("24,", "\x1b[31mheavy,"))
+    (folder / "site.yaml").write_text(SITE)
+    good = calm("import", "a.csv", "-o", "a.yaml", "--environment", "site.yaml")
+    bad = calm("import", "b.csv", "-o", "b.yaml", "--environment", "site.yaml")
+    assert (good.code, bad.code) == (0, 2)
+    assert "Colour [/x]" in good.err
+    assert "heavy` is no number" in bad.err
+    assert "\x1b" not in good.err + bad.err + (folder / "a.yaml").read_text()
+
+
+def test_names_take_figures_from_a_library(calm, folder):
+    (folder / "names.csv").write_text("name,length\nBall,\nRope,90\nSinker,\n")
+    (folder / "elements.csv").write_text(
+        "name,buoyancy,length,diameter,cd\nball,300,1,1,0.65\nrope,-0.2,1,0.01,1.3\n"
+        "sinker,-900,0.5,1,1.3\n"
+    )
+    (folder / "site.yaml").write_text(SITE)
+    words = ["import", "names.csv", "-o", "a.yaml", "--environment", "site.yaml"]
+    assert "weight in water" in calm(*words).err
+    assert calm(*words, "--elements", "elements.csv", "--strict").code == 0
+    assert calm("run", "a.yaml").code == 0
+
+
 def test_a_file_of_no_program_is_refused(calm, folder):
     (folder / "x.bin").write_bytes(bytes(range(256)))
     done = calm("import", "x.bin", "missing.mat", "-o", "out/")

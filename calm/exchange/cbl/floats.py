@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from math import pi, sqrt
 
-from calm.exchange.parts import Assembled, Part, area, flow_share, mass_of
+from calm.exchange.parts import Assembled, Part, area, as_point, mass_of
 from calm.files import Body, Cylinder, Sphere
 from calm.files.rigid import Displacement
 from calm.physics.hull import Hull, cylindrical_hull, spherical_hull, tabulated_hull
@@ -24,11 +24,14 @@ def buoy_figures(part: Part, design: Assembled, density: float, lost: list[str])
     if part.flexible:
         return "type = sphere  d = 0.001  m = 0.001  buoyancy = 0.01  Cdn = 0"
     floating, gravity = design.afloat[0], design.gravity
+    net, seen = part.net, area(part, density)
+    if not floating and design.tow is None:
+        net, seen = as_point(design, density)
     mass = max(mass_of(part), _LEAST)
-    lift = part.net + mass * gravity
+    lift = net + mass * gravity
     if lift <= 0.0:
-        mass, lift = -part.net / gravity * 1.2, 0.2 * -part.net
-    form, seen = getattr(part.component, "hull", None), area(part, density)
+        mass, lift = -net / gravity * 1.2, 0.2 * -net
+    form = getattr(part.component, "hull", None)
     wind = _windage(part, design)
     if floating and isinstance(form, Displacement):
         diameters, rows = _turned(form)
@@ -50,8 +53,6 @@ def buoy_figures(part: Part, design: Assembled, density: float, lost: list[str])
     drag = seen / hull.area
     if floating:
         drag *= _drag_share(design, hull, mass, part.net, lift)
-    elif design.tow is None:
-        drag *= flow_share(design)
     size = f"type = sphere  d = {hull.height:.9g}"
     return f"{size}  m = {mass:.9g}  buoyancy = {lift:.9g}  Cdn = {drag:.9g}{wind}"
 

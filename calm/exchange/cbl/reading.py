@@ -8,7 +8,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from calm.exchange.cbl.components import Makers
-from calm.exchange.cbl.problem import Problem, Segment, Terminal, read_problem
+from calm.exchange.cbl.grammar import read_problem
+from calm.exchange.cbl.problem import Problem, Segment, Terminal
 from calm.exchange.cbl.segments import defined, laid
 from calm.exchange.cbl.water import USUAL_GRAVITY, number, value_at, water_of
 from calm.exchange.design import Design, Item, Remark, Tow

@@ -13,6 +13,8 @@ from calm.exchange.design import Remark, Water
 from calm.quantities import bearing_of
 
 USUAL_GRAVITY = 9.81
+"""Of the problems that come with that program, which assumes none [m/s²]."""
+
 _FINEST = 1e-4  # share of the fastest current by which levels may miss a formula
 _HALVINGS = 8
 _DIGITS = 9  # of a speed in m/s
@@ -47,6 +49,8 @@ def water_of(
     water = Water(depth if depth > 0.0 else None)
     water.density = number(environment, "rho") or number(environment, "density") or None
     water.gravity = number(environment, "gravity", USUAL_GRAVITY)
+    if "gravity" not in environment:
+        water.guesses["gravity"] = "the file gives none; the usual one of such files"
     gridded = None
     if "current-file" in environment:
         value = environment["current-file"]

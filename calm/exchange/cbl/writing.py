@@ -108,7 +108,9 @@ def cbl_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
     if floating:
         lost.append("how its drag grows with draft: its Cdn is such that it drags as here now")
     elif design.tow is None:
-        lost.append("that the float drags at its middle: its Cdn is such that it drags as here now")
+        lost.append(
+            "that the float drags at its middle and by its axis: its point pulls as here now"
+        )
     if buoy.flexible:
         lost.append("the free end of the line: a small sphere without weight stands there")
     elif not floating and design.tow is None and buoy.length > 0.0:

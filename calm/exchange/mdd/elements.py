@@ -8,10 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from calm.exchange.design import MOST_PIECES
 from calm.exchange.mdd.value import Floats, Value, names, numbers
-
-GRAVITY = 9.81
-"""That program's gravity [m/s²]; the file counts in kilograms."""
 
 
 @dataclass(frozen=True)
@@ -67,6 +65,8 @@ def read_elements(variables: Mapping[str, Value], suffix: str) -> tuple[list[Ele
     count = size.shape[1]
     lift = _row(variables, f"B{suffix}", count, problems)
     drag = _row(variables, f"Cd{suffix}", count, problems)
+    if count > MOST_PIECES:
+        problems.append(f"`H{suffix}` has {count} elements; more than {MOST_PIECES} are not read")
     if problems or not count:
         return [], problems
     modulus = _optional(variables, f"ME{suffix}")

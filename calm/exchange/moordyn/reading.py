@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from calm.exchange.design import Component, Design, Figure, Item, Remark, Water
+from calm.exchange.design import MOST_PIECES, Component, Design, Figure, Item, Remark, Water
 from calm.exchange.moordyn.sections import Row, Sections, read_sections
 from calm.exchange.refusal import refused
 from calm.exchange.words import is_chain
@@ -37,11 +37,13 @@ def read_moordyn(path: Path) -> Design:
     lines = sections.rows.get("lines", [])
     if not points or not lines:
         raise refused(path, f"has {len(points)} points and {len(lines)} lines")
+    if len(lines) > MOST_PIECES:
+        raise refused(path, f"has {len(lines)} lines; more than {MOST_PIECES} are not read")
     way = _way(points, lines, path)
     design = Design("MoorDyn", path.stem, [], _water(sections, points, path), notes=[_NOTE])
     assert design.water is not None
-    density, gravity = design.water.density, design.water.gravity
-    assert isinstance(density, float) and gravity is not None
+    gravity = design.water.gravity
+    assert gravity is not None
     types = {row.words.get("name", ""): row for row in sections.rows.get("types", [])}
     anchor, items = way[0][0], []
     for point, line in way:
@@ -53,7 +55,7 @@ def read_moordyn(path: Path) -> Design:
         length = line.number("length")
         if length <= 0.0:
             raise line.refuse("a line has no length")
-        items.append(Item(_cable(kind, density, gravity), length))
+        items.append(Item(_cable(kind, gravity), length))
     design.items = [_upper_end(_last(points, way), items, design), *items[::-1]]
     design.items.append(Item(_anchor(anchor, design.water)))
     what = "damping, stiffness in bending, added mass"
@@ -115,7 +117,7 @@ def _water(sections: Sections, points: dict[str, Row], path: Path) -> Water:
         raise refused(path, "gives no depth of the water (`WtrDpth`)")
     water = Water(depth)
     water.density = _option(options, "wtrdnsty", "rhow", "rho", default=CATALOGUE_DENSITY)
-    water.gravity = _option(options, "g", "gravity", default=STANDARD_GRAVITY)
+    water.gravity = _option(options, "g", "gravity", default=STANDARD_GRAVITY)  # its own
     beside = path.with_name(_CURRENTS)
     if options.get("currents", "0") not in ("0", "none") and beside.is_file():
         water.current = _currents(beside)
@@ -145,7 +147,7 @@ def _currents(path: Path) -> tuple[tuple[float, float, float, float], ...]:
     return tuple(sorted(rows))
 
 
-def _cable(kind: Row, density: float, gravity: float) -> Component:
+def _cable(kind: Row, gravity: float) -> Component:
     """A line type: its weight is that of its mass less that of the water it displaces."""
     across = kind.number("diameter")
     if across <= 0.0:
@@ -206,8 +208,9 @@ def _upper_end(top: Row, items: list[Item], design: Design) -> Item:
         guess = {"volume": "the file holds the upper end; here a float of its point, free to move"}
         figures["role"] = "float"
         return Item(Component(f"point {top.words['id']}", "body", figures, guess))
-    lift = 1.5 * sum(_weight(item) for item in items) + 1e4
-    volume = lift / (CATALOGUE_DENSITY * STANDARD_GRAVITY)
+    gravity = design.water.gravity or STANDARD_GRAVITY
+    lift = 1.5 * sum(_weight(item, gravity) for item in items) + 1e4
+    volume = lift / (CATALOGUE_DENSITY * gravity)
     across = (6.0 * volume / math.pi) ** (1.0 / 3.0)
     component = Component(
         "float", "sphere",
@@ -217,12 +220,12 @@ def _upper_end(top: Row, items: list[Item], design: Design) -> Item:
     return Item(component)
 
 
-def _weight(item: Item) -> float:
-    """In water [N]; 0 of what floats."""
+def _weight(item: Item, gravity: float) -> float:
+    """In water, under a gravity [m/s²]: N; 0 of what floats."""
     figures = item.component.figures
     mass, volume = float(figures.get("mass", 0.0)), float(figures.get("volume", 0.0))
     if item.length is None:
-        return max((mass - CATALOGUE_DENSITY * volume) * STANDARD_GRAVITY, 0.0)
+        return max((mass - CATALOGUE_DENSITY * volume) * gravity, 0.0)
     return float(figures.get("weight", 0.0)) * item.length
 
 

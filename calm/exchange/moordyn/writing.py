@@ -7,7 +7,7 @@ from itertools import groupby
 from math import pi, sqrt
 
 from calm.errors import UsageError
-from calm.exchange.parts import Assembled, Part, Path, Place, area, flow_share, mass_of, remarks
+from calm.exchange.parts import Assembled, Part, Path, Place, area, as_point, mass_of, remarks
 
 CURRENTS = "current_profile.txt"
 """The name under which that program looks for the current, beside its input."""
@@ -136,7 +136,9 @@ def moordyn_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
             "mass, volume and drag as it floats here"
         )
     else:
-        lost.append("that the float drags at its middle: its point drags as it does here now")
+        lost.append(
+            "that the float drags at its middle and by its axis: its point pulls as here now"
+        )
     system.end_point("Fixed" if afloat else "Free")
     told = remarks(design, lost)
     return _text(design, system, density, told).encode(), told
@@ -193,7 +195,11 @@ def _lay_float(system: _System, design: Assembled, path: Path) -> None:
         figures = system.figures(own, _stiff(length))
         system.line("float", figures, length, path.at(1.0 - below))
         system.load.mass -= own.mass * length
-    system.load.add(part, design.riding[1] if afloat else flow_share(design))
+    system.load.add(part, design.riding[1])
+    if not afloat:
+        net, shown = as_point(design, system.density)
+        system.load.net += net - part.net
+        system.load.area += shown - area(part, system.density)
 
 
 def _stiff(length: float) -> float:

@@ -7,7 +7,7 @@ import io
 import math
 from pathlib import Path
 
-from calm.exchange.design import Component, Design, Hung, Item
+from calm.exchange.design import MOST_PIECES, Component, Design, Hung, Item
 from calm.exchange.mdd.elements import MODULI, Element, mistakes_of
 from calm.exchange.mdd.pieces import anchor_of, component_of, rigid
 from calm.exchange.refusal import refused
@@ -37,6 +37,8 @@ def read_moords(path: Path) -> Design:
     rows = list(csv.DictReader(io.StringIO(read_text(path))))
     if not rows or not rows[0].keys() >= _MARKS:
         raise refused(path, "is no design of moords: its headings are others")
+    if len(rows) > MOST_PIECES:
+        raise refused(path, f"has {len(rows)} rows; more than {MOST_PIECES} are not read")
     problems: list[str] = []
     elements = [_element(row, place, problems) for place, row in enumerate(rows, 2)]
     if not problems and rows[0].get("bool_clampon") == "True":

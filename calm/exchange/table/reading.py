@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from calm.exchange.design import Component, Design, Hung, Item, Remark, Water
+from calm.exchange.design import MOST_PIECES, Component, Design, Hung, Item, Remark, Water
 from calm.exchange.mdd.water import read_water
 from calm.exchange.refusal import refused
 from calm.exchange.table.cells import number
@@ -62,6 +62,8 @@ def read_table(path: Path, columns: Mapping[str, str], elements: Path | None = N
     if elements is not None:
         complete(rows, library, elements.name)
     count_lines(rows, headings.columns if headings else {})
+    if sum(row.count for row in rows) > MOST_PIECES:
+        raise refused(path, f"has more than {MOST_PIECES} pieces")
     rows = _from_the_top(rows, path, design)
     design.items = _items(rows, problems)
     if problems:

@@ -120,6 +120,41 @@ def write_hdf5(path, variables, names="char"):
         file.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(128))
 
 
+def write_version_4(path, variables):
+    """MATLAB 4 of a machine with the other order of bytes; names as a character matrix."""
+    content = b""
+    for name, value in variables.items():
+        text = isinstance(value, list)
+        array = characters(value) if text else np.atleast_2d(value)
+        head = (1001 if text else 1000, *array.shape, 0, len(name) + 1)
+        content += np.array(head, ">i4").tobytes() + name.encode() + b"\0"
+        content += array.astype(">f8").tobytes(order="F")
+    path.write_bytes(content)
+
+
+def write_octave_hdf5(path, variables, names="char"):
+    """Octave's HDF5: a group a variable, its dimensions turned round; cells are groups, too."""
+    with h5py.File(path, "w") as file:
+        for name, value in variables.items():
+            group = file.create_group(name)
+            if not isinstance(value, list):
+                group["type"] = np.bytes_("matrix")
+                group["value"] = value.T
+                if value.size == 0:
+                    group["value"].attrs["OCTAVE_EMPTY_MATRIX"] = 1
+            elif names == "cell":
+                group["type"] = np.bytes_("cell")
+                cell = group.create_group("value")
+                cell["dims"] = [len(value), 1]
+                for number, text in enumerate(value):
+                    element = cell.create_group(f"_{number}")
+                    element["type"] = np.bytes_("sq_string")
+                    element["value"] = characters([text]).T.astype(np.int8)
+            else:
+                group["type"] = np.bytes_("sq_string")
+                group["value"] = characters(value).T.astype(np.int8)
+
+
 def octave_text(variables, colon=":", rows=None):
     """Octave's text, its headers with or without a colon, or with a wrong number of rows."""
     lines = ["# Created by Octave 8.3.0, Sat Nov 11 01:53:14 2023 PST <someone@somewhere>"]

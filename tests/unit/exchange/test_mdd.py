@@ -1,5 +1,6 @@
 """Designs of Mooring Design & Dynamics: every dialect, every trap that real files hold."""
 
+import gzip
 from math import pi
 
 import h5py
@@ -20,6 +21,8 @@ from tests.unit.exchange.mat_files import (
     tow,
     write_hdf5,
     write_matlab,
+    write_octave_hdf5,
+    write_version_4,
 )
 
 KILOGRAM = 9.80665
@@ -31,6 +34,12 @@ DIALECTS = {
     "matlab 4": lambda path, data: write_matlab(path, data, version="4"),
     "matlab 7.3": lambda path, data: write_hdf5(path, data),
     "matlab 7.3, cells": lambda path, data: write_hdf5(path, data, names="cell"),
+    "matlab 4, other bytes first": lambda path, data: write_version_4(path, data),
+    "octave hdf5": lambda path, data: write_octave_hdf5(path, data),
+    "octave hdf5, cells": lambda path, data: write_octave_hdf5(path, data, names="cell"),
+    "octave, compressed": lambda path, data: path.write_bytes(
+        gzip.compress(octave_text(data).encode())
+    ),
     "octave": lambda path, data: path.write_text(octave_text(data)),
     "octave, no colon": lambda path, data: path.write_text(octave_text(data, colon="")),
     "octave, wrong rows": lambda path, data: path.write_text(octave_text(data, rows=7)),
@@ -344,6 +353,59 @@ def test_octave_cells_and_ranges_are_read():
     assert found["moorele"] == [["ball"], ["rope"]]
     assert found["z"].tolist() == [0.0, 5.0, 10.0]
     assert found["n"].tolist() == [[1.0, 2.0, 3.0]]
+
+
+def test_octave_ranges_are_read_in_both_its_formats(tmp_path):
+    text = "# name: z\n# type: double_range\n# base, limit, increment\n120 0 -60\n"
+    assert read_octave_text(text)["z"].tolist() == [120.0, 60.0, 0.0]
+    path = tmp_path / "design.mat"
+    write_octave_hdf5(path, mooring())
+    with h5py.File(path, "r+") as file:
+        del file["z/value"]
+        kinds = [(name, "f8") for name in ("base", "limit", "increment")]
+        file["z"]["value"] = np.array((120.0, 0.0, -60.0), kinds)
+    assert [row[0] for row in read_mdd(path).water.current] == [0.0, 60.0, 120.0]
+
+
+def test_an_endless_range_is_refused():
+    with pytest.raises(ValueError, match="the range `z` has"):
+        read_octave_text("# name: z\n# type: range\n# base, limit, increment\n0 1e300 1e-9\n")
+
+
+def test_octaves_own_format_and_bombs_are_refused_by_name(tmp_path, monkeypatch):
+    path = tmp_path / "design.mat"
+    path.write_bytes(b"Octave-1-L" + bytes(400))
+    with pytest.raises(InputError, match="Octave's binary format"):
+        import_file(path, tmp_path / "design.yaml")
+    monkeypatch.setattr("calm.exchange.mdd.matfile.LARGEST", 1_000_000)
+    path.write_bytes(gzip.compress(b"# name: z\n# type: matrix\n" + bytes(2_000_000)))
+    with pytest.raises(InputError, match="more than 1 MB once it is decompressed"):
+        import_file(path, tmp_path / "design.yaml", format="mdd")
+
+
+@pytest.mark.parametrize("size", [1e12, np.nan, -np.inf])
+def test_sizes_of_no_piece_are_refused(size, tmp_path):
+    height = np.array(HEIGHT)
+    height[0, 2] = size
+    assert "element 3, 3/8 wire rope: its length is" in refusal(tmp_path, mooring(H=height))
+
+
+def test_a_million_elements_are_refused_at_once(tmp_path):
+    many = np.ones((1, 1_000_000))
+    data = mooring(H=np.ones((4, 1_000_000)), B=many, Cd=many, ME=many)
+    assert "`H` has 1000000 elements; more than 2000 are not read" in refusal(tmp_path, data)
+    water = {name: np.linspace(100.0, 0.0, 5000) for name in ("z", "U", "V", "W", "rho")}
+    assert "has 5000 levels of current" in refusal(tmp_path, mooring(**water))
+
+
+def test_a_float_without_a_height_rides_by_its_buoyancy(tmp_path):
+    """At the surface that program lets it drag in proportion, however high it is."""
+    height = np.array(HEIGHT)
+    height[0, 2], height[0, 0] = 130.0, 0.0
+    design = read(tmp_path, mooring(H=height))
+    (low, high) = design.items[0].component.hull
+    assert low == (0.0, 0.0, 0.0)
+    assert high[1] == pytest.approx(300 / 1025, rel=1e-5)
 
 
 NASTY = ['"]\n  - {use: x}', "a: b # c", "- [1, 2]", "{use: x}", "\x1b[31mred", "null", "é↑ 🐟"]

@@ -327,6 +327,9 @@ REFUSED = {
     ),
     "one piece": ("Item,Length,Wet weight (kg)\nAnchor,1,300\n", "has 1 pieces"),
     "no table": ("a,b,c\nd,e,f\ng,h,i\n", "no headings"),
+    "more than a line has": (ENGLISH.replace(",1.3,2", ",1.3,990" ).replace(
+        "AR861", "8 mm wire,1,8,1,1.3,990\n8 mm wire,1,8,1,1.3,990\nAR861"
+    ), "has more than 2000 pieces"),
     "a thousand thousands": (ENGLISH.replace(",1.3,2", ",1.3,1000000"), "1000000 of them"),
 }  # fmt: skip
 

@@ -1,0 +1,240 @@
+"""The grammar of WHOI Cable's problem files: from words to a problem."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from calm.exchange.cbl.expressions import Expression, Words, read_expression
+from calm.exchange.cbl.problem import (
+    Attachment,
+    Definition,
+    Problem,
+    Segment,
+    Terminal,
+    Value,
+    Values,
+)
+from calm.exchange.cbl.source import Preprocessor
+from calm.exchange.cbl.tokens import Token, tokens_of
+
+_TEXTS = frozenset([
+    "title", "color", "category", "comment", "type", "buoy", "platform", "anchor", "material",
+    "connector", "body", "wave-file", "velocity-file", "force-file", "current-file", "flap-file",
+    "forcing-method", "input-type", "static-solution", "static-initial-guess",
+    "dynamic-integration", "static-outer-method",
+])  # fmt: skip
+"""Keys whose value is a word."""
+
+_SECTIONS = frozenset(
+    ["environment", "buoys", "platforms", "anchors", "connectors", "materials", "layout", "end"]
+)
+_LONG_SECTIONS = {"problem": "description", "analysis": "parameters"}
+_MOST_NODES = 1_000_000
+
+
+def read_problem(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> Problem:
+    """Read a file.
+
+    Raises
+    ------
+    InputError
+        With the place of what makes no sense.
+    """
+    lines = Preprocessor(defines, allow_include).read(path)
+    words = Words(list(tokens_of(lines)))
+    problem = Problem(path)
+    while words.next.kind != "end":
+        _section(words, problem)
+    return problem
+
+
+def _section(words: Words, problem: Problem) -> None:
+    name = _section_name(words)
+    if name is None:
+        raise words.next.refuse(f"`{words.next.text}` stands where a section should begin")
+    words.take()
+    if name in _LONG_SECTIONS:
+        words.take()
+    if name == "problem":
+        problem.description |= _values(words)
+    elif name == "analysis":
+        problem.analysis |= _values(words)
+    elif name == "environment":
+        problem.environment |= _values(words)
+    elif name == "layout":
+        _layout(words, problem)
+    elif name != "end":
+        _definitions(words, getattr(problem, "buoys" if name == "platforms" else name))
+
+
+def _section_name(words: Words) -> str | None:
+    """The section that begins here, if one does."""
+    token = words.next
+    if token.kind != "name":
+        return None
+    word = token.text.lower()
+    if word in _SECTIONS:
+        return word
+    behind = words.ahead(1)
+    if behind.kind == "name" and _LONG_SECTIONS.get(word) == behind.text.lower():
+        return word
+    return None
+
+
+def _definitions(words: Words, found: dict[str, Definition]) -> None:
+    while words.next.kind in ("name", "text") and _section_name(words) is None:
+        token = words.take()
+        if token.text in found:
+            raise token.refuse(f"`{token.text}` is defined twice")
+        found[token.text] = Definition(token, _values(words))
+
+
+def _values(words: Words) -> Values:
+    """Keys and their values, as far as they go; the last of a key holds."""
+    values: Values = {}
+    while words.next.kind == "key" and words.next.text not in _LAYOUT:
+        key = words.take()
+        values[key.text] = _value(words, key)
+    return values
+
+
+def _value(words: Words, key: Token) -> Value:
+    if key.text in _TEXTS:
+        return Value(key, text=_word(words, key))
+    if words.next.kind == "sign" and words.next.text == "{":  # the name of a profile
+        words.take()
+        words.take()
+        words.expect("}")
+    if words.next.kind == "sign" and words.next.text == "(" and (rows := _rows(words)):
+        return Value(key, rows=rows, repeats=words.comes("+"))
+    if words.next.kind == "text":
+        return Value(key, text=words.take().text)
+    return Value(key, formula=read_expression(words))
+
+
+def _word(words: Words, key: Token) -> str:
+    token = words.take()
+    if token.kind not in ("name", "text", "number"):
+        raise key.refuse(f"a name is missing behind `{key.text} =`")
+    text = token.text
+    while words.next.kind == "sign" and words.next.text == "-" and words.ahead(1).kind == "name":
+        words.take()
+        text += "-" + words.take().text
+    return text
+
+
+def _rows(words: Words) -> list[tuple[Expression, ...]]:
+    """Rows such as ``(0, 0.5) (100, 0.2)``; none where the parenthesis is one of a formula."""
+    rows: list[tuple[Expression, ...]] = []
+    while True:
+        back = words.mark()
+        if rows:
+            words.comes(",")
+        if not words.comes("("):
+            words.back(back)
+            return rows
+        row = [read_expression(words)]
+        while words.comes(","):
+            row.append(read_expression(words))
+        words.expect(")")
+        if not rows and len(row) == 1:
+            words.back(back)
+            return []
+        rows.append(tuple(row))
+
+
+_LAYOUT = frozenset(["terminal", "segment", "branch"])
+
+
+def _layout(words: Words, problem: Problem) -> None:
+    """Terminals, segments and what joins them, from the anchor up."""
+    while words.next.kind == "key":
+        key = words.take()
+        if key.text == "terminal":
+            problem.layout.append(Terminal(key, _block(words)))
+        elif key.text == "segment":
+            problem.layout.append(_segment(words, key))
+        elif key.text == "connector":
+            _connector(words, key, problem.layout)
+        elif key.text == "branch":
+            problem.branch = problem.branch or key
+            _skip_block(words, key)
+        else:
+            raise key.refuse(f"`{key.text} =` has no place in a layout")
+
+
+def _block(words: Words) -> Values:
+    words.expect("{")
+    values = _values(words)
+    words.expect("}")
+    return values
+
+
+def _skip_block(words: Words, key: Token) -> None:
+    words.expect("{")
+    depth = 1
+    while depth:
+        token = words.take()
+        if token.kind == "end":
+            raise key.refuse(f"`{key.text}` has no end")
+        depth += {"{": 1, "}": -1}.get(token.text, 0) if token.kind == "sign" else 0
+
+
+def _segment(words: Words, key: Token) -> Segment:
+    segment = Segment(key, {})
+    words.expect("{")
+    while words.next.kind == "key":
+        name = words.take()
+        if name.text == "attachments":
+            segment.attachments += _attachments(words, name)
+        else:
+            segment.values[name.text] = _value(words, name)
+    words.expect("}")
+    return segment
+
+
+def _connector(words: Words, key: Token, layout: list[Terminal | Segment]) -> None:
+    below = layout[-1] if layout else None
+    if not isinstance(below, Segment):
+        raise key.refuse("a connector stands above a segment")
+    if words.next.kind == "sign" and words.next.text == "{":
+        below.joint = _block(words)
+        body = below.joint.get("body") or below.joint.get("connector")
+        if body is not None:
+            below.connector = _renamed(body.token, body.text)
+        return
+    below.connector = _renamed(key, _word(words, key))
+
+
+def _renamed(token: Token, text: str) -> Token:
+    return Token("name", text, token.path, token.line, token.column)
+
+
+def _attachments(words: Words, key: Token) -> list[Attachment]:
+    """Lists such as ``meter : (3 9 27), light : [2, 2, 40]``."""
+    found: list[Attachment] = []
+    while words.next.kind in ("name", "text"):
+        token = words.take()
+        words.comes(":")
+        found.append(Attachment(token, _nodes(words, token)))
+        words.comes(",")
+    if not found:
+        raise key.refuse("`attachments` names nothing")
+    return found
+
+
+def _nodes(words: Words, token: Token) -> list[int]:
+    spaced = words.comes("[")
+    if not spaced:
+        words.expect("(")
+    numbers: list[int] = []
+    while words.next.kind == "number":
+        numbers.append(round(words.take().number))
+        words.comes(",")
+    words.expect("]" if spaced else ")")
+    if not spaced:
+        return numbers
+    if len(numbers) != 3 or numbers[1] < 1 or numbers[2] > _MOST_NODES:
+        raise token.refuse("nodes are given as [first, step, last]")
+    return list(range(numbers[0], numbers[2] + 1, numbers[1]))
