@@ -36,6 +36,7 @@ PATIENCE = 60.0
 QUIET = 0.2
 """Seconds without a byte after which a screen is complete."""
 DOWN, UP = "\x1b[B", "\x1b[A"
+SEARCH = (*"shackle", *["\x7f"] * 7)
 
 
 def pieces(count: int) -> str:
@@ -146,14 +147,22 @@ def keys(file: Path, repetitions: int) -> dict[str, list[float]]:
 
 
 def links(file: Path, repetitions: int) -> Iterable[tuple[str, int, list[float], float]]:
-    """Of a cursor key and of an edit the most bytes, the times to the last, the processor's time.
+    """Of a cursor key, of an edit and of a key of the search in the catalogue the most bytes, the
+    times to the last, the processor's time.
 
     An edit is followed for a second: launch, recovery and breaks are judged half a second after it.
     """
     terminal = Terminal(file, 140, 45)
     terminal.cost(DOWN, 2.0)
-    for name, keys, quiet in (("cursor", (DOWN, UP), QUIET), ("duplicate, undo", ("d", "u"), 1.0)):
-        costs = [terminal.cost(key, quiet) for _ in range(repetitions) for key in keys]
+    for name, keys, quiet in (
+        ("cursor", (DOWN, UP), QUIET),
+        ("duplicate, undo", ("d", "u"), 1.0),
+        ("search", SEARCH, QUIET),
+    ):
+        if name == "search":
+            terminal.answer("a")
+        rounds = range(max(2 * repetitions // len(keys), 1))
+        costs = [terminal.cost(key, quiet) for _ in rounds for key in keys]
         counts, times, busy = zip(*costs, strict=True)
         yield name, max(counts), [*times], sum(busy) / len(busy)
     terminal.close()

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 from textual.binding import Binding
 
-from calm.tui.action_table import ACTIONS, Action, Place
+from calm.tui.keys.action import Action, Place
+from calm.tui.keys.table import ACTIONS
 
 _SIGNS = {
     "up": "↑",

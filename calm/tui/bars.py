@@ -11,8 +11,8 @@ from textual.style import Style
 from textual.widget import Widget
 from textual.widgets import Static
 
-from calm.tui.action_table import Action
 from calm.tui.actions import shown_key
+from calm.tui.keys.action import Action
 
 _GAP = "  "
 

@@ -47,6 +47,11 @@ class Cycle(Widget, can_focus=True):
         super().__init__(id=id)
         self._title, self.words, self.word, self._width = title, tuple(words), word, title_width
 
+    @property
+    def hint(self) -> str:
+        """What the keys do here."""
+        return "← → another, ↑ ↓ go on"
+
     def show(self, word: str) -> None:
         """Show another word."""
         self.word = word
@@ -68,5 +73,5 @@ class Cycle(Widget, can_focus=True):
             (f"{self._title:<{self._width}}", "dim"),
             ("‹ " if self.has_focus else "  ", "dim"),
             (self.word, "reverse" if self.has_focus else ""),
-            (" ›" if self.has_focus else "", "dim"),
+            (f" ›   {self.hint}" if self.has_focus else "", "dim"),
         )

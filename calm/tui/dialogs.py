@@ -16,7 +16,7 @@ from textual.screen import ModalScreen
 from textual.widgets import Static
 
 from calm.tui.actions import bindings
-from calm.tui.checking import Check, anything
+from calm.tui.checking import Check, Reading, anything
 from calm.tui.field import Field, all_settled
 
 if TYPE_CHECKING:
@@ -127,13 +127,19 @@ class Sheet(ModalScreen[dict[str, str] | None]):
 
     def on_mount(self) -> None:
         """Type at once."""
-        self.query(Field).first().focus_input()
+        first = self.query(Field).first()
+        first.focus_input()
+        if first.input.value:
+            self._tell(first, first.reading)
 
     @on(Field.Judged)
-    def _tell(self, event: Field.Judged) -> None:
+    def _judge(self, event: Field.Judged) -> None:
+        self._tell(event.field, event.reading)
+
+    def _tell(self, field: Field, reading: Reading) -> None:
         note = self.query_one("#sheet-note", Static)
-        note.update(event.field.note(event.reading))
-        note.set_class(not event.reading.is_good, "-wrong")
+        note.update(field.note(reading))
+        note.set_class(not reading.is_good, "-wrong")
 
     @on(Field.Entered)
     def _onward(self, event: Field.Entered) -> None:

@@ -12,6 +12,7 @@ from textual.message import Message
 from textual.widgets import Input, Static
 
 from calm.tui.checking import Check, Reading, anything
+from calm.tui.scrolled import Entry
 
 
 def all_settled(fields: Iterable[Field]) -> bool:
@@ -82,13 +83,13 @@ class Field(Horizontal):
     def compose(self) -> ComposeResult:
         """Name, input, note."""
         yield Static(self._title, classes="field-title", markup=False)
-        yield Input(self.begun, placeholder=self._placeholder, compact=True)
+        yield Entry(self.begun, placeholder=self._placeholder, compact=True)
         yield Static(self._note, classes="field-note", markup=False)
 
     @property
-    def input(self) -> Input:
+    def input(self) -> Entry:
         """Where one types."""
-        return self.query_one(Input)
+        return self.query_one(Entry)
 
     @property
     def is_typing(self) -> bool:
@@ -133,6 +134,8 @@ class Field(Horizontal):
         """What a person who types is told: what is wrong, or what is added."""
         if not reading.is_good:
             return reading.note
+        if reading.told:
+            return reading.told
         completed = reading.text != " ".join(self.input.value.split())
         return f"= {reading.text}" if completed else self._note
 

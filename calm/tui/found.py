@@ -17,6 +17,8 @@ _Said = tuple[float | None, State | None, bool]
 _NOTHING: _Said = (None, None, False)
 _GRAVITY = {state: state.severity for state in State}
 _STRENGTH = frozenset({strength.name})
+_LACKING = (State.UNKNOWN, State.ACCEPTED)
+"""What is not known stays so where somebody has accepted it."""
 
 
 @dataclass(frozen=True)
@@ -83,5 +85,7 @@ def _of_one(own: list[Finding]) -> _Said:
     return (
         min((each.share for each in own if each.share is not None), default=None),
         max((each.state for each in own), key=_GRAVITY.__getitem__),
-        any(each.state is State.UNKNOWN and each.rule in _STRENGTH for each in own),
+        any(
+            each.rule in _STRENGTH and each.state in _LACKING and each.share is None for each in own
+        ),
     )

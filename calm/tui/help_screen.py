@@ -12,8 +12,8 @@ from textual.containers import ScrollableContainer
 from textual.screen import Screen
 from textual.widgets import Input, TextArea
 
-from calm.tui.action_table import PLACES
 from calm.tui.actions import actions_in, shown_keys
+from calm.tui.keys.action import PLACES
 from calm.tui.signs import LOOKS
 
 _SIGNS = "Signs: " + ", ".join(f"{look.sign} {look.word}" for look in LOOKS.values())

@@ -7,16 +7,17 @@ the catalogue here: 2.5 ms). The first is longer than a key may take to be seen.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any, ClassVar
 
 from textual.geometry import Size
 from textual.message import Message
 from textual.reactive import reactive
-from textual.scroll_view import ScrollView
+
+from calm.tui.scrolled import Scrolled
 
 
-class Listing(ScrollView, inherit_bindings=False):
+class Listing(Scrolled, inherit_bindings=False):
     """Rows, drawn by `render_line` of the one that is made of it."""
 
     HEADING: ClassVar[int] = 0
@@ -30,12 +31,18 @@ class Listing(ScrollView, inherit_bindings=False):
     class Moved(Message):
         """The cursor is elsewhere."""
 
-    def take_rows(self, rows: Sequence[Any]) -> None:
-        """Other rows, the cursor where it was if there is such a row."""
+    def take_rows(self, rows: Sequence[Any], changed: Iterable[int] | None = None) -> None:
+        """Other rows, the cursor where it was if there is such a row.
+
+        Only those that have `changed` are drawn, by their numbers; without them all are.
+        """
         self.rows = rows
         self.virtual_size = Size(0, len(rows) + self.HEADING)
         self.set_reactive(Listing.cursor, self.validate_cursor(self.cursor))
-        self.refresh()
+        if changed is None:
+            self.refresh()
+        else:
+            self.refresh_rows(*changed)
 
     def validate_cursor(self, cursor: int) -> int:
         """Keep it on the rows."""

@@ -7,19 +7,21 @@ where something has another size: 38 kB for a screen of 140 columns and 45 rows.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from functools import lru_cache
 from itertools import chain
 
 from rich.cells import cell_len
+from rich.color import ColorSystem
 from rich.console import Console
 from rich.segment import Segment
 from rich.style import Style
 from textual._compositor import ChopsUpdate, CompositorUpdate, LayoutUpdate
-from textual.strip import Strip
 
 Cell = tuple[str, Style | None]
 """A sign and its style; the second cell of a wide sign is empty."""
 
 _UNKNOWN: Cell = ("\0", None)
+_PLAIN = "\x1b[0m"
 _GAP = 8
 """Cells that have not changed are sent where fewer lie between others: to skip them costs more."""
 
@@ -38,7 +40,7 @@ class Painted:
         """Of an update what differs from what is shown, found out when it is sent."""
         return _Changes(self, update)
 
-    def put(self, y: int, x: int, cells: list[Cell], console: Console) -> str:
+    def put(self, y: int, x: int, cells: list[Cell], pen: _Pen) -> str:
         """What is to be sent to have cells in a row, from a column on."""
         while len(self._rows) <= y:
             self._rows.append([])
@@ -46,7 +48,7 @@ class Painted:
         if len(row) < x + len(cells):
             row.extend([_UNKNOWN] * (x + len(cells) - len(row)))
         sent = [
-            f"\x1b[{y + 1};{x + begin + 1}H{_rendered(cells[begin:end], console)}"
+            f"\x1b[{y + 1};{x + begin + 1}H{pen.written(cells[begin:end])}"
             for begin, end in _changed(row[x : x + len(cells)], cells)
         ]
         row[x : x + len(cells)] = cells
@@ -66,16 +68,20 @@ class _Changes(CompositorUpdate):
 
     def render_segments(self, console: Console) -> str:
         """The signs to be sent; they are taken to be shown then."""
-        painted, update = self._painted, self._update
+        painted, update, pen = self._painted, self._update, _Pen(console)
         if isinstance(update, LayoutUpdate):
             region = update.region
             painted.fit(region.width, region.height)
-            return "".join(
-                painted.put(y, region.x, [*_cells(chain.from_iterable(line))], console)
-                for y, line in enumerate(update.strips, region.y)
+            return (
+                "".join(
+                    painted.put(y, region.x, [*_cells(chain.from_iterable(line))], pen)
+                    for y, line in enumerate(update.strips, region.y)
+                )
+                + pen.put_down()
             )
         if isinstance(update, ChopsUpdate):
-            return "".join(painted.put(y, x, cells, console) for y, x, cells in _parts(update))
+            sent = "".join(painted.put(y, x, cells, pen) for y, x, cells in _parts(update))
+            return sent + pen.put_down()
         painted.forget()
         return update.render_segments(console)
 
@@ -129,12 +135,33 @@ def _around(begin: int, end: int, shown: list[Cell], wanted: list[Cell]) -> tupl
     return begin, end
 
 
-def _rendered(cells: list[Cell], console: Console) -> str:
-    segments: list[Segment] = []
-    text, last = "", cells[0][1]
-    for sign, style in cells:
-        if style is not last and style != last:
-            segments.append(Segment(text, last))
-            text, last = "", style
-        text += sign
-    return Strip([*segments, Segment(text, last)]).render(console)
+class _Pen:
+    """Writes signs; a style is told to the terminal once, where it changes."""
+
+    def __init__(self, console: Console) -> None:
+        self._system = console._color_system
+        self._held = ""
+
+    def written(self, cells: list[Cell]) -> str:
+        """What is sent for cells beside each other."""
+        parts = []
+        for sign, style in cells:
+            wanted = _style_codes(style, self._system)
+            if wanted != self._held:
+                parts.append(f"\x1b[0;{wanted}m" if wanted else _PLAIN)
+                self._held = wanted
+            parts.append(sign)
+        return "".join(parts)
+
+    def put_down(self) -> str:
+        """What leaves the terminal without a style."""
+        held, self._held = self._held, ""
+        return _PLAIN if held else ""
+
+
+@lru_cache(4096)
+def _style_codes(style: Style | None, system: ColorSystem | None) -> str:
+    """The numbers that switch a style on."""
+    if style is None or system is None:
+        return ""
+    return style._make_ansi_codes(system)

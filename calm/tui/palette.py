@@ -7,8 +7,9 @@ from functools import partial
 
 from textual.command import DiscoveryHit, Hit, Hits, Provider
 
-from calm.tui.action_table import ACTIONS, Action
 from calm.tui.actions import shown_key
+from calm.tui.keys.action import Action
+from calm.tui.keys.table import ACTIONS
 
 _PLACES = ("line", "anywhere")
 

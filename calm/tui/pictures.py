@@ -15,7 +15,7 @@ from textual.scroll_view import ScrollView
 from textual.strip import Strip
 from textual.widgets import Static
 
-from calm.tui.signs import ELLIPSIS
+from calm.tui.signs import CURSOR, ELLIPSIS
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
@@ -35,15 +35,16 @@ class Tabs(Static):
 
     DEFAULT_CSS = """
     Tabs {
-        height: 1; color: $text-muted; padding: 0 1; link-style: none; link-color: $text-muted;
+        height: 1; color: $text-muted; link-style: none; link-color: $text-muted;
         link-color-hover: $foreground; link-background-hover: $primary-muted;
         link-style-hover: bold;
     }
     """
 
-    def show(self, chosen: Tab, note: str = "") -> None:
-        """Show which is chosen, and a note."""
-        parts = [
+    def show(self, chosen: Tab, note: str = "", *, focused: bool = False) -> None:
+        """Show which is chosen, a note, and whether the picture has the focus."""
+        parts = [CURSOR if focused else " "]
+        parts += [
             f"[@click=screen.picture('{tab}')]"
             + (f"[reverse bold] {n} {tab} [/]" if tab == chosen else f" {n} {tab} ")
             + "[/]"
@@ -226,11 +227,20 @@ class Pictures(Vertical):
 
     def _show(self) -> None:
         shapes, named = self._beside()
-        self.query_one(Tabs).show(self.tab, self._note)
+        picture = self.query_one(Picture)
+        self.query_one(Tabs).show(self.tab, self._note, focused=picture.has_focus)
         told = self.query_one("#beside", Static)
         told.update(f"dashed: {named}")
         told.display = bool(named) and self.tab in ("elevation", "plan")
-        self.query_one(Picture).show(self._view, self.tab, shapes)
+        picture.show(self._view, self.tab, shapes)
+
+    def on_descendant_focus(self) -> None:
+        """Say that the keys go to the picture."""
+        self.query_one(Tabs).show(self.tab, self._note, focused=True)
+
+    def on_descendant_blur(self) -> None:
+        """Say that they go elsewhere."""
+        self.query_one(Tabs).show(self.tab, self._note)
 
     def on_click(self, event: events.Click) -> None:
         """Give the picture the focus."""

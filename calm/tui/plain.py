@@ -17,6 +17,7 @@ _LOCALE = ("LC_ALL", "LC_CTYPE", "LANG")
 _OF_PYTHON = frozenset({"c.utf-8", "c.utf8", "utf-8"})
 _LIKE = {
     "✓": "+",
+    "★": "*",
     "▸→›▶": ">",
     "‹←◀": "<",
     "↑▲▼": "^",

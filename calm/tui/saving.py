@@ -87,7 +87,7 @@ class Saving:
                 self._write(lambda: self._session.save_as(chosen), then)
 
         text = str(begin or path or "")
-        asked = [Asked("path", "File", text, _is_writable, placeholder="iroise-2026.yaml")]
+        asked = [Asked("path", "File", text, _is_writable, placeholder="e.g. iroise-2026.yaml")]
         self._app.push_screen(
             Sheet("Save as", f"In {Path.cwd()}, unless told otherwise.", asked), take
         )

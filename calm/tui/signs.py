@@ -40,6 +40,7 @@ UNKNOWN_MARGIN = "?"
 CLAMP = "├"
 CURSOR = "▸"
 MARK = "*"
+FAVOURITE = "★"
 ELLIPSIS = "…"
 
 

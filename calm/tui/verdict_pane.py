@@ -1,63 +1,175 @@
-"""The verdict beside the picture."""
+"""The verdict beside the picture; each of its lines leads to the rows that it is about."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
 
-from rich.console import Group, RenderableType
+from rich.segment import Segment
+from rich.style import Style
 from rich.table import Table
 from rich.text import Text
-from textual.app import ComposeResult
-from textual.containers import VerticalScroll
-from textual.widgets import Static
+from textual import events
+from textual.binding import BindingType
+from textual.geometry import Size
+from textual.message import Message
+from textual.strip import Strip
 
 from calm.checks.finding import State
+from calm.files import Place
+from calm.tui.actions import bindings
+from calm.tui.scrolled import Scrolled
 from calm.tui.signs import ELLIPSIS, LOOKS
 from calm.tui.verdict_text import Saying, headline, sayings
 
 if TYPE_CHECKING:
+    from rich.console import RenderableType
+
     from calm.tui.live import View
 
+_CHOSEN = Style(reverse=True)
 
-class VerdictPane(VerticalScroll, can_focus=True):
+
+class VerdictPane(Scrolled, can_focus=True):
     """What holds, what does not and why; the figures of the anchor and the top."""
 
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings("verdict")]
     DEFAULT_CSS = """
     VerdictPane {
         height: auto; max-height: 60%; min-height: 5; width: 1fr; padding: 0 1; margin-top: 1;
-        scrollbar-size-vertical: 1; background: $background;
+        overflow-x: hidden; scrollbar-size-vertical: 1; background: $background;
     }
     VerdictPane:focus { background-tint: $foreground 3%; }
     VerdictPane.-old { text-style: dim; }
     """
 
-    def compose(self) -> ComposeResult:
-        """One text."""
-        yield Static(id="verdict")
+    @dataclass
+    class RowWanted(Message):
+        """A line was chosen: the rows that it is about, none to go back, and what it says."""
+
+        places: tuple[Place, ...]
+        told: str = ""
+
+    def __init__(self, *, id: str | None = None) -> None:
+        super().__init__(id=id)
+        self._said: list[tuple[Saying, RenderableType]] = []
+        self._chosen = 0
+        self._drawn: tuple[int, list[tuple[list[Segment], int]]] = (-1, [])
 
     def show(self, view: View | None, note: str = "") -> None:
         """Say what is to be said of a line, and a note below it."""
-        self.query_one("#verdict", Static).update(_rendered(view, note))
+        self._said = [*_parts(view, note)]
+        self._chosen = min(self._chosen, len(self._said) - 1)
+        before = len(self._drawn[1])
+        self._drawn = (-1, [])
+        if len(self._lines(self.scrollable_content_region.width)) != before:
+            self.refresh(layout=True)
+        self.refresh()
+
+    def get_content_height(self, container: Size, viewport: Size, width: int) -> int:
+        """As many lines as it has."""
+        return len(self._lines(width))
+
+    def _lines(self, width: int) -> list[tuple[list[Segment], int]]:
+        """The lines in a width, each with the number of what is said in it."""
+        if width > 0 and self._drawn[0] != width:
+            options = self.app.console.options.update(width=width, height=None)
+            lines = [
+                (line, number)
+                for number, (_, shown) in enumerate(self._said)
+                for line in self.app.console.render_lines(shown, options, pad=False)
+            ]
+            self._drawn = (width, lines)
+            self.virtual_size = Size(width, len(lines))
+        return self._drawn[1]
+
+    def render_line(self, y: int) -> Strip:
+        """A row of the screen."""
+        width = self.scrollable_content_region.width
+        lines, at = self._lines(width), y + self.scroll_offset.y
+        segments, number = lines[at] if at < len(lines) else ([], -1)
+        strip = Strip(segments).apply_style(self.rich_style)
+        strip = strip.adjust_cell_length(width, self.rich_style)
+        if self.has_focus and number == self._chosen:
+            return Strip(Segment(text, style and style + _CHOSEN) for text, style, _ in strip)
+        return strip
+
+    @property
+    def said_here(self) -> str:
+        """What the line that is chosen says."""
+        return self._said[self._chosen][0].text
+
+    def on_focus(self) -> None:
+        """The line that is chosen is shown where the focus is."""
+        if not self._is_a_way(self._chosen):
+            self.action_move(1)
+        self.refresh()
+
+    def on_blur(self) -> None:
+        """And only there."""
+        self.refresh()
+
+    def action_move(self, by: int) -> None:
+        """To the next line that leads to a row, or scroll where there is none."""
+        number = self._chosen + by
+        while 0 <= number < len(self._said) and not self._is_a_way(number):
+            number += by
+        if self._is_a_way(number):
+            self._chosen = number
+            self._follow()
+            self.refresh()
+        else:
+            self.scroll_relative(y=by, animate=False)
+
+    def action_go(self) -> None:
+        """To the row that the line is about."""
+        if self._is_a_way(self._chosen):
+            said = self._said[self._chosen][0]
+            told = f"{said.sign} {said.heading}: ".replace(" : ", " ") + said.text
+            self.post_message(self.RowWanted(said.places, told))
+
+    def action_leave(self) -> None:
+        """Back to the line as it was."""
+        self.post_message(self.RowWanted(()))
+
+    def on_click(self, event: events.Click) -> None:
+        """A press on a line leads to its row."""
+        place, lines = event.get_content_offset(self), self._drawn[1]
+        at = -1 if place is None else place.y + self.scroll_offset.y
+        if 0 <= at < len(lines) and self._is_a_way(lines[at][1]):
+            self._chosen = lines[at][1]
+            self.action_go()
+
+    def _is_a_way(self, number: int) -> bool:
+        return 0 <= number < len(self._said) and bool(self._said[number][0].places)
+
+    def _follow(self) -> None:
+        """Scroll to the line that is chosen."""
+        own = [at for at, (_, number) in enumerate(self._drawn[1]) if number == self._chosen]
+        top, height = self.scroll_offset.y, max(self.scrollable_content_region.height, 1)
+        if own and not top <= own[0] <= own[-1] < top + height:
+            self.scroll_to(y=min(own[0], max(own[-1] - height + 1, 0)), animate=False)
 
 
-def _rendered(view: View | None, note: str) -> RenderableType:
+def _parts(view: View | None, note: str) -> Iterator[tuple[Saying, RenderableType]]:
+    """All that is said, and how it looks."""
     head = headline(view)
     style = "dim" if head.state is None else LOOKS[head.state].style
-    title = Text(f"{head.sign} {head.text}", style=f"{style} bold")
-    parts: list[RenderableType] = [title]
-    table = Table.grid(padding=(0, 1, 0, 0))
-    table.add_column(width=1)
-    table.add_column(overflow="fold", ratio=1)
+    yield head, Text(f"{head.sign} {head.text}", style=f"{style} bold")
     for saying in sayings(view):
+        table = Table.grid(padding=(0, 1, 0, 0), expand=True)
+        table.add_column(width=1)
+        table.add_column(overflow="fold", ratio=1)
         table.add_row(_sign(saying), _text(saying))
-    parts.append(table)
+        yield saying, table
     if note:
-        parts.append(Text(note, style="dim italic"))
-    return Group(*parts)
+        yield Saying(note), Text(note, style="dim italic")
 
 
 def _sign(saying: Saying) -> Text:
-    return Text(saying.sign, style="" if saying.state is None else LOOKS[saying.state].style)
+    plain = saying.state is None or saying.pending
+    return Text(saying.sign, style="" if plain or not saying.state else LOOKS[saying.state].style)
 
 
 def _text(saying: Saying) -> Text:

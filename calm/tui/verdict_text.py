@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -26,7 +26,7 @@ _MOST_NAMED = 2
 class Saying:
     """A line of the verdict: a sign in front, a heading, the text, and the state it tells of.
 
-    `pending` where the state may yet become another one.
+    `pending` where the state may yet become another one; `places` are the rows it is about.
     """
 
     text: str
@@ -34,6 +34,7 @@ class Saying:
     state: State | None = None
     faint: bool = False
     pending: bool = False
+    places: tuple[Place, ...] = ()
 
     @property
     def sign(self) -> str:
@@ -99,12 +100,12 @@ def sayings(view: View | None) -> Iterator[Saying]:
         yield Saying(view.failure.advice, faint=True)
     findings = [_placed(each, view) for each in view.findings]
     tighter = [_placed(each, view) for each in view.tighter]
-    yield from _figures(view.result, [*findings, *tighter])
+    yield from _figures(view.result, [*findings, *tighter], pending=not view.complete)
     for problem in view.elsewhere:
         yield Saying(problem.message, place_of(problem, view.path), State.FAIL)
     if len(view.stands) > 1:
         yield from map(_stand, view.stands)
-    yield from _found(findings)
+    yield from _found(findings, pending=not view.complete)
     if view.result is not None:
         for text in view.result.warnings:
             yield Saying(text, state=State.WARN)
@@ -148,17 +149,19 @@ def _say(name: str, value: float | None) -> str:
     return QUANTITIES[name].say(value)
 
 
-def _figures(result: Result | TowResult | None, findings: Sequence[Finding]) -> Iterator[Saying]:
+def _figures(
+    result: Result | TowResult | None, findings: Sequence[Finding], *, pending: bool
+) -> Iterator[Saying]:
     """The ends of the line; whoever has a result has loaded what solves it, the start has not."""
     from calm.case import Result
 
     if isinstance(result, Result):
-        yield from _mooring(result, findings)
+        yield from _mooring(result, findings, pending)
     elif result is not None:
         yield from _tow(result)
 
 
-def _mooring(result: Result, findings: Sequence[Finding]) -> Iterator[Saying]:
+def _mooring(result: Result, findings: Sequence[Finding], pending: bool) -> Iterator[Saying]:
     """What the line does as given; what is judged, as the worst of its findings has it."""
     from calm.checks.anchor import anchor_weight
     from calm.checks.posture import knockdown
@@ -167,32 +170,33 @@ def _mooring(result: Result, findings: Sequence[Finding]) -> Iterator[Saying]:
     anchor, top = result.anchor, result.top
     pull = f"{_say('tension', anchor.tension)}, {_say('angle', anchor.angle)} off the vertical"
     yield Saying(pull, heading="Anchor")
-    yield _holds(result, _worst(findings, anchor_weight))
+    yield _holds(result, _worst(findings, anchor_weight), pending)
     if result.type == "surface":
         used = f"{top.used_buoyancy:.0%} of the float's buoyancy in use"
         worst = _worst(findings, reserve)
         if worst is not None and worst.value is not None:
             used += _at_worst(worst, f"{1.0 - worst.value:.0%}")
-        yield Saying(f"{_say('reserve', top.reserve)}; {used}", "Reserve", _gravity(worst))
+        text = f"{_say('reserve', top.reserve)}; {used}"
+        yield Saying(text, "Reserve", _gravity(worst), places=_places([worst]))
     else:
         depth = f"top at {_say('depth', top.depth)}"
         worst = _worst(findings, knockdown)
         if worst is not None:
             depth += _at_worst(worst, _say("knockdown", worst.value))
         text = f"{_say('knockdown', top.knockdown)}, {depth}"
-        yield Saying(text, "Knockdown", _gravity(worst))
+        yield Saying(text, "Knockdown", _gravity(worst), places=_places([worst]))
     if anchor.grounded_length > 0.0:
         yield Saying(f"{_say('grounded_length', anchor.grounded_length)} of line", heading="Lies")
 
 
-def _holds(result: Result, worst: Finding | None) -> Saying:
+def _holds(result: Result, worst: Finding | None, pending: bool) -> Saying:
     """What the anchor is to weigh, and weighs; of a line without one the first alone."""
     if worst is None:
         return Saying(f"needs {_say('required_weight', result.anchor.required_weight)} in water")
     needs = f"needs {_say('required_weight', worst.limit)}{_situation(worst)}"
-    return Saying(
-        f"{needs}, has {_say('required_weight', worst.value)} in water", state=worst.state
-    )
+    has = f"has {_say('required_weight', worst.value)} in water"
+    unsure = pending and worst.state is State.PASS
+    return Saying(f"{needs}, {has}", state=worst.state, pending=unsure, places=_places([worst]))
 
 
 def _worst(findings: Sequence[Finding], rule: Rule) -> Finding | None:
@@ -226,17 +230,23 @@ def _tow(result: TowResult) -> Iterator[Saying]:
     )
 
 
-def _found(findings: Sequence[Finding]) -> Iterator[Saying]:
-    """Failures and warnings with reason and remedy; what passes and is unknown in short."""
+def _found(findings: Sequence[Finding], *, pending: bool) -> Iterator[Saying]:
+    """Failures and warnings with reason and remedy; what passes and is unknown in short.
+
+    A rule passes where it is met for every component: of a figure that is missing it is not known.
+    """
     for finding in sorted(findings, key=lambda each: each.rank):
         if finding.state in (State.FAIL, State.WARN):
             text = finding.message + (f" {finding.remedy}" if finding.remedy else "")
-            yield Saying(text, f"{_title(finding)}{_situation(finding)}", finding.state)
+            heading = f"{_title(finding)}{_situation(finding)}"
+            yield Saying(text, heading, finding.state, places=_places([finding]))
     yield from _unknown([each for each in findings if each.state is State.UNKNOWN])
     passed = dict.fromkeys(_title(each) for each in findings if each.state is State.PASS)
-    kept = [each for each in passed if all(_title(f) != each for f in findings if _graver(f))]
+    other = {_title(each) for each in findings if _graver(each) or each.state is State.UNKNOWN}
+    kept = [each for each in passed if each not in other]
     if kept:
-        yield Saying(", ".join(kept), heading="Pass", state=State.PASS)
+        heading = "Pass so far" if pending else "Pass"
+        yield Saying(", ".join(kept), heading, State.PASS, pending=pending)
 
 
 def why(view: View, row: Place) -> list[Saying]:
@@ -253,19 +263,27 @@ def why(view: View, row: Place) -> list[Saying]:
     ]
 
 
+def _places(findings: Iterable[Finding | None]) -> tuple[Place, ...]:
+    """The rows that findings are of, each once."""
+    found = (each.place.row for each in findings if each is not None and each.place is not None)
+    return tuple(dict.fromkeys(found))
+
+
 def _graver(finding: Finding) -> bool:
     return finding.state in (State.FAIL, State.WARN)
 
 
 def _unknown(findings: list[Finding]) -> Iterator[Saying]:
-    groups: dict[str, dict[str, None]] = {}
+    groups: dict[str, list[Finding]] = {}
     for finding in findings:
-        groups.setdefault(_title(finding), {})[finding.component or "the line"] = None
-    for title, names in groups.items():
+        groups.setdefault(_title(finding), []).append(finding)
+    for title, own in groups.items():
+        names = dict.fromkeys(each.component or "the line" for each in own)
         named = ", ".join(list(names)[:_MOST_NAMED])
         if len(names) > _MOST_NAMED:
             named += f" and {len(names) - _MOST_NAMED} more"
-        yield Saying(f"figures missing of {named}", heading=title, state=State.UNKNOWN)
+        text = f"figures missing of {named}"
+        yield Saying(text, title, State.UNKNOWN, places=_places(own))
 
 
 def _title(finding: Finding) -> str:

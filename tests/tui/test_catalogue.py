@@ -1,8 +1,10 @@
 """The catalogue beside the line: what is chosen, replaced and defined."""
 
 from calm.files.catalogue import Catalogue
+from calm.tui.catalogue.component_list import ComponentList
 from calm.tui.catalogue.component_screen import ComponentScreen
 from calm.tui.catalogue.index import Index
+from calm.tui.catalogue.remembered import Remembered
 from calm.tui.field import Field
 from tests.tui.conftest import MOORING
 
@@ -87,3 +89,36 @@ def test_the_index_of_a_text_that_cannot_be_read_is_that_of_the_catalogue():
     assert Index.of(catalogue, MOORING).get("ball").own
     assert Index.of(catalogue, "name: [").get("ball") is None
     assert Index.of(catalogue, "name: [").get("sbe37") is not None
+
+
+def test_favourites_and_what_was_taken_come_first_in_every_file(drive, tmp_path):
+    async def mark(driver):
+        await driver.press("a")
+        await driver.type("chain")
+        await driver.press("down", "down")
+        chosen.append(driver.app.builder.query_one(ComponentList).chosen.id)
+        await driver.press("f3")
+        assert f"{chosen[0]} is a favourite now" in driver.screen
+        assert f"★│ {chosen[0]}" in driver.screen
+        await driver.type(" ")
+        await driver.press("escape", "a")
+        await driver.type("shackle 19")
+        await driver.press("enter")
+
+    async def look(driver):
+        await driver.press("a")
+        listed = [each.id for each in driver.app.builder.query_one(ComponentList).rows]
+        assert listed[:2] == [chosen[0], "shackle-19"]
+        await driver.press("f3")
+        assert f"{chosen[0]} is no favourite any more" in driver.screen
+
+    async def later(driver):
+        await driver.press("a")
+        assert driver.app.builder.query_one(ComponentList).chosen.id == "shackle-19"
+
+    chosen = []
+    drive(mark)
+    drive(look, tmp_path / "another.yaml")
+    drive(later, tmp_path / "another.yaml")
+    (tmp_path / "state" / "calm" / "catalogue.json").write_text('{"recent": [1')
+    assert Remembered().favourites == [] == Remembered().recent

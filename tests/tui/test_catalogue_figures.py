@@ -62,10 +62,11 @@ def test_the_greatest_comes_first_and_what_is_unknown_last():
     assert known == sorted(known, reverse=True) and loads[: len(known)] == known
 
 
-def test_what_was_used_lately_comes_first_of_those_that_fit_as_well():
-    last = found("shackle")[-1]
-    assert found("shackle", recent=[last])[0] == last or not last.startswith("shackle")
-    assert found("", recent=["glass-17in-lpo"])[0] == "glass-17in-lpo"
+def test_favourites_and_what_was_used_lately_come_first():
+    assert found("13", first=["swivel-13"])[0] == "swivel-13" != found("13")[0]
+    assert found("", first=["glass-17in-lpo"])[0] == "glass-17in-lpo"
+    assert found("shackle-13", first=["shackle-13-ios"])[:2] == ["shackle-13", "shackle-13-ios"]
+    assert found("wire", first=["glass-17in-lpo"]) == found("wire")
 
 
 def test_figures_are_those_of_the_component():

@@ -114,6 +114,7 @@ def test_clamp_an_instrument_on_a_piece(drive, small):
         await driver.press("enter")
         await driver.type("5")
         await driver.press("enter")
+        await driver.press("enter")  # no label
         clamps = driver.session.draft.items[1].clamps
         assert clamps[2].values == {"use": "sbe37", "at": "5 m"}
 

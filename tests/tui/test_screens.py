@@ -339,7 +339,7 @@ def test_a_tow_is_built_from_nothing(drive, folder):
         await driver.type("wire-jacketed-8")
         await driver.press("enter")
         await driver.type("200")
-        await driver.press("enter", "ctrl+u")
+        await driver.press("enter", "enter", "ctrl+u")
         await driver.type("sbe37")
         await driver.press("enter", "escape")
         await driver.settle()

@@ -10,6 +10,7 @@ from calm.checks.finding import State
 from calm.files.editing import Draft
 from calm.tui.line.rows import table_rows
 from calm.tui.live import judge, judge_fully
+from calm.tui.signs import ELLIPSIS, LOOKS
 from calm.tui.verdict_text import headline, sayings
 from tests.tui.conftest import MOORING
 
@@ -134,3 +135,24 @@ def test_an_environment_that_cannot_be_read_is_named(tmp_path):
         view = judge_fully(view)
         assert view.elsewhere and headline(view).state is State.FAIL
         assert any("none.csv" in each.text for each in sayings(view))
+
+
+def test_nothing_passes_before_all_is_judged_nor_where_a_figure_is_missing():
+    early = judge(MOORING)
+    signs = [headline(early).sign, *(each.sign for each in sayings(early))]
+    assert LOOKS[State.PASS].sign not in signs and signs[0] == ELLIPSIS
+    told = [*sayings(judge_fully(early))]
+    unknown = {each.heading for each in told if each.state is State.UNKNOWN}
+    passed = next(each.text for each in told if each.heading == "Pass").split(", ")
+    assert unknown and not unknown & set(passed)
+
+
+def test_an_environment_that_fails_is_named_and_each_has_its_line():
+    """The own one is sound; what fails elsewhere makes the whole verdict fail."""
+    gale = "environments:\n  gale: {current: {speed: 4 m/s, toward: 0 deg}}\n"
+    view = judge_fully(judge(MOORING.replace("line:\n", f"{gale}line:\n")))
+    lines = [each for each in sayings(view) if each.heading.startswith("In ")]
+    assert [each.heading for each in lines] == ["In own environment", "In gale"]
+    assert lines[1].state is State.FAIL and lines[0].state is not State.FAIL
+    assert headline(view).state is State.FAIL
+    assert any("gale" in each.heading for each in sayings(view) if each.state is State.FAIL)

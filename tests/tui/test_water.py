@@ -156,9 +156,17 @@ def test_rows_of_a_spreadsheet_are_pasted(drive, small):
         await turn(driver, "current-form")
         cells(driver).focus()
         await driver.pilot.pause()
-        rows = await paste(driver, "depth m\tspeed m/s\ttoward deg\n0\t0.9\t70\n100\t0.1\t60\n")
+        first = "depth m\tspeed m/s\ttoward deg\n0\t0.9\t70\n100\t0.1\t60\n"
+        before = value(driver, "current", "rows")
+        assert await paste(driver, first) == before  # it is shown before it is taken
+        assert "A table is pasted" in driver.screen and "100      0.1" in driver.screen
+        await driver.press("enter")
+        await driver.settle()
+        rows = value(driver, "current", "rows")
         assert rows == [["0", "0.9", "70"], ["100", "0.1", "60"]]
-        rows = await paste(driver, "Depth (m);Speed (knot);From (deg)\n0;1;250\n100;0.5;240\n")
+        rows = await paste(
+            driver, "Depth (m);Speed (knot);From (deg)\n0;1;250\n100;0.5;240\n", "enter"
+        )
         assert rows == [["0", "0.514444444", "70"], ["100", "0.257222222", "60"]]
         cells(driver).focus()
         before = driver.text
@@ -791,3 +799,52 @@ def test_no_row_is_proposed_below_the_seabed(drive, folder):
         assert depths(driver) == ["0", "95", "97.5", "100"]
 
     drive(story, path)
+
+
+def test_a_table_is_pasted_from_any_field_and_is_the_current(drive, small):
+    async def story(driver):
+        await driver.press("w")
+        driver.app.post_message(Paste("0 0.6 70\n100 0.2 70"))
+        await driver.settle()
+        assert value(driver, "depth") == "100 m"  # which has the focus, and is none of it
+        await driver.press("enter")
+        await driver.settle()
+        assert value(driver, "current") == {
+            "columns": ["depth m", "speed m/s", "toward deg"],
+            "rows": [["0", "0.6", "70"], ["100", "0.2", "70"]],
+        }
+        assert driver.app.focused is cells(driver)
+
+    drive(story, small)
+
+
+def test_rows_are_typed_one_after_the_other_and_none_is_left_over(drive, small):
+    async def story(driver):
+        await driver.press("w")
+        await turn(driver, "current-form")
+        cells(driver).focus()
+        await driver.press("a", *"20", "enter", "full_stop", "5", "enter", *"80", "enter")
+        await driver.press(*"40", "enter", "full_stop", "4", "enter", *"85", "enter", "escape")
+        rows = value(driver, "current", "rows")
+        assert rows[1:3] == [["20", ".5", "80"], ["40", ".4", "85"]] and len(rows) == 4
+        assert cells(driver).cursor == 2
+        # at the end of a row that was there the cursor stays in it: the next one comes below it
+        await driver.press("home", "up", "up", "right", "right", "enter", "enter", "a", "escape")
+        assert value(driver, "current", "rows")[1] == ["10", "0.5", "85"]
+
+    drive(story, small)
+
+
+def test_enter_takes_a_form_and_goes_on(drive, small):
+    async def story(driver):
+        await driver.press("w")
+        driver.app.screen.query_one("#density-form").focus()
+        await driver.pilot.pause()
+        assert "← → another, ↑ ↓ go on" in driver.screen
+        await driver.press("enter")
+        assert driver.app.focused is field(driver, "density").input
+        driver.app.screen.query_one("#current-form").focus()
+        await driver.press("right", "enter")
+        assert driver.app.focused is cells(driver)
+
+    drive(story, small)

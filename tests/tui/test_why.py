@@ -3,6 +3,7 @@
 from calm.checks.finding import State
 from calm.files import Place
 from calm.tui.live import judge, judge_fully
+from calm.tui.verdict_pane import VerdictPane
 from calm.tui.verdict_text import why
 from tests.tui.conftest import MOORING
 
@@ -41,3 +42,53 @@ def test_the_next_finding_and_why(drive, folder):
         assert driver.table.cursor == first
 
     drive(story, path)
+
+
+def test_a_line_of_the_verdict_leads_to_its_row_and_back(drive, folder):
+    path = folder / "weak.yaml"
+    path.write_text(WEAK, encoding="utf-8")
+
+    async def story(driver):
+        driver.app.judging.ask_fully()
+        await driver.settle()
+        await driver.press("G")
+        pane = driver.app.focused
+        assert isinstance(pane, VerdictPane)
+        while "breaking load" not in pane.said_here:
+            await driver.press("down")
+        told = pane.said_here
+        await driver.press("enter")
+        assert driver.table.has_focus and driver.table.spot == Place(1)
+        assert "breaking load" in driver.screen.splitlines()[-1]
+        await driver.press("escape")
+        assert driver.app.focused is pane and pane.said_here == told
+        await driver.press("escape")
+        assert driver.table.has_focus
+
+        await driver.press("home")
+        row = next(
+            n for n, line in enumerate(driver.screen.splitlines()) if "breaking load" in line
+        )
+        await driver.pilot.click(offset=(pane.region.x + 6, row))
+        await driver.pilot.pause()
+        assert driver.table.has_focus and driver.table.spot == Place(1)
+
+    drive(story, path)
+
+
+def test_unknown_figures_lead_to_one_row_after_the_other(drive, small):
+    async def story(driver):
+        await driver.settle()
+        places = [each.spot for each in driver.table.rows if each.state is State.UNKNOWN]
+        assert len(places) > 1
+        await driver.press("G")
+        while "figures missing" not in driver.app.focused.said_here:
+            await driver.press("down")
+        seen = []
+        for _ in places:
+            await driver.press("enter")
+            seen.append(driver.table.spot)
+            await driver.press("escape")
+        assert len(set(seen)) > 1 and set(seen) <= set(places)
+
+    drive(story, small)

@@ -6,7 +6,7 @@ from calm.files.editing.history import History
 from calm.files.editing.items import Item
 from calm.files.editing.kept_work import Kept
 from calm.files.editing.layout import Value
-from calm.files.editing.working_file import NotWritten, WorkingFile
+from calm.files.editing.working_file import NotWritten, WorkingFile, state_folder
 
 __all__ = [
     "LINE",
@@ -19,4 +19,5 @@ __all__ = [
     "Value",
     "WorkingFile",
     "clamps_of",
+    "state_folder",
 ]

@@ -195,11 +195,11 @@ class WorkingFile:
     def _folders(self) -> list[tuple[Path, str]]:
         """Where the copy goes and how its name begins, the best place first."""
         if self.path is None:
-            return [(_state_folder(), "unnamed")]
+            return [(state_folder(), "unnamed")]
         target = Path(os.path.realpath(self.path))
         sign = hashlib.sha256(os.fsencode(target)).hexdigest()[:12]
         # a long name leaves no room for more beside the file
-        away = _state_folder(), f"{target.name[:40]}-{sign}"
+        away = state_folder(), f"{target.name[:40]}-{sign}"
         return [(target.parent, f".{target.name}"), away]
 
     def _copies(self) -> list[Kept]:
@@ -225,7 +225,8 @@ class WorkingFile:
                 place.unlink()
 
 
-def _state_folder() -> Path:
+def state_folder() -> Path:
+    """Where CALM keeps of a user what belongs to no file."""
     state = os.environ.get("XDG_STATE_HOME") or os.path.expanduser("~/.local/state")
     return Path(state) / "calm"
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import zip_longest
 
 from rich.cells import cell_len, set_cell_size
 from rich.segment import Segment
@@ -13,7 +14,7 @@ from textual.strip import Strip
 from calm.tui.catalogue.figures import COLUMNS, Column
 from calm.tui.catalogue.index import Index, Listed
 from calm.tui.listing import Listing
-from calm.tui.signs import CURSOR, ROLES
+from calm.tui.signs import CURSOR, FAVOURITE, ROLES
 
 _LEAD, _FIGURE = 4, 8
 
@@ -51,19 +52,33 @@ class ComponentList(Listing, can_focus=False):
         self._longest = 0
         self._index: Index | None = None
         self._by: str | None = None
+        self._favourites: frozenset[str] = frozenset()
 
     @property
     def chosen(self) -> Listed | None:
         """The component under the cursor."""
         return self.rows[self.cursor] if self.rows else None
 
-    def show(self, found: Sequence[Listed], index: Index, by: str | None = None) -> None:
+    def show(
+        self,
+        found: Sequence[Listed],
+        index: Index,
+        by: str | None = None,
+        favourites: frozenset[str] = frozenset(),
+    ) -> None:
         """List other components, the cursor on the first; `by` which figure they are sorted."""
-        self._index, self._by = index, by
+        before, columns = self.rows, self._columns()
+        cursor, like = self.cursor, (self._index, self._favourites)
+        self._index, self._by, self._favourites = index, by, favourites
         self._longest = max((len(each.id) for each in found), default=0)
         self.set_reactive(Listing.cursor, 0)
-        self.take_rows(found)
-        self.scroll_to(y=0, animate=False)
+        if like != (index, favourites) or columns != self._columns() or self.scroll_offset.y:
+            self.take_rows(found)
+            self.scroll_to(y=0, animate=False)
+        else:
+            pairs = zip_longest(before[: self.size.height], found[: self.size.height])
+            changed = [number for number, (old, new) in enumerate(pairs) if old is not new]
+            self.take_rows(found, {0, cursor, *changed})
         self.post_message(self.Moved())
 
     def on_click(self, event: events.Click) -> None:
@@ -77,8 +92,9 @@ class ComponentList(Listing, can_focus=False):
         else:
             self.cursor = number
 
-    def _columns(self, width: int) -> tuple[int, list[Column], int]:
+    def _columns(self) -> tuple[int, list[Column], int]:
         """Cells of the ids, the figures that have room beside them, cells left for the names."""
+        width = self.scrollable_content_region.width
         id_width = max(min(self._longest, width - _LEAD), 0)
         room, shown = width - _LEAD - id_width - 1, []
         for column in sorted(COLUMNS, key=lambda each: each.key != self._by):
@@ -91,7 +107,7 @@ class ComponentList(Listing, can_focus=False):
         """A row of the screen."""
         width = self.scrollable_content_region.width
         number, style = self.row_at(y), self.rich_style
-        id_width, columns, name_width = self._columns(width)
+        id_width, columns, name_width = self._columns()
         name_style = style + self.get_component_rich_style("component-list--name", partial=True)
         if y == 0:
             heads = [f"{each.heading:>{_FIGURE}} " for each in columns]
@@ -104,12 +120,13 @@ class ComponentList(Listing, can_focus=False):
         if here:
             style += self.get_component_rich_style("component-list--cursor", partial=True)
             name_style += self.get_component_rich_style("component-list--cursor", partial=True)
+        star = FAVOURITE if each.id in self._favourites else " "
         look = "own" if each.own else "id"
         id_style = style + self.get_component_rich_style(f"component-list--{look}", partial=True)
         figures = self._index.figures(each.id)
         cells = [f"{column.shown(figures.get(column.key)):>{_FIGURE}} " for column in columns]
         segments = [
-            Segment(f"{CURSOR if here else ' '} {ROLES.get(each.role, ' ')} ", style),
+            Segment(f"{CURSOR if here else ' '}{star}{ROLES.get(each.role, ' ')} ", style),
             Segment(set_cell_size(each.id, id_width), id_style),
             Segment(f" {''.join(cells)}", style),
         ]

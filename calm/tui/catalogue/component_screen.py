@@ -65,7 +65,7 @@ class ComponentScreen(Screen[Defined | None]):
             with VerticalScroll(id="fields", can_focus=False):
                 if not self._begun:
                     check = id_check(self._own)
-                    yield Field("id", "id", check, id="id", placeholder="sphere-own-1250")
+                    yield Field("id", "id", check, id="id", placeholder="e.g. sphere-own-1250")
                     yield Cycle("kind", tuple(KINDS), self._kind, title_width=20)
                 yield Vertical(id="kind-fields")
             with VerticalScroll(id="outcome", can_focus=False):
@@ -108,8 +108,11 @@ class ComponentScreen(Screen[Defined | None]):
         self._judge()
 
     @on(Field.Entered)
-    def _onward(self) -> None:
-        self.focus_next()
+    def _onward(self, event: Field.Entered) -> None:
+        if event.field is self._fields()[-1]:
+            self.action_accept()
+        else:
+            self.focus_next()
 
     def _fields(self) -> list[Field]:
         return list(self.query(Field))

@@ -19,6 +19,8 @@ from calm.tui.catalogue.synonyms import with_synonyms
 _ROLES = {"cable": "line", "chain": "line", "anchor": "anchor"}
 CLAMPABLE = frozenset({"sphere", "cylinder", "body"})
 WITH_LENGTH = frozenset({"cable", "chain"})
+_ELSEWHERE = 4
+"""The rank of a component whose id has not all words."""
 _BETWEEN = re.compile(r"[\s_-]+")
 
 
@@ -79,7 +81,7 @@ class Index:
         text: str,
         kinds: Iterable[str] | None = None,
         *,
-        recent: Sequence[str] = (),
+        first: Sequence[str] = (),
         by: str | None = None,
     ) -> list[Listed]:
         """Those that have every word of a text and keep every limit in it, as ``breaking>50kN``.
@@ -88,7 +90,7 @@ class Index:
 
         Parameters
         ----------
-        recent : ids used lately, which come before others that fit as well
+        first : ids, in their order, that come before all others but the one that is typed whole
         by : the key of a column: the greatest first, what is not known last
         """
         asked = [(word.casefold(), wanted(word)) for word in text.split()]
@@ -105,11 +107,14 @@ class Index:
         ]
         if by is not None:
             return sorted(hits, key=lambda each: self._least_first(each.id, by))
-        lately = {id: number for number, id in enumerate(recent)}
-        return sorted(
-            hits,
-            key=lambda each: (_rank(each, words), lately.get(each.id, len(lately))),
-        )
+        places = {id: number for number, id in enumerate(first)}
+
+        def order(each: Listed) -> tuple[bool, int, int]:
+            rank = _rank(each, words)
+            place = places.get(each.id, len(places)) if rank < _ELSEWHERE else len(places)
+            return rank > 0, place, rank
+
+        return sorted(hits, key=order)
 
     def _least_first(self, id: str, by: str) -> float:
         value = self.figures(id).get(by)
@@ -117,7 +122,10 @@ class Index:
 
 
 def _rank(each: Listed, words: Sequence[str]) -> int:
-    """How well a component fits: its id, the beginning of it, all words in it, elsewhere."""
+    """How well a component fits: its id, the beginning of it, all words in it, elsewhere.
+
+    Of ids that have all words, one that begins with the first of them is nearer.
+    """
     if not words:
         return 0
     joined, id = "".join(words), _BETWEEN.sub("", each.id)
@@ -125,7 +133,9 @@ def _rank(each: Listed, words: Sequence[str]) -> int:
         return 0
     if id.startswith(joined):
         return 1
-    return 2 if all(word in each.id for word in words) else 3
+    if all(word in each.id for word in words):
+        return 2 if id.startswith(words[0]) else 3
+    return _ELSEWHERE
 
 
 def _listed(entry: Entry, shipped: object) -> Listed:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
+from rich.text import Text
 from textual import on
 from textual.app import ComposeResult
 from textual.binding import BindingType
-from textual.containers import Horizontal, Vertical, VerticalScroll
+from textual.containers import Horizontal, Vertical
 from textual.message import Message
 from textual.widgets import Input, Static
 
@@ -17,8 +18,10 @@ from calm.tui.actions import bindings
 from calm.tui.catalogue.component_list import ComponentList
 from calm.tui.catalogue.figures import COLUMNS
 from calm.tui.catalogue.index import CLAMPABLE, WITH_LENGTH, Index, Listed
+from calm.tui.catalogue.remembered import Remembered
 from calm.tui.checking import anything, distance, length
 from calm.tui.field import Field
+from calm.tui.scrolled import Entry, ScrolledText
 
 Purpose = Literal["below", "above", "clamp", "replace"]
 """What the component is wanted for."""
@@ -44,7 +47,7 @@ class CataloguePane(Vertical):
         & #catalogue-search:focus { background: $surface; background-tint: $foreground 8%; }
         & #catalogue-ask { height: auto; display: none; }
         & #catalogue-found { height: 1fr; layout: vertical; }
-        & #catalogue-card { height: 1fr; padding: 0; margin-top: 1; scrollbar-size-vertical: 1; }
+        & #catalogue-card { height: 1fr; margin-top: 1; }
         &.-asking #catalogue-ask { display: block; }
     }
     .-narrow CataloguePane #catalogue-found { layout: horizontal; }
@@ -59,24 +62,33 @@ class CataloguePane(Vertical):
         purpose: Purpose
         values: dict[str, str]
 
+    @dataclass
+    class Told(Message):
+        """Something to be said in the last line."""
+
+        text: str
+        wrong: bool = False
+
     class Closed(Message):
         """Back to the line."""
 
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
         self.index: Index | None = None
+        self.remembered = Remembered()
         self.purpose: Purpose = "below"
         self.clampable = False
         self.towed = False
-        self.recent: list[str] = []
+        self._used: list[str] = []
         self._by: str | None = None
         self._asked: Listed | None = None
+        self._shown: Listed | None = None
         self._target = ""
 
     def compose(self) -> ComposeResult:
         """Title, search, what is asked for, and the list with its card."""
         yield Static(id="catalogue-title", markup=False)
-        yield Input(
+        yield Entry(
             id="catalogue-search",
             compact=True,
             placeholder="words: id, name, maker, kind, role; breaking>50kN",
@@ -86,8 +98,7 @@ class CataloguePane(Vertical):
             yield Field("label", "Label", anything, id="ask-label", placeholder="may stay empty")
         with Horizontal(id="catalogue-found"):
             yield ComponentList()
-            with VerticalScroll(id="catalogue-card", can_focus=False):
-                yield Static(id="catalogue-figures", markup=False)
+            yield ScrolledText(id="catalogue-card")
 
     @property
     def listing(self) -> ComponentList:
@@ -95,35 +106,40 @@ class CataloguePane(Vertical):
         return self.query_one(ComponentList)
 
     @property
-    def search(self) -> Input:
+    def search(self) -> Entry:
         """The words."""
-        return self.query_one("#catalogue-search", Input)
+        return self.query_one("#catalogue-search", Entry)
 
     def take_index(self, index: Index) -> None:
         """Search another catalogue."""
         self.index = index
         if self.display or not self.listing.rows:
-            chosen = self.listing.chosen
-            self._search()
-            ids = [each.id for each in self.listing.rows]
-            if chosen is not None and chosen.id in ids:
-                self.listing.cursor = ids.index(chosen.id)
+            self._search_again()
+
+    def _search_again(self) -> None:
+        """Search for the same, the cursor on the component it was on."""
+        chosen = self.listing.chosen
+        self._search()
+        ids = [each.id for each in self.listing.rows]
+        if chosen is not None and chosen.id in ids:
+            self.listing.cursor = ids.index(chosen.id)
 
     def open(
         self,
         purpose: Purpose,
         target: str,
-        recent: list[str],
+        used: list[str],
         *,
         clampable: bool = False,
         towed: bool = False,
     ) -> None:
         """Look for a component for the row called `target`, empty in an empty line.
 
-        What was used lately comes first. With `clampable`, only what can be clamped on a line.
+        Favourites come first, what was taken lately, and what is `used` in the line. With
+        `clampable`, only what can be clamped on a line.
         """
         self.purpose, self.clampable, self.towed = purpose, clampable, towed
-        self.recent = recent
+        self._used = used
         self._leave_asking()
         self.retitle(target)
         self._search()
@@ -143,25 +159,28 @@ class CataloguePane(Vertical):
         if self.index is None:
             return
         kinds = CLAMPABLE if self.clampable else None
-        found = self.index.search(self.search.value, kinds, recent=self.recent, by=self._by)
-        self.listing.show(found, self.index, self._by)
+        kept = self.remembered
+        first = [*dict.fromkeys([*kept.favourites, *kept.recent, *self._used])]
+        found = self.index.search(self.search.value, kinds, first=first, by=self._by)
+        self.listing.show(found, self.index, self._by, frozenset(kept.favourites))
 
     @on(ComponentList.Moved)
     def _show_card(self) -> None:
-        card = self.query_one("#catalogue-figures", Static)
-        chosen = self.listing.chosen
+        card, chosen = self.query_one("#catalogue-card", ScrolledText), self.listing.chosen
+        if chosen is self._shown and chosen is not None:
+            return
+        self._shown = chosen
         if chosen is None or self.index is None:
-            card.update("Nothing has all these words.")
+            card.show("Nothing has all these words.")
             return
         from calm.report.catalogue import to_card
         from calm.report.terminal import shown
 
         try:
             catalogue = self.index.catalogue
-            card.update(shown(to_card(chosen.id, catalogue.get(chosen.id), catalogue)))
+            card.show(shown(to_card(chosen.id, catalogue.get(chosen.id), catalogue)))
         except CalmError as error:
-            card.update(str(error))
-        self.query_one("#catalogue-card", VerticalScroll).scroll_home(animate=False)
+            card.show(Text(str(error)))
 
     def action_sort(self) -> None:
         """Sort by the next of the figures, or by how well the words fit."""
@@ -169,6 +188,19 @@ class CataloguePane(Vertical):
         self._by = keys[(keys.index(self._by) + 1) % len(keys)]
         self.retitle(self._target)
         self._search()
+
+    def action_mark(self) -> None:
+        """Make a favourite of the component, or no more."""
+        chosen = self.listing.chosen
+        if chosen is not None:
+            try:
+                is_one = self.remembered.mark(chosen.id)
+            except OSError as error:
+                self.post_message(self.Told(f"It could not be kept: {error}", wrong=True))
+            else:
+                became = "is a favourite now" if is_one else "is no favourite any more"
+                self.post_message(self.Told(f"{chosen.id} {became}"))
+            self._search_again()
 
     def action_choose(self, by: int) -> None:
         """Move the cursor of the list."""
@@ -187,15 +219,19 @@ class CataloguePane(Vertical):
         elif chosen.kind in WITH_LENGTH and self.purpose != "replace":
             self._ask(chosen, "length", "Length")
         else:
-            self.post_message(self.Taken(self.purpose, {"use": chosen.id}))
+            self._give({"use": chosen.id})
             self.search.action_select_all()
+
+    def _give(self, values: dict[str, str]) -> None:
+        self.remembered.take(values["use"])
+        self.post_message(self.Taken(self.purpose, values))
 
     def _ask(self, chosen: Listed, key: str, title: str) -> None:
         self._asked = chosen
         self.add_class("-asking")
         first = self.query_one("#ask-length", Field)
         check = distance() if key == "at" else length(towed=self.towed)
-        placeholder = "2 m, from the top of the piece" if key == "at" else "480 m, or fit 105 m"
+        placeholder = "e.g. 2 m down the piece" if key == "at" else "e.g. 480 m, or fit 105 m"
         first.ask(key, title, check, placeholder)
         self.query_one("#ask-label", Field).reset("")
         first.focus_input()
@@ -204,13 +240,16 @@ class CataloguePane(Vertical):
     def _answered(self, event: Field.Entered) -> None:
         event.stop()
         first, label = self.query_one("#ask-length", Field), self.query_one("#ask-label", Field)
+        if event.field is first:
+            label.focus_input()
+            return
         if self._asked is None or not (first.settle() and label.settle()):
             return
         values = {"use": self._asked.id, first.key: first.text}
         if label.text:
             values["label"] = label.text
         self._leave_asking()
-        self.post_message(self.Taken(self.purpose, values))
+        self._give(values)
         self.search.focus()
         self.search.action_select_all()
 

@@ -23,7 +23,6 @@ class LineBody(Horizontal):
         self.workspace, self.session = workspace, workspace.session
         self.line = LinePane(workspace)
         self.catalogue = CataloguePane(id="catalogue")
-        self._taken: list[str] = []  # from the catalogue, the last first
         self.pictures, self.verdict = Pictures(id="pictures"), VerdictPane(id="verdict-pane")
 
     def compose(self) -> ComposeResult:
@@ -90,6 +89,25 @@ class LineBody(Horizontal):
         parts.append(state(self.workspace.view, old=not self.workspace.is_fresh))
         return f"{self.workspace.called}  {name}".rstrip(), "   ".join(parts)
 
+    # from the verdict to a row, and back
+
+    @on(VerdictPane.RowWanted)
+    def _go_to_row(self, event: VerdictPane.RowWanted) -> None:
+        self.screen.remove_class("-reading")
+        table = self.line.table
+        rows = {row.spot: number for number, row in enumerate(table.rows)}
+        numbers = sorted(rows[place] for place in event.places if place in rows)
+        if numbers:  # again and again: the next of them
+            table.cursor = next((each for each in numbers if each > table.cursor), numbers[0])
+            self.workspace.tell(event.told)
+            self.line.came_from_verdict = True
+        table.focus()
+
+    @on(LinePane.BackWanted)
+    def _back_to_verdict(self) -> None:
+        self.screen.add_class("-reading")
+        self.verdict.focus()
+
     # components from the catalogue
 
     @on(LinePane.ComponentWanted)
@@ -105,15 +123,14 @@ class LineBody(Horizontal):
             purpose == "replace" and spot is not None and spot.is_clamp
         )
         target, towed = self._target(purpose), self.session.draft.is_tow
-        recent = self._recent()
-        self.catalogue.open(purpose, target, recent, clampable=is_on_line, towed=towed)
+        used = self._used()
+        self.catalogue.open(purpose, target, used, clampable=is_on_line, towed=towed)
 
-    def _recent(self) -> list[str]:
-        """What was taken lately, then what the line uses, from the bottom."""
+    def _used(self) -> list[str]:
+        """What the line uses, from the bottom."""
         items = self.session.draft.items
         parts = [part for item in items for part in (item, *item.clamps)]
-        used = [part.values.get("use", "") for part in reversed(parts)]
-        return [*dict.fromkeys([*self._taken, *used])]
+        return [part.values.get("use", "") for part in reversed(parts)]
 
     def _target(self, purpose: Purpose) -> str:
         """What the row is called that the component is for."""
@@ -127,7 +144,6 @@ class LineBody(Horizontal):
     def _take_component(self, event: CataloguePane.Taken) -> None:
         spot, values, purpose = self.line.table.spot, event.values, event.purpose
         session, use = self.session, event.values["use"]
-        self._taken.insert(0, use)
         if purpose == "replace" and spot is not None:
             kept: list[str] = []
             if self.line.attempt(lambda: kept.extend(session.replace(spot, values))):
@@ -143,6 +159,10 @@ class LineBody(Horizontal):
             if not below:  # the next one comes below it: a line is listed downwards
                 self.catalogue.purpose = "below"
         self.catalogue.retitle(self._target(self.catalogue.purpose))
+
+    @on(CataloguePane.Told)
+    def _tell(self, event: CataloguePane.Told) -> None:
+        self.workspace.tell(event.text, wrong=event.wrong)
 
     @on(CataloguePane.Closed)
     def _close_catalogue(self) -> None:

@@ -9,10 +9,10 @@ from textual.binding import BindingType
 from textual.events import DescendantFocus, Key
 
 from calm.files.components import KINDS
-from calm.tui.action_table import Place
 from calm.tui.actions import bindings, hints
 from calm.tui.bars import KeyBar
 from calm.tui.catalogue.pane import CataloguePane
+from calm.tui.keys.action import Place
 from calm.tui.line.advising import Advising
 from calm.tui.line.body import LineBody
 from calm.tui.line.cell_editor import CellEditor
@@ -22,6 +22,7 @@ from calm.tui.line.pane import LinePane
 from calm.tui.pictures import Picture, Tab
 from calm.tui.screen import DraftScreen
 from calm.tui.session import Location
+from calm.tui.verdict_pane import VerdictPane
 from calm.tui.workspace import Workspace
 
 if TYPE_CHECKING:
@@ -59,6 +60,10 @@ class BuilderScreen(DraftScreen):
         &.-narrow Pictures { width: 3fr; }
         &.-narrow VerdictPane { width: 2fr; height: 1fr; max-height: 100%; margin-top: 0; }
         &.-narrow.-flat #study { display: none; }
+        &.-narrow.-flat.-zoomed #study, &.-narrow.-flat.-reading #study {
+            display: block; height: 1fr; border: none;
+        }
+        &.-narrow.-flat.-reading #line-pane, &.-narrow.-flat.-reading Pictures { display: none; }
         &.-narrow.-flat.-searching #line-pane { display: none; }
         &.-zoomed #line-pane, &.-zoomed VerdictPane { display: none; }
         &.-zoomed #study { display: block; border: none; }
@@ -90,6 +95,10 @@ class BuilderScreen(DraftScreen):
         place: Place = "line"
         if isinstance(focused, CellEditor):
             place = "cell"
+        elif isinstance(focused, VerdictPane):
+            place = "verdict"
+        elif isinstance(focused, Picture):
+            place = "anywhere"
         elif focused is not None and self.query_one(CataloguePane) in focused.ancestors_with_self:
             place = "catalogue"
         self.query_one(KeyBar).show_keys(hints(place))
@@ -140,6 +149,12 @@ class BuilderScreen(DraftScreen):
         """Draw the line in all its environments, or in its own alone."""
         shown = self.body.pictures.overlay()
         self.tell("All environments that are judged are drawn" if shown else "One is drawn alone")
+
+    def action_verdict(self) -> None:
+        """The verdict line by line."""
+        self.remove_class("-zoomed", "-searching")
+        self.add_class("-reading")
+        self.body.verdict.focus()
 
     def action_figures(self) -> None:
         """Fill in what is not known of the components."""

@@ -9,16 +9,16 @@ from textual import events
 from textual.binding import BindingType
 from textual.geometry import Region
 from textual.message import Message
-from textual.widgets import Input
 
 from calm.tui.actions import bindings
 from calm.tui.checking import Check, Reading, anything
+from calm.tui.scrolled import Entry
 
 Then = Literal["stay", "edit next", "right", "up", "down"]
 """Where the cursor goes from a value that was taken."""
 
 
-class CellEditor(Input):
+class CellEditor(Entry):
     """A line of input laid over a cell; it says at each key what it makes of the text."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("cell")]
@@ -150,7 +150,8 @@ class CellEditor(Input):
 
     def _end_if_left(self) -> None:
         """Not where the next value is edited meanwhile, nor where the window lost the focus."""
-        if not self.is_open or self.has_focus or not self.app.app_focus:
+        is_left = self.screen.focused is not self  # `has_focus` follows it later
+        if not self.is_open or not is_left or not self.app.app_focus:
             return
         reading = self._check(self.value)
         if not self.is_typing:

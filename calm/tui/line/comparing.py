@@ -55,7 +55,7 @@ class Comparing:
             else:
                 self._judge(text, Path(texts["file"]))
 
-        asked = [Asked("file", "File", placeholder="other.yaml")]
+        asked = [Asked("file", "File", placeholder="e.g. other.yaml")]
         text = "Its line is drawn dashed beside this one; no name takes it away again."
         self._app.push_screen(Sheet("Compare with another file", text, asked), take)
 

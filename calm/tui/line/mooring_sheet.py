@@ -40,13 +40,17 @@ _LONGITUDE = quantity(Quantity("angle", at_least=-360, at_most=360), optional=Tr
 _NAME_AND_PLACE = (
     Asked("name", "Name", check=anything),
     Asked("description", "Description", check=anything),
-    Asked("latitude", "Latitude", check=_LATITUDE, placeholder="48.3 deg, north"),
-    Asked("longitude", "Longitude", check=_LONGITUDE, placeholder="-5.2 deg, east"),
+    Asked("latitude", "Latitude", check=_LATITUDE, placeholder="e.g. 48.3 deg, + north"),
+    Asked("longitude", "Longitude", check=_LONGITUDE, placeholder="e.g. -5.2 deg, + east"),
 )
 _TOW = (
-    Asked("speed", "Tow speed", check=quantity(Quantity("speed", above=0)), placeholder="4 knot"),
-    Asked("toward", "Towards", check=quantity(Quantity("angle")), placeholder="90 deg, east"),
-    Asked("height", "Sheave height", check=quantity(LENGTH, optional=True), placeholder="3 m"),
+    Asked(
+        "speed", "Tow speed", check=quantity(Quantity("speed", above=0)), placeholder="e.g. 4 knot"
+    ),
+    Asked(
+        "toward", "Towards", check=quantity(Quantity("angle")), placeholder="e.g. 90 deg for east"
+    ),
+    Asked("height", "Sheave height", check=quantity(LENGTH, optional=True), placeholder="e.g. 3 m"),
 )
 _DOCUMENT = (
     Asked("id", "Document", placeholder="M-2027-03"),

@@ -42,6 +42,9 @@ class LinePane(Vertical):
 
         purpose: Purpose
 
+    class BackWanted(Message):
+        """Back to the line of the verdict that led to the row."""
+
     @dataclass
     class ChangeWanted(Message):
         """A component of the file is to be changed in its form."""
@@ -53,6 +56,7 @@ class LinePane(Vertical):
         self.workspace, self.session = workspace, workspace.session
         self.table, self.editor = LineTable(id="line"), CellEditor(id="cell")
         self._editing: Cell | None = None
+        self.came_from_verdict = False
 
     def compose(self) -> ComposeResult:
         """The rows, and over them what is edited."""
@@ -147,6 +151,12 @@ class LinePane(Vertical):
         if found:
             told = f"{found[0].sign} {found[0].heading}: {found[0].text}"
             self.workspace.tell(told, wrong=found[0].state is State.FAIL)
+
+    def action_back(self) -> None:
+        """Back to the verdict, where it has led here."""
+        if self.came_from_verdict:
+            self.came_from_verdict = False
+            self.post_message(self.BackWanted())
 
     def action_why(self) -> None:
         """Show all that was found of the row under the cursor."""

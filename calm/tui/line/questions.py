@@ -38,6 +38,6 @@ def naming(session: Session) -> Sheet:
 
     own = session.draft.value(("components",))
     check = id_check(own if isinstance(own, dict) else ())
-    asked = [Asked("id", "Id", check=check, placeholder="glass-pack-own")]
+    asked = [Asked("id", "Id", check=check, placeholder="e.g. glass-pack-own")]
     text = "The pieces stand in the file's components then; `use` of this id stands for them."
     return Sheet("Make an assembly", text, asked)

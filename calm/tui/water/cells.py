@@ -48,9 +48,10 @@ class Cells(Listing, can_focus=True):
 
     @dataclass
     class Wanted(Message):
-        """A cell is to be edited, beginning with a text."""
+        """A cell is to be edited, beginning with a text; of a row that is `new`, its first one."""
 
         begin: str | None = None
+        new: bool = False
 
     @dataclass
     class Changed(Message):
@@ -149,7 +150,17 @@ class Cells(Listing, can_focus=True):
         new = _between(self.columns, self.rows, at, self.seabed)
         self.change([*self.rows[:at], new, *self.rows[at:]], "a row more")
         self.cursor, self.column = at, 0
-        self.post_message(self.Wanted())
+        self.post_message(self.Wanted(new=True))
+
+    @property
+    def is_at_the_end(self) -> bool:
+        """Whether the cursor is on the last value of its row."""
+        return self.column == len(self.columns) - 1
+
+    @property
+    def has_room_below(self) -> bool:
+        """Whether a row below that of the cursor would not be of a depth below the seabed."""
+        return not self._ends_at_the_seabed(self.cursor + 1)
 
     def _ends_at_the_seabed(self, at: int) -> bool:
         """Whether a row at a place would be of a depth below the seabed."""

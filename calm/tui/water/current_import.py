@@ -27,12 +27,12 @@ class ImportSheet(Sheet):
             f"CSV or CF NetCDF, from {folder} unless told otherwise. `refer` keeps the file's name "
             "in the mooring file; `copy` writes its profile as a table.",
             [
-                Asked("file", "File", check=_existing(folder), placeholder="adcp.nc"),
+                Asked("file", "File", check=_existing(folder), placeholder="e.g. adcp.nc"),
                 Asked(
                     "time",
                     "Time",
                     check=anything,
-                    placeholder="2026-03-01T06:00, if it is a record",
+                    placeholder="e.g. 2026-03-01T06:00, if it is a record",
                 ),
                 Asked("how", "refer or copy", "refer", _how),
             ],

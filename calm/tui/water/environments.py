@@ -53,7 +53,7 @@ class Environments:
                 self._workspace.tell("" if known else "Begun with a current to be replaced")
 
         if self._pane.settle():
-            asked = [Asked("name", "Name", check=needed("a name"), placeholder="storm")]
+            asked = [Asked("name", "Name", check=needed("a name"), placeholder="e.g. storm")]
             text = "It says only what differs from the file's own environment."
             self._app.push_screen(Sheet("Another environment", text, asked), take)
 

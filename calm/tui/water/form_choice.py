@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from rich.text import Text
 from textual import events, on
 from textual.binding import BindingType
 from textual.message import Message
@@ -13,7 +12,7 @@ from textual.message import Message
 from calm.tui.actions import bindings
 from calm.tui.cycle import Cycle
 
-_TAKE_IT = "   Enter takes it"
+_TAKE_IT = "Enter takes it"
 
 
 class FormChoice(Cycle):
@@ -46,9 +45,11 @@ class FormChoice(Cycle):
         super().show(self.words[(here + by) % len(self.words)])
 
     def action_take(self) -> None:
-        """Take the form that is shown."""
+        """Take the form that is shown, and go on."""
         if self.word != self._given:
             self.post_message(self.Taken(self, self.word))
+        else:
+            self.screen.focus_next()
 
     @on(events.Click)
     def _press(self, event: events.Click) -> None:
@@ -63,7 +64,7 @@ class FormChoice(Cycle):
         """What was not taken is not there."""
         self.show(self._given)
 
-    def render(self) -> Text:
-        """The name, the form, and how it is taken."""
-        is_other = self.word != self._given
-        return Text.assemble(super().render(), (_TAKE_IT if is_other else "", "dim"))
+    @property
+    def hint(self) -> str:
+        """How the form that is shown is taken, where it is another one."""
+        return _TAKE_IT if self.word != self._given else super().hint

@@ -16,7 +16,14 @@ from calm.tui.dialogs import Asked, Sheet
 from calm.tui.line.cell_editor import CellEditor
 from calm.tui.water.cells import Cells
 from calm.tui.water.columns import check_of
-from calm.tui.water.pasted import NoRows, Rows, UnknownColumns, offered_headings, rows_in
+from calm.tui.water.pasted import (
+    NoRows,
+    Rows,
+    UnknownColumns,
+    offered_headings,
+    previewed,
+    rows_in,
+)
 
 
 class Grid(Vertical):
@@ -48,6 +55,8 @@ class Grid(Vertical):
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
         self._place = 0, 0  # row and column that are edited
+        self._new = -1  # the row that was added last and is being filled
+        self._before: Rows | None = None  # the rows without the one that Enter has added
 
     def compose(self) -> ComposeResult:
         """The rows, and over them what is edited."""
@@ -103,50 +112,53 @@ class Grid(Vertical):
                 self.cells.focus()
 
     def on_paste(self, event: events.Paste) -> None:
-        """Rows from a spreadsheet or a text take the place of all rows.
-
-        They are read by their headings; where these are missing or unknown the columns are asked.
-        """
+        """Rows from a spreadsheet or a text take the place of all rows."""
         event.stop()
+        self.take_text(event.text)
+
+    def take_text(self, text: str) -> None:
+        """Take the rows of a text in the place of all rows.
+
+        They are read by their headings, and shown with their columns before they are taken.
+        """
         columns = self.cells.columns
         try:
-            copied = copied_table(event.text)
+            copied = copied_table(text)
             headings = offered_headings(copied.headings, columns)
-            rows = rows_in(columns, headings, copied.rows)
+            rows_in(columns, headings, copied.rows)
         except UnknownColumns:
-            self._ask_for_columns(copied, headings)
+            pass  # the person says what they are
         except (NoTableError, NoRows) as error:
             self.post_message(self.Refused(f"Nothing is pasted: {error}"))
-        else:
-            if copied.headings is None or headings != list(copied.headings):
-                self._ask_for_columns(copied, headings)
-            else:
-                self._take_copied(rows, headings)
+            return
+        self._preview(copied, headings)
 
-    def _ask_for_columns(self, copied: CopiedTable, headings: Sequence[str]) -> None:
-        """Let the person say what the columns are; they are judged as they are typed."""
+    def _preview(self, copied: CopiedTable, headings: Sequence[str]) -> None:
+        """Show what would be taken, under which columns; these can be corrected."""
         columns = self.cells.columns
+
+        def taken(text: str) -> Rows:
+            return rows_in(columns, [one.strip() for one in text.split(",")], copied.rows)
 
         def check(text: str) -> Reading:
             try:
-                rows_in(columns, [one.strip() for one in text.split(",")], copied.rows)
+                return Reading(text, told=previewed(columns, taken(text)))
             except NoRows as error:
                 return Reading(text, str(error))
-            return Reading(text)
 
         def take(answers: dict[str, str] | None) -> None:
             if answers is not None:
-                chosen = [one.strip() for one in answers["columns"].split(",")]
-                self._take_copied(rows_in(columns, chosen, copied.rows), chosen)
+                rows, chosen = taken(answers["columns"]), answers["columns"]
+                self.cells.change(rows, f"{len(rows)} rows pasted: {chosen}")
+                self.call_after_refresh(self.cells.focus)  # a table may not be shown yet
 
+        text = "It takes the place of all rows."
+        if copied.headings is None:
+            text += " It has no headings: are these its columns?"
         first = "   ".join(copied.rows[0])
-        had = "Its headings are not all known" if copied.headings else "It has no headings"
-        text = f"{had}. What are its {len(copied.rows[0])} columns, with units? First row: {first}"
+        text += f" Its first row reads  {first}"
         asked = Asked("columns", "Columns", ", ".join(headings), check)
         self.app.push_screen(Sheet("A table is pasted", text, [asked]), take)
-
-    def _take_copied(self, rows: Rows, headings: Sequence[str]) -> None:
-        self.cells.change(rows, f"{len(rows)} rows pasted: {', '.join(headings)}")
 
     @on(Cells.Wanted)
     def _edit(self, event: Cells.Wanted) -> None:
@@ -155,6 +167,7 @@ class Grid(Vertical):
         if self.editor.is_typing and self.editor.settle().is_good:
             self._put()
         self._place = cells.cursor, cells.column
+        self._new = cells.cursor if event.new else self._new
         begun = event.begin is not None
         text = event.begin or cells.cell
         region = cells.cell_region()
@@ -176,17 +189,30 @@ class Grid(Vertical):
         self._put()
         if not is_here:
             return  # it was left for another place
+        if event.text is not None:
+            self._before = None  # it is filled
         if event.then in ("up", "down"):
             cells.cursor += 1 if event.then == "down" else -1
         elif event.then == "right":
             cells.column += 1
-        elif cells.go_on(1) and event.then == "edit next":
-            cells.action_edit()
+        elif event.then == "edit next":
+            if cells.go_on(1):
+                cells.action_edit()
+        elif not cells.is_at_the_end:
+            cells.go_on(1)
+        elif cells.cursor == self._new and cells.has_room_below:
+            before = cells.rows
+            cells.action_add_row(1)
+            self._before = before
 
     @on(CellEditor.Abandoned)
     def _abandon(self, event: CellEditor.Abandoned) -> None:
         event.stop()
         self.drop()
+        if self._before is not None:
+            self.cells.change(self._before, "a row less")
+            self.cells.cursor -= 1
+        self._new, self._before = -1, None
         if event.reason:
             self.post_message(self.Refused(event.reason))
 

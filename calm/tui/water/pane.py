@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from textual import on
+from textual import events, on
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical, VerticalScroll
 from textual.content import Content
@@ -23,6 +23,7 @@ from calm.tui.messages import said
 from calm.tui.profile import Profile
 from calm.tui.verdict_pane import state_word
 from calm.tui.water.form import (
+    CURRENT_COLUMNS,
     CURRENT_FORMS,
     DENSITY_FORMS,
     PROFILE_FORMS,
@@ -71,6 +72,7 @@ class WaterPane(Horizontal):
         self.workspace, self.session = workspace, workspace.session
         # what was written in forms that others took the place of, to be had back
         self._left: dict[tuple[str | None, Place, str], Value | None] = {}
+        self.goes_on = False  # to the first value of a form, which leaves what was told
 
     def compose(self) -> ComposeResult:
         """Form and profile."""
@@ -83,9 +85,9 @@ class WaterPane(Horizontal):
 
     def _parts(self) -> Iterator[Widget]:
         """The parts of the form; the id of each tells its place, as `_place` reads it."""
-        yield Field("depth", "Depth", _DEPTH, id="depth", placeholder="1100 m")
+        yield Field("depth", "Depth", _DEPTH, id="depth", placeholder="e.g. 1100 m")
         yield FormChoice("Density", DENSITY_FORMS, id="density-form")
-        yield Field("density", "", _DENSITY, id="density", placeholder="1025 kg/m^3")
+        yield Field("density", "", _DENSITY, id="density", placeholder="else 1025 kg/m^3")
         yield Grid(id="density-table")
         for name, kind in (("temperature", TEMPERATURE), ("salinity", SALINITY)):
             yield FormChoice(f"  {name}", PROFILE_FORMS, id=f"density-{name}-form")
@@ -95,7 +97,7 @@ class WaterPane(Horizontal):
         yield Field("speed", "  speed", _SPEED, id="current-speed")
         yield Field("toward", "  towards", _ANGLE, id="current-toward")
         yield Field("file", "  file", needed("a file"), id="current-file")
-        yield Field("time", "  time", id="current-time", placeholder="2026-03-01T06:00")
+        yield Field("time", "  time", id="current-time", placeholder="e.g. 2026-03-01T06")
         yield Grid(id="current-table")
         yield Field("speed", "Wind", _WIND, id="wind-speed", placeholder="none")
         yield Field("toward", "  towards", _TOWARD, id="wind-toward", placeholder="where it blows")
@@ -278,6 +280,14 @@ class WaterPane(Horizontal):
     def _tell_refusal(self, event: Grid.Refused) -> None:
         self.workspace.tell(event.reason, wrong=True)
 
+    def on_paste(self, event: events.Paste) -> None:
+        """A table that is pasted into no table of the form is the current, however it was given."""
+        if len(event.text.splitlines()) > 1 and self.settle():
+            grid = self.query_one("#current-table", Grid)
+            if self.water.form("current") != "table":
+                grid.show(CURRENT_COLUMNS, ())
+            grid.take_text(event.text)
+
     @on(FormChoice.Taken)
     def _take_form(self, event: FormChoice.Taken) -> None:
         place = _place(event.choice)
@@ -285,6 +295,18 @@ class WaterPane(Horizontal):
             self.post_message(self.FileWanted())
         else:
             self.give_in_form(place, event.form)
+            self.goes_on = True
+            self.call_after_refresh(self._first_of(place, event.form).focus)
+
+    def _first_of(self, place: Place, form: str) -> Widget:
+        """Where the value of a form begins; below it, where it has none."""
+        key = "-".join(place)
+        if form == "table":
+            return self.query_one(f"#{key}-table Cells")
+        if form == DENSITY_FORMS[2]:
+            return self.query_one("#density-temperature-form")
+        where = {"uniform": "current-speed", "still": "wind-speed"}.get(form, key)
+        return self.query_one(f"#{where}", Field).input
 
 
 def _place(part: Widget) -> Place:

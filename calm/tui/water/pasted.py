@@ -18,11 +18,13 @@ from calm.files.tables import (
     read_water,
     speed_and_direction,
 )
+from calm.tui.signs import ELLIPSIS
 from calm.tui.water.columns import check_of, dimension_of, named
 from calm.units import DIMENSIONS, QuantityError, unit_factor
 
 Rows = tuple[tuple[str, ...], ...]
 
+_MOST_SHOWN = 8
 _OF_A_CURRENT = {"u", "v", "w", "speed", "toward"}
 
 
@@ -66,6 +68,19 @@ def rows_in(columns: Sequence[str], headings: Sequence[str], rows: Sequence[Sequ
         return tuple(zip(*(_column(column, values) for column in columns), strict=True))
     except KeyError as absent:
         raise UnknownColumns(f"there is no column for {absent.args[0]}") from None
+
+
+def previewed(columns: Sequence[str], rows: Rows) -> str:
+    """Rows under their columns as they would be taken, of many the first and the last."""
+    lines: list[Sequence[str]] = [columns, *rows]
+    if len(rows) > _MOST_SHOWN:
+        between = f"{ELLIPSIS} {len(rows) - _MOST_SHOWN} more"
+        lines = [columns, *rows[: _MOST_SHOWN - 1], (between,), rows[-1]]
+    widths = [max(len(row[n]) for row in [columns, *rows]) for n in range(len(columns))]
+    return "\n".join(
+        "  ".join(f"{cell:<{width}}" for cell, width in zip(line, widths, strict=False)).rstrip()
+        for line in lines
+    )
 
 
 def _as_written(number: int, row: Sequence[str], columns: Sequence[str]) -> tuple[str, ...]:

@@ -42,7 +42,9 @@ class WaterScreen(DraftScreen):
             bar.show_keys([*hints("grid"), *hints("water")])
         else:
             bar.show_keys(hints("water"))
-        bar.tell("")
+        if not self.pane.goes_on:
+            bar.tell("")
+        self.pane.goes_on = False
 
     def action_next_environment(self) -> None:
         """Show the next environment, and stand the line in it."""

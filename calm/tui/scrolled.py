@@ -1,0 +1,76 @@
+"""What is longer than its place: lines that are scrolled, without the screen being laid out anew.
+
+Textual lays the whole screen out where the length of anything in it changes, 10 to 20 ms at each
+key of a search. Nothing here has a size that depends on what it shows.
+"""
+
+from __future__ import annotations
+
+from rich.console import RenderableType
+from rich.segment import Segment
+from textual.events import Paste
+from textual.geometry import Size
+from textual.reactive import Reactive
+from textual.scroll_view import ScrollView
+from textual.strip import Strip
+from textual.widgets import Input
+
+
+class Scrolled(ScrollView, inherit_bindings=False):
+    """Lines of its own, drawn by `render_line`; `virtual_size` tells how many and how long."""
+
+    virtual_size = Reactive(Size(0, 0), repaint=False)
+
+    def watch_virtual_size(self, size: Size) -> None:
+        """The scroll bar follows, and what is shown where it is beyond the end now."""
+        self._scroll_update(size)
+        if self.scroll_offset.y > self.max_scroll_y:
+            self.scroll_to(y=self.max_scroll_y, animate=False)
+
+
+class ScrolledText(Scrolled, can_focus=False):
+    """A text for people, wrapped to the width; another one begins at its top."""
+
+    DEFAULT_CSS = "ScrolledText { overflow-x: hidden; scrollbar-size-vertical: 1; }"
+
+    def __init__(self, *, id: str | None = None) -> None:
+        super().__init__(id=id)
+        self._text: RenderableType = ""
+        self._drawn: tuple[int, list[list[Segment]]] = (-1, [])  # the width and its lines
+
+    def show(self, text: RenderableType) -> None:
+        """Show another text."""
+        self._text, self._drawn = text, (-1, [])
+        self.scroll_to(y=0, animate=False)
+        self._lines()
+        self.refresh()
+
+    def on_resize(self) -> None:
+        """Wrap it to the new width."""
+        self._lines()
+
+    def _lines(self) -> list[list[Segment]]:
+        width = self.scrollable_content_region.width
+        if width > 0 and self._drawn[0] != width:
+            console = self.app.console
+            options = console.options.update(width=width, height=None)
+            self._drawn = (width, console.render_lines(self._text, options, pad=False))
+            self.virtual_size = Size(width, len(self._drawn[1]))
+        return self._drawn[1]
+
+    def render_line(self, y: int) -> Strip:
+        """A row of the screen."""
+        lines, number = self._lines(), y + self.scroll_offset.y
+        strip = Strip(lines[number] if number < len(lines) else []).apply_style(self.rich_style)
+        return strip.adjust_cell_length(self.scrollable_content_region.width, self.rich_style)
+
+
+class Entry(Input):
+    """A line of input; a text of several lines that is pasted is left to what is around it."""
+
+    virtual_size = Reactive(Size(0, 0), repaint=False)
+
+    def on_paste(self, event: Paste) -> None:
+        """Rows of a table are no value: textual would take the first of them."""
+        if len(event.text.splitlines()) > 1:
+            event.prevent_default()
