@@ -1,4 +1,4 @@
-"""The kernel made ready before the first block, and what a person is told meanwhile."""
+"""The kernel made ready before the first block, and what is reported meanwhile."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from calm.batch.profiles import Batch
 
 
 class _Notice(event.Listener):
-    """Tells when something is compiled that was not in the cache."""
+    """Reports when something is compiled that was not in the cache."""
 
-    def __init__(self, tell: Callable[[str], None]) -> None:
-        self.tell = tell
-        self.told = False
+    def __init__(self, report: Callable[[str], None]) -> None:
+        self.report = report
+        self.reported = False
 
     def on_start(self, event: Any) -> None:
-        if self.told:
+        if self.reported:
             return
-        self.told = True
-        self.tell("compiling the solver for this machine, once: this takes up to a minute")
+        self.reported = True
+        self.report("compiling the solver for this machine, once: this takes up to a minute")
         if cache_folder() is None:
-            self.tell(
+            self.report(
                 "no folder can be written to keep it in, so every run compiles anew; "
                 "NUMBA_CACHE_DIR names one"
             )
@@ -35,10 +35,10 @@ class _Notice(event.Listener):
         pass
 
 
-def compile_kernel(batch: Batch, tell: Callable[[str], None]) -> None:
-    """Let the kernel be compiled, or fetched, and tell when it has to be compiled."""
-    notice, started = _Notice(tell), perf_counter()
+def compile_kernel(batch: Batch, report: Callable[[str], None]) -> None:
+    """Let the kernel be compiled, or fetched, and report when it has to be compiled."""
+    notice, started = _Notice(report), perf_counter()
     with event.install_listener("numba:compile", notice):
         batch.solve(np.zeros((0, 1)), np.zeros((0, 1)), np.zeros(1), workers=1)
-    if notice.told:
-        tell(f"compiled in {perf_counter() - started:.0f} s")
+    if notice.reported:
+        report(f"compiled in {perf_counter() - started:.0f} s")

@@ -171,7 +171,7 @@ def run_kept(
     folder = store_folder(output)
     identity, work = "", None
     try:
-        with _told_when_long("reading the record through, to know it again", say):
+        with _reported_when_long("reading the record through, to know it again", say):
             identity = identify()
         if is_finished(output, identity):
             if left_behind(output):
@@ -222,7 +222,7 @@ def _block_for(count: int) -> int:
 
 
 @contextmanager
-def _told_when_long(what: str, tell: Callable[[str], None]) -> Iterator[None]:
+def _reported_when_long(what: str, tell: Callable[[str], None]) -> Iterator[None]:
     timer = Timer(LONG, tell, (what,))
     timer.daemon = True
     timer.start()

@@ -131,7 +131,7 @@ def breaks_of(mooring: Mooring) -> tuple[Break, ...]:
 
     The net force of a piece is that with its clamps, in the water where it stands upright. After a
     break inside a cable what is left lies between the figures of the breaks at its two ends.
-    Nothing is told of a line without a release, or one that no length fits.
+    There are none of a line without a release, or one that no length fits.
 
     Floats that follow one another, with at most connectors and chain between them, are a cluster.
     What breaks inside the lowest one, or in the connectors and chain that lead from it to the

@@ -93,7 +93,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Parameters
     ----------
     arguments : sequence of str, optional
-        The words behind ``calm``; those of the process when absent.
+        The words after ``calm``; those of the process when absent.
 
     Returns
     -------

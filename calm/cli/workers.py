@@ -19,7 +19,7 @@ FEW = 4
 def mapped(
     function: Callable[[_Task], _Done], tasks: Sequence[_Task], workers: int | None, what: str
 ) -> list[_Done]:
-    """What a function makes of every task, in their order; the user is told how far it is.
+    """What a function makes of every task, in their order; how far it is is shown.
 
     Parameters
     ----------

@@ -25,7 +25,7 @@ FIGURES = ("depth", "layback", "tension", "angle", "body_tension", "frequency")
 _HEADINGS = {"body_tension": "tension\nat body"}
 _NOTE = "Depth and layback: of the body. Tension and angle: at the tow point, from the horizontal."
 _DIGITS = 4
-_WARNED = "!: with warnings, told by --json."
+_WARNED = "!: with warnings, which --json reports."
 _KNOTS = replace(QUANTITIES["speed"], display="knot", scale=1.0 / KNOT)
 
 

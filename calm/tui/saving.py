@@ -89,7 +89,7 @@ class Saving:
         text = str(begin or path or "")
         asked = [Asked("path", "File", text, _is_writable, placeholder="e.g. iroise-2026.yaml")]
         self._app.push_screen(
-            Sheet("Save as", f"In {Path.cwd()}, unless told otherwise.", asked), take
+            Sheet("Save as", f"In {Path.cwd()}, unless a folder is named.", asked), take
         )
 
     def _ask_to_overwrite(self, path: Path, then: Then | None) -> None:

@@ -70,3 +70,10 @@ def test_reading_files_loads_no_heavy_library() -> None:
 )
 def test_everyday_commands_load_no_heavy_library(arguments: list[str]) -> None:
     assert not HEAVY & loaded(COMMAND.format(arguments=arguments))
+
+
+def test_reports_of_checks_draw_without_a_plotting_library(tmp_path: Path) -> None:
+    arguments = ["check", "lines/s1000.yaml", "--allow-unknown", "--report", str(tmp_path / "to")]
+    modules = loaded(COMMAND.format(arguments=arguments))
+    assert "calm.report.graph" in modules
+    assert "matplotlib.figure" not in modules

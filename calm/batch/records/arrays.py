@@ -68,16 +68,16 @@ class ArrayRecord(Record):
         if self._ahead is not None and self._ahead[0] <= start and stop <= self._ahead[1]:
             return self._ahead
         self._ahead = None
-        behind = min(max(stop, self._behind(start)), self.count)
+        end = min(max(stop, self._end_of_chunk(start)), self.count)
         with reading(self._path):
-            arrays = self._current.read(part(self._index, start, behind))
-        window = start, behind, arrays
-        if behind > stop:
+            arrays = self._current.read(part(self._index, start, end))
+        window = start, end, arrays
+        if end > stop:
             self._ahead = window
         return window
 
-    def _behind(self, start: int) -> int:
-        """The profile behind those that a file has compressed together with one."""
+    def _end_of_chunk(self, start: int) -> int:
+        """The profile after those that a file has compressed together with one."""
         chunk = self._current.chunk
         if isinstance(self._index, slice):
             position = self._index.start + start * self._index.step

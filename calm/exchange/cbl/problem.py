@@ -22,7 +22,7 @@ class Value:
     def number(self, **values: float) -> float:
         """A formula's value; `values` are those of the names it may hold."""
         if self.formula is None:
-            raise self.token.refuse(f"a number is missing behind `{self.token.text} =`")
+            raise self.token.refuse(f"a number is missing after `{self.token.text} =`")
         return self.formula.at(**values)
 
 

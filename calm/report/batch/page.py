@@ -91,7 +91,7 @@ def _inputs(summary: Summary) -> Iterator[Block]:
 
 
 _EXTRAPOLATED = (
-    f"No level is told for more than {EXTRAPOLATION:.0f} times the length of the record. A level "
+    f"No level is given for more than {EXTRAPOLATION:.0f} times the length of the record. A level "
     "says how the mooring would answer to currents like those of the record: not to what the "
     "record is too short to hold or lost in its gaps, nor to a current field that changes. A "
     "fitted tail knows no bounds: a tilt beyond 90° or a knockdown below the seabed says that the "

@@ -48,7 +48,7 @@ _UNJUDGED, _ENOUGH, _SHORT = "#b8bec4", "#8fb3cf", "#d98880"
 
 
 def check_figure(assessment: Assessment) -> str:
-    """The figure as SVG: five panels that share one legend, the environments told by line.
+    """The figure as SVG: five panels that share one legend, a line of its own for each environment.
 
     The elevation and the current are of one depth axis; an elevation lies in the plane of its own
     excursion. Tension is drawn over the distance along the line, with the load that each piece may

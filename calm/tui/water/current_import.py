@@ -24,8 +24,8 @@ class ImportSheet(Sheet):
     def __init__(self, folder: Path) -> None:
         super().__init__(
             "A current from a file",
-            f"CSV or CF NetCDF, from {folder} unless told otherwise. `refer` keeps the file's name "
-            "in the mooring file; `copy` writes its profile as a table.",
+            f"CSV or CF NetCDF, from {folder} unless another is named. `refer` keeps the file's "
+            "name in the mooring file; `copy` writes its profile as a table.",
             [
                 Asked("file", "File", check=_existing(folder), placeholder="e.g. adcp.nc"),
                 Asked(

@@ -113,8 +113,16 @@ def test_a_held_upper_end_at_the_surface_gets_a_float(read, tmp_path):
     )
     made = read(text)
     assert any("free to move" in str(each) for each in made.guessed)
-    answer = load(tmp_path / "m.yaml", text=made.text).solve().to_dict()
-    assert answer["type"] == "surface"
+    mooring = load(tmp_path / "m.yaml", text=made.text)
+    top = mooring.file.pieces[0].component
+    assert (top.kind, top.mass, top.volume) == ("body", 100.0, 0.6)  # those of its point
+    assert mooring.solve().to_dict()["type"] == "surface"
+    bare = load(tmp_path / "m.yaml", text=read(text.replace("100    0.6", "0      0.0")).text)
+    top = bare.file.pieces[0].component
+    assert top.kind == "sphere"
+    assert top.buoyancy > 1e4
+    assert 1025 * 9.81 * 3.14159265 / 6 * top.diameter**3 == pytest.approx(top.buoyancy, rel=1e-6)
+    assert bare.solve().to_dict()["type"] == "surface"
 
 
 REFUSED = {

@@ -181,6 +181,15 @@ def test_headings_of_the_r_package_are_known(read, tmp_path):
     assert wire.component.diameter == pytest.approx(0.0127)
 
 
+def test_diameters_of_zero_are_none(read, tmp_path):
+    """A line has that of its name, a rigid piece no drag; each is told."""
+    made = read(ENGLISH.replace("100,8,24", "100,0,24").replace("1.0,130,22", "1.0,0,22"))
+    told = {each.where: each.what for each in made.guessed}
+    assert told["components.8-mm-wire.diameter"] == "from its name"
+    assert "no drag" in told["components.ar861-release.drag_area"]
+    assert pieces(made, tmp_path)[3].component.diameter == 0.008
+
+
 def test_unicode_text_of_excel_is_read(read):
     assert "Bouée" in read(FRENCH.encode("utf-16")).text
     assert "count: 2" in read(ENGLISH.replace(",", "\t").encode("utf-16-be"), bom=True).text
