@@ -16,6 +16,9 @@ ASTRAY = 1e-3
 """Share of the depth by which the line may come to rest elsewhere than its equilibrium; beyond it
 nothing of what comes after the touchdown is shown."""
 
+BRIEF = 60.0
+"""Fall time below which what is left out, inertia, shows in the figures [s]."""
+
 
 @dataclass(frozen=True)
 class DropPlan:
@@ -113,6 +116,11 @@ class DropPlan:
                 f"The line comes to rest {self.rest_difference:.2f} m from its equilibrium, more "
                 "than a thousandth of the depth: the depths of instruments are not shown, and the "
                 "fall is to be doubted as well."
+            )
+        if self.fall_time < BRIEF:
+            said.append(
+                f"The fall takes {self.fall_time:.0f} s only: inertia, which is left out, may make "
+                "it half a second longer and change the fall-back by a metre."
             )
         if self.mooring.line.strumming is not None:
             said.append("That cables strum is not in it: their drag is the one at rest.")

@@ -22,6 +22,8 @@ from calm.locate.sound import Sound
 from calm.physics.line import Booleans, Floats
 
 CONFIDENCE = 0.95
+MISSED = 0.25
+"""Of the ranges: where most miss the place that fits best by more, it is none."""
 
 
 @dataclass(frozen=True)
@@ -117,6 +119,14 @@ def locate(survey: Survey, sound: Sound, depth: float | None = None) -> Located:
     model = Model(survey, sound, frame, ships, depth)
     x, used = fitted(model)
     residuals = model.residuals(x)
+    missed, reach = (
+        float(np.median(np.abs(each[used]))) for each in (residuals, model.measured(x))
+    )
+    if missed > MISSED * reach:
+        raise UsageError(
+            f"{survey.path}: the ranges meet nowhere: the place that fits best is missed by "
+            f"{missed:.0f} m, by ranges of {reach:.0f} m; are positions and ranges of one survey?"
+        )
     jacobian = model.jacobian(x)[used]
     freedom = int(used.sum()) - unknowns
     rms = sqrt(float(residuals[used] @ residuals[used]) / freedom) if freedom else nan

@@ -50,8 +50,8 @@ class Sound:
         speeds = np.interp(levels, self.depth, self.speed)
         ratio = np.diff(speeds) / speeds[:-1]
         # ∫ dz/c of a linear c is Δz ln(1 + x)/(x c), x its relative growth
-        small = np.abs(ratio) < 1e-6
-        slowness = np.where(small, 1.0 - 0.5 * ratio, np.log1p(ratio) / np.where(small, 1.0, ratio))
+        same = ratio == 0.0
+        slowness = np.where(same, 1.0, np.log1p(ratio) / np.where(same, 1.0, ratio))
         time = float((np.diff(levels) * slowness / speeds[:-1]).sum())
         return (below - above) / time
 

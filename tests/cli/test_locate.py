@@ -153,6 +153,7 @@ def test_every_mistake_at_once_with_its_line(calm, ranges):
         ("latitude[deg],longitude[deg],range[ell]\n48.3,-5.2,1\n", "range[ell]`: `ell` "),
         ("latitude[deg];longitude[deg];range[m]\n48,3;-5,2;2000\n", "decimal degrees are needed"),
         (RANGES.split("48.29")[0], "2 ranges; 3 are needed"),
+        (re.sub(r"\d+\.\d$", "90.0", RANGES, flags=re.M), "the ranges meet nowhere"),
     ],
 )
 def test_files_that_are_none(calm, ranges, text, said):
@@ -177,7 +178,7 @@ def test_times_and_a_profile_of_the_sound(calm, ranges, folder):
         ",".join([*line.split(",")[:2], str(2000.0 * float(line.split(",")[2]) / 1490.0)])
         for line in times[1:]
     )
-    (folder / "sound.csv").write_text("depth[m],sound_speed[m/s]\n0,1480\n2000,1500\n")
+    (folder / "sound.csv").write_text("depth[km],sound_speed[km/h]\n0,5328\n2,5400\n")
     done = calm("locate", ranges(text), "--sound-speed", "sound.csv", "--json", "-")
     assert done.code == 0
     document = json.loads(done.out)

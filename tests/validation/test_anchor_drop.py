@@ -282,6 +282,7 @@ def test_a_line_that_rests_astray_is_cut_finer(loaded, monkeypatch):
     assert astray.depths == ()
     assert [moment.name for moment in astray.moments][-1] == "touchdown"
     assert any("the depths of instruments are not shown" in said for said in astray.warnings)
+    assert any("takes 30 s only: inertia" in said for said in astray.warnings)
 
 
 def test_a_line_towed_below_the_surface_is_that_of_the_tow(loaded):

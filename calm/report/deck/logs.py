@@ -211,7 +211,7 @@ def _surfacing(deck: Deck) -> Table:
         Column("no.", numeric=True),
         Column("piece", share=1.7),
         Column("serial number", share=0.8),
-        Column("expected after the release", share=1.0),
+        Column("expected after\nthe release", share=1.3),
         Column("seen", "UTC", share=0.6),
         Column("on deck", "UTC", share=0.6),
         Column("whole", share=0.0),

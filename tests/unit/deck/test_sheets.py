@@ -59,7 +59,9 @@ def test_the_order_over_the_side(moorings, deck):
     down = [one.label for one in deck.deployment]
     assert down[:6] == ["top float", "shackle-13", "ring-22-102", "shackle-16", "wire", "high"]
     assert down[-1] == "weight"
-    first = [one.label for one in deck_of(moorings, Order.ANCHOR_FIRST).deployment]
+    other_way = deck_of(moorings[:1], Order.ANCHOR_FIRST)
+    assert [(cut.over, cut.onto) for cut in other_way.cuts] == [(2, 1), (1, 2)]
+    first = [one.label for one in other_way.deployment]
     # a piece goes with its lower end ahead: its lowest clamp comes first
     assert first[:2] == ["weight", "rope"]
     assert first[first.index("wire") :][:3] == ["wire", "low", "high"]
@@ -120,8 +122,11 @@ def test_unlike_metals_have_isolators_and_anodes(tmp_path):
     text = MOORING.replace("  release: {kind: body,", "  release: {kind: body, material: titanium,")
     text = text.replace("  pack: {kind", "  pack: {material: aluminium, kind")
     text = text.replace("shackle-16, serial: 4", "shackle-16, name: screw pin shackle")
+    text = text.replace("use: rope, length: 50 m", "use: rope, length: 2 m")
     (tmp_path / "m.yaml").write_text(text)
-    found = {one.name: one for one in deck_of([calm.load(tmp_path / "m.yaml")]).hardware}
+    sheets = deck_of([calm.load(tmp_path / "m.yaml")], Order.ANCHOR_FIRST)
+    assert sheets.cuts[1].tolerance == 0.02  # as a tape is read
+    found = {one.name: one for one in sheets.hardware}
     # the lowest of three aluminium packs touches the titanium release, the highest the steel wire
     isolators = [one.name for one in found.values() if one.kind == "isolators"]
     assert isolators == ["isolator between pack and wire", "isolator between pack and release"]
@@ -186,4 +191,12 @@ def test_instruments_in_all_environments(moorings, deck):
     assert (high.shallowest.depth, high.shallowest.environment) == (depths["calm"], "calm")
     assert (high.deepest.depth, high.deepest.environment) == (depths["storm"], "storm")
     assert high.hung.depth == depths["own"]
+    tilts = [row.tilt for one in results.values() for row in one.clamps if row.label == "high"]
+    assert high.greatest_tilt == max(tilts)
+    still = deck.result.mooring.water.still()
+    rope = deck.result.mooring.equilibrium(still).position
+    top = float(-rope[0, 2])
+    # still water leaves the line upright: the clamp is as far below the top as its lengths say
+    above = 1.0 + sum(one.stretched for one in deck.parts[1:4]) + 20.0
+    assert high.still == pytest.approx(top + above, abs=0.1)
     assert [one.hung.label for one in deck.instruments] == ["high", "low", "release"]
