@@ -17,7 +17,7 @@ from calm.checks.launch import Launch, launch_of
 from calm.checks.limits import limits_used
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Recovery, recovery_of
-from calm.checks.rules import ONCE, STANDING, equilibrium
+from calm.checks.rules import ONCE, STANDING, STILL_ONLY, equilibrium
 from calm.checks.situations import SOLVES, STRUMMING, situations_of
 from calm.errors import NoEquilibrium
 from calm.files import MooringFile, Place
@@ -84,6 +84,8 @@ def assessment_of(name: str, stands: Sequence[Stand], day: date | None = None) -
         for rule in ONCE
         for verdict in rule.judge(handling)
     ]
+    if first.result is not None and not any(_moved(stand.mooring) for stand in stands):
+        findings.insert(0, equilibrium.find(STILL_ONLY, name, first.environment, AS_GIVEN))
     return Assessment(
         name=name,
         stands=tuple(stands),
@@ -98,6 +100,10 @@ def assessment_of(name: str, stands: Sequence[Stand], day: date | None = None) -
             acceptance.notices([*(one for stand in stands for one in stand.accepted), *findings])
         ),
     )
+
+
+def _moved(mooring: Mooring) -> bool:
+    return mooring.water.moving or mooring.file.environment.wind is not None
 
 
 def findings_of(

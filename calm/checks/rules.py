@@ -26,6 +26,14 @@ def equilibrium(failure: NoEquilibrium) -> Iterator[Verdict]:
     yield verdict_on(None, State.FAIL, message, failure.advice)
 
 
+STILL_ONLY = verdict_on(
+    None,
+    State.WARN,
+    "No environment has a current: what tilts, is knocked down and pulls in one is not judged.",
+    "Give the current, or an environment that has one.",
+)
+"""What `equilibrium` says of a mooring that nothing moves."""
+
 STANDING = (
     strength,
     release_load,

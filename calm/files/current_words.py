@@ -45,10 +45,16 @@ _OTHER_QUANTITIES = (
     r"\b(depth|vertically) ?(mean|averaged|integrated)\b",
     r"\b(transport|flux|shear|stress|acceleration|amplitude|phase|gradient|vorticity)\b",
     r"\b(ship|vessel|platform|bottom ?track|gps|drifter|buoy|glider)s? (velocity|speed|motion)\b",
-    r"\bvelocity of (the )?(ship|vessel|platform|drifter|buoy|glider)\b",
+    r"\bvelocity of (the |a )?(\w+ )?(ship|vessel|platform|drifter|buoy|glider)\b",
+    r"\b(residual|detided|de tided|subtidal|difference|minus|bias)\b",
 )
 _NOT_A_CURRENT = [re.compile(text) for text in _OTHER_DIRECTIONS + _OTHER_QUANTITIES]
 
+_SAID_IN_COMMENTS = re.compile(
+    r"\brelative to (the )?(instrument|ship|vessel|vehicle|platform|glider|float|drifter)\b|"
+    r"\brotated\b(?!.*\b(earth|true|geograph\w*|enu|east|declination|magnetic|variation)\b)"
+)
+_ROTATION = re.compile(r"(?i)(coord\w*_)?rotation(_angle)?(_deg(rees)?)?")
 _SPREADS = re.compile(r"\b(maximum|minimum|range|standard_deviation|variance|sum)\b")
 _OPPOSED = {
     "east": (r"\b(north|south|west)wards?\b|\b(meridional|v)\b", r"\beast|\b(zonal|u)\b"),
@@ -94,6 +100,10 @@ def not_a_current(variable: xr.DataArray) -> str | None:
     methods = str(variable.attrs.get("cell_methods", ""))
     if _SPREADS.search(methods):
         return f"is `cell_methods: {methods}`, which is no current that ran"
+    for name in ("comment", "note", "notes"):
+        said = words_of(variable, name)
+        if _SAID_IN_COMMENTS.search(said):
+            return f"is in other coordinates by its {name}: {said[:80]}"
     return other_frame(variable.attrs)
 
 
@@ -119,6 +129,12 @@ def other_frame(attributes: Mapping[Any, Any]) -> str | None:
             return (
                 f"is in other coordinates, `{name}: {attributes[name]}`, not to the east and "
                 "north; rotate it to the earth's first"
+            )
+    for name in filter(_ROTATION.fullmatch, map(str, attributes)):
+        if str(attributes[name]).strip().lower() not in _NO:
+            return (
+                f"is rotated, `{name}: {attributes[name]}`, not to the east and north; rotate it "
+                "back first"
             )
     return None
 

@@ -9,6 +9,7 @@ import pytest
 from calm.case import Mooring, Result, load
 from calm.checks.assess import check
 from calm.checks.assessment import Assessment
+from calm.checks.finding import State
 from calm.checks.situations import situations_of
 
 LINE = """
@@ -51,6 +52,25 @@ def test_a_plain_mooring_is_solved_as_given_at_rest_and_with_strumming_cables(
     assert band is not None
     # the same line, solved twice
     assert strumming.top.knockdown == pytest.approx(band.knockdown, rel=1e-9)
+
+
+@pytest.mark.parametrize(("current", "more", "warned"), [
+    ("  current: {speed: 0.6 m/s, toward: 90 deg}", "", False),
+    ("  current: {speed: 0 m/s, toward: 90 deg}", "", True),
+    ("", "", True),
+    ("", "environments: {storm: {current: {speed: 0.6 m/s, toward: 90 deg}}}\n", False),
+])  # fmt: skip
+def test_a_mooring_that_no_current_ever_moves_is_warned_of(tmp_path, current, more, warned):
+    path = tmp_path / "m.yaml"
+    text = LINE.format(environment="", wire=WIRE)
+    text = text.replace("  current: {speed: 0.6 m/s, toward: 90 deg}", current)
+    path.write_text(more + text, encoding="utf-8")
+    read = load(path)
+    assert isinstance(read, Mooring)
+    environments = [read, *(load(path, name) for name in read.file.variants)]
+    found = [one for one in check(*environments).findings if one.rule == "equilibrium"]
+    assert bool(found) == warned
+    assert all(one.state is State.WARN and "has a current" in one.message for one in found)
 
 
 def test_a_line_in_still_water_is_not_solved_for_it_again(tmp_path: Path) -> None:

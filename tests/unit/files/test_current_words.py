@@ -53,6 +53,29 @@ def refusal(dataset: xr.Dataset, folder: Path, terms: Terms = Terms(300.0)) -> s
     return problem.message.partition("; it holds")[0]
 
 
+@pytest.mark.parametrize(("words", "said"), [
+    ({"long_name": "residual eastward velocity"}, "no current to the east and north"),
+    ({"long_name": "eastward velocity (detided)"}, "no current to the east and north"),
+    ({"long_name": "eastward velocity of surface drifter"}, "no current to the east and north"),
+    ({"long_name": "difference of u, model minus observed"}, "no current to the east and north"),
+    ({"comment": "velocity relative to the ship"}, "in other coordinates by its comment"),
+    ({"comment": "rotated by 25 degrees to the along-shelf direction"}, "by its comment"),
+    ({"rotation": "35 deg"}, "is rotated, `rotation: 35 deg`"),
+    ({"rotation_angle": 35.0}, "is rotated"),
+])  # fmt: skip
+def test_other_frames_and_quantities_in_words_of_many_kinds_are_refused(tmp_path, words, said):
+    assert said in refusal(currents(**words), tmp_path)
+
+
+@pytest.mark.parametrize("words", [
+    {"comment": "rotated by -1.9 degrees for magnetic declination to true north"},
+    {"comment": "rotated from beam coordinates to earth coordinates"},
+    {"rotation_angle": 0}, {"long_name": "velocity, hourly mean"},
+])  # fmt: skip
+def test_words_that_name_the_earths_frame_are_none_of_these(tmp_path, words):
+    assert read(currents(**words), tmp_path)[0].u == tuple(U)
+
+
 MAGNETIC = [
     lambda: currents("UCUR_MAG", "VCUR_MAG"),
     lambda: currents(reference_datum="magnetic north"),
