@@ -11,8 +11,9 @@ from calm.assemble import with_axial_clamps
 from calm.case.tow import Tow
 from calm.checks.launch import launch_of
 from calm.drop import drop_plan, planning
+from calm.drop.chain import chain_of
 from calm.drop.fall import Fineness, Ship, fall, settle, towed
-from calm.drop.motion import Anchor
+from calm.drop.motion import Anchor, State
 from calm.drop.record import rest_difference
 from calm.errors import UsageError
 from calm.shipped import shipped_folder
@@ -283,6 +284,49 @@ def test_a_line_that_rests_astray_is_cut_finer(loaded, monkeypatch):
     assert [moment.name for moment in astray.moments][-1] == "touchdown"
     assert any("the depths of instruments are not shown" in said for said in astray.warnings)
     assert any("takes 30 s only: inertia" in said for said in astray.warnings)
+
+
+SUBMERGED = """
+name: a rope that thins, a wing that lifts, water that grows dense
+environment:
+  depth: 200 m
+  density: {columns: [depth m, density kg/m^3], rows: [[0, 1000], [200, 1045]]}
+  current: {columns: [depth m, speed m/s, toward deg], rows: [[0, 0.8, 30], [200, 0.4, 30]]}
+components:
+  sphere: {kind: sphere, diameter: 1 m, mass: 300 kg, volume: 0.5235988 m^3}
+  rope: {kind: cable, diameter: 20 mm, buoyancy: 0.1 N/m, cn: 1.3, ct: 0.01, stiffness: 8 kN}
+  wing:
+    {kind: body, length: 1 m, mass: 60 kg, volume: 0.05 m^3, drag_area: 0.04 m^2, cd: 1,
+     lift: 60 N/(m/s)^2}
+  clump: {kind: anchor, weight: 8000 N}
+line:
+  [{use: sphere}, {use: rope, length: 60 m}, {use: wing}, {use: rope, length: 60 m}, {use: clump}]
+"""
+AFLOAT = """
+name: a soft rope below a float at the surface
+environment:
+  depth: 200 m
+  current: {columns: [depth m, speed m/s, toward deg], rows: [[0, 0.8, 30], [200, 0.2, 30]]}
+components:
+  sphere: {kind: sphere, diameter: 1.5 m, mass: 300 kg, volume: 1.767 m^3}
+  rope: {kind: cable, diameter: 20 mm, buoyancy: 0.1 N/m, cn: 1.3, ct: 0.01, stiffness: 6 kN}
+  clump: {kind: anchor, weight: 20 kN}
+line: [{use: sphere}, {use: rope, length: 90 m}, {use: clump}]
+"""
+
+
+@pytest.mark.parametrize("text", [SUBMERGED, AFLOAT])
+def test_a_line_held_upright_leans_as_in_its_equilibrium(loaded, text):
+    mooring = loaded(text)
+    line, water = mooring.line, mooring.water
+    length = chain_of(line, 50).length
+    above = np.append(np.cumsum(length[::-1])[::-1], 0.0)
+    node = np.zeros((len(above), 3))
+    node[:, 2] = line.anchor_height - water.depth + above
+    upright = State(0.0, node, np.full(len(length), 1000.0), np.zeros_like(node))
+    rest = settle(line, water, Anchor(mooring.anchor_weight, 100.0), upright, Fineness(50, 20))
+    # bars of 2.4 m lie along chords: some 2e-6 of the depth here
+    assert rest_difference(mooring.solve(), rest) < 1e-5 * water.depth
 
 
 def test_a_line_towed_below_the_surface_is_that_of_the_tow(loaded):
