@@ -80,7 +80,7 @@ def test_values_with_a_unit_of_their_own() -> None:
         (
             ["depth m", "u m/s", "v ms"],
             ["0", "1", "1"],
-            "columns.2: `v ms` is not a speed (m/s, cm/s, mm/s, knot, km/h, ft/s)",
+            "columns.2: `v ms` is a time; a speed (m/s, cm/s, mm/s, knot, km/h, ft/s) is needed",
         ),
         (
             ["depth m", "u m/s", "v M/S"],

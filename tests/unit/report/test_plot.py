@@ -43,7 +43,7 @@ def test_many_names_at_one_depth_do_not_overlap(make_result):
 
 def test_three_views_with_their_axes_named(result):
     elevation, current, plan = draw(result).axes
-    assert elevation.get_xlabel() == "offset [m], towards 86°"
+    assert elevation.get_xlabel() == "offset [m], towards 086°"
     assert elevation.get_ylabel() == "depth [m]"
     assert current.get_xlabel() == "current speed [m/s]"
     assert (plan.get_xlabel(), plan.get_ylabel()) == ("east [m]", "north [m]")
@@ -65,7 +65,7 @@ def test_line_without_excursion_is_drawn(make_result):
     result = make_result()
     result.top.x = result.top.y = 0.0
     result.shape.x = 0.0 * result.shape.x
-    assert "towards 90°" in draw(result).axes[0].get_xlabel()
+    assert "towards 090°" in draw(result).axes[0].get_xlabel()
 
 
 def test_png_and_svg(result):
