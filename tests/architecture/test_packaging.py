@@ -74,6 +74,7 @@ def test_the_wheel_installs_the_manual_page(wheel: Path) -> None:
         assert archive.read(name) == (ROOT / "docs" / "calm.1").read_bytes()
 
 
+@pytest.mark.thorough
 def test_the_source_distribution_builds_the_same_wheel(wheel: Path, tmp_path: Path) -> None:
     source = next(SdistBuilder(str(ROOT)).build(directory=str(tmp_path), versions=["standard"]))
     with tarfile.open(source) as archive:

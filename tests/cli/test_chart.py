@@ -108,6 +108,7 @@ def test_all_mistakes_are_told_at_once(calm):
 
 
 @pytest.mark.parametrize("name", ["chart.svg", "chart.png", "chart.pdf"])
+@pytest.mark.thorough
 def test_draw(calm, folder, name):
     done = calm("chart", "draw", "--k", "2.4", "--lower-end", "above-90", "-o", name)
     assert (done.code, done.out, done.err) == (0, "", f"{name} written\n")

@@ -122,6 +122,7 @@ def test_everything_is_on_the_pages(deck, pieces, paper, size):
         assert packed("13 shackle – swivel of a long name no. J-0 – 16 shackle") in text
 
 
+@pytest.mark.thorough
 def test_the_same_input_gives_the_same_bytes(deck):
     text = mooring(13)
     first = {path.name: path.read_bytes() for path in deck(text)[0].iterdir()}
@@ -206,6 +207,7 @@ def test_many_environments_are_design_currents(deck):
     assert smallest >= 6.995
 
 
+@pytest.mark.thorough
 def test_several_moorings_each_have_a_folder(calm, folder):
     for name in ("north", "south"):
         text = mooring(3).replace("name: Wall", f"name: Deep/{name}")
@@ -249,6 +251,7 @@ def test_usage(calm, folder, write_mooring):
         assert not (folder / "out").exists()
 
 
+@pytest.mark.thorough
 def test_a_line_that_still_water_leaves_slack_is_dropped_all_the_same(deck):
     text = (
         "name: Slack\nenvironment: {depth: 100 m}\n"

@@ -134,6 +134,7 @@ def test_declared_units_convert(calm, given, truth, unit, factor, folder):
         assert np.sqrt((off**2).mean()) < 0.5
 
 
+@pytest.mark.thorough
 def test_netcdf_with_flags_and_one_file_for_a_sensor(calm, given, truth, folder):
     values = dbar(truth[1])
     flags = np.ones(values.shape, np.int8)

@@ -28,6 +28,7 @@ def test_the_table_and_the_json_say_the_same(calm, write_mooring):
         assert f"{figure:.1f}" in shown
 
 
+@pytest.mark.thorough
 def test_contributions_are_of_every_cause(calm, write_mooring):
     done = calm("run", write_mooring(), "--uncertainty", "--samples", "512", "--json", "-")
     found = json.loads(done.out)["uncertainty"]["contributions"]

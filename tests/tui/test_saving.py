@@ -484,6 +484,7 @@ def test_a_file_that_is_gone_is_not_saved_any_more(drive, small):
     drive(story, small)
 
 
+@pytest.mark.thorough
 def test_the_last_copy_of_a_file_that_is_gone_is_kept(drive, small):
     before = small.read_text()
 

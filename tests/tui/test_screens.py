@@ -266,6 +266,7 @@ def test_name_and_place(drive, small):
     drive(story, small)
 
 
+@pytest.mark.thorough
 def test_the_document_and_the_equipment_of_a_row(drive, small):
     async def story(driver):
         await driver.press("M")

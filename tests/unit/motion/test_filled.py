@@ -15,6 +15,7 @@ def test_levels_are_linear_between_the_others_and_constant_beyond():
     assert found == pytest.approx(np.array([[1.0, 1.0, 2.0, 3.0]]))
 
 
+@pytest.mark.thorough
 def test_errors_of_neighbours_are_those_of_the_record():
     # linear in depth but for a factor on the second level, whose logarithm is normal: 0.3
     random = np.random.default_rng(1)

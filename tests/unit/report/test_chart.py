@@ -55,6 +55,7 @@ def test_no_text_covers_another(plate: Figure) -> None:
     assert not meeting
 
 
+@pytest.mark.thorough
 def test_every_text_is_on_the_page(plate: Figure) -> None:
     page = plate.bbox
     for text, box in shown_texts(plate):
