@@ -10,6 +10,7 @@ from datetime import date
 from calm.files.editing import Value
 from calm.files.fields import LENGTH, POSITIVE_LENGTH, Quantity
 from calm.files.logbook import LOAD
+from calm.files.times import TimeChoiceError, parse_time
 from calm.units import QuantityError
 
 COUNT = Quantity("number", at_least=1, at_most=10_000)
@@ -64,6 +65,17 @@ def day(text: str) -> Reading:
         return Reading(tidy and date.fromisoformat(tidy).isoformat())
     except ValueError:
         return Reading("", "a day of the calendar is needed, as 2027-06-30")
+
+
+def moment(text: str) -> Reading:
+    """A day of the calendar, or a day and time, or nothing."""
+    tidy = text.strip()
+    try:
+        if tidy:
+            parse_time(tidy)
+    except TimeChoiceError as error:
+        return Reading("", str(error))
+    return Reading(tidy)
 
 
 def needed(what: str) -> Check:

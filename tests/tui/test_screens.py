@@ -299,6 +299,33 @@ def test_the_document_and_the_equipment_of_a_row(drive, small):
     drive(story, small)
 
 
+def test_where_it_was_deployed(drive, small):
+    async def story(driver):
+        await driver.press("L")
+        for text in ("2027-06-30 14:05", "48.31 deg", "-5.2 deg"):
+            await driver.type(text)
+            await driver.press("enter")
+        await driver.type("-5 m")
+        await driver.press("enter")
+        assert "must be more than 0 m" in driver.screen
+        await driver.press("ctrl+u")
+        await driver.type("1187 m")
+        await driver.press("enter")
+        await driver.settle()
+        assert driver.session.draft.value(("deployed",)) == {
+            "date": "2027-06-30 14:05",
+            "position": {"latitude": "48.31 deg", "longitude": "-5.2 deg"},
+            "depth": "1187 m",
+        }
+        assert driver.session.draft.problems == ()
+        await driver.press("L")
+        await driver.type("soon")
+        await driver.press("enter")
+        assert "is no time" in driver.screen
+
+    drive(story, small)
+
+
 def test_a_tow_is_edited_the_same_way(drive, folder):
     from calm.shipped import shipped_folder
 

@@ -77,6 +77,13 @@ BUILDER: tuple[Action, ...] = (
     ),
     Action(
         "anywhere",
+        "deployed",
+        "L",
+        "as deployed",
+        "Date, position and depth of the deployment, to be compared with the design.",
+    ),
+    Action(
+        "anywhere",
         "tow",
         "T",
         "tow",

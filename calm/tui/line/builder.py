@@ -282,6 +282,12 @@ class BuilderScreen(DraftScreen):
 
         self._ask(document_sheet(self.workspace.session.draft), "the document")
 
+    def action_deployed(self) -> None:
+        """When and where the mooring was deployed."""
+        from calm.tui.line.mooring_sheet import deployed_sheet
+
+        self._ask(deployed_sheet(self.workspace.session.draft), "the deployment")
+
     def action_tow(self) -> None:
         """Speed and course of a tow; a mooring becomes one."""
         from calm.tui.line.mooring_sheet import tow_sheet

@@ -1,4 +1,4 @@
-"""What is asked about a whole file: name and position, its document, speed and course of a tow."""
+"""What is asked about a whole file: name and place, document, deployment, speed of a tow."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import replace
 from calm.files.document import Location
 from calm.files.editing import Draft
 from calm.files.fields import LENGTH, Quantity
-from calm.tui.checking import anything, day, quantity
+from calm.tui.checking import anything, day, moment, quantity
 from calm.tui.dialogs import Asked, Sheet
 
 _PLACES: dict[str, Location] = {
@@ -33,6 +33,10 @@ _PLACES: dict[str, Location] = {
             "cruise",
         )
     },
+    "deployed date": ("deployed", "date"),
+    "deployed latitude": ("deployed", "position", "latitude"),
+    "deployed longitude": ("deployed", "position", "longitude"),
+    "deployed depth": ("deployed", "depth"),
 }
 
 _LATITUDE = quantity(Quantity("angle", at_least=-90, at_most=90), optional=True)
@@ -63,6 +67,17 @@ _DOCUMENT = (
     Asked("ship", "Ship"),
     Asked("cruise", "Cruise"),
 )
+_DEPLOYED = (
+    Asked("deployed date", "Date", check=moment, placeholder="e.g. 2027-06-30 14:05"),
+    Asked("deployed latitude", "Latitude", check=_LATITUDE, placeholder="e.g. 48.3 deg, + north"),
+    Asked("deployed longitude", "Longitude", check=_LONGITUDE, placeholder="e.g. -5.2 deg, + east"),
+    Asked(
+        "deployed depth",
+        "Depth there",
+        check=quantity(Quantity("length", above=0), optional=True),
+        placeholder="e.g. 1187 m",
+    ),
+)
 _BEGIN_A_TOW = (
     "The line becomes a tow: it hangs from a ship, its pieces from the ship down, and has no "
     "anchor. Undo makes it a mooring again."
@@ -77,6 +92,12 @@ def mooring_sheet(draft: Draft) -> Sheet:
 def document_sheet(draft: Draft) -> Sheet:
     """What the title block of the drawings says, as the file has it."""
     return Sheet("The document", "For the title block of drawings.", _filled(draft, _DOCUMENT))
+
+
+def deployed_sheet(draft: Draft) -> Sheet:
+    """When and where the mooring was deployed, as the file has it."""
+    said = "Compared with the design by calm diff. Serials, lengths as cut: in the text, `items`."
+    return Sheet("As deployed", said, _filled(draft, _DEPLOYED))
 
 
 def tow_sheet(draft: Draft) -> Sheet:
