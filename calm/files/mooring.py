@@ -177,12 +177,12 @@ class MooringFile:
     solver: Solver
     checks: Checks
     notices: tuple[str, ...]
-    variants: Mapping[str, Any] = field(default_factory=dict)
+    variants: Mapping[str, Any] = field(default_factory=dict, hash=False)
     accepts: tuple[Accept, ...] = ()
     uncertainty: Uncertainty = field(default_factory=Uncertainty)
     looser: tuple[LimitKey, ...] = ()
     document: DocumentKeys | None = None
-    releases: tuple[ReleaseKeys, ...] = ()
+    releases: tuple[ReleaseKeys, ...] = field(default=(), hash=False)
     deployed: Deployed | None = None
 
     @property

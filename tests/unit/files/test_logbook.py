@@ -63,14 +63,16 @@ def test_serial_numbers_of_a_count(read: Read) -> None:
 
 
 def test_all_that_is_kept(read: Read) -> None:
-    file = read(
+    text = (
         GOOD.replace(
             "label: top float}", "label: top float, serial: 0012, battery_until: 2027-06-30}"
         )
+        + "environments: {storm: {depth: 1100 m}}\n"
         + "document: {id: M-17, revision: B, history: [{revision: A, change: first}]}\n"
         + "releases: [{serial: 5, codes: {enable: 0123, release: 4567}}, {codes: [a, b]}]\n"
         + "deployed: {date: 2026-11-22, depth: 1103 m, items: [{label: rope-12, length: 470 m}]}\n"
     )
+    file = read(text)
     assert file.pieces[0].serial == "0012"
     assert file.pieces[0].equipment.battery_until == "2027-06-30"
     assert file.document is not None and file.deployed is not None
@@ -81,6 +83,8 @@ def test_all_that_is_kept(read: Read) -> None:
     }
     codes = [release.code_lines for release in file.releases]
     assert codes == [("enable: 0123", "release: 4567"), ("a", "b")]
+    # the workers of a cluster know a mooring by it
+    assert hash(file) == hash(read(text))
     assert (file.deployed.depth, file.deployed.items[0].length) == (1103.0, 470.0)
 
 
