@@ -119,6 +119,7 @@ def locate(survey: Survey, sound: Sound, depth: float | None = None) -> Located:
     model = Model(survey, sound, frame, ships, depth)
     x, used = fitted(model)
     residuals = model.residuals(x)
+    inconsistent = consistency(model, x, used)  # a wrong unit is named for what it is
     missed, reach = (
         float(np.median(np.abs(each[used]))) for each in (residuals, model.measured(x))
     )
@@ -136,7 +137,7 @@ def locate(survey: Survey, sound: Sound, depth: float | None = None) -> Located:
     place = model.place(x)
     latitude, longitude, found = frame.position(place)
     warnings = [
-        *consistency(model, x, used),
+        *inconsistent,
         *geometry_warnings(ships[used], place, found - survey.transducer, depth is not None),
         *another_place(model, x, used),
     ]
