@@ -3,10 +3,8 @@
 What a person presses goes in, what the terminal shows comes out; nothing else is known here.
 """
 
-import json
 import os
 import signal
-import subprocess
 import sys
 import time
 
@@ -14,8 +12,15 @@ import pexpect
 import pyte
 import pytest
 
-from calm.files.editing import Draft
 from calm.shipped import shipped_folder
+from tests.tui.test_stories import (
+    DEEP,
+    DEEP_MEANT,
+    PASTED,
+    SURFACE,
+    SURFACE_MEANT,
+    assert_is_meant,
+)
 
 ESCAPE_DELAY = 0.1  # seconds; as textual has it
 pytestmark = [
@@ -23,22 +28,17 @@ pytestmark = [
     pytest.mark.skipif(os.name != "posix", reason="there are no pseudo-terminals"),
 ]
 
-PATIENCE = 600.0  # seconds; far more than anything takes, so that a busy machine fails nothing
-ENTER, ESCAPE, TAB, DOWN, UP, RIGHT = "\r", "\x1b", "\t", "\x1b[B", "\x1b[A", "\x1b[C"
-HOME, END = "\x1b[H", "\x1b[F"
+PATIENCE = 180.0  # seconds; far more than anything takes, so that a busy machine fails nothing
+ENTER, ESCAPE, DOWN = "\r", "\x1b", "\x1b[B"
 SAVE, CLEAR = "\x13", "\x15"
 
-DENSITY = [(0, 1024.5), (200, 1027.5), (1000, 1032.2), (2000, 1037.0), (4200, 1047.0)]
-CURRENT = [
-    (0, 0.70, 70), (300, 0.45, 68), (700, 0.25, 65), (1500, 0.12, 60), (3000, 0.08, 75),
-    (4200, 0.06, 80),
-]  # fmt: skip
+SIGNS = {"⏎": ENTER, "⎋": ESCAPE, "⑥": "\x1b[17~"}
 
 
 class Terminal:
     """A command in a terminal of some columns and rows."""
 
-    def __init__(self, *words, columns=110, rows=40):
+    def __init__(self, *words, columns=110, rows=40, folder=None):
         environ = os.environ | {"TERM": "xterm-256color", "COLUMNS": "", "LINES": ""}
         for name in ("COLUMNS", "LINES", "NO_COLOR", "TEXTUAL_DRIVER"):
             environ.pop(name, None)
@@ -46,7 +46,7 @@ class Terminal:
         self._stream = pyte.ByteStream(self._screen)
         self.child = pexpect.spawn(
             sys.executable, ["-m", "calm", "build", *map(str, words)], env=environ,
-            dimensions=(rows, columns), timeout=PATIENCE,
+            dimensions=(rows, columns), timeout=PATIENCE, cwd=folder,
         )  # fmt: skip
         self.child.delaybeforesend = 0
 
@@ -85,112 +85,28 @@ class Terminal:
         self.child.close()
 
 
-def run_json(path):
-    command = [sys.executable, "-m", "calm", "run", str(path), "--json", "-"]
-    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=600)
-    return json.loads(done.stdout)
-
-
-def add(terminal, values):
-    """Press what adds a piece to the line, the catalogue being open."""
-    terminal.press(CLEAR, values["use"], ENTER)
-    if "length" in values:
-        terminal.press(values["length"], TAB, values["label"], ENTER)
-
-
-def name(terminal, items):
-    """Press what gives the rigid pieces their labels and counts, from the top."""
-    terminal.press(HOME)
-    for item in items:
-        if "length" not in item.values:
-            terminal.press("n", item.values["label"], ENTER)
-        if "count" in item.values:
-            terminal.press("=", item.values["count"], ENTER)
-        terminal.press(DOWN)
-
-
-def clamp(terminal, items):
-    """Press what puts the clamps on, from the bottom: rows are added below only."""
-    terminal.press(END)
-    for item in reversed(items):
-        for values in (each.values for each in item.clamps):
-            terminal.press("i", CLEAR, values["use"], ENTER, values["at"], TAB, values["label"])
-            terminal.press(ENTER)
-            terminal.wait(values["label"])
-            terminal.press(ESCAPE)
-        terminal.press(*[UP] * (1 + len(item.clamps)))
-
-
-def fill_table(terminal, rows):
-    """Type rows into a new table of two; the cursor is on the line that tells its form."""
-    terminal.press(TAB)
-    for _ in rows[2:]:
-        terminal.press("a", ESCAPE)
-    terminal.press(*[UP] * (len(rows) - 2))
-    for row in rows:
-        for value in row:
-            text = f"{value:g}" if value != int(value) else str(int(value))
-            terminal.press(text, ENTER)
-
-
-OF_THE_SHORT_LINE = {
-    "top float", "wire 1", "meter 300 m", "wire 2", "parafil 3", "back-up glass", "releases",
-    "three wheels",
-}  # fmt: skip
-
-
-def short_line(text):
-    """The deep mooring with eight of its pieces: of every kind of them one."""
-    draft = Draft(text.partition("checks:\n")[0])
-    labels = [item.values["label"] for item in draft.items]
-    draft = draft.put(labels.index("parafil 3"), "length", "3600 m")
-    return draft.delete(i for i, label in enumerate(labels) if label not in OF_THE_SHORT_LINE)
-
-
 @pytest.mark.parametrize(
-    "line", [short_line, pytest.param(Draft, marks=pytest.mark.slow, id="all of it")]
+    ("story", "name", "meant"),
+    [
+        pytest.param(SURFACE, "buoy.yaml", SURFACE_MEANT, id="surface"),
+        pytest.param(DEEP, "deep.yaml", DEEP_MEANT, marks=pytest.mark.slow, id="deep"),
+    ],
 )
-def test_build_the_deep_mooring_from_nothing(tmp_path, monkeypatch, line):
+def test_build_a_mooring_from_nothing(tmp_path, monkeypatch, story, name, meant):
     monkeypatch.setenv("CALM_COMPILED", "always")  # the line is judged after every key
-    shipped = shipped_folder("lines") / "deep-current-meters.yaml"
-    wanted = line(shipped.read_text(encoding="utf-8"))
-    given = tmp_path / "given.yaml"
-    given.write_text(wanted.text, encoding="utf-8")
-    file = tmp_path / "mine.yaml"
-    terminal = Terminal(file, columns=80, rows=24)
-    terminal.wait("mine.yaml", "? help")
-
-    terminal.press("m", CLEAR, "Deep current meters", ENTER, ENTER)
-    terminal.press("38.5", ENTER, "-52", ENTER)
-    terminal.wait("Deep current meters", gone=["Name and place"])
-
-    terminal.press("w")
-    terminal.wait("The water of mine.yaml")
-    terminal.press("4200 m", ENTER, RIGHT, ENTER)
-    terminal.wait("density kg/m^3")
-    fill_table(terminal, DENSITY)
-    terminal.wait("1047")
-    terminal.press(DOWN, RIGHT, RIGHT, ENTER)
-    terminal.wait("speed m/s")
-    fill_table(terminal, CURRENT)
-    terminal.wait("0.06")
-    terminal.press(ESCAPE)
-    terminal.wait("a add")
-
-    terminal.press("a")
-    for item in wanted.items:
-        add(terminal, item.values)
-    terminal.wait("anchor-wheels-3")
-    terminal.press(ESCAPE)
-    name(terminal, wanted.items)
-    clamp(terminal, wanted.items)
-    terminal.press(SAVE)
-    terminal.wait("mine.yaml saved")
+    terminal = Terminal(columns=80, rows=24, folder=tmp_path)
+    terminal.wait("? help")
+    for number, part in enumerate(PASTED.split(story)):
+        if number % 2:
+            terminal.press(f"\x1b[200~{part}\x1b[201~")
+            terminal.wait("columns")
+        else:
+            terminal.press(*(SIGNS.get(sign, sign) for sign in part))
+    terminal.wait(f"{name} saved")
     terminal.press("q")
     terminal.end()
     assert terminal.child.exitstatus == 0
-
-    assert run_json(file) == run_json(given)
+    assert_is_meant(tmp_path / name, meant)
 
 
 def test_keys_that_come_in_one_parcel_are_not_mixed_up(tmp_path):
