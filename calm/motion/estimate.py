@@ -95,7 +95,9 @@ def _tried(
     none, still = np.zeros((len(tried), part.groups)), part.forward.still
     there = part.depths(other, none)
     before = np.maximum(at.depth[tried] - still, 1.0)
-    ratio = np.clip(np.maximum(there - still, 1.0) / before, 0.2, 5.0)[:, :, None]
+    # without equilibrium in these currents the slopes stay as they are: it is left out
+    ratio = np.nan_to_num(np.clip(np.maximum(there - still, 1.0) / before, 0.2, 5.0), nan=1.0)
+    ratio = ratio[:, :, None]
     state = Linear(none, there, at.slope[tried] * ratio, at.common[tried] * ratio)
     found = posterior(part.measured, state, other.spread, common, still)
     for _ in range(2):
