@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 from pathlib import Path
 
 __version__ = "0.1.0"
@@ -22,6 +21,8 @@ def built_from() -> str:
 
 def commit_of(checkout: Path) -> str:
     """The commit of a checkout of git's, empty where there is none or no git."""
+    import subprocess
+
     if not (checkout / ".git").exists():
         return ""
     describe = ["git", "-C", str(checkout), "describe", "--always", "--exclude=*", "--dirty"]

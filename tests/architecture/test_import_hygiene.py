@@ -72,6 +72,10 @@ def test_everyday_commands_load_no_heavy_library(arguments: list[str]) -> None:
     assert not HEAVY & loaded(COMMAND.format(arguments=arguments))
 
 
+def test_help_reads_no_files() -> None:
+    assert not {"pydantic", "yaml", "calm.files"} & loaded(COMMAND.format(arguments=["--help"]))
+
+
 def test_reports_of_checks_draw_without_a_plotting_library(tmp_path: Path) -> None:
     arguments = ["check", "lines/s1000.yaml", "--allow-unknown", "--report", str(tmp_path / "to")]
     modules = loaded(COMMAND.format(arguments=arguments))

@@ -4,7 +4,7 @@ import os
 import pytest
 from jsonschema import Draft202012Validator
 
-from calm.files.starts import STARTS
+from calm.starts import STARTS
 from tests.core_yaml import loaded
 
 

@@ -4,7 +4,7 @@ import pytest
 
 from calm.checks.finding import State
 from calm.files.editing import Draft, EditError
-from calm.files.starts import STARTS, start
+from calm.starts import STARTS, start
 from calm.tui.launch import open_session
 from calm.tui.line.rows import table_rows
 from calm.tui.live import judge, judge_fully

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from math import hypot
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,9 +21,6 @@ from calm.case import Mooring
 from calm.checks.limits import limits_used
 from calm.checks.posture import reaches_the_surface
 from calm.files.checks import LimitKey
-
-if TYPE_CHECKING:
-    pass
 
 WORST = 20
 """Profiles listed as the worst of a response."""

@@ -9,7 +9,8 @@ from xml.etree import ElementTree
 import numpy as np
 from numpy.typing import ArrayLike
 
-from calm.report.graph.scale import Floats, Scale
+from calm.physics.line import Floats
+from calm.report.graph.scale import Scale
 from calm.report.graph.style import Stroke, draw_mark
 from calm.report.graph.ticks import Tick
 from calm.report.schematic.pen import INK, Pen
