@@ -90,7 +90,7 @@ def compared(files: tuple[Path, ...], lines: list[Mooring | Tow]) -> Comparison:
         raise UsageError(f"{files[0]} is a tow; give the file to compare it with")
     try:
         deployed = as_deployed(first)
-        pair = [Mooring(replace(one.file, deployed=None)) for one in (first, deployed)]
-        return comparison_of(("design", "deployed"), *pair)
+        design, there = (Mooring(replace(one.file, deployed=None)) for one in (first, deployed))
+        return comparison_of(("design", "deployed"), design, there)
     except NoEquilibrium as failure:
         raise UsageError(f"{files[0]}: what is cut to fit has no length: {failure}") from failure
