@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from calm.checks.anchor import anchor_sliding, anchor_uplift, anchor_weight
 from calm.checks.arrangement import metals, release_present, swivel
 from calm.checks.clamps import clamp_grip, clamp_grip_on_the_way
+from calm.checks.deployed import deployed_depth
 from calm.checks.finding import State, Verdict, rule, verdict_on
 from calm.checks.handling import backup, launch_speed, launch_strength, recovery, tangling
 from calm.checks.posture import depth_rating, excursion, knockdown, tilt, top_depth
@@ -56,6 +57,7 @@ STANDING = (
 """What is judged of a `Result`, in every environment and situation."""
 
 ONCE = (
+    deployed_depth,
     release_present,
     swivel,
     metals,
