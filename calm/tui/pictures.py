@@ -166,12 +166,11 @@ def _wrapped(text: str, width: int) -> list[str]:
 
 
 class Pictures(Vertical):
-    """The pictures under their names; the names are dimmed where the picture is of another state of
-    the line: to dim the picture would send all of it twice."""
+    """The pictures under their names, dimmed where they are of another state of the line."""
 
     DEFAULT_CSS = """
     Pictures { height: 1fr; width: 1fr; }
-    Pictures.-old Tabs { text-style: dim; }
+    Pictures.-old Picture { text-style: dim; }
     Pictures > #beside { height: 1; padding: 0 1; color: $text-muted; display: none; }
     """
 
