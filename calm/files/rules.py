@@ -188,6 +188,15 @@ RULES = {
         "IHO S-44, order 2: what a sounding may be off by, 95 %",
         _ONCE,
     ),
+    "figures": RuleText(
+        "Figures of components",
+        "",
+        "figures of pieces and clamps that nothing of their size and material can have: lift, "
+        "mass, stiffness, strength, depth rating; a cable without drag",
+        "a warning",
+        "The rules that `calm catalog check` judges a catalogue by",
+        _ONCE,
+    ),
     "release-present": RuleText(
         "Release",
         "",

@@ -57,6 +57,8 @@ def test_a_plain_mooring_is_solved_as_given_at_rest_and_with_strumming_cables(
 @pytest.mark.parametrize(("current", "more", "warned"), [
     ("  current: {speed: 0.6 m/s, toward: 90 deg}", "", False),
     ("  current: {speed: 0 m/s, toward: 90 deg}", "", True),
+    ("  current: {speed: 9 mm/s, toward: 90 deg}", "", True),
+    ("  current: {speed: 10.1 mm/s, toward: 90 deg}", "", False),
     ("", "", True),
     ("", "environments: {storm: {current: {speed: 0.6 m/s, toward: 90 deg}}}\n", False),
 ])  # fmt: skip
