@@ -15,7 +15,7 @@ COMPLETION_EXAMPLES = """Examples:
 
 
 def completion(shell: Literal["bash", "zsh", "fish"], /) -> ExitCode:
-    """Print the script by which a shell completes calm.
+    """Print a script that lets a shell complete commands and options.
 
     Parameters
     ----------

@@ -50,7 +50,7 @@ def parse_gap(text: str) -> np.timedelta64:
     try:
         seconds = float(number) * units[unit.strip()]
     except (ValueError, KeyError):
-        raise UsageError(f'--gap: `{text}` is no time; write "2 h" (s, min, h, d)') from None
+        raise UsageError(f'--gap: `{text}` is not a time; write "2 h" (s, min, h, d)') from None
     if not 0.0 <= seconds < 1e8:
         raise UsageError(f"--gap: `{text}` is not between 0 and three years")
     return np.timedelta64(round(seconds * 1e9), "ns")

@@ -321,7 +321,7 @@ def test_where_it_was_deployed(drive, small):
         await driver.press("L")
         await driver.type("soon")
         await driver.press("enter")
-        assert "is no time" in driver.screen
+        assert "is not a time" in driver.screen
 
     drive(story, small)
 

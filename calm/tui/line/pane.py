@@ -143,7 +143,7 @@ class LinePane(Vertical):
                 self.table.cursor = number
                 self._tell_why(rows[number].spot)
                 return
-        self.workspace.tell("Nothing is found of any row")
+        self.workspace.tell("There are no findings")
 
     def _tell_why(self, spot: Place) -> None:
         view = self.workspace.view
@@ -165,7 +165,7 @@ class LinePane(Vertical):
             return
         found = why(view, spot) if view is not None and self.workspace.is_fresh else []
         if not found:
-            self.workspace.tell("Nothing is found of this row, or it is not judged yet")
+            self.workspace.tell("There are no findings for this row, or it is not judged yet")
             return
         text = "\n".join(f"{each.sign} {each.heading}  {each.text}" for each in found)
         called = row.texts.get("label") or row.texts["component"]
