@@ -57,7 +57,7 @@ def _changed(mooring: Mooring, given: Result) -> Iterator[tuple[str, Mooring]]:
 
     def changed(depth: float | None = None, **what: Any) -> Mooring:
         there = replace(environment, depth=depth or environment.depth)
-        return Mooring(replace(file, **({"environment": there} | what)), surface)
+        return Mooring(replace(file, **({"environment": there} | what)), surface, mooring.memory)
 
     if mooring.water.moving or environment.wind is not None:
         still = replace(environment, current=_NO_CURRENT, wind=None)
