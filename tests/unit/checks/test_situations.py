@@ -333,9 +333,8 @@ def test_what_no_environment_changes_is_solved_once(
     environments = []
     for toward in (0, 120, 240):
         file = tmp_path / f"toward-{toward}.yaml"
-        file.write_text(
-            f"name: toward {toward}\nenvironment: {{current: {{speed: 0.5 m/s, toward: {toward} deg}}}}"
-        )
+        current = f"{{speed: 0.5 m/s, toward: {toward} deg}}"
+        file.write_text(f"name: toward {toward}\nenvironment: {{current: {current}}}")
         environments.append(str(file))
     ((design,), _) = read_designs([tmp_path / "mooring.yaml"], environments, [], 1)
     moving: list[bool] = []
