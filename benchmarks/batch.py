@@ -8,7 +8,7 @@ A deep mooring of twelve components in made currents at twenty levels, hourly: e
 noise. The command is timed whole, from its start to the page of its statistics, and without them;
 memory is the most that the process ever held. What one thread can read, hash, pack and write is
 timed with profiles that are solved already: that is all that a process has to do whose profiles are
-solved by others. The last table is that of `docs/how-to/batch.md`.
+solved by others. The last table is that of `docs/reference/batch.md`.
 """
 
 import subprocess

@@ -19,6 +19,8 @@ autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 napoleon_google_docstring = False
 
+smartquotes_action = "q"  # an option such as --json keeps its two hyphens
+
 html_theme = "furo"
 html_title = f"CALM {__version__}"
 html_static_path = ["_static"]

@@ -1,4 +1,4 @@
-"""Draw the screens of the line builder that `docs/how-to/build.md` shows.
+"""Draw the screens of the line builder that `docs/reference/build.md` shows.
 
 python docs/generate_build.py            # draw them
 python docs/generate_build.py --check    # exit 1 where one is out of date

@@ -1,12 +1,14 @@
 """Write `docs/images/builder.svg`, a recording of the line builder, by pressing its keys.
 
-python docs/generate_recording.py
+python docs/generate_recording.py            # write it
+python docs/generate_recording.py --check    # exit 1 where the builder shows other words or figures
 """
 
 import asyncio
 import os
 import re
 import shutil
+import sys
 import tempfile
 from pathlib import Path
 
@@ -14,7 +16,7 @@ from calm.shipped import shipped_folder
 from calm.tui.app import BuildApp
 from calm.tui.launch import open_session
 
-TARGET = Path(__file__).parent / "images" / "builder.svg"
+TARGET = Path(__file__).resolve().parent / "images" / "builder.svg"
 SIZE = (118, 34)
 LINE = "fit-top-depth"
 STORY: tuple[tuple[str, tuple[str, ...]], ...] = (
@@ -38,11 +40,20 @@ async def frames(folder: Path) -> list[str]:
     app = BuildApp(session, kept=kept, environ={"TERM": "xterm-256color"})
     found = []
     async with app.run_test(size=SIZE) as pilot:
+
+        async def settle() -> None:
+            await pilot.pause()
+            while not app.is_idle:
+                await app.workers.wait_for_complete()
+                await pilot.pause()
+
         for title, keys in STORY:
             await pilot.press(*keys)
-            for _ in range(8):
-                await pilot.pause(0.1)
-                await app.workers.wait_for_complete()
+            await settle()
+            app.judging.ask_fully()
+            await settle()
+            await pilot.wait_for_scheduled_animations()
+            await settle()
             found.append(app.export_screenshot(title=title))
     return found
 
@@ -82,9 +93,25 @@ def _alone(picture: str, number: int) -> str:
     return inside[1]
 
 
-if __name__ == "__main__":
+def words(svg: str) -> list[str]:
+    """What a recording says, without the signs of its frames, pictures and scroll bars."""
+    return re.findall(r"[\w.+-]+", " ".join(re.findall(r"<text[^>]*>([^<]*)</text>", svg)))
+
+
+def main() -> int:
+    """Record, or compare what is said with what was recorded; the exit code."""
     with tempfile.TemporaryDirectory() as name:
         os.environ.update(XDG_STATE_HOME=f"{name}/state", XDG_CONFIG_HOME=f"{name}/configuration")
+        os.environ.pop("NO_COLOR", None)
         os.chdir(name)
-        recorded = asyncio.run(frames(Path(name)))
-    TARGET.write_text(animated(recorded), encoding="utf-8")
+        svg = animated(asyncio.run(frames(Path(name))))
+    if "--check" not in sys.argv:
+        TARGET.write_text(svg, encoding="utf-8")
+    elif words(svg) != words(TARGET.read_text(encoding="utf-8")):
+        print(f"{TARGET.name} is out of date: python docs/generate_recording.py", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -6,6 +6,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from datetime import date
 
+import numpy as np
+
 from calm.case import Mooring, Result
 from calm.checks.acceptance import Acceptance
 from calm.checks.assessment import Assessment, Situation, Stand
@@ -22,6 +24,9 @@ from calm.checks.situations import SOLVES, STRUMMING, situations_of
 from calm.errors import NoEquilibrium
 from calm.files import MooringFile, Place
 from calm.solve import expect_many
+
+LEAST_CURRENT = 0.01
+"""A current below it moves a mooring no more than none [m/s]."""
 
 
 def check(mooring: Mooring, /, *others: Mooring, day: date | None = None) -> Assessment:
@@ -103,7 +108,9 @@ def assessment_of(name: str, stands: Sequence[Stand], day: date | None = None) -
 
 
 def _moved(mooring: Mooring) -> bool:
-    return mooring.water.moving or mooring.file.environment.wind is not None
+    water = mooring.water
+    greatest = float(np.hypot(water.u, water.v).max())
+    return greatest >= LEAST_CURRENT or mooring.file.environment.wind is not None
 
 
 def findings_of(

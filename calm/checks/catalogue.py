@@ -209,9 +209,14 @@ def is_too_strong(component: Component) -> str | None:
     return f"breaks at {component.breaking_load:.4g} N; no cable of its diameter at {strongest:.4g}"
 
 
-RULES: tuple[Callable[[Component], str | None], ...] = (
-    no_source,
-    source_of_nothing,
+def has_no_drag(component: Component) -> str | None:
+    """A cable or chain that the current does not push."""
+    if not isinstance(component, Cable | Chain) or component.cn != 0.0:
+        return None
+    return "has no drag across it (`cn: 0`)"
+
+
+IMPOSSIBLE: tuple[Callable[[Component], str | None], ...] = (
     warns_after_limit,
     displaces_more_than_its_size,
     is_denser_than_lead,
@@ -221,8 +226,12 @@ RULES: tuple[Callable[[Component], str | None], ...] = (
     is_stiffer_than_steel,
     is_too_strong,
     is_rated_below_the_ocean,
+    has_no_drag,
 )
-"""Every rule, in the order their findings are reported."""
+"""Rules on the figures themselves, of a catalogue and of a design."""
+
+RULES = (no_source, source_of_nothing, *IMPOSSIBLE)
+"""Every rule of a catalogue, in the order their findings are reported."""
 
 
 def _listed(names: Iterable[str]) -> str:

@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import TypeVar
+from math import hypot
+from typing import TYPE_CHECKING, TypeVar
 
 from calm.case import Mooring
-from calm.checks.situations import cut_like
-from calm.errors import UsageError
-from calm.files import Clamp, Piece
+from calm.checks.finding import State, Verdict, at_most, rule
+from calm.errors import NoEquilibrium, UsageError
+from calm.files import Clamp, MooringFile, Piece
 from calm.files.logbook import DeployedItem
+from calm.quantities import say
+
+if TYPE_CHECKING:
+    from calm.checks.handling import Handling
 
 _Part = TypeVar("_Part", Piece, Clamp)
+
+SOUNDING = 1.0, 0.023
+"""Of a sounding's error, 95 %: the fixed part [m] and the share of the depth; IHO S-44, order 2."""
 
 
 def as_deployed(mooring: Mooring) -> Mooring:
@@ -45,6 +54,58 @@ def as_deployed(mooring: Mooring) -> Mooring:
             pieces=tuple(_as_cut(piece, items) for piece in file.pieces),
         )
     )
+
+
+def differs(mooring: Mooring, deployed: Mooring) -> bool:
+    """Whether it stands in another depth than designed, or on other lengths."""
+    return deployed.water.depth != mooring.water.depth or any(
+        piece.length is not None and piece.length != length
+        for piece, length in zip(deployed.file.pieces, mooring.line.length.tolist(), strict=False)
+    )
+
+
+def cut_like(file: MooringFile, mooring: Mooring) -> MooringFile:
+    """A file with the piece that is cut to fit at the length that it has in a mooring.
+
+    Raises
+    ------
+    NoEquilibrium
+        No length fits there.
+    """
+    pieces = tuple(
+        piece
+        if piece.fit_top_depth is None
+        else replace(piece, length=float(mooring.line.length[piece.index]), fit_top_depth=None)
+        for piece in file.pieces
+    )
+    return replace(file, pieces=pieces)
+
+
+@rule("as-deployed")
+def deployed_depth(handling: Handling) -> Iterator[Verdict]:
+    """How far the top of the upright line is from where it was designed to be."""
+    mooring = handling.mooring
+    if mooring.file.deployed is None:
+        return
+    try:
+        deployed = as_deployed(mooring)
+    except NoEquilibrium:  # found by `equilibrium`
+        return
+    if not differs(mooring, deployed):
+        return
+    designed, depth = mooring.water.depth, deployed.water.depth
+    longer = float(deployed.line.length.sum() - mooring.line.length.sum())
+    fixed, share = SOUNDING
+    limit = hypot(fixed, share * designed)
+    moved = depth - designed - longer
+    way = "deeper" if moved > 0.0 else "shallower"
+    message = (
+        f"Deployed in {say('depth', depth)} of water, designed for {say('depth', designed)}: its "
+        f"top, upright, is {say('depth', abs(moved))} {way}; {say('depth', limit)} are within a "
+        "sounding's error."
+    )
+    remedy = "`calm diff` with this file alone shows what that does."
+    yield at_most(None, abs(moved), limit, message, remedy, State.WARN)
 
 
 def _as_cut(piece: Piece, items: dict[str, DeployedItem]) -> Piece:

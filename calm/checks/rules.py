@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 from calm.checks.anchor import anchor_sliding, anchor_uplift, anchor_weight
 from calm.checks.arrangement import metals, release_present, swivel
 from calm.checks.clamps import clamp_grip, clamp_grip_on_the_way
+from calm.checks.deployed import deployed_depth
+from calm.checks.figures import figures
 from calm.checks.finding import State, Verdict, rule, verdict_on
 from calm.checks.handling import backup, launch_speed, launch_strength, recovery, tangling
 from calm.checks.posture import depth_rating, excursion, knockdown, tilt, top_depth
@@ -29,10 +31,11 @@ def equilibrium(failure: NoEquilibrium) -> Iterator[Verdict]:
 STILL_ONLY = verdict_on(
     None,
     State.WARN,
-    "No environment has a current: what tilts, is knocked down and pulls in one is not judged.",
+    "No environment has a current of 1 cm/s: what tilts, is knocked down and pulls in one is not "
+    "judged.",
     "Give the current, or an environment that has one.",
 )
-"""What `equilibrium` says of a mooring that nothing moves."""
+"""What `equilibrium` says of a mooring that nothing moves to speak of."""
 
 STANDING = (
     strength,
@@ -56,6 +59,8 @@ STANDING = (
 """What is judged of a `Result`, in every environment and situation."""
 
 ONCE = (
+    deployed_depth,
+    figures,
     release_present,
     swivel,
     metals,

@@ -1,4 +1,4 @@
-"""A mooring with something changed: still water, the tide, growth, strumming."""
+"""A mooring with something changed: still water, the tide, growth, strumming, as deployed."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ from typing import Any
 from calm.case import Mooring, Result
 from calm.case.band import FACTOR
 from calm.checks.assessment import Situation
+from calm.checks.deployed import as_deployed, cut_like, differs
 from calm.checks.finding import AS_GIVEN
 from calm.checks.growth import grown
 from calm.checks.posture import meant_for_the_surface
 from calm.errors import NoEquilibrium
-from calm.files import Cable, CurrentTable, MooringFile, StrummingFactor
+from calm.files import Cable, CurrentTable, StrummingFactor
 from calm.solve import Status
 
 STILL, STILL_LOW = "still water", "still low water"
@@ -21,7 +22,7 @@ HIGH, LOW = "high water", "low water"
 SOLVES = 6.0
 """Equilibria that are sought for one mooring in one environment, about."""
 
-FOULED, STRUMMING = "fouling", "strumming"
+FOULED, STRUMMING, DEPLOYED = "fouling", "strumming", "as deployed"
 
 _NO_CURRENT = CurrentTable((0.0,), (0.0,), (0.0,), (0.0,))
 
@@ -30,7 +31,8 @@ def situations_of(mooring: Mooring) -> tuple[Situation, ...]:
     """The mooring solved as given, then in every situation that its file asks for.
 
     Still water, high and low water, and still low water where the environment has a `depth_range`,
-    growth where it has `fouling`, and cables with Cn × 1.5 where no law of strumming is in use.
+    growth where it has `fouling`, cables with Cn × 1.5 where no law of strumming is in use, and the
+    depth and lengths of `deployed` where they are others than those of the design.
     Pieces that are cut to fit keep the length that fits as given. Still water in which a line to
     the surface is slack, since it is longer than the water is deep, has no unique shape and is
     left out.
@@ -73,23 +75,8 @@ def _changed(mooring: Mooring, given: Result) -> Iterator[tuple[str, Mooring]]:
     if file.solver.strumming is None and any(isinstance(p.component, Cable) for p in file.pieces):
         solver = file.solver.model_copy(update={"strumming": StrummingFactor(factor=FACTOR)})
         yield STRUMMING, changed(solver=solver)
-
-
-def cut_like(file: MooringFile, mooring: Mooring) -> MooringFile:
-    """A file with the piece that is cut to fit at the length that it has in a mooring.
-
-    Raises
-    ------
-    NoEquilibrium
-        No length fits there.
-    """
-    pieces = tuple(
-        piece
-        if piece.fit_top_depth is None
-        else replace(piece, length=float(mooring.line.length[piece.index]), fit_top_depth=None)
-        for piece in file.pieces
-    )
-    return replace(file, pieces=pieces)
+    if file.deployed is not None and differs(mooring, deployed := as_deployed(mooring)):
+        yield DEPLOYED, Mooring(deployed.file, surface)
 
 
 def _shapeless(situation: Situation) -> bool:

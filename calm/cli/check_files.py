@@ -80,7 +80,7 @@ def _told_apart(names: dict[Path, str]) -> dict[Path, str]:
 def _cut_alike(moorings: Sequence[Mooring]) -> tuple[Mooring, ...]:
     """The same mooring in every environment: what is cut to fit, is cut once, for the first."""
     from calm.case import Mooring
-    from calm.checks.situations import cut_like
+    from calm.checks.deployed import cut_like
 
     first, *others = moorings
     try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -88,6 +89,8 @@ def compared(files: tuple[Path, ...], lines: list[Mooring | Tow]) -> Comparison:
     if not isinstance(first, Mooring):
         raise UsageError(f"{files[0]} is a tow; give the file to compare it with")
     try:
-        return comparison_of(("design", "deployed"), first, as_deployed(first))
+        deployed = as_deployed(first)
+        design, there = (Mooring(replace(one.file, deployed=None)) for one in (first, deployed))
+        return comparison_of(("design", "deployed"), design, there)
     except NoEquilibrium as failure:
         raise UsageError(f"{files[0]}: what is cut to fit has no length: {failure}") from failure

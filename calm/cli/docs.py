@@ -33,7 +33,7 @@ def docs(
     Parameters
     ----------
     page
-        Its name, with its book or without: batch, how-to/batch, how-to.
+        Its name, with its book or without: batch, reference/batch, how-to.
     open_
         Open the page in a browser.
     """

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from calm.files.current_parts import part_in_texts
 from calm.files.current_words import another_way, is_magnetic, not_a_current, other_frame, way_of
 from calm.units import QuantityError, unit_factor
 
@@ -91,7 +92,7 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
     UnreadableError
         There is none, there are several, or what is there is no current to the east and north.
     """
-    if (reason := other_frame(dataset.attrs)) is not None:
+    if (reason := other_frame(dataset.attrs) or part_in_texts(dataset.attrs)) is not None:
         raise UnreadableError(f"its current {reason}")
     notes: list[str] = []
     east, north, up = (_find(dataset, one, regular, notes) for one in (_EAST, _NORTH, _UP))

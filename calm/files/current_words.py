@@ -11,6 +11,8 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from calm.files.current_parts import part_in_texts, part_in_words
+
 if TYPE_CHECKING:
     import xarray as xr
 
@@ -46,7 +48,7 @@ _OTHER_QUANTITIES = (
     r"\b(transport|flux|shear|stress|acceleration|amplitude|phase|gradient|vorticity)\b",
     r"\b(ship|vessel|platform|bottom ?track|gps|drifter|buoy|glider)s? (velocity|speed|motion)\b",
     r"\bvelocity of (the |a )?(\w+ )?(ship|vessel|platform|drifter|buoy|glider)\b",
-    r"\b(residual|detided|de tided|subtidal|difference|minus|bias)\b",
+    r"\b(residual|difference|minus|bias)\b",
 )
 _NOT_A_CURRENT = [re.compile(text) for text in _OTHER_DIRECTIONS + _OTHER_QUANTITIES]
 
@@ -54,7 +56,9 @@ _SAID_IN_COMMENTS = re.compile(
     r"\brelative to (the )?(instrument|ship|vessel|vehicle|platform|glider|float|drifter)\b|"
     r"\brotated\b(?!.*\b(earth|true|geograph\w*|enu|east|declination|magnetic|variation)\b)"
 )
-_ROTATION = re.compile(r"(?i)(coord\w*_)?rotation(_angle)?(_deg(rees)?)?")
+_ROTATION = re.compile(
+    r"(?i)((coord\w*|grid|frame|axis|axes|velocity)_)?rotation(_angle)?(_deg(rees)?)?"
+)
 _SPREADS = re.compile(r"\b(maximum|minimum|range|standard_deviation|variance|sum)\b")
 _OPPOSED = {
     "east": (r"\b(north|south|west)wards?\b|\b(meridional|v)\b", r"\beast|\b(zonal|u)\b"),
@@ -94,7 +98,7 @@ def not_a_current(variable: xr.DataArray) -> str | None:
     Only what it says of itself counts: its long name, standard name, frame and cell methods.
     """
     own = words_of(variable, "long_name", "standard_name")
-    if any(pattern.search(own) for pattern in _NOT_A_CURRENT):
+    if part_in_words(own) or any(pattern.search(own) for pattern in _NOT_A_CURRENT):
         said = variable.attrs.get("long_name") or variable.attrs.get("standard_name")
         return f"is `{said}`, which is no current to the east and north"
     methods = str(variable.attrs.get("cell_methods", ""))
@@ -104,7 +108,9 @@ def not_a_current(variable: xr.DataArray) -> str | None:
         said = words_of(variable, name)
         if _SAID_IN_COMMENTS.search(said):
             return f"is in other coordinates by its {name}: {said[:80]}"
-    return other_frame(variable.attrs)
+    if variable.encoding.get("scale_factor") == 0:
+        return "has `scale_factor: 0`, which makes every value the same"
+    return other_frame(variable.attrs) or part_in_texts(variable.attrs)
 
 
 def another_way(variable: xr.DataArray, way: str) -> str | None:

@@ -179,6 +179,24 @@ RULES = {
         "Reported, not judged",
         "it is reported, and has no limit",
     ),
+    "as-deployed": RuleText(
+        "As deployed",
+        "depth",
+        "how far the depth and the lengths of `deployed` bring the top of the upright line from "
+        "where it was designed to be",
+        "the error of a sounding, 1 m and 2.3 % of the depth: a warning",
+        "IHO S-44, order 2: what a sounding may be off by, 95 %",
+        _ONCE,
+    ),
+    "figures": RuleText(
+        "Figures of components",
+        "",
+        "figures of pieces and clamps that nothing of their size and material can have: lift, "
+        "mass, stiffness, strength, depth rating; a cable without drag",
+        "a warning",
+        "The rules that `calm catalog check` judges a catalogue by",
+        _ONCE,
+    ),
     "release-present": RuleText(
         "Release",
         "",

@@ -40,6 +40,9 @@ _FRAME = 1.5  # inches above and below the axes, for titles and ticks
 _SHARE_OF_LINE = 0.55
 # Distances are drawn to at least this share of the height, lest a still line look tortured.
 _LEAST_SPAN = 0.1
+# Speeds that differ by less, as a share of the greatest, are drawn as one line: they would cover
+# each other.
+_SAME_SPEED = 0.01
 
 
 def texts(result: Result | TowResult, extent: float) -> list[tuple[str, Named]]:
@@ -119,7 +122,7 @@ def write_names(
 
 
 def draw_flow(axes: Axes, depth: Floats, u: Floats, v: Floats, plane: Floats) -> None:
-    """Speed by depth, and the part of it in a vertical plane.
+    """Speed by depth, and the part of it in a vertical plane where that is another.
 
     Parameters
     ----------
@@ -127,9 +130,10 @@ def draw_flow(axes: Axes, depth: Floats, u: Floats, v: Floats, plane: Floats) ->
     plane : (2,) direction of the plane, east and north
     """
     axes.axvline(0.0, color="grey", linewidth=0.5)
-    axes.plot(np.hypot(u, v), depth, color=WATER_COLOUR, label="speed")
-    in_plane = along(u, v, plane)
-    axes.plot(in_plane, depth, "--", color=WATER_COLOUR, linewidth=1, label="in the plane")
+    speed, in_plane = np.hypot(u, v), along(u, v, plane)
+    axes.plot(speed, depth, color=WATER_COLOUR, label="speed")
+    if np.any(np.abs(speed - in_plane) > _SAME_SPEED * speed.max()):
+        axes.plot(in_plane, depth, "--", color=WATER_COLOUR, linewidth=1, label="in the plane")
     axes.tick_params(labelleft=False)
     axes.legend(**LEGEND)
 

@@ -97,15 +97,24 @@ def _parts(update: ChopsUpdate) -> Iterator[tuple[int, int, list[Cell]]]:
 
 def _cells(segments: Iterable[Segment]) -> Iterator[Cell]:
     for text, style, _ in segments:
+        ground = _ground(style)
         if text.isascii():
-            yield from ((sign, style) for sign in text)
+            yield from ((sign, ground if sign == " " else style) for sign in text)
             continue
         for sign in text:
             width = cell_len(sign)
             if width:
-                yield sign, style
+                yield sign, ground if sign == " " else style
             if width == 2:
                 yield "", style
+
+
+@lru_cache(1024)
+def _ground(style: Style | None) -> Style | None:
+    """What is seen of a style where nothing is written: two blanks that look alike are alike."""
+    if style is None or style.underline or style.overline or style.strike or style.reverse:
+        return style
+    return Style(bgcolor=style.bgcolor)
 
 
 def _changed(shown: list[Cell], wanted: list[Cell]) -> Iterator[tuple[int, int]]:
@@ -136,20 +145,25 @@ def _around(begin: int, end: int, shown: list[Cell], wanted: list[Cell]) -> tupl
 
 
 class _Pen:
-    """Writes signs; a style is told to the terminal once, where it changes."""
+    """Writes signs; a style is told to the terminal once, where it changes to the eye."""
 
     def __init__(self, console: Console) -> None:
         self._system = console._color_system
         self._held = ""
+        self._ground: Style | None = None
 
     def written(self, cells: list[Cell]) -> str:
         """What is sent for cells beside each other."""
         parts = []
         for sign, style in cells:
+            if sign == " " and self._held and style is not None and style == self._ground:
+                parts.append(sign)
+                continue
             wanted = _style_codes(style, self._system)
             if wanted != self._held:
                 parts.append(f"\x1b[0;{wanted}m" if wanted else _PLAIN)
                 self._held = wanted
+            self._ground = _ground(style)
             parts.append(sign)
         return "".join(parts)
 

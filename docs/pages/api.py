@@ -2,7 +2,7 @@
 
 HEAD = """# Python API
 
-What a program imports, from the docstrings. [CALM in Python](../how-to/python.md) shows how it goes
+What a program imports, from the docstrings. [CALM in Python](python.md) shows how it goes
 together. Quantities are SI, angles in degrees; arrays are NumPy's, their shapes in brackets.
 """
 _SECTIONS = {

@@ -1,5 +1,6 @@
 """The shipped catalogue as pages to browse: a table and cards for each family."""
 
+import re
 from collections.abc import Iterator
 
 from calm.assemble.datasheet import datasheet
@@ -61,5 +62,5 @@ def _row(catalogue: Catalogue, identifier: str, definition: Component | Assembly
         "" if sheet is None else QUANTITIES["net_buoyancy"].figure(sheet.net_buoyancy) + metre,
         "" if load is None else QUANTITIES["breaking_load"].figure(load),
         "" if area is None else QUANTITIES["cd_area"].figure(area) + metre,
-        plain((definition.source or "").split(",")[0]),
+        plain(re.split(r",(?![^(]*\))", definition.source or "")[0]),
     ]

@@ -24,8 +24,11 @@ from pages import pictures
 HEAD = """# Gallery
 
 The moorings and tows of the folder `lines/`, each with its file, its shape, its schematic, what
-CALM says of it, and one thing to try. Everything on these pages is made from the files.
+CALM says of it, and one thing to try. Everything on these pages is made from the files. In these
+small pictures distances are drawn larger than depths.
 
+| | |
+| --- | --- |
 """
 
 
@@ -149,9 +152,10 @@ def pages() -> dict[str, str | bytes]:
         made[f"{file.stem}.md"] = _page(file, solved.name, made)
         made[f"{file.stem}.svg"] = image(draw(solved), ".svg")
         made[f"{file.stem}-schematic.svg"] = schematic_svg(solved.file, solved).encode()
-        first = _comment(file).partition(". ")[0].partition(": ")
-        told = (first[2] or first[0]).rstrip(".")
-        rows.append(f"- [{solved.name}]({file.stem}.md): {told[:1].lower()}{told[1:]}")
+        made[f"{file.stem}-small.svg"] = image(pictures.thumbnail(solved), ".svg")
+        link = f"{file.stem}.md"
+        small = f"[![{solved.name}]({file.stem}-small.svg)]({link})"
+        rows.append(f"| {small} | **[{solved.name}]({link})**: {solved.file.description} |")
         entries.append(file.stem)
     listing, contents = "\n".join(rows), "\n".join(entries)
     made["index.md"] = f"{HEAD}{listing}\n\n```{{toctree}}\n:hidden:\n\n{contents}\n```\n"
@@ -191,13 +195,14 @@ def _page(file: Path, name: str, made: dict[str, str | bytes]) -> str:
 
 
 def _comment(file: Path) -> str:
-    """The comment at the head of a file, which says what it shows."""
+    """The comment at the head of a file, which says what it shows; what is set in, as a listing."""
     lines = []
     for line in file.read_text(encoding="utf-8").splitlines():
         if not line.startswith("#"):
             break
         lines.append(line[1:].removeprefix(" "))
-    return "\n".join(lines).strip()
+    text = "\n".join(lines).strip() + "\n"
+    return re.sub(r"\n*((?:\n {2,}.+)+)\n*", r"\n\n```text\1\n```\n\n", text).strip()
 
 
 def _printed(command: str) -> str:

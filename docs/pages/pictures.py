@@ -12,7 +12,9 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D
 from numpy.typing import NDArray
 
 import calm
+from calm.report.drawing import along, mark_parts
 from calm.report.labels import named_parts
+from calm.report.plot_tow import levels_of
 from calm.shipped import shipped_folder
 
 Floats = NDArray[np.float64]
@@ -73,6 +75,32 @@ def _current(axes: Axes3D, level: Floats, u: Floats, v: Floats) -> None:
         color=WATER, linewidth=1.6, arrow_length_ratio=0.35,
     )  # fmt: skip
     axes.text(mast[0][0] - 14, mast[1][0], -25.0, "current", color=WATER, fontsize=10)
+
+
+def thumbnail(result: calm.Result | calm.TowResult) -> Figure:
+    """A line without words, in the plane of its excursion; its width fills the picture."""
+    shape, environment = result.shape, result.file.environment
+    far = int(np.argmax(np.hypot(shape.x, shape.y)))
+    bearing = np.arctan2(shape.y[far], shape.x[far])
+    plane = np.array([np.cos(bearing), np.sin(bearing)])
+    if isinstance(result, calm.TowResult):
+        top, bottom = levels_of(result)
+    else:
+        top, bottom = -0.08 * environment.depth, 1.08 * environment.depth
+    figure = Figure(figsize=(1.7, 1.7), facecolor="white")
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    if environment.fluid == "water":
+        axes.axhspan(0.0, bottom, color=WATER, alpha=0.15, linewidth=0)
+    if environment.depth is not None:
+        axes.axhspan(environment.depth, max(bottom, environment.depth), color=SEABED)
+    offset = along(shape.x, shape.y, plane)
+    axes.plot(offset, shape.depth, color=LINE, linewidth=1.5)
+    mark_parts(axes, result, lambda part: (float(along(part.x, part.y, plane)), part.depth))
+    reach = max(float(np.ptp(offset)), 0.1 * (bottom - top))
+    middle = (float(offset.min()) + float(offset.max())) / 2
+    axes.set(xlim=(middle - 0.7 * reach, middle + 0.7 * reach), ylim=(bottom, top))
+    axes.set_axis_off()
+    return figure
 
 
 def veering_plan() -> Figure:

@@ -21,8 +21,8 @@ What `calm run`, `calm tow`, `calm batch` and `calm motion` write, with units: S
 east and y north of the anchor, or of the tow point; depths are positive downwards. What is unknown
 is `null` in JSON, empty in CSV, NaN in NetCDF. The JSON of other commands is on their pages:
 [`calm check`](check.md#json), [`calm batch`](batch-statistics.md),
-[`calm deck`](../how-to/deck.md), [`calm locate`](../how-to/locate.md),
-[`calm diff`](../how-to/diff.md).
+[`calm deck`](deck.md), [`calm locate`](locate.md),
+[`calm diff`](diff.md).
 """
 _MOORED, _TOWED = "fit-top-depth", "depressor-fit-depth"
 _MEANINGS = {

@@ -12,7 +12,7 @@ import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 README = ROOT / "README.md"
-TOW = ROOT / "docs" / "how-to" / "tow.md"
+TOW = ROOT / "docs" / "reference" / "tow.md"
 PAGES = [README, *sorted((ROOT / "docs").rglob("*.md"))]
 
 
@@ -120,7 +120,7 @@ def test_a_page_shows_what_the_command_prints(page: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "page", [README, ROOT / "docs" / "how-to" / "python.md", TOW], ids=lambda page: page.name
+    "page", [README, ROOT / "docs" / "reference" / "python.md", TOW], ids=lambda page: page.name
 )
 @pytest.mark.thorough
 def test_python_examples_run(page: Path, tmp_path: Path) -> None:

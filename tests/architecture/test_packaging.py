@@ -3,6 +3,7 @@
 import importlib.metadata
 import os
 import re
+import runpy
 import subprocess
 import sys
 import tarfile
@@ -103,6 +104,43 @@ def test_the_wheel_finds_its_own_catalogue_and_lines(wheel: Path, tmp_path: Path
     )
     assert finished.returncode == 0, finished.stderr
     assert str(site) in finished.stderr
+
+
+def index_page(*words: str | None) -> str:
+    return runpy.run_path(str(ROOT / "hatch_build.py"))["index_page"](*words)
+
+
+def description(wheel: Path) -> str:
+    """What a package index shows of a wheel."""
+    with zipfile.ZipFile(wheel) as archive:
+        (name,) = [name for name in archive.namelist() if name.endswith(".dist-info/METADATA")]
+        return archive.read(name).decode("utf-8").partition("\n\n")[2]
+
+
+def test_an_index_shows_the_pictures_of_the_readme_at_the_tag_of_the_version() -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    page = index_page(readme, "https://forge.example/calm/", "1.2.3")
+    places = {
+        view: re.findall(rf"https://forge\.example/calm/{view}/v1\.2\.3/([^)#\"\s]+)", page)
+        for view in ("raw", "blob")
+    }
+    assert len(places["raw"]) == readme.count("![") + readme.count("<img ") >= 6
+    assert all((ROOT / place).is_file() for found in places.values() for place in found)
+    assert not re.search(r'(\]\(|src=")(?!https?:)', page)
+    # nothing else is changed
+    assert re.sub(r"https://forge\.example/calm/(raw|blob)/v1\.2\.3/", "", page) == readme
+
+
+def test_an_index_is_given_no_picture_or_link_that_it_cannot_show(wheel: Path) -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    page, homeless = description(wheel), index_page(readme, None, "")
+    source = project.get("urls", {}).get("Source")
+    assert page.rstrip() == index_page(readme, source, project["version"]).rstrip()
+    for text in (page, homeless):
+        assert not re.search(r'(\]\(|src=")(?!https?:)', text)
+        assert "find why it leans" in text
+    assert not re.search(r"<img|!\[", homeless)
 
 
 def test_there_is_one_version(capsys: pytest.CaptureFixture[str]) -> None:

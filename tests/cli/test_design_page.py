@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGE = ROOT / "docs" / "how-to" / "design.md"
+PAGE = ROOT / "docs" / "reference" / "design.md"
 SHOWN = re.findall(
     r"^<!-- printed by: calm ([^\n]+) -->\n```text\n(.*?)^```$",
     PAGE.read_text(encoding="utf-8"),

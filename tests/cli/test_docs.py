@@ -42,9 +42,9 @@ def opened(monkeypatch):
     ("words", "page"),
     [
         ([], "index.md"),
-        (["batch"], "how-to/batch.md"),
-        (["how-to/batch"], "how-to/batch.md"),
-        (["how-to/batch.md"], "how-to/batch.md"),
+        (["batch"], "reference/batch.md"),
+        (["reference/batch"], "reference/batch.md"),
+        (["reference/batch.md"], "reference/batch.md"),
         (["how-to"], "how-to/index.md"),
     ],
 )

@@ -16,8 +16,9 @@ from calm.tui.painted import Painted
 
 COLUMNS, ROWS = 40, 6
 HALF = COLUMNS // 2  # where one widget ends and the next begins
-STYLES = [Style.parse(each) for each in ("none", "bold", "red on blue", "dim", "reverse")]
-SIGNS = "abc …│█深±"
+LOOKS = "none", "bold", "red", "red on blue", "green on blue", "dim", "reverse", "underline"
+STYLES = [Style.parse(each) for each in LOOKS]
+SIGNS = "abc  …│█深±"
 
 
 @pytest.fixture
@@ -46,7 +47,18 @@ def whole(rows):
 def shown(texts):
     screen = pyte.Screen(COLUMNS, ROWS)
     pyte.Stream(screen).feed("".join(texts))
-    return screen.display, [[screen.buffer[y][x].fg for x in range(COLUMNS)] for y in range(ROWS)]
+    return [[seen(screen.buffer[y][x]) for x in range(COLUMNS)] for y in range(ROWS)]
+
+
+def seen(cell):
+    """What the eye has of a cell: of a blank neither colour nor weight."""
+    marks = cell.bg, cell.reverse, cell.underscore
+    return (
+        cell.data,
+        *marks,
+        "" if cell.data == " " and not any(marks[1:]) else cell.fg,
+        cell.bold and cell.data != " ",
+    )
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -68,6 +80,16 @@ def test_the_terminal_shows_what_all_of_the_screen_would(console, seed):
         sent.append(painted.update(update).render_segments(console))
         every = Painted().update(whole(rows)).render_segments(console)
         assert shown(sent) == shown([every])
+
+
+def test_blanks_that_look_alike_are_not_sent_again(console):
+    painted, text = Painted(), "a" + 20 * " " + "b"
+    strips = [
+        Strip([Segment(text, Style.parse(look))]) for look in ("red on blue", "green on blue")
+    ]
+    painted.update(whole(strips[:1])).render_segments(console)
+    sent = painted.update(whole(strips[1:])).render_segments(console)
+    assert sent.count(" ") == 0 and sent.count("a") == sent.count("b") == 1
 
 
 def test_nothing_is_sent_twice_unless_it_is_forgotten(console):

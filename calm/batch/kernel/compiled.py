@@ -39,7 +39,7 @@ def called(function: Function, singly: bool) -> Any:
 def entry(function: Function) -> Any:
     """A function that is called from outside: compiled, and kept for the next process."""
     options = {"nogil": True, **OPTIONS}
-    return compiled.kept(numba.njit, _clone(function, False), cache_folder(False), **options)
+    return compiled.kept(numba.njit, _clone(function, False), cache_folder(), **options)
 
 
 def by_address(function: Function, *arguments: Any, singly: bool = False) -> Any:
@@ -58,18 +58,23 @@ def _by_address(function: Function, signature: Any, singly: bool) -> Any:
     def compiler(clone: Function, **options: Any) -> Any:
         return numba.cfunc(signature, **options)(clone)
 
-    return compiled.kept(compiler, _clone(function, singly), cache_folder(singly), **OPTIONS)
+    return compiled.kept(compiler, _clone(function, singly), cache_folder(), **OPTIONS)
 
 
 def _clone(function: Function, singly: bool) -> Function:
-    """The function with what it calls, and without what a mooring has no use for."""
+    """The function with what it calls, and without what a mooring has no use for.
+
+    With the laws that each lane takes by itself it has another name. Kept code is linked by name:
+    of two functions of one name, kept by two processes, a third would use the first for both.
+    """
     clone = compiled.clone(function, partial(called, singly=singly))
     if "SINGLY" in clone.__globals__:
         clone.__globals__["SINGLY"] = singly
+    if singly:
+        clone.__qualname__ += "_singly"
     return clone
 
 
-def cache_folder(singly: bool = False) -> Path | None:
+def cache_folder() -> Path | None:
     """Where the compiled kernel is kept: see `calm.physics.compiled`."""
-    name = "kernel-singly" if singly else "kernel"
-    return compiled.cache_folder(name, Path(__file__).parent)
+    return compiled.cache_folder("kernel", Path(__file__).parent)

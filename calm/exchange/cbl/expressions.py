@@ -7,8 +7,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
+from calm.errors import InputError, Problem
 from calm.exchange.cbl.source import Line
 from calm.exchange.cbl.tokens import Token, tokens_of
+from calm.exchange.design import one_line
 
 Formula: TypeAlias = Callable[[Mapping[str, float]], float]
 """A value, from those of the names it depends on."""
@@ -88,6 +90,18 @@ class Words:
             raise self.next.refuse(f"`{text}` is missing before `{self.next.text}`")
 
 
+class UnknownNameError(InputError):
+    """A formula holds names that stand for nothing; `names` has them."""
+
+    def __init__(self, token: Token, names: Sequence[str]) -> None:
+        self.names = tuple(names)
+        said = (
+            "`{0}` is no number and no name that counts here; is it a macro? Give it with -D {0}=…"
+        )
+        place = token.path, token.line, token.column
+        super().__init__([Problem(*place, one_line(said.format(name))) for name in names])
+
+
 @dataclass
 class Expression:
     """A formula, the names it depends on, and the word it begins with."""
@@ -101,16 +115,14 @@ class Expression:
 
         Raises
         ------
+        UnknownNameError
+            It depends on something else.
         InputError
-            It depends on something else, or has no value.
+            It has no value.
         """
         unknown = sorted(self.names - values.keys())
         if unknown:
-            message = (
-                f"`{unknown[0]}` is no number and no name that counts here; is it a macro? "
-                f"Give it with -D {unknown[0]}=…"
-            )
-            raise self.token.refuse(message)
+            raise UnknownNameError(self.token, unknown)
         try:
             value = self.formula(values)
         except (ArithmeticError, ValueError, TypeError, RecursionError):

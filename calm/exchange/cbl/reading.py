@@ -7,7 +7,10 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
+from calm.errors import InputError
+from calm.errors import Problem as Mistake
 from calm.exchange.cbl.components import Makers
+from calm.exchange.cbl.expressions import UnknownNameError
 from calm.exchange.cbl.grammar import read_problem
 from calm.exchange.cbl.problem import Problem, Segment, Terminal
 from calm.exchange.cbl.segments import defined, laid
@@ -51,8 +54,30 @@ def read_cbl(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> 
     Raises
     ------
     InputError
-        The file makes no sense, or holds what CALM cannot represent.
+        The file makes no sense, or holds what CALM cannot represent; of names that stand for
+        nothing, all that the reading needs.
     """
+    given, missing = dict(defines), list[Mistake]()
+    while True:
+        try:
+            design = _read(path, given, allow_include=allow_include)
+        except UnknownNameError as error:
+            missing += error.problems
+            if any(name in given or not name.isidentifier() for name in error.names):
+                break
+            given |= dict.fromkeys(error.names, "1")  # to see which others are missing
+        except InputError:
+            if not missing:
+                raise
+            break
+        else:
+            if not missing:
+                return design
+            break
+    raise InputError(missing)
+
+
+def _read(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> Design:
     problem = read_problem(path, defines, allow_include=allow_include)
     kind = _kind(problem)
     ends = [each for each in problem.layout if isinstance(each, Terminal)]

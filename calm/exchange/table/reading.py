@@ -141,7 +141,11 @@ def _from_the_top(rows: list[Row], path: Path, design: Design) -> list[Row]:
         return rows
     lifts = [row.figures.get("buoyancy", 0.0) for row in (pieces[0], pieces[-1])]
     if max(lifts) <= 0.0:
-        raise refused(path, "no end of the list is a float, and none is an anchor")
+        raise refused(
+            path,
+            "no end of the list is a float, and none is an anchor; a list of what is towed is not "
+            "read, since it has neither ship nor speed",
+        )
     if lifts[0] < lifts[1]:
         design.notes.append("The list leads from the lower end up: here it is turned round.")
         rows = _turned(rows)

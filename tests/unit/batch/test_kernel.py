@@ -14,6 +14,7 @@ from calm.batch.kernel.closing import place_free_end
 from calm.batch.kernel.march import march as march_lanes
 from calm.batch.kernel.plan import Plan, plan_of
 from calm.batch.kernel.profile import lay_profile, read_profile
+from calm.batch.kernel.seabed import pass_to_seabed
 from calm.batch.kernel.solve import desk_for
 from calm.case import Mooring, load
 from calm.physics import compiled as physics_compiled
@@ -89,6 +90,15 @@ def test_a_folder_that_cannot_be_written_is_done_without(
     doubled = compiled.entry(lambda x: 2.0 * x)
     physics_compiled.cache_folder.cache_clear()
     assert doubled(1.5) == 3.0
+
+
+def test_kept_code_of_two_kinds_is_never_linked_to_each_other() -> None:
+    # kept by two processes, functions of one name, flags and types are one to the linker
+    def named(singly: bool) -> str:
+        function: Any = compiled.called(pass_to_seabed, singly=singly).py_func
+        return f"{function.__module__}.{function.__qualname__}"
+
+    assert named(True) != named(False)
 
 
 def test_compiled_code_is_kept_where_the_user_says(

@@ -61,6 +61,18 @@ def test_every_law_is_solved_in_the_lanes(
     assert_as_run(found, mooring, depth, u, v, w)
 
 
+def test_lanes_of_two_kinds_in_one_process_keep_apart(tmp_path: Path) -> None:
+    found = []
+    for friction in ("berteaux", "hoerner"):  # the first is compiled for all lanes at once
+        text = MOORING.replace("SOLVER", f"friction: {friction}").replace("STRETCH", STIFF)
+        mooring = made_mooring(tmp_path, text.replace("LENGTH", "90"))
+        depth, u, v, w = drawn(3, CHARACTERS, mooring.water.depth)
+        found.append(solve_profiles(mooring, u, v, depth, w))
+    for profiles in found:  # those that lie on the seabed do so in both
+        assert not profiles.alone.any()
+        assert np.flatnonzero(profiles.anchor_vertical == 0.0).tolist() == [1, 3]
+
+
 def test_a_case_without_a_result_has_no_number(tmp_path: Path) -> None:
     text = MOORING.replace("SOLVER", "friction: berteaux").replace("STRETCH", STIFF)
     mooring = made_mooring(tmp_path, text.replace("LENGTH", "90"))

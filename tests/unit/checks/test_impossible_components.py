@@ -49,6 +49,8 @@ def test_good_components_pass(good):
         (GOOD_ROPE, {"weight": None, "buoyancy": "1 N/m"}, "lifts 1 N/m"),
         (GOOD_ROPE, {"stiffness": "18 MN"}, "stiffness"),
         (GOOD_ROPE, {"breaking_load": "320 kN"}, "no cable of its diameter"),
+        (GOOD_ROPE, {"cn": 0.0}, "no drag across it"),
+        (GOOD_CHAIN, {"cn": 0.0}, "no drag across it"),
         (GOOD_CHAIN, {"mass": "0.8 kg/m"}, "steel bars"),
         (GOOD_CHAIN, {"mass": "3.2 kg/m"}, "steel bars"),
     ],

@@ -57,6 +57,8 @@ def test_a_plain_mooring_is_solved_as_given_at_rest_and_with_strumming_cables(
 @pytest.mark.parametrize(("current", "more", "warned"), [
     ("  current: {speed: 0.6 m/s, toward: 90 deg}", "", False),
     ("  current: {speed: 0 m/s, toward: 90 deg}", "", True),
+    ("  current: {speed: 9 mm/s, toward: 90 deg}", "", True),
+    ("  current: {speed: 10.1 mm/s, toward: 90 deg}", "", False),
     ("", "", True),
     ("", "environments: {storm: {current: {speed: 0.6 m/s, toward: 90 deg}}}\n", False),
 ])  # fmt: skip
@@ -93,6 +95,59 @@ def test_the_tide_moves_the_surface_and_the_current_with_it(tmp_path: Path) -> N
         expected = load(path).solve()
         assert isinstance(expected, Result)
         assert result.top == expected.top
+
+
+DEPLOYED = """deployed:
+  depth: {depth} m
+  items: [{{label: wire, length: {length} m}}]
+"""
+
+
+def deployed(folder: Path, depth: float, length: float) -> Mooring:
+    one = mooring(folder, wire=WIRE.replace("jacketed-8, ", "jacketed-8, label: wire, "))
+    path = folder / "mooring.yaml"
+    path.write_text(path.read_text() + DEPLOYED.format(depth=depth, length=length))
+    assert one.file.deployed is None
+    read = load(path)
+    assert isinstance(read, Mooring)
+    return read
+
+
+def test_a_mooring_is_judged_as_deployed_too(tmp_path: Path) -> None:
+    result = results(deployed(tmp_path, 104.0, 58.0))["as deployed"]
+    assert result is not None
+    path = tmp_path / "other.yaml"
+    text = LINE.format(environment="", wire=WIRE.replace("60 m", "58 m"))
+    path.write_text(text.replace("100 m", "104 m"), encoding="utf-8")
+    written = load(path).solve()
+    assert isinstance(written, Result)
+    assert result.top == written.top
+
+
+@pytest.mark.parametrize(("depth", "length", "moved", "state"), [
+    (102.5, 60.0, 2.5, State.PASS),  # 1 m and 2.3 % of 100 m, as squares: 2.508 m
+    (102.52, 60.0, 2.52, State.WARN),
+    (100.0, 63.0, 3.0, State.WARN), (103.0, 63.0, 0.0, State.PASS),
+    (200.0, 60.0, 100.0, State.WARN),
+])  # fmt: skip
+def test_a_top_that_is_not_where_it_was_designed_to_be(tmp_path, depth, length, moved, state):
+    [found] = [
+        one for one in check(deployed(tmp_path, depth, length)).findings
+        if one.rule == "as-deployed"
+    ]  # fmt: skip
+    assert (found.value, found.state) == (pytest.approx(moved), state)
+    assert found.limit == pytest.approx((1.0 + 2.3**2) ** 0.5)
+    assert ("deeper" if depth - 100 > length - 60 else "shallower") in found.message
+
+
+def test_what_was_deployed_deeper_than_it_stands_fails_the_check(tmp_path: Path) -> None:
+    found = check(deployed(tmp_path, 5000.0, 60.0)).all_findings()
+    rating = [one for one in found if one.rule == "depth-rating" and one.state is State.FAIL]
+    assert {one.situation for one in rating} == {"as deployed"}
+
+
+def test_a_deployment_that_changes_nothing_is_not_solved(tmp_path: Path) -> None:
+    assert "as deployed" not in results(deployed(tmp_path, 100.0, 60.0))
 
 
 def test_what_is_cut_to_fit_keeps_its_length_when_the_tide_comes(tmp_path: Path) -> None:

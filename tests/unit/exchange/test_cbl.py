@@ -326,6 +326,22 @@ def test_what_calm_does_not_do_is_refused_by_name(case, tmp_path):
     assert "m.cbl:" in told
 
 
+def test_all_macros_that_are_missing_are_named_at_once(tmp_path):
+    text = SMALL.replace("d = 0.01", "d = WIDE").replace("length = 50", "length = 2*LONG + MORE")
+    told = refusal(tmp_path, text.replace("wet = 2.0", "wet = HEAVY"))
+    for name in ("WIDE", "LONG", "MORE", "HEAVY"):
+        assert told.count(f"Give it with -D {name}=") == 1
+    assert len(told.splitlines()) == 4
+    given = {"WIDE": "0.01", "LONG": "20", "MORE": "10", "HEAVY": "2.0"}
+    made = imported(tmp_path, text.replace("wet = 2.0", "wet = HEAVY"), defines=given)
+    assert made.text == imported(tmp_path, SMALL).text
+
+
+def test_a_macro_without_a_number_ends_the_search_for_others(tmp_path):
+    told = refusal(tmp_path, SMALL.replace("d = 0.01", "d = ON"), defines={"ON": "OFF"})
+    assert told.count("Give it with -D OFF=") == 1
+
+
 def test_macros_come_from_the_file_and_from_outside(tmp_path):
     text = "#define TWICE(x) (2*(x))\n#ifndef LENGTH\n#define LENGTH 30\n#endif\n" + SMALL.replace(
         "length = 50", "length = TWICE(LENGTH) - 10"

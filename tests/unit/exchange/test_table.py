@@ -334,6 +334,9 @@ REFUSED = {
     "nothing floats": (
         "Item,Length,Wet weight (kg)\nbar,1,3\nrod,1,3\n", "no end of the list is a float"
     ),
+    "a tow": (
+        "Item,kind,Length,Wet weight (kg)\nwire,cable,100,30\nfish,body,1,80\n", "towed is not read"
+    ),
     "one piece": ("Item,Length,Wet weight (kg)\nAnchor,1,300\n", "has 1 pieces"),
     "no table": ("a,b,c\nd,e,f\ng,h,i\n", "no headings"),
     "more than a line has": (ENGLISH.replace(",1.3,2", ",1.3,990" ).replace(

@@ -67,6 +67,51 @@ def test_other_frames_and_quantities_in_words_of_many_kinds_are_refused(tmp_path
     assert said in refusal(currents(**words), tmp_path)
 
 
+@pytest.mark.parametrize("said", [
+    "tidal constituents only", "predicted tides", "detided by a filter", "climatological mean",
+    "monthly climatology 1993 to 2016", "low-pass filtered", "40 h Butterworth filter",
+    "the tides have been removed", "subtidal velocity", "mean over 10 years",
+])  # fmt: skip
+def test_a_part_of_the_current_is_refused_wherever_it_is_said(tmp_path, said):
+    whole = "is not the whole current by its"
+    assert "which is no current" in refusal(currents(long_name=said), tmp_path)
+    assert f"`u` {whole} comment" in refusal(currents(comment=said), tmp_path)
+    for name in ("title", "summary", "comment", "processing"):
+        refused = refusal(currents().assign_attrs({name: f"Moored. {said}"}), tmp_path)
+        assert f"its current {whole} {name}" in refused
+
+
+@pytest.mark.parametrize(("words", "said"), [
+    ({"long_name": "tidal velocity"}, "no current"),
+    ({"long_name": "velocity perturbation"}, "no current"),
+    ({"long_name": "wave orbital velocity"}, "no current"),
+    ({"long_name": "velocity relative to 1000 dbar"}, "no current"),
+    ({"long_name": "analysis increment"}, "no current"),
+    ({"cell_methods": "time: mean within years time: mean over years"}, "a mean of many years"),
+    ({"scale_factor": 0.0}, "has `scale_factor: 0`, which makes every value the same"),
+    ({"grid_rotation": 30.0}, "is rotated"),
+    ({"rotation_angle_degrees": 30.0}, "is rotated"),
+])  # fmt: skip
+def test_what_the_attributes_of_a_variable_betray(tmp_path, words, said):
+    assert said in refusal(currents(**words), tmp_path)
+
+
+def test_a_rotation_of_the_whole_file_is_refused(tmp_path):
+    turned = currents().assign_attrs(rotation_angle_degrees=30.0)
+    assert "its current is rotated, `rotation_angle_degrees: 30.0`" in refusal(turned, tmp_path)
+
+
+@pytest.mark.parametrize("words", [
+    {"title": "Moored ADCP in a tidal channel"}, {"title": "Tidal current observations"},
+    {"title": "Residual pressure"}, {"title": "Wind and currents at a station"},
+    {"comment": "Pressure was low-pass filtered to remove the motion."}, {"filter": "none"},
+    {"comment": "Tides were not removed. Quality controlled against a monthly climatology."},
+    {"comment": "hourly averages; see also the low-pass product"},
+])  # fmt: skip
+def test_words_on_other_things_do_not_make_it_a_part(tmp_path, words):
+    assert read(currents().assign_attrs(words), tmp_path)[0].u == tuple(U)
+
+
 @pytest.mark.parametrize("words", [
     {"comment": "rotated by -1.9 degrees for magnetic declination to true north"},
     {"comment": "rotated from beam coordinates to earth coordinates"},

@@ -2,11 +2,14 @@ from itertools import combinations
 from pathlib import Path
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from calm.errors import UsageError
+from calm.report.drawing import draw_flow
 from calm.report.picture import check_format
 from calm.report.plot import draw, picture
 
@@ -51,6 +54,26 @@ def test_three_views_with_their_axes_named(result):
     assert upper <= 0.0
     assert lower >= 1100.0
     assert elevation.yaxis_inverted()
+
+
+@pytest.mark.parametrize(
+    ("turn", "names"),
+    [
+        (0.0, ["speed"]),
+        (5.0, ["speed"]),  # cos 5° = 0.996
+        (30.0, ["speed", "in the plane"]),
+        (180.0, ["speed", "in the plane"]),
+    ],
+)
+def test_no_two_lines_of_the_current_cover_each_other(turn, names):
+    depth, speed = np.linspace(0.0, 100.0, 50), np.linspace(1.0, 0.0, 50)
+    axes = Figure().subplots()
+    turn = np.radians(turn)
+    draw_flow(axes, depth, speed * np.cos(turn), speed * np.sin(turn), np.array([1.0, 0.0]))
+    _, *lines = axes.lines  # beyond the line of no current
+    assert [line.get_label() for line in lines] == names
+    assert lines[0].get_xdata() == pytest.approx(speed)
+    assert lines[-1].get_xdata() == pytest.approx(speed * (np.cos(turn) if lines[1:] else 1.0))
 
 
 def test_still_line_is_dashed_and_may_be_missing(make_result):
