@@ -26,10 +26,10 @@ label, its component, the length to cut, the depth and the height above the seab
 
 ## In the terminal
 
-`calm run FILE --schematic` draws it above the table, `calm tow FILE --schematic` too. Where there
-is no equilibrium it is drawn all the same. It is as wide as the terminal (80 columns where there is
-none) and needs no colour; where the output cannot carry the signs for cables, plain ones stand for
-them. `calm run lines/{drawn[0]}.yaml --schematic` begins:
+`calm run FILE --schematic` draws it above the table, and so does `calm tow FILE --schematic`. It is
+drawn even where there is no equilibrium. It is as wide as the terminal (80 columns where there is
+none) and needs no colour. Where the output cannot show the characters for cables, ASCII characters
+replace them. `calm run lines/{drawn[0]}.yaml --schematic` begins:
 
 ```text
 {text}
@@ -57,9 +57,9 @@ picture = schematic_svg(result.file, result)
 assert picture.startswith("<svg")
 ```
 
-The SVG is made for A4; a long line is drawn smaller to fit, and from some 60 rows on needs a longer
-sheet. Texts never overlap: what is too long for its column is cut, and a viewer shows the whole to
-who points at it. The same input gives the same bytes.
+The SVG is made for A4. A long line is drawn smaller to fit, and one with more than about 60 rows
+needs a longer sheet. Texts never overlap: a text that is too long for its column is cut, and a
+viewer shows all of it when you point at it. The same input gives the same bytes.
 
 A float at the surface rides on it; a tow hangs from its ship, or from its helicopter:
 
@@ -67,14 +67,14 @@ A float at the surface rides on it; a tow hangs from its ship, or from its helic
 
 ![{third}](../images/schematic-{drawn[2]}.svg)
 
-## What it tells
+## What it shows
 
 - **Depths** are those of the result: in the current, under load. Without a result,
-  `schematic_svg(file)`, they are those of the upright, unstretched line; unknown in a tow, and
+  `schematic_svg(file)`, they are those of the upright, unstretched line, and unknown in a tow and
   where a float is at the surface.
 - **Lengths** are cut lengths, before any load.
 - **Symbols** follow the kind and the role of a component, then its id, name, note and label:
-  *sediment trap*, *ADCP*, *upward*, *rope*, *wheels*. A rope is known by its `material`.
+  *sediment trap*, *ADCP*, *upward*, *rope*, *wheels*. A rope is recognised by its `material`.
 - **Runs** of equal balls or connectors are drawn together (`back-up glass 1–10`, `10 × 0.51` m),
   two releases in a row as a pair. Each has its own label in the picture's titles.
 """

@@ -36,23 +36,23 @@ HEAD = """# Verification
 
 Printed by `python docs/generate_verification.py`; do not edit.
 
-`calm verify` computes {verifying} figures that are known without CALM, and compares. It ends with
-exit code 1 when one is out of its tolerance. `calm verify cdms tension` takes the figures whose
-source or name has both words; `--json -` gives every digit. The cases live in
+`calm verify` computes {verifying} figures that are known without CALM, and compares them. The exit
+code is 1 when one is outside its tolerance. `calm verify cdms tension` selects the figures whose
+source or name contains both words; `--json -` gives every digit. The cases are in
 `calm/verification/`, one module for each source, and the tests run them.
 
-Not all agreement proves the same, so every figure says of which kind it is:
+Agreement does not always prove the same, so every figure has a kind:
 
-| kind | figures | what it is |
+| kind | figures | meaning |
 | --- | ---: | --- |
 {kinds}
 
 {copied} more figures are met **by construction**: points that a curve of CALM is drawn through,
-figures that a law is fitted to, figures of a library that CALM calls. Agreement guards against
-slips of copying. They are checked, and not counted.
+figures that a law is fitted to, figures of a library that CALM calls. Agreement there guards only
+against copying errors. They are checked, but not counted.
 
-`calm verify` is not all. The tests hold every mooring of `lines/` and hundreds of random moorings
-against an independent integration of the differential equations.
+Beside `calm verify`, the tests compare every mooring of `lines/` and hundreds of random moorings
+with an independent integration of the differential equations.
 
 {contents}
 
@@ -62,10 +62,10 @@ FIGURES_HEAD = """# Verification: every figure
 
 Printed by `python docs/generate_verification.py`; do not edit.
 
-What `calm verify` compares. [Verification](../explanation/verification.md) says what agreement
-proves, and who printed or derived the figures. Each table stands below its kind and the reason for
-its tolerance. What CALM gets, and the difference, are rounded a digit or two beyond the tolerance.
-C1 to C23 are names of cases in the code and the tests.
+The figures that `calm verify` compares. [Verification](../explanation/verification.md) says what
+agreement proves, and who printed or derived the figures. Above each table are its kind and the
+reason for its tolerance. The values of CALM and the differences are rounded a digit or two beyond
+the tolerance. C1 to C23 are names of cases in the code and the tests.
 """
 ORDER_TWO = {"color": "grey", "linestyle": "--", "linewidth": 1, "label": "second order"}
 STYLES = {"SSMOOR": ("s", "#cc3311"), "MD&D": ("D", "#e69f00"), "independent": ("^", "#009e73")}

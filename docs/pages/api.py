@@ -2,8 +2,9 @@
 
 HEAD = """# Python API
 
-What a program imports, from the docstrings. [CALM in Python](python.md) shows how it goes
-together. Quantities are SI, angles in degrees; arrays are NumPy's, their shapes in brackets.
+The names that a program imports, from their docstrings. [CALM in Python](python.md) shows how to
+use them. Quantities are in SI units, angles in degrees; arrays are NumPy's, with their shapes in
+brackets.
 """
 _SECTIONS = {
     "Read, solve, check": ["calm.load", "calm.check"],

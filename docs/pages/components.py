@@ -11,12 +11,12 @@ from calm.report.blocks import Pairs
 from calm.report.catalogue import to_card
 from pages.markdown import code, plain, table
 
-HEADS = ("id", "what it is", "net force in water", "breaking load", "Cd × area", "by")
+HEADS = ("id", "component", "net force in water", "breaking load", "Cd × area", "by")
 HEAD = """# Components
 
-The {number} components that come with CALM, by family, with every figure and where it comes from.
-[The catalogue](../catalogue.md) tells which of several to use. `calm catalog search WORDS` finds
-them in a terminal.
+The {number} components that come with CALM, by family, with every figure and its source.
+[The catalogue](../catalogue.md) says which of several similar entries to use. `calm catalog search
+WORDS` searches them in a terminal.
 
 | family | components |
 | --- | ---: |

@@ -12,9 +12,9 @@ Schema = Mapping[str, Any]
 
 HEAD = """# Every key
 
-What a mooring file may hold, from the schema by which CALM reads it (`calm schema`), with an
-example of each key. [The mooring file](mooring-file.md) tells how the keys go together. Keys in
-bold must be given.
+All keys of a mooring file, from the schema by which CALM reads it (`calm schema`), with an
+example of each. [The mooring file](mooring-file.md) explains how the keys work together. Keys in
+bold are required.
 
 """
 _QUANTITY = "text with its unit"
@@ -104,7 +104,7 @@ def _section(model: Schema, title: str) -> str:
         )
         for key, form in model["properties"].items()
     ]
-    return f"## {title}\n\n{table(('key', 'what it is', 'takes', 'example'), rows)}"
+    return f"## {title}\n\n{table(('key', 'meaning', 'value', 'example'), rows)}"
 
 
 def _takes(form: Schema) -> Iterator[str]:

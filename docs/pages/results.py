@@ -18,8 +18,8 @@ from pages.markdown import code, plain, table
 HEAD = """# Names in results
 
 What `calm run`, `calm tow`, `calm batch` and `calm motion` write, with units: SI and degrees. x is
-east and y north of the anchor, or of the tow point; depths are positive downwards. What is unknown
-is `null` in JSON, empty in CSV, NaN in NetCDF. The JSON of other commands is on their pages:
+east and y north of the anchor, or of the tow point; depths are positive downwards. Unknown figures
+are `null` in JSON, empty in CSV, NaN in NetCDF. The JSON of other commands is on their pages:
 [`calm check`](check.md#json), [`calm batch`](batch-statistics.md),
 [`calm deck`](deck.md), [`calm locate`](locate.md),
 [`calm diff`](diff.md).
@@ -29,25 +29,28 @@ _MEANINGS = {
     "calm": ("", "the version of CALM"),
     "name": ("", "the name of the mooring"),
     "type": ("", "`subsurface`, `surface` or `tow`"),
-    "status": ("", "`converged`, or [what else](messages.md#statuses)"),
-    "iterations": ("", "marches along the line until it closed"),
-    "segments": ("", "segments of the line as solved"),
-    "miss": ("m", "how far the line ends from its anchor"),
-    "closure": ("", "sum of the forces that is left, as a share of the greatest"),
+    "status": ("", "`converged`, or [another status](messages.md#statuses)"),
+    "iterations": ("", "number of marches along the line until it closed"),
+    "segments": ("", "number of segments of the line"),
+    "miss": ("m", "distance of the end of the line from its anchor"),
+    "closure": ("", "remaining sum of the forces, as a share of the greatest"),
     "accuracy.depth": ("m", "worst error expected of any depth or offset"),
     "accuracy.tension": ("N", "worst error expected of any tension"),
     "accuracy.anchor": ("N", "the same of the vertical and horizontal pull on the anchor"),
     "accuracy.required_weight": ("N", "the same of the weight that the anchor needs"),
     "strumming": ("", "`frequency`, `cn_min` and `cn_max`, where a law of strumming is chosen"),
     "strumming_band": ("", "`null` where a law of strumming is chosen"),
-    "strumming_band.factor": ("", "what the Cn of every cable is multiplied by"),
-    "strumming_band.status": ("", "of that line"),
-    "other_equilibrium": ("", "depth of the free end in the other one, and its line on the seabed"),
-    "index": ("", "of the piece in the file, from 0"),
+    "strumming_band.factor": ("", "factor on the Cn of every cable"),
+    "strumming_band.status": ("", "status of the line with that factor"),
+    "other_equilibrium": (
+        "",
+        "depth of the free end in the other one, and its length on the seabed",
+    ),
+    "index": ("", "number of the piece in the file, from 0"),
     "use": ("", "the component's id"),
-    "label": ("", "its name in this line"),
-    "reynolds": ("", "Reynolds number of the flow across it"),
-    "shape.depth": ("m", "of every node, free end first"),
+    "label": ("", "name of the piece in this line"),
+    "reynolds": ("", "Reynolds number of the flow across the piece"),
+    "shape.depth": ("m", "depth of every node, free end first"),
     "warnings": ("", "[sentences](messages.md#warnings)"),
     "toward": ("deg", "where the ship goes to, clockwise from north"),
     "body.tension": ("N", "pull on the towed body"),
@@ -68,21 +71,21 @@ def page() -> str:
     own = [key for key in _keys(towed.to_dict()) if key[0] not in of_mooring]
     parts += [
         "## JSON of a tow",
-        "The keys of a mooring, but in place of `top` and `anchor`:",
+        "The keys of a mooring, with these in place of `top` and `anchor`:",
         table(("key", "unit", "meaning"), (_json(key) for key, _ in own)),
         "## CSV",
         "A row for each piece and each clamped instrument:",
         table(("column", "meaning"), map(_column, HEADER)),
         "## NetCDF of one equilibrium",
         table(("variable", "dimensions", "unit", "meaning"), _netcdf(result_netcdf(moored))),
-        "A tow has in place of the figures of its ends:",
+        "A tow has these in place of the figures of its ends:",
         table(
             ("variable", "dimensions", "unit", "meaning"),
             [row for row in _netcdf(result_netcdf(towed)) if "ship" in row[3] or "tow" in row[3]],
         ),
         "## NetCDF and zarr of a batch",
         table(("variable", "dimensions", "unit", "meaning"), _batch()),
-        "## More of `calm motion`",
+        "## Further variables of `calm motion`",
         table(("variable", "dimensions", "unit", "meaning"), _motion()),
     ]
     return "\n\n".join(parts)
@@ -141,7 +144,7 @@ def _batch() -> Iterator[tuple[str, ...]]:
         code("status"),
         "time",
         "",
-        "0 where there is an equilibrium, else as `flag_meanings` says",
+        "0 where there is an equilibrium; `flag_meanings` explains the other values",
     )
 
 
