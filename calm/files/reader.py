@@ -116,7 +116,7 @@ def read_mooring(
         cut = [p.label for p in pieces if isinstance(p.component, Flexible)]
         check_deployed(keys.deployed, labels, cut, top, problems)
     if keys and keys.releases and labels is not None:
-        notices += _unknown_releases(keys.releases, pieces)
+        notices += _unknown_releases(keys.releases, pieces, keys.deployed)
     surroundings = None
     if chosen:
         position = keys.position if keys else None
@@ -155,12 +155,16 @@ def _labels(pieces: Sequence[Piece]) -> list[str]:
     ]
 
 
-def _unknown_releases(releases: Sequence[ReleaseKeys], pieces: Sequence[Piece]) -> list[str]:
-    """Of releases whose serial number nothing in the line has."""
+def _unknown_releases(
+    releases: Sequence[ReleaseKeys], pieces: Sequence[Piece], deployed: Deployed | None
+) -> list[str]:
+    """Of releases whose serial number nothing in the line has, as designed or as deployed."""
     parts: list[Piece | Clamp] = []
     for piece in pieces:
         parts += (piece, *piece.clamps)
-    serials = {part.serial for part in parts if part.component.role == "release"}
+    designed = {part.label: part.serial for part in parts if part.component.role == "release"}
+    items = () if deployed is None else deployed.items
+    serials = {*designed.values(), *(one.serial for one in items if one.label in designed)}
     return [
         f"`releases`: no release of the line has the serial number {release.serial}"
         for release in releases
