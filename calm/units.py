@@ -114,7 +114,9 @@ DIMENSIONS: Mapping[str, Dimension] = {
         "Pa",
         {"Pa": 1.0, "hPa": 1e2, "kPa": 1e3, "MPa": 1e6, "dbar": 1e4, "mbar": 1e2, "bar": 1e5},
     ),
-    "time": Dimension("a time", "s", {"s": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0}),
+    "time": Dimension(
+        "a time", "s", {"s": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0, "d": 86400.0}
+    ),
     "angle": Dimension("an angle", "deg", {"deg": 1.0, "rad": 180 / math.pi}),
 }
 """Every kind of quantity, by name.

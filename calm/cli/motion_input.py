@@ -41,16 +41,16 @@ def parse_gap(text: str) -> np.timedelta64:
     Raises
     ------
     UsageError
-        It is none.
+        It is none, or is not between 0 and three years.
     """
     import numpy as np
 
-    units = {"s": 1, "min": 60, "h": 3600, "d": 86400}
-    number, _, unit = text.strip().partition(" ")
+    from calm.units import QuantityError, parse_quantity
+
     try:
-        seconds = float(number) * units[unit.strip()]
-    except (ValueError, KeyError):
-        raise UsageError(f'--gap: `{text}` is not a time; write "2 h" (s, min, h, d)') from None
+        seconds = parse_quantity(text, "time", usual_unit="h")
+    except QuantityError as error:
+        raise UsageError(f"--gap: `{text}` {error}") from None
     if not 0.0 <= seconds < 1e8:
         raise UsageError(f"--gap: `{text}` is not between 0 and three years")
     return np.timedelta64(round(seconds * 1e9), "ns")

@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
+from calm.drop.band import Band
 from calm.drop.chain import Chain
 from calm.drop.loads import SLOWEST, Loads, Sea, loads_on
 from calm.physics.line import Floats, Integers
@@ -29,7 +30,6 @@ is left is of the order of its square."""
 SINKING = 1e-4
 """Depth into the seabed at which it bears what lies there, as a share of the water's depth."""
 
-_SIDE = 6  # diagonals of the band on either side
 _UNIT = np.eye(3)
 
 
@@ -208,8 +208,6 @@ class Mover:
         slowest: float,
     ) -> Floats:
         """What the nodes and tensions are too much by, one node and one tension after another."""
-        from scipy.linalg import solve_banded
-
         chain, place = self.chain, self.chain.elements.place
         velocity = (node - before) / step
         loads, axis = self.loads(node, velocity, tension, variation, slowest)
@@ -247,24 +245,9 @@ class Mover:
             force, by_velocity = self.anchor_force(node, velocity, slowest)
             residual[-1, :3] += force
             diagonal[-1] += by_velocity / step
-        band = np.zeros((2 * _SIDE + 1, 4 * bars + 3))
-        flat = band.reshape(-1)
-        places = self._places
-        flat[places[0]] = diagonal
-        flat[places[1]], flat[places[2]] = blocks[1], blocks[2]
-        flat[places[3]], flat[places[4]] = axis, -axis
-        flat[places[5]], flat[places[6]] = -axis, axis
-        band[_SIDE, 3::4] = -chain.length * growth
-        equations = residual.reshape(-1)[:-1]
-        for row in self._fixed:
-            columns = np.arange(max(row - _SIDE, 0), min(row + _SIDE + 1, 4 * bars + 3))
-            band[_SIDE + row - columns, columns] = 0.0
-            band[_SIDE, row], equations[row] = 1.0, 0.0
-        change: Floats = solve_banded(
-            (_SIDE, _SIDE), band, equations, overwrite_ab=True, overwrite_b=True,
-            check_finite=False,
-        )  # fmt: skip
-        return change
+        return self._band.solved(
+            residual, diagonal, (blocks[1], blocks[2]), axis, -chain.length * growth
+        )
 
     def _summed(self, per_element: Floats) -> Floats:
         """Over the loads of every bar."""
@@ -290,30 +273,9 @@ class Mover:
         return bearing
 
     @cached_property
-    def _fixed(self) -> list[int]:
-        """Rows of the unknowns that are known."""
-        last = 4 * len(self.chain.length)
-        upper = [] if self.tether is None else [0, 1]
-        return [*upper, last, last + 1, last + 2] if self.held else upper
-
-    @cached_property
-    def _places(self) -> tuple[Integers, ...]:
-        """Where the blocks of the matrix stand in the band, flat."""
+    def _band(self) -> Band:
+        """The matrix, and what of the unknowns is known: where the ends of the chain are held."""
         bars = len(self.chain.length)
-        width = 4 * bars + 3
-        node = 4 * np.arange(bars + 1)[:, np.newaxis] + np.arange(3)
-        pull = 4 * np.arange(bars)[:, np.newaxis] + 3
-
-        def at(row: Integers, column: Integers) -> Integers:
-            return (_SIDE + row - column) * width + column
-
-        above, below = node[:-1], node[1:]
-        return (
-            at(node[:, :, np.newaxis], node[:, np.newaxis]),
-            at(above[:, :, np.newaxis], below[:, np.newaxis]),
-            at(below[:, :, np.newaxis], above[:, np.newaxis]),
-            at(above, pull),
-            at(below, pull),
-            at(pull, above),
-            at(pull, below),
-        )
+        upper = () if self.tether is None else (0, 1)
+        lower = (4 * bars, 4 * bars + 1, 4 * bars + 2) if self.held else ()
+        return Band(bars, (*upper, *lower))

@@ -1,6 +1,9 @@
 """`calm motion` as a user runs it: a small mooring whose motion is known."""
 
 import json
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -184,7 +187,9 @@ def test_what_cannot_be_used_is_refused_and_nothing_is_written(calm, given, trut
         (("--hold-out", "uper"), "did you mean `upper`"),
         (("--hold-out", "upper,middle,lower"), "no sensor is left"),
         (("--flags", "1,8"), "never a measurement"),
-        (("--gap", "2"), "is not a time"),
+        (("--gap", "2"), "--gap: `2` needs a unit: `2 h`?"),
+        (("--gap", "2 km"), "is a length; a time (s, ms, min, h, d) is needed"),
+        (("--gap", "1300 d"), "is not between 0 and three years"),
         (("--fit", "drag"), "cannot be estimated"),
         (("--match", "colour"), "must be one of label, height, depth"),
         (("--match", "height"), "no nominal height or depth"),
@@ -237,14 +242,29 @@ def test_depths_of_pressures_are_those_of_teos_10():
     assert depths == pytest.approx([9.94458, 595.82535, 992.09191], abs=1e-3)
 
 
-@pytest.mark.thorough
-def test_depths_go_onto_a_copy_of_a_users_own_file(calm, given, truth, folder):
+@pytest.fixture
+def own(folder):
+    """A user's own file of instruments."""
     time = np.array(stamps(), "M8[ns]")
     own = xarray.Dataset(
         {"temperature": (("time", "instrument"), np.full((HOURS, 2), 4.5), {"units": "degC"})},
         {"time": time, "instrument": ["middle", "elsewhere"]},
     )
     own.to_netcdf(folder / "own.nc", engine="h5netcdf")
+
+
+@pytest.mark.thorough
+def test_a_killed_run_leaves_whole_files_or_none_and_goes_on(given, own, folder):
+    killed = Path(__file__).with_name("motion_killed.py")
+    done = subprocess.run([sys.executable, killed, folder], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    told = json.loads(done.stdout.splitlines()[-1])
+    assert told["wrong"] == []
+    assert len(told["seen"]) >= 8 and {*told["seen"]} == {0, 1, 2}
+
+
+@pytest.mark.thorough
+def test_depths_go_onto_a_copy_of_a_users_own_file(calm, given, own, truth, folder):
     words = (*COMMAND, "--pressures", "p.csv", "--hold-out", "middle", "--report", "report")
     done = calm(*words, "--onto", "own.nc", "-o", "copy.nc")
     assert done.code == 0, done.err

@@ -477,6 +477,18 @@ FLAWS = (
         "0.66 V nobler in sea water",
     ),
     Flaw(
+        "a launch that may bear half the working load",
+        SLOPE,
+        (
+            ("length: 200 m, label: wire 1,", "length: 200 m, label: wire 1, working_load: 8 kN,"),
+            ("checks:\n", "checks:\n  launch_working_factor: 0.5\n"),
+        ),
+        "launch-strength",
+        "wire 1",
+        "fail",
+        "its working load times 0.5 is 4000 N",
+    ),
+    Flaw(
         "a breaking load a thousand times too great",
         SLOPE,
         (("length: 200 m, label: wire 1,", "length: 200 m, label: wire 1, breaking_load: 48 MN,"),),

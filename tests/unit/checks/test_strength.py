@@ -6,7 +6,9 @@ import pytest
 
 import calm
 from calm.checks.finding import State
-from calm.checks.strength import strength_steps
+from calm.checks.strength import allowable_load, lesser_load, strength_steps
+from calm.errors import InputError
+from calm.files import Cable, SafetyFactors
 
 LINE = """\
 name: weak link
@@ -48,3 +50,43 @@ def test_a_weak_link_is_weak_beside_the_weaker_of_its_cables(
     assert isinstance(mooring, calm.Mooring)
     (verdict,) = strength_steps.judge(mooring.solve())
     assert (verdict.component, verdict.limit, verdict.state) == ("link", limit, state)
+
+
+@pytest.mark.parametrize(
+    ("loads", "working_factor", "factor", "limit"),
+    [
+        ({"working_load": "10 kN", "breaking_load": "60 kN"}, 1.0, 3.0, 10e3),
+        ({"working_load": "25 kN", "breaking_load": "60 kN"}, 1.0, 3.0, 20e3),
+        ({"working_load": "10 kN", "breaking_load": "60 kN"}, 1.5, 2.0, 15e3),
+        ({"working_load": "25 kN", "breaking_load": "60 kN"}, 1.5, 2.0, 30e3),
+        ({"working_load": "10 kN"}, 1.5, 2.0, 15e3),
+        ({"breaking_load": "60 kN"}, 1.5, 2.0, 30e3),
+        ({}, 1.0, 3.0, None),
+    ],
+)
+def test_the_lesser_of_working_load_and_breaking_load_over_the_factor(
+    loads: dict[str, str], working_factor: float, factor: float, limit: float | None
+) -> None:
+    rope = Cable.model_validate({"kind": "cable", "diameter": "20 mm", "weight": "1 N/m"} | loads)
+    assert lesser_load(rope, working_factor, factor) == limit
+
+
+@pytest.mark.parametrize(
+    ("material", "surface", "limit"),
+    [("steel", False, 20e3), ("nylon", False, 15e3), ("steel", True, 12e3), ("nylon", True, 12e3)],
+)
+def test_the_factor_of_a_surface_mooring_is_never_bypassed(
+    material: str, surface: bool, limit: float
+) -> None:
+    keys = {"kind": "cable", "diameter": "20 mm", "weight": "1 N/m", "material": material}
+    rope = Cable.model_validate(keys | {"working_load": "30 kN", "breaking_load": "60 kN"})
+    factors = SafetyFactors(steel=3.0, synthetic=4.0, surface=5.0)
+    assert allowable_load(rope, factors, surface) == limit
+
+
+def test_a_working_load_above_the_breaking_load_is_a_mistake(tmp_path: Path) -> None:
+    text = LINE.replace("UPPER", "20 kN, breaking_load: 19 kN").replace("LINK", "9 kN")
+    path = tmp_path / "m.yaml"
+    path.write_text(text.replace("LOWER", "20 kN"), encoding="utf-8")
+    with pytest.raises(InputError, match="20000 N, above the `breaking_load` of 19000 N"):
+        calm.load(path)

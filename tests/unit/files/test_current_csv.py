@@ -150,6 +150,16 @@ def test_files_that_are_no_current(csv: Path, text: str, place: Place) -> None:
     assert problems(csv, text) == [place]
 
 
+def test_names_of_columns_in_capitals(csv: Path) -> None:
+    text = "Time,DEPTH[m],U[m/s],v[m/s]\n2026-03-01T06:00,0,0.5,0.1\n"
+    assert profile(csv, text)[0] == CurrentTable((0.0,), (0.5,), (0.1,), (0.0,))
+
+
+def test_a_comma_at_every_lines_end_is_named_for_what_it_is(csv: Path) -> None:
+    place = (1, 23, "the line ends in a comma; take it off every line")
+    assert problems(csv, "depth[m],u[m/s],v[m/s],\n0,1,1,\n10,1,1,\n") == [place]
+
+
 def test_thousands_of_the_same_mistake_are_cut_short(csv: Path) -> None:
     found = problems(csv, "depth[m],u[m/s],v[m/s]\n" + "a,1,1\n" * 3000)
     assert len(found) == MOST_PROBLEMS + 1

@@ -41,6 +41,34 @@ def test_a_step_is_named_with_its_size_and_time(size):
     assert "about 2026-03-03T11:00: a clamp that slipped" in said
 
 
+@pytest.mark.parametrize(
+    ("count", "noise", "size", "is_named"),
+    [
+        (100, 0.2, 1.6, True),  # 1.5 m at least
+        (100, 0.2, 1.4, False),
+        (100, 1.0, 2.5, True),  # 0.6 of the variance: √6 of the noise
+        (100, 1.0, 2.4, False),
+        (32, 1.0, 3.8, True),  # 6 standard errors of √(12 / count): 3.67
+        (32, 1.0, 3.6, False),
+    ],
+)
+def test_a_step_is_named_that_is_large_and_clear_and_explains_most(count, noise, size, is_named):
+    residual = noise * (-1.0) ** np.arange(count) + 3.0
+    residual[count // 2 :] += size
+    columns = np.column_stack([residual, np.zeros(count), np.zeros(count)])
+    said = doubts(LABELS, TIME[:count], columns, np.zeros(count), common((0.0, 0.0, 0.0)))
+    assert [one.split(" m ")[0] for one in said] == [f"upper: steps by {size:+.1f}"] * is_named
+    assert not said or said[0].endswith("a clamp that slipped")  # of the others nothing is known
+
+
+def test_a_step_has_eight_times_on_either_side_and_the_largest_is_named():
+    residual = NOISE.copy()
+    residual[-8:, 0] += 6.0
+    residual[-8:, 1] -= 4.0
+    (said,) = named(residual)
+    assert said.startswith("upper: steps by +6.") and "2026-03-04T19:00" in said
+
+
 def test_a_drift_is_named_with_all_of_it():
     residual = NOISE.copy()
     residual[:, 2] -= 6.0 * np.arange(TIMES) / (TIMES - 1)
@@ -71,7 +99,7 @@ def test_an_offset_that_is_too_large_is_named():
 
 def test_a_sensor_that_hangs_elsewhere_is_named_where_only_strong_currents_show_it():
     moved, since = (12.0, -9.0, 5.0), TIME[[0, 40, 40]]
-    known = common((0.5, 0.0, 0.0), (0.9, 0.97, 0.3), moved, since)
+    known = common((0.5, 0.0, 0.0), (0.9, 0.6, 0.3), moved, since)
     said = doubts(LABELS, TIME, NOISE, np.zeros(TIMES), known)
     assert said[0].startswith("upper: +12.5 m off throughout")
     assert "or middle, lower the other way: they cannot tell" in said[0]

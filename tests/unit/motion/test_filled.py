@@ -30,6 +30,20 @@ def test_errors_of_neighbours_are_those_of_the_record():
     assert errors[3, 1] == pytest.approx(np.log(0.8 / 0.7) * 1.4826, rel=0.05)
 
 
+def test_the_median_departure_from_the_neighbours_in_stronger_currents_is_the_error():
+    # the second level is off the others by factors of one size, in weak currents by a larger one
+    times, offset = 40, prior.STEADY
+    level = np.tile(LEVEL, (times, 1))
+    speed = np.where(np.arange(times) < times // 2, 0.8, 0.2)[:, None] * np.ones(4)
+    size = np.where(np.arange(times) < times // 2, 0.3, 1.0)
+    sign = (-1.0) ** np.arange(times)
+    speed[:, 1] = (speed[:, 0] + offset) * np.exp(sign * size) - offset
+    errors = gap_errors(level, 0.6 * speed, 0.8 * speed, np.arange(4))
+    assert errors.shape == (4, 4)
+    assert errors[1] == pytest.approx(1.4826 * 0.3)  # whichever is left out besides
+    assert errors[3, 1] == errors[0, 1] == prior.LEVEL[1]
+
+
 def test_few_times_say_nothing_and_equal_levels_are_not_without_error():
     same = np.full((19, 4), 0.4)
     level = np.tile(LEVEL, (19, 1))

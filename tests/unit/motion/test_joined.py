@@ -67,6 +67,18 @@ def test_records_are_joined_level_by_level_from_the_top_down():
     assert one.false.tolist() == [False, False, True, False]
 
 
+def test_the_flag_is_the_worse_on_either_side_and_missing_outside():
+    flag = np.array([[1], [3], [2], [1]], np.int8)
+    one = replace(currents(hours(1, 2, 3, 4), [0.1, 0.2, 0.3, 0.4]), flag=flag)
+    other = currents(hours(0, 1, 1.5, 2.5, 3.5, 4, 5), np.ones(7), depth=(99.0,))
+    found = joined(
+        [other, one], [sensor("", hours(0, 5), [20, 21])], [1], ("a", "b"), np.array([9.0, 20.0]),
+        np.timedelta64(2, "h"),
+    )  # fmt: skip
+    assert found.flag[:, 0].tolist() == [9, 1, 3, 3, 2, 1, 9]
+    assert found.label == ("b",)  # of the place, where the sensor has no name
+
+
 def test_records_that_share_no_time_are_refused():
     here, later = currents(hours(0, 1), [0.1, 0.2]), [sensor("a", hours(50, 51), [20, 21])]
     with pytest.raises(UsageError, match="no time has both a current and a pressure"):

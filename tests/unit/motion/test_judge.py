@@ -37,8 +37,17 @@ def test_the_slope_is_that_of_computed_on_measured():
     assert agreement(2.0 * measured, measured, measured < 2.0, measured > 0.0).slope == 2.0
 
 
+def test_times_count_that_have_both():
+    measured = np.array([1.0, 2.0, 4.0, np.nan, 7.0, 9.0])
+    computed = np.array([1.0, 4.0, 8.0, 5.0, np.nan, 50.0])
+    among = np.arange(6) < 5
+    found = agreement(computed, measured, measured < 2.0, among)
+    assert (found.count, found.bias) == (3, pytest.approx(2.0))
+    assert found.rms == pytest.approx(np.sqrt((4.0 + 16.0) / 3.0))
+
+
 def test_coverage_is_of_the_times_with_a_deviation():
-    off, deviation = np.array([0.0, -1.9, 2.0, 5.0, 1.0]), np.array([1.0, 1.0, 1.0, 1.0, np.nan])
+    off, deviation = np.array([0.0, -1.96, 2.0, 5.0, 1.0]), np.array([1.0, 1.0, 1.0, 1.0, np.nan])
     assert coverage(off, deviation) == 0.5
     assert np.isnan(coverage(off[:0], deviation[:0]))
 
@@ -49,3 +58,6 @@ def test_interpolation_is_linear_by_height_between_the_nearest_sensors():
     assert linear(depth, point, still, 1) == 175.0  # half of the way from 130 to 220
     assert linear(depth, point, still, 3) == pytest.approx(220.0 + 0.25 * 182.0)
     assert linear(depth[:, :1], point[:1], still, 1) == 152.0  # one moves all of it alike
+    upper = np.array([0, 1, 2]), np.array([[130.0, 170.0, 220.0]])
+    assert linear(upper[1], upper[0], still, 4) == pytest.approx(220.0 + 200.0)  # the slope goes on
+    assert linear(upper[1][:, 1:], upper[0][1:], still, 0) == pytest.approx(170.0 - 50.0)

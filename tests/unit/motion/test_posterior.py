@@ -9,7 +9,7 @@ import pytest
 from calm.motion import prior
 from calm.motion.measured import Measured
 from calm.motion.moment import Moments
-from calm.motion.posterior import Linear, posterior
+from calm.motion.posterior import Linear, between, posterior
 from calm.motion.unknowns import Common
 
 STILL = np.array([50.0, 100.0, 180.0])  # of three points; the first and the last have sensors
@@ -71,6 +71,40 @@ def test_the_posterior_is_that_of_all_unknowns_written_out(tide):
     assert found.current[0] == pytest.approx(state[:2].mean())
 
 
+def test_a_spike_has_its_own_noise_and_what_was_not_measured_says_nothing():
+    one, at, common = given()
+    plain = posterior(one, at, SPREAD[None], common, STILL)
+    spike = posterior(one, at, SPREAD[None], common, STILL, spike=1)
+    more = np.diag([0.0, prior.SPIKE**2 - prior.NOISE**2])
+    assert spike.expected[0] == pytest.approx(plain.expected[0] + more)
+    lost = replace(one, depth=np.array([[READ[0], np.nan]]))
+    upper = replace(one, label=("a",), point=np.array([0]), depth=READ[None, :1])
+    kept = [0, 1, 2, 4]  # without the offset and the move of the lower sensor
+    first = {name: getattr(common, name)[:1] for name in ("offset", "moved", "since")}
+    alone = replace(common, covariance=common.covariance[np.ix_(kept, kept)], **first)
+    half = posterior(lost, at, SPREAD[None], common, STILL)
+    whole = posterior(upper, at, SPREAD[None], alone, STILL)
+    for name in ("logs", "sea", "depth", "variance"):
+        assert getattr(half, name) == pytest.approx(getattr(whole, name), rel=1e-5)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_current_is_wrong_by_a_factor_of_two_at_most(sign):
+    one, at, common = given()
+    far = replace(one, depth=READ[None] + sign * np.array([[400.0, 60.0]]))
+    found = posterior(far, at, SPREAD[None], common, STILL)
+    assert found.logs[0].tolist() == [sign * 0.7, sign * 0.7]
+
+
+def test_what_sensors_measure_lies_between_them_by_the_height_in_still_water():
+    one = replace(given()[0], point=np.array([2, 0]), depth=np.array([[187.0, 83.0]]))
+    lower = np.tile(THERE, (2, 1))
+    found = between(replace(one, depth=np.array([[187.0, 83.0], [np.nan, 84.0]])), lower, STILL)
+    share = (100.0 - 50.0) / (180.0 - 50.0)
+    assert found[0] == pytest.approx([83.0, 120.0 + 3.0 * (1.0 - share) + 2.0 * share, 187.0])
+    assert found[1] == pytest.approx(THERE + 4.0)
+
+
 def test_a_spike_says_nothing_and_a_lost_line_has_no_depths():
     one, at, common = given()
     alone = posterior(one, at, SPREAD[None], common, STILL, spike=0)
@@ -102,19 +136,36 @@ def test_the_errors_of_the_currents_are_those_of_the_table():
     assert np.isnan(other.u).all()  # nothing is left to take it from
 
 
+def test_of_several_levels_the_shear_is_linear_and_the_worst_gap_counts():
+    speed = np.array([[0.3, 0.4, 0.5]])
+    one = replace(given()[0], u=speed, v=0.0 * speed, flag=np.ones((1, 3), np.int8),
+                  level_point=np.full(3, -1), level_sensor=np.full(3, -1),
+                  level_depth=np.array([[20.0, 20.0, 90.0]]))  # fmt: skip
+    gap = np.array([[0.11, 0.12, 0.15], [0.13, 0.14, 0.16], [0.17, 0.18, 0.19]])
+    moments, common = Moments(one, SimpleNamespace(), {}), replace(given()[2], gap=gap)
+    level = moments.levels(np.zeros((1, 3)))
+    assert (np.diff(level) > 0.0).all() and level[0] == pytest.approx([20.0, 20.0, 90.0], abs=1e-5)
+    own = prior.LEVEL[1] ** 2 + (prior.STEADY / speed[0]) ** 2
+    place = np.array([-1.0, 0.0, 1.0])
+    whole = prior.CURRENT**2 + prior.SHEAR**2 * np.outer(place, place)
+    assert moments.way(level, common).spread[0] == pytest.approx(whole + np.diag(own))
+    own[:2] = 0.12**2, 0.14**2  # of a row, with that of a column left out besides: the worst
+    assert moments.way(level, common, (0, 1)).spread[0] == pytest.approx(whole + np.diag(own))
+
+
 def test_slopes_are_those_of_the_line():
-    one = replace(given()[0], u=np.array([[0.5, 0.2]]))
+    one = replace(given()[0], u=np.array([[0.5, 0.2]]), v=np.array([[0.4, 0.1]]))
     gain = np.array([[40.0, 2.0], [10.0, 8.0]])
 
     def line(factor):
-        return SimpleNamespace(depths=lambda level, u, v: 100.0 + factor * u @ gain.T)
+        return SimpleNamespace(depths=lambda level, u, v: 100.0 + factor * (u + 2.0 * v) @ gain.T)
 
     moments = Moments(one, line(1.0), {"cable_drag": line(np.exp(0.05))})
     way = moments.way(np.array([[10.0, 90.0]]), given()[2])
     logs = np.array([[0.1, -0.1]])
     there = moments.depths(way, logs)
-    assert there[0] == pytest.approx(100.0 + gain @ (np.exp([0.1, -0.1]) * [0.5, 0.2]))
-    slope = gain * np.exp([0.1, -0.1]) * [0.5, 0.2]
+    assert there[0] == pytest.approx(100.0 + gain @ (np.exp([0.1, -0.1]) * [1.3, 0.4]))
+    slope = gain * np.exp([0.1, -0.1]) * [1.3, 0.4]
     assert moments.slopes(way, logs, there)[0] == pytest.approx(slope, rel=0.03)
     none = moments.depths(way, 0.0 * logs)
-    assert moments.common_slopes(way, none)[0, :, 0] == pytest.approx(gain @ [0.5, 0.2], rel=0.03)
+    assert moments.common_slopes(way, none)[0, :, 0] == pytest.approx(gain @ [1.3, 0.4], rel=0.03)

@@ -1,5 +1,7 @@
 """Where sensors hang, against normal densities written out over all readings at once."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
@@ -41,6 +43,34 @@ def test_the_time_from_which_on_a_sensor_hangs_elsewhere_is_found(sensor, start)
     assert first[sensor] == start
 
 
+def test_the_time_is_the_likeliest_of_all_by_the_densities_written_out():
+    random = np.random.default_rng(11)
+    mean, before = np.array([0.05, 2.0, 0.3, -0.2, 0.1]), np.diag(BEFORE)
+    weight = random.uniform(0.5, 1.5, TIMES)
+    slopes, wide = SEEN.reshape(-1, 5), prior.ELSEWHERE**2
+    error = np.kron(np.diag(1.0 / weight), ERROR)
+    known = slopes @ before @ slopes.T + error
+    found = []
+    for _ in range(60):
+        start, by = random.choice([0, 1, 4, 5, 7, 11]), 4.0 * random.standard_normal()
+        left = random.multivariate_normal(slopes @ mean, known).reshape(TIMES, SENSORS)
+        left[start:, 1] += by * FALL[start:, 1]
+        given = replace(evidence(left), weight=weight)
+        likely = {}
+        for first in (0, 4, 5, 6, 7, 8):  # four readings on either side
+            move = np.zeros((TIMES, SENSORS))
+            move[first:, 1] = FALL[first:, 1]
+            whole = known + wide * np.outer(move.ravel(), move.ravel())
+            chance = np.log(prior.SLIPPED / TIMES if first else prior.MISPLACED)
+            density = multivariate_normal(slopes @ mean, whole).logpdf(left.ravel())
+            likely[first] = chance + density
+        found.append(first_time(given, FALL, mean, before)[1])
+        assert found[-1] == max(likely, key=likely.get)
+    assert {*found} == {0, 4, 5, 6, 7, 8}
+    none = Evidence(*(one[:0] for one in vars(given).values()))
+    assert first_time(none, FALL[:0], mean, before).tolist() == [-1, -1, -1]
+
+
 def test_a_sensor_with_few_readings_on_one_side_has_slipped_at_none_of_them():
     known = np.ones((TIMES, SENSORS), bool)
     known[:9, 1], known[:, 2] = False, False
@@ -50,8 +80,8 @@ def test_a_sensor_with_few_readings_on_one_side_has_slipped_at_none_of_them():
 
 
 def test_all_ways_the_sensors_may_hang_count_by_their_densities():
-    first = np.array([0, 7, -1])  # throughout; from the eighth time on; never
-    left = read(1, 5.0, 7)
+    first = np.array([7, 0, -1])  # from the eighth time on; throughout; never
+    left = read(0, 4.0, 7)
     fall = np.where(np.arange(TIMES)[:, None] >= first, FALL, 0.0)
     seen = np.concatenate([SEEN, fall[:, :, None] * np.eye(SENSORS)], 2)
     given = evidence(left)
@@ -65,18 +95,18 @@ def test_all_ways_the_sensors_may_hang_count_by_their_densities():
     for way in ((), (0,), (1,), (0, 1)):
         spread, chance = covariance.copy(), 1.0
         if 0 in way:
-            spread[5, 5], spread[2, 2] = wide, spread[2, 2] + wide
-            chance *= prior.MISPLACED
-        if 1 in way:
-            spread[6, 6] = wide
+            spread[5, 5] = wide
             chance *= prior.SLIPPED / TIMES
+        if 1 in way:
+            spread[6, 6], spread[3, 3] = wide, spread[3, 3] + wide
+            chance *= prior.MISPLACED
         expected = slopes @ spread @ slopes.T + np.kron(np.eye(TIMES), ERROR)
         density = multivariate_normal(slopes @ mean, expected).pdf(left.ravel())
         gain = spread @ slopes.T @ np.linalg.inv(expected)
         at = mean + gain @ (left.ravel() - slopes @ mean)
         told.append((chance * density, at, spread - gain @ slopes @ spread))
     weights = np.array([one[0] for one in told]) / sum(one[0] for one in told)
-    assert 0.05 < weights[2] < 0.95  # neither sure of the slip nor of none
+    assert 0.05 < weights[1] < 0.95  # neither sure of the slip nor of none
     centre = sum(w * one[1] for w, one in zip(weights, told, strict=True))
     whole = sum(
         w * (one[2] + np.outer(one[1] - centre, one[1] - centre))
@@ -109,3 +139,15 @@ def test_a_sensor_that_has_moved_falls_with_the_slope_of_the_line_there():
     # between the nearest points that are 5 m away at least; at an end, from there to the next
     assert fall[0] == pytest.approx([(310.0 - 150.0) / 200.0, 0.0, 0.0, (310.0 - 231.0) / 98.0])
     assert fall[1] == pytest.approx([1.0, 1.0, 0.0, 1.0])
+
+
+def test_the_slope_is_that_between_points_five_metres_away_or_more():
+    still = np.array([100.0, 104.9, 105.0, 110.0, 115.0])
+    depth = 2.0 * still + np.array([0.0, 9.0, 0.0, 9.0, 0.0])
+    time = np.array(["2026-01-01"], "M8[ns]")
+    none = np.zeros(1)
+    common = Common({}, 0.0, none, none, time, none, np.eye(3), 1.0, np.eye(1))
+    middle = common.fall(time, depth[None], still, np.array([2]))
+    assert middle[0, 0] == pytest.approx((depth[3] - depth[0]) / 10.0)
+    alone = common.fall(time, depth[None, :1], still[:1], np.array([0]))
+    assert alone[0, 0] == 1.0
