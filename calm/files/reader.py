@@ -12,11 +12,12 @@ from calm.errors import InputError, Problem
 from calm.files.accept import read_accepts
 from calm.files.catalogue import Catalogue
 from calm.files.checks import Checks
-from calm.files.components import Anchor, Cable, Chain
+from calm.files.components import Anchor
 from calm.files.document import compose, read_document
 from calm.files.environment import Position, read_environment
 from calm.files.explain import validate
 from calm.files.fields import Model, Text
+from calm.files.flexible import Flexible
 from calm.files.labels import numbered
 from calm.files.line import LineReader
 from calm.files.logbook import Deployed, DocumentKeys, ReleaseKeys, check_deployed
@@ -112,7 +113,7 @@ def read_mooring(
     labels = _labels(pieces) if line_is_whole else None
     accepts = read_accepts(checks.accept, labels, top, problems)
     if keys and keys.deployed and labels is not None:
-        cut = [p.label for p in pieces if isinstance(p.component, Cable | Chain)]
+        cut = [p.label for p in pieces if isinstance(p.component, Flexible)]
         check_deployed(keys.deployed, labels, cut, top, problems)
     if keys and keys.releases and labels is not None:
         notices += _unknown_releases(keys.releases, pieces, keys.deployed)
