@@ -46,7 +46,7 @@ def test_the_way_is_the_best_of_all_and_refused_where_another_is_as_good():
 def test_what_place_cannot_tell_is_refused():
     with pytest.raises(UsageError, match="the line has 2 instruments"):
         matched_by_place(sensors(60.0, 120.0, 300.0), [0, 1], STILL, LABELS)
-    with pytest.raises(UsageError, match="no nominal height or depth is given for p.nc"):
+    with pytest.raises(UsageError, match=r"no nominal height or depth is given for p\.nc"):
         matched_by_place(sensors(60.0, np.nan), [0, 1], STILL, LABELS)
 
 

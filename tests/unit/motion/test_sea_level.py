@@ -12,7 +12,9 @@ TIME = np.array(["2026-03-01T00", "2026-03-01T01", "2026-03-01T02"], "M8[ns]")
 
 def test_a_table_is_read_in_its_unit_and_in_order(tmp_path):
     path = tmp_path / "level.csv"
-    path.write_text("time,level[cm]\n2026-03-01T02:00,30\n2026-03-01T00:00,-10\n2026-03-01T01:00,\n")
+    path.write_text(
+        "time,level[cm]\n2026-03-01T02:00,30\n2026-03-01T00:00,-10\n2026-03-01T01:00,\n"
+    )
     time, level = read_sea_level(path)
     assert time.tolist() == TIME.tolist()
     assert level == pytest.approx([-0.1, np.nan, 0.3], nan_ok=True)
