@@ -8,7 +8,7 @@ from calm.case.adjustment import Adjustment, Buoyancy, Count, Length
 from calm.case.parts import all_parts
 from calm.case.targets import pointed
 from calm.errors import UsageError
-from calm.files import Anchor, Cable, Chain, Clamp, Component, MooringFile, Piece
+from calm.files import Anchor, Chain, Clamp, Component, Flexible, MooringFile, Piece
 from calm.files.explain import unknown
 from calm.units import QuantityError, parse_quantity, with_unit
 
@@ -84,7 +84,7 @@ def _buoyancy(text: str, file: MooringFile, parts: Parts) -> Adjustment:
 
 def _length(text: str, file: MooringFile, parts: Parts) -> Adjustment:
     pieces = [part for part in parts if isinstance(part, Piece)]
-    if len(pieces) < len(parts) or not isinstance(pieces[0].component, Cable | Chain):
+    if len(pieces) < len(parts) or not isinstance(pieces[0].component, Flexible):
         raise LookupError("only cables and chains are cut to length")
     if any(piece.length is None for piece in pieces):
         raise LookupError("it is cut to fit (`length: fit`); give it a length in the file first")

@@ -1,4 +1,4 @@
-"""What was solved before, for a line that is solved again and again while a person edits it."""
+"""What was solved before: of a line that a person edits, or that stands in many environments."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from typing import Any, ParamSpec, TypeVar
 
 from calm.errors import NoEquilibrium
 
-MOST = 64
+MOST = 256
 """Outcomes that are kept, the latest."""
 
 P = ParamSpec("P")
@@ -30,6 +30,10 @@ class Memory:
     def __init__(self) -> None:
         self._outcomes: OrderedDict[bytes, Any] = OrderedDict()
         self._lock = Lock()
+
+    def __reduce__(self) -> tuple[type[Memory], tuple[()]]:
+        """Another process begins with nothing."""
+        return Memory, ()
 
     def of(self, solver: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
         """What a solver returns for what it is given, or the `NoEquilibrium` that it raises."""
@@ -56,6 +60,10 @@ class Memory:
 
 class Forgetful(Memory):
     """Keeps nothing: every line is solved."""
+
+    def __reduce__(self) -> tuple[type[Memory], tuple[()]]:
+        """Another process keeps nothing either."""
+        return Forgetful, ()
 
     def of(self, solver: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
         """What the solver returns."""

@@ -59,7 +59,7 @@ class Mooring:
     They follow from the file where they are not given. `for_surface` shows whether it is meant to
     reach the surface, where that is known beforehand: a mooring that is judged with something
     changed is meant for what it was meant for. `memory` keeps what was solved for other states of
-    the same file.
+    the same file, and in other environments.
     """
 
     file: MooringFile
@@ -82,7 +82,7 @@ class Mooring:
 
     def __reduce__(self) -> tuple[type[Mooring], tuple[object, ...]]:
         """What another process needs: all else follows from these."""
-        return Mooring, (self.file, self.for_surface, None, self._line, self._water)
+        return Mooring, (self.file, self.for_surface, self.memory, self._line, self._water)
 
     @cached_property
     def water(self) -> Water:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from calm.case.warnings import is_synthetic
 from calm.checks.finding import State, Verdict, rule, unknown, verdict_on
 from calm.checks.posture import reaches_the_surface
-from calm.files import Cable, Chain, Component
+from calm.files import Cable, Component, Flexible
 
 if TYPE_CHECKING:
     from calm.checks.handling import Handling
@@ -93,7 +93,7 @@ def _held_by(way: Sequence[Piece]) -> tuple[Piece, bool] | None:
     """The float at which a wire ends that way, and whether a swivel is between; None for none."""
     has_swivel = False
     for piece in way:
-        if isinstance(piece.component, Cable | Chain):
+        if isinstance(piece.component, Flexible):
             return None
         if piece.component.role == "float" and piece.component.net_buoyancy > 0.0:
             return piece, has_swivel

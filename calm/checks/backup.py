@@ -11,7 +11,7 @@ import numpy as np
 
 from calm.assemble import net_buoyancy
 from calm.errors import NoEquilibrium
-from calm.files import Cable, Chain, Component
+from calm.files import Component, Flexible
 from calm.files.definition import CATALOGUE_DENSITY, STEEL_DENSITY
 from calm.solve.standing import standing_lift
 
@@ -94,7 +94,7 @@ def losses_of(mooring: Mooring) -> tuple[Loss, ...]:
     weight = float(-lift[lift < 0.0].sum())
     losses = []
     for piece in mooring.file.pieces[: lift.size]:
-        own = () if isinstance(piece.component, Cable | Chain) else (piece,)
+        own = () if isinstance(piece.component, Flexible) else (piece,)
         for part in (*own, *piece.clamps):
             lifted = net_buoyancy(part.component, gravity)
             if lifted <= 0.0:

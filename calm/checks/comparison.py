@@ -16,7 +16,7 @@ from calm.checks.finding import State
 from calm.checks.inventory import total_of
 from calm.checks.rules import RULES
 from calm.errors import NoEquilibrium
-from calm.files import Place
+from calm.files import Flexible, Place
 from calm.files.differences import Change, Differences, differences
 from calm.quantities import QUANTITIES
 
@@ -196,7 +196,7 @@ def _parts(found: Differences, designs: tuple[_Design, _Design]) -> Iterator[Com
                 row.depth if isinstance(row, ClampRow) else row.depth_top for row in rows
             ]
             sides["tilt"] = [row.tilt for row in rows]
-        if before.component.kind in ("cable", "chain"):
+        if isinstance(before.component, Flexible):
             sides["cut_length"] = [row.cut_length for row in rows if isinstance(row, ComponentRow)]
         for name, values in sides.items():
             title = f"{QUANTITIES[name].heading} of {label}"

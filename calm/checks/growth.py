@@ -24,6 +24,7 @@ from calm.files import (
     Clamp,
     Component,
     Cylinder,
+    Flexible,
     Fouling,
     Piece,
     Sphere,
@@ -71,7 +72,7 @@ def _grown_pieces(
             yield whole
             continue
         share = 1.0
-        if isinstance(piece.component, Cable | Chain) and bottom > fouling.depth:
+        if isinstance(piece.component, Flexible) and bottom > fouling.depth:
             share = (fouling.depth - top) / (bottom - top)
         upper, lower = _parted(whole, share)
         yield replace(upper, component=grown_component(piece.component, fouling, gravity))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from calm.assemble import net_buoyancy
 from calm.errors import NoEquilibrium
-from calm.files import Anchor, Cable, Chain, Component, Piece
+from calm.files import Anchor, Chain, Component, Flexible, Piece
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY, STEEL_DENSITY
 
 if TYPE_CHECKING:
@@ -132,7 +132,7 @@ def _items(piece: Piece, length: float | None, gravity: float) -> Iterator[Item]
 
 def _wet_weight(component: Component, length: float | None, gravity: float) -> float | None:
     weight = -net_buoyancy(component, gravity)
-    if not isinstance(component, Cable | Chain):
+    if not isinstance(component, Flexible):
         return weight
     return None if length is None else weight * length
 
@@ -140,7 +140,7 @@ def _wet_weight(component: Component, length: float | None, gravity: float) -> f
 def _dry_mass(component: Component, length: float | None) -> float | None:
     """Of a piece of a length [m], in kg."""
     mass = mass_in_air(component)
-    if not isinstance(component, Cable | Chain):
+    if not isinstance(component, Flexible):
         return mass
     return None if mass is None or length is None else mass * length
 
@@ -156,7 +156,7 @@ def mass_in_air(component: Component) -> float | None:
     net = component.net_buoyancy / STANDARD_GRAVITY
     if component.displaced_volume is not None:
         return CATALOGUE_DENSITY * component.displaced_volume - net
-    density = component.density if isinstance(component, Cable | Chain) else None
+    density = component.density if isinstance(component, Flexible) else None
     if isinstance(component, Anchor):
         density = component.material_density
     if density is None and isinstance(component, Chain | Anchor):

@@ -59,7 +59,7 @@ def _changed(mooring: Mooring, given: Result) -> Iterator[tuple[str, Mooring]]:
 
     def changed(depth: float | None = None, **what: Any) -> Mooring:
         there = replace(environment, depth=depth or environment.depth)
-        return Mooring(replace(file, **({"environment": there} | what)), surface)
+        return Mooring(replace(file, **({"environment": there} | what)), surface, mooring.memory)
 
     if mooring.water.moving or environment.wind is not None:
         still = replace(environment, current=_NO_CURRENT, wind=None)
@@ -76,7 +76,7 @@ def _changed(mooring: Mooring, given: Result) -> Iterator[tuple[str, Mooring]]:
         solver = file.solver.model_copy(update={"strumming": StrummingFactor(factor=FACTOR)})
         yield STRUMMING, changed(solver=solver)
     if file.deployed is not None and differs(mooring, deployed := as_deployed(mooring)):
-        yield DEPLOYED, Mooring(deployed.file, surface)
+        yield DEPLOYED, Mooring(deployed.file, surface, mooring.memory)
 
 
 def _shapeless(situation: Situation) -> bool:

@@ -78,15 +78,20 @@ def _told_apart(names: dict[Path, str]) -> dict[Path, str]:
 
 
 def _cut_alike(moorings: Sequence[Mooring]) -> tuple[Mooring, ...]:
-    """The same mooring in every environment: what is cut to fit, is cut once, for the first."""
+    """The same mooring in every environment: what is cut to fit, is cut once, for the first.
+
+    What does not depend on the environment, such as the line in still water, is solved once.
+    """
     from calm.case import Mooring
+    from calm.case.memory import Memory
     from calm.checks.deployed import cut_like
 
-    first, *others = moorings
+    memory = Memory()
+    first, *others = (Mooring(each.file, memory=memory) for each in moorings)
     try:
-        return first, *(Mooring(cut_like(each.file, first)) for each in others)
+        return first, *(Mooring(cut_like(each.file, first), memory=memory) for each in others)
     except NoEquilibrium:
-        return tuple(moorings)  # the first is reported not to stand, and why
+        return first, *others  # the first is reported not to stand, and why
 
 
 def _loaded(

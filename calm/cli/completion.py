@@ -14,6 +14,13 @@ COMPLETION_EXAMPLES = """Examples:
   calm completion fish > ~/.config/fish/completions/calm.fish"""
 
 
+# The file of an autoloaded function runs at the first Tab; one that is sourced names its function.
+_ZSH_CALL = """
+
+if [ "$funcstack[1]" = _calm ]; then _calm "$@"; else compdef _calm calm; fi
+"""
+
+
 def completion(shell: Literal["bash", "zsh", "fish"], /) -> ExitCode:
     """Print the script by which a shell completes calm.
 
@@ -24,5 +31,8 @@ def completion(shell: Literal["bash", "zsh", "fish"], /) -> ExitCode:
     """
     from calm.cli.main import app
 
-    show(app.generate_completion(prog_name="calm", shell=shell))
+    script = app.generate_completion(prog_name="calm", shell=shell)
+    if shell == "zsh":  # which calls the function that has the name of the file
+        script = script.replace("_cyclopts_calm", "_calm").rstrip("\n") + _ZSH_CALL
+    show(script)
     return ExitCode.DONE

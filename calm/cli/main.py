@@ -21,6 +21,7 @@ from calm.cli.diff import DIFF_EXAMPLES, diff
 from calm.cli.docs import DOCS_EXAMPLES, docs
 from calm.cli.exchange import EXPORT_EXAMPLES, IMPORT_EXAMPLES, export, import_
 from calm.cli.exit_codes import ExitCode
+from calm.cli.help_text import SetAnew
 from calm.cli.locate import LOCATE_EXAMPLES, locate
 from calm.cli.motion import MOTION_EXAMPLES, motion
 from calm.cli.run import RUN_EXAMPLES, run
@@ -55,6 +56,7 @@ app = App(
     help="Statics of oceanographic moorings and tows: shape and tensions in a current.",
     help_epilogue=_EPILOGUE,
     help_format="plaintext",
+    help_formatter=SetAnew(),
     version=_version,
     default_parameter=Parameter(negative=(), show_default=False),
     suppress_keyboard_interrupt=False,

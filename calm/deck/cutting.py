@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from calm.deck.order import Order
 from calm.errors import NoEquilibrium
-from calm.files import Cable, Chain, Piece
+from calm.files import Cable, Chain, Flexible, Piece
 from calm.files.flexible import strain_under
 from calm.solve import expect_many
 
@@ -85,7 +85,7 @@ def _is_cut(one: Hung) -> bool:
 
 def _cut(result: Result, one: Hung, over: int, count: int) -> Cut:
     piece = one.part
-    assert isinstance(piece, Piece) and isinstance(piece.component, Cable | Chain)
+    assert isinstance(piece, Piece) and isinstance(piece.component, Flexible)
     assert one.cut_length is not None
     longer = 1.0 + strain_under(piece.component, piece.measured_load)
     length = one.cut_length * longer

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from calm.case.columns import ClampRow, ComponentRow, rows_down
+from calm.files import Flexible
 
 if TYPE_CHECKING:
     from calm.case import Result
@@ -55,6 +56,11 @@ class Hung:
     def name(self) -> str:
         """Name of the component; its id where it has none."""
         return self.part.component.name or self.part.use
+
+    @property
+    def is_rigid(self) -> bool:
+        """Whether it is no cable or chain."""
+        return not isinstance(self.part.component, Flexible)
 
     @property
     def role(self) -> str:

@@ -5,6 +5,7 @@ from calm.files.catalogue import Assembly, Catalogue
 from calm.files.checks import Checks, SafetyFactors
 from calm.files.components import Anchor, Body, Cable, Chain, Component, Cylinder, Sphere
 from calm.files.environment import Environment, Fouling, Position, Wind
+from calm.files.flexible import Flexible
 from calm.files.mooring import (
     Clamp,
     MooringFile,
@@ -15,6 +16,7 @@ from calm.files.mooring import (
     TowKeys,
 )
 from calm.files.reader import read_mooring
+from calm.files.rigid import Rigid
 from calm.files.schema import mooring_schema
 from calm.files.strumming import (
     AmplitudeModel,
@@ -44,12 +46,14 @@ __all__ = [
     "Cylinder",
     "DepthTable",
     "Environment",
+    "Flexible",
     "Fouling",
     "MooringFile",
     "Part",
     "Piece",
     "Place",
     "Position",
+    "Rigid",
     "SafetyFactors",
     "SeaWater",
     "Solver",

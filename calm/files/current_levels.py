@@ -25,6 +25,10 @@ _FROM_INSTRUMENT = re.compile(
     rf"\b(above|below|from|to) (the )?(\w+ )?{_HEAD}\b|\b(profile|bin) range\b|^range( avg)?\b"
 )
 _OF_THE_WATER = re.compile(r"\b(water|bottom|sea ?(bed|floor)) ?depth\b|\bsea floor\b|\bseabed\b")
+_COUNTED = re.compile(
+    r"\b(bin|cell|layer|level|grid) (number|index|count)\b|"
+    r"\b(number|index) of (the )?(bin|cell|layer|level)s?\b"
+)
 _UPWARDS = re.compile(r"\b(z ?)?up(wards?)?\b")
 _DOWNWARDS = re.compile(r"\b(z ?)?down(wards?)?\b")
 _MODEL_COORDINATE = re.compile(r"ocean_\w*(sigma|s)_\w*coordinate\w*|ocean_sigma\w*")
@@ -129,6 +133,11 @@ def _placed(
         )
     told = f"{levels.name} " + words_of(levels, "standard_name", "long_name", "reference_datum")
     told = re.sub(r"[\W_]+", " ", told.lower())
+    if _COUNTED.search(told):
+        said = levels.attrs.get("long_name", levels.name)
+        raise UnreadableError(
+            f"`{levels.name}` counts its levels (`{said}`) and does not say how deep they are"
+        )
     if _ABOVE_SEABED.search(told):
         return _above_seabed(levels, factor, water_depth)
     positive = str(levels.attrs.get("positive", "")).lower()

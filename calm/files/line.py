@@ -9,16 +9,17 @@ from dataclasses import replace
 from calm.errors import Problem
 from calm.files.catalogue import Assembly, Catalogue, define
 from calm.files.checks import LimitKey
-from calm.files.components import Body, Cable, Chain, Component, Cylinder, Sphere
+from calm.files.components import Cable, Component
 from calm.files.definition import IN_AIR
 from calm.files.entries import Entry
 from calm.files.explain import about_quantity, shown, unknown, validate
 from calm.files.fields import LENGTH, POSITIVE_LENGTH, Quantity
-from calm.files.flexible import strain_under
+from calm.files.flexible import Flexible, strain_under
 from calm.files.labels import placed
 from calm.files.logbook import EQUIPMENT_KEYS, LengthAt, check_serials, read_equipment
 from calm.files.mooring import Clamp, Piece, Place
 from calm.files.overrides import contradicted
+from calm.files.rigid import Rigid
 from calm.files.section import Section
 from calm.units import QuantityError
 
@@ -130,7 +131,7 @@ class LineReader:
     def _piece(self, component: Component, item: Section) -> Piece:
         length: float | None
         load = 0.0
-        if not isinstance(component, (Cable, Chain)):
+        if not isinstance(component, Flexible):
             length = component.length
         elif item.data.get("length") == "fit":
             length = None
@@ -139,7 +140,7 @@ class LineReader:
         else:
             need = "a cable or chain needs it"
             length = self._quantity(item, "length", POSITIVE_LENGTH, need) or math.nan
-        if "length_at" in item.data and not isinstance(component, (Cable, Chain)):
+        if "length_at" in item.data and not isinstance(component, Flexible):
             message = "`length_at` is for cables and chains; this is as long as its definition says"
             self._refuse(item, ("length_at",), message, key=True)
         elif "length" in item.data and "length_at" in item.data:
@@ -166,7 +167,7 @@ class LineReader:
             measured_load=load,
         )
 
-    def _measured(self, item: Section, component: Cable | Chain) -> tuple[float, float]:
+    def _measured(self, item: Section, component: Flexible) -> tuple[float, float]:
         """The unstretched length of what is measured under a load [m], and that load [N]."""
         if not isinstance(item.data["length_at"], dict):
             example = "{load: 2 kN, length: 480 m}"
@@ -214,7 +215,7 @@ class LineReader:
             if at is not None and length is not None and at > length:
                 message = f"`at: {shown(clamp.data['at'])}` is beyond the piece, {length:g} m long"
                 self._refuse(clamp, ("at",), message)
-            if isinstance(component, (Sphere, Cylinder, Body)) and at is not None:
+            if isinstance(component, Rigid) and at is not None:
                 self._tell_of_mass(clamp.data["use"], component)
                 where = Place(0, clamp=len(clamps))
                 own = read_equipment(clamp, self._problems)
@@ -275,7 +276,7 @@ class LineReader:
                 self._refuse(item, (key,), message, key=True)
             return definition
         own_keys = item_keys
-        if not isinstance(definition, (Cable, Chain)):
+        if not isinstance(definition, Flexible):
             own_keys = item_keys - {"length"}
         overriding = {key: value for key, value in item.data.items() if key not in own_keys}
         if definition is None or not overriding:

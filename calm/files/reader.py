@@ -12,11 +12,12 @@ from calm.errors import InputError, Problem
 from calm.files.accept import read_accepts
 from calm.files.catalogue import Catalogue
 from calm.files.checks import Checks
-from calm.files.components import Anchor, Cable, Chain
+from calm.files.components import Anchor
 from calm.files.document import compose, read_document
 from calm.files.environment import Position, read_environment
 from calm.files.explain import validate
 from calm.files.fields import Model, Text
+from calm.files.flexible import Flexible
 from calm.files.labels import numbered
 from calm.files.line import LineReader
 from calm.files.logbook import Deployed, DocumentKeys, ReleaseKeys, check_deployed
@@ -112,10 +113,10 @@ def read_mooring(
     labels = _labels(pieces) if line_is_whole else None
     accepts = read_accepts(checks.accept, labels, top, problems)
     if keys and keys.deployed and labels is not None:
-        cut = [p.label for p in pieces if isinstance(p.component, Cable | Chain)]
+        cut = [p.label for p in pieces if isinstance(p.component, Flexible)]
         check_deployed(keys.deployed, labels, cut, top, problems)
     if keys and keys.releases and labels is not None:
-        notices += _unknown_releases(keys.releases, pieces)
+        notices += _unknown_releases(keys.releases, pieces, keys.deployed)
     surroundings = None
     if chosen:
         position = keys.position if keys else None
@@ -154,12 +155,16 @@ def _labels(pieces: Sequence[Piece]) -> list[str]:
     ]
 
 
-def _unknown_releases(releases: Sequence[ReleaseKeys], pieces: Sequence[Piece]) -> list[str]:
-    """Of releases whose serial number nothing in the line has."""
+def _unknown_releases(
+    releases: Sequence[ReleaseKeys], pieces: Sequence[Piece], deployed: Deployed | None
+) -> list[str]:
+    """Of releases whose serial number nothing in the line has, as designed or as deployed."""
     parts: list[Piece | Clamp] = []
     for piece in pieces:
         parts += (piece, *piece.clamps)
-    serials = {part.serial for part in parts if part.component.role == "release"}
+    designed = {part.label: part.serial for part in parts if part.component.role == "release"}
+    items = () if deployed is None else deployed.items
+    serials = {*designed.values(), *(one.serial for one in items if one.label in designed)}
     return [
         f"`releases`: no release of the line has the serial number {release.serial}"
         for release in releases

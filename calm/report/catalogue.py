@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import BaseModel
 
 from calm.assemble.datasheet import Datasheet, datasheet
+from calm.files import Flexible
 from calm.quantities import QUANTITIES
 from calm.report.blocks import Cell, Column, Heading, Pairs, Part, Table
 
@@ -146,7 +147,7 @@ def _comparison(catalogue: Catalogue, same: Sequence[str]) -> Table:
 
 
 def _per_metre(definition: Definition) -> str:
-    return "/m" if definition.kind in ("cable", "chain") else ""
+    return "/m" if isinstance(definition, Flexible) else ""
 
 
 def _heading(name: str) -> str:

@@ -16,7 +16,7 @@ from calm.case.size import NOT_MET, size
 from calm.case.targets import parse_target
 from calm.checks.finding import Finding, State
 from calm.errors import CalmError, UsageError
-from calm.files import Anchor, Catalogue, Piece
+from calm.files import Anchor, Catalogue, Piece, Rigid
 from calm.files.editing import Draft
 from calm.quantities import QUANTITIES, rounded, say
 from calm.solve import Status
@@ -186,7 +186,7 @@ def _put(item: int, key: str, value: str) -> Callable[[Draft], Draft]:
 
 
 def _is_float(piece: Piece) -> bool:
-    is_one = piece.component.kind in ("sphere", "cylinder", "body") and piece.place.part < 0
+    is_one = isinstance(piece.component, Rigid) and piece.place.part < 0
     return is_one and piece.component.role == "float" and piece.component.net_buoyancy > 0.0
 
 

@@ -160,11 +160,15 @@ def test_an_accept_counts_through_its_last_day(calm, accepting, until, counts):
     assert (ended in done.err) is not counts
 
 
-def test_an_accept_of_a_day_to_come_does_not_count_yet(calm, accepting):
-    file = accepting("{rule: strength, component: top float, reason: a test, date: 2999-01-01}")
-    done, _, states = checked(calm, file)
-    assert states["strength", "top float"] == ["unknown"]
-    assert "of top float is dated 2999-01-01, a day to come: it does not count yet" in done.err
+@pytest.mark.parametrize(("date", "counts"), [("2026-12-31", True), ("2027-01-01", False)])
+def test_an_accept_of_a_day_to_come_does_not_count_yet(calm, accepting, date, counts):
+    own = "{rule: strength, component: top float, reason: a test, date: "
+    needless = "{rule: strength, component: rope, reason: a test, date: "
+    done, _, states = checked(calm, accepting(f"{own}{date}}}", f"{needless}{date}}}"))
+    assert states["strength", "top float"] == ["accepted" if counts else "unknown"]
+    for label in ("top float", "rope"):
+        told = f"of {label} is dated {date}, a day to come: it does not count yet" in done.err
+        assert told is not counts
 
 
 @pytest.mark.parametrize("reason", [".", "-", "?!"])

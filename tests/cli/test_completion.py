@@ -1,8 +1,10 @@
-"""`calm completion`: what bash makes of it, and that zsh and fish are given theirs."""
+"""`calm completion`: what bash and zsh make of it, and that fish is given its own."""
 
+import os
 import shutil
 import subprocess
 
+import pexpect
 import pytest
 
 COMPLETES = """\
@@ -24,6 +26,34 @@ def test_bash_completes_commands_and_options(calm, folder, words, offered):
     done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True)
     assert done.stdout.split() == [offered]
     assert not done.stderr
+
+
+READS = {
+    "in a folder of fpath": "fpath=($PWD $fpath); autoload -Uz compinit; compinit -u -D",
+    "sourced": "autoload -Uz compinit; compinit -u -D; source ./_calm",
+}
+
+
+@pytest.mark.thorough
+@pytest.mark.skipif(shutil.which("zsh") is None, reason="needs zsh")
+@pytest.mark.parametrize("reads", READS.values(), ids=READS)
+def test_zsh_completes_commands_and_options(calm, folder, reads):
+    (folder / "_calm").write_text(calm("completion", "zsh").out)
+    shell = pexpect.spawn("zsh", ["-f", "-i"], env={**os.environ, "TERM": "dumb"}, timeout=20)
+    shell.sendline(f"{reads}; print read''y")
+    shell.expect_exact("ready")
+    for typed, completed in (("calm ru", "calm run "), ("calm run --env", "--environment ")):
+        shell.send(typed + "\t")
+        shell.expect_exact(completed)
+        shell.sendcontrol("u")
+    shell.close(force=True)
+
+
+def test_the_file_for_zsh_runs_the_function_of_its_name(calm):
+    script = calm("completion", "zsh").out
+    assert "\n_calm() {" in script
+    assert "_cyclopts" not in script
+    assert script.endswith('_calm "$@"; else compdef _calm calm; fi\n')
 
 
 @pytest.mark.parametrize(("shell", "head"), [("zsh", "#compdef calm"), ("fish", "# Fish")])

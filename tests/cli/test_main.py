@@ -1,4 +1,6 @@
+import itertools
 import os
+import re
 import subprocess
 import sys
 
@@ -173,3 +175,15 @@ def test_colour_only_where_it_is_wanted(calm_process, write_mooring, variables, 
     done = calm_process("run", file, env=environment)
     assert done.returncode == 0
     assert ("\x1b[1;31m" in done.stdout) is coloured
+
+
+def test_texts_of_options_are_set_to_the_width_of_the_terminal(calm, monkeypatch):
+    """A word that would have fitted on the line above is not on a line of its own."""
+    monkeypatch.setenv("COLUMNS", "80")
+    _, *texts = re.split(r"^│ --", calm("run", "--help").out, flags=re.MULTILINE)
+    assert len(texts) > 8
+    for text in texts:
+        cells = [line.strip("│ ") for line in text.split("╰")[0].splitlines()]
+        room = 78 - len("│ --environment STR  ")
+        for above, below in itertools.pairwise(cells[1:]):
+            assert len(above) + 1 + len(below.split()[0]) > room

@@ -278,10 +278,21 @@ def test_the_document_and_the_equipment_of_a_row(drive, small):
         await driver.type("2027-06-30")
         for _ in range(7):
             await driver.press("enter")
+        await driver.type("a longer rope")
+        await driver.press("enter")
         await driver.settle()
-        assert driver.session.draft.value(("document",)) == {
-            "id": "M-17", "revision": "B", "date": "2027-06-30",
-        }  # fmt: skip
+        document = {"id": "M-17", "revision": "B", "date": "2027-06-30"}
+        changed = {"revision": "B", "date": "2027-06-30", "change": "a longer rope"}
+        assert driver.session.draft.value(("document",)) == document | {"history": [changed]}
+        await driver.press("M", *["enter"] * 9, "ctrl+u", "enter")
+        await driver.settle()
+        assert driver.session.draft.value(("document",)) == document
+        await driver.press("M", "enter", "ctrl+u", *["enter"] * 8)
+        await driver.type("of no revision")
+        await driver.press("enter")
+        await driver.settle()
+        assert "a change is that of a revision; say which" in driver.screen
+        assert driver.session.draft.value(("document",)) == document
         await driver.press("=")
         await driver.type("2")
         await driver.press("enter", "N")
@@ -310,7 +321,7 @@ def test_where_it_was_deployed(drive, small):
         assert "must be more than 0 m" in driver.screen
         await driver.press("ctrl+u")
         await driver.type("1187 m")
-        await driver.press("enter")
+        await driver.press(*["enter"] * 3)
         await driver.settle()
         assert driver.session.draft.value(("deployed",)) == {
             "date": "2027-06-30 14:05",
@@ -322,6 +333,38 @@ def test_where_it_was_deployed(drive, small):
         await driver.type("soon")
         await driver.press("enter")
         assert "is no time" in driver.screen
+
+    drive(story, small)
+
+
+def test_what_was_deployed_at_a_row(drive, small):
+    async def story(driver):
+        await driver.settle()
+        await driver.press("down", "L", *["enter"] * 4)
+        for text in ("R7", "58.2 m", "cut on deck"):
+            await driver.type(text)
+            await driver.press("enter")
+        await driver.settle()
+        rope = {"label": "rope", "serial": "R7", "length": "58.2 m", "remark": "cut on deck"}
+        assert driver.session.draft.value(("deployed", "items")) == [rope]
+        await driver.press("down", "down", "L", *["enter"] * 5)
+        await driver.type("frayed")
+        await driver.press("enter")
+        await driver.settle()
+        deep = {"label": "deep logger", "remark": "frayed"}
+        assert driver.session.draft.value(("deployed", "items")) == [rope, deep]
+        await driver.press("down", "L", *["enter"] * 4)
+        for text in ("AR 7", "", "arm 0A1B, release 0A55"):
+            await driver.type(text)
+            await driver.press("enter")
+        await driver.settle()
+        codes = {"serial": "AR 7", "codes": "arm 0A1B, release 0A55"}
+        assert driver.session.draft.value(("releases",)) == [codes]
+        assert driver.session.draft.problems == ()
+        await driver.press("up", "L", *["enter"] * 5, "ctrl+u", "enter")
+        await driver.settle()
+        labels = [one["label"] for one in driver.session.draft.value(("deployed", "items"))]
+        assert labels == ["rope", "releaser"]
 
     drive(story, small)
 

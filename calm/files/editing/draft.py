@@ -121,7 +121,8 @@ class Draft:
     def insert(self, index: int, values: Mapping[str, Value], rows: Location = LINE) -> Draft:
         """A new item above that of an index, or below the last.
 
-        `rows`, here and below, is the list meant: the line, or `clamps_of` one of its items.
+        `rows`, here and below, is the list meant: the line, `clamps_of` one of its items, or
+        another list of the file.
         """
         self._stands(rows)
         return self._add(rows, index, [values])
@@ -229,7 +230,7 @@ class Draft:
 
     def _stands(self, rows: Location) -> None:
         """Raise where there is no item whose clamps a list is to be."""
-        if rows != LINE:
+        if rows[0] == LINE[0] and rows != LINE:
             self._page.known(LINE, [int(rows[1])])
 
     def _add(self, location: Location, index: int, values: Sequence[Value]) -> Draft:

@@ -70,8 +70,7 @@ def _own_labels(parts: Sequence[Hung]) -> dict[int, str]:
 
 def _is_connector(one: Hung) -> bool:
     clamps = getattr(one.part, "clamps", ())
-    rigid = one.part.component.kind not in ("cable", "chain")
-    return one.role == "connector" and one.on is None and rigid and not clamps
+    return one.role == "connector" and one.on is None and one.is_rigid and not clamps
 
 
 def _pieces(parts: Sequence[Hung]) -> Iterator[Entry]:

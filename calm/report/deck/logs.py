@@ -106,7 +106,7 @@ def _releases(deck: Deck) -> Table:
 def _over_the_side(deck: Deck) -> Table:
     rows = []
     for number, one in enumerate(deck.deployment, 1):
-        length = "" if one.cut_length is None or _is_rigid(one) else f"{one.cut_length:.2f}"
+        length = "" if one.cut_length is None or one.is_rigid else f"{one.cut_length:.2f}"
         rows.append(
             (
                 Cell(str(number)),
@@ -128,10 +128,6 @@ def _over_the_side(deck: Deck) -> Table:
         Column("checked", share=0.0),
     )
     return Table("Order over the side", columns, tuple(rows), by_hand=True)
-
-
-def _is_rigid(one: Hung) -> bool:
-    return one.part.component.kind not in ("cable", "chain")
 
 
 def _positions(deck: Deck) -> Table:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import accumulate
 from typing import TYPE_CHECKING
 
-from calm.files import Body, Cylinder, Place, Sphere
+from calm.files import Place, Rigid
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
@@ -91,6 +91,4 @@ def _upright(file: MooringFile, lengths: tuple[float, ...]) -> tuple[float, ...]
 def _has_a_hull(file: MooringFile) -> bool:
     """Whether the first piece is made to float at the surface."""
     top = file.pieces[0].component
-    return isinstance(top, Sphere | Cylinder | Body) and not (
-        top.hull is None and top.wind_area is None
-    )
+    return isinstance(top, Rigid) and not (top.hull is None and top.wind_area is None)

@@ -73,14 +73,14 @@ BUILDER: tuple[Action, ...] = (
         "document",
         "M",
         "document",
-        "Number, revision, author, ship and cruise, for the title block of drawings.",
+        "Number, revision and what it changed, author, ship and cruise, for the title block.",
     ),
     Action(
         "anywhere",
         "deployed",
         "L",
         "as deployed",
-        "Date, position and depth of the deployment, to be compared with the design.",
+        "Date, position and depth of the deployment; of the row its number, length, remark, codes.",
     ),
     Action(
         "anywhere",

@@ -26,7 +26,7 @@ from calm.tui.verdict_pane import VerdictPane
 from calm.tui.workspace import Workspace
 
 if TYPE_CHECKING:
-    from calm.tui.dialogs import Sheet
+    from calm.tui.line.sheets import Sheets
 
 
 class BuilderScreen(DraftScreen):
@@ -270,38 +270,24 @@ class BuilderScreen(DraftScreen):
         self.tell("")
         self.workspace.edited()
 
+    @property
+    def _sheets(self) -> Sheets:
+        from calm.tui.line.sheets import Sheets
+
+        return Sheets(self.app, self.body.line)
+
     def action_mooring(self) -> None:
         """Name, description, position."""
-        from calm.tui.line.mooring_sheet import mooring_sheet
-
-        self._ask(mooring_sheet(self.workspace.session.draft), "name and place")
+        self._sheets.mooring()
 
     def action_document(self) -> None:
-        """What the title block of the drawings says."""
-        from calm.tui.line.mooring_sheet import document_sheet
-
-        self._ask(document_sheet(self.workspace.session.draft), "the document")
+        """What the title block of the drawings says, and what the revision changed."""
+        self._sheets.document()
 
     def action_deployed(self) -> None:
-        """When and where the mooring was deployed."""
-        from calm.tui.line.mooring_sheet import deployed_sheet
-
-        self._ask(deployed_sheet(self.workspace.session.draft), "the deployment")
+        """When and where the mooring was deployed, and what of it at the row."""
+        self._sheets.deployed()
 
     def action_tow(self) -> None:
         """Speed and course of a tow; a mooring becomes one."""
-        from calm.tui.line.mooring_sheet import tow_sheet
-
-        self._ask(tow_sheet(self.workspace.session.draft), "the tow")
-
-    def _ask(self, sheet: Sheet, label: str) -> None:
-        from calm.tui.line.mooring_sheet import changes
-
-        session = self.workspace.session
-
-        def take(texts: dict[str, str] | None) -> None:
-            if texts is not None:
-                changed = changes(session.draft, texts)
-                self.body.line.attempt(lambda: session.put_all(changed, label))
-
-        self.app.push_screen(sheet, take)
+        self._sheets.tow()

@@ -1,4 +1,4 @@
-"""What is asked about a whole file: name and place, document, deployment, speed of a tow."""
+"""What is asked about a whole file: name and place, document, speed of a tow."""
 
 from __future__ import annotations
 
@@ -6,10 +6,11 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from calm.files.document import Location
-from calm.files.editing import Draft
+from calm.files.editing import Draft, EditError
 from calm.files.fields import LENGTH, Quantity
-from calm.tui.checking import anything, day, moment, quantity
+from calm.tui.checking import anything, day, quantity
 from calm.tui.dialogs import Asked, Sheet
+from calm.tui.line.entries import entered, said
 
 _PLACES: dict[str, Location] = {
     "name": ("name",),
@@ -33,19 +34,17 @@ _PLACES: dict[str, Location] = {
             "cruise",
         )
     },
-    "deployed date": ("deployed", "date"),
-    "deployed latitude": ("deployed", "position", "latitude"),
-    "deployed longitude": ("deployed", "position", "longitude"),
-    "deployed depth": ("deployed", "depth"),
 }
 
-_LATITUDE = quantity(Quantity("angle", at_least=-90, at_most=90), optional=True)
-_LONGITUDE = quantity(Quantity("angle", at_least=-360, at_most=360), optional=True)
+_HISTORY: Location = ("document", "history")
+
+LATITUDE = quantity(Quantity("angle", at_least=-90, at_most=90), optional=True)
+LONGITUDE = quantity(Quantity("angle", at_least=-360, at_most=360), optional=True)
 _NAME_AND_PLACE = (
     Asked("name", "Name", check=anything),
     Asked("description", "Description", check=anything),
-    Asked("latitude", "Latitude", check=_LATITUDE, placeholder="e.g. 48.3 deg, + north"),
-    Asked("longitude", "Longitude", check=_LONGITUDE, placeholder="e.g. -5.2 deg, + east"),
+    Asked("latitude", "Latitude", check=LATITUDE, placeholder="e.g. 48.3 deg, + north"),
+    Asked("longitude", "Longitude", check=LONGITUDE, placeholder="e.g. -5.2 deg, + east"),
 )
 _TOW = (
     Asked(
@@ -67,17 +66,6 @@ _DOCUMENT = (
     Asked("ship", "Ship"),
     Asked("cruise", "Cruise"),
 )
-_DEPLOYED = (
-    Asked("deployed date", "Date", check=moment, placeholder="e.g. 2027-06-30 14:05"),
-    Asked("deployed latitude", "Latitude", check=_LATITUDE, placeholder="e.g. 48.3 deg, + north"),
-    Asked("deployed longitude", "Longitude", check=_LONGITUDE, placeholder="e.g. -5.2 deg, + east"),
-    Asked(
-        "deployed depth",
-        "Depth there",
-        check=quantity(Quantity("length", above=0), optional=True),
-        placeholder="e.g. 1187 m",
-    ),
-)
 _BEGIN_A_TOW = (
     "The line becomes a tow: it hangs from a ship, its pieces from the ship down, and has no "
     "anchor. Undo makes it a mooring again."
@@ -91,13 +79,10 @@ def mooring_sheet(draft: Draft) -> Sheet:
 
 def document_sheet(draft: Draft) -> Sheet:
     """What the title block of the drawings says, as the file has it."""
-    return Sheet("The document", "For the title block of drawings.", _filled(draft, _DOCUMENT))
-
-
-def deployed_sheet(draft: Draft) -> Sheet:
-    """When and where the mooring was deployed, as the file has it."""
-    said = "Compared with the design by calm diff. Serials, lengths as cut: in the text, `items`."
-    return Sheet("As deployed", said, _filled(draft, _DEPLOYED))
+    revision = draft.text_at(_PLACES["revision"])
+    change = said(draft, _HISTORY, ("revision", revision), "change")
+    asked = [*_filled(draft, _DOCUMENT), Asked("change", "What it changed", change)]
+    return Sheet("The document", "For the title block of drawings, and its history.", asked)
 
 
 def tow_sheet(draft: Draft) -> Sheet:
@@ -109,10 +94,22 @@ def _filled(draft: Draft, asked: tuple[Asked, ...]) -> list[Asked]:
     return [replace(each, text=draft.text_at(_PLACES[each.key])) for each in asked]
 
 
-def changes(draft: Draft, texts: Mapping[str, str]) -> dict[Location, str | None]:
-    """What of the texts of a sheet differs from what the file says; None takes a key away."""
-    return {
-        _PLACES[key]: new or None
-        for key, new in texts.items()
-        if new != draft.text_at(_PLACES[key])
-    }
+def written(draft: Draft, texts: Mapping[str, str]) -> Draft:
+    """The file with the texts of a sheet; a blank one takes its key away."""
+    for key, new in texts.items():
+        if new != draft.text_at(_PLACES[key]):
+            draft = draft.put_at(_PLACES[key], new or None)
+    return draft
+
+
+def documented(draft: Draft, texts: Mapping[str, str]) -> Draft:
+    """The file with the texts of the document, and in its history what the revision changed."""
+    revision, change = texts["revision"], texts["change"]
+    if change and not revision:
+        raise EditError("a change is that of a revision; say which")
+    known = said(draft, _HISTORY, ("revision", revision), "change")
+    draft = written(draft, {key: text for key, text in texts.items() if key != "change"})
+    if change == known:
+        return draft
+    by = {"date": texts["date"], "by": texts["author"]} if change else {"date": "", "by": ""}
+    return entered(draft, _HISTORY, ("revision", revision), by | {"change": change})

@@ -1,4 +1,4 @@
-"""The line: its rows and what is done with them, and the values that are edited in place."""
+"""The line: its rows and what is done with them."""
 
 from __future__ import annotations
 
@@ -12,19 +12,17 @@ from textual.binding import BindingType
 from textual.containers import Vertical
 from textual.message import Message
 
-from calm.checks.finding import State
 from calm.files import Place
 from calm.tui.actions import bindings
 from calm.tui.catalogue.pane import Purpose
-from calm.tui.dialogs import Answer, Question
-from calm.tui.line.cell import Cell
 from calm.tui.line.cell_editor import CellEditor
+from calm.tui.line.cells import Cells
 from calm.tui.line.equipment_sheet import equipment_changes, equipment_sheet
+from calm.tui.line.found import Found
 from calm.tui.line.questions import naming
 from calm.tui.line.rows import table_rows
 from calm.tui.line.table import LineTable
-from calm.tui.line.table_row import EDITABLE, Column
-from calm.tui.verdict_text import why
+from calm.tui.line.table_row import Column
 from calm.tui.workspace import Workspace
 
 _MIXED = "Pieces are marked, and clamps of other pieces; mark pieces only, or clamps only"
@@ -55,7 +53,8 @@ class LinePane(Vertical):
         super().__init__(id="line-pane")
         self.workspace, self.session = workspace, workspace.session
         self.table, self.editor = LineTable(id="line"), CellEditor(id="cell")
-        self._editing: Cell | None = None
+        self.cells = Cells(workspace, self.table, self.editor, self._show_edited)
+        self.found = Found(workspace, self.table)
         self.came_from_verdict = False
 
     def compose(self) -> ComposeResult:
@@ -84,7 +83,7 @@ class LinePane(Vertical):
 
     def forget(self) -> None:
         """The piece that is marked or edited may be another one now."""
-        self._leave_editor()
+        self.cells.leave()
         self.table.mark(frozenset())
 
     def attempt(self, change: Callable[[], object], told: str = "") -> bool:
@@ -93,10 +92,14 @@ class LinePane(Vertical):
             return False
         is_made, spot = self.workspace.attempt(change)
         if is_made:
-            self.show_draft(spot)
-            self.workspace.tell(told)
-            self.workspace.edited()
+            self._show_edited(spot, told)
         return is_made
+
+    def _show_edited(self, spot: Place | None = None, told: str = "") -> None:
+        """Show the draft, which was edited, and have it judged."""
+        self.show_draft(spot)
+        self.workspace.tell(told)
+        self.workspace.edited()
 
     # the cursor and the marks
 
@@ -134,23 +137,7 @@ class LinePane(Vertical):
 
     def action_next_finding(self) -> None:
         """Go to the next row that a failure, a warning or a missing figure is found of."""
-        rows, here = self.table.rows, self.table.cursor
-        grave = (State.FAIL, State.WARN, State.UNKNOWN)
-        around = [*range(here + 1, len(rows)), *range(here + 1)]
-        for state in grave:
-            if any(rows[number].state is state for number in around):
-                number = next(each for each in around if rows[each].state is state)
-                self.table.cursor = number
-                self._tell_why(rows[number].spot)
-                return
-        self.workspace.tell("Nothing is found of any row")
-
-    def _tell_why(self, spot: Place) -> None:
-        view = self.workspace.view
-        found = why(view, spot) if view is not None and self.workspace.is_fresh else []
-        if found:
-            told = f"{found[0].sign} {found[0].heading}: {found[0].text}"
-            self.workspace.tell(told, wrong=found[0].state is State.FAIL)
+        self.found.go_to_next()
 
     def action_back(self) -> None:
         """Back to the verdict, where it has led here."""
@@ -160,16 +147,9 @@ class LinePane(Vertical):
 
     def action_why(self) -> None:
         """Show all that was found of the row under the cursor."""
-        spot, row, view = self.table.spot, self.table.row, self.workspace.view
-        if spot is None or row is None:
-            return
-        found = why(view, spot) if view is not None and self.workspace.is_fresh else []
-        if not found:
-            self.workspace.tell("Nothing is found of this row, or it is not judged yet")
-            return
-        text = "\n".join(f"{each.sign} {each.heading}  {each.text}" for each in found)
-        called = row.texts.get("label") or row.texts["component"]
-        self.app.push_screen(Question(called, text, [Answer("b", "back to the row", "back")]))
+        question = self.found.of_row()
+        if question is not None:
+            self.app.push_screen(question)
 
     # rows
 
@@ -301,72 +281,20 @@ class LinePane(Vertical):
         elif column == "component":
             self.action_replace()
         else:
-            self._edit(Cell(self.workspace, self.table.spot, column))
-
-    def _edit(self, cell: Cell) -> None:
-        if refused := cell.refused:
-            self.workspace.tell(refused)
-        if refused or not self.settle():
-            return
-        self.table.column = EDITABLE.index(cell.column)
-        self._editing = cell
-        region = self.table.cell_region(cell.column)
-        least = 16 if cell.column == "length" else 6
-        self.editor.open(cell.text, cell.check, region, least_width=least)
+            self.cells.edit(column)
 
     @on(CellEditor.Judged)
     def _tell_reading(self, event: CellEditor.Judged) -> None:
-        reading = event.reading
-        if self.editor.is_open:
-            completed = reading.text if reading.text != self.editor.value.strip() else ""
-            note = reading.note or (f"= {completed}" if completed and reading.is_good else "")
-            self.workspace.tell(note, wrong=not reading.is_good)
+        self.cells.tell(event)
 
     @on(CellEditor.Done)
     def _take_value(self, event: CellEditor.Done) -> None:
-        cell = self._editing
-        if cell is not None:
-            self._put(event.text)
-            onward = cell.onward() if event.then == "edit next" else None
-            if onward is not None:
-                self._edit(onward)
-            self.table.column += event.then == "right"
-            self.table.cursor += (event.then == "down") - (event.then == "up")
-
-    def settle(self) -> bool:
-        """Take what is typed in a cell; a bad value stays to be corrected."""
-        if self._editing is None or not self.editor.is_open:
-            return True
-        reading = self.editor.settle()
-        if reading.is_good:
-            self._put(self.editor.text)
-        else:
-            self.editor.focus()
-            self.workspace.tell(f"Not taken yet: {reading.note}", wrong=True)
-        return reading.is_good
-
-    def _put(self, text: str | None) -> None:
-        """Put a text into the cell that is edited; None leaves it as it was."""
-        cell = self._editing
-        assert cell is not None
-        self._leave_editor()
-        before = self.session.draft
-        is_put = text is not None and self.workspace.attempt(lambda: cell.put(text))[0]
-        if is_put and self.session.draft is not before:
-            self.show_draft()
-            self.workspace.edited()
+        self.cells.take(event)
 
     @on(CellEditor.Abandoned)
     def _abandon(self, event: CellEditor.Abandoned) -> None:
-        self._leave_editor()
-        if event.reason:
-            self.workspace.tell(event.reason, wrong=True)
+        self.cells.abandon(event)
 
-    def _leave_editor(self) -> None:
-        if self.editor.is_open:
-            self._editing = None
-            had_focus = self.editor.has_focus
-            self.editor.close()
-            self.workspace.tell("")
-            if had_focus:
-                self.table.focus()
+    def settle(self) -> bool:
+        """Take what is typed in a cell; a bad value stays to be corrected."""
+        return self.cells.settle()

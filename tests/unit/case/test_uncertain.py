@@ -174,6 +174,18 @@ def test_nothing_unsure_is_no_spread():
     assert found.contributions == ()
 
 
+def test_offsets_are_those_the_way_the_free_end_is_off():
+    """In a current that goes neither along the north nor the east."""
+    text = PLUMB.replace("500 m}", "500 m, current: {speed: 0.4 m/s, toward: 215 deg}}", 1)
+    said = "{" + ", ".join(f"{name}: 0" for name in CAUSES) + "}"
+    result = calm.load("plumb.yaml", text=text.replace("{UNSURE}", said)).solve()
+    found = uncertain(result, 64)
+    off = sqrt(result.top.x**2 + result.top.y**2)
+    assert found.offset[:, 0] == pytest.approx([off] * 3, rel=1e-9)
+    assert off > 10.0
+    assert (np.diff(found.offset[1]) < 0.0).all()  # down the line, to the anchor
+
+
 def test_the_knockdown_of_a_sphere_follows_the_square_of_the_current():
     # a float on a line without drag: knockdown = L (1 - cos(atan(K U²/B)))
     text = """

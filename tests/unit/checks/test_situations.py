@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+from functools import wraps
 from pathlib import Path
 
 import pytest
@@ -11,6 +13,9 @@ from calm.checks.assess import check
 from calm.checks.assessment import Assessment
 from calm.checks.finding import State
 from calm.checks.situations import situations_of
+from calm.cli.check_files import read_designs
+from calm.physics.line import Line, Water
+from calm.solve import Settings, Solution, solve_mooring
 
 LINE = """
 name: shelf
@@ -319,3 +324,33 @@ def test_a_line_that_folds_in_still_water_fails(tmp_path: Path) -> None:
     one = check(read)
     assert one.stands[0].result is not None
     assert found(one, "equilibrium", "still water") == ["fail"]
+
+
+def test_what_no_environment_changes_is_solved_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mooring(tmp_path)
+    environments = []
+    for toward in (0, 120, 240):
+        file = tmp_path / f"toward-{toward}.yaml"
+        current = f"{{speed: 0.5 m/s, toward: {toward} deg}}"
+        file.write_text(f"name: toward {toward}\nenvironment: {{current: {current}}}")
+        environments.append(str(file))
+    ((design,), _) = read_designs([tmp_path / "mooring.yaml"], environments, [], 1)
+    moving: list[bool] = []
+
+    @wraps(solve_mooring)
+    def counted(line: Line, water: Water, settings: Settings) -> Solution:
+        moving.append(water.moving)
+        return solve_mooring(line, water, settings)
+
+    monkeypatch.setattr("calm.case.mooring.solve_mooring", counted)
+    together = [results(one) for one in pickle.loads(pickle.dumps(design)).moorings]
+    # still water; the line and its strumming twin without current, marched coarsely
+    assert (moving.count(True), moving.count(False)) == (2 * 3, 3)
+    for alone, shared in zip(map(results, design.moorings), together, strict=True):
+        assert list(alone) == list(shared) == ["as given", "still water", "strumming"]
+        for name, result in shared.items():
+            one = alone[name]
+            assert one is not None and result is not None
+            assert one.to_dict() == result.to_dict()

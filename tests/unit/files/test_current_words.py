@@ -96,6 +96,13 @@ def test_what_the_attributes_of_a_variable_betray(tmp_path, words, said):
     assert said in refusal(currents(**words), tmp_path)
 
 
+@pytest.mark.parametrize("words", ["bin number", "index of the cell", "Layer index"])
+def test_numbers_of_bins_are_no_depths(tmp_path, words):
+    counted = currents()
+    counted["depth"].attrs["long_name"] = words
+    assert f"`depth` counts its levels (`{words}`)" in refusal(counted, tmp_path)
+
+
 def test_a_rotation_of_the_whole_file_is_refused(tmp_path):
     turned = currents().assign_attrs(rotation_angle_degrees=30.0)
     assert "its current is rotated, `rotation_angle_degrees: 30.0`" in refusal(turned, tmp_path)

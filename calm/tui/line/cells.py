@@ -1,0 +1,108 @@
+"""The values of the line edited in place: what is typed in a cell, and what becomes of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from calm.tui.line.cell import Cell
+from calm.tui.line.cell_editor import CellEditor
+from calm.tui.line.table import LineTable
+from calm.tui.line.table_row import EDITABLE, Column
+from calm.tui.workspace import Workspace
+
+_LEAST_WIDTHS: dict[Column, int] = {"length": 16}
+_LEAST_WIDTH = 6
+
+
+class Cells:
+    """Edits the cells of a table by the line of input that lies over it.
+
+    Parameters
+    ----------
+    changed : shows and judges the draft, another one now
+    """
+
+    def __init__(
+        self,
+        workspace: Workspace,
+        table: LineTable,
+        editor: CellEditor,
+        changed: Callable[[], object],
+    ) -> None:
+        self._workspace, self._table, self._editor = workspace, table, editor
+        self._changed = changed
+        self._cell: Cell | None = None
+
+    def edit(self, column: Column) -> None:
+        """Edit a value of the row under the cursor, after what is typed in another is taken."""
+        if self._table.spot is not None:
+            self._edit(Cell(self._workspace, self._table.spot, column))
+
+    def _edit(self, cell: Cell) -> None:
+        if refused := cell.refused:
+            self._workspace.tell(refused)
+        if refused or not self.settle():
+            return
+        self._table.column = EDITABLE.index(cell.column)
+        self._cell = cell
+        region = self._table.cell_region(cell.column)
+        least = _LEAST_WIDTHS.get(cell.column, _LEAST_WIDTH)
+        self._editor.open(cell.text, cell.check, region, least_width=least)
+
+    def tell(self, judged: CellEditor.Judged) -> None:
+        """Say what the text typed so far comes to."""
+        reading = judged.reading
+        if self._editor.is_open:
+            completed = reading.text if reading.text != self._editor.value.strip() else ""
+            note = reading.note or (f"= {completed}" if completed and reading.is_good else "")
+            self._workspace.tell(note, wrong=not reading.is_good)
+
+    def take(self, done: CellEditor.Done) -> None:
+        """Write what was entered, and go where it says."""
+        cell = self._cell
+        if cell is None:
+            return
+        self._put(done.text)
+        onward = cell.onward() if done.then == "edit next" else None
+        if onward is not None:
+            self._edit(onward)
+        self._table.column += done.then == "right"
+        self._table.cursor += (done.then == "down") - (done.then == "up")
+
+    def settle(self) -> bool:
+        """Take what is typed in a cell; a bad value stays to be corrected."""
+        if self._cell is None or not self._editor.is_open:
+            return True
+        reading = self._editor.settle()
+        if reading.is_good:
+            self._put(self._editor.text)
+        else:
+            self._editor.focus()
+            self._workspace.tell(f"Not taken yet: {reading.note}", wrong=True)
+        return reading.is_good
+
+    def _put(self, text: str | None) -> None:
+        """Put a text into the cell that is edited; None leaves it as it was."""
+        cell = self._cell
+        assert cell is not None
+        self.leave()
+        before = self._workspace.session.draft
+        is_put = text is not None and self._workspace.attempt(lambda: cell.put(text))[0]
+        if is_put and self._workspace.session.draft is not before:
+            self._changed()
+
+    def abandon(self, abandoned: CellEditor.Abandoned) -> None:
+        """Leave the value as it was."""
+        self.leave()
+        if abandoned.reason:
+            self._workspace.tell(abandoned.reason, wrong=True)
+
+    def leave(self) -> None:
+        """Edit nothing any more; what is typed is not taken."""
+        if self._editor.is_open:
+            self._cell = None
+            had_focus = self._editor.has_focus
+            self._editor.close()
+            self._workspace.tell("")
+            if had_focus:
+                self._table.focus()
