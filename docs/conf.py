@@ -25,6 +25,7 @@ html_theme = "furo"
 html_title = f"CALM {__version__}"
 html_static_path = ["_static"]
 html_css_files = ["calm.css"]
+html_search_scorer = "_static/scorer.js"
 html_copy_source = False
 html_show_sourcelink = False
 html_show_sphinx = False
