@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+import calm
 from calm.physics.line import Line, Water
 from calm.solve import Settings, solve_mooring
 from tests.property.strategies import mooring
@@ -103,3 +104,27 @@ def test_of_hanging_and_lying_the_line_lies_and_the_other_shape_is_told() -> Non
     assert (solution.other_depth, solution.other_grounded_length) == (0.0, 0.0)
     flat = replace(line, anchor_height=0.0)
     assert solve_mooring(flat, water).other_depth is None
+
+
+JET = """
+environment:
+  depth: 110 m
+  current:
+    columns: [depth m, speed m/s, toward deg]
+    rows: [[0, 0.2, 90], [12, 0.2, 90], [30, 3, 90]]
+line: [{use: ball}, {use: thread, length: 100 m}, {use: block}]
+components:
+  ball: {kind: body, length: 0 m, buoyancy: 500 N, kn: 100 N/(m/s)^2, inclination: insensitive}
+  thread: {kind: cable, diameter: 1 mm, weight: 0 N/m, cn: 0, ct: 0}
+  block: {kind: anchor, weight: 20 kN}
+"""
+
+
+def test_both_are_in_the_result_and_in_its_warnings() -> None:
+    highest, deepest = stays(THREAD, profile(110.0, [(0, 0.2), (12, 0.2), (30, 3.0)]), 150)
+    result = calm.load("jet.yaml", text=JET).solve()
+    assert result.top.depth == pytest.approx(highest, abs=NEAR * 110.0)
+    other = result.to_dict()["other_equilibrium"]
+    assert other == {"depth": pytest.approx(deepest, abs=NEAR * 110.0), "grounded_length": 0.0}
+    said = f"Another equilibrium exists, with the free end at a depth of {deepest:.1f} m."
+    assert said in result.warnings

@@ -91,6 +91,7 @@ def test_every_part_of_the_report_is_there(section):
         "Table of the line", "Elevation, current, tension, plan and breaks",
         "Launch and recovery in short", "Tensions on the way down and up", "Back-up buoyancy",
         "Inventory", "Pieces for the deck", "Environments", "Mooring file", "SHA-256 of the inputs",
+        "waves", "snap", "fatigue", "creep, corrosion", "jerk", "swing", "hauling and lifts",
     ):  # fmt: skip
         assert heading in page.text, heading
     assert "snap loads" in page.text
