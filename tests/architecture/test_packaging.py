@@ -82,7 +82,7 @@ def test_the_source_distribution_builds_the_same_wheel(wheel: Path, tmp_path: Pa
         archive.extractall(tmp_path, filter="data")
     unpacked = Path(str(source).removesuffix(".tar.gz"))
     assert wheel_files(build_wheel(unpacked, tmp_path)) == wheel_files(wheel)
-    assert (unpacked / "tests" / "conftest.py").exists()
+    assert all((unpacked / file).exists() for file in ("README.md", "tests/conftest.py"))
 
 
 def test_the_wheel_finds_its_own_catalogue_and_lines(wheel: Path, tmp_path: Path) -> None:
