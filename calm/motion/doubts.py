@@ -67,7 +67,14 @@ def doubts(
                 f"clamp that slipped{among}"
             )
         else:
-            said.append(f"{label}: drifts by {size:+.1f} m over the record{among}")
+            j = labels.index(label)
+            slipped = ""
+            if not throughout[j] and common.elsewhere[j] > LIKELY:
+                slipped = (
+                    f", or its clamp slipped by {common.moved[j]:+.1f} m about "
+                    f"{np.datetime_as_string(common.since[j], 'm')}"
+                )
+            said.append(f"{label}: drifts by {size:+.1f} m over the record{slipped}{among}")
     for j, label in enumerate(labels):
         offset = common.offset[j] + common.moved[j] * throughout[j]
         if abs(offset) > FAR_OFFSET * prior.OFFSET:

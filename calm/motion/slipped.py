@@ -89,6 +89,42 @@ def first_time(evidence: Evidence, fall: Floats, mean: Floats, covariance: Float
     return first
 
 
+def fits(
+    evidence: Evidence, fall: Floats, mean: Floats, covariance: Floats
+) -> Iterator[tuple[bool, Floats, float]]:
+    """The best fits where no sensor hangs elsewhere, and then where one does.
+
+    A slip that is taken for errors of the currents makes these so large, and the times that show
+    it so light, that it is never found: so the errors are sought beside each of these.
+
+    Parameters
+    ----------
+    fall, mean, covariance : as of `first_time`
+
+    Yields
+    ------
+    Whether one does; (n, s) what is left [m]; the logarithm of how likely this is besides.
+    """
+    count, _, fixed = evidence.seen.shape
+    first = first_time(evidence, fall, mean, covariance)
+    for sensor in (None, *np.flatnonzero(first >= 0).tolist()):
+        seen, spread, odds = evidence.seen, covariance, 0.0
+        if sensor is not None:
+            move = np.zeros((*fall.shape, 1))
+            move[first[sensor] :, sensor, 0] = fall[first[sensor] :, sensor]
+            seen = np.concatenate([seen, move], axis=2)
+            spread = np.pad(spread, (0, 1))
+            spread[fixed, fixed] = prior.ELSEWHERE**2
+            odds = np.log(prior.SLIPPED / count if first[sensor] else prior.MISPLACED)
+        before = np.linalg.inv(spread)
+        matrix, pull = evidence.normal(seen) + before, evidence.pulls(seen, evidence.left)
+        found = np.linalg.solve(matrix, pull.sum(axis=0) + before[:, :fixed] @ mean)
+        off = found - np.pad(mean, (0, len(found) - fixed))
+        odds -= 0.5 * (off @ before @ off + np.linalg.slogdet(matrix @ spread)[1])
+        rest = np.where(evidence.known, evidence.left - seen @ found, 0.0)
+        yield sensor is not None, rest, float(odds)
+
+
 @dataclass(frozen=True)
 class Placed:
     """The common unknowns over all ways the sensors may hang.

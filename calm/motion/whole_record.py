@@ -15,7 +15,7 @@ from calm.motion.forward import Forward
 from calm.motion.measured import Measured
 from calm.motion.moment import STEP, Moments
 from calm.motion.posterior import settled
-from calm.motion.slipped import Evidence, first_time, placed
+from calm.motion.slipped import Evidence, first_time, fits, placed
 from calm.motion.unknowns import Common
 from calm.physics.line import Floats, Integers
 
@@ -90,11 +90,6 @@ def estimate_common(mooring: Mooring, measured: Measured, names: Sequence[str]) 
         there = np.isfinite(part.depth[good])
         left: Floats = np.where(there, here.before.innovation[good] - bend, 0.0)
         expected = here.before.expected[good]
-        scale = _scale(left, expected, currents, common.scale)
-        expected = expected + ((scale / common.scale) ** 2 - 1.0) * currents
-        inverse = np.asarray(np.linalg.inv(expected), np.float64)
-        misfit = np.einsum("ns,nst,nt->n", left, inverse, left)
-        weight = (ROBUST + there.sum(axis=1)) / (ROBUST + misfit)
         fixed = np.concatenate(
             [
                 here.begin.common[good][:, part.point],
@@ -108,12 +103,47 @@ def estimate_common(mooring: Mooring, measured: Measured, names: Sequence[str]) 
         moves = common.fall(time, depth, still, part.point)
         whole = fixed @ common.value[:-sensors] + moves * common.moved
         raw: Floats = np.where(there, left + whole, 0.0)
-        evidence = Evidence(raw, fixed, inverse, weight, there)
-        alike = _alike(evidence.pulls(fixed, left)[:, 0]) if names else 1.0
-        begun = replace(known, scale=scale, since=np.full(sensors, measured.time[0]))
+        begun = replace(known, since=np.full(sensors, measured.time[0]))
         fall = begun.fall(time, depth, still, part.point)
-        common = _placed(begun, evidence, fall, time, alike)
+        evidence = _evidence(raw, left, fixed, expected, there)
+        scale, likely = _scale(left, expected, currents, common.scale)
+        beside, best = 0.0, 0.0
+        for moved, rest, odds in fits(evidence, fall, *_unmoved(begun)):
+            other, gained = _scale(rest, expected, currents, common.scale)
+            if not moved:
+                if gained + odds > likely:
+                    likely, beside = gained, odds
+                continue
+            gain = (gained - likely) / _memory(evidence, rest) + odds - beside
+            if gain > best:
+                best, scale, left = gain, other, rest
+        expected = expected + ((scale / common.scale) ** 2 - 1.0) * currents
+        evidence = _evidence(raw, left, fixed, expected, there)
+        alike = _alike(evidence.pulls(fixed, left)[:, 0]) if names else 1.0
+        common = _placed(replace(begun, scale=scale), evidence, fall, time, alike)
     return common
+
+
+def _evidence(
+    raw: Floats, left: Floats, seen: Floats, expected: Floats, known: NDArray[np.bool_]
+) -> Evidence:
+    """What each time says, times of large misfit less."""
+    inverse = np.asarray(np.linalg.inv(expected), np.float64)
+    misfit = np.einsum("ns,nst,nt->n", left, inverse, left)
+    weight = (ROBUST + known.sum(axis=1)) / (ROBUST + misfit)
+    return Evidence(raw, seen, inverse, weight, known)
+
+
+def _unmoved(known: Common) -> tuple[Floats, Floats]:
+    """Mean and covariance beforehand, where every sensor hangs as the file says."""
+    fixed = len(known.value) - len(known.moved)
+    return known.value[:fixed], known.covariance[:fixed, :fixed]
+
+
+def _memory(evidence: Evidence, left: Floats) -> float:
+    """Of so many times that follow each other the errors of a sensor are the same, at most."""
+    sensors = left.shape[1]
+    return max(_alike(column) for column in evidence.pulls(evidence.seen, left)[:, -sensors:].T)
 
 
 def _placed(
@@ -129,14 +159,12 @@ def _placed(
     alike : so many times that follow each other have the same error, as far as factors go
     """
     sensors = fall.shape[1]
-    fixed = len(known.value) - sensors
-    first = first_time(evidence, fall, known.value[:fixed], known.covariance[:fixed, :fixed])
+    first = first_time(evidence, fall, *_unmoved(known))
     fall = np.where(np.arange(len(time))[:, None] >= first, fall, 0.0)
     seen = np.concatenate([evidence.seen, fall[:, :, None] * np.eye(sensors)], axis=2)
     normal, pull = evidence.normal(seen), evidence.pulls(seen, evidence.left).sum(axis=0)
     free = np.linalg.solve(normal + np.eye(len(normal)) / prior.ELSEWHERE**2, pull)
-    rest = evidence.pulls(evidence.seen, evidence.left - seen @ free)[:, fixed - sensors :]
-    longest = max(_alike(column) for column in rest.T)
+    longest = _memory(evidence, evidence.left - seen @ free)
     found = placed(
         normal / alike, pull / alike, known.value, known.covariance, first, len(time),
         max(longest / alike, 1.0),
@@ -165,8 +193,11 @@ def _chosen(measured: Measured) -> Integers:
     return used[np.linspace(0, len(used) - 1, MOST_TIMES).round().astype(np.int64)]
 
 
-def _scale(left: Floats, expected: Floats, currents: Floats, scale: float) -> float:
-    """The factor on the errors of the currents under which the pressures are most likely."""
+def _scale(left: Floats, expected: Floats, currents: Floats, scale: float) -> tuple[float, float]:
+    """The factor on the errors of the currents under which the pressures are most likely.
+
+    And the logarithm of how likely they then are, but for a constant.
+    """
     tried = np.linspace(np.log(SCALES[0]), np.log(SCALES[1]), 41)
     likely = []
     for log in tried:
@@ -174,8 +205,9 @@ def _scale(left: Floats, expected: Floats, currents: Floats, scale: float) -> fl
         misfit = (left * np.linalg.solve(covariance, left[:, :, None])[:, :, 0]).sum(axis=1)
         fit = np.linalg.slogdet(covariance)[1]
         fit += (ROBUST + left.shape[1]) * np.log1p(misfit / ROBUST)
-        likely.append(-0.5 * (fit.sum() + (log / SCALE_KNOWN) ** 2))
-    return float(np.exp(tried[int(np.argmax(likely))]))
+        likely.append(float(-0.5 * (fit.sum() + (log / SCALE_KNOWN) ** 2)))
+    best = int(np.argmax(likely))
+    return float(np.exp(tried[best])), likely[best]
 
 
 def _alike(pull: Floats) -> float:

@@ -236,6 +236,26 @@ def test_a_clamp_that_slipped_is_named(calm, given, truth):
     assert any("middle: steps" in one for one in json.loads(done.out)["doubts"])
 
 
+@pytest.mark.thorough
+def test_the_sea_level_is_taken_off_and_what_is_fitted_is_told(calm, given, truth, folder):
+    tide = 3.0 * np.sin(2 * np.pi * np.arange(HOURS) / 12.4 + 1.0)
+    given("t.csv", values=dbar(truth[1] + tide[:, None]))
+    rows = [f"{time},{100.0 * level:.2f}" for time, level in zip(stamps(), tide, strict=True)]
+    (folder / "level.csv").write_text("time,level[cm]\n" + "\n".join(rows) + "\n")
+    said, spread = {}, {}
+    for name, words in (("fitted", ()), ("given", ("--sea-level", "level.csv"))):
+        done = calm(*COMMAND, "--pressures", "t.csv", *words, "--fit", "buoyancy,length",
+                    "-o", f"{name}.nc", "--json", "-")  # fmt: skip
+        assert done.code == 0, done.err
+        said[name] = json.loads(done.out)["factors"]
+        with xarray.open_dataset(folder / f"{name}.nc", engine="h5netcdf") as result:
+            off = result["clamp_depth"].values - truth[1] - tide[:, None]
+            spread[name] = np.sqrt((off**2).mean())
+    assert set(said["given"]) == {"cable_drag", "rigid_drag", "buoyancy", "length"}
+    assert all(one["low"] < 1.0 < one["high"] for one in said["given"].values())
+    assert spread["given"] < 0.3 and spread["fitted"] < 1.0
+
+
 def test_depths_of_pressures_are_those_of_teos_10():
     # the check values of the function z_from_p of the Gibbs SeaWater toolbox, at 4 degrees north
     depths = depth_of(np.array([10.0, 600.0, 1000.0]), 4.0)

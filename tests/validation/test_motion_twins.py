@@ -147,6 +147,13 @@ def test_of_two_sensors_too_the_one_that_hangs_elsewhere_leaves_the_bands_honest
     assert inside.mean() >= plain.mean() - 0.05
 
 
+def test_a_slip_in_strong_currents_is_not_taken_for_their_errors(mooring):
+    missed, inside, doubted = recovered(mooring, 414, USED, ("Aquadopp 626", 20.0, 44))
+    assert doubted[0].startswith("Aquadopp 626: ") and "slipped by +19.9 m" in doubted[0]
+    assert (np.abs(missed) < 2.0).all()
+    assert inside.mean() > 0.9
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("begins", [lambda seed: 0, lambda seed: 30 + seed % 20])
 def test_100_twins_with_a_sensor_elsewhere_lie_within_their_intervals(mooring, begins):

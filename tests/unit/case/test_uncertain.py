@@ -107,6 +107,22 @@ def test_each_factor_is_of_what_it_says():
     assert changed(stiffness=1.25).compliance == pytest.approx(given.compliance / 1.25)
 
 
+def test_what_lifts_on_a_clamp_is_buoyant_and_what_weighs_is_not():
+    clamps = "clamps: [{use: ball, at: 10 m}, {use: bar, at: 20 m}]"
+    text = PLUMB.replace("length: 400 m", f"length: 400 m, {clamps}").replace("{UNSURE}", "{}")
+    bar = "  bar: {kind: cylinder, diameter: 0.1 m, length: 1 m, buoyancy: -50 N}\n"
+    line = calm.load("plumb.yaml", text=text + bar).line
+    assert drawn_line(line, Draw(buoyancy=1.1)).clamp_buoyancy == pytest.approx([4400.0, -50.0])
+
+
+def test_a_float_afloat_that_lifts_more_weighs_less_and_displaces_the_same():
+    line = calm.load(LINES / "taut-nylon-surface.yaml").line
+    given, drawn = line.floating, drawn_line(line, Draw(buoyancy=1.1)).floating
+    assert drawn.lift - given.lift == pytest.approx(0.1 * line.buoyancy[0])
+    assert drawn.lift + drawn.weight == pytest.approx(given.lift + given.weight)
+    assert drawn.lift > given.lift
+
+
 def test_a_stiffer_rope_stretches_less_by_its_table():
     curve = ElongationCurve([(0.1, 0.03), (0.3, 0.08), (0.7, 0.14)], 60e3, permanent=0.02)
     line = calm.load(LINES / "s1000.yaml").line
@@ -125,6 +141,8 @@ def test_the_current_grows_and_turns_clockwise():
     assert turned.v == pytest.approx(1.5 * speed * np.cos(angle + radians(30.0)))
     assert turned.depth == pytest.approx(1.02 * water.depth)
     assert (turned.level == water.level).all()
+    rising = replace(water, w=np.full(len(water.u), 0.02))
+    assert drawn_water(rising, Draw(current=1.5)).w == pytest.approx(np.full(len(water.u), 0.03))
     east = drawn_water(water, Draw(direction=90.0))
     assert east.u == pytest.approx(water.u * cos(radians(90)) + water.v * sin(radians(90)))
 

@@ -5,9 +5,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.stats import t as student
 
 from calm.errors import UsageError
 from calm.locate import Sound, Survey, locate
+from calm.locate.geometry import mirrored
+from calm.locate.model import Model
+from calm.locate.outliers import BY_CHANCE, FLOOR, _judged, least_squares_of, scatter
 from calm.physics.ellipsoid import FLATTENING, SEMI_MAJOR, Frame
 
 LATITUDE, LONGITUDE, DEPTH, TRANSDUCER = 48.3, -5.2, 2000.0, 5.0
@@ -212,3 +216,50 @@ def test_there_and_back():
         latitude, longitude, depth = HERE.position(np.array(place))
         again = HERE.place(np.array([latitude]), np.array([longitude]), np.array([depth]))[0]
         assert again == pytest.approx(place, abs=1e-6)
+
+
+def test_a_given_depth_is_one_below_the_curved_surface():
+    """At 10 km the surface is d²/2R, 7.8 m, below the plane that touches it."""
+    ships = survey(ROUND, 1500.0)
+    model = Model(ships, ONE, HERE, np.zeros((12, 3)), DEPTH)
+    place = model.place(np.array([10e3, 0.0]))
+    assert place[2] == pytest.approx(-DEPTH - 10e3**2 / (2.0 * SEMI_MAJOR), abs=0.05)
+    assert HERE.position(place)[2] == pytest.approx(DEPTH, abs=0.01)
+
+
+def test_the_other_side_of_a_track():
+    track = np.array([[0.0, 0.0, 0.0], [100.0, 100.0, 0.0], [200.0, 200.0, 0.0]])
+    assert mirrored(track, np.array([30.0, -10.0, -50.0])) == pytest.approx([-10.0, 30.0, -50.0])
+
+
+def test_the_scatter_of_most_is_their_standard_deviation():
+    errors = 3.0 * np.random.default_rng(5).standard_normal(20_001)
+    errors[:200] = 1e4  # it does not see a few that are far off
+    assert scatter(np.abs(errors), 3) == pytest.approx(3.0, rel=0.03)
+
+
+@pytest.mark.parametrize(("beyond", "is_out"), [(0.98, False), (1.02, True)])
+def test_a_range_is_judged_by_its_residual_as_the_others_give_it(beyond, is_out):
+    """Alone wrong by δ, it is off by δ√(1 - h) of the least scatter in the fit of all, and by
+    δ/√(1 + h) of it in that of the others, h being its leverage in each."""
+    count, odd = 8, 3
+    limit = 1.0 - 0.5 * BY_CHANCE / count
+    bearing, distance = np.linspace(0.0, 280.0, count), np.linspace(700.0, 2200.0, count)
+
+    def judged(error, used):
+        errors = np.where(np.arange(count) == odd, error, 0.0)
+        found = survey(bearing, distance, errors)
+        ships = HERE.place(found.latitude, found.longitude, np.full(count, TRANSDUCER))
+        model = Model(found, ONE, HERE, ships, None)
+        x = least_squares_of(model, ANCHOR, used)
+        return _judged(model, x, used), model.jacobian(ANCHOR)
+
+    every, others = np.full(count, True), np.arange(count) != odd
+    _, slopes = judged(0.0, every)
+    h = slopes[odd] @ np.linalg.inv(slopes.T @ slopes) @ slopes[odd]
+    alone = beyond * student.ppf(limit, count - 3 - 1) * FLOOR / np.sqrt(1.0 - h)
+    assert judged(alone, every)[0][odd] != is_out
+    kept = slopes[others]
+    h = slopes[odd] @ np.linalg.inv(kept.T @ kept) @ slopes[odd]
+    back = beyond * student.ppf(limit, count - 1 - 3) * FLOOR * np.sqrt(1.0 + h)
+    assert judged(back, others)[0][odd] != is_out

@@ -73,7 +73,11 @@ def test_a_drift_is_named_with_all_of_it():
     residual = NOISE.copy()
     residual[:, 2] -= 6.0 * np.arange(TIMES) / (TIMES - 1)
     (said,) = named(residual)
-    assert said.startswith("lower: drifts by -6.1 m over the record")
+    assert said == "lower: drifts by -6.1 m over the record"
+    known = common(np.zeros(3), (0.0, 0.0, 0.97), (0.0, 0.0, -5.0), TIME[[0, 0, 40]])
+    (said,) = doubts(LABELS, TIME, residual, np.zeros(TIMES), known)
+    slipped = "or its clamp slipped by -5.0 m about 2026-03-02T16:00"
+    assert said == f"lower: drifts by -6.1 m over the record, {slipped}"
 
 
 def test_strong_currents_say_nothing_of_sensors():

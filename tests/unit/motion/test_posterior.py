@@ -153,6 +153,14 @@ def test_of_several_levels_the_shear_is_linear_and_the_worst_gap_counts():
     assert moments.way(level, common, (0, 1)).spread[0] == pytest.approx(whole + np.diag(own))
 
 
+def test_a_current_meter_hangs_at_its_pressure_and_else_where_the_line_has_it():
+    one = replace(given()[0], depth=np.array([[93.0, np.nan]]), u=np.zeros((1, 3)),
+                  level_point=np.array([0, 2, 1]), level_sensor=np.array([0, 1, -1]),
+                  level_depth=np.full((1, 3), np.nan))  # fmt: skip
+    level = Moments(one, SimpleNamespace(), {}).levels(THERE[None])
+    assert level[0] == pytest.approx([93.0, THERE[2], THERE[1]], abs=1e-5)
+
+
 def test_slopes_are_those_of_the_line():
     one = replace(given()[0], u=np.array([[0.5, 0.2]]), v=np.array([[0.4, 0.1]]))
     gain = np.array([[40.0, 2.0], [10.0, 8.0]])

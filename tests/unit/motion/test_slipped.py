@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import multivariate_normal
 
 from calm.motion import prior
-from calm.motion.slipped import Evidence, first_time, placed
+from calm.motion.slipped import Evidence, first_time, fits, placed
 from calm.motion.unknowns import Common
 
 TIMES, SENSORS = 12, 3
@@ -77,6 +77,33 @@ def test_a_sensor_with_few_readings_on_one_side_has_slipped_at_none_of_them():
     left = np.where(known, read(0, 15.0, 10), 0.0)
     first = first_time(evidence(left, known), FALL, np.zeros(5), np.diag(BEFORE))
     assert first[0] <= 8 and first[1:].tolist() == [-1, -1]
+
+
+def test_fits_and_their_odds_come_to_the_densities_written_out():
+    mean, covariance = np.array([0.05, 2.0, 0.3, -0.2, 0.1]), np.diag(BEFORE)
+    left = read(2, 9.0, 5)
+    given, slopes = evidence(left), SEEN.reshape(-1, 5)
+    error = np.kron(np.eye(TIMES), ERROR)
+    known = slopes @ covariance @ slopes.T + error
+    first = first_time(given, FALL, mean, covariance)
+    found = [*fits(given, FALL, mean, covariance)]
+    assert first[2] == 5 and [one[0] for one in found] == [False, True, True, True]
+    for sensor, (_, rest, odds) in enumerate(found, -1):
+        whole, chance = known, 0.0
+        if sensor >= 0:
+            move = np.zeros((TIMES, SENSORS))
+            move[first[sensor] :, sensor] = FALL[first[sensor] :, sensor]
+            whole = known + prior.ELSEWHERE**2 * np.outer(move.ravel(), move.ravel())
+            chance = np.log(prior.SLIPPED / TIMES if first[sensor] else prior.MISPLACED)
+        density = multivariate_normal(slopes @ mean, whole).logpdf(left.ravel()) + chance
+        assert multivariate_normal(None, error).logpdf(rest.ravel()) + odds == pytest.approx(
+            density
+        )
+    gone = np.ones((TIMES, SENSORS), bool)
+    gone[3, 1] = False
+    assert all(
+        rest[3, 1] == 0.0 for _, rest, _ in fits(evidence(left, gone), FALL, mean, covariance)
+    )
 
 
 def test_all_ways_the_sensors_may_hang_count_by_their_densities():

@@ -25,8 +25,10 @@ def test_the_scale_of_the_currents_is_the_likeliest_by_students_law():
             for scale in tried
         ]
         expected = np.tile(rest + given**2 * currents, (40, 1, 1))
-        found = _scale(left, expected, given**2 * np.tile(currents, (40, 1, 1)), given)
+        found, best = _scale(left, expected, given**2 * np.tile(currents, (40, 1, 1)), given)
         assert found == pytest.approx(tried[int(np.argmax(likely))])
+        constant = multivariate_t(shape=np.eye(2), df=4).logpdf([0.0, 0.0])
+        assert best == pytest.approx(max(likely) - 40 * constant - norm(0.0, 0.15).logpdf(0.0))
     assert SCALES == (0.5, 2.5)
 
 
