@@ -1,5 +1,7 @@
 """Settings of the site. `python docs/make_site.py` stages the pages and calls Sphinx."""
 
+from pathlib import Path
+
 from calm.version import __version__
 
 project = "CALM"
@@ -25,7 +27,7 @@ html_theme = "furo"
 html_title = f"CALM {__version__}"
 html_static_path = ["_static"]
 html_css_files = ["calm.css"]
-html_search_scorer = "_static/scorer.js"
+html_search_scorer = str(Path(__file__).with_name("_static") / "scorer.js")
 html_copy_source = False
 html_show_sourcelink = False
 html_show_sphinx = False
