@@ -60,7 +60,7 @@ def matched_by_label(
         else:
             near = nearest(sensor.label, labels)
             hint = f"; did you mean `{near}`?" if near else ""
-            lost.append(f"`{sensor.label}` of {sensor.source} is no part of the line{hint}")
+            lost.append(f"`{sensor.label}` of {sensor.source} is not a part of the line{hint}")
     if not points:
         raise UsageError("no sensor is a part of the line: " + "; ".join(lost))
     return points, lost

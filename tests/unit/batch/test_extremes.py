@@ -178,7 +178,7 @@ def test_gaps_do_not_count_as_record():
     [
         (times(5), np.ones(5), "all alike"),
         (times(5), np.full(5, np.nan), "there are 0 values"),
-        (times(5)[::-1], np.arange(5.0), "do not ascend"),
+        (times(5)[::-1], np.arange(5.0), "do not increase"),
     ],
 )
 def test_what_cannot_be_fitted_is_said(time, values, reason):

@@ -54,7 +54,7 @@ def test_labels_are_matched_and_others_listed_with_the_nearest():
     given = [*sensors(np.nan, label="adcp"), *sensors(np.nan, label="metre")]
     points, lost = matched_by_label(given, LABELS)
     assert points == {0: 2}
-    assert lost == ["`metre` of p.nc is no part of the line; did you mean `meter`?"]
+    assert lost == ["`metre` of p.nc is not a part of the line; did you mean `meter`?"]
 
 
 @pytest.mark.parametrize(

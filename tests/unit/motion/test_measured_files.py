@@ -95,7 +95,7 @@ def out_of_time():
 
 
 @pytest.mark.parametrize(("dataset", "said"), [
-    (lambda: instrument("DEPTH", "depth", "m", comment=INFERRED), "is no measurement"),
+    (lambda: instrument("DEPTH", "depth", "m", comment=INFERRED), "is not a measurement"),
     (lambda: instrument("DEPTH", "depth", "m", long_name="depth estimated by CALM"), "by calm"),
     (ragged, "2 instruments one after the other"),
     (out_of_time, "-712224.4 among its times"),

@@ -42,9 +42,9 @@ def test_arrays_are_found_by_their_standard_name_and_unit(tmp_path):
     ("name", "text", "said"),
     [
         ("a.csv", "time,level\n2026-03-01T00:00,1\n", "needs a unit"),
-        ("b.csv", "time,level[dbar]\n2026-03-01T00:00,1\n", "is no unit for it"),
+        ("b.csv", "time,level[dbar]\n2026-03-01T00:00,1\n", "is not a unit for it"),
         ("c.csv", "time,a[m],b[m]\n2026-03-01T00:00,1,2\n", "has several columns"),
-        ("d.csv", "time,level[m]\nyesterday,1\n2026-03-01T00:00,x\n", "`x` is no number"),
+        ("d.csv", "time,level[m]\nyesterday,1\n2026-03-01T00:00,x\n", "`x` is not a number"),
         ("e.csv", None, "no such file"),
     ],
 )
