@@ -23,7 +23,7 @@ class Problem:
     """One mistake in one place of a file.
 
     `line` and `column` count from 1; 0 means the file as a whole. `lacks` shows, where nothing is
-    wrong but something is not there yet, what that is: ``no length on wire 2``.
+    wrong but something is still missing, what that is: ``no length on wire 2``.
     """
 
     path: str

@@ -27,8 +27,8 @@ class _Notice(event.Listener):
         self.report("compiling the solver for this machine, once: this takes up to a minute")
         if cache_folder() is None:
             self.report(
-                "no folder can be written to keep it in, so every run compiles anew; "
-                "NUMBA_CACHE_DIR names one"
+                "no folder can be written to keep it in, so every run compiles again; set "
+                "NUMBA_CACHE_DIR to one that can"
             )
 
     def on_end(self, event: Any) -> None:

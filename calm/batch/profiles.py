@@ -141,7 +141,7 @@ class Batch:
             kind = type(self.mooring).__name__
             raise TypeError(f"a Mooring is needed, as calm.load gives it, not a {kind}")
         if workers is not None and workers < 1:
-            raise ValueError(f"{workers} workers: one at least is needed")
+            raise ValueError(f"{workers} workers: at least one is needed")
         shape, current = _checked(u, v, depth, w)
         line, count = self.mooring.line, len(current[1])
         rows = Results(

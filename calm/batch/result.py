@@ -177,7 +177,7 @@ def status_names(dataset: Stored) -> tuple[str, ...]:
     names = tuple(str(attributes.get("flag_meanings", "")).split())
     numbers = np.atleast_1d(attributes.get("flag_values", ())).tolist()
     if not names or numbers != list(range(len(names))):
-        raise UsageError("this is no result of calm batch: its `status` has no flag meanings")
+        raise UsageError("this is not a result of calm batch: its `status` has no flag meanings")
     return names
 
 

@@ -167,11 +167,11 @@ def run_kept(
         As `run_batch`.
     """
     if output.suffix not in ENDINGS:
-        raise UsageError(f"cannot write {output}: the name of a result ends in .nc or .zarr")
+        raise UsageError(f"cannot write {output}: the name of a result must end in .nc or .zarr")
     folder = store_folder(output)
     identity, work = "", None
     try:
-        with _reported_when_long("reading the record through, to know it again", say):
+        with _reported_when_long("reading the whole record, to check that it is unchanged", say):
             identity = identify()
         if is_finished(output, identity):
             if left_behind(output):
@@ -205,7 +205,7 @@ def _complete(
             return
         work.forget(damaged)
         tell(f"{len(damaged)} blocks were damaged on the disk; they are solved again")
-    raise OSError(f"{work.store.folder} does not keep what is written to it")
+    raise OSError(f"{work.store.folder} loses what is written to it")
 
 
 def _found(output: Path) -> Outcome:
@@ -236,7 +236,7 @@ def _reason(error: BaseException) -> str:
     if isinstance(error, OSError):
         return os.strerror(error.errno) if error.errno else str(error)
     if isinstance(error, MemoryError):
-        return "not enough memory; fewer --workers take less"
+        return "not enough memory; fewer --workers need less"
     # an interrupt within an `exec`, by which numba compiles, has `python -m calm` end by that
     # signal, whatever it exits with: until another `exec` has ended well
     exec("")

@@ -82,8 +82,8 @@ class Buoyancy(Adjustment):
     """Net force in water of a rigid piece or clamped instrument [N], or of a cable [N/m]."""
 
     note = (
-        "Only the net force in water changes; size, drag and mass stay as they are. What really "
-        "has this buoyancy has another drag: put it in the file and run it."
+        "Only the net force in water changes; size, drag and mass stay as they are. A real part "
+        "with this buoyancy has another drag: put it in the file and run it."
     )
 
     @property

@@ -52,7 +52,7 @@ def parse_range(texts: tuple[str, str] | None, change: Adjustment) -> tuple[floa
     if texts is None:
         low, high = change.range
         if low == high:
-            raise UsageError(f"{change.text} is 0; say with --between how far it may go")
+            raise UsageError(f"{change.text} is 0; give its range with --between")
         return low, high
     ends = []
     for text in texts:
@@ -113,7 +113,7 @@ _FIELDS = {"buoyancy": _buoyancy, "length": _length, "count": _count}
 def _refuse_several_items(pieces: Sequence[Piece]) -> None:
     if len({piece.place.item for piece in pieces}) > 1:
         named = pieces[0].label
-        raise LookupError(f"several items of the line are called so; name one: {named} …")
+        raise LookupError(f"several items of the line have this label; name one: {named} …")
 
 
 def _article(component: Component) -> str:

@@ -60,7 +60,7 @@ def checked_samples(samples: int) -> int:
         return samples
     near = min(max(FEWEST, 1 << max(samples - 1, 1).bit_length()), MOST)
     raise UsageError(
-        f"--samples: {samples} is no power of two from {FEWEST} to {MOST}; take {near}"
+        f"--samples: {samples} is not a power of two from {FEWEST} to {MOST}; take {near}"
     )
 
 

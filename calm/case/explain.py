@@ -161,7 +161,7 @@ def explain(result: Result, label: str | None = None) -> Explanation:
         shares = _shares(mooring, figures, "knockdown" in quantities, _point(mooring, part.place))
     except NoEquilibrium as failure:
         notes.append(
-            "What each drag causes cannot be found: with less drag the line has no equilibrium "
+            "The shares of the drags cannot be found: with less drag the line has no equilibrium "
             f"({failure.status}: {failure.message})"
         )
     else:

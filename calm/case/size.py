@@ -84,7 +84,7 @@ class Sizing:
         notes = [self.change.note] if self.change.note and self.status == MET else []
         if not self.steady:
             notes.append(
-                f"{self.target.quantity} does not go steadily with {self.change.text}: "
+                f"{self.target.quantity} does not rise or fall steadily with {self.change.text}: "
                 "other values may meet the target too."
             )
         return tuple(notes)
@@ -149,7 +149,7 @@ def size(
     before = trials.at(adjustment.now)
     if wanted.relation == "=" and before.measured is None:
         raise UsageError(
-            f"{wanted.text}: as it is the mooring has no such figure to start from"
+            f"{wanted.text}: the mooring as given has no such figure to start from"
             f"{f' ({before.failure})' if before.failure else ''}; write <= or >="
         )
     first = 0.0 if before.measured is None else before.measured - wanted.limit
@@ -244,14 +244,14 @@ def _why_not(search: LeastChange, trials: _Trials) -> tuple[str, str]:
                 f"{target.quantity}."
             )
             return message, "Choose another quantity, such as the excursion."
-        message = f"With no {change.text} {span} has the mooring an equilibrium. As it is:"
+        message = f"The mooring has no equilibrium with any {change.text} {span}. As it is:"
         return f"{message} {failure.status}: {failure.message}", failure.advice
     best = trials.at(least)
     assert best.measured is not None
     nearest, where = with_unit(best.measured, target.unit), with_unit(least, change.unit)
     as_it_is = trials.at(change.now).measured
     if as_it_is is not None and abs(best.measured - as_it_is) <= _NOTHING * abs(as_it_is):
-        message = f"It is nearest as it is, at {nearest}; {change.text} was tried {span}."
+        message = f"The present value is the nearest, at {nearest}; {change.text} was tried {span}."
     else:
         message = f"The nearest is {nearest}, with {change.text} at {where}; tried {span}."
     for neighbour, side in zip(search.neighbours(least), ("Below", "Above"), strict=True):

@@ -112,7 +112,7 @@ def parse_target(text: str, pieces: Sequence[Piece]) -> Target:
         raise mistake("quantity", unknown(what, quantity, QUANTITIES))
     relation = found["relation"]
     if relation not in RELATIONS:
-        what = f"`{relation}` is no relation" if relation else "there is no relation"
+        what = f"`{relation}` is not a relation" if relation else "there is no relation"
         raise mistake("relation", f"{what}; write <=, >= or =, as in `{_EXAMPLE}`")
     meant = None
     if found["part"] is not None and quantity == "required_weight":

@@ -64,8 +64,8 @@ def _anchor_too_light(result: Result, _: Solution) -> Iterator[str]:
 def _anchor_of_unknown_material(result: Result, _: Solution) -> Iterator[str]:
     if not result.file.anchor.material_known:
         yield (
-            f"{result.file.pieces[-1].label} gives its mass alone: its weight in water is that of "
-            "steel, 7850 kg/m³; of concrete it would be two thirds of that."
+            f"{result.file.pieces[-1].label} gives only its mass: its weight in water is taken as "
+            "that of steel, 7850 kg/m³; of concrete it would be two thirds of that."
         )
 
 
@@ -99,12 +99,13 @@ def _stiffness_unknown(result: Result | TowResult, _: Solution) -> Iterator[str]
 def _published(strains: list[float]) -> str:
     """What the published stiffnesses of a rope make of its tension, the greatest strain first."""
     if not strains:
-        return "none is published of such a rope."
+        return "no stiffness of such a rope is published."
     if len(strains) == 1:
-        return f"by the one that is published it would stretch by {_percent(strains[0])} %."
+        return f"by the one published stiffness it would stretch by {_percent(strains[0])} %."
     return (
-        f"those published of such a rope differ by a factor of {strains[0] / strains[-1]:.2g}; "
-        f"at its tension it could stretch by {_percent(strains[-1])} to {_percent(strains[0])} %."
+        "the published stiffnesses of such ropes differ by a factor of "
+        f"{strains[0] / strains[-1]:.2g}; at its tension it could stretch by "
+        f"{_percent(strains[-1])} to {_percent(strains[0])} %."
     )
 
 
@@ -213,7 +214,7 @@ def _wind_ignored(result: Result, solution: Solution) -> Iterator[str]:
     felt = floating is not None and (floating.hull is not None or floating.wind_area is not None)
     if wind is not None and solution.surface and not (solution.riding is not None and felt):
         yield (
-            "The wind on the float is not taken into account: nothing of it is known to stand out."
+            "The wind on the float is not taken into account: its part above water is not known."
         )
 
 

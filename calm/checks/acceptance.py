@@ -38,7 +38,7 @@ class Acceptance:
             of = f" of {accept.component}" if accept.component is not None else ""
             what = f"line {accept.line}: `accept` for {accept.rule}{of}"
             if accept.date is not None and accept.date > self.day.isoformat():
-                yield f"{what} is dated {accept.date}, a day to come: it does not count yet"
+                yield f"{what} is dated {accept.date}, in the future: it does not count yet"
             elif not accept.counts_on(self.day):
                 yield f"{what} ended on {accept.until}: it no longer counts"
             elif accept not in used:

@@ -15,7 +15,7 @@ from calm.quantities import say
 if TYPE_CHECKING:
     from calm.case import Mooring, Result
 
-_WHAT_IS_IT = "Give its `weight` in water, or the `density` of what it is made of."
+_WHAT_IS_IT = "Give its `weight` in water, or the `density` of its material."
 
 
 @criteria("anchor-weight", of_anchor=True)
@@ -26,7 +26,7 @@ def anchor_weight(mooring: Mooring) -> Iterator[Criterion]:
     def words(required: float, result: Result) -> tuple[str, str]:
         needs = f"{say('tension', required)} are required, {_in_air(mooring, required)}."
         if weight is None:
-            return f"What the anchor weighs in water is not known; {needs}", _WHAT_IS_IT
+            return f"The anchor's weight in water is not known; {needs}", _WHAT_IS_IT
         weighs = f"The anchor weighs {say('tension', weight)} in water; {needs}"
         return weighs, _heavier(mooring, required)
 
@@ -49,7 +49,7 @@ def anchor_uplift(mooring: Mooring) -> Iterator[Criterion]:
     def words(vertical: float, _: Result) -> tuple[str, str]:
         pulls = f"The line pulls up with {say('tension', vertical)}"
         if limit is None:
-            return f"{pulls}; what the anchor weighs in water is not known.", _WHAT_IS_IT
+            return f"{pulls}; the anchor's weight in water is not known.", _WHAT_IS_IT
         return (
             f"{pulls}; the anchor's weight in water over {factor:g} is {say('tension', limit)}.",
             _heavier(mooring, factor * vertical),
@@ -73,7 +73,7 @@ def anchor_sliding(mooring: Mooring) -> Iterator[Criterion]:
     def words(_: float, result: Result) -> tuple[str, str]:
         pulls = f"The line pulls sideways with {say('tension', result.anchor.horizontal)}"
         if weight is None:
-            return f"{pulls}; what the anchor weighs in water is not known.", _WHAT_IS_IT
+            return f"{pulls}; the anchor's weight in water is not known.", _WHAT_IS_IT
         return (
             f"{pulls}; friction of {friction:g} holds {say('tension', max(held(result), 0.0))}.",
             _heavier(mooring, result.anchor.required_weight),

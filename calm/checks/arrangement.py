@@ -48,12 +48,13 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
     if release is None:
         yield unknown(
             None,
-            "No piece has the role of a release: how the line is freed of its anchor is not known.",
+            "No piece has the role of a release: how the line is freed from its anchor is not "
+            "known.",
             "Give the release `role: release`.",
         )
         return
     piece = mooring.file.pieces[release]
-    yield verdict_on(piece, State.PASS, f"{piece.label} frees the line of what is below it.")
+    yield verdict_on(piece, State.PASS, f"{piece.label} frees the line from everything below it.")
 
 
 @rule("swivel")

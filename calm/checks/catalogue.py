@@ -75,7 +75,7 @@ def check_catalogue(
         if definition.prefer is not None:
             other = definitions.get(definition.prefer)
             if definition.prefer not in known or definition.prefer == identifier:
-                message = f"prefers `{definition.prefer}`, which no catalogue has beside it"
+                message = f"prefers `{definition.prefer}`, which no catalogue has"
                 findings.append(Finding(identifier, message))
             elif other is not None and other.prefer is not None:
                 message = f"prefers `{definition.prefer}`, which itself prefers `{other.prefer}`"
@@ -89,15 +89,15 @@ def no_source(component: Component) -> str | None:
 
 
 def source_of_nothing(component: Component) -> str | None:
-    """A source of a figure that is not there, or a figure given though searched for in vain."""
+    """A source of a figure that is missing, or a figure given though searched for in vain."""
     given = {name for name in type(component).model_fields if getattr(component, name) is not None}
     if absent := [name for name in component.sources or () if name not in given]:
         return f"names a source of {_listed(absent)}, which it does not give"
     if found := [name for name in component.searched or () if name in given]:
-        return f"was searched in vain for {_listed(found)}, which it gives"
+        return f"lists under `searched` {_listed(found)}, which it gives"
     known = type(component).model_fields
     if strange := [name for name in component.searched or () if name not in known]:
-        return f"was searched for {_listed(strange)}, which a {component.kind} does not have"
+        return f"lists under `searched` {_listed(strange)}, which a {component.kind} does not have"
     return None
 
 

@@ -49,12 +49,14 @@ def backup(handling: Handling) -> Iterator[Verdict]:
     if handling.mooring.file.release is None:
         yield unknown(
             None,
-            "There is no release in the line: nothing is meant to come up after a break.",
+            "There is no release in the line: nothing can be brought up after a break.",
             "Give the release `role: release`.",
         )
         return
     if not handling.backup:
-        yield unknown(None, "What hangs on the release is not known.", "Let the line stand first.")
+        yield unknown(
+            None, "The load on the release is not known.", "First give the line an equilibrium."
+        )
         return
     worst_break = min((one for one in handling.backup if one.judged), key=_room)
     worst_loss = min(handling.losses, key=_room, default=None)
@@ -69,8 +71,8 @@ def backup(handling: Handling) -> Iterator[Verdict]:
         part,
         worst.margin,
         worst.required,
-        f"{after} what holds the release has a buoyancy of {say('tension', worst.margin)}; "
-        f"{say('tension', worst.required)} bring it up.",
+        f"{after} the part that holds the release has a buoyancy of "
+        f"{say('tension', worst.margin)}; {say('tension', worst.required)} bring it up.",
         f"Add {say('tension', worst.required - worst.margin)} of buoyancy above the release.",
         source=cite("backup_margin"),
     )
@@ -135,7 +137,7 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
     message = (
         f"The anchor lands with {say('speed', speed)} ({slow} to {fast} with double and half the "
         f"drag along the line and of the anchor); {GREATEST_TOUCHDOWN_SPEED:g} m/s should not be "
-        "passed"
+        "exceeded"
     )
     if launch.in_still_water:
         message += " (in still water: in the current it finds no steady motion)"
@@ -169,7 +171,7 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
         message = f"Freed below {lowest.label}, the line rises with {say('speed', rise.rise_speed)}"
     else:
         message = f"Freed below {lowest.label}, the line does not rise"
-    message += f"; {say('speed', limit)} are asked for."
+    message += f"; {say('speed', limit)} are required."
     if rise.in_still_water:
         message += " That is in still water: in the current it finds no steady motion."
     remedy = "Add buoyancy above the release, or take weight off."
@@ -188,14 +190,14 @@ def tangling(handling: Handling) -> Iterator[Verdict]:
         yield _tangled(
             handling,
             launch.tangles,
-            "In the fall what is above overtakes",
+            "In the fall the parts above overtake",
             "Pay the line out under tension, or lower the anchor.",
         )
     if isinstance(rise, Recovery) and rise.tangles:
         yield _tangled(
             handling,
             rise.tangles,
-            "In the rise what is below overtakes",
+            "In the rise the parts below overtake",
             "Put more of the buoyancy at the top.",
         )
 

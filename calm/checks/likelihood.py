@@ -45,7 +45,7 @@ def with_probabilities(
     Raises
     ------
     UsageError
-        The number of samples is no power of two, or none that is solved.
+        The number of samples is not a power of two, or none that is solved.
     """
     normals = normals_of(checked_samples(samples), seed)
     expect_many(samples * len(assessment.stands))

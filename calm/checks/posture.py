@@ -69,7 +69,7 @@ THE_DESIGNS = "The design's own `maximum_tilt`"
 def _tilt_words(part: Judged, limit: float | None, leaning: float, _: Result) -> tuple[str, str]:
     leans = f"{part.label} leans {say('tilt', leaning)}"
     if limit is None:
-        return f"{leans}; how far it may is not known.", "Give its `max_tilt`."
+        return f"{leans}; its limit is not known.", "Give its `max_tilt`."
     return f"{leans}; {say('tilt', limit)} is its limit.", _STRAIGHTER
 
 
@@ -97,11 +97,11 @@ def depth_rating(mooring: Mooring) -> Iterator[Criterion]:
 def _rating_words(part: Judged, limit: float | None, depth: float, _: Result) -> tuple[str, str]:
     stands, rating = f"{part.label} is {say('depth', depth)} deep", part.component.depth_rating
     if limit is None or rating is None:
-        return f"{stands}; what depth it stands is not known.", "Give its `depth_rating`."
+        return f"{stands}; its depth rating is not known.", "Give its `depth_rating`."
     return (
         f"{stands}; it is rated to {say('depth_rating', rating)}, less a margin of "
         f"{say('depth_rating', rating - limit)}.",
-        "Take one that stands more depth, or add buoyancy against the knockdown.",
+        "Take one with a greater depth rating, or add buoyancy against the knockdown.",
     )
 
 

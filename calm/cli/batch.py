@@ -75,7 +75,7 @@ def batch(
         the `position` of the mooring file unless given.
     declination
         Of magnetic north from true north, such as "12.5 deg", positive to the east: turns
-        the currents that the record says count from magnetic north.
+        the currents that the record says are relative to magnetic north.
     workers
         How many threads; one for each processor unless given.
     scheduler
@@ -153,7 +153,7 @@ def _summarized(output: Path, mooring: Mooring, stop: Event) -> bool:
         reason = error.strerror or str(error)
     else:
         return True
-    narrate(f"{output} is done; its statistics are not: {reason}. The same command gathers them")
+    narrate(f"{output} is done; its statistics are not: {reason}. The same command computes them")
     return False
 
 
@@ -236,7 +236,7 @@ def check_output(output: Path, *inputs: Path) -> None:
     # unlike `Path.resolve`, it takes links that lead round in a circle
     place = os.path.realpath(output)
     if output.is_symlink() and not output.exists():
-        raise UsageError(f"cannot write {output}: it is a symbolic link that leads nowhere")
+        raise UsageError(f"cannot write {output}: it is a symbolic link to a missing file")
     folder = os.path.dirname(place)
     if not os.path.isdir(folder):
         raise UsageError(f"cannot write {output}: there is no folder {folder}")

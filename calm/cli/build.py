@@ -23,7 +23,7 @@ PORT = 8000
 IDLE = 120.0  # minutes
 
 _NO_TERMINAL = (
-    "calm build needs a terminal to draw in, and keys; `calm build --serve` opens it in a "
+    "calm build needs a terminal and a keyboard; `calm build --serve` opens it in a "
     "browser, `calm run FILE --schematic` prints the line"
 )
 _NO_BROWSER = (

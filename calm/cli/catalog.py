@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 catalog = App(
     name="catalog",
-    help="Look into the component catalogue, and check it.",
+    help="Search, show and check the component catalogue.",
     help_epilogue="""Examples:
 
   calm catalog list --kind chain
@@ -73,8 +73,8 @@ def search(words: list[str], /, *, json: bool = False) -> ExitCode:
 def show_components(ids: list[str], /, *, json: bool = False) -> ExitCode:
     """Show every figure of components, where they come from, and what follows from them.
 
-    That is the net force in water, Kn and Kt, the drag at 1 m/s. Components that are the same
-    thing by different sources stand side by side, that to use first.
+    That is the net force in water, Kn and Kt, the drag at 1 m/s. Components that are the same item
+    by different sources are shown side by side, the one to use first.
 
     Parameters
     ----------
@@ -109,8 +109,9 @@ def check(file: Path | None = None, /, *, json: bool = False) -> ExitCode:
     cable stiffer than steel are impossible; figures without a source are findings, too. The exit
     code is 1 when there is a finding.
 
-    Missing figures are listed and are no finding: those without which a design check has an
-    unknown, or the masses do not add up. Figures that were searched for in vain are marked.
+    Missing figures are listed, but are not findings: figures without which a design check has an
+    unknown, or the sum of the masses is incomplete. Figures that were searched for and not found
+    are marked.
 
     Parameters
     ----------

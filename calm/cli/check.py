@@ -52,7 +52,7 @@ def check(
 
     Each mooring is solved as given, in still water, with cables that strum and,
     where its file asks for it, at high and low water and with growth; then launched
-    anchor last, released, and parted at each connection. The exit code is 0 when
+    anchor last, released, and broken at each connection. The exit code is 0 when
     every finding is a pass, a warning or accepted, 1 when a rule fails or lacks a
     figure, 3 when a mooring has no equilibrium.
 
@@ -61,8 +61,8 @@ def check(
     files
         Mooring files.
     environment
-        An environment named in the files, or an environment file. Repeatable; without
-        it, each file's own environment and all that it names.
+        An environment named in the files, or an environment file. Repeatable. By default, every
+        environment of each file.
     catalog
         A catalogue of your own; its components hide others of the same id. Repeatable.
     json
@@ -72,11 +72,10 @@ def check(
     against
         An earlier design, with which the report compares the mooring; needs --report.
     allow_unknown
-        End with exit code 0 although figures are unknown; what is shown and written stays
-        the same.
+        Do not let unknown figures change the exit code; the output stays the same.
     uncertainty
-        Give every finding the probability that its limit is broken, with the input as unsure
-        as the file says under uncertainty, and list the designs by it.
+        Give every finding the probability that its limit is broken, with inputs as uncertain as
+        the file's `uncertainty` says, and list the designs by it.
     samples
         How many draws, a power of two.
     seed
@@ -96,7 +95,7 @@ def check(
         _check_report(report, json, given)
     designs, tows, earlier = _read(files, environment, catalog or [], workers, against)
     if tows:
-        narrate(f"not checked, since towed: {', '.join(map(str, tows))}")
+        narrate(f"not checked, because they are tows: {', '.join(map(str, tows))}")
     drawn = report is not None and earlier is None  # one that is compared is drawn with that
     judged = _judged(designs, workers, drawn, draws)
     assessments = [each.assessment for each in judged]
@@ -187,7 +186,7 @@ def _check_report(folder: Path, json: Path | None, given: Sequence[Path]) -> Non
             raise UsageError(f"two outputs would go to {json}")
         for path in given:
             if os.path.realpath(path) == real:
-                raise UsageError(f"{path} is read here; the report would take its place")
+                raise UsageError(f"{path} is read here; the report would overwrite it")
 
 
 def _judged(

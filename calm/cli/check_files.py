@@ -54,7 +54,7 @@ def read_designs(
     read, tows = _loaded(asked, catalogs, workers)
     moored = [file for file in files if file not in tows]
     if not moored:
-        raise UsageError(f"{command} is for moorings; towed: {', '.join(map(str, tows))}")
+        raise UsageError(f"{command} is for moorings; these are tows: {', '.join(map(str, tows))}")
     if environments is None:
         others = [(file, name) for file in moored for name in read[file, None].file.variants]
         read |= _loaded(others, catalogs, workers)[0]

@@ -22,7 +22,7 @@ if [ "$funcstack[1]" = _calm ]; then _calm "$@"; else compdef _calm calm; fi
 
 
 def completion(shell: Literal["bash", "zsh", "fish"], /) -> ExitCode:
-    """Print the script by which a shell completes calm.
+    """Print a script that lets a shell complete commands and options.
 
     Parameters
     ----------

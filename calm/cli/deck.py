@@ -41,7 +41,7 @@ def deck(
     course: str | None = None,
     catalog: list[Path] | None = None,
 ) -> ExitCode:
-    """Draw and list what goes to sea with moorings.
+    """Draw the diagram and write the lists for the deployment of moorings.
 
     Writes deck.pdf with a mooring diagram for the wall, deployment and recovery
     logs, cutting list, hardware bill, shipping list, lifts, instrument sheet and,
@@ -89,7 +89,7 @@ def deck(
     )
     designs, tows = read_designs(files, environment, catalog or [], None, "calm deck")
     if tows:
-        narrate(f"not drawn, since towed: {', '.join(map(str, tows))}")
+        narrate(f"not drawn, because they are tows: {', '.join(map(str, tows))}")
     folders = _folders(designs, output)
     decks: list[Deck] = []
     for design in designs:

@@ -35,11 +35,10 @@ def diff(
 ) -> ExitCode:
     """Compare two designs piece by piece, and say what the change does.
 
-    Pieces and clamps are known by their labels, else by what they are and where
-    they stand; what is put in, taken out, moved or changed is listed, and depth,
-    knockdown, tensions, anchor, weights and the margins of calm check stand side
-    by side. With one file, its design is compared with what it says was
-    deployed. A design without an equilibrium is compared too. The exit code is
+    Pieces and clamps are matched by their labels, or else by component and position. Parts added,
+    removed, moved or changed are listed, and depth, knockdown, tensions, anchor, weights and the
+    margins of calm check stand side by side. With one file, its design is compared with its
+    `deployed:`. A design without an equilibrium is compared too. The exit code is
     0 whether or not the designs differ.
 
     Parameters

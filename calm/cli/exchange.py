@@ -37,7 +37,7 @@ def import_(
     allow_include: bool = False,
     json: OutputPath = None,
 ) -> ExitCode:
-    """Make mooring files of other programs' designs.
+    """Make mooring files from designs of other programs.
 
     The program is found from the content of the file. Every figure is taken from
     the file. Guesses stand as comments at their lines, and are reported together
@@ -119,7 +119,7 @@ def _pairs(option: str, texts: list[str]) -> dict[str, str]:
     for text in texts:
         name, equals, value = text.partition("=")
         if not name.strip() or not equals:
-            raise UsageError(f"{option}: `{text}` is no NAME=VALUE")
+            raise UsageError(f"{option}: `{text}` is not NAME=VALUE")
         pairs[name.strip()] = value.strip()
     return pairs
 
@@ -147,13 +147,13 @@ def _targets(files: tuple[Path, ...], output: Path) -> list[Path]:
         targets = [output]
     else:
         if output.exists() and not output.is_dir():
-            raise UsageError(f"cannot write into {output}: it is no folder")
+            raise UsageError(f"cannot write into {output}: it is not a folder")
         targets = [output / f"{file.stem}.yaml" for file in files]
     for target in targets:
         if targets.count(target) > 1:
             raise UsageError(f"two of the files would both become {target}")
         if any(os.path.realpath(target) == os.path.realpath(file) for file in files):
-            raise UsageError(f"{target} would take the place of the file that is read")
+            raise UsageError(f"{target} would overwrite the file that is read")
     return targets
 
 
@@ -216,8 +216,8 @@ def export(
 ) -> ExitCode:
     """Write a mooring or a tow for another program.
 
-    What the other program cannot hold is reported, and stands at the head of
-    the file. A piece that is cut to fit goes out with its cut length.
+    What the other program cannot represent is reported, and listed at the head of the file. A
+    piece cut to fit is exported with its cut length.
 
     Parameters
     ----------
@@ -238,7 +238,7 @@ def export(
 
     check_destination(output)
     if os.path.realpath(output) == os.path.realpath(file):
-        raise UsageError(f"{output} would take the place of the file that is read")
+        raise UsageError(f"{output} would overwrite the file that is read")
     exported = export_file(file, to, environment=environment, catalogs=catalog or [])
     beside = {output.with_name(name): content for name, content in exported.beside.items()}
     for path in beside:

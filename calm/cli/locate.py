@@ -94,8 +94,8 @@ def locate(
     answering = given["depth"] - height if "depth" in given else None
     if under < 0.0 or height < 0.0 or (answering is not None and answering <= under):
         raise UsageError(
-            "--transducer and --above-seabed are not negative, and what answers is deeper than "
-            "the transducer"
+            "--transducer and --above-seabed must not be negative, and the transponder must be "
+            "deeper than the transducer"
         )
     sound = _sound(sound_speed or DEFAULT_SPEED)
     survey = read_ranges(file, under)

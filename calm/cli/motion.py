@@ -55,8 +55,7 @@ def motion(
     The currents move the line; the pressures correct the drag for the whole record,
     and the current at each time. The result has the depth of every component and
     clamped instrument with its standard deviation, and the residuals of the
-    sensors. A current meter of the line, known by its label, hangs where the line
-    has it.
+    sensors. A current meter of the line, matched by its label, is placed where the line has it.
 
     However a run is interrupted, the same command resumes it; the exit code is 75
     until everything is solved.
@@ -89,7 +88,7 @@ def motion(
         Interpolate in time between values no further apart than this.
     declination
         Of magnetic north from true north, such as "12.5 deg", positive to the east: turns
-        the currents that the record says count from magnetic north.
+        the currents that the record says are relative to magnetic north.
     onto
         A NetCDF file of instruments, found by label: OUTPUT is then a copy of it with
         `depth` and `depth_sd` added, and the result stands beside it as
@@ -136,11 +135,11 @@ def motion(
     copy = output
     if onto is not None:
         if output.suffix != ".nc":
-            raise UsageError(f"cannot write {output}: the name of a copy ends in .nc")
+            raise UsageError(f"cannot write {output}: the name of a copy must end in .nc")
         output = output.with_suffix(".motion.nc")
         check_output(output, file, *currents, *files)
     elif replace_depth:
-        raise UsageError("--replace: there is no --onto whose depths could be replaced")
+        raise UsageError("--replace needs --onto")
     mooring = mooring_of(file, environment, catalog or [], "motion")
     for notice in mooring.file.notices:
         narrate(f"{file}: {notice}")
@@ -177,7 +176,7 @@ def motion(
             factor = np.asarray(result["current_factor"].values, np.float64)
             if instruments is not None:
                 for label in write_onto(instruments, result, labels, apart, copy):
-                    narrate(f"{onto}: `{label}` is no part of the line; its depth is NaN")
+                    narrate(f"{onto}: `{label}` is not a part of the line; its depth is NaN")
         if cross_validate:
             each = cross_validated(mooring, measured, names, hidden, narrate, workers)
             study = replace(study, held_out=(*study.held_out, *each))

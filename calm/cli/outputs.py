@@ -176,7 +176,9 @@ class Outputs:
         asked += [path for paths in self.drawn_paths for path in paths]
         for path in asked:
             if str(path).startswith("-") and path != STDOUT:
-                raise UsageError(f"{path} stands where a path is needed; write ./{path} for a file")
+                raise UsageError(
+                    f"{path} was given where a path is needed; write ./{path} for a file"
+                )
         if self.plot is not None:
             from calm.report.picture import check_format
 
@@ -184,7 +186,9 @@ class Outputs:
         ends = (self.html, ".html"), (self.pdf, ".pdf"), (self.netcdf, ".nc")
         for report, ending in ends:
             if report is not None and report.suffix != ending:
-                raise UsageError(f"cannot write {report}: the name of this report ends in {ending}")
+                raise UsageError(
+                    f"cannot write {report}: the name of this report must end in {ending}"
+                )
         if self.drawn_paths:
             moment()
         mooring_files = set(map(os.path.realpath, self.files))

@@ -105,14 +105,14 @@ def draws_of(uncertainty: bool, samples: int, seed: int) -> tuple[int, int] | No
     Raises
     ------
     UsageError
-        A number of samples that is no power of two; a seed below zero; either without need.
+        A number of samples that is not a power of two; a seed below zero; either without need.
     """
     from calm.case.draws import SAMPLES, checked_samples
 
     if not uncertainty:
         for option, value, usual in (("--samples", samples, SAMPLES), ("--seed", seed, 0)):
             if value != usual:
-                raise UsageError(f"{option}: {value} is for --uncertainty, which is not asked for")
+                raise UsageError(f"{option}: {value} needs --uncertainty")
         return None
     checked_samples(samples)
     if seed < 0:
@@ -188,7 +188,7 @@ def _refuse_tows(option: str, files: Sequence[Path], lines: Sequence[Mooring | T
 
     tows = [str(file) for file, line in zip(files, lines, strict=True) if isinstance(line, Tow)]
     if tows:
-        raise UsageError(f"{option} is for moorings; towed: {', '.join(tows)}")
+        raise UsageError(f"{option} is for moorings; these are tows: {', '.join(tows)}")
 
 
 def _explained(outcome: Outcome) -> Outcome:

@@ -38,7 +38,7 @@ def new(
     Parameters
     ----------
     kind
-        Of mooring: on the shelf, in the deep sea, an ADCP, a surface buoy, or a tow.
+        Kind of mooring: on the shelf, in the deep sea, an ADCP, a surface buoy, or a tow.
     record
         Write a small synthetic record, NetCDF, for `calm batch`; needs --output.
     output
@@ -62,7 +62,7 @@ def _new_record(output: Path | None, force: bool) -> ExitCode:
     from calm.batch.records.made import made_record
 
     if output is None:
-        raise UsageError("a record is no text: give the file to write, --output record.nc")
+        raise UsageError("a record is not text; give the file to write, --output record.nc")
     _write(output, made_record(), force)
     result = output.with_name(f"{output.stem}-result.nc")
     narrate(f"{output} written; solve it with: calm batch FILE --currents {output} -o {result}")

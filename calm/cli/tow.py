@@ -46,7 +46,7 @@ def tow(
 
     Without --speeds and --sensitivity it does what `calm run` does, for tows only.
     With --speeds, a speed without equilibrium is a row with its status and makes
-    the exit code 3; the others are solved all the same.
+    the exit code 3; the other speeds are still solved.
 
     Parameters
     ----------

@@ -25,7 +25,7 @@ VERIFY_EXAMPLES = """Examples:
 def verify(
     words: list[str] | None = None, /, *, field: bool = False, json: OutputPath = None
 ) -> ExitCode:
-    """Compute figures that are known without CALM, and compare.
+    """Compute figures that are known without CALM, and compare them.
 
     Each figure is published, or comes from a closed form or an independent
     integration, or is a property that any line must have. Those that CALM meets

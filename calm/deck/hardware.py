@@ -126,11 +126,15 @@ def _pins(groups: dict[tuple[str, str], list[Hung]]) -> Iterator[Stock]:
         component, count = group[0].part.component, len(group)
         pin = "bolt and nut" if _is_bolted(component) else "screw pin"
         name = f"{pin} of {group[0].name}"
-        yield Stock("pins", use, name, count, spares_of("pins", count), basis="one a shackle")
+        yield Stock(
+            "pins", use, name, count, spares_of("pins", count), basis="one for each shackle"
+        )
         if _is_bolted(component):
             name = f"cotter pin of {group[0].name}"
             spares = spares_of("cotter pins", count)
-            yield Stock("cotter pins", use, name, count, spares, basis="one a shackle with bolt")
+            yield Stock(
+                "cotter pins", use, name, count, spares, basis="one for each shackle with bolt"
+            )
 
 
 def _is_bolted(component: Component) -> bool:
@@ -145,12 +149,12 @@ def _against_corrosion(parts: Sequence[Hung]) -> Iterator[Stock]:
     for (one, other), count in names.items():
         yield Stock(
             "isolators", "", f"isolator between {one} and {other}", count,
-            spares_of("isolators", count), basis="one a contact of unlike metals",
+            spares_of("isolators", count), basis="one for each contact of unlike metals",
         )  # fmt: skip
     for use, count in Counter({base.label: base.use for base, _ in contacts}.values()).items():
         yield Stock(
             "anodes", use, f"anode on {use}", count, spares_of("anodes", count),
-            basis="one a piece of the baser metal",
+            basis="one for each piece of the baser metal",
         )  # fmt: skip
 
 
@@ -164,5 +168,10 @@ def _thimbles(parts: Sequence[Hung]) -> Iterator[Stock]:
     for (use, name), count in ends.items():
         spares = spares_of("thimbles", count)
         yield Stock(
-            "thimbles", use, f"thimble for {name}", count, spares, basis="two a cable, termination"
+            "thimbles",
+            use,
+            f"thimble for {name}",
+            count,
+            spares,
+            basis="two for each cable, by its termination",
         )

@@ -75,7 +75,7 @@ def chain_of(line: Line, count: int) -> Chain:
     """
     length, piece, bars, span = _bars(line, count)
     if not len(length):
-        raise ValueError("a line without length is no chain")
+        raise ValueError("a line needs a length")
     clamp_bar, clamp_place = _along(
         line.clamp_piece, line.clamp_at / np.maximum(line.length, 1e-300)[line.clamp_piece],
         bars, span,

@@ -118,7 +118,7 @@ def fall(line: Line, water: Water, anchor: Anchor, start: State, fineness: Finen
     while states[-1].node[-1, 2] > bottom:
         if len(states) > _MOST * fineness.steps:
             raise Status.ANCHOR_LIFTS.because(
-                f"The anchor weighs {anchor.weight:.0f} N in water and does not draw the line to "
+                f"The anchor weighs {anchor.weight:.0f} N in water and does not pull the line to "
                 "the seabed."
             )
         # let go at once, without inertia, the anchor would be upon the line beside it
@@ -182,7 +182,7 @@ def _stepped(mover: Mover, state: State, step: float, depth: float) -> State:
                 return mover.stepped(state, step, gently)
         step *= 0.4
     raise Status.NOT_CONVERGED.because(
-        f"The way of the line finds no next step, {state.time:.1f} s after it was let go."
+        f"The fall of the line could not be computed beyond {state.time:.1f} s after it was let go."
     )
 
 

@@ -115,7 +115,7 @@ class DropPlan:
             said.append(
                 f"The line comes to rest {self.rest_difference:.2f} m from its equilibrium, more "
                 "than a thousandth of the depth: the depths of instruments are not shown, and the "
-                "fall is to be doubted as well."
+                "fall is doubtful as well."
             )
         if self.fall_time < BRIEF:
             said.append(
@@ -126,7 +126,7 @@ class DropPlan:
             said.append("Strumming is left out: the drag of the cables is that at rest.")
         names = ", ".join(each.label for each in self.beyond_rating)
         if names:
-            said.append(f"Deeper in the drop than made for: {names}.")
+            said.append(f"Deeper in the drop than their depth rating: {names}.")
         return tuple(said)
 
     def to_dict(self) -> dict[str, Any]:

@@ -167,8 +167,8 @@ def _ship(mooring: Mooring, speed: float, streamed: float | None, course: float)
     through = hypot(u - east, v - north)
     if not (speed > 0.0 and through >= SLOWEST_SHIP):
         raise UsageError(
-            f"a ship at {speed:g} m/s makes {through:.2g} m/s through the water: that streams no "
-            "line; it must be faster"
+            f"a ship at {speed:g} m/s makes {through:.2g} m/s through the water, which is too "
+            "slow to stream the line"
         )
     length = float(mooring.line.length.sum())
     if streamed is not None and not 0.0 < streamed < length:

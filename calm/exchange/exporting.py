@@ -54,7 +54,9 @@ def export_file(
         The file is wrong, a piece that is cut to fit does not, or `to` is no program.
     """
     if to not in WRITERS:
-        raise UsageError(unknown(f"--to: `{to}` is no program that CALM writes for", to, WRITERS))
+        raise UsageError(
+            unknown(f"--to: `{to}` is not a program that CALM writes for", to, WRITERS)
+        )
     design = assembled(load(path, environment, list(catalogs)))
     content, lost = WRITERS[to](design)
     beside = {CURRENTS: current_profile(design)} if to == "moordyn" else {}

@@ -143,7 +143,7 @@ def import_file(
     if environment is not None:
         lines = environment_lines(environment, output)
         if design.water is not None:
-            what = f"its water: that of {environment.name} stands in its place"
+            what = f"the water of the file: {environment.name} stands in its place"
             design.dropped.append(Remark("environment", what))
         design.record = None
     elif design.water is None and design.tow is None:
@@ -188,7 +188,7 @@ def format_of(path: Path, name: str | None, *, listed: bool = False) -> Format:
         if each.recognises(path, content) or (listed and each is FORMATS[-1]):
             return each
     programs = ", ".join(f"{each.name} ({each.program})" for each in FORMATS)
-    raise refused(path, f"is of no program that CALM reads: {programs}")
+    raise refused(path, f"is not a file of a program that CALM reads: {programs}")
 
 
 def _check(path: Path, output: Path, text: str) -> None:

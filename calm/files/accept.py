@@ -23,7 +23,7 @@ def _day(text: str) -> str:
             return text
     except ValueError:
         pass
-    raise ValueError(f"`{shown(text)}` is no day of the calendar; write it as 2027-06-30")
+    raise ValueError(f"`{shown(text)}` is not a day of the calendar; write it as 2027-06-30")
 
 
 def _said(text: str) -> str:

@@ -50,9 +50,9 @@ _URI = "URI GSO mooring program"
 class SafetyFactors(Model):
     """Least breaking load over tension."""
 
-    steel: Annotated[float, _SAFETY, Limit("of steel and all that is no rope", _UFC)] = 3.0
+    steel: Annotated[float, _SAFETY, Limit("of steel and everything that is not rope", _UFC)] = 3.0
     synthetic: Annotated[float, _SAFETY, Limit("of synthetic rope", _PRACTICE)] = 5.0
-    surface: Annotated[float, _SAFETY, Limit("of all of a surface mooring", _PRACTICE)] = 5.0
+    surface: Annotated[float, _SAFETY, Limit("of all pieces of a surface mooring", _PRACTICE)] = 5.0
 
 
 class MinimumTensions(Model):

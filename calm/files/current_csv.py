@@ -123,7 +123,7 @@ def read_csv_header(path: Path, number: int, line: str) -> CsvHeader:
         message = "the line ends in a comma; take it off every line"
         raise InputError([Problem(str(path), number, len(line.rstrip()), message)])
     if len(cells) < 2:
-        message = f"`{cells[0][:40]}` is no header such as `depth[m],u[m/s],v[m/s]`"
+        message = f"`{cells[0][:40]}` is not a header such as `depth[m],u[m/s],v[m/s]`"
         raise InputError([Problem(str(path), number, 1, message)])
     name, zone = heading(cells[0])
     if name.lower() == "time" and zone and zone.upper() not in ZONES_OF_UTC:

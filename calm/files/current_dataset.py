@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import NDArray
 
-FLAGS = "the current's quality flags are not looked at"
+FLAGS = "the quality flags of the current are ignored"
 
 
 @dataclass(frozen=True)
@@ -194,22 +194,24 @@ def _understood(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
 
 
 def _turned(velocity: Velocity, declination: float | None) -> tuple[str, ...]:
-    """What is reported of a current that counts from magnetic north."""
+    """What is reported of a current that is relative to magnetic north."""
     counted = velocity.names if velocity.turn is None else velocity.names[1:]
     which = " and ".join(f"`{name}`" for name in counted)
     if velocity.magnetic and declination is None:
         raise UnreadableError(
-            f"{which} count from magnetic north; give the `declination` there, positive to the "
+            f"{which} are relative to magnetic north; give the `declination` there, positive "
+            "to the "
             "east (beside `file:`, or `--declination`)"
         )
     if declination is not None and not velocity.magnetic:
         raise UnreadableError(
-            f"{which} are not said to count from magnetic north, so no `declination` is applied; "
+            f"{which} are not said to be relative to magnetic north, so no `declination` is "
+            "applied; "
             "leave it out"
         )
     if declination is None:
         return ()
-    return (f"{which} counted from magnetic north, turned by {declination:g}°",)
+    return (f"{which} were relative to magnetic north, turned by {declination:g}°",)
 
 
 def _dimension(dataset: xr.Dataset, time: str | None) -> str | None:
@@ -233,7 +235,7 @@ def _single_levels(
     levels = [str(dim) for dim in dataset[name].dims if dim != time]
     if len(levels) > 1:
         raise UnreadableError(
-            f"`{name}` is no single profile, but spreads over {_spread(dataset[name])}"
+            f"`{name}` is not a single profile, but spreads over {_spread(dataset[name])}"
         )
     return (levels[0] if levels else None), dataset
 

@@ -37,6 +37,6 @@ def holds_arrays(path: Path) -> bool:
     if not path.is_dir():
         return is_netcdf(path)
     if not is_zarr(path):
-        message = "is a folder, and no zarr store; join its files into one first"
+        message = "is a folder, and not a zarr store; join its files into one first"
         raise InputError([Problem(str(path), 0, 0, message)])
     return True

@@ -193,25 +193,26 @@ def _from_instrument(
     """
     if way not in ("up", "down"):
         raise UnreadableError(
-            f"`{levels.name}` counts from the instrument, and the file does not say whether that "
+            f"`{levels.name}` is measured from the instrument, and the file does not say "
+            "whether that "
             "looks up or down (`positive: up` of the variable, or `orientation: up` of the file)"
         )
     instrument, water = _depths(dataset, levels, time)
     offset = str(levels.name).startswith("range") and _offset_by_hand(dataset)
     if offset and way == "down":
-        note = f"`{levels.name}` counts from the surface, as its offset is added already"
+        note = f"`{levels.name}` is measured from the surface, as its offset is added already"
         return Levels(levels, factor, 0.0, None, (note,))
     if offset and instrument is None:
         if water is None:
             return _above_seabed(levels, factor, water_depth)
-        note = f"`{levels.name}` counts from the seabed, whose depth is `{water[0].name}`"
+        note = f"`{levels.name}` is measured from the seabed, whose depth is `{water[0].name}`"
         return Levels(levels, -factor, 0.0, water, (note,))
     if instrument is None:
         but = f"; `{water[0].name}` is that of the water" if water is not None else ""
         raise UnreadableError(
-            f"`{levels.name}` counts from the instrument, whose depth is not in the file{but}"
+            f"`{levels.name}` is measured from the instrument, whose depth is not in the file{but}"
         )
-    note = f"`{levels.name}` counts from the instrument, whose depth is `{instrument[0].name}`"
+    note = f"`{levels.name}` is measured from the instrument, whose depth is `{instrument[0].name}`"
     signed = factor if way == "down" else -factor
     return Levels(levels, signed, 0.0, instrument, (note,))
 

@@ -92,5 +92,5 @@ def part_in_texts(attributes: Mapping[Any, Any]) -> str | None:
                 return f"is not the whole current by its {name}: {said.strip()[:80]}"
     methods = str(attributes.get("cell_methods", ""))
     if _OVER_YEARS.search(methods):
-        return f"is a mean of many years, `cell_methods: {methods}`, not a current that ran"
+        return f"is a mean of many years, `cell_methods: {methods}`, not a current at one time"
     return None

@@ -68,7 +68,7 @@ class Velocity:
     names : eastward and northward velocity, or speed and direction
     up : upward velocity, None where there is none
     turn : what is added to a direction to have it flow toward [degrees]; None for components
-    magnetic : whether it counts from magnetic north
+    magnetic : whether it is relative to magnetic north
     notes : what had to be taken for granted
     """
 
@@ -90,7 +90,7 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
     Raises
     ------
     UnreadableError
-        There is none, there are several, or what is there is no current to the east and north.
+        There is none, there are several, or what is there is not a current to the east and north.
     """
     if (reason := other_frame(dataset.attrs) or part_in_texts(dataset.attrs)) is not None:
         raise UnreadableError(f"its current {reason}")
@@ -133,7 +133,7 @@ def _direction(
             if told not in (way, None):
                 said = dataset[name].attrs.get("long_name") or dataset[name].attrs.get("comment")
                 raise UnreadableError(
-                    f"`{name}` says two things: by its name it is the direction the current "
+                    f"`{name}` contradicts itself: by its name it is the direction the current "
                     f"{'flows to' if way == 'to' else 'comes from'}, and it says `{said}`"
                 )
             return name, way

@@ -100,10 +100,10 @@ def not_a_current(variable: xr.DataArray) -> str | None:
     own = words_of(variable, "long_name", "standard_name")
     if part_in_words(own) or any(pattern.search(own) for pattern in _NOT_A_CURRENT):
         said = variable.attrs.get("long_name") or variable.attrs.get("standard_name")
-        return f"is `{said}`, which is no current to the east and north"
+        return f"is `{said}`, which is not a current to the east and north"
     methods = str(variable.attrs.get("cell_methods", ""))
     if _SPREADS.search(methods):
-        return f"is `cell_methods: {methods}`, which is no current that ran"
+        return f"is `cell_methods: {methods}`, which is not a measured or modelled current"
     for name in ("comment", "note", "notes"):
         said = words_of(variable, name)
         if _SAID_IN_COMMENTS.search(said):
@@ -146,7 +146,7 @@ def other_frame(attributes: Mapping[Any, Any]) -> str | None:
 
 
 def is_magnetic(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProxyType({})) -> bool:
-    """Whether a velocity or direction counts from magnetic north, as it or its file says.
+    """Whether a velocity or direction is relative to magnetic north, as it or its file says.
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ def is_magnetic(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProx
 
 
 def _counts_from_it(name: str, said: Any) -> bool:
-    """Whether an attribute says that directions count from magnetic north."""
+    """Whether an attribute says that directions are relative to magnetic north."""
     if _UNTURNED.fullmatch(name):
         return str(said).strip().lower() in _NO
     return _says_so(said, _MAGNETIC if _DATUM.fullmatch(name) else _MAGNETIC_NORTH)

@@ -132,7 +132,7 @@ def _existing(data: Any, loc: tuple[int | str, ...]) -> tuple[Location, Any]:
 
 def _about_key(name: str, value: object, keys: list[str], kind: str | None) -> str:
     if value is None and name[:1].isdigit():
-        return f"`{shown(name)}` is no key; a decimal comma? (write 0.8, not 0,8)"
+        return f"`{shown(name)}` is not a key; a decimal comma? (write 0.8, not 0,8)"
     owner = f" for kind {kind}" if kind else ""
     return unknown(f"unknown key `{shown(name)}`{owner}", name, keys)
 

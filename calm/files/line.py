@@ -99,7 +99,7 @@ class LineReader:
             if isinstance(item, dict):
                 items.append(Section.of(section.document, (*section.location, key, i), item))
             else:
-                message = f"`{shown(item)}` is no item; write `{{use: {shown(item) or '…'}}}`"
+                message = f"`{shown(item)}` is not an item; write `{{use: {shown(item) or '…'}}}`"
                 self._refuse(section, (key, i), message)
         return items
 

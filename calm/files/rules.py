@@ -73,7 +73,7 @@ RULES = {
     "strength-steps": RuleText(
         "Strength steps",
         "tension",
-        "every piece beside the cables above and below it",
+        "every piece, compared with the cables above and below it",
         "half of their strength: a warning",
         "A default of this program: half the strength of the cables on both its sides",
         "the strengths of pieces side by side do not change with the current",
@@ -92,7 +92,7 @@ RULES = {
         "depth",
         "depth in the current",
         "`depth_rating` less `rating_margin`, 100 m, or half of a rating below 200 m",
-        "The maker's rating, less a margin for a stronger current than was thought of",
+        "The maker's rating, less a margin for a stronger current than expected",
         figures=("depth_rating",),
     ),
     "top-depth": RuleText(
@@ -129,7 +129,7 @@ RULES = {
         "tension",
         "V",
         "weight in water / 1.5",
-        "The same rule apart: V ≤ weight in water / 1.5",
+        "The vertical part of that rule: V ≤ weight in water / 1.5",
         figures=("weight", "density"),
     ),
     "anchor-sliding": RuleText(
@@ -137,7 +137,8 @@ RULES = {
         "tension",
         "H",
         "friction × (weight in water / 1.5 − V)",
-        "The same rule apart: H ≤ friction (weight in water / 1.5 - V), friction 0.6 of a "
+        "The horizontal part of that rule: H ≤ friction (weight in water / 1.5 - V), friction "
+        "0.6 of a "
         "deadweight",
         figures=("weight", "density"),
     ),
@@ -160,7 +161,7 @@ RULES = {
         "freeboard",
         "of the surface float",
         "above 0",
-        "A float at the surface stands out of it",
+        "A float at the surface stands out of the water",
         "the result does not hold how the float lies in the water",
     ),
     "watch-circle": RuleText(
@@ -185,16 +186,16 @@ RULES = {
         "how far the depth and the lengths of `deployed` bring the top of the upright line from "
         "where it was designed to be",
         "the error of a sounding, 1 m and 2.3 % of the depth: a warning",
-        "IHO S-44, order 2: what a sounding may be off by, 95 %",
+        "IHO S-44, order 2: the error of a sounding, 95 %",
         _ONCE,
     ),
     "figures": RuleText(
         "Figures of components",
         "",
-        "figures of pieces and clamps that nothing of their size and material can have: lift, "
+        "figures of pieces and clamps that are impossible for their size and material: lift, "
         "mass, stiffness, strength, depth rating; a cable without drag",
         "a warning",
-        "The rules that `calm catalog check` judges a catalogue by",
+        "The rules of `calm catalog check`",
         _ONCE,
     ),
     "release-present": RuleText(
@@ -202,7 +203,7 @@ RULES = {
         "",
         "whether a piece of a sub-surface line has `role: release`",
         "unknown where none has",
-        "Defaults of this program: a line that is to come up says what frees it",
+        "Defaults of this program: a line to be recovered names its release",
         _ONCE,
     ),
     "swivel": RuleText(
@@ -211,7 +212,7 @@ RULES = {
         "steel wire that ends at a float with no chain or rope between",
         "a swivel between them, or wire that its name, material or note calls torque-balanced: "
         "a warning",
-        "A default of this program: wire that turns under load kinks as the load goes",
+        "A default of this program: wire that twists under load kinks when the load goes",
         _ONCE,
     ),
     "metals": RuleText(
@@ -226,7 +227,8 @@ RULES = {
     "backup": RuleText(
         "Back-up buoyancy",
         "tension",
-        "net buoyancy of what still holds the release after the worst break that is judged (below)",
+        "net buoyancy of the part that still holds the release after the worst break that is "
+        "judged (below)",
         "`backup_margin`, 0.1 of the weight lifted, and 250 N",
         "URI GSO mooring program: if any one link breaks, everything above the release still "
         "floats",
@@ -265,7 +267,7 @@ RULES = {
         "",
         "whether a part overtakes the parts ahead in the fall or the rise",
         "a warning",
-        "A default of this program: no part overtakes what is ahead",
+        "A default of this program: no part overtakes the parts ahead",
         _ONCE,
     ),
 }

@@ -101,10 +101,10 @@ def read_current(
     columns : sequence of str
         Names with their unit, ``"depth m"`` or ``"depth[m]"``; without, each value has its own.
         `depth`, with `u` and `v`, or `speed` and `toward` or `from`, and optionally `w`. A unit
-        such as ``"deg magnetic"`` says that a column counts from magnetic north.
+        such as ``"deg magnetic"`` says that a column is relative to magnetic north.
     rows : sequence of rows
         Numbers, or quantities with a unit, as text.
-    terms : the declination that turns what counts from magnetic north, the greatest speed
+    terms : the declination that turns what is relative to magnetic north, the greatest speed
     """
     before = len(problems)
     plain, turned = _from_magnetic_north(columns, terms, report, problems)
@@ -168,7 +168,7 @@ def turned_notices(columns: Sequence[str], terms: Terms) -> tuple[str, ...]:
     if terms.declination is None:
         return ()
     which = " and ".join(f"`{name}`" for name in sorted(magnetic_columns(columns)[1]))
-    return (f"{which} counted from magnetic north, turned by {terms.declination:g}°",)
+    return (f"{which} were relative to magnetic north, turned by {terms.declination:g}°",)
 
 
 def _from_magnetic_north(
@@ -178,7 +178,9 @@ def _from_magnetic_north(
     plain, magnetic = magnetic_columns(columns)
     if not magnetic:
         if terms.declination is not None:
-            message = "no column counts from magnetic north, such as `toward[deg magnetic]`, so no "
+            message = (
+                "no column is relative to magnetic north, such as `toward[deg magnetic]`, so no "
+            )
             problems.append(
                 report(("columns",), message + "`declination` is applied; leave it out")
             )
@@ -188,11 +190,12 @@ def _from_magnetic_north(
     )
     if magnetic in ({"u"}, {"v"}):
         one = next(iter(magnetic))
-        message = f"`{one}` counts from magnetic north, `{'v' if one == 'u' else 'u'}` does not"
+        message = f"`{one}` is relative to magnetic north, `{'v' if one == 'u' else 'u'}` is not"
         problems.append(report(("columns", first), message))
     if terms.declination is None:
         message = (
-            f"`{shown(columns[first])}` counts from magnetic north; give the `declination` there, "
+            f"`{shown(columns[first])}` is relative to magnetic north; give the `declination` "
+            "there, "
             "positive to the east (beside `file:`, or `--declination`)"
         )
         problems.append(report(("columns", first), message))

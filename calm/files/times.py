@@ -24,7 +24,7 @@ def parse_time(text: str) -> datetime:
     try:
         time = datetime.fromisoformat(text.strip())
     except ValueError:
-        raise TimeChoiceError(f"`{text[:40]}` is no time; write 2026-03-01T06:00") from None
+        raise TimeChoiceError(f"`{text[:40]}` is not a time; write 2026-03-01T06:00") from None
     return time.replace(tzinfo=UTC) if time.tzinfo is None else time.astimezone(UTC)
 
 

@@ -100,4 +100,4 @@ def _complaint(name: str, text: str, factor: float, depths: list[float]) -> str:
 
 def sound_complaint() -> str:
     """What is said of a speed of sound that no water has."""
-    return f"is no speed of sound in water; it is {SLOWEST:g} to {FASTEST:g} m/s"
+    return f"is not a speed of sound in water; it is {SLOWEST:g} to {FASTEST:g} m/s"

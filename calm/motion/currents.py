@@ -131,9 +131,9 @@ def _labelled(path: Path, declination: float | None) -> Currents | None:
         if labels is None:
             return None
         if velocity.magnetic != (declination is not None):
-            told = "count from magnetic north; give `--declination`"
+            told = "are relative to magnetic north; give `--declination`"
             if not velocity.magnetic:
-                told = "are not said to count from magnetic north; leave `--declination` out"
+                told = "are not said to be relative to magnetic north; leave `--declination` out"
             raise UnreadableError(f"`{name}` and `{velocity.names[1]}` {told}")
         first = _values(dataset, velocity.names[0], time, "speed")
         second = _values(

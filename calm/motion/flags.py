@@ -22,7 +22,7 @@ def parse_flags(text: str) -> frozenset[int]:
     try:
         flags = frozenset(int(part) for part in text.split(","))
     except ValueError:
-        raise UsageError(f"--flags: `{text[:40]}` is no list of flags; write 1,2") from None
+        raise UsageError(f"--flags: `{text[:40]}` is not a list of flags; write 1,2") from None
     if INTERPOLATED in flags:
         raise UsageError("--flags: 8 marks what was interpolated, which is never a measurement")
     if not flags <= set(range(MISSING)):

@@ -117,7 +117,7 @@ def joined(
     if sea_level is not None:
         tide = interpolated(*sea_level, time, gap)
         if not np.isfinite(tide).any():
-            raise UsageError("--sea-level: it has no time of the currents")
+            raise UsageError("--sea-level: it covers no time of the currents")
         tide = np.nan_to_num(tide - np.nanmean(tide))
     measured = Measured(
         time,

@@ -57,12 +57,12 @@ def read_instruments(path: Path, labels: Sequence[str], *, replace: bool) -> Ins
     Raises
     ------
     InputError
-        It is no NetCDF file, or has no times or no labels of instruments.
+        It is not a NetCDF file, or has no times or no labels of instruments.
     UsageError
         It has depths already; none of its instruments is a part of the line.
     """
     if not path.is_file() or not is_netcdf(path):
-        raise InputError([Problem(str(path), 0, 0, "is no NetCDF file")])
+        raise InputError([Problem(str(path), 0, 0, "is not a NetCDF file")])
     with reading(path), open_current(path) as dataset:
         there = [name for name in ADDED if name in dataset.variables]
         if there and not replace:

@@ -142,7 +142,7 @@ def _understood(
     refuse_ragged(dataset, name)
     words = words_of(variable, "long_name", "comment")
     if _NOT_MEASURED.search(words):
-        raise UnreadableError(f"`{name}` is no measurement by its own words: {words[:120]}")
+        raise UnreadableError(f"`{name}` is not a measurement by its attributes: {words[:120]}")
     unit = "pressure" if is_pressure else "length"
     factor = factor_of(variable, unit) / (PASCALS_PER_DBAR if is_pressure else 1.0)
     squeezed = [dim for dim in single if dim != along]

@@ -218,7 +218,7 @@ def cross_validated(
     """
     rest = [label for label in measured.label if label not in hidden]
     if len(rest) < 2:
-        raise UsageError("--cross-validate: two sensors at least are needed")
+        raise UsageError("--cross-validate: at least two sensors are needed")
     still = Forward(mooring, {}).still
     held = []
     for label in rest:

@@ -50,7 +50,7 @@ def read_table(
         raise InputError([Problem(str(path), 0, 0, "is empty")])
     (number, head), *body = lines
     if head[0].strip().lower() != "time" or len(head) < 2:
-        message = f"is no table over time; its heading should be `time,{example}`"
+        message = f"is not a table over time; its heading should be `time,{example}`"
         raise InputError([Problem(str(path), number, 1, message)])
     problems: list[Problem] = []
     columns, factors = [], []
@@ -77,7 +77,7 @@ def read_table(
             try:
                 values[i, j] = float(cell) if cell.strip() else np.nan
             except ValueError:
-                problems.append(Problem(str(path), line, j + 2, f"`{cell[:40]}` is no number"))
+                problems.append(Problem(str(path), line, j + 2, f"`{cell[:40]}` is not a number"))
     if problems:
         raise InputError(problems[:_MOST_PROBLEMS])
     order = np.argsort(times, kind="stable")
@@ -100,4 +100,4 @@ def _column(text: str, dimensions: Sequence[str], example: str) -> tuple[str, st
             return headed[1], dimension, unit_factor(headed[2].strip(), dimension)
         except QuantityError:
             continue
-    raise ValueError(f"`{headed[2]}` is no unit for it; write it as in `{example}`")
+    raise ValueError(f"`{headed[2]}` is not a unit for it; write it as in `{example}`")

@@ -28,7 +28,9 @@ def check_folder(folder: Path) -> None:
         while not os.path.lexists(nearest):
             nearest = nearest.parent
         if not nearest.is_dir():
-            raise UsageError(f"cannot write {folder}: {nearest} is no folder; a folder is needed")
+            raise UsageError(
+                f"cannot write {folder}: {nearest} is not a folder; a folder is needed"
+            )
         if not os.access(nearest, os.W_OK | os.X_OK):
             raise UsageError(f"cannot write {folder}: permission denied in {nearest}")
     except OSError as error:

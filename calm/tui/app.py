@@ -256,7 +256,7 @@ class BuildApp(InTurn):
         try:
             self.session.note_unsaved().keep()
         except (CalmError, OSError) as error:
-            return f"What is not saved could not be kept: {error}"
+            return f"Unsaved work could not be kept: {error}"
         return ""
 
     def _autosave(self) -> None:
@@ -270,7 +270,7 @@ class BuildApp(InTurn):
         try:
             file.keep()
         except (CalmError, OSError) as error:
-            self.call_later(self.tell, f"What is not saved cannot be kept: {error}", wrong=True)
+            self.call_later(self.tell, f"Unsaved work cannot be kept: {error}", wrong=True)
 
     def on_unmount(self) -> None:
         """Keep what is not saved whatever has ended the application, a closed page or a failure."""

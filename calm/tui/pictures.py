@@ -155,7 +155,7 @@ def _words(view: View | None, size: Size) -> list[Text]:
     """What stands where there is no picture yet."""
     if size.width < 20 or size.height < 6:
         return [Text("(too small)", style="dim")]
-    text = ELLIPSIS if view is None else "The picture comes with the first line that stands."
+    text = ELLIPSIS if view is None else "A picture appears once the line stands."
     return [Text(""), *(Text(line, style="dim") for line in _wrapped(text, size.width))]
 
 

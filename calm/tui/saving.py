@@ -89,7 +89,7 @@ class Saving:
         text = str(begin or path or "")
         asked = [Asked("path", "File", text, _is_writable, placeholder="e.g. iroise-2026.yaml")]
         self._app.push_screen(
-            Sheet("Save as", f"In {Path.cwd()}, unless a folder is named.", asked), take
+            Sheet("Save as", f"In {Path.cwd()}, unless you give a folder.", asked), take
         )
 
     def _ask_to_overwrite(self, path: Path, then: Then | None) -> None:
@@ -125,13 +125,13 @@ class Saving:
                 self._ask_for_name(then, _free_name(path))
 
         answers = [
-            Answer("o", "overwrite it with what is here", "overwrite"),
-            Answer("n", "save what is here under another name", "other"),
-            Answer("t", "take theirs; undo brings back what is here", "theirs"),
+            Answer("o", "overwrite it with your line", "overwrite"),
+            Answer("n", "save your line under another name", "other"),
+            Answer("t", "read the file from the disk; undo brings back your line", "theirs"),
         ]
         when = f" It was written {moment(stamp[0] / 1e9)}." if stamp else ""
         title = f"{self._session.name} was changed by another program"
-        text = f"The file is not what is built here.{when}"
+        text = f"The file on the disk differs from your line.{when}"
         self._app.push_screen(Question(title, text, answers), take)
 
     # the file on the disk

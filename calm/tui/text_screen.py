@@ -170,7 +170,7 @@ class TextPart(Vertical):
         """
         self._sought = words or self._sought
         if not self._sought:
-            self.workspace.tell("Ctrl+F says what is to be found")
+            self.workspace.tell("Press Ctrl+F to type what to find")
             return
         area, sought = self.text_area, self._sought.lower()
         lines, (row, column) = area.document.lines, area.selection.end

@@ -132,7 +132,7 @@ def test_a_declination_turns_what_is_magnetic(calm, write_mooring, record, folde
     (folder / "magnetic.csv").write_text(magnetic)
     done = calm("batch", write_mooring(), "--currents", "magnetic.csv", "-o", "r.nc")
     assert (done.code, done.out) == (2, "")
-    assert "counts from magnetic north; give the `declination` there" in done.err
+    assert "is relative to magnetic north; give the `declination` there" in done.err
     turned = ("--declination", "90 deg")
     done = calm("batch", "m.yaml", "--currents", record, "-o", "r.nc", *turned)
     assert done.code == 2
@@ -141,7 +141,7 @@ def test_a_declination_turns_what_is_magnetic(calm, write_mooring, record, folde
         done = calm("batch", "m.yaml", "--currents", f"{name if more else 'record'}.csv",
                     "-o", f"{name}.nc", *more)  # fmt: skip
         assert done.code == 0, done.err
-    assert "`u` and `v` counted from magnetic north, turned by 90°" in done.err
+    assert "`u` and `v` were relative to magnetic north, turned by 90°" in done.err
     true, other = (
         xarray.load_dataset(folder / f"{name}.nc", engine="h5netcdf") for name in ("r", "magnetic")
     )
@@ -153,7 +153,7 @@ def test_a_declination_turns_what_is_magnetic(calm, write_mooring, record, folde
     ("options", "words"),
     [
         (["-o", "r.nc", "--declination", "12"], "needs a unit: `12 deg`"),
-        (["-o", "r.txt"], "ends in .nc or .zarr"),
+        (["-o", "r.txt"], "must end in .nc or .zarr"),
         (["-o", "nowhere/r.nc"], "no folder"),
         (["-o", "r.nc", "--time", "2024"], "2024"),
         (["-o", "r.nc", "--at", "48"], "48"),
@@ -190,8 +190,8 @@ def test_links_that_lead_nowhere_are_refused(calm, write_mooring, record, folder
     for link, target in (("a.nc", "b.nc"), ("b.nc", "a.nc"), ("d.nc", "absent"), ("f", "f")):
         (folder / link).symlink_to(target)
     for words, name in (
-        ("leads nowhere", "a.nc"),
-        ("leads nowhere", "d.nc"),
+        ("link to a missing file", "a.nc"),
+        ("link to a missing file", "d.nc"),
         ("no folder", "f/r.nc"),
     ):
         done = calm("batch", write_mooring(), "--currents", record, "-o", name)

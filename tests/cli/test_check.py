@@ -180,7 +180,7 @@ def test_a_tow_is_refused(calm, folder):
     (folder / "tow.yaml").write_text(text)
     done = calm("check", "tow.yaml")
     assert (done.code, done.out) == (2, "")
-    assert "calm check is for moorings; towed: tow.yaml" in done.err
+    assert "calm check is for moorings; these are tows: tow.yaml" in done.err
 
 
 def test_moorings_among_tows_are_judged(calm, folder, write_mooring):
@@ -191,7 +191,7 @@ def test_moorings_among_tows_are_judged(calm, folder, write_mooring):
     alone = calm("check", write_mooring(), "--json", "-")
     among = calm("check", "a.yaml", "m.yaml", "z.yaml", "--json", "-")
     assert (among.code, among.out) == (alone.code, alone.out)
-    assert among.err == "not checked, since towed: a.yaml, z.yaml\n"
+    assert among.err == "not checked, because they are tows: a.yaml, z.yaml\n"
     # a mistake in a mooring is not hidden by a tow beside it
     (folder / "bad.yaml").write_text("line: 5\n")
     assert calm("check", "a.yaml", "bad.yaml").code == 2
@@ -206,7 +206,7 @@ def test_moorings_among_tows_are_judged(calm, folder, write_mooring):
         (("m.yaml", "--environment", "storm.yaml", "--environment", "storm.yaml"), "twice"),
         (("m.yaml", "--environment", "storm.yaml", "--environment", "2.yaml"), "called storm"),
         (("m.yaml", "broken.yaml"), "broken.yaml:4:"),
-        (("m.yaml", "--report", "m.yaml"), "is no folder; a folder is needed"),
+        (("m.yaml", "--report", "m.yaml"), "is not a folder; a folder is needed"),
         (("m.yaml", "--json", "none/x.json"), "there is no folder"),
         (("missing.yaml",), "missing.yaml"),
         ((), "FILES"),
@@ -284,7 +284,7 @@ def test_one_line_as_a_page_and_as_pages(calm, write_mooring, folder):
     assert (folder / "m.pdf").read_bytes().startswith(b"%PDF")
     refused = calm("run", "m.yaml", "--html", "m.htm")
     assert refused.code == 2
-    assert "the name of this report ends in .html" in refused.err
+    assert "the name of this report must end in .html" in refused.err
 
 
 def test_a_report_does_not_take_the_place_of_what_is_read(calm, write_mooring, folder):
@@ -292,7 +292,7 @@ def test_a_report_does_not_take_the_place_of_what_is_read(calm, write_mooring, f
     before = (folder / "report.json").read_bytes()
     done = calm("check", "report.json", "--report", ".")
     assert (done.code, done.out) == (2, "")
-    assert "report.json is read here; the report would take its place" in done.err
+    assert "report.json is read here; the report would overwrite it" in done.err
     assert (folder / "report.json").read_bytes() == before
     done = calm("check", write_mooring(), "--report", "r", "--json", "r/report.json")
     assert done.code == 2

@@ -109,7 +109,7 @@ def test_a_component_is_a_label_or_a_pattern_of_labels(calm, accepting, componen
         ("{rule: tilt}", "16:7", "`reason` is missing"),
         ("{reason: x}", "16:7", "`rule` is missing"),
         ("{rule: tilt, reason: ' '}", "16:28", "`reason` is blank"),
-        ("{rule: tilt, reason: x, until: 2027-02-30}", "16:38", "no day of the calendar"),
+        ("{rule: tilt, reason: x, until: 2027-02-30}", "16:38", "not a day of the calendar"),
         ("{rule: tilt, reason: x, until: 30.6.2027}", "16:38", "write it as 2027-06-30"),
         ("{rule: tilt, reason: x, untill: 2027-06-30}", "16:31", "did you mean `until`?"),
         ("{rule: tilt, reason: x, date: 2027-06-30, until: 2027-06-29}", "16:7", "before its"),
@@ -167,7 +167,7 @@ def test_an_accept_of_a_day_to_come_does_not_count_yet(calm, accepting, date, co
     done, _, states = checked(calm, accepting(f"{own}{date}}}", f"{needless}{date}}}"))
     assert states["strength", "top float"] == ["accepted" if counts else "unknown"]
     for label in ("top float", "rope"):
-        told = f"of {label} is dated {date}, a day to come: it does not count yet" in done.err
+        told = f"of {label} is dated {date}, in the future: it does not count yet" in done.err
         assert told is not counts
 
 

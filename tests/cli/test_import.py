@@ -123,7 +123,7 @@ def test_a_name_alone_is_no_match(calm, folder, design):
     ("words", "message"),
     [
         (["--format", "orca"], "`orca` is none of mdd, cbl"),
-        (["-D", "DEPTH"], "`DEPTH` is no NAME=VALUE"),
+        (["-D", "DEPTH"], "`DEPTH` is not NAME=VALUE"),
     ],
 )
 def test_options_that_make_no_sense_are_refused(calm, folder, design, words, message):
@@ -151,7 +151,7 @@ def test_no_sign_of_a_file_rules_the_terminal(calm, folder):
     bad = calm("import", "b.csv", "-o", "b.yaml", "--environment", "site.yaml")
     assert (good.code, bad.code) == (0, 2)
     assert "Colour [/x]" in good.err
-    assert "heavy` is no number" in bad.err
+    assert "heavy` is not a number" in bad.err
     assert "\x1b" not in good.err + bad.err + (folder / "a.yaml").read_text()
 
 
@@ -172,7 +172,7 @@ def test_a_file_of_no_program_is_refused(calm, folder):
     (folder / "x.bin").write_bytes(bytes(range(256)))
     done = calm("import", "x.bin", "missing.mat", "-o", "out/")
     assert done.code == 2
-    assert "x.bin: is of no program that CALM reads" in done.err
+    assert "x.bin: is not a file of a program that CALM reads" in done.err
     assert "missing.mat" in done.err
     assert "Traceback" not in done.err
 
@@ -191,8 +191,8 @@ def test_export_writes_and_tells_what_is_lost(calm, folder, write_mooring):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["m.yaml", "--to", "orca", "-o", "m.out"], "`orca` is no program"),
-        (["m.yaml", "--to", "mdd", "-o", "m.yaml"], "would take the place"),
+        (["m.yaml", "--to", "orca", "-o", "m.out"], "`orca` is not a program"),
+        (["m.yaml", "--to", "mdd", "-o", "m.yaml"], "would overwrite"),
         (["none.yaml", "--to", "mdd", "-o", "m.mat"], "none.yaml"),
         (["m.yaml", "--to", "mdd", "-o", "none/m.mat"], "there is no folder"),
     ],

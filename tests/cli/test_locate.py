@@ -188,5 +188,5 @@ def test_times_and_a_profile_of_the_sound(calm, ranges, folder):
     done = calm("locate", ranges(text), "--sound-speed", "sound.csv")
     assert done.code == 2
     assert "must increase" in done.err
-    assert "is no speed of sound in water" in done.err
+    assert "is not a speed of sound in water" in done.err
     assert calm("locate", ranges(text), "--sound-speed", "300 m/s").code == 2

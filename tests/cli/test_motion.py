@@ -169,7 +169,7 @@ def test_what_cannot_be_used_is_refused_and_nothing_is_written(calm, given, trut
         "no sensor is a part of the line": given("b.csv", labels=("x", "y", "z")),
         "no time has both": given("c2.csv", times=later),
         "its unit (bar, kPa?)": given("d.csv", factor=0.1),
-        "is no unit": given("e.csv", unit="knot"),
+        "is not a unit": given("e.csv", unit="knot"),
         "two sensors are called": given("f.csv", labels=("upper", "upper", "lower")),
         "no sensor is left": given("g.csv", values=0.0 * depth + 100.0),
         "no such file": "missing.csv",
@@ -288,7 +288,7 @@ def test_depths_go_onto_a_copy_of_a_users_own_file(calm, given, own, truth, fold
     words = (*COMMAND, "--pressures", "p.csv", "--hold-out", "middle", "--report", "report")
     done = calm(*words, "--onto", "own.nc", "-o", "copy.nc")
     assert done.code == 0, done.err
-    assert "`elsewhere` is no part of the line" in done.err
+    assert "`elsewhere` is not a part of the line" in done.err
     with xarray.open_dataset(folder / "copy.nc", engine="h5netcdf") as copy:
         assert (copy["temperature"].values == 4.5).all()
         off = copy["depth"].values[:, 0] - truth[1][:, 1]

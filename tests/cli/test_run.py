@@ -161,7 +161,7 @@ def test_catalogue_of_ones_own(calm, write_mooring, folder):
         (["--json", "same", "--csv", "./same"], "two outputs would go to same"),
         (["--json", "-", "--csv", "-"], "two outputs would go to -"),
         (["--json", "m.yaml"], "m.yaml is a mooring file"),
-        (["--json", "--csv"], "--csv stands where a path is needed"),
+        (["--json", "--csv"], "--csv was given where a path is needed"),
     ],
 )
 def test_hopeless_outputs_are_refused_before_solving(

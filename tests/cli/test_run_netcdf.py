@@ -85,6 +85,6 @@ def test_the_same_input_gives_the_same_bytes_and_several_a_file_each(calm, folde
 
 def test_another_ending_and_no_equilibrium(calm, folder, heavy, write_mooring):
     refused = calm("run", write_mooring("a.yaml"), "--netcdf", "r.txt")
-    assert (refused.code, "ends in .nc" in refused.err) == (2, True)
+    assert (refused.code, "must end in .nc" in refused.err) == (2, True)
     assert calm("run", heavy, "--netcdf", "r.nc").code == 3
     assert not (folder / "r.nc").exists()

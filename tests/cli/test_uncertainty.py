@@ -58,7 +58,7 @@ def test_what_cannot_be_drawn_is_refused(calm, write_mooring, heavy):
     file = write_mooring()
     done = calm("run", file, "--uncertainty", "--samples", "1000")
     assert (done.code, done.out) == (2, "")
-    assert "1000 is no power of two" in done.err
+    assert "1000 is not a power of two" in done.err
     assert "take 1024" in done.err
     assert calm("run", file, "--uncertainty", "--seed", "-1").code == 2
     assert calm("run", heavy, *DRAWS).code == 3
@@ -100,11 +100,11 @@ def test_designs_are_listed_by_their_probability(calm, write_mooring, folder):
 def test_a_check_refuses_samples_that_are_no_power_of_two(calm, write_mooring):
     done = calm("check", write_mooring(), "--uncertainty", "--samples", "99")
     assert done.code == 2
-    assert "99 is no power of two" in done.err
+    assert "99 is not a power of two" in done.err
 
 
 def test_samples_without_uncertainty_are_refused(calm, write_mooring):
     path = write_mooring()
     for command in ("run", "check"):
         done = calm(command, path, "--samples", 64)
-        assert done.code == 2 and "--samples: 64 is for --uncertainty" in done.err
+        assert done.code == 2 and "--samples: 64 needs --uncertainty" in done.err

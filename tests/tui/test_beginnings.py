@@ -60,7 +60,7 @@ def test_an_assembly_means_the_same_as_its_pieces(small):
 def test_the_history_goes_back_to_before_any_change(drive, small):
     async def story(driver):
         await driver.press("h")
-        assert "Nothing was done yet" in driver.screen
+        assert "There is nothing to undo yet" in driver.screen
         await driver.press("d", "delete", "d")
         done = driver.text
         await driver.press("h")

@@ -110,7 +110,7 @@ def test_favourites_and_what_was_taken_come_first_in_every_file(drive, tmp_path)
         listed = [each.id for each in driver.app.builder.query_one(ComponentList).rows]
         assert listed[:2] == [chosen[0], "shackle-19"]
         await driver.press("f3")
-        assert f"{chosen[0]} is no favourite any more" in driver.screen
+        assert f"{chosen[0]} is no longer a favourite" in driver.screen
 
     async def later(driver):
         await driver.press("a")

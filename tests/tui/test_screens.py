@@ -143,15 +143,15 @@ def test_to_look_at_the_text_changes_nothing_of_it(drive, small, before, after):
 
 def test_what_is_missing_is_said_and_the_last_picture_stays_dimmed(drive, small):
     async def story(driver):
-        assert "as it last stood" not in driver.screen
+        assert "the last complete line" not in driver.screen
         await driver.press("home", "delete")
         await driver.settle()
         assert driver.view.missing
         assert driver.view.missing[0] in driver.screen
-        assert "as it last stood" in driver.screen
+        assert "the last complete line" in driver.screen
         await driver.press("u")
         await driver.settle()
-        assert "as it last stood" not in driver.screen
+        assert "the last complete line" not in driver.screen
 
     drive(story, small)
 
@@ -332,7 +332,7 @@ def test_where_it_was_deployed(drive, small):
         await driver.press("L")
         await driver.type("soon")
         await driver.press("enter")
-        assert "is no time" in driver.screen
+        assert "is not a time" in driver.screen
 
     drive(story, small)
 

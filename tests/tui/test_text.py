@@ -134,7 +134,7 @@ def test_the_text_opens_at_the_piece_and_finds_words(drive, small):
         row, _ = area.cursor_location
         assert area.document.lines[row].strip() == "- {use: releaser}"
         await driver.press("f3")
-        assert "Ctrl+F says" in driver.screen
+        assert "Press Ctrl+F" in driver.screen
         await driver.press("ctrl+f")
         await driver.type("LOGGER")
         await driver.press("enter")

@@ -37,7 +37,7 @@ def parse_period(text: str) -> Period:
     """
     first, slash, last = text.partition("/")
     if not slash:
-        raise UsageError(f"`{text[:40]}` is no period; write 2026-03-01/2026-03-31T12:00")
+        raise UsageError(f"`{text[:40]}` is not a period; write 2026-03-01/2026-03-31T12:00")
     start, stop = _end(first, whole=False), _end(last, whole=True)
     if start is not None and stop is not None and stop < start:
         raise UsageError(f"the period `{text[:60]}` ends before it begins")
@@ -56,9 +56,9 @@ def parse_place(text: str) -> Place:
     try:
         latitude, longitude = (float(part) for part in parts)
     except ValueError:
-        raise UsageError(f"`{text[:40]}` is no place; write 48.3,-5.2") from None
+        raise UsageError(f"`{text[:40]}` is not a place; write 48.3,-5.2") from None
     if not (-90 <= latitude <= 90 and -360 <= longitude <= 360):
-        raise UsageError(f"`{text[:40]}` is no place; latitude comes first, then longitude")
+        raise UsageError(f"`{text[:40]}` is not a place; latitude comes first, then longitude")
     return latitude, longitude
 
 
@@ -75,14 +75,14 @@ def choose_profiles(
         No profile is in the period, or `every` is not positive.
     """
     if every < 1:
-        raise UsageError(f"every {every} profiles: one at least is needed")
+        raise UsageError(f"every {every} profiles: at least one is needed")
     if not len(times):
         raise InputError([Problem(str(path), 0, 0, "has no times")])
     notes = []
     order: NDArray[np.intp] | None = None
     if not _rises(times):
         order = np.argsort(times, kind="stable")
-        notes.append("the profiles are not in the order of time, and were taken in it")
+        notes.append("the profiles were not in the order of time, and have been sorted")
         times = times[order]
     _refuse_repeats(times, path)
     first, last = 0, len(times)
@@ -131,7 +131,7 @@ def _end(text: str, *, whole: bool) -> np.datetime64 | None:
     except TimeChoiceError as error:
         raise UsageError(str(error)) from None
     except ValueError:
-        raise UsageError(f"`{text}` is no date") from None
+        raise UsageError(f"`{text}` is not a date") from None
 
 
 def _in_reach(moment: np.datetime64) -> np.datetime64:

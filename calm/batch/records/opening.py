@@ -29,7 +29,7 @@ def open_record(
     ----------
     seabed : depth of the water [m], where heights above the seabed begin
     at : latitude and longitude whose column is wanted, where there are several
-    declination : turns what the record says counts from magnetic north [degrees], east positive
+    declination : turns what the record says is relative to magnetic north [degrees], east positive
     time : first and last time, see `parse_period`
     every : take one profile in so many
 

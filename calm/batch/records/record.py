@@ -18,7 +18,8 @@ Levels = tuple[Floats, Floats, Floats, Floats | None]
 RULES = (
     "levels where the current or their depth has no value are left out of their profile",
     "levels above the surface are left out",
-    "levels below the seabed count where they have a value: the current at the seabed lies between",
+    "levels below the seabed are used where they have a value: the current at the seabed lies "
+    "between",
     "between levels the current is linear in depth, beyond the first and the last it is constant",
 )
 """What holds in every record."""

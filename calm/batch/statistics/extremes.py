@@ -164,7 +164,7 @@ def _unfit(time: Times, values: Column) -> str:
     if count < 2:
         return f"there are {count} values"
     if not bool((time[1:] > time[:-1]).all()):
-        return "the times do not ascend"
+        return "the times do not increase"
     if np.fmax.reduce(values) == np.fmin.reduce(values):
         return "the values are all alike"
     return ""

@@ -37,7 +37,8 @@ def is_finished(output: Path, identity: str) -> bool:
     before = attributes_of(output).get(IDENTITY)
     if not isinstance(before, str):
         raise UsageError(
-            f"{output} is there already, and no result of calm batch that can be read; it is kept. "
+            f"{output} is there already, and is not a result of calm batch that can be read. "
+            "It is kept. "
             "Give another name to the result, or remove it"
         )
     refuse_another(output, before, identity)

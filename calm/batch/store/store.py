@@ -135,7 +135,7 @@ class Store:
         return True
 
     def _read(self, name: str, number: int) -> NDArray[Any]:
-        if not self._file(name, number).stat().st_size:  # zarr takes what is not there for NaN
+        if not self._file(name, number).stat().st_size:  # zarr takes what is missing for NaN
             raise ValueError("an empty file")
         start, stop = self.span(number)
         return np.asarray(self.arrays[name][start:stop])

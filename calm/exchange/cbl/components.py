@@ -65,7 +65,7 @@ class Makers:
             and _TOO_WIDE * (mass - weight / self.gravity) < CATALOGUE_DENSITY * area
         ):
             component.guesses["diameter"] = (
-                f"kept as it stands: a metre of it displaces {CATALOGUE_DENSITY * area:.3g} kg of "
+                f"kept as it is: a metre of it displaces {CATALOGUE_DENSITY * area:.3g} kg of "
                 f"water, but has a mass of {mass:.3g} kg and weighs {weight:.3g} N"
             )
         self._stretch(component, definition, area - bore)
@@ -158,7 +158,7 @@ class Makers:
         component = Component(name, kind, figures)
         if not afloat:
             figures["length"] = 0.0
-            component.comment = "That program takes it for a point: the line ends in its depth."
+            component.comment = "That program treats it as a point: the line ends at its depth."
         elif kind == "body":
             component.hull = displacement(definition, shape)
             whole = max(whole, component.hull[-1][1]) if not lift else whole

@@ -74,7 +74,7 @@ def gridded_current(value: Value, folder: Path, *, allow_include: bool) -> Gridd
         for name, start, step, size in zip(_AXES, starts, steps, sizes, strict=True)
     }
     here = _at_zero(_at_zero(_at_zero(grid, axes["time"]), axes["y"]), axes["x"])
-    others = ["its later times"] if times > 1 else []
+    others = ["times after the first"] if times > 1 else []
     if np.ptp(grid, axis=(1, 2)).any():
         others.append("how it changes from place to place: it is that at the anchor")
     order = np.argsort(axes["depth"])

@@ -95,9 +95,7 @@ class UnknownNameError(InputError):
 
     def __init__(self, token: Token, names: Sequence[str]) -> None:
         self.names = tuple(names)
-        said = (
-            "`{0}` is no number and no name that counts here; is it a macro? Give it with -D {0}=…"
-        )
+        said = "`{0}` is neither a number nor a known name; is it a macro? Give it with -D {0}=…"
         place = token.path, token.line, token.column
         super().__init__([Problem(*place, one_line(said.format(name))) for name in names])
 
@@ -147,7 +145,7 @@ def read_expression(words: Words) -> Expression:
     Raises
     ------
     InputError
-        It makes no sense.
+        It cannot be read.
     """
     token, names = words.next, set[str]()
     formula = _Reader(words, names).choice(0)
@@ -164,7 +162,7 @@ class _Reader:
     def choice(self, depth: int) -> Formula:
         """``a ? b : c``."""
         if depth > _DEEPEST:
-            raise self._words.next.refuse("parentheses stand too deep in each other")
+            raise self._words.next.refuse("parentheses are nested too deeply")
         condition = self._either(depth)
         if not self._words.comes("?"):
             return condition
@@ -202,7 +200,7 @@ class _Reader:
 
     def _unary(self, depth: int) -> Formula:
         if depth > _DEEPEST:
-            raise self._words.next.refuse("signs stand too deep in each other")
+            raise self._words.next.refuse("signs are nested too deeply")
         if self._words.comes("-"):
             of = self._unary(depth + 1)
             return lambda at: -of(at)

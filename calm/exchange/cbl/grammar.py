@@ -39,7 +39,7 @@ def read_problem(path: Path, defines: Mapping[str, str], *, allow_include: bool)
     Raises
     ------
     InputError
-        With the place of what makes no sense.
+        With the place of what cannot be read.
     """
     lines = Preprocessor(defines, allow_include).read(path)
     words = Words(list(tokens_of(lines)))

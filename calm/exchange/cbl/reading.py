@@ -37,7 +37,7 @@ _HEADS = re.compile(
 )
 _FORCES = ("x-force", "y-force", "z-force", "x-thrust", "y-thrust", "z-thrust")
 _NOTE = (
-    "cn and ct are its Cdn and Cdt, counted alike: on the diameter, and on the surface of a metre. "
+    "cn and ct are its Cdn and Cdt, defined alike: on the diameter, and on the surface of a metre. "
     "See `calm docs import-cable`."
 )
 
@@ -54,7 +54,7 @@ def read_cbl(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> 
     Raises
     ------
     InputError
-        The file makes no sense, or holds what CALM cannot represent; of names that stand for
+        The file cannot be read, or holds what CALM cannot represent; of names that stand for
         nothing, all that the reading needs.
     """
     given, missing = dict(defines), list[Mistake]()
@@ -123,7 +123,7 @@ def _refuse_other_shapes(
     if kind not in (*_MOORED, "towing"):
         raise problem.description["type"].token.refuse(f"`type = {kind}` is not known")
     if problem.branch is not None:
-        raise problem.branch.refuse("a branch: a mooring of several legs is no single line")
+        raise problem.branch.refuse("a branch: a mooring of several legs is not a single line")
     if len(ends) != 2 or not segments:
         raise refused(path, f"the layout has {len(ends)} terminals and {len(segments)} segments")
     if not isinstance(problem.layout[0], Terminal) or not isinstance(problem.layout[-1], Terminal):
@@ -160,7 +160,7 @@ def _lay_mooring(
         anchor.figures["length"] = number(lower.values, "z")
     top = upper.values.get("buoy") or upper.values.get("platform")
     if top is None:
-        raise upper.token.refuse("the upper end is no buoy")
+        raise upper.token.refuse("the upper end is not a buoy")
     buoy = defined(problem.buoys, top, upper.token)
     afloat = kind == "surface" or (
         kind == "general"

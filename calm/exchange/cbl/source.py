@@ -59,14 +59,14 @@ class Preprocessor:
         Raises
         ------
         InputError
-            A file cannot be read or may not be included, a directive makes no sense, or macros
+            A file cannot be read or may not be included, a directive cannot be read, or macros
             grow beyond all bounds.
         UsageError
             A macro given from outside has no proper name.
         """
         for name, value in self.defines.items():
             if not _NAME.fullmatch(name):
-                raise UsageError(f"-D {name}={value}: `{name}` is no name of a macro")
+                raise UsageError(f"-D {name}={value}: `{name}` is not the name of a macro")
             self._macros[name] = _Macro(value)
         self._file(path, path.resolve().parent, ())
         return self._lines
@@ -96,7 +96,7 @@ class Preprocessor:
         """Follow `#if` and its kin; False for another directive."""
         if word in ("if", "ifdef", "ifndef"):
             if len(conditions) >= _DEEPEST:
-                raise ValueError("conditions stand too deep in each other")
+                raise ValueError("conditions are nested too deeply")
             outside = all(holds for holds, _ in conditions)
             holds = outside and self._holds(word, rest)
             conditions.append((holds, holds or not outside))
@@ -148,7 +148,7 @@ class Preprocessor:
     def _define(self, rest: str) -> None:
         found = re.match(r"([A-Za-z_]\w*)(\(([\w\s,]*)\))?(?:\s+(.*)|$)", rest, re.DOTALL)
         if found is None:
-            raise ValueError(f"`#define {rest[:40]}` makes no sense")
+            raise ValueError(f"`#define {rest[:40]}` cannot be read")
         if found[1] in self.defines:
             return  # what is given from outside holds
         parameters = None
@@ -167,9 +167,9 @@ class Preprocessor:
                 f"`{found[1]}` lies outside the folder of the file; --allow-include reads it"
             )
         if not target.is_file():
-            raise ValueError(f"`{found[1]}`, which is included, is not there")
+            raise ValueError(f"`{found[1]}`, which is included, is missing")
         if len(within) >= _DEEPEST or real in within:
-            raise ValueError(f"`{found[1]}` includes itself, or files stand too deep in each other")
+            raise ValueError(f"`{found[1]}` includes itself, or files are nested too deeply")
         self._file(target, root, (*within, real))
 
     def _add(self, line: str, path: str, number: int) -> None:
@@ -202,7 +202,7 @@ class Preprocessor:
             pieces.append(piece)
             size += len(piece)
             if size > _LONGEST:
-                raise ValueError("a macro grows beyond all bounds")
+                raise ValueError("a macro grows without limit")
         return "".join(pieces)
 
     def _replaced(
@@ -211,7 +211,7 @@ class Preprocessor:
         """What stands in place of a macro, and where the text goes on."""
         self._expansions += 1
         if self._expansions > _MOST_EXPANSIONS or len(hidden) > _DEEPEST:
-            raise ValueError(f"the macro `{name[0]}` grows beyond all bounds")
+            raise ValueError(f"the macro `{name[0]}` grows without limit")
         body, end = macro.body, name.end()
         if macro.parameters is not None:
             arguments, end = _arguments(text, end)

@@ -56,7 +56,7 @@ def water_of(
         value = environment["current-file"]
         gridded = gridded_current(value, folder, allow_include=allow_include)
         if gridded is None:
-            what = f"still water: its current-file `{value.text}` is not there"
+            what = f"still water: its current-file `{value.text}` is missing"
             water.guesses["current"] = what
         else:
             dropped += [Remark("current-file", each) for each in gridded.others]

@@ -97,7 +97,7 @@ def cbl_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
     for part in reversed(parts):
         _lay(problem, part, lost)
     if buoy.clamps:
-        lost.append("what is clamped on the float: it acts at the end of the line")
+        lost.append("clamps on the float: they act at the end of the line")
         for clamp, _ in buoy.clamps:
             problem.at_a_point(clamp)
     floating, has_draft = design.afloat
@@ -106,10 +106,11 @@ def cbl_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
     if design.tow is not None and design.tow[2]:
         lost.append("the height of the sheave: there the line begins at the surface")
     if floating:
-        lost.append("how its drag grows with draft: its Cdn is such that it drags as here now")
+        lost.append("how its drag grows with draft: its Cdn gives the drag at the present draft")
     elif design.tow is None:
         lost.append(
-            "that the float drags at its middle and by its axis: its point pulls as here now"
+            "that the drag of the float acts at its middle and by its axis: its point has the "
+            "pull found here"
         )
     if buoy.flexible:
         lost.append("the free end of the line: a small sphere without weight stands there")

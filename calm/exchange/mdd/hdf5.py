@@ -44,7 +44,7 @@ def _variable(file: Any, node: Any, depth: int) -> Value:
     import h5py
 
     if depth > _DEEPEST:
-        raise ValueError("cells stand too deep in each other")
+        raise ValueError("cells are nested too deeply")
     if not isinstance(node, h5py.Group):
         return _values(file, node, _text_of(node.attrs.get("MATLAB_class", "")), depth)
     hard = [isinstance(node.get(key, getlink=True), h5py.HardLink) for key in ("type", "value")]

@@ -64,7 +64,7 @@ def _width(variables: Mapping[str, Value]) -> int:
 
 
 def _entry(text: str, group: str, end: int) -> Entry | None:
-    """An element of a row; None for a row that makes no sense."""
+    """An element of a row; None for a row that cannot be read."""
     content = text.encode()
     try:
         figures = [float(word) for word in content[end:].split()]

@@ -52,7 +52,9 @@ def read_variables(path: Path, wanted: Collection[str]) -> dict[str, Value]:
         raise
     except Exception as error:  # the readers fail in many ways on a damaged file
         reason = " ".join(str(error).split()) or type(error).__name__
-        raise refused(path, f"is no MATLAB or Octave file, or a damaged one ({reason})") from None
+        raise refused(
+            path, f"is not a MATLAB or Octave file, or a damaged one ({reason})"
+        ) from None
     return {name: value for name, value in found.items() if name in wanted}
 
 

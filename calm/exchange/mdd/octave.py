@@ -23,7 +23,7 @@ def read_octave_text(text: str) -> dict[str, Value]:
     Raises
     ------
     ValueError
-        A matrix has fewer numbers than its header says, or a header makes no sense.
+        A matrix has fewer numbers than its header says, or a header cannot be read.
     """
     variables: dict[str, Value] = {}
     cell: list[Value] | None = None

@@ -48,7 +48,7 @@ def rigid(element: Element) -> Component:
         component.comment = "The file gives it no size, so that it has no drag."
     elif _is_too_small(element):
         component.guesses["diameter"] = (
-            f"kept as it stands, a placeholder: nothing of this size lifts {element.lift:g} kgf, "
+            f"kept as it is, a placeholder: nothing of this size lifts {element.lift:g} kgf, "
             "so its drag is missing"
         )
     return component
@@ -99,8 +99,8 @@ def _flexible(element: Element) -> Component:
         figures["stiffness"] = modulus * math.pi / 4.0 * element.across**2
         if _HARD.search(element.name) and modulus < _SOFT:
             component.guesses["stiffness"] = (
-                f"the file's modulus of {modulus / 1e9:g} GPa is that of a rope; was it left "
-                "behind when the line was edited?"
+                f"the file's modulus of {modulus / 1e9:g} GPa is that of a rope; is it a remnant "
+                "of an edit?"
             )
     if chain:
         component.comment = (

@@ -24,8 +24,8 @@ _WANTED = frozenset(
 _STRETCHED = 1.2  # times its length, a line may reach the surface
 _APART = 0.02  # m and share of the piece by which the two places of a clamp may differ
 _NOTE = (
-    "cn and cx are its Cd. That program has no drag along a line or cylinder worth the name, so "
-    "ct is 0. See `calm docs import-mdd`."
+    "cn and cx are its Cd. In that program drag along a line or cylinder is negligible, so ct is "
+    "0. See `calm docs import-mdd`."
 )
 
 
@@ -42,8 +42,8 @@ def read_mdd(path: Path) -> Design:
     if not sized and any(group in variables for group in GROUPS):
         raise refused(
             path,
-            "is the element library of that program, no mooring; "
-            "a list takes its figures: --elements FILE",
+            "is the element library of that program, not a mooring; a list takes its "
+            "figures: --elements FILE",
         )
     if not sized:
         raise refused(path, "holds no mooring (`H`) and no tow (`Ht`) of that program")
@@ -86,7 +86,7 @@ def _lay_mooring(
 ) -> None:
     last = elements[-1]
     if last.is_line or len(elements) < 2 or last.lift == 0.0:
-        raise refused(path, f"element {last.number}, {last.name}, is no anchor with a weight")
+        raise refused(path, f"element {last.number}, {last.name}, is not an anchor with a weight")
     design.items = [_item(element) for element in elements[:-1]]
     design.items.append(Item(anchor_of(last)))
     depth = design.water.depth if design.water is not None else None

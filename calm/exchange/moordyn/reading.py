@@ -16,7 +16,7 @@ _CURRENTS = "current_profile.txt"
 _NEAR, _NEAR_AT_LEAST = 0.05, 2.0
 """Share of the depth, and metres: an upper end as near the surface hangs under a float."""
 
-_NOTE = "cn and ct are its Cd and CdAx, counted alike. See `calm docs import-moordyn`."
+_NOTE = "cn and ct are its Cd and CdAx, defined alike. See `calm docs import-moordyn`."
 
 
 def read_moordyn(path: Path) -> Design:
@@ -25,7 +25,7 @@ def read_moordyn(path: Path) -> Design:
     Raises
     ------
     InputError
-        It makes no sense, or holds a platform, a body, a rod or several lines.
+        It cannot be read, or holds a platform, a body, a rod or several lines.
     """
     sections = read_sections(path)
     for name in ("bodies", "rods"):
@@ -70,7 +70,7 @@ def _way(points: dict[str, Row], lines: list[Row], path: Path) -> list[tuple[Row
         for end in ("a", "b"):
             name = line.words.get(end, "")
             if name not in points:
-                raise line.refuse(f"its end `{name}` is no point of the file")
+                raise line.refuse(f"its end `{name}` is not a point of the file")
             at.setdefault(name, []).append(line)
     if any(len(each) > 2 for each in at.values()):
         raise refused(path, "more than two lines meet in a point: CALM has single lines")
@@ -82,7 +82,7 @@ def _way(points: dict[str, Row], lines: list[Row], path: Path) -> list[tuple[Row
     ends.sort(key=lambda name: points[name].number("z"))
     lower = points[ends[0]]
     if not _is(lower, _FIXED):
-        raise lower.refuse("the lower end is not fixed: it is no anchor")
+        raise lower.refuse("the lower end is not fixed: it is not an anchor")
     way: list[tuple[Row, Row]] = []
     here, left = ends[0], list(lines)
     while met := [each for each in left if here in _ends(each)]:

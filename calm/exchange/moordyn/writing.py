@@ -137,7 +137,8 @@ def moordyn_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
         )
     else:
         lost.append(
-            "that the float drags at its middle and by its axis: its point pulls as here now"
+            "that the drag of the float acts at its middle and by its axis: its point has the "
+            "pull found here"
         )
     system.end_point("Fixed" if afloat else "Free")
     told = remarks(design, lost)

@@ -24,7 +24,7 @@ def number(cell: str) -> tuple[float | None, str]:
     bare = text.lstrip("~≈≃<> ").removeprefix("ca.").removeprefix("env.").strip()
     found = _NUMBER.match(bare)
     if found is None or not any(sign.isdigit() for sign in found[0]):
-        return None, f"`{cell}` is no number"
+        return None, f"`{cell}` is not a number"
     plain = found[0].replace("−", "-").replace(",", ".")
     value = float("".join(plain.split()).replace("\u00a0", ""))
     rest = bare[found.end() :].strip()

@@ -36,7 +36,7 @@ def read_moords(path: Path) -> Design:
     """
     rows = list(csv.DictReader(io.StringIO(read_text(path))))
     if not rows or not rows[0].keys() >= _MARKS:
-        raise refused(path, "is no design of moords: its headings are others")
+        raise refused(path, "is not a design of moords: its headings are others")
     if len(rows) > MOST_PIECES:
         raise refused(path, f"has {len(rows)} rows; more than {MOST_PIECES} are not read")
     problems: list[str] = []

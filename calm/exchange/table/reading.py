@@ -17,7 +17,7 @@ from calm.exchange.table.library import Library, complete, is_library, key_of, r
 from calm.exchange.table.rows import Row, count_lines, names_in, rows_of, weights_as_buoyancy
 from calm.exchange.table.sheet import Rows, read_sheets
 
-_NOTE = "A list says nothing of the water, and little of drag. See `calm docs import-table`."
+_NOTE = "A list says nothing about the water, and little about drag. See `calm docs import-table`."
 _WATER = ("z", "U", "V", "W", "rho")  # headings of a sheet of Mooring Design & Dynamics
 _NAMES = 3  # at least, in a list of names alone
 
@@ -39,7 +39,8 @@ def read_table(path: Path, columns: Mapping[str, str], elements: Path | None = N
     check_given(sheets, columns, path)
     if elements is None and not columns and is_library(sheets):
         raise refused(
-            path, "is a library of elements, no mooring; a list takes its figures: --elements FILE"
+            path,
+            "is a library of elements, not a mooring; a list takes its figures: --elements FILE",
         )
     library = read_library(elements) if elements is not None else {}
     design = Design("a list", path.stem, [], None, notes=[_NOTE])
@@ -100,7 +101,7 @@ def _names(sheets: Mapping[str, Rows], design: Design, path: Path, library: Libr
         raise refused(
             path,
             f"holds names and no figures (`{rows[0].name}`, `{rows[1].name}` …); "
-            "give the library of elements that they are those of: --elements FILE",
+            "give the library of these elements: --elements FILE",
         )
     if key_of(rows[0].name) not in library:
         if key_of(rows[0].name) != "name":
@@ -135,7 +136,7 @@ def _from_the_top(rows: list[Row], path: Path, design: Design) -> list[Row]:
         raise refused(path, f"has {len(pieces)} pieces")
     anchored = [i for i, row in enumerate(pieces) if row.is_anchor]
     if anchored and anchored[0] == 0 and anchored[-1] != len(pieces) - 1:
-        design.notes.append("The list leads from the anchor up: here it is turned round.")
+        design.notes.append("The list runs from the anchor up: here it is reversed.")
         return _turned(rows)
     if anchored and anchored[-1] == len(pieces) - 1:
         return rows
@@ -147,7 +148,7 @@ def _from_the_top(rows: list[Row], path: Path, design: Design) -> list[Row]:
             "read, since it has neither ship nor speed",
         )
     if lifts[0] < lifts[1]:
-        design.notes.append("The list leads from the lower end up: here it is turned round.")
+        design.notes.append("The list runs from the lower end up: here it is reversed.")
         rows = _turned(rows)
     design.guessed.append(Remark("line.anchor", "the list has none"))
     return [*rows, Row(0, "anchor", kind="anchor", role="anchor")]

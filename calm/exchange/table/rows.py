@@ -161,9 +161,7 @@ def weights_as_buoyancy(rows: Iterable[Row], guessed: list[Remark]) -> None:
     ]
     upward = 2 * sum(weight < 0.0 for weight in sinking) > len(sinking)
     if upward:
-        guessed.append(
-            Remark("weights", "negative for what sinks by its name: counted as buoyancy")
-        )
+        guessed.append(Remark("weights", "negative for parts that sink: read as buoyancy"))
     for row in rows:
         if "weight" not in row.figures:
             continue
@@ -195,9 +193,9 @@ def count_lines(rows: Iterable[Row], known: dict[str, Column]) -> None:
             if what == "buoyancy" and not column.whole:
                 row.guesses.setdefault(
                     what,
-                    "taken for that of a metre: it is the same at different lengths"
+                    "read as that of a metre: it is the same at different lengths"
                     if per_metre
-                    else "the list's weight taken for that of the whole length",
+                    else "the weight in the list is read as that of the whole length",
                 )
 
 

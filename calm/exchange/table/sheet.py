@@ -73,7 +73,7 @@ def _csv(path: Path, content: bytes) -> Rows:
     try:
         return list(csv.reader(io.StringIO("\n".join(plain)), delimiter=delimiter))
     except csv.Error as error:
-        raise refused(path, f"is no table: {error}") from None
+        raise refused(path, f"is not a table: {error}") from None
 
 
 def _text(path: Path, content: bytes) -> str:

@@ -284,5 +284,5 @@ def _worded(snippets: Iterable[str]) -> Worded:
     """Items as `Draft.copy` gives them."""
     wordings = [read_snippet(snippet) for snippet in snippets]
     if None in wordings:
-        raise EditError("what is to be pasted is no list of items")
+        raise EditError("what is to be pasted is not a list of items")
     return Worded(one for one in wordings if one is not None)

@@ -111,7 +111,7 @@ def kept_in(folder: Path, stem: str) -> Iterator[Kept]:
 def _read(place: Path) -> Kept:
     status = place.stat()
     if not stat.S_ISREG(status.st_mode):
-        raise ValueError("no regular file")
+        raise ValueError("not a regular file")
     first, _, text = place.read_bytes().decode().partition("\n")
     if not first.startswith(_BEGIN):
         raise ValueError("no record")

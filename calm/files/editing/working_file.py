@@ -109,7 +109,7 @@ class WorkingFile:
     def changed_on_disk(self) -> bool:
         """Whether the file is another than that last read or saved; it may be gone.
 
-        It is read only where its time or size changed, and not where it is no regular file.
+        It is read only where its time or size changed, and not where it is not a regular file.
         """
         if self.path is None:
             return False
@@ -250,7 +250,7 @@ def _lost(before: os.stat_result | None, after: os.stat_result | None) -> str:
 
 
 def _status(path: Path) -> os.stat_result | None:
-    """What the system says of a file; None where it is not there."""
+    """What the system says of a file; None where it is missing."""
     try:
         return path.stat()
     except (OSError, ValueError):

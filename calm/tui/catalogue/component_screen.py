@@ -1,4 +1,4 @@
-"""A component of one's own: a form that judges each figure as it is typed, and all of them."""
+"""A component of your own: a form that judges each figure as it is typed, and all of them."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ class ComponentScreen(Screen[Defined | None]):
 
     async def on_mount(self) -> None:
         """The fields of the first kind."""
-        what = f"{self._component}, a {self._kind}" if self._begun else "A component of one's own"
+        what = f"{self._component}, a {self._kind}" if self._begun else "A component of your own"
         self.query_one(TitleBar).show(f"{what}, kept in this file   * needed", "")
         self.query_one(KeyBar).show_keys(hints("form"))
         await self._show_fields()
@@ -143,7 +143,7 @@ class ComponentScreen(Screen[Defined | None]):
         component, problems = defined(id or "component", values)
         parts: list[RenderableType] = []
         if id in self._listed - self._own:
-            parts.append(Text(f"~ {id} is in the catalogue; this one hides it here", "yellow"))
+            parts.append(Text(f"~ {id} is in the catalogue; this one replaces it here", "yellow"))
         for problem in problems:
             parts.append(Text(f"! {problem.message}", style="red"))
         if id in self._own:

@@ -91,7 +91,7 @@ class CataloguePane(Vertical):
         yield Entry(
             id="catalogue-search",
             compact=True,
-            placeholder="words: id, name, maker, kind, role; breaking>50kN",
+            placeholder="words of id, name, maker, kind, role; breaking>50kN",
         )
         with Vertical(id="catalogue-ask"):
             yield Field("length", "Length", id="ask-length")
@@ -171,7 +171,7 @@ class CataloguePane(Vertical):
             return
         self._shown = chosen
         if chosen is None or self.index is None:
-            card.show("Nothing has all these words.")
+            card.show("No component has all these words.")
             return
         from calm.report.catalogue import to_card
         from calm.report.terminal import shown
@@ -198,7 +198,7 @@ class CataloguePane(Vertical):
             except OSError as error:
                 self.post_message(self.Told(f"It could not be kept: {error}", wrong=True))
             else:
-                became = "is a favourite now" if is_one else "is no favourite any more"
+                became = "is a favourite now" if is_one else "is no longer a favourite"
                 self.post_message(self.Told(f"{chosen.id} {became}"))
             self._search_again()
 

@@ -23,7 +23,7 @@ PLACES: dict[Place, str] = {
     "given": "The form in which density or current is given",
     "text": "The file as text",
     "area": "While the text is typed",
-    "form": "A component of one's own",
+    "form": "A component of your own",
     "sheet": "Some values asked for together",
     "question": "A question, answered by the letter in front of each answer",
     "help": "This help",

@@ -12,23 +12,23 @@ BUILDER: tuple[Action, ...] = (
         "suspend",
         "ctrl+z",
         "suspend",
-        "Back to the shell, `fg` comes back; while a value is edited, and in a browser: undo.",
+        "Suspend to the shell, `fg` returns; while a value is edited, and in a browser: undo.",
     ),
-    Action("anywhere", "redo", "U,ctrl+y", "redo", "Do again what was undone."),
+    Action("anywhere", "redo", "U,ctrl+y", "redo", "Redo what was undone."),
     Action("anywhere", "water", "w", "water", "Depth, density, current, wind; environments.", 4),
     Action(
         "anywhere",
         "next_environment",
         "e",
         "environment",
-        "Stand the line in the next environment.",
+        "Show the line in the next environment.",
     ),
     Action(
         "anywhere",
         "advise",
         "p",
         "advice",
-        "Changes that mend what was found, or meet a target; shown before they are taken.",
+        "Changes that correct a finding or meet a target; shown before you accept them.",
         10,
     ),
     Action("anywhere", "compare", "D", "compare", "What has changed since the file was saved."),
@@ -61,7 +61,7 @@ BUILDER: tuple[Action, ...] = (
         "The verdict line by line: Enter goes to the row that a line is about, Esc back.",
     ),
     Action("anywhere", "search", "slash", "catalogue", "Search the catalogue."),
-    Action("anywhere", "define", "o", "own component", "Define a component of one's own."),
+    Action("anywhere", "define", "o", "own component", "Define a component of your own."),
     Action("anywhere", "picture('elevation')", "1", "elevation", "The line seen from the side."),
     Action("anywhere", "picture('plan')", "2", "plan", "The line seen from above."),
     Action("anywhere", "picture('tension')", "3", "tension", "Tension along the line."),
@@ -103,7 +103,9 @@ BUILDER: tuple[Action, ...] = (
         "papers",
         "Bill and totals; write the report of the check, or the sheets for the deck.",
     ),
-    Action("anywhere", "history", "h", "history", "What was done, and back to before any of it."),
+    Action(
+        "anywhere", "history", "h", "history", "History of changes, and back to before any of them."
+    ),
     Action("anywhere", "text", "t", "text", "The file as text, with its mistakes."),
     Action("anywhere", "app.save", "ctrl+s,s", "save", "Save the file.", 9),
     Action("anywhere", "app.save_as", "S", "save as", "Save it under another name."),
@@ -116,8 +118,6 @@ BUILDER: tuple[Action, ...] = (
         "Find any of these by its name.",
         palette=False,
     ),
-    Action(
-        "anywhere", "app.repaint", "ctrl+l", "repaint", "Send the terminal all of the screen again."
-    ),
+    Action("anywhere", "app.repaint", "ctrl+l", "repaint", "Redraw the whole screen."),
     Action("anywhere", "app.quit", "q,ctrl+q", "quit", "Leave; unsaved work is asked about.", 11),
 )

@@ -8,8 +8,8 @@ SCREENS: tuple[Action, ...] = (
     # the water
     Action("water", "next_environment", "f5", "environment", "The next environment.", 3),
     Action("water", "new_environment", "f6,ctrl+n", "new environment", "Add a named one.", 4),
-    Action("water", "drop_environment", "f7", "drop it", "Take the named environment out."),
-    Action("water", "preset", "ctrl+t", "presets", "Currents to begin with.", 2),
+    Action("water", "drop_environment", "f7", "drop it", "Remove the named environment."),
+    Action("water", "preset", "ctrl+t", "presets", "Typical currents to start from.", 2),
     Action("water", "load_current", "ctrl+o", "read a file", "A current from CSV or NetCDF.", 1),
     Action("water", "app.focus_next", "down", "next", "To what is below.", palette=False),
     Action("water", "app.focus_previous", "up", "last", "To what is above.", palette=False),
@@ -52,7 +52,7 @@ SCREENS: tuple[Action, ...] = (
     Action("grid", "add_row(1)", "a,insert", "add row", "Add a row below.", 1, palette=False),
     Action("grid", "add_row(0)", "A", "add above", "Add a row above.", palette=False),
     Action(
-        "grid", "drop_row", "delete,backspace", "delete row", "Take the row out.", 2, palette=False
+        "grid", "drop_row", "delete,backspace", "delete row", "Delete the row.", 2, palette=False
     ),
     # the text
     Action("text", "app.save", "ctrl+s", "save", "Save the file as it stands.", 1),
@@ -79,14 +79,16 @@ SCREENS: tuple[Action, ...] = (
         "take",
         "enter",
         "take it",
-        "Take the form that is shown, and go on.",
+        "Choose the form shown, and go on.",
         palette=False,
     ),
-    Action("sheet", "take", "ctrl+s", "done", "Take all values.", palette=False),
-    Action("sheet", "leave", "escape", "leave", "Leave all as it was.", palette=False),
+    Action("sheet", "take", "ctrl+s", "done", "Accept all values.", palette=False),
+    Action("sheet", "leave", "escape", "leave", "Leave everything as it was.", palette=False),
     Action("sheet", "app.focus_next", "down", "next", "To the next value.", palette=False),
     Action("sheet", "app.focus_previous", "up", "last", "To the one before.", palette=False),
-    Action("question", "answer('')", "escape", "go back", "Go back, where one may.", palette=False),
+    Action(
+        "question", "answer('')", "escape", "go back", "Go back, where possible.", palette=False
+    ),
     Action(
         "help", "dismiss", "escape,q,enter,question_mark,f1", "close", "Close it.", palette=False
     ),

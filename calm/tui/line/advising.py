@@ -35,7 +35,7 @@ class Advising:
         if not self._line.settle():
             return
         if view is None or not workspace.is_fresh:
-            workspace.tell("There is advice once the line is solved")
+            workspace.tell("Advice is available once the line is solved")
             return
         catalogue = None if workspace.index is None else workspace.index.catalogue
         found = offers(view, catalogue)[:9]
@@ -44,7 +44,7 @@ class Advising:
         ]
         result = view.result
         if isinstance(result, Result):
-            answers.append(Answer("o", "another target, as `calm size` has them", _OTHER))
+            answers.append(Answer("o", "another target, as in `calm size`", _OTHER))
 
         def take(answer: str | None) -> None:
             if answer == _OTHER and isinstance(result, Result):
@@ -54,7 +54,7 @@ class Advising:
 
         text = "What it changes is shown before it is taken."
         if not found:
-            text = "Nothing that was found has a remedy that could be worked out here. " + text
+            text = "No finding has a remedy that can be computed here. " + text
         if isinstance(result, Result) and not view.complete:
             text += " Launch, recovery and breaks are still being judged."
         self._app.push_screen(Question("Advice", text, answers), take)
@@ -112,7 +112,7 @@ class Advising:
             elif session.draft is before:
                 self._line.attempt(lambda: session.do(made, offer.label), f"{offer.label}: taken")
             else:
-                self._workspace.tell("The line is another one meanwhile; ask again", wrong=True)
+                self._workspace.tell("The line has changed meanwhile; ask again", wrong=True)
 
         self._workspace.tell("")
         answers = [Answer("y", "take it", "take")]

@@ -71,8 +71,8 @@ class LineBody(Horizontal):
         view, fresh = self.workspace.view, self.workspace.is_fresh
         last = None if view is None or view.result is not None else self.workspace.good
         if fresh:
-            self.pictures.show(last or view, "as it last stood" if last else "")
-            note = "The picture shows the line as it last stood." if last else ""
+            self.pictures.show(last or view, "the last complete line" if last else "")
+            note = "The picture shows the last complete line." if last else ""
             self.verdict.show(view, note)
         self.pictures.set_class(self.workspace.is_old or last is not None, "-old")
         self.verdict.set_class(self.workspace.is_old, "-old")

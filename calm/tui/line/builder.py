@@ -191,7 +191,7 @@ class BuilderScreen(DraftScreen):
         if not self.part.settle():
             return
         if not steps.steps:
-            self.tell("Nothing was done yet that could be taken back")
+            self.tell("There is nothing to undo yet")
             return
 
         def take(answer: str | None) -> None:

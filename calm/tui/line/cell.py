@@ -11,8 +11,8 @@ from calm.tui.checking import Check, anything, count, distance, length, length_t
 from calm.tui.line.table_row import EDITABLE, Column
 from calm.tui.workspace import Workspace
 
-_NO_COUNT = "What is clamped on a piece has no count; duplicate it instead"
-_NO_LENGTH = "Its length is that of the component"
+_NO_COUNT = "A clamp has no count; duplicate it instead"
+_NO_LENGTH = "Its length is set by the component"
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from calm.files.editing import Value
 from calm.tui.checking import Reading, anything, day
 from calm.tui.dialogs import Asked, Sheet
 
-_SEVERAL = "The numbers of a count stand between commas, one for each."
+_SEVERAL = "For a count, give one number for each, separated by commas."
 
 
 def equipment_sheet(label: str, values: Mapping[str, Any], *, is_clamp: bool) -> Sheet:

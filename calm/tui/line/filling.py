@@ -27,7 +27,7 @@ class Filling:
         if not self._line.settle():
             return
         if workspace.view is None or not workspace.is_fresh:
-            workspace.tell("Which figures are missing is known once the line is judged")
+            workspace.tell("Missing figures are known once the line is judged")
             return
         missing = missing_figures(workspace.view, session.draft)
         if not missing:

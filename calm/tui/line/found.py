@@ -28,7 +28,7 @@ class Found:
                 self._table.cursor = number
                 self._tell(self._of(rows[number].spot))
                 return
-        self._workspace.tell("Nothing is found of any row")
+        self._workspace.tell("There are no findings")
 
     def of_row(self) -> Question | None:
         """All that was found of the row under the cursor; None, with a report, where nothing is."""
@@ -37,7 +37,7 @@ class Found:
             return None
         found = self._of(spot)
         if not found:
-            self._workspace.tell("Nothing is found of this row, or it is not judged yet")
+            self._workspace.tell("There are no findings for this row, or it is not judged yet")
             return None
         text = "\n".join(f"{each.sign} {each.heading}  {each.text}" for each in found)
         called = row.texts.get("label") or row.texts["component"]

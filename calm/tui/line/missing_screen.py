@@ -51,7 +51,7 @@ class MissingScreen(Screen[Filled | None]):
         with VerticalScroll(can_focus=False):
             for each in self._missing:
                 yield from self._component(each)
-            note = "of what is filled in: data sheet, test certificate …"
+            note = "source of the figures: data sheet, test certificate …"
             yield Field("source", "source", id="source", note=note)
         yield KeyBar()
 

@@ -37,7 +37,7 @@ class Papers:
             return
         result = None if view is None else view.result
         if not self._workspace.is_fresh or not isinstance(result, Result):
-            self._workspace.tell("There are papers of a mooring that stands")
+            self._workspace.tell("Reports and sheets need a mooring that stands")
             return
 
         def take(answer: str | None) -> None:
@@ -56,7 +56,7 @@ class Papers:
     def _ask_where(self, what: str) -> None:
         session, path = self._workspace.session, self._workspace.session.file.path
         if path is None or session.changed:
-            self._workspace.tell("Save the file first: what is written is of the saved file")
+            self._workspace.tell("Save the file first: reports are made from the saved file")
             return
 
         def take(texts: dict[str, str] | None) -> None:

@@ -15,7 +15,7 @@ def beginning() -> Question:
         Answer(str(number), f"{kind}: {meaning}", str(number))
         for number, (kind, meaning) in enumerate(STARTS.items(), 1)
     ]
-    text = "Each stands as it is: change its depth, current and pieces to yours."
+    text = "Each stands as given: change depth, current and pieces to yours."
     return Question("Begin with", text, answers)
 
 
@@ -39,5 +39,5 @@ def naming(session: Session) -> Sheet:
     own = session.draft.value(("components",))
     check = id_check(own if isinstance(own, dict) else ())
     asked = [Asked("id", "Id", check=check, placeholder="e.g. glass-pack-own")]
-    text = "The pieces stand in the file's components then; `use` of this id stands for them."
+    text = "The pieces go into the file's components; `use` of this id stands for them."
     return Sheet("Make an assembly", text, asked)

@@ -45,8 +45,8 @@ class Currents:
             depth = self._pane.water.depth
             down = f"{USUAL_DEPTH:g} m, as no depth is given" if depth is None else f"{depth:g} m"
             answers = [Answer(preset.key, preset.name, preset.key) for preset in PRESETS]
-            text = f"As a table down to {down}, towards the east; then change its figures."
-            self._app.push_screen(Question("A current to begin with", text, answers), take)
+            text = f"A table down to {down}, towards the east, for you to change."
+            self._app.push_screen(Question("A current to start from", text, answers), take)
 
     def ask_for_file(self) -> None:
         """A current from CSV or NetCDF: referred to, or its profile copied."""

@@ -50,7 +50,9 @@ class Environments:
                 lambda _: water.draft.put_at(place, current), f"environment {name}"
             ):
                 self._stand_in(name)
-                self._workspace.tell("" if known else "Begun with a current to be replaced")
+                self._workspace.tell(
+                    "" if known else "Filled with a typical current, to be replaced"
+                )
 
         if self._pane.settle():
             asked = [Asked("name", "Name", check=needed("a name"), placeholder="e.g. storm")]

@@ -45,7 +45,7 @@ class FormChoice(Cycle):
         super().show(self.words[(here + by) % len(self.words)])
 
     def action_take(self) -> None:
-        """Take the form that is shown, and go on."""
+        """Choose the form shown, and go on."""
         if self.word != self._given:
             self.post_message(self.Taken(self, self.word))
         else:

@@ -215,7 +215,7 @@ class WaterPane(Horizontal):
         value = water.begun(place, form) if is_new else self._left[key]
         told = ""
         if is_new and value is not None:
-            told = "Begun with figures to be replaced"
+            told = "Filled with typical figures, to be replaced"
             if water.depth is None:
                 told += f"; no depth is given, so tables go down to {USUAL_DEPTH:g} m"
         self.change(lambda water: water.put_form(place, value), f"{place[-1]}: {form}", told)

@@ -161,7 +161,7 @@ def test_what_is_no_mooring_and_no_current_is_refused(subsurface: Mooring) -> No
         with pytest.raises(TypeError, match="a current is numbers, not "):
             solve_profiles(subsurface, wrong, v, depth)
     for workers in (0, -1):
-        with pytest.raises(ValueError, match="one at least is needed"):
+        with pytest.raises(ValueError, match="at least one is needed"):
             solve_profiles(subsurface, u, v, depth, workers=workers)
 
 

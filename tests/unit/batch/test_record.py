@@ -158,7 +158,7 @@ def test_bins_move_with_the_instrument(tmp_path: Path) -> None:
     with opened(write("adcp-by-distance", tmp_path)) as record:
         assert record.profiles(0, COUNT)[0] == pytest.approx(depth, rel=1e-14)
         assert (
-            "`HEIGHT_ABOVE_SENSOR` counts from the instrument, whose depth is `DEPTH`"
+            "`HEIGHT_ABOVE_SENSOR` is measured from the instrument, whose depth is `DEPTH`"
             in record.notes
         )
 
@@ -182,10 +182,10 @@ def test_directions_say_their_way(tmp_path: Path) -> None:
 def test_notes_tell_the_rules(tmp_path: Path) -> None:
     with opened(write("oceansites", tmp_path)) as record:
         assert record.notes == (
-            "the current's quality flags are not looked at",
+            "the quality flags of the current are ignored",
             "levels where the current or their depth has no value are left out of their profile",
             "levels above the surface are left out",
-            "levels below the seabed count where they have a value: the current at the seabed "
+            "levels below the seabed are used where they have a value: the current at the seabed "
             "lies between",
             "between levels the current is linear in depth, beyond the first and the last it is "
             "constant",
@@ -247,7 +247,7 @@ def test_profiles_out_of_order_are_put_in_it(tmp_path: Path) -> None:
                 mixed.profiles(start, stop), record.profiles(start, stop), strict=True
             ):
                 assert np.array_equal(got, expected)
-        assert mixed.notes[0] == "the profiles are not in the order of time, and were taken in it"
+        assert mixed.notes[0] == "the profiles were not in the order of time, and have been sorted"
 
 
 @pytest.mark.parametrize(
@@ -294,5 +294,5 @@ def test_a_block_that_is_damaged_names_the_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["nowhere.nc", "folder"])
 def test_no_record_at_all(tmp_path: Path, name: str) -> None:
     (tmp_path / "folder").mkdir()
-    with pytest.raises(InputError, match=r"no such file|is a folder, and no zarr store"):
+    with pytest.raises(InputError, match=r"no such file|is a folder, and not a zarr store"):
         opened(tmp_path / name)

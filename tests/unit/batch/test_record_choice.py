@@ -27,10 +27,10 @@ def test_periods(text: str, first: str | None, last: str | None) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("2026-03-01", "`2026-03-01` is no period; write 2026-03-01/2026-03-31T12:00"),
+        ("2026-03-01", "`2026-03-01` is not a period; write 2026-03-01/2026-03-31T12:00"),
         ("2026-03-02/2026-03-01", "ends before it begins"),
-        ("2026-13/", "`2026-13` is no date"),
-        ("noon/", "`noon` is no time"),
+        ("2026-13/", "`2026-13` is not a date"),
+        ("noon/", "`noon` is not a time"),
     ],
 )
 def test_no_periods(text: str, message: str) -> None:

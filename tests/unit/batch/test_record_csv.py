@@ -80,7 +80,7 @@ def test_mistakes_are_all_told_with_their_place(csv: Path) -> None:
         (3, 12, "the depths count upwards; depth is positive down, so leave the sign out"),
         (4, 1, "the row has 2 values, 3 are needed"),
         (6, 12, "depth 9 m repeats 9 m; depths must increase"),
-        (7, 1, "`noon` is no time; write 2026-03-01T06:00"),
+        (7, 1, "`noon` is not a time; write 2026-03-01T06:00"),
         (8, 1, "the row has 4 values, 3 are needed; a decimal comma? (write 0.8, not 0,8)"),
         (9, 12, "`depth` has no value"),
     ]

@@ -104,11 +104,11 @@ def without_standard_names(long_name: str) -> xr.Dataset:
         ),
         (
             lambda: adcp_by_distance().drop_vars("DEPTH"),
-            "`HEIGHT_ABOVE_SENSOR` counts from the instrument, whose depth is not in the file",
+            "`HEIGHT_ABOVE_SENSOR` is measured from the instrument, whose depth is not in the file",
         ),
         (
             lambda: adcp().expand_dims(member=3),
-            "`u` is no single profile, but spreads over member (3), time (7), bin (5)",
+            "`u` is not a single profile, but spreads over member (3), time (7), bin (5)",
         ),
         (lambda: adcp().isel(time=0).drop_vars("time"), "has no times: it is one profile, for"),
         (lambda: glorys().assign_coords(latitude=glorys()["latitude"] + 9), "outside its grid"),

@@ -107,7 +107,7 @@ def test_a_long_reading_is_told(tmp_path, mooring, record, monkeypatch):
 
     record.digest = lambda check: heard.wait(60) and digest()
     assert run_batch(mooring, record, tmp_path / "r.nc", tell=tell).done
-    assert told == ["reading the record through, to know it again"]
+    assert told == ["reading the whole record, to check that it is unchanged"]
 
 
 @pytest.mark.thorough
@@ -206,7 +206,7 @@ def test_what_is_no_result_is_left_alone(tmp_path, mooring, record):
         with pytest.raises(UsageError, match=words):
             run_batch(mooring, record, tmp_path / name)
     assert (tmp_path / "r.nc").read_text() == (tmp_path / "s.nc.part" / "mine").read_text()
-    with pytest.raises(UsageError, match=r"ends in \.nc or \.zarr"):
+    with pytest.raises(UsageError, match=r"must end in \.nc or \.zarr"):
         run_batch(mooring, record, tmp_path / "r.txt")
 
 

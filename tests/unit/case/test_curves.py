@@ -72,12 +72,12 @@ def test_a_rope_stretches_by_its_table_and_thins(solve):
 @pytest.mark.parametrize(
     ("material", "told"),
     [
-        ("nylon", "those published of such a rope differ by a factor of 9; "
+        ("nylon", "the published stiffnesses of such ropes differ by a factor of 9; "
          "at its tension it could stretch by 1.6 to 14 %."),
-        ("Dyneema", "those published of such a rope differ by a factor of 2.4; "
+        ("Dyneema", "the published stiffnesses of such ropes differ by a factor of 2.4; "
          "at its tension it could stretch by 0.021 to 0.05 %."),
-        ("kevlar", "by the one that is published it would stretch by 0.031 %."),
-        ("vectran", "none is published of such a rope."),
+        ("kevlar", "by the one published stiffness it would stretch by 0.031 %."),
+        ("vectran", "no stiffness of such a rope is published."),
     ],
 )  # fmt: skip
 def test_an_unknown_stiffness_is_told_with_its_spread(solve, material, told):

@@ -151,7 +151,7 @@ def test_a_range_that_ends_too_soon(mooring):
 def test_a_change_that_does_nothing(mooring):
     sizing = size(mooring(), "tension(block) >= 2 kN", "thread.length")
     assert sizing.status == "not-met"
-    assert sizing.message.startswith("It is nearest as it is, at 948.683 N")
+    assert sizing.message.startswith("The present value is the nearest, at 948.683 N")
 
 
 def test_a_mooring_without_equilibrium_can_be_mended(mooring):
@@ -216,7 +216,12 @@ def test_the_document_is_plain_json(mooring):
         ("knokdown(top) <= 2 m", "float.buoyancy", None, "did you mean `knockdown`?"),
         ("<= 2 m", "float.buoyancy", None, "there is no quantity; allowed: depth, "),
         ("knockdown(top) 2 m", "float.buoyancy", None, "there is no relation; write <=, >= or ="),
-        ("knockdown(top) < 2 m", "float.buoyancy", None, "`<` is no relation; write <=, >= or ="),
+        (
+            "knockdown(top) < 2 m",
+            "float.buoyancy",
+            None,
+            "`<` is not a relation; write <=, >= or =",
+        ),
         ("knockdown(top) <=", "float.buoyancy", None, "there is no limit"),
         ("knockdown(top) <= 2", "float.buoyancy", None, "`2` needs a unit: `2 m`?"),
         ("knockdown(top) <= 2 kg", "float.buoyancy", None, "`2 kg` is a mass; a length"),
@@ -230,7 +235,7 @@ def test_the_document_is_plain_json(mooring):
         ("tilt <= 2 deg", "float.length", None, "only cables and chains are cut to length"),
         ("tilt <= 2 deg", "CTD.count", None, "clamped instruments are not counted"),
         ("tilt <= 2 deg", "block.count", None, "a line has one anchor"),
-        ("tilt <= 2 deg", "CTD.buoyancy", None, "CTD.buoyancy is 0; say with --between"),
+        ("tilt <= 2 deg", "CTD.buoyancy", None, "CTD.buoyancy is 0; give its range with --between"),
         ("tilt(glass 1) <= 2 deg", "glass.count", None, "set the target for another part"),
         ("tilt(thread) = 2 deg", "glass.count", None, "glass.count goes in steps"),
         ("tilt <= 2 deg", "float.buoyancy", ("1 m", "2 N"), "`1 m` is a length; a force"),

@@ -280,7 +280,7 @@ def test_the_figures_are_those_of_their_seed_however_they_are_shared_out():
     ("samples", "near"), [(1000, 1024), (0, 64), (-5, 64), (63, 64), (2**21, 2**20)]
 )
 def test_samples_are_a_power_of_two(samples, near):
-    with pytest.raises(UsageError, match=f"{samples} is no power of two .* take {near}"):
+    with pytest.raises(UsageError, match=f"{samples} is not a power of two .* take {near}"):
         uncertain(calm.load(LINES / "s1000.yaml").solve(), samples)
 
 

@@ -210,7 +210,7 @@ FLAWS = (
         "depth-rating",
         "sphere",
         "unknown",
-        "what depth it stands is not known",
+        "its depth rating is not known",
     ),
     Flaw(
         "a knockdown that the design forbids",
@@ -255,7 +255,7 @@ FLAWS = (
         "backup",
         None,
         "fail",
-        "what holds the release has a buoyancy of",
+        "the part that holds the release has a buoyancy of",
     ),
     Flaw(
         "a release that nothing is told of",
@@ -302,7 +302,7 @@ FLAWS = (
         "launch-speed",
         "four wheels",
         "warn",
-        "2.5 m/s should not be passed",
+        "2.5 m/s should not be exceeded",
     ),
     Flaw(
         "an anchor lifted at high water",
@@ -347,7 +347,7 @@ FLAWS = (
         "recovery",
         "release",
         "fail",
-        "0.30 m/s are asked for",
+        "0.30 m/s are required",
     ),
     Flaw(
         "back-up glass that overtakes the line",
@@ -442,7 +442,7 @@ FLAWS = (
         "release-present",
         None,
         "unknown",
-        "how the line is freed of its anchor is not known",
+        "how the line is freed from its anchor is not known",
     ),
     Flaw(
         "a clamp that slips",

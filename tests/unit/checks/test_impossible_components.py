@@ -36,7 +36,7 @@ def test_good_components_pass(good):
     [
         (GOOD_SPHERE, {"source": None}, "source"),
         (GOOD_SPHERE, {"sources": {"mass": "a scale"}}, "source of `mass`"),
-        (GOOD_SPHERE, {"searched": ["buoyancy"]}, "in vain for `buoyancy`"),
+        (GOOD_SPHERE, {"searched": ["buoyancy"]}, "under `searched` `buoyancy`"),
         (GOOD_SPHERE, {"searched": ["stiffness"]}, "a sphere does not have"),
         (GOOD_SPHERE, {"depth_rating": "11500 m"}, "no water is deeper"),
         (GOOD_SPHERE, {"max_tilt": "20 deg", "warn_tilt": "25 deg"}, "after its greatest tilt"),
@@ -95,7 +95,11 @@ def test_parts_of_an_assembly_must_exist():
 
 @pytest.mark.parametrize(
     ("prefer", "told"),
-    [("nothing", "which no catalogue has"), ("x", "beside it"), ("y", "itself prefers `z`")],
+    [
+        ("nothing", "which no catalogue has"),
+        ("x", "prefers `x`, which no catalogue has"),
+        ("y", "itself prefers `z`"),
+    ],
 )
 def test_what_is_preferred_must_be_there_and_be_final(prefer, told):
     definitions = {

@@ -165,5 +165,5 @@ def test_what_is_towed_in_air_stays(to):
 
 
 def test_no_program_of_that_name():
-    with pytest.raises(UsageError, match="`orca` is no program"):
+    with pytest.raises(UsageError, match="`orca` is not a program"):
         export_file(LINES / "cdms-1.yaml", "orca")

@@ -224,7 +224,7 @@ def test_a_placeholder_size_is_kept_and_pointed_out(tmp_path):
     size = np.array(HEIGHT)
     size[:, 0] = (1.5, 0.01, 0.01, 2.0)
     made = imported(tmp_path, mooring(H=size))
-    assert "diameter: 10 mm  # guessed: kept as it stands, a placeholder" in made.text
+    assert "diameter: 10 mm  # guessed: kept as it is, a placeholder" in made.text
     assert len(made.guessed) == 1
 
 
@@ -276,7 +276,10 @@ REFUSED = {
     "all at the seabed": (mooring(z=np.zeros((1, 3))), "--environment FILE"),
     "too few buoyancies": (mooring(B=np.array([[1.0, 2.0]])), "`B` has 2 values for 7 elements"),
     "current of other levels": (mooring(U=np.ones((1, 2))), "`U` is 1×2 for 3 values of `z`"),
-    "a line for an anchor": (mooring(H=np.array(HEIGHT)[:, [0, 1, 2, 3, 4, 6, 5]]), "no anchor"),
+    "a line for an anchor": (
+        mooring(H=np.array(HEIGHT)[:, [0, 1, 2, 3, 4, 6, 5]]),
+        "not an anchor",
+    ),
     "a negative length": (mooring(H=-np.array(HEIGHT)), "its length is -0.94"),
     "a clamp off the line": (mooring(Jobj=np.array([[40]])), "clamped on element 40: none"),
     "a ship at rest": (tow(Usp=0.0, Vsp=0.0), "does not move"),

@@ -139,7 +139,7 @@ REFUSED = {
         "more than two lines|its lines have",
     ),
     "an unknown type": ("2    rope", "2    hemp", "`hemp` is defined nowhere"),
-    "an unknown point": ("2        3        40", "2        7        40", "`7` is no point"),
+    "an unknown point": ("2        3        40", "2        7        40", "`7` is not a point"),
     "no number": ("0.02    0.6", "wide    0.6", "`diameter` is `wide`"),
     "a body": (
         "---------------------- POINTS",

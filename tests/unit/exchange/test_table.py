@@ -145,7 +145,7 @@ def test_weights_that_count_up_are_told(read, tmp_path):
     )
     text = text.replace("8 mm wire,-18,100,0.008", "8 mm wire,-18,100,0.8")
     made = read(text)
-    assert any("counted as buoyancy" in str(each) for each in made.guessed)
+    assert any("read as buoyancy" in str(each) for each in made.guessed)
     assert any("Tangential drag coeff" in str(each) for each in made.dropped)
     ball, shackle, wire, *_ = (piece.component for piece in pieces(made, tmp_path))
     assert ball.buoyancy == pytest.approx(486 * 9.80665)
@@ -253,7 +253,7 @@ def test_a_library_of_that_program_is_read(read, tmp_path):
     ball, rope, _ = pieces(made, tmp_path)
     assert ball.component.diameter == 0.91
     assert rope.component.stiffness == pytest.approx(6.9e10 * 3.14159265 / 4 * 0.009**2)
-    with pytest.raises(InputError, match="is the element library of that program, no mooring"):
+    with pytest.raises(InputError, match="is the element library of that program, not a mooring"):
         import_file(library, tmp_path / "m.yaml")
 
 
@@ -265,7 +265,7 @@ LIBRARY_REFUSED = {
     ),
     "a name it lacks": (NAMES_ALONE.replace("41in ORE", "42in ORE"), True, "has `41in ore`"),
     "a line without length": (NAMES_ALONE.replace("1/2 shackle", "3/8 wire rope"), True, "length"),
-    "a library for a mooring": (LIBRARY, False, "is a library of elements, no mooring"),
+    "a library for a mooring": (LIBRARY, False, "is a library of elements, not a mooring"),
     "a library for another program": ("MATLAB 5.0 MAT-file", True, "--elements is for lists"),
 }
 
@@ -328,7 +328,7 @@ def test_a_number_with_words_is_told(read):
 
 
 REFUSED = {
-    "words for a number": (ENGLISH.replace(",22,1.2", ",heavy,1.2"), "`heavy` is no number"),
+    "words for a number": (ENGLISH.replace(",22,1.2", ",heavy,1.2"), "`heavy` is not a number"),
     "a line without length": (ENGLISH.replace("8 mm wire,100", "8 mm wire,"), "needs its length"),
     "no weight": (ENGLISH.replace(",-433,", ",,"), "its buoyancy is missing"),
     "nothing floats": (

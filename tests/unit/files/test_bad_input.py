@@ -222,7 +222,7 @@ ONE_MISTAKE = {
     ),
     "decimal comma in braces": (
         re.sub(r"  current:\n(    .*\n)+", "  current: {speed: 0,8 m/s, toward: 9 deg}\n", GOOD),
-        (4, 22, "`8 m/s` is no key; a decimal comma? (write 0.8, not 0,8)"),
+        (4, 22, "`8 m/s` is not a key; a decimal comma? (write 0.8, not 0,8)"),
     ),
     "tab": (changed("  depth:", "\tdepth:"), (3, 1, "a tab; YAML is indented with spaces")),
     "invalid YAML": (
@@ -262,7 +262,7 @@ ONE_MISTAKE = {
     ),
     "item that is text": (
         changed("{use: plate}", "plate"),
-        (12, 5, "`plate` is no item; write `{use: plate}`"),
+        (12, 5, "`plate` is not an item; write `{use: plate}`"),
     ),
     "count of none": (
         changed("{use: plate}", "{use: plate, count: 0}"),

@@ -85,7 +85,7 @@ def test_record_of_one_time_needs_no_choice(csv: Path) -> None:
             "2026-03-02",
             "2026-03-02T00:00 is outside the record, 2026-03-01T06:00 to 2026-03-01T12:00",
         ),
-        ("noon", "`noon` is no time; write 2026-03-01T06:00"),
+        ("noon", "`noon` is not a time; write 2026-03-01T06:00"),
     ],
 )
 def test_times_that_cannot_be_chosen(csv: Path, time: str | None, message: str) -> None:
@@ -129,11 +129,11 @@ def test_column_of_a_record_with_a_mistake(csv: Path) -> None:
         ("depth[m],u[m/s],v[m/s]\n", (1, 1, "the table has no rows")),
         (
             "depth[m];u[m/s];v[m/s]\n0;1;1\n",
-            (1, 1, "`depth[m];u[m/s];v[m/s]` is no header such as `depth[m],u[m/s],v[m/s]`"),
+            (1, 1, "`depth[m];u[m/s];v[m/s]` is not a header such as `depth[m],u[m/s],v[m/s]`"),
         ),
         (
             "time,depth[m],u[m/s],v[m/s]\nnoon,0,1,1\n",
-            (2, 1, "`noon` is no time; write 2026-03-01T06:00"),
+            (2, 1, "`noon` is not a time; write 2026-03-01T06:00"),
         ),
         (
             "depth[m],speed[m/s]\n0,1\n",

@@ -120,7 +120,7 @@ def test_profile_of_a_time(tmp_path: Path) -> None:
     [
         (None, "the file has 2 times, 2026-03-01T00:00 to 2026-03-01T06:00; give `time:`"),
         ("2026-03-01T06:01", "is outside the record"),
-        ("six", "`six` is no time"),
+        ("six", "`six` is not a time"),
     ],
 )
 def test_times_that_cannot_be_chosen(tmp_path: Path, time: str | None, message: str) -> None:
@@ -181,7 +181,7 @@ def test_one_current_meter_is_a_profile_of_one_level(tmp_path: Path) -> None:
 
 def test_quality_flags_are_not_looked_at_and_that_is_said(tmp_path: Path) -> None:
     _, notices = read(profile(uo_QC=("depth", [1, 1, 4])), tmp_path)
-    assert notices == ["the current's quality flags are not looked at"]
+    assert notices == ["the quality flags of the current are ignored"]
 
 
 def test_no_current_in_the_file(tmp_path: Path) -> None:
@@ -197,7 +197,7 @@ def test_files_that_cannot_be_understood(tmp_path: Path) -> None:
     attributes = {"units": "m", "positive": "down"}
     wide = profile().expand_dims(member=2)
     assert problem(wide, tmp_path).startswith(
-        "`uo` is no single profile, but spreads over member (2), depth (3); it holds "
+        "`uo` is not a single profile, but spreads over member (2), depth (3); it holds "
     )
     unit = profile()
     unit["uo"].attrs["units"] = "kg"
@@ -259,7 +259,7 @@ def test_a_zarr_folder_is_a_file_too(read: Callable[..., MooringFile], tmp_path:
     text = GOOD[:start] + "  current: {file: current.zarr}\n" + GOOD[end:]
     assert read(text).environment.current.u == tuple(U)
     (tmp_path / "folder").mkdir()
-    with pytest.raises(InputError, match="folder: is a folder, and no zarr store"):
+    with pytest.raises(InputError, match="folder: is a folder, and not a zarr store"):
         read(text.replace("current.zarr", "folder"))
 
 

@@ -45,8 +45,14 @@ def test_headings_give_columns_units_and_the_way() -> None:
         ("depth m,speed m/s,direction deg\n0,1,90\n", "does not say which way: call it `toward`"),
         ("depth m,sped m/s,toward deg\n0,1,90\n", "no column is called `sped`; did you mean `spe"),
         ("depth m,speed m/s,toward deg,from deg\n0,1,90,270\n", "give `toward`, where the curre"),
-        ("depth m,speed m/s,toward deg magnetic\n0,1,90\n", "counts from magnetic north; give the"),
-        ("depth m,u m/s magnetic,v m/s\n0,1,1\n", "`u` counts from magnetic north, `v` does not"),
+        (
+            "depth m,speed m/s,toward deg magnetic\n0,1,90\n",
+            "is relative to magnetic north; give the",
+        ),
+        (
+            "depth m,u m/s magnetic,v m/s\n0,1,1\n",
+            "`u` is relative to magnetic north, `v` is not",
+        ),
         ("depth m,speed m/s,toward deg\n0,1,400\n", "`toward: 400` must be at most 360 deg"),
         ("depth m,speed m/s,toward deg\n-5,1,4\n-9,1,4\n", "the depths count upwards; depth is po"),
         ("depth m,speed m/s,toward deg\n5,1,4\n12000,1,4\n", "depth 12000 m is deeper than any se"),

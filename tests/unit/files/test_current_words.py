@@ -54,10 +54,10 @@ def refusal(dataset: xr.Dataset, folder: Path, terms: Terms = Terms(300.0)) -> s
 
 
 @pytest.mark.parametrize(("words", "said"), [
-    ({"long_name": "residual eastward velocity"}, "no current to the east and north"),
-    ({"long_name": "eastward velocity (detided)"}, "no current to the east and north"),
-    ({"long_name": "eastward velocity of surface drifter"}, "no current to the east and north"),
-    ({"long_name": "difference of u, model minus observed"}, "no current to the east and north"),
+    ({"long_name": "residual eastward velocity"}, "not a current to the east and north"),
+    ({"long_name": "eastward velocity (detided)"}, "not a current to the east and north"),
+    ({"long_name": "eastward velocity of surface drifter"}, "not a current to the east and north"),
+    ({"long_name": "difference of u, model minus observed"}, "not a current to the east and north"),
     ({"comment": "velocity relative to the ship"}, "in other coordinates by its comment"),
     ({"comment": "rotated by 25 degrees to the along-shelf direction"}, "by its comment"),
     ({"rotation": "35 deg"}, "is rotated, `rotation: 35 deg`"),
@@ -74,7 +74,7 @@ def test_other_frames_and_quantities_in_words_of_many_kinds_are_refused(tmp_path
 ])  # fmt: skip
 def test_a_part_of_the_current_is_refused_wherever_it_is_said(tmp_path, said):
     whole = "is not the whole current by its"
-    assert "which is no current" in refusal(currents(long_name=said), tmp_path)
+    assert "which is not a current" in refusal(currents(long_name=said), tmp_path)
     assert f"`u` {whole} comment" in refusal(currents(comment=said), tmp_path)
     for name in ("title", "summary", "comment", "processing"):
         refused = refusal(currents().assign_attrs({name: f"Moored. {said}"}), tmp_path)
@@ -82,11 +82,11 @@ def test_a_part_of_the_current_is_refused_wherever_it_is_said(tmp_path, said):
 
 
 @pytest.mark.parametrize(("words", "said"), [
-    ({"long_name": "tidal velocity"}, "no current"),
-    ({"long_name": "velocity perturbation"}, "no current"),
-    ({"long_name": "wave orbital velocity"}, "no current"),
-    ({"long_name": "velocity relative to 1000 dbar"}, "no current"),
-    ({"long_name": "analysis increment"}, "no current"),
+    ({"long_name": "tidal velocity"}, "not a current"),
+    ({"long_name": "velocity perturbation"}, "not a current"),
+    ({"long_name": "wave orbital velocity"}, "not a current"),
+    ({"long_name": "velocity relative to 1000 dbar"}, "not a current"),
+    ({"long_name": "analysis increment"}, "not a current"),
     ({"cell_methods": "time: mean within years time: mean over years"}, "a mean of many years"),
     ({"scale_factor": 0.0}, "has `scale_factor: 0`, which makes every value the same"),
     ({"grid_rotation": 30.0}, "is rotated"),
@@ -153,7 +153,7 @@ MAGNETIC = [
 
 @pytest.mark.parametrize("make", MAGNETIC)
 def test_magnetic_north_needs_a_declination(tmp_path: Path, make: Callable[[], xr.Dataset]) -> None:
-    assert "from magnetic north; give the `declination` there" in refusal(make(), tmp_path)
+    assert "relative to magnetic north; give the `declination` there" in refusal(make(), tmp_path)
     table, notices = read(make(), tmp_path, Terms(300.0, declination=30.0))
     true = read(make().drop_attrs().pipe(_as_true), tmp_path)[0]
     # turned clockwise by 30° by the law of a rotation
@@ -161,7 +161,7 @@ def test_magnetic_north_needs_a_declination(tmp_path: Path, make: Callable[[], x
         east = true.u[i] * cos(radians(30)) + true.v[i] * sin(radians(30))
         north = true.v[i] * cos(radians(30)) - true.u[i] * sin(radians(30))
         assert (table.u[i], table.v[i]) == pytest.approx((east, north), abs=1e-15)
-    assert any("counted from magnetic north, turned by 30°" in one for one in notices)
+    assert any("were relative to magnetic north, turned by 30°" in one for one in notices)
 
 
 def _as_true(dataset: xr.Dataset) -> xr.Dataset:
@@ -190,7 +190,9 @@ def _as_true(dataset: xr.Dataset) -> xr.Dataset:
 def test_what_was_corrected_is_true(tmp_path: Path, words: dict[str, str]) -> None:
     assert read(currents(**words), tmp_path)[0].u == tuple(U)
     message = refusal(currents(**words), tmp_path, Terms(300.0, declination=12.5))
-    assert "are not said to count from magnetic north, so no `declination` is applied" in message
+    assert (
+        "are not said to be relative to magnetic north, so no `declination` is applied" in message
+    )
 
 
 def test_true_components_before_magnetic_ones(tmp_path: Path) -> None:
@@ -203,26 +205,29 @@ def test_true_components_before_magnetic_ones(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "reason"),
     [
-        ({"long_name": "velocity along beam 1"}, "which is no current to the east and north"),
-        ({"long_name": "along-shore velocity"}, "which is no current to the east"),
-        ({"long_name": "cross-shelf current"}, "which is no current to the east"),
-        ({"long_name": "velocity rotated 30 deg"}, "which is no current to the east"),
-        ({"long_name": "major axis velocity"}, "which is no current to the east"),
-        ({"long_name": "velocity, instrument coordinates"}, "which is no current to the east"),
-        ({"long_name": "standard deviation of u"}, "which is no current to the east"),
-        ({"long_name": "error velocity"}, "which is no current to the east"),
-        ({"long_name": "velocity anomaly"}, "which is no current to the east"),
-        ({"long_name": "ship velocity"}, "which is no current to the east"),
-        ({"long_name": "Platform Velocity from GPS"}, "which is no current to the east"),
-        ({"long_name": "sea ice velocity"}, "which is no current to the east"),
-        ({"long_name": "Stokes drift"}, "which is no current to the east"),
-        ({"long_name": "barotropic velocity"}, "which is no current to the east"),
-        ({"long_name": "velocity_beam1"}, "which is no current to the east"),
-        ({"long_name": "ship-relative velocity"}, "which is no current to the east"),
-        ({"long_name": "velocity relative to the vessel"}, "which is no current to the east"),
-        ({"long_name": "maximum velocity"}, "which is no current to the east"),
-        ({"cell_methods": "time: standard_deviation"}, "which is no current that ran"),
-        ({"cell_methods": "time: maximum"}, "which is no current that ran"),
+        ({"long_name": "velocity along beam 1"}, "which is not a current to the east and north"),
+        ({"long_name": "along-shore velocity"}, "which is not a current to the east"),
+        ({"long_name": "cross-shelf current"}, "which is not a current to the east"),
+        ({"long_name": "velocity rotated 30 deg"}, "which is not a current to the east"),
+        ({"long_name": "major axis velocity"}, "which is not a current to the east"),
+        ({"long_name": "velocity, instrument coordinates"}, "which is not a current to the east"),
+        ({"long_name": "standard deviation of u"}, "which is not a current to the east"),
+        ({"long_name": "error velocity"}, "which is not a current to the east"),
+        ({"long_name": "velocity anomaly"}, "which is not a current to the east"),
+        ({"long_name": "ship velocity"}, "which is not a current to the east"),
+        ({"long_name": "Platform Velocity from GPS"}, "which is not a current to the east"),
+        ({"long_name": "sea ice velocity"}, "which is not a current to the east"),
+        ({"long_name": "Stokes drift"}, "which is not a current to the east"),
+        ({"long_name": "barotropic velocity"}, "which is not a current to the east"),
+        ({"long_name": "velocity_beam1"}, "which is not a current to the east"),
+        ({"long_name": "ship-relative velocity"}, "which is not a current to the east"),
+        ({"long_name": "velocity relative to the vessel"}, "which is not a current to the east"),
+        ({"long_name": "maximum velocity"}, "which is not a current to the east"),
+        (
+            {"cell_methods": "time: standard_deviation"},
+            "which is not a measured or modelled current",
+        ),
+        ({"cell_methods": "time: maximum"}, "which is not a measured or modelled current"),
         ({"long_name": "northward velocity"}, "`u` is taken as eastward, and says `northward"),
         ({"long_name": "eastward velocity"}, "`v` is taken as northward, and says `eastward"),
         ({"long_name": "westward velocity"}, "`u` is taken as eastward, and says `westward"),
@@ -266,14 +271,14 @@ def test_the_coordinates_of_the_file_count(tmp_path: Path, frame: str) -> None:
                 "standard_name": "sea_water_velocity_to_direction",
                 "long_name": "direction the current comes from",
             },
-            "says two things: by its name it is the direction the current flows to, and it says "
+            "contradicts itself: by its name it is the direction the current flows to, and it says "
             "`direction the current comes from`",
         ),
-        ({"long_name": "angle to direction, counterclockwise from east"}, "which is no current"),
-        ({"long_name": "to direction, mathematical"}, "which is no current"),
-        ({"long_name": "to direction of the ADCP heading"}, "which is no current"),
+        ({"long_name": "angle to direction, counterclockwise from east"}, "which is not a current"),
+        ({"long_name": "to direction, mathematical"}, "which is not a current"),
+        ({"long_name": "to direction of the ADCP heading"}, "which is not a current"),
         ({"long_name": "heading"}, "does not say whether it is where the current flows to"),
-        ({"long_name": "wind to direction"}, "which is no current"),
+        ({"long_name": "wind to direction"}, "which is not a current"),
     ],
 )
 def test_directions_that_are_another(tmp_path: Path, words: dict[str, str], reason: str) -> None:
@@ -306,7 +311,7 @@ def test_the_way_of_a_direction_is_in_its_words(tmp_path: Path) -> None:
     assert "does not say whether it is where the current flows to" in refusal(
         directions(), tmp_path
     )
-    assert "says two things" in refusal(
+    assert "contradicts itself" in refusal(
         directions("toward", long_name="direction it comes from"), tmp_path
     )
 
@@ -348,7 +353,10 @@ def test_velocities_with_a_dimension_of_directions(tmp_path: Path) -> None:
             "`vel` has the directions X, Y, Z1, Z2, not E and N",
         ),
         (mhkit(orientation="AHRS"), "does not say whether that looks up or down"),
-        (mhkit().drop_vars("depth"), "counts from the instrument, whose depth is not in the file"),
+        (
+            mhkit().drop_vars("depth"),
+            "is measured from the instrument, whose depth is not in the file",
+        ),
         (
             mhkit().assign(depth=((), 40.0, {"units": "m", "long_name": "Water Depth"})),
             "whose depth is not in the file; `depth` is that of the water",
@@ -374,7 +382,9 @@ def test_files_that_mhkit_wrote(which: str) -> None:
 
 def test_bins_below_the_adcp_are_no_depths(tmp_path: Path) -> None:
     levels = ("depth", [5.0, 50.0, 200.0], {"units": "m", "long_name": "depth below the ADCP"})
-    assert "counts from the instrument" in refusal(currents().assign_coords(depth=levels), tmp_path)
+    assert "is measured from the instrument" in refusal(
+        currents().assign_coords(depth=levels), tmp_path
+    )
     bins = (
         currents()
         .rename(depth="bin")

@@ -1,4 +1,4 @@
-"""Definitions as written, read when they are asked for."""
+"""Definitions as written, read when they are required."""
 
 from pathlib import Path
 

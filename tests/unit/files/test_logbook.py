@@ -132,7 +132,7 @@ def test_a_release_that_is_not_in_the_line_is_reported(read: Read) -> None:
         ),
         (
             with_rope("  - {use: rope-12, length: 5 m, calibrated: spring}\n"),
-            (11, 45, "`spring` is no day of the calendar; write it as 2027-06-30"),
+            (11, 45, "`spring` is not a day of the calendar; write it as 2027-06-30"),
         ),
         (
             GOOD + "document: {revison: 2}\n",
@@ -140,7 +140,7 @@ def test_a_release_that_is_not_in_the_line_is_reported(read: Read) -> None:
         ),
         (
             GOOD + "deployed: {date: yesterday}\n",
-            (14, 18, "`yesterday` is no time; write 2026-03-01T06:00"),
+            (14, 18, "`yesterday` is not a time; write 2026-03-01T06:00"),
         ),
         (
             GOOD + "deployed: {items: [{label: top flot}]}\n",

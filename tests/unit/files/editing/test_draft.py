@@ -111,7 +111,7 @@ def test_copy_and_paste_into_another_manner() -> None:
     )
     into_nothing = Draft("name: x\n").paste(0, snippets[:1])
     assert into_nothing.text == "name: x\nline:\n  " + snippets[0].replace("\n-", "\n  -")
-    with pytest.raises(EditError, match="no list of items"):
+    with pytest.raises(EditError, match="not a list of items"):
         Draft(TEXT).paste(0, ["hello"])
 
 
