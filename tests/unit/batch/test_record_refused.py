@@ -84,7 +84,7 @@ def without_standard_names(long_name: str) -> xr.Dataset:
         ),
         (
             lambda: without_standard_names("10 metre U wind component"),
-            "`u` is `10 metre U wind component`, which is no current",
+            "`u` is `10 metre U wind component`, which is not a current",
         ),
         (
             lambda: with_attributes(adcp(), "time", units="months since 2026-03-01"),

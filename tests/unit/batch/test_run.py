@@ -202,7 +202,11 @@ def test_what_is_no_result_is_left_alone(tmp_path, mooring, record):
     (tmp_path / "r.zarr").mkdir()
     (tmp_path / "s.nc.part").mkdir()
     (tmp_path / "s.nc.part" / "mine").write_text("mine")
-    for name, words in (("r.nc", "no result"), ("r.zarr", "no result"), ("s.nc", "in the way")):
+    for name, words in (
+        ("r.nc", "not a result"),
+        ("r.zarr", "not a result"),
+        ("s.nc", "in the way"),
+    ):
         with pytest.raises(UsageError, match=words):
             run_batch(mooring, record, tmp_path / name)
     assert (tmp_path / "r.nc").read_text() == (tmp_path / "s.nc.part" / "mine").read_text()
