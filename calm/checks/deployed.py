@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from calm.case import Mooring
 from calm.checks.finding import State, Verdict, at_most, rule
+from calm.checks.posture import reaches_the_surface
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Clamp, MooringFile, Piece
 from calm.files.logbook import DeployedItem
@@ -83,7 +84,10 @@ def cut_like(file: MooringFile, mooring: Mooring) -> MooringFile:
 
 @rule("as-deployed")
 def deployed_depth(handling: Handling) -> Iterator[Verdict]:
-    """How far the top of the upright line is from where it was designed to be."""
+    """How far the top of the upright line is from where it was designed to be.
+
+    A line to the surface keeps its top there: what differs is the depth under it.
+    """
     mooring = handling.mooring
     if mooring.file.deployed is None:
         return
@@ -97,12 +101,13 @@ def deployed_depth(handling: Handling) -> Iterator[Verdict]:
     longer = float(deployed.line.length.sum() - mooring.line.length.sum())
     fixed, share = SOUNDING
     limit = hypot(fixed, share * designed)
-    moved = depth - designed - longer
+    moved, what = depth - designed - longer, "its top, upright,"
+    if reaches_the_surface(mooring):
+        moved, what = depth - designed, "it"
     way = "deeper" if moved > 0.0 else "shallower"
     message = (
-        f"Deployed in {say('depth', depth)} of water, designed for {say('depth', designed)}: its "
-        f"top, upright, is {say('depth', abs(moved))} {way}; {say('depth', limit)} are within a "
-        "sounding's error."
+        f"Deployed in {say('depth', depth)} of water, designed for {say('depth', designed)}: {what} "
+        f"is {say('depth', abs(moved))} {way}; {say('depth', limit)} are within a sounding's error."
     )
     remedy = "`calm diff` with this file alone shows what that does."
     yield at_most(None, abs(moved), limit, message, remedy, State.WARN)

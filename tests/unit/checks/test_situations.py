@@ -12,6 +12,7 @@ from calm.case import Mooring, Result, load
 from calm.checks.assess import check
 from calm.checks.assessment import Assessment
 from calm.checks.finding import State
+from calm.checks.posture import reaches_the_surface
 from calm.checks.situations import situations_of
 from calm.cli.check_files import read_designs
 from calm.physics.line import Line, Water
@@ -143,6 +144,15 @@ def test_a_top_that_is_not_where_it_was_designed_to_be(tmp_path, depth, length, 
     assert (found.value, found.state) == (pytest.approx(moved), state)
     assert found.limit == pytest.approx((1.0 + 2.3**2) ** 0.5)
     assert ("deeper" if depth - 100 > length - 60 else "shallower") in found.message
+
+
+def test_a_line_to_the_surface_stands_in_another_depth_than_designed(tmp_path: Path) -> None:
+    one = mooring(tmp_path, wire=WIRE.replace("60 m", "120 m"))
+    path = tmp_path / "mooring.yaml"
+    path.write_text(path.read_text() + "deployed: {depth: 110 m}\n")
+    [found] = [each for each in check(load(path)).findings if each.rule == "as-deployed"]
+    assert reaches_the_surface(one) and found.value == pytest.approx(10.0)
+    assert "it is 10.0 m deeper" in found.message
 
 
 def test_what_was_deployed_deeper_than_it_stands_fails_the_check(tmp_path: Path) -> None:
