@@ -106,8 +106,9 @@ def deployed_depth(handling: Handling) -> Iterator[Verdict]:
         moved, what = depth - designed, "it"
     way = "deeper" if moved > 0.0 else "shallower"
     message = (
-        f"Deployed in {say('depth', depth)} of water, designed for {say('depth', designed)}: {what} "
-        f"is {say('depth', abs(moved))} {way}; {say('depth', limit)} are within a sounding's error."
+        f"Deployed in {say('depth', depth)} of water, designed for {say('depth', designed)}: "
+        f"{what} is {say('depth', abs(moved))} {way}; {say('depth', limit)} are within "
+        "a sounding's error."
     )
     remedy = "`calm diff` with this file alone shows what that does."
     yield at_most(None, abs(moved), limit, message, remedy, State.WARN)
