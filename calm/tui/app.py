@@ -187,8 +187,9 @@ class BuildApp(InTurn):
         self._mend()
 
     def _show_views(self) -> None:
-        for screen in self.draft_screens():
-            screen.show_view()
+        if self.is_running:  # else the screens are being taken apart
+            for screen in self.draft_screens():
+                screen.show_view()
 
     def _tell_lost_environment(self) -> None:
         before, self._lost = self._lost, self.session.standing.lost_environment
@@ -215,7 +216,7 @@ class BuildApp(InTurn):
     @on(Judged)
     def _take_view(self, event: Judged) -> None:
         if not self.is_running:
-            return  # on the way out: the screens are being taken apart
+            return
         is_first = self.workspace.view is None
         if self.judging.take(event):
             self._show_views()

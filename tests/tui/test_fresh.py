@@ -6,6 +6,7 @@ from contextlib import contextmanager
 import pytest
 
 from calm.tui import live
+from calm.tui.bars import TitleBar
 from calm.tui.pictures import Picture
 from calm.tui.profile import Profile
 from calm.tui.verdict_pane import VerdictPane
@@ -91,6 +92,18 @@ def test_while_a_change_is_solved_all_figures_are_dimmed(drive, small, monkeypat
         driver.app.judging.ask_fully()
         await driver.settle()
         assert "…" not in title(driver)
+
+    drive(story, small)
+
+
+def test_on_the_way_out_nothing_is_dimmed(drive, small, monkeypatch):
+    async def story(driver):
+        with nothing_judged(monkeypatch):
+            await driver.press("d")
+            await driver.app.builder.query_one(TitleBar).remove()
+            monkeypatch.setattr(driver.app, "_running", False)  # as Textual shuts down
+            driver.app.judging.dim()
+            monkeypatch.undo()
 
     drive(story, small)
 
