@@ -10,7 +10,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from math import pi
 
-from calm.files import Cable, Chain, Component, Cylinder, Sphere
+from calm.files import Cable, Chain, Component, Cylinder, Flexible, Sphere
 from calm.files.catalogue import Assembly
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY, STEEL_DENSITY
 
@@ -211,7 +211,7 @@ def is_too_strong(component: Component) -> str | None:
 
 def has_no_drag(component: Component) -> str | None:
     """A cable or chain that the current does not push."""
-    if not isinstance(component, Cable | Chain) or component.cn != 0.0:
+    if not isinstance(component, Flexible) or component.cn != 0.0:
         return None
     return "has no drag across it (`cn: 0`)"
 

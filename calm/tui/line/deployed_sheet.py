@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from calm.case.parts import parts_of
-from calm.files import Cable, Chain, MooringFile, Piece, Place
+from calm.files import Flexible, MooringFile, Piece, Place
 from calm.files.document import Location
 from calm.files.editing import Draft, EditError
 from calm.files.fields import POSITIVE_LENGTH, Quantity
 from calm.tui.checking import anything, moment, quantity
 from calm.tui.dialogs import Asked, Sheet
 from calm.tui.line.entries import entered, said
-from calm.tui.line.mooring_sheet import LATITUDE, LONGITUDE
+from calm.tui.line.mooring_sheet import LATITUDE, LONGITUDE, filled, written
 
 _PLACES: dict[str, Location] = {
     "date": ("deployed", "date"),
@@ -69,14 +69,14 @@ def hung_at(file: MooringFile | None, spot: Place | None) -> Hung | None:
     return Hung(
         part.label,
         serial if isinstance(serial, str) else "",
-        isinstance(part, Piece) and isinstance(part.component, Cable | Chain),
+        isinstance(part, Piece) and isinstance(part.component, Flexible),
         part.component.role == "release",
     )
 
 
 def deployed_sheet(draft: Draft, hung: Hung | None) -> Sheet:
     """When and where the mooring was deployed, and what hangs at a row, as the file has them."""
-    asked = [replace(each, text=draft.text_at(_PLACES[each.key])) for each in _WHOLE]
+    asked = filled(draft, _WHOLE, _PLACES)
     if hung is None:
         return Sheet("As deployed", _COMPARED, asked)
     for key, title, check in _OF_A_ROW:
@@ -91,9 +91,7 @@ def deployed_sheet(draft: Draft, hung: Hung | None) -> Sheet:
 
 def as_deployed(draft: Draft, hung: Hung | None, texts: Mapping[str, str]) -> Draft:
     """The file with what was entered."""
-    for key, place in _PLACES.items():
-        if texts[key] != draft.text_at(place):
-            draft = draft.put_at(place, texts[key] or None)
+    draft = written(draft, {key: texts[key] for key in _PLACES}, _PLACES)
     if hung is None:
         return draft
     given = {key: texts[f"item {key}"] for key, _, _ in _OF_A_ROW if f"item {key}" in texts}

@@ -74,31 +74,36 @@ _BEGIN_A_TOW = (
 
 def mooring_sheet(draft: Draft) -> Sheet:
     """Name and place, as the file has them."""
-    return Sheet("Name and place", "", _filled(draft, _NAME_AND_PLACE))
+    return Sheet("Name and place", "", filled(draft, _NAME_AND_PLACE))
 
 
 def document_sheet(draft: Draft) -> Sheet:
     """What the title block of the drawings says, as the file has it."""
     revision = draft.text_at(_PLACES["revision"])
     change = said(draft, _HISTORY, ("revision", revision), "change")
-    asked = [*_filled(draft, _DOCUMENT), Asked("change", "What it changed", change)]
+    asked = [*filled(draft, _DOCUMENT), Asked("change", "What it changed", change)]
     return Sheet("The document", "For the title block of drawings, and its history.", asked)
 
 
 def tow_sheet(draft: Draft) -> Sheet:
     """Speed, course and sheave of a tow, as the file has them; a mooring becomes one by them."""
-    return Sheet("The tow", "" if draft.is_tow else _BEGIN_A_TOW, _filled(draft, _TOW))
+    return Sheet("The tow", "" if draft.is_tow else _BEGIN_A_TOW, filled(draft, _TOW))
 
 
-def _filled(draft: Draft, asked: tuple[Asked, ...]) -> list[Asked]:
-    return [replace(each, text=draft.text_at(_PLACES[each.key])) for each in asked]
+def filled(
+    draft: Draft, asked: tuple[Asked, ...], places: Mapping[str, Location] = _PLACES
+) -> list[Asked]:
+    """What is asked, with the texts that the file has in the places of its keys."""
+    return [replace(each, text=draft.text_at(places[each.key])) for each in asked]
 
 
-def written(draft: Draft, texts: Mapping[str, str]) -> Draft:
-    """The file with the texts of a sheet; a blank one takes its key away."""
+def written(
+    draft: Draft, texts: Mapping[str, str], places: Mapping[str, Location] = _PLACES
+) -> Draft:
+    """The file with the texts of a sheet in their places; a blank one takes its key away."""
     for key, new in texts.items():
-        if new != draft.text_at(_PLACES[key]):
-            draft = draft.put_at(_PLACES[key], new or None)
+        if new != draft.text_at(places[key]):
+            draft = draft.put_at(places[key], new or None)
     return draft
 
 
