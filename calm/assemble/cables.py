@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from math import pi
 
-from calm.files import Cable, Chain, Solver
+from calm.files import Cable, Flexible, Solver
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.files.strumming import AmplitudeModel, BourgetMarichalKeys, ConstantCn, StrummingFactor
 from calm.physics import drag
 from calm.physics.strumming import AMPLIFICATIONS, BourgetMarichal, line_amplitude
 
 
-def cable_drag(component: Cable | Chain, solver: Solver) -> tuple[float, float]:
+def cable_drag(component: Flexible, solver: Solver) -> tuple[float, float]:
     """Kn and Kt of a metre of cable or chain [N/(m/s)²].
 
     A cable's Kn is that of its strumming; under Bourget & Marichal's law that at rest, which the

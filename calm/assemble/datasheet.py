@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from calm.assemble.line import drag_of
-from calm.files import Anchor, Cable, Catalogue, Chain, Component
+from calm.files import Anchor, Catalogue, Component, Flexible
 from calm.files.catalogue import Assembly
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import QuantityError, parse_quantity
@@ -79,7 +79,7 @@ def _of_component(component: Component, metres: float) -> Datasheet:
     if isinstance(component, Anchor):
         return Datasheet(component.net_buoyancy, None, component.kt, None)
     kn, kt, along = drag_of(component, getattr(component, "length", metres))
-    times = metres if isinstance(component, Cable | Chain) else 1.0
+    times = metres if isinstance(component, Flexible) else 1.0
     return Datasheet(
         times * component.net_buoyancy,
         times * kn,

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import assert_never
 
 import numpy as np
 
 from calm.assemble.cables import cable_drag, vibration_law
-from calm.files import Anchor, Body, Cable, Chain, Component, Cylinder, Piece, Solver, Sphere
+from calm.files import Anchor, Body, Cable, Component, Cylinder, Flexible, Piece, Solver, Sphere
 from calm.files.components import CylinderShape, SphereShape
 from calm.files.definition import STANDARD_GRAVITY
 from calm.physics import drag
@@ -39,7 +40,7 @@ def assemble_line(
     anchor = pieces[-1].component
     moored = isinstance(anchor, Anchor)
     above = pieces[:-1] if moored else pieces
-    flexible = [isinstance(piece.component, Cable | Chain) for piece in above]
+    flexible = [isinstance(piece.component, Flexible) for piece in above]
     drags = [drag_of(piece.component, piece.length or 0.0, solver) for piece in above]
     curves = [_drag_curve(piece.component, solver) for piece in above]
     if not moored and isinstance(anchor, Sphere) and anchor.cx is None:
@@ -105,9 +106,11 @@ def drag_of(
         return kn, kt, component.inclination != "insensitive"
     if isinstance(component, Body):
         return _body_drag(component)
-    if isinstance(component, Cable | Chain):
+    if isinstance(component, Flexible):
         return *cable_drag(component, solver or Solver()), True
-    return 0.0, 0.0, False
+    if isinstance(component, Anchor):
+        return 0.0, 0.0, False
+    assert_never(component)
 
 
 def _drag_curve(component: Component, solver: Solver) -> DragCurve | None:

@@ -37,7 +37,7 @@ def clamp_grip(result: Result) -> Iterator[Verdict]:
         yield _verdict(part, float(np.linalg.norm(force)), "")
 
 
-@rule("clamp-grip", situation="launch and recovery")
+@rule("clamp-grip", situation="launch and recovery", once=True)
 def clamp_grip_on_the_way(handling: Handling) -> Iterator[Verdict]:
     """The greater pull along the line of the fall, which drags up, and the rise, which drags down.
 

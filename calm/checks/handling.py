@@ -38,7 +38,7 @@ class Handling:
     losses: tuple[Loss, ...] = ()
 
 
-@rule("backup")
+@rule("backup", once=True)
 def backup(handling: Handling) -> Iterator[Verdict]:
     """Net buoyancy of what holds the release after the worst break, or the worst loss of a float.
 
@@ -83,7 +83,7 @@ def _room(one: Break | Loss) -> float:
     return one.margin - one.required
 
 
-@rule("launch-strength")
+@rule("launch-strength", once=True)
 def launch_strength(handling: Handling) -> Iterator[Verdict]:
     """Tension of every piece as the line falls behind its anchor.
 
@@ -125,7 +125,7 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
         yield at_most(piece, tension, limit, message, remedy, source=source)
 
 
-@rule("launch-speed")
+@rule("launch-speed", once=True)
 def launch_speed(handling: Handling) -> Iterator[Verdict]:
     """Terminal speed of the anchor as it meets the seabed."""
     launch = handling.launch
@@ -156,7 +156,7 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
         yield unknown(anchor, message, "Give the anchor's `kt`.", speed)
 
 
-@rule("recovery")
+@rule("recovery", once=True)
 def recovery(handling: Handling) -> Iterator[Verdict]:
     """Terminal speed of the line as it rises without its anchor."""
     rise, limit = handling.recovery, handling.mooring.file.checks.minimum_rise_speed
@@ -182,7 +182,7 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
     yield verdict
 
 
-@rule("tangling")
+@rule("tangling", once=True)
 def tangling(handling: Handling) -> Iterator[Verdict]:
     """Whether the line doubles back on itself as it falls or rises."""
     launch, rise = handling.launch, handling.recovery

@@ -7,6 +7,7 @@ import sys
 import traceback
 import warnings
 from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 from cyclopts import App, CycloptsError, Parameter, UnusedCliTokensError
 
@@ -21,7 +22,6 @@ from calm.cli.diff import DIFF_EXAMPLES, diff
 from calm.cli.docs import DOCS_EXAMPLES, docs
 from calm.cli.exchange import EXPORT_EXAMPLES, IMPORT_EXAMPLES, export, import_
 from calm.cli.exit_codes import ExitCode
-from calm.cli.help_text import SetAnew
 from calm.cli.locate import LOCATE_EXAMPLES, locate
 from calm.cli.motion import MOTION_EXAMPLES, motion
 from calm.cli.run import RUN_EXAMPLES, run
@@ -33,6 +33,10 @@ from calm.cli.tow import TOW_EXAMPLES, tow
 from calm.cli.verify import VERIFY_EXAMPLES, verify
 from calm.errors import CalmError, InputError, NoEquilibrium
 
+if TYPE_CHECKING:
+    from cyclopts.help import HelpPanel
+    from rich.console import Console, ConsoleOptions
+
 _EPILOGUE = """Examples:
 
   calm new -o mooring.yaml
@@ -42,6 +46,27 @@ _EPILOGUE = """Examples:
 Exit codes: 0 done, 1 a check found something, 2 bad input or usage,
 3 no equilibrium, 70 internal error, 75 a batch incomplete that the same command
 finishes, 130 interrupted."""
+
+
+class SetAnew:
+    """Sets `--help` to the width of the terminal: texts of options lose their line breaks."""
+
+    def __call__(self, console: Console, options: ConsoleOptions, panel: HelpPanel) -> None:
+        """Print a panel."""
+        from cyclopts.help import DefaultFormatter
+        from rich.text import Text
+
+        for entry in panel.entries:
+            written = getattr(entry.description, "primary_renderable", None)
+            if isinstance(written, Text):
+                entry.description.primary_renderable = Text(" ".join(written.plain.split()))
+        DefaultFormatter()(console, options, panel)
+
+    def render_usage(self, console: Console, options: ConsoleOptions, usage: Any) -> None:
+        """Print the line of usage."""
+        from cyclopts.help import DefaultFormatter
+
+        DefaultFormatter().render_usage(console, options, usage)
 
 
 def _version() -> str:

@@ -10,6 +10,7 @@ from textwrap import wrap
 from calm.exchange.design import Component, Design, Figure, Item, Remark, Water, one_line
 from calm.exchange.names import ids_of
 from calm.files import Catalogue
+from calm.files.components import FLEXIBLE_KINDS
 from calm.units import KILOGRAM_FORCE
 
 _WIDTH = 100
@@ -22,7 +23,6 @@ _UNITS = {
     "depth_rating": "m",
 }  # fmt: skip
 _FORCES = {"buoyancy", "weight"}
-_FLEXIBLE = {"cable", "chain"}
 
 
 @dataclass
@@ -213,7 +213,7 @@ def _write_component(page: _Page, component: Component, id_: str, in_kilograms: 
     name = one_line(component.name)
     if name and name != id_:
         page.add(f"    name: {quoted(name)}")
-    per_metre = component.kind in _FLEXIBLE
+    per_metre = component.kind in FLEXIBLE_KINDS
     for key, value in component.figures.items():
         text = figure_text(key, value, per_metre=per_metre, in_kilograms=in_kilograms)
         guess = component.guesses.get(key, "")

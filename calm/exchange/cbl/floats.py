@@ -6,7 +6,7 @@ from itertools import pairwise
 from math import pi, sqrt
 
 from calm.exchange.parts import Assembled, Part, area, as_point, mass_of
-from calm.files import Body, Cylinder, Sphere
+from calm.files import Cylinder, Rigid, Sphere
 from calm.files.rigid import Displacement
 from calm.physics.hull import Hull, cylindrical_hull, spherical_hull, tabulated_hull
 
@@ -60,7 +60,7 @@ def buoy_figures(part: Part, design: Assembled, density: float, lost: list[str])
 def _windage(part: Part, design: Assembled) -> str:
     """What of a float the wind blows on, where there is wind or the file says it."""
     component = part.component
-    if not isinstance(component, Sphere | Cylinder | Body):
+    if not isinstance(component, Rigid):
         return ""
     seen, coefficient = component.wind_area, component.wind_cd
     if design.wind[0] and design.afloat[0]:

@@ -16,6 +16,7 @@ from calm.exchange.table.headings import Headings, check_given, headings_of
 from calm.exchange.table.library import Library, complete, is_library, key_of, read_library
 from calm.exchange.table.rows import Row, count_lines, names_in, rows_of, weights_as_buoyancy
 from calm.exchange.table.sheet import Rows, read_sheets
+from calm.files.components import FLEXIBLE_KINDS
 
 _NOTE = "A list says nothing about the water, and little about drag. See `calm docs import-table`."
 _WATER = ("z", "U", "V", "W", "rho")  # headings of a sheet of Mooring Design & Dynamics
@@ -170,7 +171,7 @@ def _items(rows: list[Row], problems: list[str]) -> list[Item]:
         component: Component = component_of(row, problems, anchor=row is rows[-1] and row.is_anchor)
         at = row.figures.get("at")
         if at is None:
-            length = row.figures.get("length") if component.kind in ("cable", "chain") else None
+            length = row.figures.get("length") if component.kind in FLEXIBLE_KINDS else None
             items += [Item(component, length, label=row.label) for _ in range(row.count)]
         elif items:
             items[-1].clamps.append(Hung(component, at))

@@ -17,7 +17,6 @@ from calm.tui.line.advising import Advising
 from calm.tui.line.body import LineBody
 from calm.tui.line.cell_editor import CellEditor
 from calm.tui.line.comparing import Comparing
-from calm.tui.line.filling import Filling
 from calm.tui.line.pane import LinePane
 from calm.tui.pictures import Picture, Tab
 from calm.tui.screen import DraftScreen
@@ -158,6 +157,8 @@ class BuilderScreen(DraftScreen):
 
     def action_figures(self) -> None:
         """Fill in what is not known of the components."""
+        from calm.tui.line.missing_screen import Filling
+
         Filling(self.app, self.body.line).ask()
 
     def action_papers(self) -> None:
