@@ -109,7 +109,7 @@ def at_least(
     return _verdict(part, value, limit, value - limit, message, remedy, beyond, source)
 
 
-def told(part: Part | None, value: float, message: str) -> Verdict:
+def reported(part: Part | None, value: float, message: str) -> Verdict:
     """The verdict on a value that has no limit: it passes as nothing is asked of it."""
     return verdict_on(part, State.PASS, message, value=value)
 

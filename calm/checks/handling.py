@@ -7,7 +7,16 @@ from dataclasses import dataclass, replace
 from math import isnan
 from typing import TYPE_CHECKING
 
-from calm.checks.finding import State, Verdict, at_least, at_most, rule, told, unknown, verdict_on
+from calm.checks.finding import (
+    State,
+    Verdict,
+    at_least,
+    at_most,
+    reported,
+    rule,
+    unknown,
+    verdict_on,
+)
 from calm.checks.launch import Launch
 from calm.checks.limits import Citing
 from calm.checks.recovery import Recovery
@@ -212,7 +221,7 @@ def _hauled_in(lowest: Part, arrival: float, rise: Recovery) -> Verdict:
         remedy = "Haul it in; mind its weight."
         return verdict_on(lowest, State.WARN, message, remedy)
     minutes = arrival / 60.0
-    return told(
+    return reported(
         lowest, rise.rise_speed, f"Freed, {lowest.label} comes up after {minutes:.0f} minutes."
     )
 

@@ -30,7 +30,7 @@ _MARKED = ("tilt", "safety_factor")
 
 
 class Mark(StrEnum):
-    """The sign behind a figure: legible without colour."""
+    """The sign after a figure: legible without colour."""
 
     NONE = ""
     NEAR = "~"
