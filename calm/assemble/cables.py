@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from math import pi
+from typing import assert_never
 
-from calm.files import Cable, Flexible, Solver
+from calm.files import Cable, Chain, Solver
+from calm.files.components import FlexibleComponent
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.files.strumming import AmplitudeModel, BourgetMarichalKeys, ConstantCn, StrummingFactor
 from calm.physics import drag
 from calm.physics.strumming import AMPLIFICATIONS, BourgetMarichal, line_amplitude
 
 
-def cable_drag(component: Flexible, solver: Solver) -> tuple[float, float]:
+def cable_drag(component: FlexibleComponent, solver: Solver) -> tuple[float, float]:
     """Kn and Kt of a metre of cable or chain [N/(m/s)²].
 
     A cable's Kn includes its strumming; under Bourget & Marichal's law it is that of a cable at
@@ -21,8 +23,10 @@ def cable_drag(component: Flexible, solver: Solver) -> tuple[float, float]:
     """
     if isinstance(component, Cable):
         usual = drag.CABLE_CN, drag.CABLE_CT[component.finish or "smooth"]
-    else:
+    elif isinstance(component, Chain):
         usual = drag.CHAIN_CN, drag.CHAIN_CT
+    else:
+        assert_never(component)
     cn = usual[0] if component.cn is None else component.cn
     ct = usual[1] if component.ct is None else component.ct
     kn, kt = drag.line_drag(component.diameter, cn, ct)

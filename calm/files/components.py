@@ -31,6 +31,7 @@ __all__ = [
     "Component",
     "Cylinder",
     "CylinderShape",
+    "FlexibleComponent",
     "RigidComponent",
     "Sphere",
     "SphereShape",
@@ -91,7 +92,8 @@ class Anchor(Definition):
 
 
 RigidComponent = Sphere | Cylinder | Body
-Component = RigidComponent | Cable | Chain | Anchor
+FlexibleComponent = Cable | Chain
+Component = RigidComponent | FlexibleComponent | Anchor
 
 KINDS: dict[str, type[Component]] = {
     "sphere": Sphere,
