@@ -174,7 +174,7 @@ def _floats(mooring: Mooring, finding: Finding, lacking: float) -> Iterator[Offe
 
 
 def _put(item: int, key: str, value: str) -> Callable[[Draft], Draft]:
-    """Writes a value; of another component the figures of the one before go."""
+    """Writes a value; another component drops the `weight` of the row."""
 
     def make(draft: Draft) -> Draft:
         made = draft.put(item, key, value)

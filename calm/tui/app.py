@@ -137,7 +137,7 @@ class BuildApp(InTurn):
         screen.tell(text, wrong=wrong)
 
     def draft_screens(self) -> list[DraftScreen]:
-        """Those that are open, the one on top last."""
+        """The open ones, the top one last."""
         return [each for each in self.screen_stack if isinstance(each, DraftScreen)]
 
     def is_settled(self) -> bool:

@@ -154,7 +154,7 @@ def failures(sections: Sequence[Section]) -> Table | Prose:
     return Table("Failures", columns, tuple(rows))
 
 
-_RULES_NOTE = "Under each state: the least margin, the component that has it, and what is unknown."
+_RULES_NOTE = "For each state: the least margin, its component, and what is unknown."
 _MATRIX_NOTE = (
     "Under each state: the rule that makes it, its least margin, and how many are unknown."
 )
