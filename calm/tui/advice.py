@@ -1,4 +1,4 @@
-"""What would mend what the design check finds, as changes of the file.
+"""Changes of the file that mend what the design check finds.
 
 Nothing here knows of the screen. What has to be solved for is found by `calm size`.
 """

@@ -45,7 +45,7 @@ class Answer:
 
 
 class Question(ModalScreen[str | None]):
-    """One of several answers, by its key or with the mouse; Esc gives none, unless one `must` be given."""
+    """One of several answers, by its key or with the mouse; Esc gives none unless one `must` be."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("question")]
     DEFAULT_CSS = "Question {" + _FRAME + "}"

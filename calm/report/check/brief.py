@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 _SIGNS = {State.FAIL: "!", State.WARN: "~", State.UNKNOWN: "?"}
 _TOLD = 12
-"""So many failures, or warnings, are reported of a mooring; a report has them all."""
+"""Most failures, or warnings, shown of a mooring; a report has them all."""
 _NAMED = 3
 """Most components named for one reason of acceptance."""
 _LACKING = 60

@@ -154,7 +154,7 @@ def failures(sections: Sequence[Section]) -> Table | Prose:
     return Table("Failures", columns, tuple(rows))
 
 
-_RULES_NOTE = "For each state: the least margin, its component, and what is unknown."
+_RULES_NOTE = "Under each state: the least margin, the component that has it, and what is unknown."
 _MATRIX_NOTE = (
     "Under each state: the rule that makes it, its least margin, and how many are unknown."
 )
@@ -197,7 +197,7 @@ def _moorings(found: Sequence[tuple[Section, Finding]], state: State) -> str:
 
 
 def abreast(columns: Sequence[str]) -> Iterator[Sequence[str]]:
-    """The columns in groups of much the same size that fit the width of a page."""
+    """The columns in groups of about the same size that fit the width of a page."""
     groups = math.ceil(len(columns) / _ABREAST)
     size = math.ceil(len(columns) / groups)
     for start in range(0, len(columns), size):
