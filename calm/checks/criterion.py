@@ -74,7 +74,7 @@ class Criterion:
     beyond : state of a value that does: fail or warn
     silent : whether a value that is NaN is nothing to judge, rather than unknown
     source : of the limit; "" for that of the rule
-    told : value and limit as people state them, of the same margin, where not these
+    stated : value and limit as people state them, of the same margin, where not these
     """
 
     part: Judged
@@ -85,7 +85,7 @@ class Criterion:
     beyond: State = State.FAIL
     silent: bool = False
     source: str = ""
-    told: Callable[[float, Result], tuple[float, float]] | None = None
+    stated: Callable[[float, Result], tuple[float, float]] | None = None
 
     def verdict(self, result: Result) -> Verdict | None:
         """On the part in a result; None where there is nothing to judge."""
@@ -97,7 +97,7 @@ class Criterion:
             return unknown(self.part, message, remedy, None if isnan(value) else value)
         margin = value - self.limit if self.least else self.limit - value
         kept = margin >= 0.0
-        shown, limit = (value, self.limit) if self.told is None else self.told(value, result)
+        shown, limit = (value, self.limit) if self.stated is None else self.stated(value, result)
         state = State.PASS if kept else self.beyond
         said = None if kept else remedy
         return verdict_on(self.part, state, message, said, shown, limit, margin, self.source)

@@ -8,6 +8,7 @@ import sys
 import traceback
 import warnings
 from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 from cyclopts import App, CycloptsError, Parameter, UnusedCliTokensError
 
@@ -22,7 +23,6 @@ from calm.cli.diff import DIFF_EXAMPLES, diff
 from calm.cli.docs import DOCS_EXAMPLES, docs
 from calm.cli.exchange import EXPORT_EXAMPLES, IMPORT_EXAMPLES, export, import_
 from calm.cli.exit_codes import ExitCode
-from calm.cli.help_text import SetAnew
 from calm.cli.locate import LOCATE_EXAMPLES, locate
 from calm.cli.motion import MOTION_EXAMPLES, motion
 from calm.cli.run import RUN_EXAMPLES, run
@@ -33,6 +33,10 @@ from calm.cli.strumming import STRUMMING_EXAMPLES, strumming
 from calm.cli.tow import TOW_EXAMPLES, tow
 from calm.cli.verify import VERIFY_EXAMPLES, verify
 from calm.errors import CalmError, InputError, NoEquilibrium
+
+if TYPE_CHECKING:
+    from cyclopts.help import HelpPanel
+    from rich.console import Console, ConsoleOptions
 
 _EPILOGUE = """Examples:
 
@@ -47,6 +51,27 @@ finishes, 130 interrupted."""
 _SELDOM = 100_000
 """New objects after which unused circles of them are looked for. Python's own 700 cost a command a
 tenth of its time: what it imports is all looked through again and again."""
+
+
+class SetAnew:
+    """Sets `--help` to the width of the terminal: texts of options lose their line breaks."""
+
+    def __call__(self, console: Console, options: ConsoleOptions, panel: HelpPanel) -> None:
+        """Print a panel."""
+        from cyclopts.help import DefaultFormatter
+        from rich.text import Text
+
+        for entry in panel.entries:
+            written = getattr(entry.description, "primary_renderable", None)
+            if isinstance(written, Text):
+                entry.description.primary_renderable = Text(" ".join(written.plain.split()))
+        DefaultFormatter()(console, options, panel)
+
+    def render_usage(self, console: Console, options: ConsoleOptions, usage: Any) -> None:
+        """Print the line of usage."""
+        from cyclopts.help import DefaultFormatter
+
+        DefaultFormatter().render_usage(console, options, usage)
 
 
 def _version() -> str:

@@ -11,6 +11,7 @@ from pydantic import BaseModel
 
 from calm.files.alignment import Alignment, Known, align, own_labels
 from calm.files.fields import Quantity
+from calm.files.flexible import Flexible
 from calm.files.mooring import Clamp, MooringFile, Piece
 from calm.files.tables import CurrentTable, DepthTable
 from calm.quantities import bearing_of
@@ -173,7 +174,7 @@ def _part_figures(part: Piece | Clamp, name: str) -> dict[str, Figure]:
     found = {"use": _figure("use", part.use), "label": _figure("label", name)}
     if isinstance(part, Clamp):
         found["at"] = _figure("at", part.at)
-    elif part.component.kind in ("cable", "chain"):
+    elif isinstance(part.component, Flexible):
         fits = part.length is None
         found["length"] = _figure("length", "fit" if fits else part.length)
         for key in ("fit_top_depth", "fit_body_depth"):

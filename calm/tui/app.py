@@ -141,7 +141,7 @@ class BuildApp(InTurn):
         return [each for each in self.screen_stack if isinstance(each, DraftScreen)]
 
     def is_settled(self) -> bool:
-        """Whether nothing is being typed any more; a bad value has been told."""
+        """Whether nothing is being typed any more; a bad value has been reported."""
         return not isinstance(self.screen, DraftScreen) or self.screen.part.settle()
 
     def taken_over(self, told: str) -> None:

@@ -28,13 +28,13 @@ class Reading:
     text : as it is to be written; with the unit that was left out
     complaint : why it cannot be used; empty where it can
     offer : the text corrected, where that is known
-    told : what a good text comes to, where more is to be said than the text itself
+    comes_to : what a good text comes to, where more is to be said than the text itself
     """
 
     text: str
     complaint: str = ""
     offer: str | None = None
-    told: str = ""
+    comes_to: str = ""
 
     @property
     def is_good(self) -> bool:

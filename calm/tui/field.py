@@ -131,11 +131,11 @@ class Field(Horizontal):
             self.query_one(".field-note", Static).update(note, layout=False)
 
     def note(self, reading: Reading) -> str:
-        """What a person who types is told: what is wrong, or what is added."""
+        """What is said of the typed text: what is wrong, or what is added."""
         if not reading.is_good:
             return reading.note
-        if reading.told:
-            return reading.told
+        if reading.comes_to:
+            return reading.comes_to
         completed = reading.text != " ".join(self.input.value.split())
         return f"= {reading.text}" if completed else self._note
 

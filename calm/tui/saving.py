@@ -63,7 +63,7 @@ class Saving:
         try:
             lost = write()
         except (CalmError, OSError) as error:
-            # the folder is known, and the reason must not be cut off behind it
+            # the folder is known, and the reason must not be cut off after it
             folder = "" if self._session.file.path is None else f"{self._session.file.path.parent}/"
             self._workspace.tell(f"Not saved: {str(error).replace(folder, '')}", wrong=True)
             return

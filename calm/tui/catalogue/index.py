@@ -17,8 +17,6 @@ from calm.tui.catalogue.figures import Figures, figures_of, wanted
 from calm.tui.catalogue.synonyms import with_synonyms
 
 _ROLES = {"cable": "line", "chain": "line", "anchor": "anchor"}
-CLAMPABLE = frozenset({"sphere", "cylinder", "body"})
-WITH_LENGTH = frozenset({"cable", "chain"})
 _ELSEWHERE = 4
 """The rank of a component whose id has not all words."""
 _BETWEEN = re.compile(r"[\s_-]+")
