@@ -1,4 +1,4 @@
-"""Whether the anchor holds: as a whole, against the lift, and against the slide."""
+"""Whether the anchor holds: its weight, against uplift and against sliding."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from calm.files import Component, Place
 
 AT_SURFACE = 0.1
-"""What comes so near to the surface is at it [m]."""
+"""Depth down to which a part counts as at the surface [m]."""
 
 
 @dataclass(frozen=True)
@@ -114,7 +114,7 @@ def verdicts(criteria: Iterable[Criterion], result: Result) -> Iterator[Verdict]
 def criteria(
     name: str, *, of_anchor: bool = False
 ) -> Callable[[Callable[[Mooring], Iterator[Criterion]]], Rule]:
-    """Make a function that says what is asked of a mooring into the `Rule` of that name."""
+    """Make the `Rule` of that name from a function that gives the criteria of a mooring."""
 
     def of(asked: Callable[[Mooring], Iterator[Criterion]]) -> Rule:
         def judge(result: Result) -> Iterator[Verdict]:

@@ -152,7 +152,7 @@ def _verdict(
 
 @dataclass(frozen=True)
 class Rule:
-    """A named rule: what it judges, the quantity of its values, and who asks for it.
+    """A named rule: what it judges, the quantity of its values, and its source.
 
     Attributes
     ----------
@@ -193,7 +193,7 @@ class Rule:
 def rule(
     name: str, *, of_anchor: bool = False, once: bool = False, situation: str = AS_GIVEN
 ) -> Callable[[Callable[[Any], Iterator[Verdict]]], Rule]:
-    """Make a function that judges into the `Rule` of that name in `calm.files.rules`."""
+    """Make the `Rule` of that name in `calm.files.rules` from a function that judges."""
     text = RULE_TEXTS[name]
 
     def of(judge: Callable[[Any], Iterator[Verdict]]) -> Rule:

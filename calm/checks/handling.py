@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from calm.files import Part
 
 GREATEST_TOUCHDOWN_SPEED = 2.5
-"""Above it an anchor may bury itself or break what stands on it [m/s]."""
+"""Speed above which an anchor may bury itself or break what is on it [m/s]."""
 USUAL_RISE_SPEED = 0.7
 """A rise slower than this is warned of: it takes hours from the deep sea, and drifts away [m/s]."""
 

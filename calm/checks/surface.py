@@ -1,4 +1,4 @@
-"""The float of a surface mooring: what buoyancy it keeps, and the circle it watches."""
+"""The float of a surface mooring: its reserve of buoyancy, its freeboard and its watch circle."""
 
 from __future__ import annotations
 
