@@ -109,7 +109,11 @@ Mapped = Callable[[Callable[[Any], Any], Sequence[Any]], Iterable[Any]]
 
 
 def uncertain(
-    result: Result, samples: int = SAMPLES, seed: int = 0, mapped: Mapped = map
+    result: Result,
+    samples: int = SAMPLES,
+    seed: int = 0,
+    mapped: Mapped = map,
+    normals: Callable[[], Floats] | None = None,
 ) -> Uncertain:
     """How sure the figures of a solved mooring are.
 
@@ -119,6 +123,7 @@ def uncertain(
     samples : a power of two from `FEWEST` to `MOST`
     seed : of the scrambling; the same seed gives the same figures
     mapped : applies the solver to blocks of samples
+    normals : returns `normals_of(samples, seed)`, where another process computes it
 
     Raises
     ------
@@ -128,9 +133,10 @@ def uncertain(
         No sample has an equilibrium.
     """
     mooring = result.mooring
-    normals = normals_of(checked_samples(samples), seed)
-    draws = draws_of(mooring.file.uncertainty, normals)
+    checked_samples(samples)
     expect_many(samples)
+    normal = normals_of(samples, seed) if normals is None else normals()
+    draws = draws_of(mooring.file.uncertainty, normal)
     blocks = [draws[first : first + BLOCK] for first in range(0, samples, BLOCK)]
     outcomes = [each for block in mapped(partial(_figures, mooring), blocks) for each in block]
     failures = [one for one in outcomes if isinstance(one, NoEquilibrium)]
@@ -144,7 +150,7 @@ def uncertain(
     afloat = result.type == "surface" or bool(np.isnan(knockdown[:, 0]).any())
     quantity, row = ("excursion", 4) if afloat else ("knockdown", 1)
     tops = np.array([one[0][row, 0] for one in figures])
-    indices = sobol_indices(normals[solved], tops)
+    indices = sobol_indices(normal[solved], tops)
     return Uncertain(
         result=result,
         samples=samples,
