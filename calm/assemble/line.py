@@ -19,8 +19,7 @@ from calm.physics.reynolds import DragCurve
 from calm.physics.stretch import ElongationCurve
 
 TOWED_SPHERE_CX = 0.90
-"""Of a sphere at the free end of a tow, which wavers: Bourget & Marichal, who give 0.45 for one
-that is held."""
+"""Cx of a sphere at the free end of a tow, which wavers; held, it has 0.45: Bourget & Marichal."""
 
 
 def assemble_line(
@@ -28,7 +27,7 @@ def assemble_line(
 ) -> Line:
     """The line above the anchor, or the whole towed line, in the order of the pieces.
 
-    A piece to be cut to fit has length 0 until it is cut.
+    A piece that is cut to fit has length 0 until it is cut.
 
     Parameters
     ----------
@@ -77,7 +76,7 @@ def assemble_line(
 
 
 def net_buoyancy(component: Component, gravity: float) -> float:
-    """Net force in reference water, + up [N, N/m]: as given, or that of the masses under a gravity.
+    """Net force in reference water, + up [N, N/m]: as given, or from the masses under a gravity.
 
     Parameters
     ----------
@@ -114,7 +113,7 @@ def drag_of(
 
 
 def _drag_curve(component: Component, solver: Solver) -> DragCurve | None:
-    """The curve of a smooth sphere or cylinder; one that gives a drag of its own has none."""
+    """The drag curve of a smooth sphere or cylinder; None where it gives a drag of its own."""
     if solver.drag == "constant":
         return None
     if not isinstance(component, Sphere | Cylinder) or component.surface != "smooth":
@@ -172,7 +171,7 @@ def _shape_drag(shape: SphereShape | CylinderShape) -> tuple[float, float, bool]
 def axial_drag_of(component: Component) -> float:
     """K of what is clamped on a line in a flow along that line [N/(m/s)²].
 
-    Its tangential drag, or that of any flow where its drag does not depend on the axis.
+    Its tangential drag; where its drag does not depend on the axis, that of any direction.
     """
     kn, kt, directional = drag_of(component, getattr(component, "length", 0.0))
     return kt if directional else kn

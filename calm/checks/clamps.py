@@ -9,7 +9,7 @@ import numpy as np
 
 from calm.assemble import axial_drag_of, drag_of, net_buoyancy
 from calm.checks.criterion import Judged, parts_of
-from calm.checks.finding import Verdict, at_most, rule, told
+from calm.checks.finding import Verdict, at_most, reported, rule
 from calm.checks.launch import Launch
 from calm.checks.recovery import Recovery
 from calm.physics.reference import REFERENCE_DENSITY
@@ -83,4 +83,4 @@ def _verdict(part: Judged, pull: float, when: str) -> Verdict:
     if breaking is not None:
         message = f"{pulls}; it breaks at {say('tension', breaking)}."
         return at_most(part, pull, breaking, message, _HOLDS)
-    return told(part, pull, f"{pulls}; its `grip` is not given.")
+    return reported(part, pull, f"{pulls}; its `grip` is not given.")

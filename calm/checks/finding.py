@@ -109,7 +109,7 @@ def at_least(
     return _verdict(part, value, limit, value - limit, message, remedy, beyond, source)
 
 
-def told(part: Part | None, value: float, message: str) -> Verdict:
+def reported(part: Part | None, value: float, message: str) -> Verdict:
     """The verdict on a value that has no limit: it passes as nothing is asked of it."""
     return verdict_on(part, State.PASS, message, value=value)
 
@@ -152,7 +152,7 @@ def _verdict(
 
 @dataclass(frozen=True)
 class Rule:
-    """A named rule: what it judges, the quantity of its values, and who asks for it.
+    """A named rule: what it judges, the quantity of its values, and its source.
 
     Attributes
     ----------
@@ -193,7 +193,7 @@ class Rule:
 def rule(
     name: str, *, of_anchor: bool = False, once: bool = False, situation: str = AS_GIVEN
 ) -> Callable[[Callable[[Any], Iterator[Verdict]]], Rule]:
-    """Make a function that judges into the `Rule` of that name in `calm.files.rules`."""
+    """Make the `Rule` of that name in `calm.files.rules` from a function that judges."""
     text = RULE_TEXTS[name]
 
     def of(judge: Callable[[Any], Iterator[Verdict]]) -> Rule:

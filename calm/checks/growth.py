@@ -29,7 +29,7 @@ from calm.files import (
     Piece,
     Sphere,
 )
-from calm.files.components import RigidComponent
+from calm.files.components import FlexibleComponent, RigidComponent
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.physics import drag
 from calm.physics.reference import REFERENCE_DENSITY
@@ -107,7 +107,9 @@ def grown_component(component: Component, fouling: Fouling, gravity: float) -> C
     return component.model_copy(update=drags | force)
 
 
-def _larger(component: RigidComponent | Cable | Chain, t: float) -> tuple[dict[str, Any], float]:
+def _larger(
+    component: RigidComponent | FlexibleComponent, t: float
+) -> tuple[dict[str, Any], float]:
     """The figures of drag that growth changes, and its volume [m³, per metre of line]."""
     if isinstance(component, Cable):
         d = component.diameter

@@ -7,7 +7,16 @@ from dataclasses import dataclass, replace
 from math import isnan
 from typing import TYPE_CHECKING
 
-from calm.checks.finding import State, Verdict, at_least, at_most, rule, told, unknown, verdict_on
+from calm.checks.finding import (
+    State,
+    Verdict,
+    at_least,
+    at_most,
+    reported,
+    rule,
+    unknown,
+    verdict_on,
+)
 from calm.checks.launch import Launch
 from calm.checks.limits import Citing
 from calm.checks.recovery import Recovery
@@ -22,7 +31,7 @@ if TYPE_CHECKING:
     from calm.files import Part
 
 GREATEST_TOUCHDOWN_SPEED = 2.5
-"""Above it an anchor may bury itself or break what stands on it [m/s]."""
+"""Speed above which an anchor may bury itself or break what is on it [m/s]."""
 USUAL_RISE_SPEED = 0.7
 """A rise slower than this is warned of: it takes hours from the deep sea, and drifts away [m/s]."""
 
@@ -212,7 +221,7 @@ def _hauled_in(lowest: Part, arrival: float, rise: Recovery) -> Verdict:
         remedy = "Haul it in; mind its weight."
         return verdict_on(lowest, State.WARN, message, remedy)
     minutes = arrival / 60.0
-    return told(
+    return reported(
         lowest, rise.rise_speed, f"Freed, {lowest.label} comes up after {minutes:.0f} minutes."
     )
 

@@ -43,7 +43,7 @@ STILL_ONLY = verdict_on(
     "judged.",
     "Give the current, or an environment that has one.",
 )
-"""What `equilibrium` says of a mooring that nothing moves to speak of."""
+"""What `equilibrium` says of a mooring without a current to speak of."""
 
 _ORDER = list(TEXTS)
 

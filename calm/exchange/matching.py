@@ -1,4 +1,4 @@
-"""Components of an imported design that the catalogue has."""
+"""Components of an imported design that the catalogue has too."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _COMMON_WORDS = 0.5  # share of the words of a name that an entry must have, two
 
 @dataclass(frozen=True)
 class Match:
-    """A component, by the name in the file, and the catalogue entry that stands in its place."""
+    """A component, by its name in the file, and the catalogue entry used in its place."""
 
     name: str
     entry: str
@@ -77,7 +77,7 @@ def _words(text: str) -> set[str]:
 
 
 def _weighs_alike(one: Model, other: Model) -> bool:
-    """Whether what has no size in the file weighs, or lifts, what an entry does."""
+    """Whether a component without a size in the file has the net force of an entry."""
     if not isinstance(other, Rigid):
         return False
     a, b = one.net_buoyancy, other.net_buoyancy

@@ -1,4 +1,4 @@
-"""A design as a mooring file: commented, every guess at its line."""
+"""A design as a mooring file, with a comment for every guess in its line."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Written:
 
 @dataclass
 class _Page:
-    """Lines so far, and the guesses that stand behind them."""
+    """The lines so far, and the guesses in their comments."""
 
     lines: list[str] = field(default_factory=list)
     guessed: list[Remark] = field(default_factory=list)
@@ -61,7 +61,7 @@ def written(
     Parameters
     ----------
     source : name of the file it comes from
-    environment : the lines of the `environment` key, where not the design's own is wanted
+    environment : the lines of the `environment` key, in place of those of the design
     """
     page = _Page()
     by = f" by CALM {version}" if version else ""

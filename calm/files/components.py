@@ -31,6 +31,7 @@ __all__ = [
     "Component",
     "Cylinder",
     "CylinderShape",
+    "FlexibleComponent",
     "RigidComponent",
     "Sphere",
     "SphereShape",
@@ -43,7 +44,7 @@ ANCHOR_DENSITIES = {
     "iron": 7200.0,
     "concrete": 2400.0,
 }
-"""Densities of anchors that say what they are made of [kg/m³]."""
+"""Densities of anchors by their `material` [kg/m³]."""
 
 
 class Anchor(Definition):
@@ -69,7 +70,7 @@ class Anchor(Definition):
 
     @property
     def material_known(self) -> bool:
-        """Whether its weight in water is given, or follows from what it is known to be made of."""
+        """Whether its weight in water is given, or follows from a known material."""
         return self.weight is not None or self.material_density is not None
 
     @property
@@ -91,7 +92,8 @@ class Anchor(Definition):
 
 
 RigidComponent = Sphere | Cylinder | Body
-Component = RigidComponent | Cable | Chain | Anchor
+FlexibleComponent = Cable | Chain
+Component = RigidComponent | FlexibleComponent | Anchor
 
 KINDS: dict[str, type[Component]] = {
     "sphere": Sphere,

@@ -41,7 +41,7 @@ def _text(text: str) -> Figure:
 
 @dataclass(frozen=True)
 class Change:
-    """What stands in another way: ``label.field`` or ``environment.depth``, before and after."""
+    """A value that differs: ``label.field`` or ``environment.depth``, before and after."""
 
     where: str
     before: Figure
@@ -55,7 +55,7 @@ class Differences:
     Attributes
     ----------
     changed : around the line, then down it
-    moved : parts that stand elsewhere in the line, and below what
+    moved : parts that are elsewhere in the line, and below which part
     removed, added : labels of pieces and clamps
     pairs : of the same pieces and of the same clamps, in the order of the first line
     """
@@ -256,7 +256,7 @@ def _of_current(table: CurrentTable) -> Figure:
 
 
 def _said(value: Any) -> str:
-    """A value that is neither a number nor nothing, in words."""
+    """A value that is neither a number nor None, in words."""
     if isinstance(value, BaseModel):
         given = {name: one for name, one in value if one is not None and one != ()}
         return ", ".join(f"{name}: {_said(one)}" for name, one in given.items())

@@ -112,7 +112,7 @@ def _names(sheets: Mapping[str, Rows], design: Design, path: Path, library: Libr
 
 
 def _water(sheets: Mapping[str, Rows], design: Design, path: Path) -> Water | None:
-    """The environment of a sheet of heights, `z`, as workbooks of that program have it."""
+    """The environment in a sheet of heights, `z`, as in workbooks of Mooring Design & Dynamics."""
     for rows in sheets.values():
         headings = [cell.lower() for cell in rows[0]]
         if not {"z", "u"} <= set(headings):
@@ -131,7 +131,7 @@ def _water(sheets: Mapping[str, Rows], design: Design, path: Path) -> Water | No
 
 
 def _from_the_top(rows: list[Row], path: Path, design: Design) -> list[Row]:
-    """The rows from the top down; lists lead either way, clamps stand behind their piece."""
+    """The rows from the top down; lists run either way, clamps follow their piece."""
     pieces = [row for row in rows if "at" not in row.figures]
     if len(pieces) < 2:
         raise refused(path, f"has {len(pieces)} pieces")

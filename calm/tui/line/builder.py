@@ -83,7 +83,7 @@ class BuilderScreen(DraftScreen):
         self.body.line.table.focus()
 
     def on_key(self, event: Key) -> None:
-        """What was told is read."""
+        """A key removes the message that is shown."""
         if not self.body.line.editor.is_open:
             self.tell("")
 
