@@ -1,4 +1,4 @@
-"""Models and environment to arrays: what a person wrote becomes what the march takes."""
+"""From the models of a file and its environment to the arrays that the march takes."""
 
 from calm.assemble.floating import assemble_floating as assemble_floating
 from calm.assemble.line import assemble_line as assemble_line

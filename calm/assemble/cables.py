@@ -3,26 +3,30 @@
 from __future__ import annotations
 
 from math import pi
+from typing import assert_never
 
 from calm.files import Cable, Chain, Solver
+from calm.files.components import FlexibleComponent
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.files.strumming import AmplitudeModel, BourgetMarichalKeys, ConstantCn, StrummingFactor
 from calm.physics import drag
 from calm.physics.strumming import AMPLIFICATIONS, BourgetMarichal, line_amplitude
 
 
-def cable_drag(component: Cable | Chain, solver: Solver) -> tuple[float, float]:
+def cable_drag(component: FlexibleComponent, solver: Solver) -> tuple[float, float]:
     """Kn and Kt of a metre of cable or chain [N/(m/s)²].
 
-    A cable's Kn is that of its strumming; under Bourget & Marichal's law that at rest, which the
-    march raises. Pode's constant friction is Kt = Ct ½ρ Cn D; a cable or chain that does not give
-    its Ct has there the same friction along it as under the other laws, Ct π/Cn: 0.012, 0.022 and
-    0.031 by finish.
+    A cable's Kn includes its strumming; under Bourget & Marichal's law it is that of a cable at
+    rest, which the march raises. Pode's constant friction is Kt = Ct ½ρ Cn D. Where a cable or
+    chain gives no Ct, that of this law is such that its friction is the same as under the other
+    laws, Ct π/Cn: 0.012, 0.022 and 0.031 by finish.
     """
     if isinstance(component, Cable):
         usual = drag.CABLE_CN, drag.CABLE_CT[component.finish or "smooth"]
-    else:
+    elif isinstance(component, Chain):
         usual = drag.CHAIN_CN, drag.CHAIN_CT
+    else:
+        assert_never(component)
     cn = usual[0] if component.cn is None else component.cn
     ct = usual[1] if component.ct is None else component.ct
     kn, kt = drag.line_drag(component.diameter, cn, ct)
@@ -57,7 +61,7 @@ def _mass(cable: Cable) -> float:
 
 
 def vibration_law(solver: Solver) -> BourgetMarichal | None:
-    """The law that raises the Cn of cables as they lean, None where none does."""
+    """The law by which the Cn of cables grows as they strum; None where the file chooses none."""
     keys = solver.strumming
     if not isinstance(keys, BourgetMarichalKeys):
         return None

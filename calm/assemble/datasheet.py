@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from calm.assemble.line import drag_of
-from calm.files import Anchor, Cable, Catalogue, Chain, Component
+from calm.files import Anchor, Catalogue, Component, Flexible
 from calm.files.catalogue import Assembly
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import QuantityError, parse_quantity
@@ -22,8 +22,8 @@ class Datasheet:
     Attributes
     ----------
     net_buoyancy : + up [N]
-    kn, kt : drag across and along the axis at 1 m/s [N/(m/s)²], so that many newtons; None of an
-        anchor, which has none but in the fall
+    kn, kt : drag across and along the axis, in newtons at 1 m/s [N/(m/s)²]; `kn` is None for an
+        anchor, `kt` its drag in the fall
     cd_area : drag coefficient times area, across the axis [m²]
     """
 
@@ -36,10 +36,10 @@ class Datasheet:
 def datasheet(
     definition: Component | Assembly, catalogue: Catalogue | None = None
 ) -> Datasheet | None:
-    """What follows from the figures of a definition; of an assembly, the sums over its parts.
+    """What follows from the figures of a definition; for an assembly, the sums over its parts.
 
-    None of an assembly whose parts cannot be summed here: they override figures of a component, or
-    use what the catalogue (None: no catalogue at all) does not have.
+    None for an assembly whose parts cannot be summed here: they override figures of a component, or
+    use what the catalogue does not have (`catalogue` None: no catalogue at all).
     """
     if not isinstance(definition, Assembly):
         return _of_component(definition, 1.0)
@@ -79,7 +79,7 @@ def _of_component(component: Component, metres: float) -> Datasheet:
     if isinstance(component, Anchor):
         return Datasheet(component.net_buoyancy, None, component.kt, None)
     kn, kt, along = drag_of(component, getattr(component, "length", metres))
-    times = metres if isinstance(component, Cable | Chain) else 1.0
+    times = metres if isinstance(component, Flexible) else 1.0
     return Datasheet(
         times * component.net_buoyancy,
         times * kn,

@@ -8,7 +8,8 @@ from math import cbrt, pi, sqrt
 import numpy as np
 
 from calm.assemble.line import drag_of, net_buoyancy
-from calm.files import Body, Cable, Chain, Cylinder, Environment, Piece, Sphere
+from calm.files import Cylinder, Environment, Piece, Rigid, Sphere
+from calm.files.components import RigidComponent
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.files.rigid import Displacement
 from calm.files.tables import components
@@ -20,7 +21,7 @@ def _first_float(pieces: Sequence[Piece]) -> Piece | None:
     """The first rigid buoyant piece of a line, None where there is none."""
     for piece in pieces:
         component = piece.component
-        if not isinstance(component, Cable | Chain) and component.net_buoyancy > 0.0:
+        if isinstance(component, Rigid) and component.net_buoyancy > 0.0:
             return piece
     return None
 
@@ -35,7 +36,7 @@ def assemble_floating(
     """
     piece = _first_float(pieces)
     component = None if piece is None else piece.component
-    if not isinstance(component, Sphere | Cylinder | Body):
+    if not isinstance(component, Rigid):
         return None
     hull = _hull(component)
     if hull is None and component.k_surface is None:
@@ -58,14 +59,14 @@ def assemble_floating(
     )
 
 
-def _volume(component: Sphere | Cylinder | Body) -> float | None:
+def _volume(component: RigidComponent) -> float | None:
     """Volume of the whole hull [m³]: the component's own, or the last row of its table."""
     if component.displaced_volume is None and isinstance(component.hull, Displacement):
         return component.hull.displacement[-1][1]
     return component.displaced_volume
 
 
-def _hull(component: Sphere | Cylinder | Body) -> Hull | None:
+def _hull(component: RigidComponent) -> Hull | None:
     volume, hull = _volume(component), component.hull
     if not volume:
         return None

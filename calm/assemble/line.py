@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import assert_never
 
 import numpy as np
 
 from calm.assemble.cables import cable_drag, vibration_law
-from calm.files import Anchor, Body, Cable, Chain, Component, Cylinder, Piece, Solver, Sphere
+from calm.files import Anchor, Body, Cable, Component, Cylinder, Flexible, Piece, Solver, Sphere
 from calm.files.components import CylinderShape, SphereShape
 from calm.files.definition import STANDARD_GRAVITY
 from calm.physics import drag
@@ -18,8 +19,7 @@ from calm.physics.reynolds import DragCurve
 from calm.physics.stretch import ElongationCurve
 
 TOWED_SPHERE_CX = 0.90
-"""Of a sphere at the free end of a tow, which wavers: Bourget & Marichal, who give 0.45 for one
-that is held."""
+"""Cx of a sphere at the free end of a tow, which wavers; held, it has 0.45: Bourget & Marichal."""
 
 
 def assemble_line(
@@ -27,7 +27,7 @@ def assemble_line(
 ) -> Line:
     """The line above the anchor, or the whole towed line, in the order of the pieces.
 
-    A piece to be cut to fit has length 0 until it is cut.
+    A piece that is cut to fit has length 0 until it is cut.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def assemble_line(
     anchor = pieces[-1].component
     moored = isinstance(anchor, Anchor)
     above = pieces[:-1] if moored else pieces
-    flexible = [isinstance(piece.component, Cable | Chain) for piece in above]
+    flexible = [isinstance(piece.component, Flexible) for piece in above]
     drags = [drag_of(piece.component, piece.length or 0.0, solver) for piece in above]
     curves = [_drag_curve(piece.component, solver) for piece in above]
     if not moored and isinstance(anchor, Sphere) and anchor.cx is None:
@@ -76,7 +76,7 @@ def assemble_line(
 
 
 def net_buoyancy(component: Component, gravity: float) -> float:
-    """Net force in reference water, + up [N, N/m]: as given, or that of the masses under a gravity.
+    """Net force in reference water, + up [N, N/m]: as given, or from the masses under a gravity.
 
     Parameters
     ----------
@@ -105,13 +105,15 @@ def drag_of(
         return kn, kt, component.inclination != "insensitive"
     if isinstance(component, Body):
         return _body_drag(component)
-    if isinstance(component, Cable | Chain):
+    if isinstance(component, Flexible):
         return *cable_drag(component, solver or Solver()), True
-    return 0.0, 0.0, False
+    if isinstance(component, Anchor):
+        return 0.0, 0.0, False
+    assert_never(component)
 
 
 def _drag_curve(component: Component, solver: Solver) -> DragCurve | None:
-    """The curve of a smooth sphere or cylinder; one that gives a drag of its own has none."""
+    """The drag curve of a smooth sphere or cylinder; None where it gives a drag of its own."""
     if solver.drag == "constant":
         return None
     if not isinstance(component, Sphere | Cylinder) or component.surface != "smooth":
@@ -169,7 +171,7 @@ def _shape_drag(shape: SphereShape | CylinderShape) -> tuple[float, float, bool]
 def axial_drag_of(component: Component) -> float:
     """K of what is clamped on a line in a flow along that line [N/(m/s)²].
 
-    Its tangential drag, or that of any flow where its drag does not depend on the axis.
+    Its tangential drag; where its drag does not depend on the axis, that of any direction.
     """
     kn, kt, directional = drag_of(component, getattr(component, "length", 0.0))
     return kt if directional else kn

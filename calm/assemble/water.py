@@ -1,4 +1,4 @@
-"""The environment of a mooring file as one table of levels, and the viscosity that goes with it."""
+"""The environment of a mooring file as one table of levels, and the viscosity of its water."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from calm.physics import seawater
 from calm.physics.line import REFERENCE_VISCOSITY, Floats, Water
 
 DEEPEST = 11_000.0
-"""Depth of the water where a tow gives none [m]: the deepest trench holds no more."""
+"""Depth of the water where a tow gives none [m]: more than the deepest trench has."""
 
 LINEAR_WITHIN = 1e-5
-"""Share of itself by which the density of sea water may differ from linear between levels."""
+"""Share by which the density of sea water may differ from linear between levels."""
 
 AIR_VISCOSITY = 1.46e-5
 """Kinematic viscosity of air [m²/s], in the standard atmosphere at sea level."""
@@ -52,7 +52,7 @@ def assemble_water(environment: Environment) -> Water:
 def _viscosity(environment: Environment, levels: Floats, density: Floats) -> tuple[Floats, Floats]:
     """Depths [m] and the kinematic viscosity at them [m²/s], from the levels of the density.
 
-    Where temperature and salinity are not given it is that of sea water of 10 °C and 35.
+    Where temperature and salinity are not given, it is that of sea water of 10 °C and salinity 35.
     """
     sea = environment.density
     if not isinstance(sea, SeaWater):
@@ -74,7 +74,7 @@ def _gravity(environment: Environment) -> float:
 
 
 def _surface_drift(environment: Environment) -> list[CurrentTable]:
-    """What the wind adds to the current; nothing where it drives no water."""
+    """What the wind adds to the current; nothing where it drives no surface drift."""
     wind = environment.wind
     if wind is None or wind.surface_drift == 0.0:
         return []
@@ -113,7 +113,7 @@ def _probed(sea: SeaWater, depth: Floats) -> tuple[Floats, Floats]:
 
 
 def _refined(levels: Floats, values: Callable[[Floats], Floats]) -> Floats:
-    """Levels halved until `values` is linear between them; it has no bends but at those given."""
+    """Levels halved until `values` is linear between them; it may bend only at the levels given."""
     while True:
         thickness = np.diff(levels)[:, np.newaxis]
         inside = levels[:-1, np.newaxis] + thickness * _QUARTERS

@@ -1,7 +1,7 @@
-"""What of a mooring may be changed to size it: ``LABEL.buoyancy``, ``.length`` or ``.count``.
+"""What may be changed to size a mooring: ``LABEL.buoyancy``, ``.length`` or ``.count``.
 
-A change is made in the models of the file, as a person would make it on the line, so that
-everything else follows as ever.
+A change is made in the models of the file, as if it had been written there; everything else follows
+from them.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from calm.files.labels import numbered, placed
 from calm.units import DIMENSIONS
 
 MOST_BUOYANCY = 100.0
-"""How many times its buoyancy a float is given at most, unless a range says otherwise."""
+"""Largest factor on the buoyancy of a float, unless a range is given."""
 MOST_LENGTH = 2.0
-"""How many water depths long a piece is made at most, unless a range says otherwise."""
+"""Greatest length of a piece in water depths, unless a range is given."""
 LEAST_LENGTH = 0.01
-"""The shortest a cable or chain is made [m]."""
+"""Least length of a cable or chain [m]."""
 MOST_COUNT = 1000
-"""How many of a component are put in line at most, unless a range says otherwise."""
+"""Greatest count of a component, unless a range is given."""
 
 
 @dataclass(frozen=True)
@@ -33,8 +33,8 @@ class Adjustment(ABC):
     Attributes
     ----------
     text : as it was written, e.g. ``top float.buoyancy``
-    file : the mooring as it is
-    parts : that change together, as they are
+    file : the mooring before the change
+    parts : those that change together, before the change
     """
 
     text: str
@@ -46,7 +46,7 @@ class Adjustment(ABC):
 
     @property
     def dimension(self) -> str:
-        """Of the number, a key of `calm.units.DIMENSIONS`."""
+        """Dimension of the number, a key of `calm.units.DIMENSIONS`."""
         return "length"
 
     @property
@@ -57,12 +57,12 @@ class Adjustment(ABC):
     @property
     @abstractmethod
     def now(self) -> float:
-        """The number as it is."""
+        """The number before the change."""
 
     @property
     @abstractmethod
     def range(self) -> tuple[float, float]:
-        """Between what it is changed when nothing else is said."""
+        """Its range where none is given: least and greatest value."""
 
     @abstractmethod
     def to(self, value: float) -> MooringFile:
@@ -70,7 +70,7 @@ class Adjustment(ABC):
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """Of the parts that change."""
+        """Labels of the parts that change."""
         return tuple(part.label for part in self.parts)
 
     @cached_property

@@ -5,11 +5,11 @@ times what it is. The share of drag i is that of Aumann and Shapley,
 
     share_i = ∫₀¹ ∂y/∂λ_i (s, …, s) ds
 
-All drags grow together from nothing to what they are, and at every stage each is charged with what
-its own growth adds. The shares add up to y(1 … 1) − y(0 … 0). No other rule does that, is blind to
-how the line is divided into components and charges nothing to a drag that moves nothing (Billera &
-Heath, Mathematics of Operations Research 7, 1982). To take one component away and look at the
-difference is not such a rule: the differences do not add up, since drags act on each other.
+All drags grow together from nothing to their full size, and at every stage each is charged with
+what its own growth adds. The shares add up to y(1 … 1) − y(0 … 0). No other rule does that, is
+blind to how the line is divided into components and charges nothing to a drag that moves nothing
+(Billera & Heath, Mathematics of Operations Research 7, 1982). Taking one component away and looking
+at the difference is no such rule: the differences do not add up, since drags act on each other.
 
 With drags that follow the square of the speed the stage s = t² is the mooring in t times its
 current.
@@ -30,16 +30,16 @@ STAGES = (4, 8)
 """Gauss points in t: the second number where the first misses the whole by `FAIR`."""
 FAIR = 0.01
 LEAST_DRAG = 1e-3
-"""Where the line has no unique shape without drag, its shares count from this share of the drag."""
+"""Share of the drag from which the shares count where the line has no unique shape without drag."""
 
 _STEP = 2e-4
 """Growth of a drag for its derivative: large against the tolerance, small against its own use."""
 _SETTINGS = Settings(angle_step=radians(4.0), tolerance=1e-10)
-"""Coarse: what the shares lack is made up when they are scaled to the whole."""
+"""Coarse, since the shares are scaled to the whole in the end."""
 
 
 SolverPart = tuple[int, int]
-"""Number of a piece of the line, and that of a clamp on it, or -1: as the arrays have them."""
+"""Index of a piece in the arrays, and of a clamp on it, or -1 for none."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Attribution:
     piece, clamp : (p,) indices in the line; clamp is -1 where the piece itself is meant
     start : (3,) without drag, or with the least of it
     shares : (p, 3) what each drag adds to it; the sums are the whole growth
-    miss : (3,) by how much of the whole growth the sums missed it before they were scaled
+    miss : (3,) error of the sums before they were scaled, as a share of the whole growth
     """
 
     piece: Integers
@@ -117,7 +117,7 @@ def with_drag(line: Line, factor: float) -> Line:
 
 
 def _parts_with_drag(line: Line) -> list[SolverPart]:
-    """Down the line, the clamps of a piece behind it."""
+    """Parts that have drag, down the line, the clamps of a piece after it."""
     pieces = np.flatnonzero((line.normal_drag > 0.0) | (line.tangential_drag > 0.0))
     clamps = np.flatnonzero(line.clamp_drag > 0.0)
     parts = [(int(p), -1) for p in pieces] + [(int(line.clamp_piece[m]), int(m)) for m in clamps]

@@ -1,4 +1,4 @@
-"""What strumming could do at worst: every result again with more drag on its cables."""
+"""What strumming could do at worst: a result solved again with more drag on its cables."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from calm.physics.line import Line
 
 FACTOR = 1.5
-"""On the Cn of every cable: about what a mooring line that strums is measured to have."""
+"""Factor on the Cn of every cable: about what is measured on mooring lines that strum."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""A bare cable as it was seen to tow: what its angle gives for its vibration."""
+"""A bare cable under tow: what its measured angle says of its vibration."""
 
 from __future__ import annotations
 
@@ -36,6 +36,6 @@ class BareCable:
 
     @property
     def frequency(self) -> float:
-        """Of the vibration [Hz]."""
+        """Frequency of the vibration [Hz]."""
         angle = math.radians(self.angle)
         return BourgetMarichal().frequency(self.speed, angle, self.diameter)

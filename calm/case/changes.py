@@ -20,8 +20,8 @@ def parse_change(text: str, file: MooringFile) -> Adjustment:
 
     Parameters
     ----------
-    text : the label of a part of the line, or what several of them are called without their
-        numbers; a point; ``buoyancy``, ``length`` or ``count``
+    text : the label of a part of the line, or of several without their numbers; a point;
+        ``buoyancy``, ``length`` or ``count``
     file : the mooring, in which the label is looked up
 
     Raises
@@ -42,7 +42,7 @@ def parse_change(text: str, file: MooringFile) -> Adjustment:
 
 
 def parse_range(texts: tuple[str, str] | None, change: Adjustment) -> tuple[float, float]:
-    """The range of a change: as given, each end with its unit, or its own.
+    """The range of a change: as given, each end with its unit, or that of the adjustment.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Which input a spread comes from: the indices of Sobol', from a fit of Hermite polynomials.
+"""Which input a spread comes from: Sobol' indices, from a fit of Hermite polynomials.
 
 A figure y of independent standard normal inputs z is written y = Σ c_a ψ_a(z), ψ_a products of
 normalised Hermite polynomials. These are orthonormal, so that c_a² is the part of the variance
@@ -17,7 +17,7 @@ import numpy as np
 from calm.physics.line import Floats
 
 ORDER = 3
-"""Of the terms of one input; those of two have the order 2, and there are none of three."""
+"""Order of the terms of one input; those of two have the order 2, and there are none of three."""
 FEWEST = 4
 """Samples for each coefficient, at least."""
 
@@ -28,9 +28,9 @@ class Indices:
 
     Attributes
     ----------
-    first : (k,) that each input causes by itself
-    total : (k,) that it has a part in
-    unexplained : that no term of the fit explains
+    first : (k,) what each input causes by itself
+    total : (k,) what it has a part in
+    unexplained : what no term of the fit explains
     """
 
     first: Floats

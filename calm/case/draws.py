@@ -1,7 +1,7 @@
-"""Draws of what a mooring stands on, and the mooring as each draw has it.
+"""Draws of the inputs of a mooring that are uncertain, and the mooring in each draw.
 
-The draws are those of a scrambled Sobol' sequence, one of each cause for a mooring: all its cables
-are too long alike, the current too fast at all depths alike.
+The draws are those of a scrambled Sobol' sequence, one number for each cause: all cables are too
+long by the same share, the current too fast by the same factor at all depths.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _ANGLE = "direction"
 
 
 class Draw(NamedTuple):
-    """One draw of all causes: factors of what is given, and an angle [degrees]."""
+    """One draw of all causes: factors on what is given, and an angle [degrees]."""
 
     current: float = 1.0
     direction: float = 0.0
@@ -50,7 +50,7 @@ class Draw(NamedTuple):
 
 
 def checked_samples(samples: int) -> int:
-    """The number of samples, if it is one.
+    """The number of samples, if it is one that can be drawn.
 
     Raises
     ------
@@ -108,7 +108,7 @@ def _factors(spread: Spread, normal: Floats) -> Floats:
 
 
 def drawn_line(line: Line, draw: Draw) -> Line:
-    """The line as a draw has it."""
+    """The line in a draw."""
     cable, rises = line.flexible, line.buoyancy > 0.0
     drag = np.where(cable, draw.cable_drag, draw.rigid_drag)
     lift = np.where(cable, draw.cable_weight, np.where(rises, draw.buoyancy, 1.0))
@@ -140,7 +140,7 @@ def _stiffer(curve: ElongationCurve | None, stiffness: float) -> ElongationCurve
 
 
 def drawn_water(water: Water, draw: Draw) -> Water:
-    """The water as a draw has it: its levels stay at their depths below the surface."""
+    """The water in a draw: its levels stay at their depths below the surface."""
     turn = radians(draw.direction)
     east, north = draw.current * cos(turn), draw.current * sin(turn)
     return replace(
@@ -153,7 +153,7 @@ def drawn_water(water: Water, draw: Draw) -> Water:
 
 
 class Neighbours(Forgetful):
-    """Solves what differs little from a mooring from where that stands, and else anew."""
+    """Solves what differs little from a mooring from its equilibrium, or anew where that fails."""
 
     def __init__(self, mooring: Mooring) -> None:
         self._mooring = mooring
@@ -190,7 +190,7 @@ class Neighbours(Forgetful):
 
 
 def drawn(mooring: Mooring, draws: Iterable[Draw]) -> Iterator[Mooring]:
-    """The mooring as some draws have it, each solved from where the mooring stands.
+    """The mooring in some draws, each solved from the equilibrium of the mooring.
 
     Raises
     ------

@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from calm.case.result import Result
 
 SOLVES = 100.0
-"""Equilibria that are sought for an explanation, or as much work."""
+"""About how many equilibria an explanation takes, by work."""
 
 CHANGE = 0.1
-"""By how much the buoyancy, the drag and the current are changed."""
+"""Share by which the buoyancy, the drag and the current are changed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,12 +82,12 @@ class Explanation:
     Attributes
     ----------
     label : of the piece or clamp explained
-    quantities : the columns of `causes` that mean something: knockdown and excursion, or, of a
-        line without a unique shape in still water, excursion and the buoyancy in use
-    figures : as they are
+    quantities : the columns of `causes` that have a meaning: knockdown and excursion; for a line
+        without a unique shape in still water, excursion and the buoyancy in use
+    figures : of the mooring as given
     without_drag : what of each quantity no drag causes
-    causes : the share of each drag in the rest; None where they cannot be told
-    miss : the worst of the shares' sums, before they were scaled to the whole, as a share of it
+    causes : the share of each drag in the rest; None where it is not known
+    miss : the worst error of the shares' sums before they were scaled, as a share of the whole
     changes : what more buoyancy, less drag, more and less current would lead to
     notes : what to keep in mind
     """
@@ -187,7 +187,7 @@ def explain(result: Result, label: str | None = None) -> Explanation:
 
 
 _COLUMNS = ("knockdown", "excursion", "used_buoyancy")
-"""What the columns of an `Attribution` add to."""
+"""What the columns of an `Attribution` add up to."""
 
 
 def _notes(result: Result, quantities: tuple[str, ...]) -> Iterator[str]:
@@ -206,7 +206,7 @@ def _notes(result: Result, quantities: tuple[str, ...]) -> Iterator[str]:
 
 
 def _point(mooring: Mooring, place: Place) -> SolverPart:
-    """The number of the piece, and that of the clamp or -1, which the solver knows it by."""
+    """Index of the piece, and of the clamp or -1, by which the solver knows the part."""
     pieces = mooring.file.pieces
     own = replace(place, clamp=-1)
     index = next(piece.index for piece in pieces if piece.place == own)
@@ -256,7 +256,7 @@ def _variations(mooring: Mooring) -> Iterator[tuple[str, Mooring]]:
 
 
 def _with(mooring: Mooring, line: Line | None = None, water: Water | None = None) -> Mooring:
-    """The same mooring with another line or water than those of its file."""
+    """The same mooring with a line or water that differs from its file."""
     return Mooring(mooring.file, line=line or mooring.line, water=water or mooring.water)
 
 

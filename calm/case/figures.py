@@ -46,7 +46,7 @@ def spot_of(result: Result, place: Place | None = None) -> Spot:
 
 @dataclass(frozen=True)
 class Figures:
-    """A mooring in eight numbers: lengths [m], forces [N].
+    """A solved mooring in eight numbers: lengths [m], forces [N].
 
     Attributes
     ----------
@@ -66,7 +66,7 @@ class Figures:
 
 
 def figures_of(result: Result, place: Place | None = None) -> Figures:
-    """The figures of a result, those of the line for the part of a place (the top)."""
+    """The figures of a result; those of the line are of the part at a place, by default the top."""
     spot = spot_of(result, place)
     return Figures(
         depth=spot.depth,

@@ -11,7 +11,7 @@ from calm.files import Piece
 
 @contextmanager
 def naming_the_piece(pieces: Sequence[Piece], *, towed: bool = False) -> Iterator[None]:
-    """Adds the label of the piece to what a solver says of it.
+    """Adds the label of a piece to what the solver reports of it.
 
     Parameters
     ----------

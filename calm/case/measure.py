@@ -15,7 +15,7 @@ from calm.solve import Solution
 
 
 def clamps_in(pieces: Sequence[Piece]) -> list[Clamp]:
-    """The clamps of a line in the order of the file, which is that of the solver's."""
+    """The clamps of a line in the order of the file, which is that of the solver."""
     return [clamp for piece in pieces for clamp in piece.clamps]
 
 
@@ -29,7 +29,8 @@ class Measured(NamedTuple):
 
     Attributes
     ----------
-    top, bottom : (n, 3) their ends, from the line's end and from the surface up [m]
+    top, bottom : (n, 3) their ends: east and north of the line's end, and height above the surface
+        [m]
     tension_top, tension_bottom, tension, least : at the ends, the greatest and the least of
         what hangs, NaN where nothing does [N]
     tilt : [degrees]

@@ -1,4 +1,4 @@
-"""What was solved before: of a line that a person edits, or that stands in many environments."""
+"""What was solved before, for a line that is edited or that stands in many environments."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from typing import Any, ParamSpec, TypeVar
 from calm.errors import NoEquilibrium
 
 MOST = 256
-"""Outcomes that are kept, the latest."""
+"""How many outcomes are kept, the latest."""
 
 P = ParamSpec("P")
 T = TypeVar("T")
 
 
 class Memory:
-    """Outcomes of solvers by what they were given: the same digits are not solved for twice.
+    """Outcomes of solvers by what they were given: the same digits are not solved twice.
 
-    A label that changes solves nothing, another current nothing in still water. It may be shared
-    by threads.
+    A new label solves nothing anew, another current does not solve still water anew. Threads may
+    share it.
     """
 
     def __init__(self) -> None:
@@ -73,7 +73,7 @@ class Forgetful(Memory):
 class _Describing(pickle.Pickler):
     """Writes down what it is given.
 
-    A record by its fields, without what it found out since; a function, such as the curve of a
+    A record by its fields, without what it has computed since; a function, such as the curve of a
     hull, by its name and what it encloses.
     """
 

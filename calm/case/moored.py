@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def result_of(mooring: Mooring, solution: Solution, still: Solution | None) -> Result:
-    """Measure a solution against its still-water shape, None where that is not unique."""
+    """The result of a solution; `still` is None where the shape in still water is not unique."""
     pieces = mooring.file.pieces
     above = components_of(pieces[:-1], solution, still)
     components = _with_anchor(above, pieces[-1], mooring.water.depth)

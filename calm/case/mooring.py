@@ -39,8 +39,8 @@ def load(
     ----------
     path : the YAML file
     environment : name of one of its `environments`, or an environment file
-    catalogs : catalogue files of your own; the nearer definition wins
-    text : in place of the file's content; what it refers to is still looked for beside the file
+    catalogs : catalogue files of your own, whose definitions come before the shipped ones
+    text : in place of the file's content; files that it names are still looked for beside the file
 
     Raises
     ------
@@ -56,10 +56,10 @@ def load(
 class Mooring:
     """A mooring as read from its file; `line` and `water` are what the solver takes.
 
-    They follow from the file where they are not given. `for_surface` shows whether it is meant to
-    reach the surface, where that is known beforehand: a mooring that is judged with something
-    changed is meant for what it was meant for. `memory` keeps what was solved for other states of
-    the same file, and in other environments.
+    They follow from the file where they are not given. `for_surface` says whether it is meant to
+    reach the surface, where that is known beforehand: a mooring judged with a change is meant for
+    what it was meant for before. `memory` keeps what was solved for other states of the same file,
+    and in other environments.
     """
 
     file: MooringFile
@@ -134,7 +134,7 @@ class Mooring:
 
     @cached_property
     def anchor_drag(self) -> float:
-        """K of the falling anchor, or where it gives none that of a cube [N/(m/s)²].
+        """K of the falling anchor [N/(m/s)²]; where it gives none, that of a cube.
 
         The cube has the volume that the anchor displaces, or that of steel of its weight.
         """
@@ -159,7 +159,7 @@ class Mooring:
         return result_of(self, solution, self.still_beside(solution))
 
     def equilibrium(self, water: Water) -> Solution:
-        """The line solved in some water, and accepted for what it is and how it is held.
+        """The line solved in some water, refused where the mooring is not meant to stand so.
 
         Raises
         ------
@@ -189,7 +189,7 @@ class Mooring:
                 raise self.heaped(pieces[lying].label)
 
     def heaped(self, label: str) -> NoEquilibrium:
-        """Why a sub-surface line is refused of which more than chain lies on the seabed."""
+        """Why a sub-surface line is refused where more of it than chain lies on the seabed."""
         lift = standing_lift(self.line, self.water)
         if float(lift.sum()) <= 0.0:
             return too_heavy(lift)

@@ -13,7 +13,7 @@ TOP = "top"
 
 
 def parts_of(pieces: Sequence[Piece]) -> list[Piece | Clamp]:
-    """Every piece of a line, its clamps behind it."""
+    """Every piece of a line, each with its clamps after it."""
     parts: list[Piece | Clamp] = []
     for piece in pieces:
         parts += (piece, *piece.clamps)
@@ -26,7 +26,7 @@ def one_part(pieces: Sequence[Piece], text: str) -> Piece | Clamp:
     Raises
     ------
     LookupError
-        No part, or more than one, is called so; its message says what is.
+        No part, or more than one, is called so; the message says what the parts are called.
     """
     found = all_parts(pieces, text)
     if len(found) > 1:
@@ -36,12 +36,12 @@ def one_part(pieces: Sequence[Piece], text: str) -> Piece | Clamp:
 
 
 def all_parts(pieces: Sequence[Piece], text: str) -> tuple[Piece | Clamp, ...]:
-    """The parts meant by a text: that of the label, or all whose label is it with a number.
+    """The parts meant by a text: the part of that label, or all whose label is that with a number.
 
     Raises
     ------
     LookupError
-        No part is called so; the message offers the nearest that is.
+        No part is called so; the message offers the nearest label.
     """
     parts = parts_of(pieces)
     for part in parts:

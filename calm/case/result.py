@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def document_of(result: Result | TowResult, ends: dict[str, Any]) -> dict[str, Any]:
-    """The JSON object of a result, with what its kind gives for the line's ends."""
+    """The JSON object of a result; `ends` holds what a mooring, or a tow, has at its ends."""
     from calm.version import __version__
 
     components, clamps = result.components.to_dicts(), result.clamps.to_dicts()
@@ -109,7 +109,7 @@ class AnchorLoad:
 class Strumming:
     """How the cables strum: the frequency [Hz], and the range of their Cn.
 
-    `frequency` is the one at which all of a towed cable vibrates, elsewhere the highest at which
+    `frequency` is that at which all of a towed cable vibrates; of a mooring, the highest at which
     any cable sheds its vortices.
     """
 

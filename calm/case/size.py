@@ -20,12 +20,13 @@ MET, MET_ALREADY, NOT_MET = "met", "met-already", "not-met"
 """The statuses of a sizing."""
 
 _NOTHING = 1e-6
-"""A change of the target's quantity, as a share of it, that is none."""
+"""A change of the target's quantity, as a share of it, that counts as none."""
 SOLVES = 60.0
-"""Equilibria that are sought for an answer, about: three for each value tried."""
+"""About how many equilibria an answer takes: three for each value tried."""
 
 _EXACT = 1e-7
-"""How near an `=` target is met, as a share of the limit or of how far one was from it."""
+"""Error of an `=` target that counts as met, as a share of the limit or of the first distance from
+it."""
 
 
 @dataclass(frozen=True)
@@ -53,14 +54,14 @@ class Trial:
 
 @dataclass(frozen=True)
 class Sizing:
-    """What became of a sizing.
+    """The outcome of a sizing.
 
     Attributes
     ----------
     target, change : what was wanted, and what might be changed for it
-    range : between what it was changed
+    range : of the change, least and greatest
     status : ``met``, ``met-already`` (nothing to change) or ``not-met``
-    before, after : the mooring as it is, and with the smallest change that meets the target, solved
+    before, after : the mooring as given, and with the smallest change that meets the target, solved
         with the settings of its file; `after` is None where the target is not met
     message, advice : why it is not met, and what to do
     steady : whether the quantity only rose or only fell over the values tried

@@ -11,7 +11,7 @@ from calm.solve.audit import amplification, flow_across
 
 
 def strumming_of(solver: Solver, solution: Solution) -> Strumming | None:
-    """Frequency and range of Cn over the cables, None where none strums or none is asked to."""
+    """Frequency and range of Cn over the cables; None where none strums or is asked to."""
     line, piece = solution.line, solution.element_piece
     cables = (line.diameter[piece] > 0.0) & (solution.element_clamp < 0) & (solution.cut > 0.0)
     if solver.strumming is None or not cables.any():

@@ -10,10 +10,10 @@ from calm.errors import NoEquilibrium, UsageError
 from calm.files.strumming import BourgetMarichalKeys
 
 SOLVES = 3.0
-"""Equilibria that are sought for one speed, about."""
+"""About how many equilibria one speed takes."""
 
 CHANGE = 0.1
-"""By which share `sensitivity` changes a coefficient, down and up."""
+"""Share by which `sensitivity` changes a coefficient, down and up."""
 
 _COEFFICIENTS = ("a1", "b1", "c1")
 
@@ -58,7 +58,7 @@ def sweep(tow: Tow, speeds: Iterable[float]) -> list[TowResult | NoEquilibrium]:
 
 
 def sensitivity(tow: Tow) -> list[Variation]:
-    """What a tow makes of A₁, B₁ and C₁ of its strumming, each smaller and greater by `CHANGE`.
+    """How a tow answers to A₁, B₁ and C₁ of its strumming, each smaller and greater by `CHANGE`.
 
     Returns
     -------

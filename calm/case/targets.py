@@ -25,7 +25,7 @@ QUANTITIES = {
     "tension": "force",
     "required_weight": "force",
 }
-"""What can be a target, and of what dimension it is; the last is that of the anchor."""
+"""What can be a target, and its dimension; the last is of the anchor."""
 
 RELATIONS = {"<=": "<=", "≤": "<=", ">=": ">=", "≥": ">=", "=": "=", "==": "="}
 

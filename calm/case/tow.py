@@ -1,4 +1,4 @@
-"""A tow file, ready to be solved, and what it shows when it is."""
+"""A tow file, ready to be solved, and its result."""
 
 from __future__ import annotations
 
@@ -157,7 +157,7 @@ class Tow:
 
     @cached_property
     def line(self) -> Line:
-        """The pieces from the ship down, one that is paid out to a depth at its cut length.
+        """The pieces from the ship down; one that is paid out to reach a depth has its cut length.
 
         Raises
         ------

@@ -1,7 +1,7 @@
-"""How sure the figures of a mooring are: it is solved for many draws of what it stands on.
+"""How sure the figures of a mooring are: it is solved for many draws of its uncertain inputs.
 
-Every sample is closed on the cuts of the mooring as given, or solved anew where it is of another
-kind, and passes every check of a solution.
+Every sample is solved on the cuts of the mooring as given, or anew where that finds no equilibrium
+of the same kind, and passes every check of a solution.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ LEVELS = (5.0, 50.0, 95.0)
 
 @dataclass(frozen=True)
 class Contribution:
-    """What share of the variance of a quantity a cause explains, alone and with the others."""
+    """The share of the variance of a quantity that a cause explains, alone and with others."""
 
     cause: str
     quantity: str
@@ -55,7 +55,7 @@ class Uncertain:
     failures : samples without equilibrium, by status; all other figures are of the rest
     depth_top, knockdown, tilt, tension : (3, p) of the p pieces, the anchor last; knockdown is
         NaN where the line has no unique shape in still water [m], [m], [degrees], [N]
-    offset : (3, p) of the top of each piece from the anchor, the way the free end is off [m]
+    offset : (3, p) of the top of each piece from the anchor, in the direction of the free end [m]
     anchor_tension, required_weight : (3,) [N]
     contributions : to the top's knockdown, or afloat to its excursion; none where it does not vary
     unexplained : share of that variance that the fit of the indices does not explain
@@ -105,11 +105,15 @@ def _known(values: Floats) -> list[float] | None:
 
 
 Mapped = Callable[[Callable[[Any], Any], Sequence[Any]], Iterable[Any]]
-"""Makes of every task what a function makes of it, in their order: `map`, or several processes."""
+"""Applies a function to every task, in their order: `map`, or several processes."""
 
 
 def uncertain(
-    result: Result, samples: int = SAMPLES, seed: int = 0, mapped: Mapped = map
+    result: Result,
+    samples: int = SAMPLES,
+    seed: int = 0,
+    mapped: Mapped = map,
+    normals: Callable[[], Floats] | None = None,
 ) -> Uncertain:
     """How sure the figures of a solved mooring are.
 
@@ -118,19 +122,21 @@ def uncertain(
     result : of a mooring; what its file says under `uncertainty` is drawn
     samples : a power of two from `FEWEST` to `MOST`
     seed : of the scrambling; the same seed gives the same figures
-    mapped : has blocks of samples solved
+    mapped : applies the solver to blocks of samples
+    normals : returns `normals_of(samples, seed)`, where another process computes it
 
     Raises
     ------
     UsageError
-        The number of samples is none of these.
+        The number of samples is no such number.
     NoEquilibrium
         No sample has an equilibrium.
     """
     mooring = result.mooring
-    normals = normals_of(checked_samples(samples), seed)
-    draws = draws_of(mooring.file.uncertainty, normals)
+    checked_samples(samples)
     expect_many(samples)
+    normal = normals_of(samples, seed) if normals is None else normals()
+    draws = draws_of(mooring.file.uncertainty, normal)
     blocks = [draws[first : first + BLOCK] for first in range(0, samples, BLOCK)]
     outcomes = [each for block in mapped(partial(_figures, mooring), blocks) for each in block]
     failures = [one for one in outcomes if isinstance(one, NoEquilibrium)]
@@ -144,7 +150,7 @@ def uncertain(
     afloat = result.type == "surface" or bool(np.isnan(knockdown[:, 0]).any())
     quantity, row = ("excursion", 4) if afloat else ("knockdown", 1)
     tops = np.array([one[0][row, 0] for one in figures])
-    indices = sobol_indices(normals[solved], tops)
+    indices = sobol_indices(normal[solved], tops)
     return Uncertain(
         result=result,
         samples=samples,

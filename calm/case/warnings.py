@@ -1,4 +1,4 @@
-"""What a person should know of a result before trusting it: one small function per worry."""
+"""What a person should know of a result before trusting it: a small function for each doubt."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def _stiffness_unknown(result: Result | TowResult, _: Solution) -> Iterator[str]
 
 
 def _published(strains: list[float]) -> str:
-    """What the published stiffnesses of a rope make of its tension, the greatest strain first."""
+    """What the published stiffnesses of such ropes say of a stretch; the greatest strain first."""
     if not strains:
         return "no stiffness of such a rope is published."
     if len(strains) == 1:
@@ -195,7 +195,7 @@ def _other_equilibrium(_: Result | TowResult, solution: Solution) -> Iterator[st
 
 
 def _hull_unknown(result: Result, solution: Solution) -> Iterator[str]:
-    """A float that has no draft is taken as just immersed, or dragged as its `k_surface` has it."""
+    """A float of unknown draft is taken as just immersed, or dragged by its `k_surface`."""
     riding, told = solution.riding, result.file.solver.buoy_drag == "immersed"
     if solution.surface and told and (riding is None or np.isnan(riding.draft)):
         afloat = [result.components.label[piece] for piece in solution.afloat]

@@ -1,4 +1,4 @@
-"""What the design accepts of its findings, with a reason, until a day."""
+"""Findings that the design accepts, with a reason, until a day."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ class Acceptance:
         return finding
 
     def notices(self, accepted: Iterable[Finding]) -> Iterator[str]:
-        """What there is to say of accepts that do not count, or that no finding needs.
+        """Notices of accepts that do not count, or that no finding needs.
 
         Parameters
         ----------
-        accepted : all that is
+        accepted : every finding that is accepted
         """
         used = {finding.accept for finding in accepted}
         for accept in sorted(self.accepts, key=lambda one: one.line):

@@ -1,4 +1,4 @@
-"""Whether the anchor holds: as a whole, against the lift, and against the slide."""
+"""Whether the anchor holds: its weight, against uplift and against sliding."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def anchor_weight(mooring: Mooring) -> Iterator[Criterion]:
         weight,
         words,
         source=Citing.of(mooring.file)("anchor_factor", "anchor_friction"),
-        told=lambda required, result: (result.anchor.weight, required),
+        stated=lambda required, result: (result.anchor.weight, required),
     )
 
 
@@ -85,7 +85,7 @@ def anchor_sliding(mooring: Mooring) -> Iterator[Criterion]:
         None if weight is None else friction * weight / factor,
         words,
         source=Citing.of(mooring.file)("anchor_factor", "anchor_friction"),
-        told=lambda _, result: (result.anchor.horizontal, held(result)),
+        stated=lambda _, result: (result.anchor.horizontal, held(result)),
     )
 
 

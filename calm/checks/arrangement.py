@@ -38,7 +38,7 @@ GREATEST_DIFFERENCE = 0.2
 _INSULATED = ("plastic", "jacket", "sheath", "coated", "insulat")
 
 
-@rule("release-present")
+@rule("release-present", once=True)
 def release_present(handling: Handling) -> Iterator[Verdict]:
     """Whether a sub-surface line says what lets go of its anchor."""
     mooring = handling.mooring
@@ -57,7 +57,7 @@ def release_present(handling: Handling) -> Iterator[Verdict]:
     yield verdict_on(piece, State.PASS, f"{piece.label} frees the line from everything below it.")
 
 
-@rule("swivel")
+@rule("swivel", once=True)
 def swivel(handling: Handling) -> Iterator[Verdict]:
     """A swivel between every wire that bears torque and a float that leans and turns with it.
 
@@ -103,7 +103,7 @@ def _held_by(way: Sequence[Piece]) -> tuple[Piece, bool] | None:
     return None
 
 
-@rule("metals")
+@rule("metals", once=True)
 def metals(handling: Handling) -> Iterator[Verdict]:
     """Metals far apart in the galvanic series that touch, wherever both materials are known."""
     warned: set[str] = set()

@@ -26,7 +26,7 @@ from calm.files import MooringFile, Place
 from calm.solve import expect_many
 
 LEAST_CURRENT = 0.01
-"""A current below it moves a mooring no more than none [m/s]."""
+"""Speed below which a current counts as none [m/s]."""
 
 
 def check(mooring: Mooring, /, *others: Mooring, day: date | None = None) -> Assessment:
@@ -166,7 +166,7 @@ def _worst_of_each_rule(findings: Sequence[Finding]) -> list[Finding]:
 
 
 def handled(mooring: Mooring, result: Result) -> Handling:
-    """Launch, recovery and breaks of a mooring that stands, each of them or why there is none."""
+    """Launch, recovery and breaks of a mooring that stands, or why one of them is not known."""
     launch: Launch | NoEquilibrium
     recovery: Recovery | NoEquilibrium
     try:

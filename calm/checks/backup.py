@@ -25,7 +25,7 @@ LEAST_MARGIN = 250.0
 
 
 SHELLS = {"glass": 2230.0, "steel": STEEL_DENSITY, "aluminium": 2700.0, "titanium": 4500.0}
-"""Densities of what the shells of hollow floats are made of [kg/m³], by a word of `material`."""
+"""Densities of the shells of hollow floats [kg/m³], by a word of `material`."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Break:
     margin : net buoyancy of the pieces from below the break down to the release [N]
     weight_lifted : weight in water of those of them that are heavy [N]
     required : what the margin should be [N]
-    judged : whether the design can do anything about it
+    judged : whether the design can change it
     """
 
     break_after: int

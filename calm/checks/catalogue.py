@@ -27,7 +27,7 @@ STEEL_MODULUS = 210e9
 """Young's modulus of steel [Pa]; no cable is stiffer than a solid bar of it."""
 
 GREATEST_STRENGTH = 4e9
-"""Tensile strength that no fibre or wire of a cable surpasses [Pa]."""
+"""Greatest tensile strength of any fibre or wire of a cable [Pa]."""
 
 DEEPEST_WATER = 11000.0
 """Greatest depth of the ocean, in round figures [m]."""

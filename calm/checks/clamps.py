@@ -9,7 +9,7 @@ import numpy as np
 
 from calm.assemble import axial_drag_of, drag_of, net_buoyancy
 from calm.checks.criterion import Judged, parts_of
-from calm.checks.finding import Verdict, at_most, rule, told
+from calm.checks.finding import Verdict, at_most, reported, rule
 from calm.checks.launch import Launch
 from calm.checks.recovery import Recovery
 from calm.physics.reference import REFERENCE_DENSITY
@@ -37,7 +37,7 @@ def clamp_grip(result: Result) -> Iterator[Verdict]:
         yield _verdict(part, float(np.linalg.norm(force)), "")
 
 
-@rule("clamp-grip", situation="launch and recovery")
+@rule("clamp-grip", situation="launch and recovery", once=True)
 def clamp_grip_on_the_way(handling: Handling) -> Iterator[Verdict]:
     """The greater pull along the line of the fall, which drags up, and the rise, which drags down.
 
@@ -83,4 +83,4 @@ def _verdict(part: Judged, pull: float, when: str) -> Verdict:
     if breaking is not None:
         message = f"{pulls}; it breaks at {say('tension', breaking)}."
         return at_most(part, pull, breaking, message, _HOLDS)
-    return told(part, pull, f"{pulls}; its `grip` is not given.")
+    return reported(part, pull, f"{pulls}; its `grip` is not given.")

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from calm.files import Component, Place
 
 AT_SURFACE = 0.1
-"""What comes so near to the surface is at it [m]."""
+"""Depth down to which a part counts as at the surface [m]."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class Criterion:
     beyond : state of a value that does: fail or warn
     silent : whether a value that is NaN is nothing to judge, rather than unknown
     source : of the limit; "" for that of the rule
-    told : value and limit as people state them, of the same margin, where not these
+    stated : value and limit as people state them, of the same margin, where not these
     """
 
     part: Judged
@@ -85,7 +85,7 @@ class Criterion:
     beyond: State = State.FAIL
     silent: bool = False
     source: str = ""
-    told: Callable[[float, Result], tuple[float, float]] | None = None
+    stated: Callable[[float, Result], tuple[float, float]] | None = None
 
     def verdict(self, result: Result) -> Verdict | None:
         """On the part in a result; None where there is nothing to judge."""
@@ -97,7 +97,7 @@ class Criterion:
             return unknown(self.part, message, remedy, None if isnan(value) else value)
         margin = value - self.limit if self.least else self.limit - value
         kept = margin >= 0.0
-        shown, limit = (value, self.limit) if self.told is None else self.told(value, result)
+        shown, limit = (value, self.limit) if self.stated is None else self.stated(value, result)
         state = State.PASS if kept else self.beyond
         said = None if kept else remedy
         return verdict_on(self.part, state, message, said, shown, limit, margin, self.source)
@@ -114,7 +114,7 @@ def verdicts(criteria: Iterable[Criterion], result: Result) -> Iterator[Verdict]
 def criteria(
     name: str, *, of_anchor: bool = False
 ) -> Callable[[Callable[[Mooring], Iterator[Criterion]]], Rule]:
-    """Make a function that says what is asked of a mooring into the `Rule` of that name."""
+    """Make the `Rule` of that name from a function that gives the criteria of a mooring."""
 
     def of(asked: Callable[[Mooring], Iterator[Criterion]]) -> Rule:
         def judge(result: Result) -> Iterator[Verdict]:

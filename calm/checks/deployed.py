@@ -82,7 +82,7 @@ def cut_like(file: MooringFile, mooring: Mooring) -> MooringFile:
     return replace(file, pieces=pieces)
 
 
-@rule("as-deployed")
+@rule("as-deployed", once=True)
 def deployed_depth(handling: Handling) -> Iterator[Verdict]:
     """How far the top of the upright line is from where it was designed to be.
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from calm.files import Clamp, Piece
 
 
-@rule("figures")
+@rule("figures", once=True)
 def figures(handling: Handling) -> Iterator[Verdict]:
     """What no component of its size and material can have, such as a load in N that was in kN.
 

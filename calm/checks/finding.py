@@ -109,7 +109,7 @@ def at_least(
     return _verdict(part, value, limit, value - limit, message, remedy, beyond, source)
 
 
-def told(part: Part | None, value: float, message: str) -> Verdict:
+def reported(part: Part | None, value: float, message: str) -> Verdict:
     """The verdict on a value that has no limit: it passes as nothing is asked of it."""
     return verdict_on(part, State.PASS, message, value=value)
 
@@ -152,7 +152,7 @@ def _verdict(
 
 @dataclass(frozen=True)
 class Rule:
-    """A named rule: what it judges, the quantity of its values, and who asks for it.
+    """A named rule: what it judges, the quantity of its values, and its source.
 
     Attributes
     ----------
@@ -160,9 +160,10 @@ class Rule:
     title : for people
     quantity : of `calm.quantities`, whose unit its values and limits have
     source : of the rule and of its default limit
-    judge : from the evidence, a `Result` for most rules, to verdicts
+    judge : from the evidence to verdicts: a `Result`, in every environment and situation
     of_anchor : whether it judges the anchor, and nothing where a line has none
-    situation : of what it judges once of a mooring
+    once : whether it judges a `Handling`, once of a mooring
+    situation : of what it judges once
     criteria : from a `Mooring` to what is asked of it, where that can be counted in many profiles
     """
 
@@ -173,6 +174,7 @@ class Rule:
     judge: Callable[[Any], Iterator[Verdict]]
     of_anchor: bool = False
     criteria: Callable[[Any], Iterator[Any]] | None = None
+    once: bool = False
     situation: str = AS_GIVEN
 
     def find(
@@ -189,15 +191,16 @@ class Rule:
 
 
 def rule(
-    name: str, *, of_anchor: bool = False, situation: str = AS_GIVEN
+    name: str, *, of_anchor: bool = False, once: bool = False, situation: str = AS_GIVEN
 ) -> Callable[[Callable[[Any], Iterator[Verdict]]], Rule]:
-    """Make a function that judges into the `Rule` of that name in `calm.files.rules`."""
+    """Make the `Rule` of that name in `calm.files.rules` from a function that judges."""
     text = RULE_TEXTS[name]
 
     def of(judge: Callable[[Any], Iterator[Verdict]]) -> Rule:
         return Rule(
-            name, text.title, text.quantity, text.source, judge, of_anchor, situation=situation
-        )
+            name, text.title, text.quantity, text.source, judge, of_anchor,
+            once=once, situation=situation,
+        )  # fmt: skip
 
     return of
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import isnan, pi, sqrt
-from typing import Any
+from typing import Any, assert_never
 
 from calm.assemble import drag_of, net_buoyancy
 from calm.case import Result
@@ -29,6 +29,7 @@ from calm.files import (
     Piece,
     Sphere,
 )
+from calm.files.components import FlexibleComponent, RigidComponent
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 from calm.physics import drag
 from calm.physics.reference import REFERENCE_DENSITY
@@ -106,7 +107,9 @@ def grown_component(component: Component, fouling: Fouling, gravity: float) -> C
     return component.model_copy(update=drags | force)
 
 
-def _larger(component: Component, t: float) -> tuple[dict[str, Any], float]:
+def _larger(
+    component: RigidComponent | FlexibleComponent, t: float
+) -> tuple[dict[str, Any], float]:
     """The figures of drag that growth changes, and its volume [m³, per metre of line]."""
     if isinstance(component, Cable):
         d = component.diameter
@@ -130,6 +133,8 @@ def _larger(component: Component, t: float) -> tuple[dict[str, Any], float]:
     elif isinstance(component, Body):
         update = dict.fromkeys(("drag_area", "cd", "drag_measurements", "made_of", "inclination"))
         update |= {"kn": across * kn, "kt": along * kt if directional else None}
+    else:
+        assert_never(component)
     k_surface = getattr(component, "k_surface", None)
     return update | ({} if k_surface is None else {"k_surface": across * k_surface}), volume
 

@@ -7,7 +7,16 @@ from dataclasses import dataclass, replace
 from math import isnan
 from typing import TYPE_CHECKING
 
-from calm.checks.finding import State, Verdict, at_least, at_most, rule, told, unknown, verdict_on
+from calm.checks.finding import (
+    State,
+    Verdict,
+    at_least,
+    at_most,
+    reported,
+    rule,
+    unknown,
+    verdict_on,
+)
 from calm.checks.launch import Launch
 from calm.checks.limits import Citing
 from calm.checks.recovery import Recovery
@@ -22,7 +31,7 @@ if TYPE_CHECKING:
     from calm.files import Part
 
 GREATEST_TOUCHDOWN_SPEED = 2.5
-"""Above it an anchor may bury itself or break what stands on it [m/s]."""
+"""Speed above which an anchor may bury itself or break what is on it [m/s]."""
 USUAL_RISE_SPEED = 0.7
 """A rise slower than this is warned of: it takes hours from the deep sea, and drifts away [m/s]."""
 
@@ -38,7 +47,7 @@ class Handling:
     losses: tuple[Loss, ...] = ()
 
 
-@rule("backup")
+@rule("backup", once=True)
 def backup(handling: Handling) -> Iterator[Verdict]:
     """Net buoyancy of what holds the release after the worst break, or the worst loss of a float.
 
@@ -83,7 +92,7 @@ def _room(one: Break | Loss) -> float:
     return one.margin - one.required
 
 
-@rule("launch-strength")
+@rule("launch-strength", once=True)
 def launch_strength(handling: Handling) -> Iterator[Verdict]:
     """Tension of every piece as the line falls behind its anchor.
 
@@ -125,7 +134,7 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
         yield at_most(piece, tension, limit, message, remedy, source=source)
 
 
-@rule("launch-speed")
+@rule("launch-speed", once=True)
 def launch_speed(handling: Handling) -> Iterator[Verdict]:
     """Terminal speed of the anchor as it meets the seabed."""
     launch = handling.launch
@@ -156,7 +165,7 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
         yield unknown(anchor, message, "Give the anchor's `kt`.", speed)
 
 
-@rule("recovery")
+@rule("recovery", once=True)
 def recovery(handling: Handling) -> Iterator[Verdict]:
     """Terminal speed of the line as it rises without its anchor."""
     rise, limit = handling.recovery, handling.mooring.file.checks.minimum_rise_speed
@@ -182,7 +191,7 @@ def recovery(handling: Handling) -> Iterator[Verdict]:
     yield verdict
 
 
-@rule("tangling")
+@rule("tangling", once=True)
 def tangling(handling: Handling) -> Iterator[Verdict]:
     """Whether the line doubles back on itself as it falls or rises."""
     launch, rise = handling.launch, handling.recovery
@@ -212,7 +221,7 @@ def _hauled_in(lowest: Part, arrival: float, rise: Recovery) -> Verdict:
         remedy = "Haul it in; mind its weight."
         return verdict_on(lowest, State.WARN, message, remedy)
     minutes = arrival / 60.0
-    return told(
+    return reported(
         lowest, rise.rise_speed, f"Freed, {lowest.label} comes up after {minutes:.0f} minutes."
     )
 

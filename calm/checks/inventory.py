@@ -81,7 +81,7 @@ def _known(values: Sequence[float | None]) -> float:
 
 
 def inventory_of(mooring: Mooring) -> tuple[Item, ...]:
-    """Every piece from the top to the anchor, the clamps of a piece behind it."""
+    """Every piece from the top to the anchor, each with its clamps after it."""
     try:
         lengths: list[float | None] = [*mooring.line.length.tolist()]
     except NoEquilibrium:

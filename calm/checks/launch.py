@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from calm.case import Mooring, Result
 
 AXIAL_DRAG_BAND = 2.0
-"""By how many times drag along the line and drag of the anchor may be more, or less, than given."""
+"""Factor by which the drag along the line and of the anchor may be more, or less, than given."""
 
 
 @dataclass(frozen=True)

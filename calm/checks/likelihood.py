@@ -1,8 +1,8 @@
-"""How likely it is that each limit is broken, with what the design stands on as unsure as it is.
+"""The probability that each limit is broken, given how uncertain the inputs of the design are.
 
-What a line that stands has to keep to is counted in every sample, in the situation in which it was
-found. A launch or a rise takes as long to solve as many equilibria: these, and the breaks, are
-counted in the first `HANDLED` samples. A sample without equilibrium breaks every limit.
+The limits of a line that stands are counted in every sample, in the situation of the finding. A
+launch or a rise takes as long to solve as many equilibria: these, and the breaks, are counted in
+the first `HANDLED` samples. A sample without equilibrium breaks every limit.
 """
 
 from __future__ import annotations

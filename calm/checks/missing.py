@@ -1,7 +1,7 @@
 """Figures that a component does not give, and that the design check or the deck sheet then lack.
 
-They are no fault of a catalogue: much is printed by nobody. What was looked for in vain is kept
-with the component (`searched`), so that nobody looks twice.
+They are no fault of a catalogue: many figures are printed nowhere. What was looked for in vain is
+kept with the component (`searched`), so that nobody looks twice.
 """
 
 from __future__ import annotations

@@ -3,22 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import chain
 from typing import TYPE_CHECKING
 
-from calm.checks.anchor import anchor_sliding, anchor_uplift, anchor_weight
-from calm.checks.arrangement import metals, release_present, swivel
-from calm.checks.clamps import clamp_grip, clamp_grip_on_the_way
-from calm.checks.deployed import deployed_depth
-from calm.checks.figures import figures
-from calm.checks.finding import State, Verdict, rule, verdict_on
-from calm.checks.handling import backup, launch_speed, launch_strength, recovery, tangling
-from calm.checks.posture import depth_rating, excursion, knockdown, tilt, top_depth
-from calm.checks.slack import slack
-from calm.checks.strength import release_load, strength, strength_steps
-from calm.checks.surface import freeboard, reserve, scope, watch_circle
+from calm.checks import (
+    anchor,
+    arrangement,
+    clamps,
+    deployed,
+    figures,
+    handling,
+    posture,
+    slack,
+    strength,
+    surface,
+)
+from calm.checks.finding import AS_GIVEN, Rule, State, Verdict, rule, verdict_on
+from calm.files.rules import RULES as TEXTS
 
 if TYPE_CHECKING:
     from calm.errors import NoEquilibrium
+
+_MODULES = (
+    anchor, arrangement, clamps, deployed, figures, handling, posture, slack, strength, surface,
+)  # fmt: skip
 
 
 @rule("equilibrium")
@@ -35,42 +43,23 @@ STILL_ONLY = verdict_on(
     "judged.",
     "Give the current, or an environment that has one.",
 )
-"""What `equilibrium` says of a mooring that nothing moves to speak of."""
+"""What `equilibrium` says of a mooring without a current to speak of."""
 
-STANDING = (
-    strength,
-    release_load,
-    clamp_grip,
-    strength_steps,
-    tilt,
-    depth_rating,
-    top_depth,
-    knockdown,
-    excursion,
-    anchor_weight,
-    anchor_uplift,
-    anchor_sliding,
-    slack,
-    reserve,
-    freeboard,
-    watch_circle,
-    scope,
-)
+_ORDER = list(TEXTS)
+
+
+def _judging(*, once: bool) -> tuple[Rule, ...]:
+    """Rules of the modules in the order of their texts; those of one situation come last."""
+    found = chain.from_iterable(vars(module).values() for module in _MODULES)
+    rules = [each for each in found if isinstance(each, Rule) and each.once == once]
+    rules.sort(key=lambda each: (each.situation != AS_GIVEN, _ORDER.index(each.name)))
+    return tuple(rules)
+
+
+STANDING = _judging(once=False)
 """What is judged of a `Result`, in every environment and situation."""
 
-ONCE = (
-    deployed_depth,
-    figures,
-    release_present,
-    swivel,
-    metals,
-    backup,
-    launch_strength,
-    launch_speed,
-    recovery,
-    tangling,
-    clamp_grip_on_the_way,
-)
+ONCE = _judging(once=True)
 """What is judged once of a mooring: its breaks, its launch and its recovery."""
 
 RULES = {each.name: each for each in (equilibrium, *STANDING, *ONCE)}

@@ -20,7 +20,7 @@ from calm.solve import Status
 STILL, STILL_LOW = "still water", "still low water"
 HIGH, LOW = "high water", "low water"
 SOLVES = 6.0
-"""Equilibria that are sought for one mooring in one environment, about."""
+"""About how many equilibria one mooring in one environment takes."""
 
 FOULED, STRUMMING, DEPLOYED = "fouling", "strumming", "as deployed"
 

@@ -1,4 +1,4 @@
-"""The float of a surface mooring: what buoyancy it keeps, and the circle it watches."""
+"""The float of a surface mooring: its reserve of buoyancy, its freeboard and its watch circle."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from math import sqrt
 from typing import TYPE_CHECKING
 
 from calm.checks.criterion import Criterion, criteria, pieces_of
-from calm.checks.finding import Verdict, at_least, at_most, rule, told, unknown
+from calm.checks.finding import Verdict, at_least, at_most, reported, rule, unknown
 from calm.checks.limits import Citing
 from calm.checks.posture import meant_for_the_surface, reaches_the_surface
 from calm.quantities import say
@@ -80,7 +80,7 @@ def watch_circle(result: Result) -> Iterator[Verdict]:
     top = result.file.pieces[0]
     message = f"The watch circle has a radius of {say('offset', radius)}"
     if limit is None:
-        yield told(top, radius, f"{message}.")
+        yield reported(top, radius, f"{message}.")
         return
     message += f"; {say('offset', limit)} are allowed."
     yield at_most(top, radius, limit, message, "Shorten the line.")
@@ -93,4 +93,4 @@ def scope(result: Result) -> Iterator[Verdict]:
         return
     depth = result.mooring.water.depth
     ratio = float(result.components.cut_length.sum()) / depth
-    yield told(None, ratio, f"The line is {ratio:.3f} times as long as the water is deep.")
+    yield reported(None, ratio, f"The line is {ratio:.3f} times as long as the water is deep.")

@@ -124,7 +124,7 @@ def check(file: Path | None = None, /, *, json: bool = False) -> ExitCode:
     from calm.checks.catalogue import check_catalogue
     from calm.checks.missing import missing_figures
     from calm.files import Catalogue
-    from calm.report.missing import summarised, to_objects, told
+    from calm.report.missing import in_words, summarised, to_objects
 
     catalogue = Catalogue.load([file] if file else [])
     checked = Catalogue(catalogue.levels[:1]) if file else catalogue
@@ -135,7 +135,7 @@ def check(file: Path | None = None, /, *, json: bool = False) -> ExitCode:
         show(_json(to_objects(findings, missing)))
     else:
         show("".join(f"{finding.id}: {finding.message}\n" for finding in findings))
-        show("".join(f"{each.id}: {told(each)}\n" for each in missing))
+        show("".join(f"{each.id}: {in_words(each)}\n" for each in missing))
         narrate(f"components checked: {len(definitions)}; findings: {len(findings)}")
         if missing:
             narrate(summarised(missing))

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 import traceback
 import warnings
 from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 from cyclopts import App, CycloptsError, Parameter, UnusedCliTokensError
 
@@ -21,7 +23,6 @@ from calm.cli.diff import DIFF_EXAMPLES, diff
 from calm.cli.docs import DOCS_EXAMPLES, docs
 from calm.cli.exchange import EXPORT_EXAMPLES, IMPORT_EXAMPLES, export, import_
 from calm.cli.exit_codes import ExitCode
-from calm.cli.help_text import SetAnew
 from calm.cli.locate import LOCATE_EXAMPLES, locate
 from calm.cli.motion import MOTION_EXAMPLES, motion
 from calm.cli.run import RUN_EXAMPLES, run
@@ -33,6 +34,10 @@ from calm.cli.tow import TOW_EXAMPLES, tow
 from calm.cli.verify import VERIFY_EXAMPLES, verify
 from calm.errors import CalmError, InputError, NoEquilibrium
 
+if TYPE_CHECKING:
+    from cyclopts.help import HelpPanel
+    from rich.console import Console, ConsoleOptions
+
 _EPILOGUE = """Examples:
 
   calm new -o mooring.yaml
@@ -42,6 +47,31 @@ _EPILOGUE = """Examples:
 Exit codes: 0 done, 1 a check found something, 2 bad input or usage,
 3 no equilibrium, 70 internal error, 75 a batch incomplete that the same command
 finishes, 130 interrupted."""
+
+_SELDOM = 100_000
+"""New objects after which unused circles of them are looked for. Python's own 700 cost a command a
+tenth of its time: what it imports is all looked through again and again."""
+
+
+class SetAnew:
+    """Sets `--help` to the width of the terminal: texts of options lose their line breaks."""
+
+    def __call__(self, console: Console, options: ConsoleOptions, panel: HelpPanel) -> None:
+        """Print a panel."""
+        from cyclopts.help import DefaultFormatter
+        from rich.text import Text
+
+        for entry in panel.entries:
+            written = getattr(entry.description, "primary_renderable", None)
+            if isinstance(written, Text):
+                entry.description.primary_renderable = Text(" ".join(written.plain.split()))
+        DefaultFormatter()(console, options, panel)
+
+    def render_usage(self, console: Console, options: ConsoleOptions, usage: Any) -> None:
+        """Print the line of usage."""
+        from cyclopts.help import DefaultFormatter
+
+        DefaultFormatter().render_usage(console, options, usage)
 
 
 def _version() -> str:
@@ -104,8 +134,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         CALM_DEBUG is 1.
     """
     prepare()
-    if arguments is None and not sys.warnoptions:
-        warnings.simplefilter("ignore")  # what libraries say to programmers
+    if arguments is None:
+        gc.set_threshold(_SELDOM)
+        if not sys.warnoptions:
+            warnings.simplefilter("ignore")  # what libraries say to programmers
     words = sys.argv[1:] if arguments is None else list(arguments)
     try:
         code = app(words, exit_on_error=False, print_error=False)

@@ -115,7 +115,7 @@ def motion(
     from calm.motion.onto import read_instruments, write_onto
     from calm.motion.run import run_motion
     from calm.motion.series import series_of
-    from calm.motion.study import cross_validated, judged, prepare
+    from calm.motion.study import cross_validated, judged, prepare, several
     from calm.motion.task import MeasuredRecord
     from calm.report.folder import check_folder, write_report
     from calm.report.motion.brief import motion_part
@@ -155,6 +155,8 @@ def motion(
         narrate(note)
     teller = Teller()
     hidden = [] if hold_out is None else [label.strip() for label in hold_out.split(",")]
+    if cross_validate:
+        several(measured, hidden)
     with stopped_by_a_signal() as stop:
         compile_kernel(Batch(mooring), teller.note)
         task = prepare(mooring, measured, names, hidden)

@@ -67,6 +67,8 @@ def read_measured(
     declination: float | None,
 ) -> tuple[Measured, list[str], dict[str, str]]:
     """What was measured, on common times; what is said of it, and its source."""
+    import numpy as np
+
     from calm.files.explain import not_among
     from calm.motion.currents import read_currents
     from calm.motion.flags import parse_flags
@@ -80,8 +82,8 @@ def read_measured(
     )
     from calm.motion.sea_level import read_sea_level
     from calm.motion.sensors import read_sensors
-    from calm.motion.study import unusable
     from calm.motion.task import without
+    from calm.motion.usable import plausible, unusable
 
     if match not in _MATCHES:
         raise UsageError(not_among("--match", match, _MATCHES))
@@ -109,14 +111,20 @@ def read_measured(
         currents, seabed, place, declination, mooring.file.environment.maximum_speed
     )
     level = None if sea_level is None else read_sea_level(sea_level)
-    used = [sensors[i] for i in points]
-    measured = joined(read, used, list(points.values()), labels, still, gap, level)
-    notes += [f"{one.source}: {note}" for one in read for note in one.notes]
+    used = []
+    for i, at in points.items():
+        one, said = plausible(sensors[i], float(still[at]), seabed)
+        used.append(one)
+        notes += said
     notes += [
         f"{one.label}: {one.dropped} pressures left out for their flag"
         for one in used
         if one.dropped
     ]
+    if not any(np.isfinite(one.depth).any() for one in used):
+        raise UsageError("--pressures: no sensor has a good pressure: " + "; ".join(notes))
+    measured = joined(read, used, list(points.values()), labels, still, gap, level)
+    notes += [f"{one.source}: {note}" for one in read for note in one.notes]
     lost = unusable(measured, still)
     notes += [f"{label} {reason}" for label, reason in lost.items()]
     measured = without(measured, list(lost))

@@ -5,8 +5,9 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from calm.cli.exit_codes import ExitCode, gravest
 from calm.cli.outputs import Outcome, OutputPath, Outputs
@@ -156,11 +157,12 @@ def solve_and_show(
     draws : pair of int, optional
         Samples and seed by which to say how sure the figures are.
     """
+    drawn_often = None if draws is None else _to_draw_often(*draws)
     outcomes = [_solve(file, line) for file, line in zip(outputs.files, lines, strict=True)]
     if explain:
         outcomes = [_explained(outcome) for outcome in outcomes]
-    if draws is not None:
-        outcomes = [_drawn_often(outcome, *draws) for outcome in outcomes]
+    if drawn_often is not None:
+        outcomes = [drawn_often(outcome) for outcome in outcomes]
     if schematic:
         outcomes = [_drawn(*pair) for pair in zip(outcomes, lines, strict=True)]
 
@@ -201,19 +203,26 @@ def _explained(outcome: Outcome) -> Outcome:
     return replace(outcome, explanation=explain(outcome.result))
 
 
-def _drawn_often(outcome: Outcome, samples: int, seed: int) -> Outcome:
-    """The outcome with how sure its figures are, where there is a mooring that stands."""
+def _to_draw_often(samples: int, seed: int) -> Callable[[Outcome], Outcome]:
+    """What adds to an outcome how sure its figures are, where there is a mooring that stands.
+
+    The sequence is begun now: scipy takes as long to load as the compiled march.
+    """
     from calm.case import Result
+    from calm.case.draws import normals_of
     from calm.case.uncertain import uncertain
-    from calm.cli.workers import mapped
+    from calm.cli.workers import begun, mapped
 
-    if not isinstance(outcome.result, Result):
-        return outcome
+    normals = begun(normals_of, samples, seed)
+    solved = partial(mapped, workers=None, what="blocks of samples solved")
 
-    def solved(function: Callable[[Any], Any], blocks: Sequence[Any]) -> list[Any]:
-        return mapped(function, blocks, None, "blocks of samples solved")
+    def drawn_often(outcome: Outcome) -> Outcome:
+        if not isinstance(outcome.result, Result):
+            return outcome
+        found = uncertain(outcome.result, samples, seed, solved, normals)
+        return replace(outcome, uncertain=found)
 
-    return replace(outcome, uncertain=uncertain(outcome.result, samples, seed, solved))
+    return drawn_often
 
 
 def _drawn(outcome: Outcome, line: Mooring | Tow) -> Outcome:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import os
 import signal
 from collections.abc import Callable, Sequence
-from typing import TypeVar
+from functools import partial
+from typing import ParamSpec, TypeVar
 
 from calm.cli.streams import progress
 
 _Task = TypeVar("_Task")
 _Done = TypeVar("_Done")
+_Given = ParamSpec("_Given")
 
 FEW = 4
 """So many tasks are done before another process has started."""
@@ -42,6 +44,31 @@ def mapped(
             child.kill()
         raise
     pool.shutdown()
+    return done
+
+
+def begun(
+    function: Callable[_Given, _Done], *given: _Given.args, **named: _Given.kwargs
+) -> Callable[[], _Done]:
+    """Let another process make something while this one goes on; what is returned hands it over.
+
+    On a machine of one core it is made here when it is called for.
+
+    Parameters
+    ----------
+    function : of a module, so that another process finds it
+    """
+    if (os.cpu_count() or 1) < 2:
+        return partial(function, *given, **named)
+    from concurrent.futures import ProcessPoolExecutor
+
+    pool = ProcessPoolExecutor(1, initializer=_leave_interrupts_to_the_parent)
+    made = pool.submit(function, *given, **named)
+
+    def done() -> _Done:
+        with pool:
+            return made.result()
+
     return done
 
 

@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from calm.deck.hung import Hung
 
 LENGTH_ERROR = 0.005
-"""Share by which a length may be off: the tolerance, and the error whose effect is reported."""
+"""Error of a length, as a share of it: the tolerance, and the error whose effect is reported."""
 
 ORDINARY = 20
 """Pieces of a line whose solution takes as long as that of an ordinary one."""
 
 LEAST_TOLERANCE = 0.02
-"""Nobody measures a wire better than this on a deck [m]."""
+"""Least error with which a wire is measured on a deck [m]."""
 
 
 @dataclass(frozen=True)

@@ -69,7 +69,7 @@ class Hung:
 
 
 def hung_of(result: Result) -> tuple[Hung, ...]:
-    """Down the line to the anchor, the clamps of a piece behind it, down that piece."""
+    """Down the line to the anchor, the clamps of a piece after it, down that piece."""
     deployed = result.file.deployed
     items = {item.label: item for item in deployed.items} if deployed else {}
     bottom = result.mooring.water.depth

@@ -47,7 +47,7 @@ def posted(parts: Sequence[Hung], results: Sequence[tuple[str, Result]]) -> tupl
 
     Parameters
     ----------
-    results : of each environment by its name, the one of the sheets first
+    results : of each environment by its name, that of the sheets first
     """
     rows = [(name, _rows(result)) for name, result in results]
     found = []

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from calm.deck.order import Order
+from calm.files.components import FLEXIBLE_KINDS
 
 if TYPE_CHECKING:
     from calm.checks.inventory import Item
@@ -90,4 +91,4 @@ def _stages(pieces: Sequence[Item], weights: dict[int, float | None]) -> Iterato
 
 
 def _is_lifted(one: Item) -> bool:
-    return one.kind not in ("cable", "chain")
+    return one.kind not in FLEXIBLE_KINDS

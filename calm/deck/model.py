@@ -46,7 +46,7 @@ class Deck:
     rise : of the line without its anchor; None where it could not be solved
     cuts, hardware, freight, lifts, instruments : what the sheets of these names say
     plan : of the anchor drop, or why it could not be solved; None where the anchor goes first
-    notes : what could not be told, and why
+    notes : what is not known, and why
     """
 
     result: Result

@@ -40,7 +40,7 @@ class Surfacing:
 
 
 def over_the_side(parts: Sequence[Hung], order: Order) -> tuple[Hung, ...]:
-    """The pieces in the order in which they go over the side, each with its clamps behind it.
+    """The pieces in the order in which they go over the side, each with its clamps after it.
 
     Anchor first, a piece goes with its lower end ahead, and so its lowest clamp comes first.
     """
@@ -51,7 +51,7 @@ def over_the_side(parts: Sequence[Hung], order: Order) -> tuple[Hung, ...]:
 
 
 def surfacing(parts: Sequence[Hung], recovery: Recovery | None) -> tuple[Surfacing, ...]:
-    """What comes up, the first first; what hangs below, and what stays, is behind in its order.
+    """What comes up, the first first; what hangs below, and what stays, comes after it in order.
 
     Without a solved rise there are no times, and the order is that of the line.
     """
@@ -61,7 +61,7 @@ def surfacing(parts: Sequence[Hung], recovery: Recovery | None) -> tuple[Surfaci
         return tuple(Surfacing(one, None, None, False) for one in rising)
     found = [_surfacing(one, recovery) for one in rising]
     times = [inf if one.time is None else one.time for one in found]
-    # stable: what comes up with a piece stays behind it
+    # stable: what comes up with a piece stays after it
     return tuple(found[i] for i in sorted(range(len(found)), key=times.__getitem__))
 
 

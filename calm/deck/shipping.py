@@ -8,6 +8,7 @@ from math import pi
 from typing import TYPE_CHECKING
 
 from calm.files import Cable, Chain, Cylinder, Sphere
+from calm.files.components import FLEXIBLE_KINDS
 
 if TYPE_CHECKING:
     from calm.checks.inventory import Item
@@ -90,7 +91,7 @@ def _freight(
 ) -> Freight:
     volumes = [volume_of(components[one.index, one.label], one.cut_length) for one in group]
     masses = [one.dry_mass for one in group]
-    lengths = [one.cut_length for one in group if one.kind in ("cable", "chain")]
+    lengths = [one.cut_length for one in group if one.kind in FLEXIBLE_KINDS]
     return Freight(
         use=use,
         name=group[0].name or use,

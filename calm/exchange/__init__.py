@@ -1,1 +1,1 @@
-"""Designs of other programs, read into mooring files and written from them."""
+"""Designs of other programs, read into mooring files, and written from mooring files."""

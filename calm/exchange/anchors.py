@@ -1,4 +1,4 @@
-"""Anchors that other programs do not weigh: heavy enough to hold the line where it stands."""
+"""Anchors without a weight in the files of other programs: made heavy enough to hold the line."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ _LEAST = 100.0  # N of a guessed weight
 def hold(design: Design, environment: list[str] | None, output: Path) -> None:
     """Give the anchor a weight where the file gives none, or one that the line would lift.
 
-    No shape depends on it. The weight is that which `calm check` asks for in this current; where
-    the line has no equilibrium, that is for `calm run` to say.
+    The shape of the line does not depend on it. The weight is what `calm check` asks for in this
+    current. A line without an equilibrium is left to `calm run`, which says so.
     """
     anchor = design.items[-1].component if design.items and design.tow is None else None
     if anchor is None or anchor.kind != "anchor":
@@ -48,7 +48,7 @@ def hold(design: Design, environment: list[str] | None, output: Path) -> None:
 def _pull(
     design: Design, anchor: Component, environment: list[str] | None, output: Path
 ) -> tuple[float | None, float]:
-    """What the line pulls up with, and the weight that such a pull asks for [N]."""
+    """The upward pull of the line, and the weight that holds it [N]."""
     figures = dict(anchor.figures)
     anchor.figures.pop("mass", None)
     anchor.figures["weight"] = _HOLDS

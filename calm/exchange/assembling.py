@@ -1,4 +1,4 @@
-"""A mooring or a tow taken apart, for other programs."""
+"""A mooring or a tow as parts that other programs can take."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _DIGITS = 9  # of a speed in m/s
 
 
 def assembled(mooring: Mooring | Tow) -> Assembled:
-    """What there is to give away.
+    """The parts of a mooring or a tow.
 
     Raises
     ------
@@ -129,7 +129,7 @@ def _secants(mooring: Mooring | Tow) -> dict[int, float]:
 
 
 def _depths(line: Line, water: Water, towed: bool) -> list[float]:
-    """Of the middle of every piece, upright above the anchor or below the ship [m]."""
+    """Depths of the middle of every piece, upright above the anchor or below the ship [m]."""
     below = np.cumsum(line.length) - line.length / 2.0
     if not towed:
         below += float(water.depth) - line.anchor_height - float(line.length.sum())
@@ -150,7 +150,7 @@ def _levels(water: Water, deepest: float) -> tuple[tuple[float, float, float, fl
 
 
 def _unsaid(mooring: Mooring | Tow) -> tuple[str, ...]:
-    """What a mooring file says that only CALM works with."""
+    """What a mooring file says that other programs do not know."""
     file = mooring.file
     told = [
         "limits of the design check, strengths, ratings and tilts of components",

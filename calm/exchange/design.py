@@ -12,14 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 MOST_PIECES = 2_000
-"""Of a line, and levels of its water: more are no mooring that anyone has."""
+"""Most pieces of a line, and most levels of its water."""
 
 Figure = float | str
 """A number in SI, or a word of the mooring file such as ``insensitive``."""
 
 
 def one_line(text: str) -> str:
-    """A text without line breaks and without signs that no file and no terminal may get."""
+    """A text in one line, without control signs."""
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())
 
 
@@ -58,7 +58,7 @@ class Component:
     entry: str = ""
 
     def says(self) -> tuple[object, ...]:
-        """All it says: two that say the same are one definition."""
+        """All its figures: components with the same figures are one definition."""
         figures = tuple(sorted(self.figures.items(), key=lambda pair: pair[0]))
         return self.name, self.kind, figures, self.hull
 
@@ -101,7 +101,7 @@ class Record:
 
 @dataclass(eq=False)
 class Water:
-    """What the line stands in.
+    """The environment of the line.
 
     Attributes
     ----------
@@ -123,7 +123,7 @@ class Water:
 
 @dataclass(eq=False)
 class Tow:
-    """Speed [m/s], where to [degrees], height of the sheave above the water [m]."""
+    """Speed [m/s], course [degrees], height of the sheave above the water [m]."""
 
     speed: float
     toward: float
@@ -140,9 +140,9 @@ class Design:
     items : from the top down; of a tow, from the ship
     water : None where the file gives no environment
     solver : keys of `solver`, each with a comment
-    guessed : what was guessed beside the figures, which carry their guesses themselves
-    dropped : what the file says and CALM has no use for
-    notes : what the heading of the mooring file tells besides
+    guessed : guesses that belong to no figure; figures carry their own
+    dropped : what the file says and CALM cannot use
+    notes : what else the heading of the mooring file says
     in_kilograms : whether the file counts forces in kilograms-force
     """
 
@@ -160,7 +160,7 @@ class Design:
     in_kilograms: bool = False
 
     def components(self) -> Iterator[Component]:
-        """Every definition in use, those of clamps behind that of their piece; repeats included."""
+        """Every definition in use, those of clamps after that of their piece; repeats included."""
         for item in self.items:
             yield item.component
             for clamp in item.clamps:

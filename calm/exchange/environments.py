@@ -13,7 +13,7 @@ from calm.files.document import read_document
 
 
 def environment_lines(path: Path, output: Path) -> list[str]:
-    """The `environment` of a file, its paths counted from where the mooring file will stand.
+    """The `environment` of a file, its paths relative to the folder of the mooring file.
 
     Raises
     ------

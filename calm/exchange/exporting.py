@@ -26,7 +26,7 @@ WRITERS: dict[str, Writer] = {
 
 @dataclass(frozen=True)
 class Exported:
-    """The content of a file for another program, what is lost in it, and the files beside it."""
+    """The content of a file for another program, what it cannot hold, and the files beside it."""
 
     content: bytes
     lost: tuple[str, ...]
@@ -51,7 +51,8 @@ def export_file(
     Raises
     ------
     InputError, NoEquilibrium, UsageError
-        The file is wrong, a piece that is cut to fit does not, or `to` is no program.
+        The file has mistakes, no length of a piece that is cut to fit is right, or `to` is no
+        program.
     """
     if to not in WRITERS:
         raise UsageError(

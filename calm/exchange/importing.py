@@ -27,7 +27,7 @@ from calm.version import __version__
 
 @dataclass(frozen=True)
 class Options:
-    """What a command line says beside the file.
+    """The options of a command line.
 
     Attributes
     ----------
@@ -118,7 +118,7 @@ def import_file(
 
     Parameters
     ----------
-    output : where the mooring file will stand; nothing is written here
+    output : path of the mooring file to come; nothing is written here
     format : one of `FORMATS`; found from the content when not given
     environment : an environment file, in place of what the file has
     match_catalogue : use catalogue entries for what agrees with them
@@ -164,7 +164,7 @@ def format_of(path: Path, name: str | None, *, listed: bool = False) -> Format:
 
     Parameters
     ----------
-    listed : whether what is of no other format is a list, be it of a single column
+    listed : whether a file of no other format is read as a list, even with a single column
 
     Raises
     ------
@@ -192,7 +192,7 @@ def format_of(path: Path, name: str | None, *, listed: bool = False) -> Format:
 
 
 def _check(path: Path, output: Path, text: str) -> None:
-    """Read the mooring file as `calm run` will; what is wrong with it is wrong with its source."""
+    """Read the mooring file as `calm run` will; a mistake in it is one of its source."""
     try:
         read_mooring(output, text=text)
     except InputError as error:
@@ -202,7 +202,7 @@ def _check(path: Path, output: Path, text: str) -> None:
 
 
 def _blamed(problem: Problem, text: str) -> str:
-    """A mistake of the mooring file told with the line it stands in."""
+    """A mistake of the mooring file, with the line it is in."""
     lines: Sequence[str] = text.splitlines()
     if not 0 < problem.line <= len(lines):
         return problem.message

@@ -1,4 +1,4 @@
-"""Components of an imported design that the catalogue has."""
+"""Components of an imported design that the catalogue has too."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from pydantic import ValidationError
 from calm.assemble.line import drag_of
 from calm.exchange.design import Component, Design
 from calm.exchange.writing import figure_text
-from calm.files import Anchor, Assembly, Cable, Catalogue, Chain
-from calm.files.components import KINDS
+from calm.files import Anchor, Assembly, Catalogue, Rigid
+from calm.files.components import FLEXIBLE_KINDS, KINDS
 from calm.files.components import Component as Model
 
 TOLERANCE = 0.05
@@ -22,7 +22,7 @@ _COMMON_WORDS = 0.5  # share of the words of a name that an entry must have, two
 
 @dataclass(frozen=True)
 class Match:
-    """A component, by the name in the file, and the catalogue entry that stands in its place."""
+    """A component, by its name in the file, and the catalogue entry used in its place."""
 
     name: str
     entry: str
@@ -55,7 +55,7 @@ def match(design: Design) -> tuple[Match, ...]:
 
 
 def _model(component: Component) -> Model | None:
-    per_metre = component.kind in ("cable", "chain")
+    per_metre = component.kind in FLEXIBLE_KINDS
     fields = {
         key: figure_text(key, value, per_metre=per_metre, in_kilograms=False)
         for key, value in component.figures.items()
@@ -77,8 +77,8 @@ def _words(text: str) -> set[str]:
 
 
 def _weighs_alike(one: Model, other: Model) -> bool:
-    """Whether what has no size in the file weighs, or lifts, what an entry does."""
-    if isinstance(other, Anchor | Cable | Chain):
+    """Whether a component without a size in the file has the net force of an entry."""
+    if not isinstance(other, Rigid):
         return False
     a, b = one.net_buoyancy, other.net_buoyancy
     return abs(a - b) <= TOLERANCE * max(abs(a), abs(b))

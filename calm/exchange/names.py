@@ -1,4 +1,4 @@
-"""Ids for components that other programs call by free text."""
+"""Ids for components that have free names in other programs."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ def kebab(name: str) -> str:
 
 
 def ids_of(components: Iterable[Component], taken: Iterable[str] = ()) -> dict[int, str]:
-    """The id of every component, by its `id()`: those that say the same thing share one.
+    """The id of every component, by its `id()`; those with the same figures share one.
 
     Parameters
     ----------
-    taken : ids that stand for something else
+    taken : ids that are in use for something else
     """
     components = list(components)
     ids: dict[int, str] = {}

@@ -1,4 +1,4 @@
-"""A mooring or a tow as it is given to other programs: parts with what the water does to each."""
+"""A mooring or a tow for other programs: parts with their net force and drag."""
 
 from __future__ import annotations
 
@@ -80,8 +80,8 @@ class Assembled:
     afloat : whether the line reaches the surface, and whether its float has a draft there
     riding : share of its buoyancy that the float uses here, and of its drag that acts on it; 1, 1
         below the surface
-    windage : of the float, what of it is in the air here [m²], and its drag coefficient there
-    unsaid : what no other program can hold
+    windage : of the float: its area in the air here [m²], and its drag coefficient there
+    unsaid : what other programs cannot hold
     solve : finds the equilibrium
     """
 
@@ -141,8 +141,8 @@ def area(part: Part, density: float | None = None, *, along: bool = False) -> fl
 
     Parameters
     ----------
-    density : of a program that knows one alone [kg/m³]: what drags there as the part does where
-        it stands
+    density : of a program that has a single one [kg/m³]: the area that drags there as the part does
+    in its own water
     """
     own = (part.kt if along else part.kn) / (0.5 * REFERENCE_DENSITY)
     return own if density is None else own * part.density / density
@@ -151,8 +151,9 @@ def area(part: Part, density: float | None = None, *, along: bool = False) -> fl
 def as_point(design: Assembled, density: float) -> tuple[float, float]:
     """Net force [N] and drag area [m²] of a float below the surface as a point at the line's end.
 
-    For programs that have it so: its drag acts in the flow at the end, not at its middle, and
-    knows no axis. Both are such that it pulls as it does here; its own without an equilibrium.
+    For programs in which a float is a point: its drag is in the flow at the end, not at its middle,
+    and has no axis. Force and area are such that it pulls as it does here; without an equilibrium
+    they are its own.
 
     Parameters
     ----------
@@ -178,12 +179,12 @@ def as_point(design: Assembled, density: float) -> tuple[float, float]:
 
 
 def remarks(design: Assembled, more: Sequence[str]) -> tuple[str, ...]:
-    """What is lost, each once."""
+    """What other programs cannot hold, each remark once."""
     return tuple(dict.fromkeys((*more, *design.unsaid)))
 
 
 def mass_of(part: Part) -> float:
-    """In air [kg, kg/m]: as known, or of what weight and size say."""
+    """Mass in air [kg, kg/m]: as given, or from weight and size."""
     if part.mass is not None:
         return part.mass
     hull = getattr(part.component, "hull", None)

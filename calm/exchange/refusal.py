@@ -1,4 +1,4 @@
-"""How files of other programs are refused."""
+"""Refusals of files of other programs."""
 
 from __future__ import annotations
 

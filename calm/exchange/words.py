@@ -1,4 +1,4 @@
-"""What the names that people give to pieces say about them, in English and French."""
+"""What the names of pieces say about them, in English and French."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def is_line(name: str) -> bool:
 def role_of(name: str, buoyancy: float, *, fastener: bool = False) -> str:
     """The role of a rigid piece by its name and its net force in water [N, positive up].
 
-    A `fastener` is one to its own program, which may say so of instruments and floats, too.
+    A `fastener` is marked so by its own program, which may mark instruments and floats too.
     """
     if is_release(name):
         return "release"

@@ -1,4 +1,4 @@
-"""A design as a mooring file: commented, every guess at its line."""
+"""A design as a mooring file, with a comment for every guess in its line."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from textwrap import wrap
 from calm.exchange.design import Component, Design, Figure, Item, Remark, Water, one_line
 from calm.exchange.names import ids_of
 from calm.files import Catalogue
+from calm.files.components import FLEXIBLE_KINDS
 from calm.units import KILOGRAM_FORCE
 
 _WIDTH = 100
@@ -22,7 +23,6 @@ _UNITS = {
     "depth_rating": "m",
 }  # fmt: skip
 _FORCES = {"buoyancy", "weight"}
-_FLEXIBLE = {"cable", "chain"}
 
 
 @dataclass
@@ -35,7 +35,7 @@ class Written:
 
 @dataclass
 class _Page:
-    """Lines so far, and the guesses that stand behind them."""
+    """The lines so far, and the guesses in their comments."""
 
     lines: list[str] = field(default_factory=list)
     guessed: list[Remark] = field(default_factory=list)
@@ -61,7 +61,7 @@ def written(
     Parameters
     ----------
     source : name of the file it comes from
-    environment : the lines of the `environment` key, where not the design's own is wanted
+    environment : the lines of the `environment` key, in place of those of the design
     """
     page = _Page()
     by = f" by CALM {version}" if version else ""
@@ -213,7 +213,7 @@ def _write_component(page: _Page, component: Component, id_: str, in_kilograms: 
     name = one_line(component.name)
     if name and name != id_:
         page.add(f"    name: {quoted(name)}")
-    per_metre = component.kind in _FLEXIBLE
+    per_metre = component.kind in FLEXIBLE_KINDS
     for key, value in component.figures.items():
         text = figure_text(key, value, per_metre=per_metre, in_kilograms=in_kilograms)
         guess = component.guesses.get(key, "")

@@ -39,7 +39,7 @@ Day = Annotated[
     AfterValidator(_day),
     WithJsonSchema({"type": "string", "pattern": r"^\d{4}-\d{2}-\d{2}$"}),
 ]
-"""A day as 2027-06-30, which sorts as it is written."""
+"""A day such as 2027-06-30; such texts sort by date."""
 
 Reason = Annotated[Text, AfterValidator(_said)]
 
@@ -72,7 +72,7 @@ class Accept:
     labels : of the pieces and clamps that it stands for; None as above
     reason : why
     by, date : who accepted it, and when; None where it is not said
-    until : the last day on which it counts; None for good
+    until : the last day on which it counts; None where it does not end
     line : of the mooring file
     """
 
@@ -98,7 +98,7 @@ class Accept:
 def read_accepts(
     keys: Sequence[AcceptKeys], labels: Sequence[str] | None, top: Section, problems: list[Problem]
 ) -> tuple[Accept, ...]:
-    """What a mooring file accepts, the more particular first; mistakes are added to `problems`.
+    """What a mooring file accepts, the most specific first; mistakes are added to `problems`.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def matching(component: str, labels: Iterable[str]) -> list[str]:
     """The labels that a label or a pattern of labels stands for.
 
     A text that is a label is that label alone, whatever signs it has. Otherwise ``*`` stands for
-    any signs, ``?`` for one, ``[ab]`` for one of those; capitals count.
+    any signs, ``?`` for one, ``[ab]`` for a or b; capitals count.
     """
     labels = list(labels)
     if component in labels:

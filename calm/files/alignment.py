@@ -1,4 +1,4 @@
-"""Which part of one line is which of another: by label where it decides, else by content, order.
+"""Which part of one line is which of another: by label, else by content and order.
 
 A label decides where one part of each line has it. Those that `numbered` made are no labels: a
 shackle put in at the top renumbers all below it.
@@ -19,7 +19,7 @@ _NUMBERED = re.compile(r"(.+) ([1-9]\d*)")
 
 @dataclass(frozen=True)
 class Known:
-    """What a part is known by: its label, the number that was put to it taken off, and its content.
+    """What identifies a part: its label without a number that `numbered` added, and its content.
 
     `contents` are the ways in which parts are alike, the strictest first.
     """
@@ -86,7 +86,7 @@ def align(before: Sequence[Known], after: Sequence[Known]) -> Alignment:
 
 
 def _places(parts: Sequence[Known]) -> dict[str, int]:
-    """Where each label is that one part alone has."""
+    """The place of each label that only one part has."""
     places: dict[str, list[int]] = defaultdict(list)
     for place, part in enumerate(parts):
         places[part.label].append(place)

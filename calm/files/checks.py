@@ -15,7 +15,7 @@ from calm.files.fields import LENGTH, POSITIVE_LENGTH, Model, Quantity
 
 _FACTOR = Quantity("number", above=0)
 _SAFETY = Quantity("number", at_least=1)
-"""A factor below 1 would pass what breaks, or an anchor that is lifted."""
+"""At least 1: a smaller factor would pass what breaks, or an anchor that is lifted."""
 _SHARE = Quantity("number", at_least=0, at_most=1)
 _SPEED = Quantity("speed", at_least=0)
 _LEAST_TENSION = Quantity("force", at_least=0)

@@ -17,11 +17,13 @@ from calm.files.definition import (
     volume_from_weights,
 )
 from calm.files.fields import DRAG, LENGTH, Quantity, Role
-from calm.files.flexible import Cable, Chain
-from calm.files.rigid import Body, Cylinder, CylinderShape, Sphere, SphereShape
+from calm.files.flexible import Cable, Chain, Flexible
+from calm.files.rigid import Body, Cylinder, CylinderShape, Rigid, Sphere, SphereShape
 
 __all__ = [
+    "FLEXIBLE_KINDS",
     "KINDS",
+    "RIGID_KINDS",
     "Anchor",
     "Body",
     "Cable",
@@ -29,6 +31,8 @@ __all__ = [
     "Component",
     "Cylinder",
     "CylinderShape",
+    "FlexibleComponent",
+    "RigidComponent",
     "Sphere",
     "SphereShape",
 ]
@@ -40,7 +44,7 @@ ANCHOR_DENSITIES = {
     "iron": 7200.0,
     "concrete": 2400.0,
 }
-"""Densities of anchors that say what they are made of [kg/m³]."""
+"""Densities of anchors by their `material` [kg/m³]."""
 
 
 class Anchor(Definition):
@@ -66,7 +70,7 @@ class Anchor(Definition):
 
     @property
     def material_known(self) -> bool:
-        """Whether its weight in water is given, or follows from what it is known to be made of."""
+        """Whether its weight in water is given, or follows from a known material."""
         return self.weight is not None or self.material_density is not None
 
     @property
@@ -87,7 +91,9 @@ class Anchor(Definition):
         return self
 
 
-Component = Sphere | Cylinder | Body | Cable | Chain | Anchor
+RigidComponent = Sphere | Cylinder | Body
+FlexibleComponent = Cable | Chain
+Component = RigidComponent | FlexibleComponent | Anchor
 
 KINDS: dict[str, type[Component]] = {
     "sphere": Sphere,
@@ -97,3 +103,9 @@ KINDS: dict[str, type[Component]] = {
     "chain": Chain,
     "anchor": Anchor,
 }
+
+FLEXIBLE_KINDS = frozenset(kind for kind, model in KINDS.items() if issubclass(model, Flexible))
+"""Those whose figures are per metre, and that are cut to a length."""
+
+RIGID_KINDS = frozenset(kind for kind, model in KINDS.items() if issubclass(model, Rigid))
+"""Those of a fixed length, which may be clamped on a line too."""

@@ -1,6 +1,6 @@
 """A current from a CSV file: `depth[m],u[m/s],v[m/s]` or `depth[m],speed[m/s],toward[deg]`.
 
-A record has the column `time` first and a row for every time and depth. Of a record a level may
+A record has the column `time` first and a row for every time and depth. A level of a record may
 have no value, its cell blank or `nan`: it is left out.
 """
 
@@ -17,10 +17,10 @@ from calm.files.tables import CurrentTable, heading, read_current, turned_notice
 from calm.files.times import ZONES_OF_UTC, TimeChoiceError, choose_time, parse_time
 
 LARGEST_CSV = 50_000_000
-"""Bytes; a larger file is not read for a single profile."""
+"""Largest file that is read for a single profile [bytes]."""
 
 MOST_PROBLEMS = 20
-"""Mistakes shown of one file; a wrong separator makes thousands of the same."""
+"""Most mistakes shown of one file; a wrong separator makes thousands of the same."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class CsvRow:
 
 @dataclass(frozen=True)
 class CsvHeader:
-    """The first line: names and units of the columns behind the time, if there is one."""
+    """The first line: names and units of the columns after the time, if there is one."""
 
     path: Path
     row: CsvRow
@@ -116,7 +116,7 @@ def read_csv_header(path: Path, number: int, line: str) -> CsvHeader:
     Raises
     ------
     InputError
-        The line is none.
+        The line is no header.
     """
     cells = line.split(",")
     if len(cells) > 1 and not cells[-1].strip():

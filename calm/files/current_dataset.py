@@ -49,14 +49,14 @@ class CurrentArrays:
 
 @dataclass(frozen=True)
 class CurrentDataset:
-    """A dataset of which is known what its current, levels, times and place are.
+    """A dataset whose current, levels, times and place have been found.
 
     Attributes
     ----------
     times : (n,) in the order of the file; None for a profile without a time
     notices : what a person should know before trusting it
-    turned : by how much a current that counted from magnetic north was turned
-    rules : what was understood without a doubt, and how
+    turned : angle by which a current relative to magnetic north was turned
+    rules : what was understood beyond doubt, and how
     source : names of the variables, and the place
     """
 
@@ -92,7 +92,7 @@ class CurrentDataset:
         return 8 * levels * (len(self._parts) + self.moves)
 
     def read(self, index: slice | NDArray[np.intp]) -> CurrentArrays:
-        """The profiles of some times, by their index; all there are where there is no time."""
+        """The profiles of some times, by their index; all profiles where there is no time."""
         import numpy as np
 
         first, second, *up = (

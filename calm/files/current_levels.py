@@ -46,7 +46,7 @@ class Levels:
     factor : to metres, with the sign: negative where values grow upwards
     start : depth of their zero [m]
     instrument : depth of the instrument they are counted from, and its factor to metres
-    notes : what was taken for granted
+    notes : what was assumed
     """
 
     variable: xr.DataArray
@@ -89,7 +89,7 @@ def find_levels(
     Raises
     ------
     UnreadableError
-        There are none, or it does not say which way they grow.
+        There are none, or the file does not say which way they grow.
     """
     candidates = _candidates(dataset, level, time)
     if not candidates:

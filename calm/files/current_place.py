@@ -18,7 +18,7 @@ REACH = 8
 """Columns to each side of the nearest among which one with water is looked for."""
 
 FAR = 5.0
-"""Distance from which on a record of a single place says where it is [km]."""
+"""Distance beyond which the place of a record of a single place is reported [km]."""
 
 _EARTH = 6371.0
 _LATITUDES = ("lat", "latitude", "LATITUDE", "nav_lat", "Latitude", "LAT")

@@ -1,4 +1,4 @@
-"""What must be known besides a file to take a current from it."""
+"""What must be known besides a file to read a current from it."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ if TYPE_CHECKING:
     from calm.files.current_place import Place
 
 DEEPEST = 11_000.0
-"""No sea is deeper [m]."""
+"""Depth that no sea exceeds [m]."""
 
 IMPOSSIBLE = (
     "an infinite or negative speed, or a direction outside -360 to 360°: a fill value, or "
     "another unit?"
 )
-"""What a current is whose speed is infinite in `too_fast`."""
+"""What is said of a current whose speed is infinite in `too_fast`."""
 
 
 @dataclass(frozen=True)

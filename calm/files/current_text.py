@@ -12,7 +12,7 @@ _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(\s.*|[A-Za-z°%].*)
 
 @dataclass(frozen=True)
 class CopiedTable:
-    """The cells of a text, as they stand.
+    """The cells of a text, as written.
 
     Attributes
     ----------
@@ -25,7 +25,7 @@ class CopiedTable:
 
 
 class NoTableError(ValueError):
-    """A text is no table; says which line, and what is wrong with it."""
+    """A text is no table; the message says which line is wrong, and how."""
 
 
 def copied_table(text: str) -> CopiedTable:
@@ -66,7 +66,7 @@ def _is_number(cell: str) -> bool:
 
 
 def _alike(separator: re.Pattern[str], lines: Sequence[str]) -> int:
-    """How many lines a separator takes into as many cells as the last line, if into several."""
+    """How many lines a separator parts into as many cells as the last line, if into several."""
     counts = [len(_split(separator, line)) for line in lines]
     return counts.count(counts[-1]) if counts[-1] > 1 else 0
 

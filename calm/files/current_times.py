@@ -42,7 +42,7 @@ def read_times(dataset: xr.Dataset, name: str) -> NDArray[np.datetime64]:
     Raises
     ------
     UnreadableError
-        They are none, are missing, or follow a calendar that has other days than the real one.
+        They are no times, are missing, or follow a calendar that has other days than the real one.
     """
     import numpy as np
 

@@ -1,4 +1,4 @@
-"""The values of a variable: what its own limits say is none is a gap."""
+"""The values of a variable: what is outside its own limits is a gap."""
 
 from __future__ import annotations
 

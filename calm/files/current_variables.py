@@ -69,7 +69,7 @@ class Velocity:
     up : upward velocity, None where there is none
     turn : what is added to a direction to have it flow toward [degrees]; None for components
     magnetic : whether it is relative to magnetic north
-    notes : what had to be taken for granted
+    notes : what had to be assumed
     """
 
     names: tuple[str, str]

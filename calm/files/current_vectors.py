@@ -24,7 +24,7 @@ def with_components(dataset: xr.Dataset) -> xr.Dataset:
     Raises
     ------
     UnreadableError
-        Its directions are others: those of the beams or of the instrument.
+        Its directions are those of the beams or of the instrument.
     """
     name = next(
         (

@@ -1,4 +1,4 @@
-"""The density of the water: a constant, a table, or what temperature and salinity make of it."""
+"""The density of the water: a constant, a table, or from temperature and salinity."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ def _falls(table: DepthTable) -> list[str]:
 
 
 def check_density(section: Section, problems: list[Problem]) -> None:
-    """Tell the mistakes in the tables below `density:`, whatever else is wrong with it."""
+    """Report the mistakes in the tables below `density:`, whatever else is wrong with it."""
     given = section.data.get("density")
     density = _RANGES["air" if section.data.get("fluid") == "air" else "water"]
     table = table_of(given)

@@ -11,6 +11,7 @@ from pydantic import BaseModel
 
 from calm.files.alignment import Alignment, Known, align, own_labels
 from calm.files.fields import Quantity
+from calm.files.flexible import Flexible
 from calm.files.mooring import Clamp, MooringFile, Piece
 from calm.files.tables import CurrentTable, DepthTable
 from calm.quantities import bearing_of
@@ -40,7 +41,7 @@ def _text(text: str) -> Figure:
 
 @dataclass(frozen=True)
 class Change:
-    """What stands in another way: ``label.field`` or ``environment.depth``, before and after."""
+    """A value that differs: ``label.field`` or ``environment.depth``, before and after."""
 
     where: str
     before: Figure
@@ -54,7 +55,7 @@ class Differences:
     Attributes
     ----------
     changed : around the line, then down it
-    moved : parts that stand elsewhere in the line, and below what
+    moved : parts that are elsewhere in the line, and below which part
     removed, added : labels of pieces and clamps
     pairs : of the same pieces and of the same clamps, in the order of the first line
     """
@@ -173,7 +174,7 @@ def _part_figures(part: Piece | Clamp, name: str) -> dict[str, Figure]:
     found = {"use": _figure("use", part.use), "label": _figure("label", name)}
     if isinstance(part, Clamp):
         found["at"] = _figure("at", part.at)
-    elif part.component.kind in ("cable", "chain"):
+    elif isinstance(part.component, Flexible):
         fits = part.length is None
         found["length"] = _figure("length", "fit" if fits else part.length)
         for key in ("fit_top_depth", "fit_body_depth"):
@@ -255,7 +256,7 @@ def _of_current(table: CurrentTable) -> Figure:
 
 
 def _said(value: Any) -> str:
-    """A value that is neither a number nor nothing, in words."""
+    """A value that is neither a number nor None, in words."""
     if isinstance(value, BaseModel):
         given = {name: one for name, one in value if one is not None and one != ()}
         return ", ".join(f"{name}: {_said(one)}" for name, one in given.items())

@@ -16,7 +16,7 @@ from calm.files import composition
 from calm.files.nodes import Node
 
 LARGEST_FILE = 1_000_000
-"""Bytes; a file of text larger than this is not read."""
+"""Largest text file that is read [bytes]."""
 
 Place = tuple[int, int]
 Location = tuple[str | int, ...]

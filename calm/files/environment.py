@@ -1,4 +1,4 @@
-"""What a line stands in or is towed through: water or air, its depth, density, current and wind."""
+"""What a line is in, moored or towed: water or air, its depth, density, current and wind."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class Environment:
     fouling : Fouling or None
         What grows on the cables.
     maximum_speed : float
-        A faster current is taken for a mistake of its source [m/s]; inf in a tow and in air.
+        A faster current counts as a mistake of its source [m/s]; inf in a tow and in air.
     """
 
     name: str | None
@@ -196,7 +196,7 @@ def read_environment(
 
     A tow may be in air and need not give the water's depth. A current file is looked for beside
     the file that names it; `position` chooses a column of it. With `open_files` false it is not
-    read, and the environment returned is none.
+    read, and None is returned.
     """
     keys = validate(TowEnvironmentKeys if towed else EnvironmentKeys, section, problems)
     if keys is None:

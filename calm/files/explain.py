@@ -39,7 +39,7 @@ def validate(
 
 
 def unknown(what: str, text: str, known: Iterable[str]) -> str:
-    """`what` does not exist, and the nearest thing that does (or all, when they are few)."""
+    """Say that `what` does not exist, and what does: the nearest, or all when they are few."""
     names = list(known)
     near = nearest(text, names)
     if near:
@@ -50,7 +50,7 @@ def unknown(what: str, text: str, known: Iterable[str]) -> str:
 
 
 def not_among(name: str, text: str, allowed: Iterable[str], offer: str | None = None) -> str:
-    """A value is none of those allowed; `offer` is meant when no other is like it."""
+    """Say that a value is not allowed; offer what is like it, else `offer`."""
     choices = list(allowed)
     meant = nearest(text, choices) or offer
     message = f"`{name}: {text}` must be one of {', '.join(choices)}"

@@ -40,11 +40,11 @@ _LIMITS = {
     "depth_rating": "length",
     **dict.fromkeys(("max_tilt", "warn_tilt"), "angle"),
 }
-"""Fields by which a component is judged, the greater the more it may bear; their dimensions."""
+"""Limits by which a component is judged, each looser the greater it is; their dimensions."""
 
 
 class LineReader:
-    """Expands line items; mistakes are added to `problems`, things worth telling to `notices`.
+    """Expands line items; mistakes are added to `problems`, what is worth knowing to `notices`.
 
     `towed` and `in_air` show which keys and figures the line may have.
     """
@@ -69,7 +69,7 @@ class LineReader:
         self._open: list[str] = []
 
     def check(self, ids: Iterable[str]) -> None:
-        """Look at definitions whether the line uses them or not."""
+        """Check definitions, used in the line or not."""
         for id in ids:
             entry = self._catalogue.entry(id)
             if entry is not None:

@@ -93,7 +93,7 @@ class Deployed(Model):
 
 
 class Equipment(Model):
-    """What the file says of the very thing that hangs at a place of the line.
+    """What the file says of the individual thing at a place of the line.
 
     `serial` is a text, or as many as the `count` of the item; of an item, one of it is chosen for
     each piece.
@@ -127,7 +127,7 @@ NO_EQUIPMENT = Equipment()
 
 
 def read_equipment(item: Section, problems: list[Problem]) -> Equipment:
-    """What an item or a clamp says of the very thing; mistakes are added to `problems`."""
+    """What an item or a clamp says of the individual thing; mistakes are added to `problems`."""
     given = {key: item.data[key] for key in item.data.keys() & EQUIPMENT_KEYS}
     if not given:
         return NO_EQUIPMENT

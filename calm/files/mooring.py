@@ -97,7 +97,7 @@ class Clamp:
 
     @property
     def serial(self) -> str | None:
-        """Serial number of the very instrument, where the file gives it."""
+        """Serial number of this instrument, where the file gives it."""
         return _serial(self.equipment)
 
 
@@ -124,7 +124,7 @@ class Piece:
     fit_body_depth : float or None
         Depth wanted for the lower end of the piece at the tow's speed [m], where it is cut to fit.
     equipment : Equipment
-        What the file says of the very thing.
+        What the file says of this individual piece.
     measured_load : float
         Load under which its length is measured [N], `length` being without load all the same.
     """
@@ -145,7 +145,7 @@ class Piece:
 
     @property
     def serial(self) -> str | None:
-        """Serial number of the very thing, where the file gives it."""
+        """Serial number of this piece, where the file gives it."""
         return _serial(self.equipment)
 
 
@@ -159,10 +159,10 @@ class MooringFile:
     """A mooring file with everything in it resolved.
 
     `pieces` lead from the top of a mooring to its anchor; in a tow, where `tow` is not None, from
-    the ship to the towed body. `notices` tell what a person may want to know: a catalogue entry
+    the ship to the towed body. `notices` say what a person may want to know: a catalogue entry
     hidden by a nearer one, levels dropped from a measured current. `variants` are the environments
     it gives besides its own, by name, as they are written, `accepts` what it accepts of the design
-    check, `uncertainty` how sure what it stands on is, `looser` the limits of components that its
+    check, `uncertainty` how uncertain its inputs are, `looser` the limits of components that its
     line sets beyond those of their definitions. `document` is what its title block says, `releases`
     the codes of the releases, `deployed` what went over the side.
     """

@@ -14,7 +14,7 @@ class Node(NamedTuple):
     ----------
     kind : "mapping", "sequence" or "scalar"
     start, end : int
-        Its text is ``text[start:end]``; an empty value stands right behind its colon or dash.
+        Its text is ``text[start:end]``; an empty value is right after its colon or dash.
     line, column : int
         Of its start, counted from 1.
     style : str

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Set
 
+from calm.files.components import RIGID_KINDS
 from calm.files.rigid import DRAG_FORMS
 
 _DRAG_KEYS = frozenset(key for form in DRAG_FORMS for key in form) | {"kt"}
@@ -47,7 +48,7 @@ def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str
         for form in DRAG_FORMS:
             if override & set(form) and not base & set(form):
                 void = set(_DRAG_KEYS)
-    if kind in ("sphere", "cylinder", "body"):
+    if kind in RIGID_KINDS:
         if "buoyancy" in override:
             void.add("volume")
         elif known >= {"mass", "volume"} and override & {"mass", "volume"}:

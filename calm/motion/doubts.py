@@ -26,7 +26,9 @@ FALSE = 0.5
 CERTAIN, LIKELY = 0.95, 0.5
 """Probabilities that a sensor hangs elsewhere from which it is named alone, and named at all."""
 FAR_OFFSET = 2.5
-"""Offsets of a sensor that are named, in deviations of what is expected."""
+"""Offsets of a sensor, or of all alike, that are named, in deviations of what is expected."""
+AIR = 10.1
+"""What the weight of the air adds to depths by pressure [m]: 1013 hPa."""
 
 
 def doubts(
@@ -153,3 +155,21 @@ def said_of_currents(false: Mapping[str, Times], count: int) -> list[str]:
         f"first at {np.datetime_as_string(when[0], 'm')}"
         for name, when in false.items()
     ]
+
+
+def said_of_datum(common: Common, seabed: float) -> list[str]:
+    """A sentence where all sensors are off alike: by the weight of the air, or by much.
+
+    Parameters
+    ----------
+    seabed : depth of the water [m]
+    """
+    at = len(common.factors)
+    spread = float(np.sqrt(common.covariance[at, at]))
+    alike = common.datum + float(common.offset.mean())
+    said = f"all sensors: {common.datum:+.1f} m off alike"
+    if common.datum > 2.0 * spread and abs(alike - AIR) < 2.0 * max(spread, prior.NOISE):
+        return [f"{said}: as if the pressures included that of the air, 10.13 dbar; take it off"]
+    if abs(common.datum) > FAR_OFFSET * prior.DATUM * seabed:
+        return [f"{said}: the depth of the water, a length, or the zero of the pressures is wrong"]
+    return []

@@ -57,13 +57,24 @@ def read_instruments(path: Path, labels: Sequence[str], *, replace: bool) -> Ins
     Raises
     ------
     InputError
-        It is not a NetCDF file, or has no times or no labels of instruments.
+        It is not a NetCDF file, or has no times or no labels of instruments, or groups.
     UsageError
-        It has depths already; none of its instruments is a part of the line.
+        It has depths already, or a dimension called so; none of its instruments is a part of the
+        line.
     """
-    if not path.is_file() or not is_netcdf(path):
+    if not path.is_file():
+        raise InputError([Problem(str(path), 0, 0, "no such file")])
+    if not is_netcdf(path):
         raise InputError([Problem(str(path), 0, 0, "is not a NetCDF file")])
     with reading(path), open_current(path) as dataset:
+        if _engine(path) == "h5netcdf":
+            _refuse_groups(path)
+        counted = [name for name in ADDED if name in dataset.sizes]
+        if counted:
+            raise UsageError(
+                f"--onto: `{counted[0]}` is a dimension of {path}; rename it: a variable of two "
+                "dimensions cannot have the name of one"
+            )
         there = [name for name in ADDED if name in dataset.variables]
         if there and not replace:
             raise UsageError(
@@ -117,9 +128,14 @@ def write_onto(
             array[:, j] = interpolated(time, values, instruments.time, gap)
     dims = (instruments.dimension, instruments.along)
     told = {"units": "m", "positive": "down", "standard_name": "depth"}
-    with instruments.path.open("rb") as file:
-        engine = "scipy" if file.read(3) == b"CDF" else "h5netcdf"
-    with xr.open_dataset(instruments.path, engine=engine, decode_cf=False) as own:
+    # values as they stand, but for texts: kept as characters they would be split once more
+    with xr.open_dataset(
+        instruments.path,
+        engine=_engine(instruments.path),
+        mask_and_scale=False,
+        decode_times=False,
+        decode_coords=False,
+    ) as own:
         copy = own.load().drop_vars([name for name in ADDED if name in own.variables])
     told["long_name"], told["ancillary_variables"] = "depth estimated by CALM", "depth_sd"
     copy["depth"] = xr.Variable(dims, depth, told)
@@ -129,3 +145,20 @@ def write_onto(
     with beside(output) as part:
         copy.to_netcdf(part, engine="h5netcdf")
     return lost
+
+
+def _engine(path: Path) -> str:
+    with path.open("rb") as file:
+        return "scipy" if file.read(3) == b"CDF" else "h5netcdf"
+
+
+def _refuse_groups(path: Path) -> None:
+    import h5netcdf
+
+    with h5netcdf.File(path, "r") as file:
+        groups = list(file.groups)
+    if groups:
+        raise UnreadableError(
+            f"has groups, which a copy would lack: {', '.join(groups)}; give the variables of its "
+            "instruments as a file of their own"
+        )

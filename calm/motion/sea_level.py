@@ -16,6 +16,9 @@ from calm.files.current_variables import UnreadableError, factor_of, holdings
 from calm.motion.tables import read_table
 from calm.physics.line import Floats
 
+FURTHEST = 20.0
+"""A height of the sea surface is this far from the others at most [m]: no tide has half of it."""
+
 _STANDARD = (
     "sea_surface_height_above_mean_sea_level",
     "sea_surface_height_above_geoid",
@@ -31,7 +34,7 @@ def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
     Raises
     ------
     InputError
-        The file cannot be read, or holds no height with its unit.
+        The file cannot be read, or holds no height with its unit, or one that cannot be.
     """
     if not path.exists():
         raise InputError([Problem(str(path), 0, 0, "no such file")])
@@ -40,6 +43,7 @@ def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
         if len(columns) != 1:
             message = "has several columns; the sea level is one: `time,level[m]`"
             raise InputError([Problem(str(path), 1, 1, message)])
+        _refuse_far(path, time, values[:, 0])
         return time, values[:, 0]
     with reading(path), open_current(path) as dataset:
         for standard in _STANDARD:
@@ -51,5 +55,19 @@ def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
                 times = read_times(dataset, clock)
                 order = np.argsort(times, kind="stable")
                 level = known_values(variable) * factor_of(variable, "length")
+                _refuse_far(path, times, level)
                 return times[order], level[order]
         raise UnreadableError(f"holds no height of the sea surface; it holds {holdings(dataset)}")
+
+
+def _refuse_far(path: Path, time: NDArray[np.datetime64], level: Floats) -> None:
+    known = level[np.isfinite(level)]
+    far = np.abs(level - (np.median(known) if known.size else 0.0)) > FURTHEST
+    if far.any():
+        at = int(far.argmax())
+        message = (
+            f"is {level[at]:g} m at {np.datetime_as_string(time[at], 's')}: no height of the sea "
+            f"surface is more than {FURTHEST:g} m from the others; leave empty what was not "
+            "measured"
+        )
+        raise InputError([Problem(str(path), 0, 0, message)])

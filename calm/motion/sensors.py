@@ -108,10 +108,11 @@ def _split(text: str) -> tuple[str, Path]:
 
 
 def depth_of(dbar: Floats, latitude: float) -> Floats:
-    """Depths [m] of pressures above that of the air [dbar], by TEOS-10."""
+    """Depths [m] of pressures above that of the air [dbar], by TEOS-10; NaN of infinite ones."""
     import gsw
 
-    depths: Floats = -np.asarray(gsw.z_from_p(dbar, latitude), np.float64)
+    known = np.where(np.isfinite(dbar), dbar, np.nan)
+    depths: Floats = -np.asarray(gsw.z_from_p(known, latitude), np.float64)
     return depths
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from calm.case import Mooring
 from calm.errors import UsageError
 from calm.files.explain import unknown
-from calm.motion.doubts import doubts, false_currents, said_of_currents
+from calm.motion.doubts import doubts, false_currents, said_of_currents, said_of_datum
 from calm.motion.forward import Forward
 from calm.motion.judge import (
     BAND,
@@ -34,12 +34,6 @@ from calm.physics.line import Floats
 
 if TYPE_CHECKING:
     from xarray import Dataset
-
-CONSTANT = 1e-6
-"""A sensor whose depths span no more than this measures nothing [m]."""
-MISPLACED = 20.0
-"""How far from its place in still water a sensor may be at its least depth [m], where that is
-not within a factor of two either."""
 
 
 @dataclass(frozen=True)
@@ -115,34 +109,6 @@ def intervals(task: Task) -> dict[str, tuple[float, float, float]]:
     }
 
 
-def unusable(measured: Measured, still: Floats) -> dict[str, str]:
-    """Sensors that cannot be used, each with the reason; what cannot be right is refused.
-
-    Raises
-    ------
-    UsageError
-        A sensor is nowhere near its place on the line, so that its unit or its label is wrong.
-    """
-    reasons, complaints = {}, []
-    for j, label in enumerate(measured.label):
-        depth = measured.depth[:, j][np.isfinite(measured.depth[:, j])]
-        if not depth.size:
-            reasons[label] = "has no good pressure at any time of the currents"
-            continue
-        if depth.size > 2 and np.ptp(depth) <= CONSTANT:
-            reasons[label] = f"is constant at {depth[0]:.1f} m: it is left out"
-            continue
-        least, place = float(np.percentile(depth, 5.0)), float(still[measured.point[j]])
-        if abs(least - place) > MISPLACED and not 0.5 < least / place < 2.0:
-            complaints.append(
-                f"`{label}` is at {least:.1f} m at its least, where the line has it at "
-                f"{place:.1f} m: its unit (bar, kPa?) or its label is wrong"
-            )
-    if complaints:
-        raise UsageError("--pressures: " + "; ".join(complaints))
-    return reasons
-
-
 def judged(task: Task, measured: Measured, result: Dataset) -> Study:
     """How a finished result agrees with all that was measured.
 
@@ -173,6 +139,7 @@ def judged(task: Task, measured: Measured, result: Dataset) -> Study:
     names = level_names(used, labels_of(task.mooring))
     false = false_currents(names, used.time, np.asarray(result["current_doubt"].values))
     said += said_of_currents(false, len(used.time))
+    said += said_of_datum(task.common, float(task.mooring.water.depth))
     return Study(task, intervals(task), fit_of, plain_of, tuple(held), tuple(said), false)
 
 
@@ -201,6 +168,20 @@ def judge_hidden(
     return HeldOut(label, int(among.sum()), bias, rms(off), rms(other), coverage(off, spread))
 
 
+def several(measured: Measured, hidden: Sequence[str]) -> list[str]:
+    """The sensors that can be hidden in turn.
+
+    Raises
+    ------
+    UsageError
+        There is only one.
+    """
+    rest = [label for label in measured.label if label not in hidden]
+    if len(rest) < 2:
+        raise UsageError("--cross-validate: at least two sensors are needed")
+    return rest
+
+
 def cross_validated(
     mooring: Mooring,
     measured: Measured,
@@ -216,12 +197,9 @@ def cross_validated(
     UsageError
         There is only one.
     """
-    rest = [label for label in measured.label if label not in hidden]
-    if len(rest) < 2:
-        raise UsageError("--cross-validate: at least two sensors are needed")
     still = Forward(mooring, {}).still
     held = []
-    for label in rest:
+    for label in several(measured, hidden):
         tell(f"estimating without {label}")
         task = prepare(mooring, measured, names, [*hidden, label])
         point = int(measured.point[measured.label.index(label)])

@@ -1,4 +1,4 @@
-"""What CALM says, whatever it is said on: a terminal, a page, a PDF and a notebook print the same.
+"""What CALM says, for every medium: a terminal, a page, a PDF and a notebook print the same.
 
 Every text is plain: a printer escapes it in its own way, and nothing in a text is markup.
 """
@@ -40,7 +40,7 @@ class Column:
 class Cell:
     """A cell: its text, a smaller line below it, and the state it shows in colour and word.
 
-    `mark` is the sign behind a figure that is near a limit or beyond it. A cell may be indented
+    `mark` is the sign after a figure that is near a limit or beyond it. A cell may be indented
     below the row above it, and `strong` where the reader looks for it.
     """
 

@@ -7,7 +7,7 @@ import io
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from calm.case.columns import rows_down
+from calm.case.columns import Components, rows_down
 from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:
@@ -15,21 +15,11 @@ if TYPE_CHECKING:
     from calm.case.columns import ClampRow, ComponentRow
 
 _WORDS = ("mooring", "part", "index", "use", "label")
-_NUMBERS = (
-    "length",
-    "cut_length",
-    "depth_top",
-    "depth_bottom",
-    "x_top",
-    "y_top",
-    "x_bottom",
-    "y_bottom",
-    "tension_top",
-    "tension_bottom",
-    "tilt",
-    "knockdown",
-    "safety_factor",
-    "utilisation",
+_WITHIN = {"tension", "least_tension", "reynolds"}
+"""What is greatest or least within a piece: a row has the figures of its ends."""
+
+_NUMBERS = tuple(
+    name for name in Components.__annotations__ if name in QUANTITIES and name not in _WITHIN
 )
 HEADER = (*_WORDS, *(QUANTITIES[name].header for name in _NUMBERS))
 """The first row: names, with the unit in brackets where there is one."""

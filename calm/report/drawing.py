@@ -38,7 +38,7 @@ _LEAST_HEIGHT, _GREATEST_HEIGHT = 6.5, 20.0  # inches
 _FRAME = 1.5  # inches above and below the axes, for titles and ticks
 # The drawn line keeps to this share of the width of the elevation; the names stand beyond it.
 _SHARE_OF_LINE = 0.55
-# Distances are drawn to at least this share of the height, lest a still line look tortured.
+# Distances are drawn to at least this share of the height: a still line must not look bent.
 _LEAST_SPAN = 0.1
 # Speeds that differ by less, as a share of the greatest, are drawn as one line: they would cover
 # each other.

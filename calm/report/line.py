@@ -30,7 +30,7 @@ _MARKED = ("tilt", "safety_factor")
 
 
 class Mark(StrEnum):
-    """The sign behind a figure: legible without colour."""
+    """The sign after a figure: legible without colour."""
 
     NONE = ""
     NEAR = "~"
@@ -107,21 +107,20 @@ def _rows(
     result: Result | TowResult, names: tuple[str, ...], places: bool
 ) -> Iterator[tuple[Cell, ...]]:
     for number, (piece, clamps) in enumerate(rows_down(result)):
-        figures = _figures(result, piece, piece.depth_top, piece.x_top, piece.y_top)
-        figures |= {"length": piece.length, "safety_factor": piece.safety_factor}
+        where = _where(result, piece.depth_top, piece.x_top, piece.y_top)
         marks = {
             "tilt": tilt_mark(piece.part.component, piece.tilt),
             "safety_factor": safety_mark(result, piece),
         }
         label = Cell(piece.label, strong=piece.role == "instrument")
-        yield Cell(str(number)), label, *_cells(names, figures, marks)
+        yield Cell(str(number)), label, *_cells(names, piece, where, marks)
         for clamp in clamps:
             component = clamp.part.component
-            figures = _figures(result, clamp, clamp.depth, clamp.x, clamp.y)
+            where = _where(result, clamp.depth, clamp.x, clamp.y)
             marks = {"tilt": tilt_mark(component, clamp.tilt)}
             strong = component.role == "instrument"
             label = Cell(clamp.label, indented=True, strong=strong)
-            cells = [*_cells(names, figures, marks)]
+            cells = [*_cells(names, clamp, where, marks)]
             if places:
                 cells[names.index("length")] = Cell(place_text(clamp.part.at))
             yield Cell(), label, *cells
@@ -132,23 +131,23 @@ def place_text(at: float) -> str:
     return f"at {QUANTITIES['at'].format(at)}"
 
 
-def _figures(
-    result: Result | TowResult, row: ComponentRow | ClampRow, depth: float, x: float, y: float
-) -> dict[str, float]:
-    """What a component and a clamped instrument both have, at their (upper) point."""
+def _where(result: Result | TowResult, depth: float, x: float, y: float) -> dict[str, float]:
+    """Where a clamped instrument is, or the upper end of a piece."""
     bottom = result.file.environment.depth
     return {
         "depth": depth,
         "height": math.nan if bottom is None else bottom - depth,
-        "knockdown": row.knockdown,
         "offset": math.hypot(x, y),
         "layback": math.hypot(x, y),
-        "tilt": row.tilt,
-        "tension": row.tension,
     }
 
 
 def _cells(
-    names: tuple[str, ...], figures: dict[str, float], marks: dict[str, Mark]
+    names: tuple[str, ...],
+    row: ComponentRow | ClampRow,
+    where: dict[str, float],
+    marks: dict[str, Mark],
 ) -> Iterator[Cell]:
-    return (figure_cell(name, figures.get(name), marks.get(name, Mark.NONE)) for name in names)
+    for name in names:
+        value = where[name] if name in where else getattr(row, name, None)
+        yield figure_cell(name, value, marks.get(name, Mark.NONE))

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from calm.checks.missing import Missing
 
 
-def told(missing: Missing) -> str:
+def in_words(missing: Missing) -> str:
     """What a component lacks, what was searched for in vain last."""
     sought = [_heading(name) for name in missing.figures if name in missing.searched]
     open_yet = [_heading(name) for name in missing.figures if name not in missing.searched]
@@ -39,7 +39,7 @@ def to_objects(findings: Sequence[Finding], missing: Sequence[Missing]) -> list[
         {
             "id": each.id,
             "finding": False,
-            "message": told(each),
+            "message": in_words(each),
             "missing": list(each.figures),
             "searched": list(each.searched),
         }

@@ -110,7 +110,7 @@ class _Printer:
     def _add_column(self, rows: table.Table, column: Column) -> None:
         lines = [column.heading if column.short is None else column.short]
         lines += [column.unit] * bool(column.unit)
-        # room behind the digits of a column that may carry marks, so that digits stay aligned
+        # room after the digits of a column that may carry marks, so that digits stay aligned
         heading = "\n".join(f"{line} " for line in "\n".join(lines).split("\n"))
         heading = heading if column.marked else "\n".join(lines)
         rows.add_column(

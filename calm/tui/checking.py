@@ -21,20 +21,20 @@ _UNIT = re.compile(r"[\d.]\s*([^\d.\s].*)$")
 
 @dataclass(frozen=True)
 class Reading:
-    """What became of a text.
+    """A text as it was understood.
 
     Attributes
     ----------
     text : as it is to be written; with the unit that was left out
     complaint : why it cannot be used; empty where it can
     offer : the text corrected, where that is known
-    told : what a good text comes to, where more is to be said than the text itself
+    comes_to : what a good text comes to, where more is to be said than the text itself
     """
 
     text: str
     complaint: str = ""
     offer: str | None = None
-    told: str = ""
+    comes_to: str = ""
 
     @property
     def is_good(self) -> bool:
@@ -59,7 +59,7 @@ def anything(text: str) -> Reading:
 
 
 def day(text: str) -> Reading:
-    """A day of the calendar, or nothing."""
+    """Check a day of the calendar, which may be left out."""
     tidy = text.strip()
     try:
         return Reading(tidy and date.fromisoformat(tidy).isoformat())

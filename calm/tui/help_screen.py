@@ -28,7 +28,7 @@ _OF_TEXTUAL: dict[str, Iterable[BindingType]] = {
     "While the text is typed, as well": TextArea.BINDINGS,
     "Pictures, verdict and whatever is longer than the screen": ScrollableContainer.BINDINGS,
 }
-"""Keys that CALM leaves to the widgets it is made of; their meanings are told by them."""
+"""Keys that CALM leaves to the widgets it is made of; their meanings come from them."""
 
 
 def all_keys() -> RenderableType:

@@ -19,7 +19,6 @@ from calm.checks.assess import assessment_of, findings_of, stand_of
 from calm.checks.assessment import Situation, Stand
 from calm.checks.deployed import cut_like
 from calm.checks.finding import AS_GIVEN, OWN, Finding
-from calm.checks.lacking import lacking
 from calm.errors import InputError, NoEquilibrium, Problem, internal_failure
 from calm.files import MooringFile, read_mooring
 from calm.files.document import Document, compose
@@ -189,10 +188,22 @@ def _judged(view: View, catalogs: Sequence[str | Path]) -> View:
         )  # fmt: skip
     except InputError as error:
         return _wrong(view, error.problems)
-    view = replace(view, file=file, missing=tuple(lacking(file)))
+    view = replace(view, file=file, missing=tuple(_lacking(file)))
     if "no float" in view.missing:
         return replace(view, rows=tuple(rows_of(file, None)))
     return _solved(view, file)
+
+
+def _lacking(file: MooringFile) -> Iterator[str]:
+    """What no mooring stands without and this line has not; nothing of a tow."""
+    if file.tow is not None:
+        return
+    clamps = [clamp.component for piece in file.pieces for clamp in piece.clamps]
+    parts = [*(piece.component for piece in file.pieces), *clamps]
+    if not any(part.net_buoyancy > 0.0 for part in parts):
+        yield "no float"
+    if file.pieces[-1].use == STAND_IN:
+        yield "no anchor"
 
 
 def _solved(view: View, file: MooringFile) -> View:

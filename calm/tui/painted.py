@@ -145,7 +145,7 @@ def _around(begin: int, end: int, shown: list[Cell], wanted: list[Cell]) -> tupl
 
 
 class _Pen:
-    """Writes signs; a style is told to the terminal once, where it changes to the eye."""
+    """Writes signs; a style is sent to the terminal once, where it changes to the eye."""
 
     def __init__(self, console: Console) -> None:
         self._system = console._color_system

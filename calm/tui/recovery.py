@@ -1,4 +1,4 @@
-"""What is asked about work that an earlier session has left behind."""
+"""What is asked about unsaved work of an earlier session."""
 
 from __future__ import annotations
 

@@ -63,7 +63,7 @@ class Saving:
         try:
             lost = write()
         except (CalmError, OSError) as error:
-            # the folder is known, and the reason must not be cut off behind it
+            # the folder is known, and the reason must not be cut off after it
             folder = "" if self._session.file.path is None else f"{self._session.file.path.parent}/"
             self._workspace.tell(f"Not saved: {str(error).replace(folder, '')}", wrong=True)
             return
@@ -205,7 +205,7 @@ def chosen_path(text: str) -> Path:
 
 
 def _free_name(path: Path) -> Path:
-    """A name like that of a file which is free."""
+    """A free name like that of a file."""
     number = 2
     while (free := path.with_name(f"{path.stem}-{number}{path.suffix}")).exists():
         number += 1

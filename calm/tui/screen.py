@@ -27,7 +27,7 @@ class Part(Protocol):
     def settle(self) -> bool:
         """Take over what is being typed: the draft holds it when this returns True.
 
-        False where the value is bad: it stays to be corrected, and the reason was told.
+        False where the value is bad: it stays to be corrected, and the reason is shown.
         """
 
     def show_draft(self) -> None:

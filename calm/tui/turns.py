@@ -4,7 +4,7 @@ Keys that are typed ahead, or come in one parcel over a slow line, would otherwi
 the focus when they arrive: to the line instead of the field that the first of them opens.
 
 A key is done when everything that it may have set going has come to rest. Each part of the screen
-handles what it is sent in the order of its queue: a call that is sent behind the key comes back
+handles what it is sent in the order of its queue: a call that is sent after the key comes back
 when the key is handled, and a second round finds what the key made the parts send each other.
 Rounds are made until one of them finds no queue with anything left in it.
 """

@@ -1,6 +1,10 @@
 import json
+from typing import get_args
 
 import pytest
+
+from calm.cli.catalog import Kind
+from calm.files.components import KINDS
 
 MINE = """\
 good: {{kind: sphere, diameter: 1 m, buoyancy: 2000 N, source: me}}
@@ -30,6 +34,10 @@ def test_list_of_one_kind(calm):
     components = json.loads(calm("catalog", "list", "--kind", "chain", "--json").out)
     assert {component["kind"] for component in components} == {"chain"}
     assert "chain-buoy-13" in {component["id"] for component in components}
+
+
+def test_every_kind_can_be_listed():
+    assert get_args(Kind) == (*KINDS, "assembly")
 
 
 def test_json_has_every_field_in_si(calm):

@@ -181,9 +181,39 @@ def test_what_cannot_be_used_is_refused_and_nothing_is_written(calm, given, trut
     assert not list(folder.glob("d.nc*"))
 
 
+def test_readings_that_cannot_be_and_pressures_of_the_air_are_named(calm, given, truth, folder):
+    values = dbar(truth[1]) + 10.1325
+    values[:5], values[9, 1] = 0.3, 99999.0  # on deck; a fill value that its file does not declare
+    values[11, 1] = np.inf
+    given("air.csv", values=values)
+    done = calm(*COMMAND, "--pressures", "air.csv", "-o", "d.nc", "--json", "-")
+    assert done.code == 0, done.err
+    said = [line.partition(" of its readings")[0] for line in done.err.splitlines()]
+    assert said == ["upper: 5", "middle: 6", "lower: 5"]
+    (doubt,) = json.loads(done.out)["doubts"]
+    assert "off alike: as if the pressures included that of the air" in doubt
+    with xarray.open_dataset(folder / "d.nc", engine="h5netcdf") as result:
+        off = result["clamp_depth"].values - truth[1]
+        assert off.mean() == pytest.approx(9.7, abs=0.3) and off.std() < 0.3
+
+
+def test_flags_that_leave_no_pressure_are_named(calm, given, truth, folder):
+    attributes = {"standard_name": "sea_water_pressure", "units": "dbar"}
+    bad = np.full(truth[1].shape, 4, np.int8)
+    dims = ("time", "instrument")
+    variables = {"p": (dims, dbar(truth[1]), attributes), "p_qc": (dims, bad)}
+    coordinates = {"time": np.array(stamps(), "M8[ns]"), "instrument": list(NAMES)}
+    xarray.Dataset(variables, coordinates).to_netcdf(folder / "p.nc", engine="h5netcdf")
+    done = calm(*COMMAND, "--pressures", "p.nc", "-o", "d.nc")
+    assert done.code == 2 and "no sensor has a good pressure" in done.err
+    assert "middle: 48 pressures left out for their flag" in done.err
+    assert not list(folder.glob("d.nc*"))
+
+
 @pytest.mark.parametrize(
     ("words", "reason"),
     [
+        (("--hold-out", "upper,middle", "--cross-validate"), "at least two sensors are needed"),
         (("--hold-out", "uper"), "did you mean `upper`"),
         (("--hold-out", "upper,middle,lower"), "no sensor is left"),
         (("--flags", "1,8"), "never a measurement"),

@@ -26,7 +26,7 @@ _YIELDS = ("swl", "yield")
 
 @dataclass
 class Makers:
-    """Makes components in the water of the problem; what they have no use for goes to `dropped`."""
+    """Makes components in the water of the problem; keys without a counterpart go to `dropped`."""
 
     density: float
     gravity: float
@@ -35,7 +35,7 @@ class Makers:
     def material(
         self, definition: Definition, length: float, depth: float, speed: float
     ) -> Component:
-        """Of a cable of a length [m]: its drag at a depth [m] and a speed [m/s]."""
+        """A cable of a length [m], with its drag at a depth [m] and a speed [m/s]."""
         values, name = definition.values, definition.name
         across, inside = number(values, "d") or number(values, "diam"), number(values, "id")
         if across <= 0.0:
@@ -88,7 +88,7 @@ class Makers:
             component.figures["working_load"] = limit["swl"]
 
     def connector(self, definition: Definition) -> Component:
-        """Of a point in the line: a sphere for its drag, as long as the file says."""
+        """A point in the line: a sphere of its drag, of the length that the file gives."""
         values, name = definition.values, definition.name
         wet, mass = self._at_reference(
             number(values, "wet"), number(values, "m") or number(values, "mass")
@@ -108,7 +108,7 @@ class Makers:
         return Component(name, kind, figures)
 
     def anchor(self, definition: Definition | None, name: str, friction: float) -> Component:
-        """Of the lower end; without a weight where the file gives none."""
+        """The lower end; without a weight where the file gives none."""
         values: Values = definition.values if definition else {}
         figures: dict[str, Figure] = {}
         wet, mass = number(values, "wet"), number(values, "m") or number(values, "mass")
@@ -127,7 +127,7 @@ class Makers:
         return component
 
     def buoy(self, definition: Definition, *, afloat: bool) -> Component:
-        """Of the upper end, or of what is towed.
+        """The upper end, or what is towed.
 
         Its hull is that of the file. Where it does not float, it is a point, as in that program.
         """
@@ -173,7 +173,7 @@ class Makers:
         return component
 
     def _at_reference(self, wet: float, mass: float) -> tuple[float, float]:
-        """A weight in CALM's water, and the mass; 0 for a mass that cannot be.
+        """A weight in CALM's water, and the mass; 0 for an impossible mass.
 
         What is displaced follows from both, so that the weight in the file's own water comes out.
         """

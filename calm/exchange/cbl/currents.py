@@ -26,7 +26,7 @@ class GriddedCurrent:
     ----------
     depth : of the levels, growing [m]
     speeds : to the east (x), to the north (y) and up (z) by level, (n, 3) [m/s]
-    others : what of the grid it leaves out
+    others : what it leaves out of the grid
     """
 
     depth: NDArray[np.float64]
@@ -34,7 +34,7 @@ class GriddedCurrent:
     others: tuple[str, ...]
 
     def axis(self, number: int) -> Callable[[float], float]:
-        """A speed by depth, held beyond the first and the last level, as that program does."""
+        """A speed by depth, constant beyond the first and the last level, as in that program."""
         column = self.speeds[:, number]
         return lambda depth: float(np.interp(depth, self.depth, column))
 

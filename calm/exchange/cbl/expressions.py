@@ -13,7 +13,7 @@ from calm.exchange.cbl.tokens import Token, tokens_of
 from calm.exchange.design import one_line
 
 Formula: TypeAlias = Callable[[Mapping[str, float]], float]
-"""A value, from those of the names it depends on."""
+"""A value, computed from the values of the names it depends on."""
 
 _DEEPEST = 40  # parentheses within each other
 FUNCTIONS: dict[str, tuple[int, Callable[..., float]]] = {
@@ -52,40 +52,40 @@ class Words:
 
     @property
     def next(self) -> Token:
-        """The word that comes, which stays."""
+        """The next word, which is not taken."""
         return self._tokens[self._at]
 
     def ahead(self, count: int) -> Token:
-        """The word that comes after some others."""
+        """A word further on, which is not taken."""
         return self._tokens[min(self._at + count, len(self._tokens) - 1)]
 
     def take(self) -> Token:
-        """The word that comes."""
+        """The next word."""
         token = self.next
         self._at = min(self._at + 1, len(self._tokens) - 1)
         return token
 
     def mark(self) -> int:
-        """Where the reading is, to come back to."""
+        """The place of the next word, for `back`."""
         return self._at
 
     def back(self, mark: int) -> None:
-        """Go back to where the reading was."""
+        """Go back to a place of `mark`."""
         self._at = mark
 
     def put(self, tokens: Sequence[Token]) -> None:
-        """Let other words come first."""
+        """Put other words before the next one."""
         self._tokens[self._at : self._at] = tokens
 
     def comes(self, text: str) -> bool:
-        """Whether a sign comes; it is taken then."""
+        """Whether the next word is a sign; if so, it is taken."""
         if self.next.kind == "sign" and self.next.text == text:
             self.take()
             return True
         return False
 
     def expect(self, text: str) -> None:
-        """Take a sign that must come."""
+        """Take a sign, which must be next."""
         if not self.comes(text):
             raise self.next.refuse(f"`{text}` is missing before `{self.next.text}`")
 

@@ -6,7 +6,7 @@ from itertools import pairwise
 from math import pi, sqrt
 
 from calm.exchange.parts import Assembled, Part, area, as_point, mass_of
-from calm.files import Body, Cylinder, Sphere
+from calm.files import Cylinder, Rigid, Sphere
 from calm.files.rigid import Displacement
 from calm.physics.hull import Hull, cylindrical_hull, spherical_hull, tabulated_hull
 
@@ -14,12 +14,12 @@ _LEAST = 1e-3  # m of diameter, kg of mass
 
 
 def buoy_figures(part: Part, design: Assembled, density: float, lost: list[str]) -> str:
-    """Its size, mass, buoyancy and drag, as that program's file has them.
+    """Its size, mass, buoyancy and drag, in the words of that program.
 
     Parameters
     ----------
     density : of the water there [kg/m³]
-    lost : what is lost in it is added
+    lost : what the other program cannot hold is added to it
     """
     if part.flexible:
         return "type = sphere  d = 0.001  m = 0.001  buoyancy = 0.01  Cdn = 0"
@@ -58,9 +58,9 @@ def buoy_figures(part: Part, design: Assembled, density: float, lost: list[str])
 
 
 def _windage(part: Part, design: Assembled) -> str:
-    """What of a float the wind blows on, where there is wind or the file says it."""
+    """The area of a float in the wind, where there is wind or the file gives it."""
     component = part.component
-    if not isinstance(component, Sphere | Cylinder | Body):
+    if not isinstance(component, Rigid):
         return ""
     seen, coefficient = component.wind_area, component.wind_cd
     if design.wind[0] and design.afloat[0]:
@@ -70,7 +70,7 @@ def _windage(part: Part, design: Assembled) -> str:
 
 
 def _drag_share(design: Assembled, hull: Hull, mass: float, net: float, most: float) -> float:
-    """By which the drag of a hull is counted so that, at its draft, it drags as here.
+    """Factor on the drag of a hull with which it drags, at its draft, as in CALM.
 
     Parameters
     ----------

@@ -39,7 +39,7 @@ def read_problem(path: Path, defines: Mapping[str, str], *, allow_include: bool)
     Raises
     ------
     InputError
-        With the place of what cannot be read.
+        It cannot be read; with line and column.
     """
     lines = Preprocessor(defines, allow_include).read(path)
     words = Words(list(tokens_of(lines)))
@@ -116,7 +116,7 @@ def _value(words: Words, key: Token) -> Value:
 def _word(words: Words, key: Token) -> str:
     token = words.take()
     if token.kind not in ("name", "text", "number"):
-        raise key.refuse(f"a name is missing behind `{key.text} =`")
+        raise key.refuse(f"a name is missing after `{key.text} =`")
     text = token.text
     while words.next.kind == "sign" and words.next.text == "-" and words.ahead(1).kind == "name":
         words.take()

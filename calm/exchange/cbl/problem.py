@@ -11,7 +11,7 @@ from calm.exchange.cbl.tokens import Token
 
 @dataclass
 class Value:
-    """What stands behind a key: a word, a formula, or rows in parentheses."""
+    """The value of a key: a word, a formula, or rows in parentheses."""
 
     token: Token
     text: str = ""
@@ -71,7 +71,7 @@ class Terminal:
 
 @dataclass
 class Problem:
-    """All that a file says.
+    """The content of a problem file.
 
     Attributes
     ----------

@@ -54,8 +54,8 @@ def read_cbl(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> 
     Raises
     ------
     InputError
-        The file cannot be read, or holds what CALM cannot represent; of names that stand for
-        nothing, all that the reading needs.
+        The file cannot be read, or holds what CALM cannot represent. All undefined names that it
+        uses are named at once.
     """
     given, missing = dict(defines), list[Mistake]()
     while True:
@@ -114,7 +114,7 @@ def _kind(problem: Problem) -> str:
 def _refuse_other_shapes(
     problem: Problem, kind: str, ends: list[Terminal], segments: list[Segment]
 ) -> None:
-    """Lines that are no single line from an anchor to a float, or from a ship to a body."""
+    """Refuse all but a single line from an anchor to a float, or from a ship to a body."""
     path = problem.path
     if kind in _REFUSED:
         raise problem.description["type"].token.refuse(

@@ -50,7 +50,7 @@ def _pieces(
     Parameters
     ----------
     lower : depth of its lower end, standing upright [m]
-    clamps : height above its lower end, and what hangs there
+    clamps : height above its lower end [m], and what hangs there
     """
     count = _PARTS if varies(material) else 1
     made: list[tuple[float, Component]] = []
@@ -135,7 +135,7 @@ def _heights(segment: Segment, length: float) -> list[float]:
 
 
 def defined(definitions: dict[str, Definition], value: Value | None, token: Token) -> Definition:
-    """The definition that a value names, or a problem at the value, or at `token` without one."""
+    """The definition that a value names, else a problem at the value, or at `token` without one."""
     if value is None or not value.text:
         raise token.refuse("a name is missing: a material, or a buoy")
     found = definitions.get(value.text)

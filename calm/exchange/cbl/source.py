@@ -38,7 +38,7 @@ class _Macro:
 
 @dataclass
 class Preprocessor:
-    """Resolves what C's preprocessor would.
+    """Resolves comments, macros, conditions and includes as the C preprocessor does.
 
     Attributes
     ----------
@@ -60,9 +60,7 @@ class Preprocessor:
         ------
         InputError
             A file cannot be read or may not be included, a directive cannot be read, or macros
-            grow beyond all bounds.
-        UsageError
-            A macro given from outside has no proper name.
+            expand without end. UsageError A macro given from outside has no proper name.
         """
         for name, value in self.defines.items():
             if not _NAME.fullmatch(name):
@@ -93,7 +91,7 @@ class Preprocessor:
             raise refused_at(shown, len(text.splitlines()), 1, "an `#if` has no `#endif`")
 
     def _condition(self, word: str, rest: str, conditions: list[tuple[bool, bool]]) -> bool:
-        """Follow `#if` and its kin; False for another directive."""
+        """Follow `#if` and the directives that go with it; False for another directive."""
         if word in ("if", "ifdef", "ifndef"):
             if len(conditions) >= _DEEPEST:
                 raise ValueError("conditions are nested too deeply")
@@ -226,7 +224,7 @@ class Preprocessor:
 
 
 def _arguments(text: str, at: int) -> tuple[list[str], int]:
-    """The arguments in the parentheses that follow, and where the text goes on behind them."""
+    """The arguments in the parentheses that follow, and where the text goes on after them."""
     opening = re.compile(r"\s*\(").match(text, at)
     if opening is None:
         return [], at
@@ -245,7 +243,7 @@ def _arguments(text: str, at: int) -> tuple[list[str], int]:
 
 
 def _without_comments(text: str, path: str) -> list[str]:
-    """The lines without comments, those that a backslash joins as one; as many lines as before."""
+    """The lines without comments, lines joined by a backslash as one; as many lines as before."""
     pieces: list[str] = []
     at = 0
     sign = re.compile(r"/\*|//|\"[^\"\n]*\"|'[^'\n]*'")

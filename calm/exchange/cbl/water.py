@@ -13,7 +13,7 @@ from calm.exchange.design import Remark, Water
 from calm.quantities import bearing_of
 
 USUAL_GRAVITY = 9.81
-"""Of the problems that come with that program, which assumes none [m/s²]."""
+"""Gravity in the problems that come with that program, which has no default [m/s²]."""
 
 _FINEST = 1e-4  # share of the fastest current by which levels may miss a formula
 _HALVINGS = 8
@@ -139,7 +139,7 @@ def value_at(value: Value, depth: float) -> float:
 
 
 def _refined(at: Callable[[float], tuple[float, float, float]], levels: list[float]) -> list[float]:
-    """Levels between which the current is as good as linear."""
+    """Levels between which the current is linear within a tolerance."""
     fastest = max(max(map(abs, at(depth))) for depth in levels)
     for _ in range(_HALVINGS):
         finer = [levels[0]]

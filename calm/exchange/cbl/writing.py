@@ -1,4 +1,4 @@
-"""A mooring or a tow as a problem of WHOI Cable, ready to be solved and for its dynamics."""
+"""A mooring or a tow as a problem of WHOI Cable, for its statics and its dynamics."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class _Load:
     area: float = 0.0
 
     def add(self, part: Part, density: float) -> None:
-        """Let a part act here, too, in water of a density [kg/m³]."""
+        """Add what a part does at this point, in water of a density [kg/m³]."""
         self.names.append(part.use)
         self.net += part.net
         self.mass += mass_of(part)
@@ -60,13 +60,13 @@ class _Problem:
         )
 
     def at_a_point(self, part: Part) -> None:
-        """What acts where the line has come to."""
+        """Add a load at the point that the line has reached."""
         if self.load is None:
             self.load = _Load()
         self.load.add(part, self.density)
 
     def _join(self) -> None:
-        """The connector for what acts here; where nothing does, the line goes on."""
+        """Write the connector of the load at this point; none where nothing acts."""
         if self.load is None:
             return
         load, self.load = self.load, None
@@ -81,7 +81,7 @@ class _Problem:
 
 
 def cbl_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
-    """The content of the file, and what is lost in it."""
+    """The content of the file, and what it cannot hold."""
     lost: list[str] = []
     density = sum(row[4] for row in design.levels) / len(design.levels)
     problem = _Problem(density)
@@ -176,7 +176,7 @@ def _material(problem: _Problem, part: Part) -> str:
 
 
 def _keep(known: dict[str, str], name: str, figures: str) -> str:
-    """The name under which figures stand, another where the name is taken by others."""
+    """The name under which figures are kept; another name where it is taken by other figures."""
     chosen, number = name, 1
     while known.setdefault(chosen, figures) != figures:
         number += 1

@@ -14,7 +14,7 @@ from calm.exchange.mdd.value import Floats, Value, names, numbers
 
 @dataclass(frozen=True)
 class Element:
-    """One column of ``H``, with what goes with it.
+    """One column of ``H``, and the figures that go with it.
 
     Attributes
     ----------
@@ -95,7 +95,7 @@ def read_elements(variables: Mapping[str, Value], suffix: str) -> tuple[list[Ele
 
 
 def mistakes_of(element: Element, where: str) -> list[str]:
-    """Figures that no piece of a mooring can have."""
+    """The figures of an element that no piece of a mooring can have."""
     sizes = {
         "length": element.length, "width": element.width, "diameter": element.diameter,
         "drag coefficient": element.cd,
@@ -149,7 +149,7 @@ def _optional(variables: Mapping[str, Value], name: str) -> Floats:
 
 
 def _names(variables: Mapping[str, Value], name: str, count: int) -> list[str]:
-    """A name for every element, whatever the file has."""
+    """A name for every element, also where the file has none."""
     value = variables.get(name)
     found = names(value) if value is not None else []
     if len(found) != count and isinstance(value, np.ndarray) and value.ndim == 2:

@@ -17,7 +17,7 @@ _DEEPEST = 4  # cells in cells
 
 
 def is_hdf5(content: bytes) -> bool:
-    """Whether a file is one, by its first bytes or those behind MATLAB's own."""
+    """Whether a file is HDF5, by its first bytes or those after MATLAB's header."""
     return _SIGNATURE in (content[:8], content[512:520])
 
 
@@ -40,7 +40,7 @@ def read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, Value]:
 
 
 def _variable(file: Any, node: Any, depth: int) -> Value:
-    """A dataset, as MATLAB has it, or one of Octave's, which stand in groups."""
+    """A dataset, as MATLAB writes it, or one of Octave's, which are in groups."""
     import h5py
 
     if depth > _DEEPEST:
@@ -62,7 +62,7 @@ def _number(key: str) -> int:
 
 
 def _values(file: Any, node: Any, kind: str, depth: int) -> Value:
-    """The values of a dataset, whose dimensions HDF5 turns round."""
+    """The values of a dataset; HDF5 has the dimensions in reverse order."""
     import h5py
 
     if not isinstance(node, h5py.Dataset) or node.is_virtual or node.external:
@@ -85,7 +85,7 @@ def _values(file: Any, node: Any, kind: str, depth: int) -> Value:
 
 
 def _utf_8(row: np.ndarray[Any, np.dtype[Any]]) -> str:
-    """A text of Octave's, which has bytes."""
+    """A text of Octave, which writes bytes."""
     return row.astype(np.uint8).tobytes().decode("utf-8", "replace").rstrip()
 
 

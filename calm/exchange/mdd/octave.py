@@ -101,12 +101,12 @@ def _value(name: str, kind: str, header: dict[str, str], rows: list[str]) -> Val
 
 
 def spread(name: str, first: float, last: float, step: float) -> Value:
-    """The numbers of a range, the last among them where a step meets it.
+    """The numbers of a range, the last included where a step ends at it.
 
     Raises
     ------
     ValueError
-        There is no end of them.
+        The range does not end.
     """
     count = (last - first) / step * (1 + 1e-12) + 1 if step else 0.0
     if not 0.0 <= count <= MOST:
@@ -127,7 +127,7 @@ def _shaped(name: str, array: Value, shape: list[int], *, order: str) -> Value:
 
 
 def _texts(rows: list[str]) -> list[Value]:
-    """The rows of a character matrix: each line behind its length."""
+    """The rows of a character matrix: each line after its length."""
     texts: list[Value] = []
     for i, row in enumerate(rows):
         if _header(row)[0] == "length":

@@ -23,10 +23,11 @@ def component_of(element: Element) -> Component:
 
 
 def rigid(element: Element) -> Component:
-    """Of an element that is no line, or of what is clamped on one.
+    """The definition of a rigid element, or of one clamped on.
 
-    That program takes an element with a diameter for a sphere of it, whatever its length; one with
-    a width alone for a cylinder whose Cd counts on the flow across it and which has no end face.
+    That program takes an element with a diameter for a sphere of that diameter, whatever its
+    length, and one with a width alone for a cylinder, whose Cd is for flow across it, without end
+    faces.
     """
     lift = element.lift * KILOGRAM_FORCE
     role = role_of(element.name, lift, fastener=element.is_fastener)
@@ -55,9 +56,9 @@ def rigid(element: Element) -> Component:
 
 
 def rides_by_buoyancy(component: Component) -> None:
-    """Let a float ride as that program has it: it sinks, and drags, by the buoyancy it uses.
+    """Let a float ride as in that program: its draft and drag follow the buoyancy it uses.
 
-    Its hull displaces no more than its net buoyancy takes, in proportion to the draft.
+    Its hull displaces, in proportion to the draft, no more than its net buoyancy needs.
     """
     figures = component.figures
     lift, height = float(figures.get("buoyancy", 0.0)), float(figures.get("length", 0.0))
@@ -76,7 +77,7 @@ def rides_by_buoyancy(component: Component) -> None:
 
 
 def _is_too_small(element: Element) -> bool:
-    """Whether the water that a float could displace at its size does not bear its buoyancy."""
+    """Whether a float of this size cannot displace enough water for its buoyancy."""
     if element.diameter > 0.0:
         volume = math.pi * element.diameter**2 * max(element.diameter / 6.0, element.length / 4.0)
     else:
@@ -85,7 +86,7 @@ def _is_too_small(element: Element) -> bool:
 
 
 def _flexible(element: Element) -> Component:
-    """Of a wire, rope or chain: its Cd counts on its width, and nothing drags along it."""
+    """The definition of a wire, rope or chain: its Cd is of its width, without drag along it."""
     chain = is_chain(element.name)
     figures: dict[str, Figure] = {"diameter": element.across, "cn": element.cd, "ct": 0.0}
     weight = 0.0 - element.lift * KILOGRAM_FORCE
@@ -113,7 +114,7 @@ def _flexible(element: Element) -> Component:
 
 
 def anchor_of(element: Element) -> Component:
-    """The definition of the lowest element, whose weight the files give with either sign."""
+    """The definition of the lowest element; files give its weight with either sign."""
     figures: dict[str, Figure] = {
         "weight": abs(element.lift) * KILOGRAM_FORCE,
         "length": element.length,

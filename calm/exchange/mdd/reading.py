@@ -97,7 +97,7 @@ def _lay_mooring(
 def _lay_tow(
     design: Design, elements: list[Element], variables: Mapping[str, Value], path: Path
 ) -> None:
-    """The file leads from the body up, and ends in a mark of the program's own at the ship."""
+    """Lay a tow: the file runs from the body up, and ends with a mark for the ship."""
     end = elements[-1]
     if not end.is_line and end.length <= 0.01 and abs(end.lift) <= 0.011 and len(elements) > 1:
         elements = elements[:-1]

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 Value: TypeAlias = "NDArray[Any] | str | list[Value]"
-"""Numbers or characters, a text, or the elements of a cell array."""
+"""A variable: numbers or characters, a text, or the elements of a cell array."""
 
 MOST = 20_000_000
-"""Elements of a variable."""
+"""Most elements of a variable."""
 
 Floats = NDArray[np.float64]
 

@@ -16,10 +16,10 @@ _EARLIEST, _LATEST = 500_000.0, 1_000_000.0  # datenums that are dates of this a
 def read_water(
     variables: Mapping[str, Value], towed: bool, guessed: list[Remark]
 ) -> tuple[Water | None, Record | None]:
-    """The environment of a file, None where it has none; and its record, where it is one.
+    """The environment of a file, None where it has none; the record, where it has several profiles.
 
     In a mooring `z` is the height above the seabed and its greatest the depth of the water, in a
-    tow it is the depth. The first profile of a record stands for the current.
+    tow it is the depth. The current is the first profile of the record.
 
     Raises
     ------
@@ -95,7 +95,7 @@ def _filled(values: Floats | None, name: str, levels: int, times: int) -> Floats
 
 
 def _days(time: Floats, times: int, guessed: list[Remark]) -> tuple[Floats, str]:
-    """Days, and the date that they count from."""
+    """Days, and the date from which they count."""
     if time.size != times:
         guessed.append(Remark("record.time", "an hour between profiles, from 2000-01-01"))
         return np.arange(times) / 24.0, "2000-01-01"

@@ -18,7 +18,7 @@ _LEAST_USED = 1e-3  # share of the buoyancy, for a float that hardly any is used
 
 
 def mdd_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
-    """The content of the file, MATLAB 5, and what is lost in it."""
+    """The content of the file, MATLAB 5, and what it cannot hold."""
     from scipy.io import savemat
 
     lost: list[str] = []
@@ -87,7 +87,7 @@ def _element(part: Part, lost: list[str]) -> tuple[float, ...]:
 
 
 def _size(part: Part, lost: list[str]) -> tuple[float, float, float]:
-    """Width, diameter and Cd that drag as a rigid part does."""
+    """Width, diameter and Cd with which an element drags as the rigid part does."""
     component = part.component
     if part.kn == 0.0:
         return 0.0, 0.0, 0.0
@@ -146,7 +146,7 @@ def _clamps(design: Assembled, lost: list[str]) -> dict[str, object]:
 
 
 def _name(part: Part) -> str:
-    """Its id; of a chain with that word, by which it is known again."""
+    """Its id; that of a chain with the word "chain", by which it is recognised."""
     name = part.use
     if isinstance(part.component, Chain) and "chain" not in name:
         name = f"chain {name}"

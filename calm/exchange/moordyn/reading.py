@@ -14,7 +14,7 @@ from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 _FIXED, _FREE = ("fix", "anchor"), ("free", "connect", "point")
 _CURRENTS = "current_profile.txt"
 _NEAR, _NEAR_AT_LEAST = 0.05, 2.0
-"""Share of the depth, and metres: an upper end as near the surface hangs under a float."""
+"""Share of the depth, and metres: an upper end so near the surface hangs under a float."""
 
 _NOTE = "cn and ct are its Cd and CdAx, defined alike. See `calm docs import-moordyn`."
 
@@ -64,7 +64,7 @@ def read_moordyn(path: Path) -> Design:
 
 
 def _way(points: dict[str, Row], lines: list[Row], path: Path) -> list[tuple[Row, Row]]:
-    """The lines from the anchor up, each with the point at its lower end."""
+    """The lines in order from the anchor up, each with the point at its lower end."""
     at: dict[str, list[Row]] = {}
     for line in lines:
         for end in ("a", "b"):
@@ -148,7 +148,7 @@ def _currents(path: Path) -> tuple[tuple[float, float, float, float], ...]:
 
 
 def _cable(kind: Row, gravity: float) -> Component:
-    """A line type: its weight is that of its mass less that of the water it displaces."""
+    """A line type; its weight in water follows from its mass and the water it displaces."""
     across = kind.number("diameter")
     if across <= 0.0:
         raise kind.refuse("a line type has no diameter")
@@ -169,7 +169,7 @@ def _cable(kind: Row, gravity: float) -> Component:
 
 
 def _point(point: Row, design: Design) -> Item | None:
-    """What stands where two lengths join; nothing where it neither weighs nor drags."""
+    """What is at the joint of two lengths; None where it has neither weight nor drag."""
     if not _is(point, _FREE):
         raise point.refuse("a joint between two lengths is held: CALM has lines that hang free")
     figures = _figures(point)
@@ -221,7 +221,7 @@ def _upper_end(top: Row, items: list[Item], design: Design) -> Item:
 
 
 def _weight(item: Item, gravity: float) -> float:
-    """In water, under a gravity [m/s²]: N; 0 of what floats."""
+    """Weight in water [N] under a gravity [m/s²]; 0 of what floats."""
     figures = item.component.figures
     mass, volume = float(figures.get("mass", 0.0)), float(figures.get("volume", 0.0))
     if item.length is None:

@@ -32,7 +32,7 @@ _COLUMNS = {
 
 @dataclass(frozen=True)
 class Row:
-    """A row of a table: its words by what they are, and where it stands."""
+    """A row of a table: its words by heading, and its place in the file."""
 
     path: str
     line: int

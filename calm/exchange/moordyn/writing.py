@@ -35,7 +35,7 @@ class _Load:
     along: float = 0.0
 
     def add(self, part: Part, share: float = 1.0) -> None:
-        """Let a part, with what is clamped on it, be one of them; `share` is that of its drag."""
+        """Add a part with what is clamped on it; `share` is of its drag."""
         for each in (part, *(clamp for clamp, _ in part.clamps)):
             self.net += each.net
             self.mass += mass_of(each)
@@ -65,7 +65,7 @@ class _System:
         self.load = _Load(self.density)
 
     def end_point(self, kind: str) -> int:
-        """The point that the line has come to, with what acts there; its number."""
+        """The number of the point that the line has reached, written with what acts there."""
         volume = (self.load.mass + self.load.net / self.gravity) / self.density
         figures = f"{self.load.mass:.9g}  {volume:.9g}  {self.load.area:.9g}  0"
         x, y, depth = self.place
@@ -74,7 +74,7 @@ class _System:
         return number
 
     def line(self, name: str, figures: str, length: float, to: Place) -> None:
-        """A length of a type, from the point that the line has come to."""
+        """A length of a type, from the point that the line has reached."""
         below = self.end_point("Free" if self.points else "Fixed")
         chosen, number = name, 1
         while self.types.setdefault(chosen, figures) != figures:
@@ -87,7 +87,7 @@ class _System:
         self.place, self.load = to, _Load(self.density)
 
     def figures(self, load: _Load, stiffness: float) -> str:
-        """A line type of what acts on a metre."""
+        """The line type for what acts on a metre."""
         mass = max(load.mass, _LEAST - load.net / self.gravity)
         volume = (mass + load.net / self.gravity) / self.density
         across = sqrt(4.0 * volume / pi)
@@ -98,14 +98,14 @@ class _System:
 
 
 def moordyn_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
-    """The content of the file, and what is lost in it.
+    """The content of the file, and what it cannot hold.
 
     Raises
     ------
     UsageError
         It is a tow.
     NoEquilibrium
-        There is none whose places could be given.
+        There is none: its points have no places.
     """
     if design.tow is not None:
         raise UsageError("a tow has no anchor; MoorDyn is given moorings alone")
@@ -148,7 +148,8 @@ def moordyn_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
 def _lay(system: _System, part: Part, path: Path) -> None:
     """A cable or chain from its lower end up, cut where something is clamped on.
 
-    It is cut into short lengths, too: that program begins with each hanging as in still water.
+    It is cut into short lengths too, since that program starts with each as it hangs in still
+    water.
     """
     load = _Load(system.density)
     load.add(replace(part, clamps=()))
@@ -182,10 +183,10 @@ def _lay_rigid(system: _System, parts: list[Part], top: Place) -> None:
 
 
 def _lay_float(system: _System, design: Assembled, path: Path) -> None:
-    """The uppermost piece: a point, on a stiff length as long as what of it is in the water.
+    """The uppermost piece: a point, on a stiff length as long as its draft.
 
-    That length takes a share of its mass, neutral in water, so that it is no lighter than it need
-    be for the steps of that program.
+    That length takes a share of its mass, neutral in water: that program steps too finely where a
+    length is light.
     """
     part, afloat = design.parts[0], design.afloat[0]
     top, bottom = path.at(0.0), path.at(1.0)

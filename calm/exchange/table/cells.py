@@ -11,10 +11,10 @@ _NOTHING = {
 
 
 def number(cell: str) -> tuple[float | None, str]:
-    """The number of a cell, None where there is none; and what had to be read into it.
+    """The number of a cell, None where there is none; and how it was interpreted.
 
-    A comma is a decimal one, or between thousands where a point follows; a word or unit behind the
-    number, or `~` before it, is left out and told.
+    A comma is a decimal sign, or parts thousands where a point follows; a word or unit after the
+    number, or `~` before it, is left out and reported.
     """
     text = cell.strip().lstrip("'")
     if text.lower() in _NOTHING:

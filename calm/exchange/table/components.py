@@ -75,8 +75,8 @@ def _rigid(row: Row, problems: list[str]) -> Component:
 def _shape(row: Row) -> tuple[str, float]:
     """The kind of a rigid piece by its size, and its diameter [m].
 
-    Where a list has widths and diameters, a diameter is that of a sphere; else what floats, and is
-    hardly longer than wide, is one.
+    Where a list has widths and diameters, a diameter is that of a sphere. Elsewhere a float that is
+    hardly longer than wide is a sphere.
     """
     figures = row.figures
     width, diameter = figures.get("width", 0.0), figures.get("diameter", 0.0)
@@ -141,7 +141,7 @@ def _coefficient(row: Row, kind: str, guesses: dict[str, str]) -> dict[str, Figu
 
 
 def _keep(row: Row, kept: dict[str, Figure], lift: float, names: tuple[str, ...]) -> None:
-    """Take over further figures; a mass that weighs less than the piece does in water is none."""
+    """Take over further figures; a mass lighter than the piece is in water is left out."""
     mass = row.figures.get("mass", 0.0)
     if mass > 0.0 and mass * KILOGRAM_FORCE >= max(-lift, 0.0):
         kept["mass"] = mass
@@ -151,7 +151,7 @@ def _keep(row: Row, kept: dict[str, Figure], lift: float, names: tuple[str, ...]
 
 
 def _of(guesses: dict[str, str], kept: dict[str, Figure]) -> dict[str, str]:
-    """The guesses about what is kept."""
+    """The guesses for the figures that are kept."""
     return {key: text for key, text in guesses.items() if key in kept and text}
 
 

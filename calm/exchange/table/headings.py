@@ -67,9 +67,8 @@ _MEASURES = {"length", "buoyancy", "weight", "mass"}
 class Column:
     """A column: where it stands, its heading, and what its numbers are multiplied by.
 
-    `by_mass` tells of forces that are counted in kilograms, `per_metre` of figures of lines that
-    are those of a metre, `known` whether the heading gives a unit; `whole` whether it says that
-    its figures are those of a whole piece.
+    `by_mass`: forces are counted in kilograms; `per_metre`: figures of lines are those of a metre;
+    `known`: the heading gives a unit; `whole`: it says that its figures are those of a whole piece.
     """
 
     index: int
@@ -83,7 +82,7 @@ class Column:
 
 @dataclass(frozen=True)
 class Headings:
-    """The row of the headings, the column of each thing the list has, headings of the others."""
+    """The row of the headings, the columns that are understood, and the headings of the others."""
 
     row: int
     columns: dict[str, Column]
@@ -118,7 +117,7 @@ def headings_of(rows: Rows, given: Mapping[str, str]) -> Headings | None:
 
 
 def check_given(sheets: Mapping[str, Rows], given: Mapping[str, str], path: Path) -> None:
-    """Whether `--columns` names things of a piece, and headings that are there.
+    """Check that `--columns` names figures of a piece, and headings of the list.
 
     Raises
     ------
@@ -163,7 +162,7 @@ def _columns(row: list[str], given: Mapping[str, str]) -> dict[str, Column]:
 
 
 def _settle(found: dict[str, Column]) -> None:
-    """A height is a length, and a weight beside a buoyancy one in air, where nothing else is."""
+    """Where there is no length, a height is one; a weight beside a buoyancy is in air."""
     if "length" not in found and "height" in found and _plain(found["height"].heading) == "height":
         found["length"] = found.pop("height")
     plain_weight = re.match(r"(weight|poids)\b(?!.*(water|wet|eau))", _plain_of(found, "weight"))

@@ -63,12 +63,12 @@ def is_library(sheets: Mapping[str, Rows]) -> bool:
 
 
 def key_of(name: str) -> str:
-    """A name as a library is searched for it."""
+    """A name without capitals and blanks, as libraries are searched."""
     return "".join(name.lower().split())
 
 
 def complete(rows: Iterable[Row], library: Library, source: str) -> None:
-    """Give rows the figures that they lack, those of the element of their name."""
+    """Give rows the figures that they lack, from the element of their name."""
     for row in rows:
         element = library.get(key_of(row.name))
         if element is None:
@@ -112,7 +112,7 @@ def _of_sheets(path: Path) -> Iterable[Element]:
 
 
 def _is_line(row: Row, title: str) -> bool:
-    """Whether an element is a line, whose figures are those of a metre."""
+    """Whether an element is a line, with figures per metre."""
     floats = row.figures.get("buoyancy", 0.0) > 0.0 and row.figures.get("diameter", 0.0) > 0.0
     if abs(row.figures.get("length", 1.0) - 1.0) > _A_METRE or (floats and "width" in row.figures):
         return False

@@ -16,6 +16,7 @@ from calm.exchange.table.headings import Headings, check_given, headings_of
 from calm.exchange.table.library import Library, complete, is_library, key_of, read_library
 from calm.exchange.table.rows import Row, count_lines, names_in, rows_of, weights_as_buoyancy
 from calm.exchange.table.sheet import Rows, read_sheets
+from calm.files.components import FLEXIBLE_KINDS
 
 _NOTE = "A list says nothing about the water, and little about drag. See `calm docs import-table`."
 _WATER = ("z", "U", "V", "W", "rho")  # headings of a sheet of Mooring Design & Dynamics
@@ -111,7 +112,7 @@ def _names(sheets: Mapping[str, Rows], design: Design, path: Path, library: Libr
 
 
 def _water(sheets: Mapping[str, Rows], design: Design, path: Path) -> Water | None:
-    """The environment of a sheet of heights, `z`, as workbooks of that program have it."""
+    """The environment in a sheet of heights, `z`, as in workbooks of Mooring Design & Dynamics."""
     for rows in sheets.values():
         headings = [cell.lower() for cell in rows[0]]
         if not {"z", "u"} <= set(headings):
@@ -130,7 +131,7 @@ def _water(sheets: Mapping[str, Rows], design: Design, path: Path) -> Water | No
 
 
 def _from_the_top(rows: list[Row], path: Path, design: Design) -> list[Row]:
-    """The rows from the top down; lists lead either way, clamps stand behind their piece."""
+    """The rows from the top down; lists run either way, clamps follow their piece."""
     pieces = [row for row in rows if "at" not in row.figures]
     if len(pieces) < 2:
         raise refused(path, f"has {len(pieces)} pieces")
@@ -170,7 +171,7 @@ def _items(rows: list[Row], problems: list[str]) -> list[Item]:
         component: Component = component_of(row, problems, anchor=row is rows[-1] and row.is_anchor)
         at = row.figures.get("at")
         if at is None:
-            length = row.figures.get("length") if component.kind in ("cable", "chain") else None
+            length = row.figures.get("length") if component.kind in FLEXIBLE_KINDS else None
             items += [Item(component, length, label=row.label) for _ in range(row.count)]
         elif items:
             items[-1].clamps.append(Hung(component, at))

@@ -1,4 +1,4 @@
-"""The rows of a list in SI, each with what had to be read into it."""
+"""The rows of a list in SI, each with how it was interpreted."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ _SPREAD = ("buoyancy", "mass", "area", "drag_area", "tangential_area")  # along 
 
 @dataclass(eq=False)
 class Row:
-    """A row: what it is called, its figures, what was guessed in it, and how often it stands.
+    """A row: its name, its figures, what was guessed in it, and its count.
 
-    `metre` names the figures of a line that are those of a metre; `line` tells whether it is a
-    cable or chain, and `hint` where its figures might be, where a library says so.
+    `metre` names the figures of a line that are per metre; `line` says whether it is a cable or
+    chain, and `hint` where a library says that its figures might be.
     """
 
     place: int
@@ -148,9 +148,9 @@ def _row(
 
 
 def weights_as_buoyancy(rows: Iterable[Row], guessed: list[Remark]) -> None:
-    """Let every row have its net force as buoyancy, positive up.
+    """Give every row its net force as buoyancy, positive up.
 
-    Weights count down; where they are negative for what sinks by its name, they count up.
+    Weights are positive down; where they are negative for what sinks by its name, positive up.
     """
     rows = list(rows)
     sinking = [
@@ -176,7 +176,7 @@ def weights_as_buoyancy(rows: Iterable[Row], guessed: list[Remark]) -> None:
 
 
 def count_lines(rows: Iterable[Row], known: dict[str, Column]) -> None:
-    """Figures of lines per metre, where the list has those of the whole length."""
+    """Make figures of lines per metre, where the list gives them of the whole length."""
     lines = [row for row in rows if row.is_line and row.figures.get("length", 0.0) > 0.0]
     for what in _SPREAD:
         column = known.get(what) or (known.get("weight") if what == "buoyancy" else None)
@@ -200,12 +200,12 @@ def count_lines(rows: Iterable[Row], known: dict[str, Column]) -> None:
 
 
 def _within_a_metre(lines: list[Row], what: str) -> bool:
-    """Whether no line shows more than a metre of it can."""
+    """Whether the figures of every line could be those of a metre."""
     return all(row.figures[what] <= _FULL * row.figures.get("diameter", 0.0) for row in lines)
 
 
 def _same_for_all(lines: list[Row], what: str) -> bool:
-    """Whether lines of one name and different lengths weigh the same: then that is of a metre."""
+    """Whether lines of one name and different lengths have one weight, which is per metre then."""
     seen: dict[str, tuple[float, float]] = {}
     for row in lines:
         length, value = seen.setdefault(row.name, (row.figures["length"], row.figures[what]))

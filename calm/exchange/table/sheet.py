@@ -15,7 +15,7 @@ _LARGEST = 20_000_000
 _MOST_ROWS, _MOST_COLUMNS = 20_000, 500
 
 Rows = list[list[str]]
-"""Cells as text, without those behind the last that holds something."""
+"""Cells as text, up to the last that is not empty."""
 
 
 def is_spreadsheet(content: bytes) -> bool:
@@ -24,7 +24,7 @@ def is_spreadsheet(content: bytes) -> bool:
 
 
 def is_table(content: bytes) -> bool:
-    """Whether a file is a workbook, or text whose lines are cut by the same sign."""
+    """Whether a file is a workbook, or text whose lines have the same separator."""
     if is_spreadsheet(content):
         return True
     if content.startswith(_UTF_16):
@@ -77,7 +77,7 @@ def _csv(path: Path, content: bytes) -> Rows:
 
 
 def _text(path: Path, content: bytes) -> str:
-    """UTF-8, UTF-16 as Excel writes it with its mark, or else the Western encoding of Windows."""
+    """The text: UTF-8, UTF-16 with the mark of Excel, or the Western encoding of Windows."""
     if content.startswith(_UTF_16):
         return content.decode("utf-16", "replace")
     if b"\0" in content:

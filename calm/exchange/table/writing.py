@@ -14,7 +14,7 @@ HEADER = (
 
 
 def csv_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
-    """The content of the file, and what is lost in it."""
+    """The content of the file, and what it cannot hold."""
     lost = ["the water", "hulls and wind: floats drag in full at the surface"]
     if design.tow is not None:
         lost.append("the speed of the ship: a list is a mooring's")

@@ -115,7 +115,7 @@ class Layout:
         return key + head + self.line_break + below
 
     def parts(self, name: str, value: Value, column: int, *, open: bool = False) -> tuple[str, str]:
-        """What stands behind the colon of a key, and the lines below it."""
+        """What follows the colon of a key, and the lines below it."""
         if value is None:
             return "", ""
         if isinstance(value, str):

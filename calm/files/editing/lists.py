@@ -22,7 +22,7 @@ _COMMA = re.compile(r"(?:\s|#[^\n]*\n)*,")
 
 
 class Slot(NamedTuple):
-    """The text of an item: up to the end of its value, and what stands behind it (no comma).
+    """The text of an item: up to the end of its value, and what follows it (no comma).
 
     Where items have lines of their own it is these lines, comments that belong to it included.
     """
@@ -52,9 +52,9 @@ class Items:
     gaps : list of str
         What stands before each item and is not its own (between two `inline` ones their comma).
     rest : str
-        What stands behind the last.
+        What follows the last.
     ends_in_comma : bool
-        There is a comma behind the last of the `rows`.
+        There is a comma after the last of the `rows`.
     """
 
     start: int

@@ -148,6 +148,6 @@ def set_scalar(old: Node, value: str, *, flow: bool) -> Patch:
 
 
 def _colon(text: str, place: int) -> int | None:
-    """Behind the colon of a key that ends at a place; None where it has none."""
+    """The place after the colon of a key that ends at a place; None where it has none."""
     found = re.compile(r"\s*:").match(text, place)
     return found.end() if found else None

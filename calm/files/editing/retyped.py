@@ -12,14 +12,14 @@ _ENDINGS = ("\r\n", "\n", "\r")
 
 
 class Line(NamedTuple):
-    """What a line says, and the line break behind it: none behind the last."""
+    """What a line says, and the line break after it: none after the last."""
 
     text: str
     line_break: str
 
 
 def lines_of(text: str) -> list[Line]:
-    """The lines of a text as `str.splitlines` has them; an empty one behind the last line break."""
+    """The lines of a text as `str.splitlines` has them; an empty one after the last line break."""
     lines = [Line(one.splitlines()[0], one) for one in text.splitlines(keepends=True)]
     found = [Line(text, whole[len(text) :]) for text, whole in lines]
     if not text or text.endswith(_ENDINGS):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from calm.files.components import FLEXIBLE_KINDS
 from calm.quantities import QUANTITIES
 from calm.report.blocks import Cell, Column, Table
 from calm.report.line import figure_cell, place_text, quantity_column
@@ -68,7 +69,7 @@ def inventory_table(items: Sequence[Item]) -> Table:
 
 
 def _stock(name: str, use: str, items: Sequence[Item]) -> tuple[Cell, ...]:
-    lines = [item for item in items if item.kind in ("cable", "chain")]
+    lines = [item for item in items if item.kind in FLEXIBLE_KINDS]
     return (
         Cell(name),
         Cell(use),

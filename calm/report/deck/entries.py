@@ -29,7 +29,7 @@ class Entry:
     ----------
     sign : its symbol
     cable : the symbol of the cable that it is, or is clamped on; None of what is rigid
-    label, name : in words; the name with the serial number behind it
+    label, name : in words; the name with the serial number after it
     cells : cut length or place on the wire, stretched length, depth, height
     clamped : whether it is clamped on the entry above it
     junction : whether pages may end above it without parting what belongs together

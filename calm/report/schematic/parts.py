@@ -80,7 +80,7 @@ class Schematic:
     title, subtitle, note : str
         Its name; water and place, or speed; how to read the figures.
     columns : tuple of str
-        Those quantities of `HEADINGS` that can be told.
+        Those quantities of `HEADINGS` that are known.
     parts : tuple of Part
     surface : bool
         Whether the first part floats at the surface.

@@ -19,7 +19,7 @@ _ROWS_PER_TICK = 3
 
 @dataclass(frozen=True)
 class Scale:
-    """A range of a quantity, from `low` (left or top) to `high`, over so many dots."""
+    """A range of a quantity, from `low` (left or top) to `high`, over a number of dots."""
 
     low: float
     high: float
@@ -121,7 +121,7 @@ class Frame:
     def scale_across(self, values: Iterable[float], *units: str) -> None:
         """Numbers along the last row of the canvas, and their marks on the row above.
 
-        Behind them the first unit for which there is room; for the last one it is made, as long as
+        After them the first unit for which there is room; for the last one it is made, as long as
         two numbers are left.
         """
         row, edge = self.canvas.height - 1, self.canvas.width
@@ -144,10 +144,10 @@ class Frame:
 
 
 def _end(labels: list[tuple[int, str]]) -> int:
-    """The column behind the last label."""
+    """The column after the last label."""
     return labels[-1][0] + len(labels[-1][1]) if labels else 0
 
 
 def levels(low: float, high: float, rows: int) -> list[float]:
-    """Ticks for a scale so many rows high."""
+    """Ticks for a scale of a number of rows."""
     return round_numbers(low, high, max(rows // _ROWS_PER_TICK, 1))

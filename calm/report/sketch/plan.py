@@ -31,7 +31,7 @@ _MARGIN = 0.06
 def plan(
     result: Result | TowResult, width: int, height: int, beside: Sequence[Shape] = ()
 ) -> list[Text]:
-    """A line from above with its anchor, or the ship, at nought, from 20 by 6 cells on.
+    """A line from above with its anchor, or the ship, at zero, from 20 by 6 cells on.
 
     Shapes `beside` it, of other environments or designs, are dashed.
     """

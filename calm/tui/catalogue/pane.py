@@ -1,4 +1,4 @@
-"""The catalogue at hand: a search that answers at each key, a card, what else is asked for."""
+"""The catalogue: a search that answers at each key, a card, and what else is asked for."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ from textual.message import Message
 from textual.widgets import Input, Static
 
 from calm.errors import CalmError
+from calm.files.components import FLEXIBLE_KINDS, RIGID_KINDS
 from calm.tui.actions import bindings
 from calm.tui.catalogue.component_list import ComponentList
 from calm.tui.catalogue.figures import COLUMNS
-from calm.tui.catalogue.index import CLAMPABLE, WITH_LENGTH, Index, Listed
+from calm.tui.catalogue.index import Index, Listed
 from calm.tui.catalogue.remembered import Remembered
 from calm.tui.checking import anything, distance, length
 from calm.tui.field import Field
@@ -64,7 +65,7 @@ class CataloguePane(Vertical):
 
     @dataclass
     class Told(Message):
-        """Something to be said in the last line."""
+        """A message for the last line."""
 
         text: str
         wrong: bool = False
@@ -158,7 +159,7 @@ class CataloguePane(Vertical):
     def _search(self) -> None:
         if self.index is None:
             return
-        kinds = CLAMPABLE if self.clampable else None
+        kinds = RIGID_KINDS if self.clampable else None
         kept = self.remembered
         first = [*dict.fromkeys([*kept.favourites, *kept.recent, *self._used])]
         found = self.index.search(self.search.value, kinds, first=first, by=self._by)
@@ -190,7 +191,7 @@ class CataloguePane(Vertical):
         self._search()
 
     def action_mark(self) -> None:
-        """Make a favourite of the component, or no more."""
+        """Mark the component as a favourite, or unmark it."""
         chosen = self.listing.chosen
         if chosen is not None:
             try:
@@ -216,7 +217,7 @@ class CataloguePane(Vertical):
             return
         if self.purpose == "clamp":
             self._ask(chosen, "at", "From the top")
-        elif chosen.kind in WITH_LENGTH and self.purpose != "replace":
+        elif chosen.kind in FLEXIBLE_KINDS and self.purpose != "replace":
             self._ask(chosen, "length", "Length")
         else:
             self._give({"use": chosen.id})

@@ -17,7 +17,6 @@ from calm.tui.line.advising import Advising
 from calm.tui.line.body import LineBody
 from calm.tui.line.cell_editor import CellEditor
 from calm.tui.line.comparing import Comparing
-from calm.tui.line.filling import Filling
 from calm.tui.line.pane import LinePane
 from calm.tui.pictures import Picture, Tab
 from calm.tui.screen import DraftScreen
@@ -84,7 +83,7 @@ class BuilderScreen(DraftScreen):
         self.body.line.table.focus()
 
     def on_key(self, event: Key) -> None:
-        """What was told is read."""
+        """A key removes the message that is shown."""
         if not self.body.line.editor.is_open:
             self.tell("")
 
@@ -158,6 +157,8 @@ class BuilderScreen(DraftScreen):
 
     def action_figures(self) -> None:
         """Fill in what is not known of the components."""
+        from calm.tui.line.missing_screen import Filling
+
         Filling(self.app, self.body.line).ask()
 
     def action_papers(self) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from calm.files import Place
+from calm.files.components import FLEXIBLE_KINDS
 from calm.files.editing import Value
-from calm.tui.catalogue.index import WITH_LENGTH
 from calm.tui.checking import Check, anything, count, distance, length, length_text, length_values
 from calm.tui.line.table_row import EDITABLE, Column
 from calm.tui.workspace import Workspace
@@ -32,7 +32,7 @@ class Cell:
         if self.column != "length" or index is None:
             return ""
         listed = index.get(self._values.get("use", ""))
-        is_rigid = listed is not None and listed.kind not in WITH_LENGTH
+        is_rigid = listed is not None and listed.kind not in FLEXIBLE_KINDS
         return _NO_LENGTH if is_rigid and "length" not in self._values else ""
 
     @property

@@ -1,12 +1,12 @@
-"""A form of all figures that the design check does not know, filled in place."""
+"""A form of all figures that the design check does not know: asked for, and written in the file."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from textual import on
-from textual.app import ComposeResult
+from textual.app import App, ComposeResult
 from textual.binding import BindingType
 from textual.containers import VerticalScroll
 from textual.screen import Screen
@@ -16,7 +16,8 @@ from textual.widgets import Static
 from calm.tui.actions import bindings, hints
 from calm.tui.bars import KeyBar, TitleBar
 from calm.tui.field import Field, all_settled
-from calm.tui.line.missing_figures import Missing
+from calm.tui.line.missing_figures import Missing, filled, missing_figures
+from calm.tui.line.pane import LinePane
 
 Filled = tuple[dict[tuple[str, str], str], str]
 """What was typed by component and key, and the source of it."""
@@ -95,3 +96,33 @@ class MissingScreen(Screen[Filled | None]):
     def action_cancel(self) -> None:
         """Give nothing."""
         self.dismiss(None)
+
+
+class Filling:
+    """Asks for all that is missing, and writes what was given."""
+
+    def __init__(self, app: App[Any], line: LinePane) -> None:
+        self._app, self._line, self._workspace = app, line, line.workspace
+
+    def ask(self) -> None:
+        """Show the form, once the line is judged."""
+        workspace, session = self._workspace, self._workspace.session
+        if not self._line.settle():
+            return
+        if workspace.view is None or not workspace.is_fresh:
+            workspace.tell("Missing figures are known once the line is judged")
+            return
+        missing = missing_figures(workspace.view, session.draft)
+        if not missing:
+            workspace.tell("No figure of a component is missing")
+            return
+
+        def take(given: Filled | None) -> None:
+            if given is not None and given[0]:
+                count = len(given[0])
+                self._line.attempt(
+                    lambda: session.do(filled(session.draft, missing, *given), "fill in figures"),
+                    f"{count} figure{'s' * (count != 1)} filled in",
+                )
+
+        self._app.push_screen(MissingScreen(missing), take)

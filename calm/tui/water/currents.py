@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import exp
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,43 @@ from calm.errors import CalmError
 from calm.tui.dialogs import Answer, Question
 from calm.tui.water.form import CURRENT_COLUMNS, USUAL_DEPTH
 from calm.tui.water.pane import WaterPane
-from calm.tui.water.presets import PRESETS
+
+_SHARES = (0.0, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0)
+_POWER = 1 / 7
+
+
+@dataclass(frozen=True)
+class _Preset:
+    """A profile to begin with.
+
+    Attributes
+    ----------
+    key : the key that chooses it
+    name : what it is, for people
+    speed : the speed [m/s] at a share of the depth: 0 at the surface to 1 at the bed
+    """
+
+    key: str
+    name: str
+    speed: Callable[[float], float]
+
+    def rows(self, depth: float) -> tuple[tuple[str, str, str], ...]:
+        """Depth [m], speed [m/s] and direction [degrees], east, in water of a depth [m]."""
+        return tuple(
+            (f"{share * depth:.4g}", f"{self.speed(share):.2g}", "90") for share in _SHARES
+        )
+
+
+_PRESETS = (
+    _Preset("1", "uniform, 0.5 m/s", lambda share: 0.5),
+    _Preset("2", "tidal stream, 1 m/s, falling by the 1/7 power of the height above the bed",
+           lambda share: (1.0 - share) ** _POWER),
+    _Preset("3", "linear shear, 0.8 m/s at the surface to nothing at the bed",
+           lambda share: 0.8 * (1.0 - share)),
+    _Preset("4", "boundary current, 1.2 m/s at the surface, decaying by e in a fifth of the depth",
+           lambda share: 0.05 + 1.15 * exp(-share / 0.2)),
+)  # fmt: skip
+"""In the order in which they are offered."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +73,7 @@ class Currents:
         """A profile to begin with."""
 
         def take(key: str | None) -> None:
-            chosen = next((preset for preset in PRESETS if preset.key == key), None)
+            chosen = next((preset for preset in _PRESETS if preset.key == key), None)
             if chosen is not None:
                 rows = chosen.rows(self._pane.water.depth or USUAL_DEPTH)
                 self._pane.put_table(CURRENT_COLUMNS, rows, "a preset current")
@@ -44,7 +81,7 @@ class Currents:
         if self._pane.settle():
             depth = self._pane.water.depth
             down = f"{USUAL_DEPTH:g} m, as no depth is given" if depth is None else f"{depth:g} m"
-            answers = [Answer(preset.key, preset.name, preset.key) for preset in PRESETS]
+            answers = [Answer(preset.key, preset.name, preset.key) for preset in _PRESETS]
             text = f"A table down to {down}, towards the east, for you to change."
             self._app.push_screen(Question("A current to start from", text, answers), take)
 

@@ -142,7 +142,7 @@ class Grid(Vertical):
 
         def check(text: str) -> Reading:
             try:
-                return Reading(text, told=previewed(columns, taken(text)))
+                return Reading(text, comes_to=previewed(columns, taken(text)))
             except NoRows as error:
                 return Reading(text, str(error))
 

@@ -72,7 +72,7 @@ class WaterPane(Horizontal):
         self.workspace, self.session = workspace, workspace.session
         # what was written in forms that others took the place of, to be had back
         self._left: dict[tuple[str | None, Place, str], Value | None] = {}
-        self.goes_on = False  # to the first value of a form, which leaves what was told
+        self.goes_on = False  # to the first value of a form, which leaves the message that is shown
 
     def compose(self) -> ComposeResult:
         """Form and profile."""

@@ -1,9 +1,11 @@
 """What is named from the residuals of sensors, and what is not."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from calm.motion.doubts import doubts, false_currents, said_of_currents
+from calm.motion.doubts import doubts, false_currents, said_of_currents, said_of_datum
 from calm.motion.unknowns import Common
 
 TIMES = 100
@@ -119,3 +121,28 @@ def test_currents_that_look_false_are_listed_with_their_times():
     assert list(false) == ["b"] and false["b"].tolist() == TIME[[7, 9]].tolist()
     (said,) = said_of_currents(false, TIMES)
     assert "current at b" in said and "2 of 100 times, first at 2026-03-01T07:00" in said
+
+
+@pytest.mark.parametrize(
+    ("datum", "offset", "spread", "said"),
+    [
+        (9.7, 0.3, 0.5, "as if the pressures included that of the air"),
+        (9.2, 0.0, 0.5, "as if the pressures included that of the air"),
+        (9.0, 0.0, 0.5, "the depth of the water"),
+        (7.8, 1.5, 3.4, "as if the pressures included that of the air"),
+        (6.0, 2.0, 3.4, None),  # less than two deviations from none
+        (7.6, 0.0, 0.5, "the depth of the water"),  # 2.5 times a hundredth of it
+        (-7.6, 0.0, 0.5, "the depth of the water"),
+        (7.4, 0.0, 0.5, None),
+        (-10.1, 0.0, 0.5, "the depth of the water"),
+    ],
+)
+def test_all_sensors_off_alike_are_named_and_the_weight_of_the_air_is_known(
+    datum, offset, spread, said
+):
+    known = replace(common((offset, offset)), factors={"cable_drag": 1.0}, datum=datum)
+    covariance = np.diag([0.1, spread, 1.0, 1.0, 0.0, 0.0]) ** 2
+    found = said_of_datum(replace(known, covariance=covariance), 300.0)
+    assert len(found) == (said is not None)
+    for one in found:
+        assert said in one and one.startswith(f"all sensors: {datum:+.1f} m off alike")

@@ -38,6 +38,12 @@ def test_arrays_are_found_by_their_standard_name_and_unit(tmp_path):
     assert level == pytest.approx([-0.05, np.nan, 0.2], nan_ok=True)
 
 
+FAR = "time,level[m]\n" + "".join(
+    f"2026-03-01T0{hour}:00,{level}\n"
+    for hour, level in enumerate(("20.1", "", "9999", "0.1", "0.2"))
+)
+
+
 @pytest.mark.parametrize(
     ("name", "text", "said"),
     [
@@ -46,6 +52,7 @@ def test_arrays_are_found_by_their_standard_name_and_unit(tmp_path):
         ("c.csv", "time,a[m],b[m]\n2026-03-01T00:00,1,2\n", "has several columns"),
         ("d.csv", "time,level[m]\nyesterday,1\n2026-03-01T00:00,x\n", "`x` is not a number"),
         ("e.csv", None, "no such file"),
+        ("f.csv", FAR, "is 9999 m at 2026-03-01T02:00:00: no height"),
     ],
 )
 def test_what_is_no_sea_level_is_refused(tmp_path, name, text, said):

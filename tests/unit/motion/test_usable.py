@@ -1,0 +1,88 @@
+"""Which readings cannot be from where a sensor hangs, and which sensors cannot be used."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from calm.errors import UsageError
+from calm.motion.sensors import Sensor
+from calm.motion.usable import plausible, unusable
+
+SEABED = 300.0
+
+
+def sensor(*depth, again=()):
+    time = np.datetime64("2026-03-01", "ns") + np.arange(len(depth)) * np.timedelta64(1, "h")
+    time[list(again)] = time[[i - 1 for i in again]]
+    return Sensor("a", time, np.array(depth), "p.csv")
+
+
+@pytest.mark.parametrize(("place", "least"), [(60.0, 30.0), (30.0, 10.0), (10.0, -10.0)])
+def test_readings_far_above_the_place_or_below_the_seabed_are_left_out(place, least):
+    good = [place + 5.0] * 7
+    found, said = plausible(sensor(*good, least - 0.1, least, 330.0, 330.1), place, SEABED)
+    assert np.isnan(found.depth).tolist() == [False] * 7 + [True, False, False, True]
+    assert said == [
+        f"a: 2 of its readings cannot be from its place, {place:.1f} m, and are left out: the "
+        f"first is {least - 0.1:.1f} m, at 2026-03-01T07:00:00"
+    ]
+    shallow, _ = plausible(
+        sensor(*[95.0] * 7, 119.9, 120.1), 90.0, 100.0
+    )  # 20 m below, not a tenth
+    assert np.isnan(shallow.depth).tolist() == [False] * 8 + [True]
+
+
+def test_where_half_are_wrong_the_sensor_is_and_nothing_is_left_out():
+    for count, left_out in ((2, True), (3, False)):
+        found, said = plausible(sensor(*[60.0] * 3, np.nan, *[-999.0] * count), 60.0, SEABED)
+        assert np.isnan(found.depth).sum() == 1 + count * left_out
+        assert bool(said) == left_out
+
+
+def test_of_readings_at_one_time_the_first_counts():
+    found, said = plausible(sensor(60.0, 61.0, 99.0, 62.0, again=(2,)), 60.0, SEABED)
+    assert found.depth.tolist() == [60.0, 61.0, 62.0] and len(found.time) == 3
+    assert said == [
+        "a: 1 of its times stand twice, the first 2026-03-01T01:00:00: the first reading of each "
+        "counts"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("depth", "place", "reason"),
+    [
+        ([np.nan] * 4, 60.0, "no good pressure"),
+        ([60.0, 60.0, np.nan, 60.0 + 9e-7], 60.0, "is constant at 60.0 m"),
+        ([60.0, 60.0, 60.0 + 2e-6], 60.0, None),
+        ([60.0, 60.0], 60.0, None),  # two are too few to say
+    ],
+)
+def test_a_sensor_that_measures_nothing_is_named(depth, place, reason):
+    measured = SimpleNamespace(label=("a",), depth=np.array(depth)[:, None], point=np.array([1]))
+    found = unusable(measured, np.array([0.0, place]))
+    assert list(found) == ["a"] * (reason is not None)
+    assert reason is None or reason in found["a"]
+
+
+@pytest.mark.parametrize(
+    ("least", "place", "refused"),
+    [
+        (121.0, 60.0, True),
+        (119.0, 60.0, False),
+        (29.0, 60.0, True),
+        (31.0, 60.0, False),
+        (29.0, 10.0, False),  # three times as deep, but 19 m
+        (31.0, 10.0, True),
+    ],
+)
+def test_a_sensor_far_from_its_place_at_its_least_is_refused(least, place, refused):
+    depth = np.linspace(least, least + 40.0, 41) - 2.0  # a twentieth is less than the least
+    measured = SimpleNamespace(label=("a",), depth=depth[:, None], point=np.array([0]))
+    if refused:
+        with pytest.raises(
+            UsageError, match=rf"`a` is at {least:.1f} m at its least.* {place:.1f}"
+        ):
+            unusable(measured, np.array([place]))
+    else:
+        assert unusable(measured, np.array([place])) == {}
