@@ -325,7 +325,7 @@ def _answer(
 def _report_files(
     assessments: Sequence[Assessment], drawings: Sequence[Drawn], document: dict[str, Any]
 ) -> dict[str, bytes]:
-    """What the folder of a report has, but for its PDF."""
+    """The files of a report's folder, without its PDF."""
     from calm.report.check.csv import checks_csv, inventory_csv
     from calm.report.document import to_json
     from calm.report.html import report_html

@@ -54,7 +54,7 @@ class Shown(Protocol):
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one file: a result, or the reason why there is none."""
+    """The outcome of one file: a result, or the reason why there is none."""
 
     file: Path
     name: str

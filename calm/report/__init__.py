@@ -1,1 +1,1 @@
-"""What people and programs are shown of a result: tables, documents and plots."""
+"""A result as people and programs see it: tables, documents and plots."""

@@ -30,7 +30,7 @@ def bare_cable_document(cable: BareCable) -> dict[str, Any]:
 
 
 def bare_cable_part(cable: BareCable) -> Part:
-    """The answer and what to think of it."""
+    """The answer, and what to keep in mind with it."""
     cn, amplitude = cable.vibration
     pairs = [
         ("weight in water", f"{cable.weight:.3f} N/m"),

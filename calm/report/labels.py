@@ -91,7 +91,7 @@ def spread(wanted: list[float], gap: float, start: float, end: float) -> list[fl
 
 
 def _is_next(part: Named, other: Named) -> bool:
-    """Whether two parts are the same component under the same label but for its number."""
+    """Whether two parts are the same component under the same label, numbers apart."""
     return part.use == other.use and alike(part.text, other.text)
 
 

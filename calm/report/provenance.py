@@ -63,7 +63,7 @@ def source_text(file: MooringFile) -> str | None:
 
 
 def input_hash(files: Sequence[MooringFile]) -> str:
-    """SHA-256 of what was computed from, in hexadecimal digits.
+    """SHA-256 of the inputs, in hexadecimal digits.
 
     Parameters
     ----------

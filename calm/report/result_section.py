@@ -63,7 +63,7 @@ def result_report(result: Result | TowResult, uncertain: Uncertain | None = None
 
 
 def _limits(result: Result | TowResult) -> tuple[Part, ...]:
-    """By what the margins of a mooring's table are judged; a tow has no such limits."""
+    """The limits of the margins in a mooring's table; a tow has none."""
     if isinstance(result, TowResult):
         return ()
     keys = limits_used(result.file, reaches_the_surface(result.mooring))

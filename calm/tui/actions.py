@@ -1,4 +1,4 @@
-"""Bindings, hints and names of keys, made of the table of all actions."""
+"""Bindings, hints and names of keys, from the table of all actions."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def bindings(place: Place, target: str = "") -> list[Binding]:
 
 
 def hints(place: Place) -> list[Action]:
-    """The actions to remind of while a place has the focus, the most wanted first."""
+    """The actions shown while a place has the focus, the most used first."""
     own = [action for action in actions_in(place) if action.hint is not None]
     if place == "line":
         own += [action for action in actions_in("anywhere") if action.hint is not None]

@@ -1,4 +1,4 @@
-"""What would mend what the design check finds, as changes of the file.
+"""Changes of the file that mend what the design check finds.
 
 Nothing here knows of the screen. What has to be solved for is found by `calm size`.
 """
@@ -174,7 +174,7 @@ def _floats(mooring: Mooring, finding: Finding, lacking: float) -> Iterator[Offe
 
 
 def _put(item: int, key: str, value: str) -> Callable[[Draft], Draft]:
-    """Writes a value; of another component the figures of the one before go."""
+    """Writes a value; another component drops the `weight` of the row."""
 
     def make(draft: Draft) -> Draft:
         made = draft.put(item, key, value)

@@ -89,7 +89,7 @@ class BuildApp(InTurn):
         self.theme = choose_theme(environ)
 
     def get_default_screen(self) -> Screen[Any]:
-        """The line, with none below it: what is below is painted too."""
+        """The line as the lowest screen: a screen below it would be painted too."""
         return self.builder
 
     def on_mount(self) -> None:
@@ -110,7 +110,7 @@ class BuildApp(InTurn):
             self.tell(f"{self.session.name} is open elsewhere, with work not saved", wrong=True)
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
-        """Of what textual offers, the colours; the rest has its own keys here."""
+        """The command for colours; the other commands of textual have keys of their own here."""
         yield SystemCommand("colours", "Choose other colours.", self.action_change_theme)
 
     def get_line_filters(self) -> Sequence[LineFilter]:
@@ -137,7 +137,7 @@ class BuildApp(InTurn):
         screen.tell(text, wrong=wrong)
 
     def draft_screens(self) -> list[DraftScreen]:
-        """Those that are open, the one on top last."""
+        """The open ones, the top one last."""
         return [each for each in self.screen_stack if isinstance(each, DraftScreen)]
 
     def is_settled(self) -> bool:
@@ -283,7 +283,7 @@ class BuildApp(InTurn):
             self.screen.part.settle()
 
     def keep_at_the_end(self) -> None:
-        """Keep what is not saved, unless the person has left; `not_kept` tells what hinders it."""
+        """Keep what is not saved, unless the person has left; `not_kept` says what prevents it."""
         if not self._is_left:
             self.not_kept = self.keep()
 

@@ -1,4 +1,4 @@
-"""The first line of the screen, what is open and how it stands; and the last, the keys of now."""
+"""The first line of the screen, file and verdict, and the last, the keys that work now."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class TitleBar(Widget):
             self.refresh()
 
     def render(self) -> Text:
-        """Both ends; the left one gives way."""
+        """Both ends; the left one is cut where there is no room."""
         width = self.content_size.width
         said, verdict, old = self._said
         right = Text(verdict, style="dim" if old else "", no_wrap=True)
@@ -71,7 +71,7 @@ class KeyBar(Static):
             self._show()
 
     def tell(self, text: str, *, wrong: bool = False) -> None:
-        """Tell of something; nothing gives the keys back."""
+        """Show a message; an empty one shows the keys again."""
         if (text, wrong) == (self._told, self.has_class("-wrong")):
             return
         self._told = text

@@ -21,7 +21,7 @@ _UNIT = re.compile(r"[\d.]\s*([^\d.\s].*)$")
 
 @dataclass(frozen=True)
 class Reading:
-    """What became of a text.
+    """A text as it was understood.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ def anything(text: str) -> Reading:
 
 
 def day(text: str) -> Reading:
-    """A day of the calendar, or nothing."""
+    """Check a day of the calendar, which may be left out."""
     tidy = text.strip()
     try:
         return Reading(tidy and date.fromisoformat(tidy).isoformat())

@@ -37,7 +37,7 @@ _FRAME = """
 
 @dataclass(frozen=True)
 class Answer:
-    """An answer: the key that gives it, what it says, and what it means to the one who asked."""
+    """An answer: its key, its text, and the value that it stands for."""
 
     key: str
     title: str
@@ -45,7 +45,7 @@ class Answer:
 
 
 class Question(ModalScreen[str | None]):
-    """One of some answers, by its key or with the mouse; Esc is none, unless it `must` be given."""
+    """One of several answers, by its key or with the mouse; Esc gives none unless one `must` be."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("question")]
     DEFAULT_CSS = "Question {" + _FRAME + "}"

@@ -88,12 +88,12 @@ class Field(Horizontal):
 
     @property
     def input(self) -> Entry:
-        """Where one types."""
+        """The input."""
         return self.query_one(Entry)
 
     @property
     def is_typing(self) -> bool:
-        """Whether something else was typed than was shown."""
+        """Whether the text differs from the one shown first."""
         return self.input.value != self._shown
 
     @property
@@ -125,7 +125,7 @@ class Field(Horizontal):
         self.input.focus()
 
     def tell(self, note: str) -> None:
-        """Another note, for as long as nothing is wrong."""
+        """Show another note, as long as nothing is wrong."""
         self._note = note
         if not self.has_class("-wrong"):
             self.query_one(".field-note", Static).update(note, layout=False)

@@ -1,4 +1,4 @@
-"""What was found of each row of a line: its figures, its margin and its state."""
+"""Each row of a line with its figures, its margin and its state."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ _FULLY_AFTER = 0.5  # seconds without a change before launch, recovery and break
 
 
 class Judging:
-    """Has workers judge the draft of a workspace; they post messages to the application.
+    """Starts workers that judge the draft of a workspace and post messages to the application.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class Judging:
         return not busy and self._workspace.view is not None
 
     def after_an_edit(self) -> None:
-        """The draft is another one: what was typed is seen first."""
+        """Judge the new draft, after what was typed is shown."""
         self._is_stale = True
         self._app.call_after_refresh(self.ask)
         if self._dimming is None:
@@ -98,7 +98,7 @@ class Judging:
         return not is_late
 
     def failed(self) -> None:
-        """CALM itself has failed; what is wanted since is judged all the same."""
+        """Report a failure of CALM itself; later drafts are judged all the same."""
         self._is_judging, self._checked = False, None
         if self._is_wanted:
             self.ask()

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 _TURN = 0.001  # seconds
 _GRACE = 3
-"""Seconds that leaving in order may take: a terminal that is stuck takes nothing any more."""
+"""Most seconds for an orderly end: a terminal that is stuck takes no output any more."""
 
 
 def open_session(
@@ -106,7 +106,7 @@ def end(app: BuildApp, number: int, _frame: object) -> None:
     """Keep the work and leave, the terminal or the process being ended by a signal.
 
     The loop of the application is not waited for: it may itself wait for a terminal that is gone,
-    for ever. Of a closed terminal nothing is to be put right, and the process ends at once.
+    for ever. A closed terminal needs no restoring, and the process ends at once.
     """
     try:
         app.take_typed()

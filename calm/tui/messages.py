@@ -49,7 +49,7 @@ def is_elsewhere(problem: Problem, path: Path) -> bool:
 
 
 def place_of(problem: Problem, path: Path) -> str:
-    """Where a mistake is: ``line 4:2``, and in another file than that of the path its name too."""
+    """Where a mistake is: ``line 4:2``, with the file where it is not that of the path."""
     place = f"line {problem.line}:{problem.column}" if problem.line else ""
     if not is_elsewhere(problem, path):
         return place

@@ -31,7 +31,7 @@ _BESIDE, _MOST_BESIDE = 3, 26
 
 
 class Tabs(Static):
-    """The names of the pictures, the one shown in reverse."""
+    """The names of the pictures; that of the picture shown in reverse."""
 
     DEFAULT_CSS = """
     Tabs {

@@ -205,7 +205,7 @@ def chosen_path(text: str) -> Path:
 
 
 def _free_name(path: Path) -> Path:
-    """A name like that of a file which is free."""
+    """A free name like that of a file."""
     number = 2
     while (free := path.with_name(f"{path.stem}-{number}{path.suffix}")).exists():
         number += 1

@@ -131,7 +131,7 @@ class Session:
         self.do(draft, label)
 
     def replace(self, spot: Place, values: Mapping[str, str]) -> list[str]:
-        """Another component on a row; what the row said of the one before and still says."""
+        """Put another component on a row; returns what the row still overrides of the old one."""
         rows, index = _listed(spot)
         written = self.draft.value((*rows, index))
         kept = [

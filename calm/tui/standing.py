@@ -37,7 +37,7 @@ class Standing:
 
     @property
     def lost_environment(self) -> str | None:
-        """The environment that was chosen where the file, as far as it can be read, has it not."""
+        """The chosen environment, where the file, as far as it can be read, does not have it."""
         here = self._environment
         is_there = self._is_file or self._history.draft.problems or here in self.environments
         return None if is_there else here

@@ -162,7 +162,7 @@ def _figures(
 
 
 def _mooring(result: Result, findings: Sequence[Finding], pending: bool) -> Iterator[Saying]:
-    """What the line does as given; what is judged, as the worst of its findings has it."""
+    """What the line does as given; what is judged shows the worst of its findings."""
     from calm.checks.anchor import anchor_weight
     from calm.checks.posture import knockdown
     from calm.checks.surface import reserve
@@ -200,13 +200,13 @@ def _holds(result: Result, worst: Finding | None, pending: bool) -> Saying:
 
 
 def _worst(findings: Sequence[Finding], rule: Rule) -> Finding | None:
-    """The gravest of those of a rule, of equals the one with the least margin."""
+    """The gravest finding of a rule; of equal ones that with the least margin."""
     own = [each for each in findings if each.rule == rule.name]
     return min(own, key=lambda each: each.rank, default=None)
 
 
 def _at_worst(worst: Finding, figure: str) -> str:
-    """The figure of the worst situation, where that is not the one as given."""
+    """The figure of the worst situation, where that is not the mooring as given."""
     return "" if worst.situation == AS_GIVEN else f"; {figure} at worst{_situation(worst)}"
 
 

@@ -151,7 +151,7 @@ def _gathered(profiles: Iterator[list[tuple[int, str]]]) -> Iterator[list[Lines]
 
 
 def _refuse(problems: list[Problem], header: CsvHeader, *, at_least: int = 0) -> None:
-    """Raise the mistakes where there are more than so many, or where the header has one."""
+    """Raise the mistakes where there are more than `at_least`, or where the header has one."""
     unique = sorted(dict.fromkeys(problems), key=lambda one: (one.line, one.column))
     in_header = [problem for problem in unique if problem.line == header.row.number]
     if in_header:

@@ -65,7 +65,7 @@ def sha256_of(text: str) -> str:
 
 
 def differences(before: Any, now: Any) -> str:
-    """In words, what of one identity is other than it was in another."""
+    """What differs between two identities, in words."""
     found = list(_differing("", before, now))
     told = "; ".join(found[:MOST_TOLD])
     return f"{told}; and {len(found) - MOST_TOLD} more" if len(found) > MOST_TOLD else told

@@ -1,4 +1,4 @@
-"""How the reports of a batch say its names, its times and its shares."""
+"""Names, times and shares as the reports of a batch write them."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def when(time: np.datetime64 | NDArray[np.datetime64] | None) -> str:
 
 
 def percent(share: float | None) -> str:
-    """A share in percent; one that is not nothing is not written as nothing."""
+    """A share in percent; one above zero is not written as 0."""
     if share is None:
         return "-"
     if 0.0 < share < 5e-5:
@@ -74,7 +74,7 @@ def standing(summary: Summary) -> str:
 
 
 def left_out(summary: Summary) -> str:
-    """That profiles with a current were not solved, and what that does to figures; or nothing."""
+    """How many profiles with a current were not solved, and what that does to figures, if any."""
     if not summary.unsolved:
         return ""
     with_current = summary.solved + summary.unsolved

@@ -39,11 +39,11 @@ if TYPE_CHECKING:
 
 _SIGNS = {State.FAIL: "!", State.WARN: "~", State.UNKNOWN: "?"}
 _TOLD = 12
-"""So many failures, or warnings, are reported of a mooring; a report has them all."""
+"""Most failures, or warnings, shown of a mooring; a report has them all."""
 _NAMED = 3
-"""Components that one reason accepts something of are named up to so many."""
+"""Most components named for one reason of acceptance."""
 _LACKING = 60
-"""Components that lack a figure are named up to so many."""
+"""Most components named that lack a figure."""
 
 
 def check_part(assessments: Sequence[Assessment]) -> Part:
@@ -165,7 +165,7 @@ def _worst(assessments: Sequence[Assessment], findings: Sequence[Finding]) -> Ta
 
 
 def _where(finding: Finding, several: bool) -> str:
-    """The component, and what of mooring, environment and situation goes without saying not."""
+    """The component, with mooring, environment and situation where they are not plain."""
     places = [finding.component, finding.mooring if several else None]
     if several or finding.environment != OWN or finding.situation != AS_GIVEN:
         places.append(place_of(finding))

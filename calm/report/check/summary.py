@@ -197,7 +197,7 @@ def _moorings(found: Sequence[tuple[Section, Finding]], state: State) -> str:
 
 
 def abreast(columns: Sequence[str]) -> Iterator[Sequence[str]]:
-    """The columns in groups of much the same size that fit the width of a page."""
+    """The columns in groups of about the same size that fit the width of a page."""
     groups = math.ceil(len(columns) / _ABREAST)
     size = math.ceil(len(columns) / groups)
     for start in range(0, len(columns), size):

@@ -29,7 +29,7 @@ SIGNS = {
 def verdict_of(findings: Iterable[Finding]) -> tuple[State, str]:
     """The worst state of one or several moorings, and the verdict in words.
 
-    A figure of a component is counted once, wherever it is missed.
+    A missing figure of a component is counted once.
     """
     by_mooring: dict[str, list[Finding]] = {}
     for finding in findings:

@@ -25,7 +25,7 @@ _NEAREST = 0.05  # points: of two that are nearer one is drawn
 
 
 class Graph:
-    """An empty graph, white, so many points wide and high."""
+    """An empty white graph of a width and height [pt]."""
 
     def __init__(self, width: float, height: float, title: str, size: float) -> None:
         element = ElementTree.Element(

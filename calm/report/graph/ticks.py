@@ -84,7 +84,7 @@ def _days(months: Any, step: int) -> Any:
 
 
 def round_numbers(low: float, high: float, most: int) -> list[float]:
-    """Round numbers from `low` to `high`: about so many, and not one alone, which tells nothing."""
+    """Round numbers from `low` to `high`, about `most` of them, and more than one."""
     raw = (high - low) / max(most, 1)
     power = 10.0 ** floor(log10(raw))
     step = next(power * each for each in _STEPS if power * each >= raw * (1.0 - 1e-9))

@@ -1,4 +1,4 @@
-"""What was found of a mooring's motion, in tables."""
+"""The motion of a mooring in tables."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def sensors_table(study: Study) -> Table:
 
 
 def held_out_table(held_out: Sequence[HeldOut]) -> Table:
-    """How the depths of hidden sensors were found."""
+    """How well the depths of hidden sensors were estimated."""
     columns = (
         Column("hidden sensor"),
         Column("times", numeric=True),

@@ -1,4 +1,4 @@
-"""Where everything of a schematic stands on the page, so that no two texts meet."""
+"""The layout of a schematic on the page, in which no two texts meet."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ _ROWS_PER_TICK = 3
 
 @dataclass(frozen=True)
 class Scale:
-    """A range of a quantity, from `low` (left or top) to `high`, over so many dots."""
+    """A range of a quantity, from `low` (left or top) to `high`, over a number of dots."""
 
     low: float
     high: float
@@ -149,5 +149,5 @@ def _end(labels: list[tuple[int, str]]) -> int:
 
 
 def levels(low: float, high: float, rows: int) -> list[float]:
-    """Ticks for a scale so many rows high."""
+    """Ticks for a scale of a number of rows."""
     return round_numbers(low, high, max(rows // _ROWS_PER_TICK, 1))

@@ -41,7 +41,7 @@ class ComponentList(Listing, can_focus=False):
     }
 
     class Moved(Listing.Moved):
-        """Another component is under the cursor."""
+        """The cursor is on another component."""
 
     class Pressed(Message):
         """The component under the cursor was pressed with the mouse."""

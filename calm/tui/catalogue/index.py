@@ -18,7 +18,7 @@ from calm.tui.catalogue.synonyms import with_synonyms
 
 _ROLES = {"cable": "line", "chain": "line", "anchor": "anchor"}
 _ELSEWHERE = 4
-"""The rank of a component whose id has not all words."""
+"""The rank of a component whose id does not have all words."""
 _BETWEEN = re.compile(r"[\s_-]+")
 
 
@@ -35,7 +35,7 @@ class Listed:
 
     @cached_property
     def searched(self) -> str:
-        """All that the words are looked for in."""
+        """The text in which words are looked for."""
         own = " ".join((self.id, self.name, self.maker, self.kind, self.role)).casefold()
         return with_synonyms(own.replace("-", " ")) + f" {own}"
 

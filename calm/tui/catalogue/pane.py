@@ -1,4 +1,4 @@
-"""The catalogue at hand: a search that answers at each key, a card, what else is asked for."""
+"""The catalogue: a search that answers at each key, a card, and what else is asked for."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class CataloguePane(Vertical):
 
     @dataclass
     class Told(Message):
-        """Something to be said in the last line."""
+        """A message for the last line."""
 
         text: str
         wrong: bool = False
@@ -191,7 +191,7 @@ class CataloguePane(Vertical):
         self._search()
 
     def action_mark(self) -> None:
-        """Make a favourite of the component, or no more."""
+        """Mark the component as a favourite, or unmark it."""
         chosen = self.listing.chosen
         if chosen is not None:
             try:

@@ -1,4 +1,4 @@
-"""What a person takes from the catalogue again and again: favourites, and what was used lately.
+"""Favourites of the catalogue, and what was used lately.
 
 Both are kept in the state folder of the user (`XDG_STATE_HOME`), for every file.
 """
@@ -28,7 +28,7 @@ class Remembered:
         self.favourites, self.recent = _read()
 
     def take(self, id: str) -> None:
-        """One was taken from the catalogue; a disk that refuses forgets it at the end."""
+        """Note that one was taken; where it cannot be kept, for this session only."""
         self.recent = [id, *(each for each in self.recent if each != id)][:_MOST_RECENT]
         try:
             self._keep()
@@ -36,7 +36,7 @@ class Remembered:
             return
 
     def mark(self, id: str) -> bool:
-        """Make a favourite of one, or no more; whether it is one now.
+        """Mark a favourite, or unmark it; returns whether it is one now.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""Words that people use for the same thing: each of a group finds what has any other of it."""
+"""Synonyms: each word of a group finds what has any other word of it."""
 
 from __future__ import annotations
 
@@ -30,5 +30,5 @@ _FOUND = tuple(
 
 
 def with_synonyms(text: str) -> str:
-    """A text, in small letters, with all words that mean the same as one of its own."""
+    """A text in small letters, with the synonyms of its words added."""
     return " ".join([text, *(words for pattern, words in _FOUND if pattern.search(text))])
