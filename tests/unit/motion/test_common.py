@@ -123,7 +123,7 @@ def test_the_common_factor_is_that_of_the_law_written_out(
 
 
 def slipped(seed, size, memory=0.0, start=80):
-    """The lower sensor hangs lower from a time on, its errors may repeat; the first time has none."""
+    """The lower sensor hangs lower from a time on, its errors may repeat; no first reading."""
     one = record(seed, 1.1, 1.0, 1.0)
     random = np.random.default_rng(seed)
     error = 0.8 * random.standard_normal(TIMES)
