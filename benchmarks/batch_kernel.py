@@ -145,21 +145,32 @@ def rates_of(checkout: Path, profiles: str) -> dict[str, float]:
     return found
 
 
+LINE = """\
+  - {use: float}
+  - {use: cable, length: 1000 m}"""
+TWO_FLOATS = """\
+  - {use: float}
+  - {use: cable, length: 100 m}
+  - {use: float}
+  - {use: cable, length: 1150 m}"""
 LAWS = {
-    "friction: hoerner": ("", "solver: {friction: hoerner}"),
-    "friction: constant": ("", "solver: {friction: constant}"),
+    "friction: hoerner": ("", "solver: {friction: hoerner}", LINE),
+    "friction: constant": ("", "solver: {friction: constant}", LINE),
     "elongation table": (
         "breaking_load: 60 kN\n    elongation: [[0.05, 0.001], [0.2, 0.003], [0.5, 0.006]]",
         "",
+        LINE,
     ),
-    "drag: reynolds": ("", "solver: {drag: reynolds}"),
+    "drag: reynolds": ("", "solver: {drag: reynolds}", LINE),
+    "two floats afloat": ("", "", TWO_FLOATS),
 }
-"""What stands in S1000 in place of its stiffness, and below it."""
+"""What stands in S1000 in place of its stiffness, below it, and for its line."""
 
 
-def s1000_with(stretch: str, solver: str) -> Mooring:
+def s1000_with(stretch: str, solver: str, line: str) -> Mooring:
     """S1000, its float a smooth sphere, under another law."""
     text = (shipped_folder("lines") / "s1000.yaml").read_text(encoding="utf-8")
+    text = text.replace(LINE, line)
     text = text.replace("stiffness: 4000 kN", stretch or "stiffness: 4000 kN")
     text = text.replace("kind: body\n    length: 0 m", "kind: sphere\n    diameter: 1.2 m")
     text = text.replace("    drag_area: 0.6 m^2\n    cd: 1\n", "    surface: smooth\n")
@@ -202,7 +213,7 @@ def main(profiles: str = "8192", checked: str = "24", checkout: str = "") -> Non
         for line in errors(mooring, plan, current, found, few):
             print(f"  off by {line}")
     print("\nS1000 under other laws, kernel, 1 thread")
-    for name, law in {"constant drag": ("", ""), **LAWS}.items():
+    for name, law in {"constant drag": ("", "", LINE), **LAWS}.items():
         mooring = s1000_with(*law)
         plan = Batch(mooring).plan
         current = currents(mooring, int(profiles) // 4)

@@ -21,8 +21,9 @@ from calm.physics.line import Floats, Integers
 
 MOST_TIMES = 500
 """So many times, spread evenly over the record, are what it is estimated from."""
-TURNS = 3
-"""Steps of Gauss and Newton; the last two agree to a hundredth of the intervals."""
+TURNS, ENOUGH = 12, 0.02
+"""Steps of Gauss and Newton at most; fewer where one moves no unknown by more than this share of
+its standard deviation."""
 ROBUST = 4.0
 """Degrees of freedom of Student's law for the misfit of a time."""
 FURTHEST = 1.0
@@ -120,7 +121,11 @@ def estimate_common(mooring: Mooring, measured: Measured, names: Sequence[str]) 
         expected = expected + ((scale / common.scale) ** 2 - 1.0) * currents
         evidence = _evidence(raw, left, fixed, expected, there)
         alike = _alike(evidence.pulls(fixed, left)[:, 0]) if names else 1.0
+        before = common.value
         common = _placed(replace(begun, scale=scale), evidence, fall, time, alike)
+        deviation = np.sqrt(np.diag(common.covariance))
+        if (np.abs(common.value - before) <= ENOUGH * deviation).all():
+            break
     return common
 
 

@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 
-import numpy as np
-
 from calm.physics.line import Floats, Line
-from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.track import Load
 from calm.solve.audit import LARGEST_CLOSURE, LARGEST_MOMENT, Audit
 from calm.solve.closing import Closed, Closing
 from calm.solve.refine import Refined
 from calm.solve.solution import Solution, nodes_of, sizes
+from calm.solve.standing import surface_lift
 from calm.solve.status import Status
 
 UNSEEN = 1e-9
@@ -104,11 +102,9 @@ def _buoyancy_in_use(closing: Closing, fine: Closed) -> tuple[float, float]:
     shares = fine.root.unknown.shares(fine.root.x)
     if not shares:
         return 1.0, 0.0
-    _, density = closing.water.at(np.zeros(1))
-    excess = (float(density[0]) - REFERENCE_DENSITY) * closing.water.gravity
-    lift = {p: float(closing.line.buoyancy[p] + excess * closing.line.volume[p]) for p in shares}
-    total = sum(lift.values())
-    used = sum(shares[p] * lift[p] for p in shares)
+    lift = surface_lift(closing.line, closing.water)
+    total = float(sum(lift[p] for p in shares))
+    used = float(sum(shares[p] * lift[p] for p in shares))
     return used / total, total - used
 
 

@@ -22,6 +22,12 @@ def standing_lift(line: Line, water: Water) -> Floats:
     return line.net_force((density - REFERENCE_DENSITY) * water.gravity)
 
 
+def surface_lift(line: Line, water: Water) -> Floats:
+    """(n,) net force of every piece without its clamps in the water of the surface, + up [N]."""
+    _, density = water.at(np.zeros(1))
+    return line.buoyancy + (float(density[0]) - REFERENCE_DENSITY) * water.gravity * line.volume
+
+
 def standing_length(line: Line, lift: Floats) -> float:
     """Length of the line standing upright in still water, each piece stretched by its mean
     tension [m]; where a clamp hangs on a piece makes no difference here. `lift` is the

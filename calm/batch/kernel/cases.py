@@ -51,16 +51,16 @@ def read_case(
     return SOLVED if speed > 0.0 else STILL
 
 
-def as_on_seabed(seek: Searches, c: int, aim: Aim) -> int:
+def as_on_seabed(seek: Searches, c: int, aim: Aim, several: bool) -> int:
     """Whether a line found clear of the seabed is what the search for one that lies there finds.
 
     That one brings the line's end down to the seabed: a float that just reaches the surface then
-    is under water, where there may be another root.
+    is under water, where there may be another root. `several` of them may not close the line then.
     """
     if seek[c].least_carried <= 0.0:
         return SAGS
     dips = seek[c].unknown < 0.0 and seek[c].lower_miss >= -aim.anchor_height
-    return TURNS_BACK if dips and seek[c].fall > 0.0 else SOLVED
+    return TURNS_BACK if dips and (seek[c].fall > 0.0 or several) else SOLVED
 
 
 def look_on_seabed(
@@ -99,8 +99,10 @@ def look_on_seabed(
             seek[c].found = seek[c].aloft_found
         elif ends[c] == ON_SEABED and closed:
             ends[c] = WRITTEN
-        else:
-            ends[c] = LIFTED if closed else there[c]
+        elif closed:
+            ends[c] = LIFTED
+        elif there[c] != LIFTED:
+            ends[c] = there[c]
     close(march, desk, clear, seek, shapes, again, start, results)
     for c in range(ends.size):
         if seek[c].tried == 2:
@@ -125,7 +127,7 @@ def solve_chunks(
         if contact == LIKELY:
             for c in range(ends.size):
                 if ends[c] == SOLVED:
-                    ends[c] = as_on_seabed(seek, c, clear.aim)
+                    ends[c] = as_on_seabed(seek, c, clear.aim, clear.joints.size > 0)
         close(march, desk, clear, seek, shapes, ends, start, results)
         if contact != NEVER:
             look_on_seabed(

@@ -9,10 +9,20 @@ the next case as soon as it is done with one.
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import sqrt
 from typing import NamedTuple
 
 from calm.batch.kernel import lane
+from calm.batch.kernel.afloat import (
+    NO_FLOAT,
+    foresee,
+    go_back,
+    miss_of,
+    next_float,
+    place_case,
+    seek_from_the_top,
+    set_out,
+    used_of,
+)
 from calm.batch.kernel.bends import ROUNDS, recut
 from calm.batch.kernel.endings import (
     COMPRESSED,
@@ -24,8 +34,8 @@ from calm.batch.kernel.endings import (
     UNCLOSED,
     WRITTEN,
 )
-from calm.batch.kernel.lane import LANES, Desk
-from calm.batch.kernel.layout import Aim, Results, Rides, Way
+from calm.batch.kernel.lane import LANES, STATE, Desk
+from calm.batch.kernel.layout import Results, Way
 from calm.batch.kernel.outcome import blend, greatest_change, write_case
 from calm.batch.kernel.search import (
     AWAY,
@@ -75,27 +85,6 @@ class Shapes(NamedTuple):
     blended: Floats
 
 
-def place_free_end(s: Floats, i: int, y: float, rides: Rides) -> None:
-    """Put a lane's free end where its unknown has it."""
-    s[lane.FREE_END + i], s[lane.SHARE + i], s[lane.OUT + i] = y, 1.0, 0.0
-    s[lane.WET + i], s[lane.HELD + i] = 1.0, 1.0
-    s[lane.WIND_EAST + i], s[lane.WIND_NORTH + i] = 0.0, 0.0
-    if y < 0.0:
-        s[lane.FREE_END + i], s[lane.SHARE + i] = 0.0, 1.0 + y
-        last = rides.by_share.size - 1
-        at = (1.0 - sqrt(-y)) * last
-        j = min(max(int(at), 0), last - 1)
-        left = at - j
-        here, following = rides.by_share[j], rides.by_share[j + 1]
-        standing = here.standing + left * (following.standing - here.standing)
-        above = here.above + left * (following.above - here.above)
-        s[lane.OUT + i] = above * rides.above + standing * rides.own
-        s[lane.WET + i] = 1.0 - above
-        s[lane.HELD + i] = here.drag + left * (following.drag - here.drag)
-        s[lane.WIND_EAST + i] = here.push_east + left * (following.push_east - here.push_east)
-        s[lane.WIND_NORTH + i] = here.push_north + left * (following.push_north - here.push_north)
-
-
 def find_roots(march: March, desk: Desk, way: Way, seek: Searches, reasons: Integers) -> None:
     """Find the coarse root of every case whose reason is `SOLVED` so far: in its row of `seek`.
 
@@ -118,19 +107,22 @@ def find_roots(march: March, desk: Desk, way: Way, seek: Searches, reasons: Inte
                     upcoming += 1
                 if upcoming < reasons.size:
                     slot[i], task[i], marches[i] = upcoming, FIRST, 0
+                    if way.joints.size:
+                        set_out(desk, seek, upcoming, way)
                     water.interval[i] = upcoming * water.width  # the last profile may have had more
                     upcoming += 1
             busy |= task[i] != DONE
             s[lane.BUSY + i] = 1.0 if task[i] != DONE else 0.0
-            place_free_end(s, i, seek[slot[i]].unknown, way.rides)
+            place_case(desk, i, seek, way)
         if not busy:
             return
         march(desk, way, COARSE)
         for i in range(LANES):
             if task[i] != DONE:
                 c = slot[i]
-                miss = s[lane.Z + i] - way.aim.goal
-                task[i], reasons[c] = advance(seek, c, task[i], miss, way)
+                task[i], reasons[c] = advance(seek, c, task[i], miss_of(desk, i, seek, way), way)
+                if task[i] == DONE and reasons[c] == SOLVED and next_float(desk, seek, c, way):
+                    task[i], marches[i] = FIRST, 0
                 seek[c].least_carried, seek[c].lying = s[lane.LIGHTEST + i], s[lane.RESTING + i]
                 marches[i] += 1
                 if marches[i] == MOST_MARCHES and task[i] != DONE:
@@ -159,10 +151,11 @@ def close_on(
                 c = pending[upcoming]
                 slot[i], water.interval[i], task[i] = c, c * water.width, ROOT
                 seek[c].turn = 0
+                seek_from_the_top(desk, seek, c, way)
                 upcoming += 1
             busy |= task[i] != DONE
             s[lane.BUSY + i] = 1.0 if task[i] != DONE else 0.0
-            place_free_end(s, i, seek[slot[i]].unknown, way.rides)
+            place_case(desk, i, seek, way)
         if not busy:
             return
         march(desk, way, grid)
@@ -170,10 +163,12 @@ def close_on(
             if task[i] == DONE:
                 continue
             c = slot[i]
-            near = correct(seek, c, s[lane.Z + i] - way.aim.goal, way.aim)
+            near = correct(seek, c, miss_of(desk, i, seek, way), way.aim)
+            if near == THERE and next_float(desk, seek, c, way):
+                continue
             task[i] = ROOT if near == AWAY else DONE
             if near == NOWHERE and follows:
-                seek[c].unknown = seek[c].found
+                go_back(desk, seek, c, way)
             elif near == NOWHERE:
                 reasons[c] = UNCLOSED
             elif near == THERE:
@@ -181,7 +176,7 @@ def close_on(
                 if follows:
                     recut(desk.own, c, way, desk.spread)
                     continue
-                seek[c].refusal = refused(s, i, way.aim)
+                seek[c].refusal = refused(desk, i, way)
                 seek[c].lying, seek[c].lowest = s[lane.RESTING + i], s[lane.LOWEST + i]
                 for k in range(numbers):
                     kept[c, k] = nodes[k * LANES + i]
@@ -189,13 +184,16 @@ def close_on(
                     kept[c, numbers + k] = forces[k * LANES + i]
 
 
-def refused(s: Floats, i: int, aim: Aim) -> int:
+def refused(desk: Desk, i: int, way: Way) -> int:
     """Why the lane's shape is not to be had, by this march alone; `SOLVED` where it is."""
+    s, aim = desk.scratch, way.aim
     if s[lane.LEAST_PULL + i] < 0.0:
         return COMPRESSED
     if s[lane.LOWEST + i] < -aim.span - 1e-6 * aim.span:
         return ON_SEABED
-    if s[lane.HIGHEST + i] > 1e-6 * aim.span:
+    margin = 1e-6 * aim.span
+    risen = way.below != NO_FLOAT and desk.nodes[way.below * STATE * LANES + lane.Z + i] > margin
+    if risen or s[lane.HIGHEST + i] > margin + way.standing:
         return OUT_OF_WATER
     # a line below the surface is meant to stand: see `calm.case.Mooring`
     chain_lies = s[lane.LANDED_AT + i] >= aim.first_chain
@@ -236,11 +234,7 @@ def close_all(
         if not follows:
             older, newer = newer, older
             for k in range(few):
-                # where the root has gone by the last halving, it goes a quarter as far by this one
-                c = pending[k]
-                y = seek[c].unknown
-                seek[c].unknown = y + (0.25 * (y - earlier[c]) if grid > 1 else 0.0)
-                earlier[c] = y
+                foresee(desk, seek, pending[k], way, earlier, grid == 1)
         close_on(march, grid, desk, way, seek, few, ends, newer, follows)
         if follows or grid < FEWEST_HALVINGS:
             continue
@@ -265,7 +259,7 @@ def close_all(
                 if ends[c] != WRITTEN:
                     continue
                 blend(stages, older[c], newer[c], shapes.blended)
-                used = 1.0 + min((4.0 * case.unknown - earlier[c]) / 3.0, 0.0)
+                used = used_of(desk, seek, c, way, earlier[c])
                 write_case(way, shapes.blended, used, results, start + c)
             elif grid == finest:
                 ends[c] = TOO_COARSE if seek[c].refusal == SOLVED else seek[c].refusal

@@ -46,9 +46,13 @@ without any, where it is looked at as a bare name."""
     # the length on the seabed, below 0 where none is; how much hangs of the stage that came down,
     # and which it is; before a segment the vertical force, the lowest height, and how much of the
     # stage is above it; what a cut turned; turn times length of the worst corner;
-    # what is kept of a stage
-    RESTING, HANGING, LANDED_AT, CARRIED, LOWEST_BEFORE, PASSED, TURNED, SHARPEST, KEPT,
+    # shares in use of the floats at the surface above the one that is sought
+    RESTING, HANGING, LANDED_AT, CARRIED, LOWEST_BEFORE, PASSED, TURNED, SHARPEST, UPPER,
 ) = (row * LANES for row in range(62))  # fmt: skip
+MOST_UPPER = 3
+"""Floats at the surface above the one that is sought."""
+KEPT = UPPER + MOST_UPPER * LANES
+"""What is kept of a stage, and its extremes."""
 EXTREMES = 4
 STATE = 9  # numbers of a recorded node: place, force, axis
 SCRATCH = KEPT + (STATE + EXTREMES) * LANES
@@ -86,6 +90,8 @@ class Desk(NamedTuple):
     own : cuts of every case, see `calm.batch.kernel.bends`
     loads : those of one rod in one lane
     task, marches : (LANES,) what a lane is about, and how many marches it took
+    afloat : (2, cases, floats) of `Afloat`: the search for every float at the surface, of a line
+        clear of the seabed and of one that may lie there
     pending, there, again : (cases,) cases to be closed, and how they end on the seabed, and clear
         of it after all
     read, joined : levels of a profile, and with those that every profile gets
@@ -100,6 +106,7 @@ class Desk(NamedTuple):
     loads: Any
     task: Integers
     marches: Integers
+    afloat: Any
     pending: Integers
     there: Integers
     again: Integers

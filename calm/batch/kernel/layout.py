@@ -76,6 +76,11 @@ class Way(NamedTuple):
     near : how far the loads of a rod may be from where they are looked up [m]
     seabed, aim, rides : see there
     places : of every load whether it is the float at the surface, see `calm.batch.kernel.loads`
+    joints : of every float at the surface above the lowest there, the stage whose top, the next
+        float's, is to come to the surface, see `calm.batch.kernel.afloat`
+    below : the stage of the next float below the lowest there, see there
+    standing : how far they may stand out of the water however they are turned [m]
+    lifts : of those floats and the lowest, the share of their buoyancy in all of it
     shares : of its buoyancy in use, at which a float is tried that may be under water
     scanned : shares of the depths to be scanned at which the miss is looked at
     falls, fall_step : how deep even currents of growing speed push the line [m], and the step of
@@ -95,6 +100,10 @@ class Way(NamedTuple):
     aim: Aim
     rides: Rides
     places: Integers
+    joints: Integers
+    below: int
+    standing: float
+    lifts: Floats
     shares: Floats
     scanned: Floats
     falls: Floats

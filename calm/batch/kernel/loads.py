@@ -13,9 +13,10 @@ from calm.physics.profile import viscosity_at
 from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.track import Load
 
-IN_WATER, AFLOAT, ABOVE_FLOAT = range(3)
+IN_WATER, AFLOAT, ABOVE_FLOAT, UPPER_FLOAT = range(4)
 """Where a load is while the float is at the surface: below, the float itself, or out of the water
-above it by some share."""
+above it by some share. From `UPPER_FLOAT` on the floats at the surface above that one, from the
+top down."""
 
 
 def load_in_lane(s: Floats, i: int, load: Load, place: int, gravity: float) -> Load:
@@ -33,6 +34,9 @@ def load_in_lane(s: Floats, i: int, load: Load, place: int, gravity: float) -> L
         buoyancy -= (1.0 - wet) * REFERENCE_DENSITY * gravity * volume
         volume, lift = wet * volume, wet * lift
         normal, tangential = wet * normal, wet * tangential
+    elif place >= UPPER_FLOAT:
+        share = s[lane.UPPER + (place - UPPER_FLOAT) * LANES + i]
+        buoyancy, volume = share * buoyancy, share * volume
     return Load(
         load.piece, load.clamp, load.at, load.lever, load.length, buoyancy, volume, normal,
         tangential, load.directional, lift, east, north, load.diameter, load.lengthening,

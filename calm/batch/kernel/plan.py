@@ -8,11 +8,13 @@ from typing import Any
 import numpy as np
 
 from calm.assemble import assemble_water
+from calm.batch.kernel.afloat import NO_FLOAT
 from calm.batch.kernel.cable import is_packed
 from calm.batch.kernel.contact import first_chain_of, grips_on, when_looked_for
 from calm.batch.kernel.cuts import cuts_of
+from calm.batch.kernel.lane import MOST_UPPER
 from calm.batch.kernel.layout import Aim, Ride, Rides, Seabed, Way
-from calm.batch.kernel.loads import ABOVE_FLOAT, AFLOAT, IN_WATER
+from calm.batch.kernel.loads import ABOVE_FLOAT, AFLOAT, IN_WATER, UPPER_FLOAT
 from calm.case import Mooring
 from calm.files import CurrentTable
 from calm.physics.compiled import packed, record_type
@@ -25,6 +27,7 @@ from calm.solve.closing import Closing
 from calm.solve.locate import NEAR as NEAR_TOP
 from calm.solve.locate import SCAN, SHARES, upright_depth
 from calm.solve.mooring import BARELY_LANDED
+from calm.solve.standing import surface_lift
 from calm.solve.unknown import Unknown
 
 NEAR = 2e-6
@@ -48,6 +51,7 @@ class Plan:
     water : the sea without the current of the file: density, and what the wind drives
     strata : its viscosity, as in `Sea`
     clear, lying : the line looked for clear of the seabed, and lying on it
+    several : both again with two floats at the surface, with three, and so on
     contact : when the second: see `calm.batch.kernel.contact`
     singly : whether it has laws that each lane takes by itself: an elongation or drag curve,
         another friction than Berteaux's, a cable at its free end or without drag
@@ -57,6 +61,7 @@ class Plan:
     strata: Any
     clear: Way
     lying: Way
+    several: tuple[tuple[Way, Way], ...]
     contact: int
     singly: bool
 
@@ -78,6 +83,7 @@ def plan_of(mooring: Mooring) -> Plan:
         strata=packed(closing.profile.sea).strata,
         clear=clear,
         lying=lying,
+        several=_several(closing, clear, lying),
         contact=when_looked_for(line, water, track),
         singly=_takes_singly(track.course),
     )
@@ -121,6 +127,10 @@ def _way(closing: Closing, first_chain: int, *, lands: bool) -> Way:
             barely=float(BARELY_LANDED * line.anchor_height),
         ),
         rides=_rides(head, afloat, line.floating if floats else None),
+        joints=np.zeros(0, np.int64),
+        below=NO_FLOAT,
+        standing=0.0,
+        lifts=np.ones(1),
         places=_places(line, loads, course.stages[0].size, afloat if floats else -1),
         shares=np.array(SHARES),
         scanned=np.array([*NEAR_TOP, *range(1, SCAN + 1)]) / SCAN,
@@ -140,6 +150,35 @@ def _places(line: Line, loads: Any, head: int, afloat: int) -> Integers:
     above = at_head & (piece < afloat) & (line.floating is not None)
     itself = at_head & (piece == afloat) & (clamp < 0)
     return np.where(itself, AFLOAT, np.where(above, ABOVE_FLOAT, IN_WATER))
+
+
+def _several(closing: Closing, clear: Way, lying: Way) -> tuple[tuple[Way, Way], ...]:
+    """The line with two floats at the surface, with three, and so on."""
+    line, stages = closing.line, closing.track.stages
+    floats = np.array(closing.floats if clear.aim.floats else [], np.intp)
+    rods = {p: n for n, stage in enumerate(stages) if isinstance(stage, Rod) for p in stage.pieces}
+    at = np.array([rods[piece] for piece in floats], np.int64)
+    lift = surface_lift(line, closing.water)[floats]
+    loads: Any = clear.course.loads
+
+    def with_upper(way: Way, upper: int) -> Way:
+        places = np.full(len(loads), IN_WATER)
+        for k in range(upper + 1):
+            own = (loads["piece"] == floats[k]) & (loads["clamp"] < 0)
+            places[own] = AFLOAT if k == upper else UPPER_FLOAT + k
+        afloat = slice(0, upper + 1)
+        return way._replace(
+            aim=way.aim._replace(upright=0.0, rides=False),
+            places=places,
+            joints=at[1 : upper + 1],
+            below=int(at[upper + 1]) if upper + 1 < len(at) else NO_FLOAT,
+            standing=float(line.length[floats[afloat]].sum()),
+            lifts=lift[afloat] / lift[afloat].sum(),
+            falls=np.zeros_like(way.falls),
+        )
+
+    uppers = range(1, min(len(floats), MOST_UPPER + 1))
+    return tuple((with_upper(clear, upper), with_upper(lying, upper)) for upper in uppers)
 
 
 def _rides(head: Part, afloat: int, floating: Floating | None) -> Rides:

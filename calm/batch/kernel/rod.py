@@ -21,6 +21,7 @@ from calm.batch.kernel.lane import (
 )
 from calm.batch.kernel.layout import Way
 from calm.batch.kernel.loads import (
+    IN_WATER,
     add_load,
     gather_load,
     in_registers,
@@ -45,7 +46,7 @@ def pass_rod(desk: Desk, way: Way, stage: int) -> None:
         s[lane.TRIED + i], s[lane.CHANGE + i] = s[lane.TZ + i], inf
     if SINGLY and curved:
         turn_singly(desk, way, stage)
-    elif rod.size == 1 and stage > 0:
+    elif rod.size == 1 and stage > 0 and way.places[rod.first] == IN_WATER:
         pass_piece(s, water, in_registers(loads[rod.first]), rod.length, way.near)
         return
     else:

@@ -33,7 +33,7 @@ class Search(NamedTuple):
     slope : of the miss
     fall, reach, turn : the largest knockdown, 0 where there is no scan; how far down from its
         beginning is scanned; which step, or correction, it is
-    stuck : how many steps have not halved the miss
+    stuck : how many steps have not halved the smallest miss, `best`
     found : the coarse root
     upper, lower : where the scan has seen the miss change its sign
     growth, speed : of the current with depth [1/m], and its greatest [m/s]
@@ -44,6 +44,7 @@ class Search(NamedTuple):
     place_before, tension_before : what the last halving but one changed
     refusal : why its shape is not to be had, `SOLVED` where it is
     tried : 1 on the seabed, 2 clear of it again
+    sought : which of several floats at the surface is sought, the uppermost 0
     aloft, aloft_slope, aloft_found : the search clear of the seabed, while it is sought there
     """
 
@@ -60,6 +61,7 @@ class Search(NamedTuple):
     reach: float
     turn: int
     stuck: int
+    best: float
     found: float
     upper: float
     upper_miss: float
@@ -75,6 +77,7 @@ class Search(NamedTuple):
     tension_before: float
     refusal: int
     tried: int
+    sought: int
     aloft: float
     aloft_slope: float
     aloft_found: float
@@ -87,6 +90,8 @@ MOST_CORRECTIONS = 12
 SMALL, SMALL_SHARE = 5e-7, 3e-6
 """The miss of a closed line, as a share of the span; and how well a share in use is found."""
 
+ALL_BUT_UNLOADED = 1e-9
+"""Share in use of a float that carries nothing: with none at all its axis may be anywhere."""
 FLAT = -0.25
 """Slope of the miss; where the current is even, it is -1."""
 STRAYED, STRAYED_SHARE = 2e-3, 0.02
@@ -119,6 +124,8 @@ def advance(seek: Searches, c: int, task: int, m: float, way: Way) -> tuple[int,
     if not isfinite(m):
         return DONE, UNCLOSED
     if task == FIRST:
+        if m >= 0.0 and way.joints.size:
+            return DONE, AT_SURFACE
         if m >= 0.0:
             seek[c].above, seek[c].above_miss = y, m
             if aim.upright == 0.0 and aim.rides:
@@ -129,7 +136,7 @@ def advance(seek: Searches, c: int, task: int, m: float, way: Way) -> tuple[int,
         if aim.upright > 0.0:
             seek[c].unknown = 0.0
             return TOP, SOLVED
-        seek[c].unknown = -1.0
+        seek[c].unknown = ALL_BUT_UNLOADED - 1.0
         return (UNLOADED, SOLVED) if aim.floats else (DONE, AT_SURFACE)
     if task in (TOP, UNLOADED):
         if m <= 0.0:
@@ -163,6 +170,7 @@ def go_down(seek: Searches, c: int, way: Way) -> int:
         seek[c].reach, seek[c].turn = min(1.02 * seek[c].fall, span - y), 0
         seek[c].unknown = y + way.scanned[0] * seek[c].reach
         return SCAN
+    seek[c].best = abs(m)
     seek[c].unknown = min(y + max(m, 1e-7 * span), span)
     return ROOT
 
@@ -173,6 +181,7 @@ def bracket(seek: Searches, c: int) -> int:
     seek[c].upper, seek[c].upper_miss, seek[c].lower, seek[c].lower_miss = a, fa, b, fb
     seek[c].slope = (fb - fa) / (b - a)
     seek[c].last, seek[c].last_miss = (a, fa) if fa < -fb else (b, fb)
+    seek[c].best = abs(seek[c].last_miss)
     seek[c].unknown = a - fa / seek[c].slope
     return ROOT
 
@@ -215,7 +224,8 @@ def narrow(seek: Searches, c: int, m: float, span: float) -> tuple[int, int]:
             seek[c].slope = -1.0
         seek[c].found = seek[c].unknown
         return DONE, TURNS_BACK if seek[c].fall > 0.0 and may_turn(seek, c) else SOLVED
-    seek[c].stuck = seek[c].stuck + 1 if abs(m) > 0.5 * abs(before) else 0
+    seek[c].stuck = seek[c].stuck + 1 if abs(m) > 0.5 * seek[c].best else 0
+    seek[c].best = min(seek[c].best, abs(m))
     if isfinite(a) and isfinite(b):
         if not a < following < b or seek[c].stuck > 2:
             following = 0.5 * (a + b)

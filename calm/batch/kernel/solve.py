@@ -6,11 +6,13 @@ from typing import Any
 
 import numpy as np
 
+from calm.batch.kernel.afloat import Afloat
 from calm.batch.kernel.cases import CHUNK, solve_chunks
 from calm.batch.kernel.closing import Shapes, close_all, find_roots
 from calm.batch.kernel.compiled import by_address, entry
-from calm.batch.kernel.lane import LANES, SCRATCH, STATE, Desk, Tables
-from calm.batch.kernel.layout import Results
+from calm.batch.kernel.endings import AT_SURFACE, OUT_OF_WATER, UNCLOSED
+from calm.batch.kernel.lane import LANES, MOST_UPPER, SCRATCH, STATE, Desk, Tables
+from calm.batch.kernel.layout import Results, Way
 from calm.batch.kernel.march import march
 from calm.batch.kernel.plan import Plan
 from calm.batch.kernel.search import Search, Searches
@@ -18,6 +20,8 @@ from calm.physics.compiled import record_type
 from calm.physics.line import Floats, Integers
 from calm.physics.profile import Interval, Sea
 
+NEEDS_FLOAT = (AT_SURFACE, OUT_OF_WATER, UNCLOSED)
+"""How a case ends that may need another float at the surface."""
 LINE = 64
 """Bytes of a line of the processor's cache."""
 
@@ -56,6 +60,7 @@ def desk_for(plan: Plan, levels: int, cases: int) -> Desk:
         loads=np.zeros_like(course.loads),
         task=np.zeros(LANES, np.int64),
         marches=np.zeros(LANES, np.int64),
+        afloat=np.zeros((2, cases, MOST_UPPER + 1), record_type(Afloat)),
         pending=np.zeros(cases, np.int64),
         there=np.zeros(cases, np.int64),
         again=np.zeros(cases, np.int64),
@@ -96,9 +101,26 @@ class Kernel:
         u, v, w : (n, k) current [m/s]; NaN where there is none
         reasons : (n,) see `calm.batch.kernel.endings`
         """
+        plan = self.plan
+        self._solve(plan.clear, plan.lying, depth, u, v, w, results, reasons)
+        for clear, lying in plan.several:
+            again = np.flatnonzero(np.isin(reasons, NEEDS_FLOAT))
+            if not again.size:
+                return
+            levels = depth if len(depth) == 1 else depth[again]
+            found, ends = Results(*(rows[again] for rows in results)), reasons[again]
+            self._solve(clear, lying, levels, u[again], v[again], w[again], found, ends)
+            reasons[again] = ends
+            for rows, mine in zip(results, found, strict=True):
+                rows[again] = mine
+
+    def _solve(
+        self, clear: Way, lying: Way, depth: Floats, u: Floats, v: Floats, w: Floats,
+        results: Results, reasons: Integers,
+    ) -> None:  # fmt: skip
         plan, chunk = self.plan, CHUNK
         entry(solve_chunks)(
-            self.find, self.close, self.march, plan.clear, plan.lying, plan.contact,
+            self.find, self.close, self.march, clear, lying, plan.contact,
             desk_for(plan, depth.shape[1], chunk), shapes_for(plan, chunk), searches(chunk),
             depth, u, v, w, results, reasons,
         )  # fmt: skip

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from calm.batch.kernel import cable, compiled, lane, rod
-from calm.batch.kernel.closing import place_free_end
+from calm.batch.kernel.afloat import place_free_end
 from calm.batch.kernel.march import march as march_lanes
 from calm.batch.kernel.plan import Plan, plan_of
 from calm.batch.kernel.profile import lay_profile, read_profile

@@ -1,0 +1,112 @@
+"""What is common to a record, against the same law written out and iterated to its end."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import calm.motion.whole_record as module
+from calm.motion import prior
+from calm.motion.measured import Measured
+from calm.motion.whole_record import _alike, _scale, estimate_common
+
+STILL = np.array([50.0, 100.0, 180.0])  # of three points; the first and the last have sensors
+GAIN = np.array([[90.0, 60.0], [50.0, 45.0], [15.0, 20.0]])
+SENSORS = np.array([0, 2])
+MOORING = SimpleNamespace(water=SimpleNamespace(depth=200.0))
+TIMES = 150
+
+
+class Line:
+    """A line whose knockdown goes with its drag and with the square of the currents."""
+
+    def __init__(self, mooring, factors):
+        self.factor, self.still = factors.get("cable_drag", 1.0), STILL
+
+    def depths(self, level, u, v):
+        return STILL + self.factor * (u**2 + v**2) @ GAIN.T
+
+
+def record(seed, factor, datum, wrong, memory=0.0):
+    """Currents that are wrong by so many times their prior, and pressures of the line in them."""
+    random = np.random.default_rng(seed)
+    phase = np.arange(TIMES)[:, None] / [9.0, 7.0]
+    u = 0.6 + 0.35 * np.sin(phase)
+    error = random.standard_normal((TIMES, 4))
+    for i in range(1, TIMES):
+        error[i] = memory * error[i - 1] + np.sqrt(1.0 - memory**2) * error[i]
+    whole, shear, own = error[:, :1], error[:, 1:2] * [-1.0, 1.0], error[:, 2:]
+    logs = wrong * 0.05 * (whole + shear + own)
+    depth = Line(None, {"cable_drag": factor}).depths(None, u * np.exp(logs), 0.0)[:, SENSORS]
+    depth += datum + np.array([0.4, -0.3]) + random.standard_normal((TIMES, 1))
+    depth += prior.NOISE * random.standard_normal(depth.shape)
+    depth[7, 0] += 40.0  # an outlier, and what was not measured
+    depth[[20, 90], [0, 1]] = np.nan
+    return Measured(
+        np.datetime64("2026-03-01", "ns") + np.arange(TIMES) * np.timedelta64(1, "h"), ("a", "c"),
+        SENSORS, depth, np.tile([20.0, 60.0], (TIMES, 1)), np.full(2, -1), np.full(2, -1), u,
+        0.0 * u, np.ones(u.shape, np.int8),
+    )  # fmt: skip
+
+
+def best(one, gap):
+    """Value and covariance of the factor, the datum and two offsets, the scale: all written out."""
+    prior_of = np.diag([0.15, 0.01 * 200.0, 1.0, 1.0]) ** 2
+    known = np.isfinite(one.depth)
+    square = one.u**2
+    own = np.hypot(0.05, 0.01 / one.u)
+    currents = 0.05**2 * np.ones((2, 2)) + 0.05**2 * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    spread = currents + own[:, :, None] ** 2 * np.eye(2)
+    apart = np.abs(STILL[SENSORS][:, None] - STILL[SENSORS])
+    alike_down = np.exp(-apart / (0.25 * np.ptp(STILL)))
+    state, scale = np.zeros(4), 1.0
+    for _ in range(12):
+        factor = np.exp(state[0])
+        down = factor * square @ GAIN[SENSORS].T
+        slope = factor * (np.exp(0.1) - 1.0) / 0.05 * GAIN[SENSORS] * square[:, None, :]
+        by_currents = scale**2 * slope @ spread @ slope.transpose(0, 2, 1)
+        rest = prior.TIDE**2 + prior.NOISE**2 * np.eye(2)
+        rest = rest + (0.07 * down)[:, :, None] * alike_down * (0.07 * down)[:, None, :]
+        rest = rest + np.where(known, 0.0, 1e8)[:, :, None] * np.eye(2)
+        bend = 0.5 * np.einsum("nss->ns", by_currents) / np.maximum(down, 1.0)
+        left = one.depth - STILL[SENSORS] - down - state[1] - state[2:] - bend
+        left = np.where(known, left, 0.0)
+        scale, _ = _scale(left, rest + by_currents, by_currents, scale)
+        by_currents = scale**2 * slope @ spread @ slope.transpose(0, 2, 1)
+        inverse = np.linalg.inv(rest + by_currents)
+        misfit = np.einsum("ns,nst,nt->n", left, inverse, left)
+        weight = (4.0 + known.sum(axis=1)) / (4.0 + misfit)
+        seen = np.concatenate(
+            [
+                (np.exp(0.05) - 1.0) / 0.05 * down[:, :, None],
+                np.ones((TIMES, 2, 1)),
+                np.tile(np.eye(2), (TIMES, 1, 1)),
+            ],
+            axis=2,
+        )
+        normal = np.einsum("n,nsi,nst,ntj->ij", weight, seen, inverse, seen)
+        each = np.einsum("n,nsi,nst,nt->ni", weight, seen, inverse, left)
+        memory = _alike(each[:, 0])
+        pull = each.sum(axis=0) + normal @ state
+        covariance = np.linalg.inv(normal / memory + np.linalg.inv(prior_of))
+        state = covariance @ pull / memory
+    return state, covariance, scale, memory
+
+
+@pytest.mark.parametrize(
+    ("seed", "factor", "datum", "wrong", "memory"),
+    [(1, 1.25, 2.0, 1.0, 0.0), (2, 0.85, -1.5, 1.7, 0.0), (3, 1.1, 0.5, 1.0, 0.8)],
+)
+def test_the_common_factor_is_that_of_the_law_written_out(
+    monkeypatch, seed, factor, datum, wrong, memory
+):
+    monkeypatch.setattr(module, "Forward", Line)
+    one = record(seed, factor, datum, wrong, memory)
+    found = estimate_common(MOORING, one, ("cable_drag",))
+    state, covariance, scale, repeated = best(one, found.gap)
+    deviation = np.sqrt(np.diag(covariance))
+    mine = np.concatenate([[np.log(found.factors["cable_drag"]), found.datum], found.offset])
+    assert (np.abs(mine - state) < 0.03 * deviation).all()
+    assert np.sqrt(np.diag(found.covariance)[:4]) == pytest.approx(deviation, rel=0.05)
+    assert found.scale == pytest.approx(scale)
+    assert (repeated > 1.5) == (memory > 0.0)

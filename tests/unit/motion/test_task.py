@@ -1,0 +1,159 @@
+"""What a block of times comes to, and what is known of a record, from parts written out."""
+
+from dataclasses import dataclass, replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import calm.motion.task as module
+from calm.batch.statuses import STATUSES
+from calm.motion.estimate import Estimate
+from calm.motion.measured import Measured
+from calm.motion.moment import Way
+from calm.motion.task import MeasuredRecord, Task, plain, without
+from calm.motion.unknowns import Common
+
+STILL = np.array([60.0, 150.0, 40.0, 250.0])  # two clamps, then two components
+U = np.array([[0.3, 0.4], [0.5, 0.2], [np.nan, np.nan], [0.1, 0.1]])
+V = 0.5 * U
+READ = np.array([[66.0, 255.0], [70.0, np.nan], [61.0, 250.0], [62.0, 251.0]])
+
+
+@dataclass(frozen=True)
+class Solved:
+    """What a task takes of the profiles of a batch."""
+
+    clamp_depth: np.ndarray
+    depth_top: np.ndarray
+    clamp_knockdown: np.ndarray
+    knockdown: np.ndarray
+    top_depth: np.ndarray
+    status: np.ndarray
+
+
+class Line:
+    """Its knockdown is 10 m at u of 1 m/s and a twentieth of the depth of the upper level."""
+
+    still = STILL
+
+    def depths(self, level, u, v):
+        return STILL + (10.0 * u[:, :1] + level[:, :1] / 20.0) * [1.0, 0.5, 1.2, 0.1]
+
+    def solve(self, level, u, v):
+        depth = 100.0 * u[:, :1] + 10.0 * v[:, :1] + STILL + level[:, :1]
+        lost = ~np.isfinite(u).all(axis=1)
+        status = np.where(lost, STATUSES.index("no-current"), 0).astype(np.int8)
+        return Solved(depth[:, :2], depth[:, 2:], 0.0 * depth[:, :2], 0.0 * depth[:, 2:],
+                      depth[:, 2] - 1.5, status)  # fmt: skip
+
+
+def measured(**more):
+    one = Measured(
+        np.datetime64("2026-03-01", "ns") + np.arange(4) * np.timedelta64(1, "h"), ("a", "d"),
+        np.array([0, 3]), READ, np.array([[20.0, np.nan]] * 4), np.array([-1, 0]),
+        np.array([-1, 0]), U, V, np.ones((4, 2), np.int8),
+    )  # fmt: skip
+    return replace(one, **more)
+
+
+def common():
+    never = np.full(2, "NaT", "M8[ns]")
+    none = np.zeros(2)
+    return Common({"cable_drag": 1.2}, 2.0, np.array([0.5, -0.4]), none, never, none,
+                  np.eye(6), 1.0, np.eye(2))  # fmt: skip
+
+
+def test_a_block_has_the_estimated_depths_and_what_is_known_besides(monkeypatch):
+    depth = STILL + 5.0 + np.arange(16.0).reshape(4, 4)
+    depth[2] = np.nan
+    sea = np.array([0.3, -0.2, 0.0, 0.1])
+    found = Estimate(
+        depth,
+        0.1 * depth,
+        sea,
+        np.array([1.1, 0.9, 1.0, 1.2]),
+        np.full((4, 2), 0.01),
+        Way(np.full((4, 2), 7.0), U, V, np.zeros((4, 2, 2))),
+    )
+    asked = []
+    monkeypatch.setattr(module, "estimated", lambda *asked_of: asked.append(asked_of) or found)
+    monkeypatch.setattr(module, "forwards_of", lambda *_: (Line(), {}))
+    monkeypatch.setattr(module, "Forward", lambda mooring, factors: Line() if not factors else None)
+    false = np.array([False, True, True, False])
+    one = measured(false=false)
+    profiles, more = Task(None, one, common()).columns(0, 4)
+    assert asked[0][1].datum == 2.0 and asked[0][0].measured.time.tolist() == one.time.tolist()
+    likely = Line().solve(np.full((4, 2), 7.0), U, V)
+    assert profiles.clamp_depth == pytest.approx(depth[:, :2], nan_ok=True)
+    assert profiles.depth_top == pytest.approx(depth[:, 2:], nan_ok=True)
+    # the top is above the upper end of the first component by what it is in the likely currents
+    assert profiles.top_depth == pytest.approx(depth[:, 2] - 1.5, nan_ok=True)
+    down = depth - STILL - 2.0 - sea[:, None]
+    assert profiles.clamp_knockdown == pytest.approx(down[:, :2], nan_ok=True)
+    assert profiles.knockdown == pytest.approx(down[:, 2:], nan_ok=True)
+    names = [STATUSES[code] for code in profiles.status.tolist()]
+    assert names == [STATUSES[0], STATUSES[0], "implausible-current", STATUSES[0]]
+    assert likely.status[2] == STATUSES.index("no-current")
+    lost = np.array([1.0, 1.0, np.nan, 1.0])[:, None]
+    assert more["clamp_depth_sd"] == pytest.approx(0.1 * depth[:, :2] * lost, nan_ok=True)
+    assert more["depth_sd"] == pytest.approx(0.1 * depth[:, 2:] * lost, nan_ok=True)
+    assert more["current_factor"] == pytest.approx(found.current * lost[:, 0], nan_ok=True)
+    assert more["current_doubt"] == pytest.approx(0.01 * lost * np.ones(2), nan_ok=True)
+    left = READ - np.array([0.5, -0.4]) - depth[:, [0, 3]]
+    assert more["residual"] == pytest.approx(left, nan_ok=True)
+    assert more["plain_depth"] == pytest.approx(plain(Line(), one)[:, [0, 3]], nan_ok=True)
+
+
+def test_the_currents_alone_hang_where_they_have_the_line():
+    """Not at a pressure of a sensor that is not used; twice, which a line settles in."""
+    one = measured(level_point=np.array([0, 1]), level_sensor=np.array([-1, -1]))
+    depth = STILL[0]
+    for _ in range(2):
+        depth = STILL[0] + 10.0 * U[0, 0] + depth / 20.0
+    assert plain(Line(), one)[0, 0] == pytest.approx(depth, abs=1e-5)
+    at = measured(level_point=np.array([0, 1]), level_sensor=np.array([0, -1]))
+    assert plain(Line(), at)[0, 0] == pytest.approx(STILL[0] + 3.0 + READ[0, 0] / 20.0, abs=1e-5)
+
+
+def test_a_hidden_sensor_is_hidden_everywhere():
+    one = measured(level_point=np.array([3, 0]), level_sensor=np.array([1, 0]))
+    upper, lower = without(one, ["d"]), without(one, ["a"])
+    assert (upper.label, lower.label) == (("a",), ("d",))
+    assert upper.depth.tolist() == READ[:, :1].tolist()
+    assert (upper.point.tolist(), lower.point.tolist()) == ([0], [3])
+    assert upper.level_sensor.tolist() == [-1, 0]  # its current hangs where the line has it
+    assert lower.level_sensor.tolist() == [0, -1]
+    assert without(one, []).level_sensor.tolist() == [1, 0]
+
+
+def test_the_digest_is_of_all_that_was_measured():
+    one = measured(tide=np.zeros(4))
+    source = {"currents": "c.nc"}
+    known = MeasuredRecord(one, source, ())
+    level, u, v, none = known.profiles(1, 3)
+    assert none is None and u.tolist()[0] == U[1].tolist() and v.tolist()[0] == V[1].tolist()
+    assert level.shape == (2, 2)
+    first = known.digest()
+    assert MeasuredRecord(measured(tide=np.zeros(4)), source, ()).digest() == first
+    others = {"label": ("a", "e"), "point": np.array([0, 2]), "depth": READ + 1e-9,
+              "time": one.time + np.timedelta64(1, "ns"), "level_depth": one.level_depth + 1e-9,
+              "level_point": np.array([-1, 1]), "level_sensor": np.array([-1, 1]), "u": U + 1e-9,
+              "v": V + 1e-9, "flag": one.flag + np.int8(1), "tide": np.full(4, 1e-9)}  # fmt: skip
+    digests = {
+        MeasuredRecord(replace(one, **{name: value}), source, ()).digest()
+        for name, value in others.items()
+    }
+    assert len(digests | {first}) == len(others) + 1
+
+
+def test_a_mooring_is_asked_at_its_factors_and_a_step_from_each(monkeypatch):
+    asked = []
+    record = SimpleNamespace(Forward=lambda mooring, factors: asked.append(factors) or len(asked))
+    monkeypatch.setattr("calm.motion.whole_record.Forward", record.Forward)
+    here, shifted = module.forwards_of(None, replace(common(), factors={"a": 1.2, "b": 0.9}))
+    assert (here, list(shifted)) == (3, ["a", "b"])
+    step = np.exp(0.05)
+    assert asked[0] == pytest.approx({"a": 1.2 * step, "b": 0.9})
+    assert asked[1] == pytest.approx({"a": 1.2, "b": 0.9 * step})
+    assert asked[2] == {"a": 1.2, "b": 0.9}
