@@ -105,9 +105,9 @@ class Explanation:
         """The object `explain` of the result format: SI, null where a figure is unknown."""
         causes = None
         if self.causes is not None:
-            told = ("index", "label", "clamped", "drag", *self.quantities)
+            names = ("index", "label", "clamped", "drag", *self.quantities)
             rows = self.causes.to_dicts()
-            causes = [{name: row[name] for name in told} for row in rows]
+            causes = [{name: row[name] for name in names} for row in rows]
         return {
             "label": self.label,
             "quantities": list(self.quantities),

@@ -196,8 +196,8 @@ def _other_equilibrium(_: Result | TowResult, solution: Solution) -> Iterator[st
 
 def _hull_unknown(result: Result, solution: Solution) -> Iterator[str]:
     """A float of unknown draft is taken as just immersed, or dragged by its `k_surface`."""
-    riding, told = solution.riding, result.file.solver.buoy_drag == "immersed"
-    if solution.surface and told and (riding is None or np.isnan(riding.draft)):
+    riding, immersed = solution.riding, result.file.solver.buoy_drag == "immersed"
+    if solution.surface and immersed and (riding is None or np.isnan(riding.draft)):
         afloat = [result.components.label[piece] for piece in solution.afloat]
         reason = (
             "gives no hull, or no mass or volume for one"

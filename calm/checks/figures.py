@@ -19,13 +19,13 @@ def figures(handling: Handling) -> Iterator[Verdict]:
 
     What hangs several times on the line is named once.
     """
-    told: set[tuple[str, str]] = set()
+    named: set[tuple[str, str]] = set()
     for piece in handling.mooring.file.pieces:
         parts: tuple[Piece | Clamp, ...] = (piece, *piece.clamps)
         for part in parts:
             for impossible in IMPOSSIBLE:
                 said = impossible(part.component)
-                if said is not None and (part.use, said) not in told:
-                    told.add((part.use, said))
+                if said is not None and (part.use, said) not in named:
+                    named.add((part.use, said))
                     remedy = "Look at its figures, and at their units."
                     yield verdict_on(part, State.WARN, f"{part.label} {said}.", remedy)

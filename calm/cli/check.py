@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from datetime import date, datetime
 from functools import cache, partial
 from pathlib import Path
@@ -93,10 +94,12 @@ def check(
     if report is not None:
         given = [*files, *map(Path, environment or ()), *(catalog or ()), *filter(None, [against])]
         _check_report(report, json, given)
-    designs, tows, earlier = _read(files, environment, catalog or [], workers, against)
+    drawn = report is not None and against is None  # one that is compared is drawn with that
+    count = len(files) * len(environment or [None])
+    ready = partial(_ready, count, drawn)
+    designs, tows, earlier = _read(files, environment, catalog or [], workers, against, ready)
     if tows:
         narrate(f"not checked, because they are tows: {', '.join(map(str, tows))}")
-    drawn = report is not None and earlier is None  # one that is compared is drawn with that
     judged = _judged(designs, workers, drawn, draws)
     assessments = [each.assessment for each in judged]
     for design, assessment in zip(designs, assessments, strict=True):
@@ -116,10 +119,14 @@ def _read(
     catalogs: Sequence[Path],
     workers: int | None,
     against: Path | None,
+    ready: Callable[[], None],
 ) -> tuple[list[Design], list[Path], Mooring | None]:
-    """What is judged, the tows among the files, and the earlier design; or all their mistakes."""
+    """What is judged, the tows among the files, and the earlier design; or all their mistakes.
+
+    `ready` is called while other processes read.
+    """
     if against is None:
-        return *read_designs(files, environments, catalogs, workers), None
+        return *read_designs(files, environments, catalogs, workers, meanwhile=ready), None
     import calm
     from calm.case import Tow
 
@@ -144,10 +151,11 @@ def _read(
 
 
 class Drawn(NamedTuple):
-    """A mooring's part of the report: as blocks, and as the page shows them."""
+    """A mooring's part of the report: what a summary takes of it, and what each form shows."""
 
     section: Section
-    leaf: str
+    html: str
+    pdf: str
 
 
 class Judged(NamedTuple):
@@ -169,8 +177,9 @@ def _beside(path: Path, earlier: Mooring, design: Design, assessment: Assessment
 def _drawn(section: Section, number: int) -> Drawn:
     """The `number`th section of a report."""
     from calm.report.html import leaf
+    from calm.report.pdf import pdf_leaf
 
-    return Drawn(section, leaf(section, number))
+    return Drawn(replace(section, parts=()), leaf(section, number), pdf_leaf(section))
 
 
 def _check_report(folder: Path, json: Path | None, given: Sequence[Path]) -> None:
@@ -205,9 +214,7 @@ def _judged(
     stands = [(design.name, mooring, day) for design in designs for mooring in design.moorings]
     expect_many(SOLVES * len(stands))
     if len(designs) > FEW:
-        if drawn:  # loaded before other processes are
-            import calm.report.check.section
-            import calm.report.html  # noqa: F401
+        _ready(len(stands), drawn)
         whole = [(number, design, day, drawn, draws) for number, design in enumerate(designs, 1)]
         return mapped(_solve_and_conclude, whole, workers, "moorings judged")
     solved = iter(mapped(_stand, stands, workers, "environments solved"))
@@ -218,6 +225,26 @@ def _judged(
         )
         for number, design in enumerate(designs, 1)
     ]
+
+
+def _ready(stands: int, drawn: bool) -> None:
+    """Load what judging so many takes, once: other processes begin as copies of this one.
+
+    The march is fetched, but not compiled before the files are found good.
+    """
+    import calm.checks.assess
+    import calm.checks.backup
+    from calm.checks.situations import SOLVES
+    from calm.physics.pace import COLD
+    from calm.solve import expect_many
+
+    expect_many(min(SOLVES * stands, COLD - 1))
+    if drawn:
+        import calm.report.check.section
+        import calm.report.html  # noqa: F401
+        from calm.report.fonts import legible
+
+        legible("")  # has the signs of the fonts read
 
 
 def _solve_and_conclude(
@@ -286,7 +313,8 @@ def _answer(
     document = cache(lambda: check_document(assessments))
     sections = [each.section for each in drawings]
     with ThreadPoolExecutor(1) as beside:
-        pdf = None if folder is None else beside.submit(report_pdf, sections)
+        leaves = [each.pdf for each in drawings]
+        pdf = None if folder is None else beside.submit(report_pdf, sections, leaves)
         outputs.write_answer(document, check_part(assessments))
         if folder is not None and pdf is not None:
             files = _report_files(assessments, drawings, document())
@@ -304,7 +332,7 @@ def _report_files(
 
     texts = {
         "report.html": report_html(
-            [each.section for each in drawings], [each.leaf for each in drawings]
+            [each.section for each in drawings], [each.html for each in drawings]
         ),
         "report.json": to_json([document]),
         "checks.csv": checks_csv(assessments),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -30,6 +30,7 @@ def read_designs(
     catalogs: Sequence[Path],
     workers: int | None,
     command: str = "calm check",
+    meanwhile: Callable[[], object] | None = None,
 ) -> tuple[list[Design], list[Path]]:
     """Every mooring in every environment, and which of the files are tows, which a command leaves.
 
@@ -37,6 +38,7 @@ def read_designs(
     ----------
     environments : names or files of those to take; None for a file's own and all that it names
     workers : how many processes share the work
+    meanwhile : what this process does while others read
 
     Raises
     ------
@@ -51,7 +53,7 @@ def read_designs(
         raise UsageError(f"given twice: {', '.join(twice)}")
     names: Sequence[str | None] = environments or [None]
     asked = [(file, name) for file in files for name in names]
-    read, tows = _loaded(asked, catalogs, workers)
+    read, tows = _loaded(asked, catalogs, workers, meanwhile)
     moored = [file for file in files if file not in tows]
     if not moored:
         raise UsageError(f"{command} is for moorings; these are tows: {', '.join(map(str, tows))}")
@@ -95,7 +97,10 @@ def _cut_alike(moorings: Sequence[Mooring]) -> tuple[Mooring, ...]:
 
 
 def _loaded(
-    asked: Sequence[tuple[Path, str | None]], catalogs: Sequence[Path], workers: int | None
+    asked: Sequence[tuple[Path, str | None]],
+    catalogs: Sequence[Path],
+    workers: int | None,
+    meanwhile: Callable[[], object] | None = None,
 ) -> tuple[dict[tuple[Path, str | None], Mooring], list[Path]]:
     """The moorings, and which of the files are tows."""
     from calm.case import Mooring
@@ -104,7 +109,8 @@ def _loaded(
     problems: dict[Problem, None] = {}
     moorings: dict[tuple[Path, str | None], Mooring] = {}
     tows: dict[Path, None] = {}
-    for (file, name), read in zip(asked, mapped(_load, tasks, workers, "files read"), strict=True):
+    loaded = mapped(_load, tasks, workers, "files read", meanwhile)
+    for (file, name), read in zip(asked, loaded, strict=True):
         if isinstance(read, tuple):
             problems |= dict.fromkeys(read)  # what files share has its mistakes told once
         elif isinstance(read, Mooring):

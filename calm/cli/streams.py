@@ -98,13 +98,13 @@ def progress(items: Iterable[_Item], what: str, total: int | None = None) -> Ite
     if sys.stderr is None or not sys.stderr.isatty():
         yield from items
         return
-    told, due = False, monotonic() + _PATIENCE
+    drawn, due = False, monotonic() + _PATIENCE
     for done, item in enumerate(items):
         if monotonic() >= due:
             print(f"\r{done} of {total} {what}", end="", file=sys.stderr, flush=True)
-            told, due = True, monotonic() + _PACE
+            drawn, due = True, monotonic() + _PACE
         yield item
-    if told:
+    if drawn:
         print("\r\x1b[K", end="", file=sys.stderr, flush=True)
 
 

@@ -19,7 +19,11 @@ FEW = 4
 
 
 def mapped(
-    function: Callable[[_Task], _Done], tasks: Sequence[_Task], workers: int | None, what: str
+    function: Callable[[_Task], _Done],
+    tasks: Sequence[_Task],
+    workers: int | None,
+    what: str,
+    meanwhile: Callable[[], object] | None = None,
 ) -> list[_Done]:
     """What a function makes of every task, in their order; how far it is is shown.
 
@@ -28,6 +32,7 @@ def mapped(
     function : of a module, so that another process finds it
     workers : how many processes; None for one on each core
     what : the tasks, in the plural
+    meanwhile : what this process does while others work; nothing where it works itself
     """
     workers = min(workers or os.cpu_count() or 1, len(tasks))
     if workers < 2 or len(tasks) <= FEW:
@@ -37,7 +42,10 @@ def mapped(
 
     pool = ProcessPoolExecutor(workers, initializer=_leave_interrupts_to_the_parent)
     try:
-        done = list(progress(pool.map(function, tasks), what, len(tasks)))
+        doing = pool.map(function, tasks)
+        if meanwhile is not None:
+            meanwhile()
+        done = list(progress(doing, what, len(tasks)))
     except BaseException:
         pool.shutdown(wait=False, cancel_futures=True)
         for child in active_children():

@@ -152,17 +152,17 @@ def _levels(water: Water, deepest: float) -> tuple[tuple[float, float, float, fl
 def _unsaid(mooring: Mooring | Tow) -> tuple[str, ...]:
     """What a mooring file says that other programs do not know."""
     file = mooring.file
-    told = [
+    unsaid = [
         "limits of the design check, strengths, ratings and tilts of components",
     ]
     if file.solver.strumming is not None:
-        told.append("strumming: the drag of cables is that at rest")
+        unsaid.append("strumming: the drag of cables is that at rest")
     if file.solver.drag == "reynolds":
-        told.append("`drag: reynolds`: drags are those of the constant coefficients")
+        unsaid.append("`drag: reynolds`: drags are those of the constant coefficients")
     if file.solver.friction != "berteaux":
-        told.append(f"`friction: {file.solver.friction}`")
+        unsaid.append(f"`friction: {file.solver.friction}`")
     if any(mooring.line.elongation):
-        told.append("elongation tables: stiffness is that at the tension found here")
+        unsaid.append("elongation tables: stiffness is that at the tension found here")
     if any(mooring.line.lift) or any(mooring.line.clamp_lift):
-        told.append("lift of towed bodies")
-    return tuple(told)
+        unsaid.append("lift of towed bodies")
+    return tuple(unsaid)

@@ -131,26 +131,26 @@ def _placed(
             f"`{levels.name}` is {levels.attrs['standard_name']}, a share of the water depth, "
             "whatever its unit; give the depths of the levels, such as ROMS' `z_rho`"
         )
-    told = f"{levels.name} " + words_of(levels, "standard_name", "long_name", "reference_datum")
-    told = re.sub(r"[\W_]+", " ", told.lower())
-    if _COUNTED.search(told):
+    words = f"{levels.name} " + words_of(levels, "standard_name", "long_name", "reference_datum")
+    words = re.sub(r"[\W_]+", " ", words.lower())
+    if _COUNTED.search(words):
         said = levels.attrs.get("long_name", levels.name)
         raise UnreadableError(
             f"`{levels.name}` counts its levels (`{said}`) and does not say how deep they are"
         )
-    if _ABOVE_SEABED.search(told):
+    if _ABOVE_SEABED.search(words):
         return _above_seabed(levels, factor, water_depth)
     positive = str(levels.attrs.get("positive", "")).lower()
-    if _FROM_INSTRUMENT.search(told) or words_of(levels, "reference_datum") in (
+    if _FROM_INSTRUMENT.search(words) or words_of(levels, "reference_datum") in (
         "sensor",
         "instrument",
         "transducer",
     ):
-        way = positive or _way_it_looks(dataset, levels, told)
+        way = positive or _way_it_looks(dataset, levels, words)
         return _from_instrument(dataset, levels, factor, way, time, water_depth)
     if not positive and levels.name in _HEIGHTS and _sign(levels, time) < 0:
         positive = "up"
-    elif not positive and "depth" in told:
+    elif not positive and "depth" in words:
         positive = "down"
     if positive not in ("up", "down"):
         raise UnreadableError(f"`{levels.name}` does not say whether it is `positive` up or down")
@@ -223,10 +223,10 @@ def _offset_by_hand(dataset: xr.Dataset) -> bool:
     return given and "rdi" not in str(dataset.attrs.get("inst_make", "")).lower()
 
 
-def _way_it_looks(dataset: xr.Dataset, levels: xr.DataArray, told: str) -> str:
+def _way_it_looks(dataset: xr.Dataset, levels: xr.DataArray, words: str) -> str:
     """Whether an instrument looks ``"up"`` or ``"down"``; empty where nothing says so."""
     for word, way in (("above", "up"), ("below", "down")):
-        if word in told.split():
+        if word in words.split():
             return way
     given = [one.attrs.get("orientation", "") for one in (levels, dataset)]
     looks = re.sub(r"[\W_]+", " ", " ".join(map(str, given)).lower())

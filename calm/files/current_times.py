@@ -68,8 +68,8 @@ def read_times(dataset: xr.Dataset, name: str) -> NDArray[np.datetime64]:
 def zone_notices(dataset: xr.Dataset, name: str) -> list[str]:
     """What is said where the attributes of the times name another zone than UTC."""
     attributes = dataset[name].attrs
-    told = [str(attributes.get(one, "")) for one in _ZONED]
-    zone = next((one for one in told if one and one.strip().upper() not in ZONES_OF_UTC), None)
+    zones = [str(attributes.get(one, "")) for one in _ZONED]
+    zone = next((one for one in zones if one and one.strip().upper() not in ZONES_OF_UTC), None)
     if zone is None and "local time" in str(attributes.get("long_name", "")).lower():
         zone = str(attributes["long_name"])
     return [f"`{name}` says `{zone}`; its times are taken as they stand"] if zone else []

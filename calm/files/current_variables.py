@@ -129,8 +129,8 @@ def _direction(
     for sought, way in ((_TOWARD, "to"), (_FROM, "from")):
         name = _find(dataset, sought, regular, notes)
         if name is not None:
-            told = way_of(dataset[name], "long_name", "comment")
-            if told not in (way, None):
+            stated = way_of(dataset[name], "long_name", "comment")
+            if stated not in (way, None):
                 said = dataset[name].attrs.get("long_name") or dataset[name].attrs.get("comment")
                 raise UnreadableError(
                     f"`{name}` contradicts itself: by its name it is the direction the current "

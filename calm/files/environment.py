@@ -295,13 +295,13 @@ def _current(
     try:
         from calm.files.current_file import read_current_file
 
-        table, told = read_current_file(path, current.time, terms)
+        table, remarks = read_current_file(path, current.time, terms)
     except TimeChoiceError as error:
         problems.append(report(("time",), str(error)))
     except InputError as error:
         problems.extend(error.problems)
     else:
-        notices.extend(told)
+        notices.extend(remarks)
         return table
     return None
 

@@ -26,8 +26,12 @@ def flag_variable(dataset: xr.Dataset, name: str) -> xr.DataArray | None:
 
 
 def _tells_flags(variable: xr.DataArray) -> bool:
-    told = str(variable.attrs.get("standard_name", ""))
-    return "status_flag" in told or "flag_values" in variable.attrs or variable.dtype.kind in "iu"
+    standard_name = str(variable.attrs.get("standard_name", ""))
+    return (
+        "status_flag" in standard_name
+        or "flag_values" in variable.attrs
+        or variable.dtype.kind in "iu"
+    )
 
 
 def flags_of(variable: xr.DataArray) -> NDArray[np.int8]:

@@ -85,9 +85,9 @@ class Tabulation:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What holds for every row that has an equilibrium."""
-        told = [row.result.warnings for row in self.rows if row.result is not None]
-        first = told[0] if told else ()
-        return tuple(text for text in first if all(text in each for each in told))
+        warnings = [row.result.warnings for row in self.rows if row.result is not None]
+        first = warnings[0] if warnings else ()
+        return tuple(text for text in first if all(text in each for each in warnings))
 
 
 def by_speed(

@@ -205,7 +205,7 @@ def _buoyancy(mooring: Mooring, finding: Finding) -> Iterator[Offer]:
 
 def differences(before: View, after: View) -> list[str]:
     """What a change does to the figures and to the findings, each as ``from → to``."""
-    told = []
+    effects = []
     one, other = before.result, after.result
     if isinstance(one, Result) and isinstance(other, Result):
         figures = [
@@ -218,9 +218,9 @@ def differences(before: View, after: View) -> list[str]:
         for name, quantity, old, new in figures:
             texts = [QUANTITIES[quantity].say(value) for value in (old, new)]
             if texts[0] != texts[1]:
-                told.append(f"{name} {texts[0]} → {texts[1]}")
+                effects.append(f"{name} {texts[0]} → {texts[1]}")
     elif after.failure is not None:
-        told.append(f"it does not stand: {after.failure.message}")
+        effects.append(f"it does not stand: {after.failure.message}")
     for state, word in (
         (State.FAIL, "failures"),
         (State.UNKNOWN, "figures unknown"),
@@ -228,5 +228,5 @@ def differences(before: View, after: View) -> list[str]:
     ):
         counts = [sum(each.state is state for each in view.findings) for view in (before, after)]
         if counts[0] != counts[1]:
-            told.append(f"{word} {counts[0]} → {counts[1]}")
-    return told or ["nothing that is shown here changes"]
+            effects.append(f"{word} {counts[0]} → {counts[1]}")
+    return effects or ["nothing that is shown here changes"]

@@ -144,11 +144,11 @@ class BuildApp(InTurn):
         """Whether nothing is being typed any more; a bad value has been reported."""
         return not isinstance(self.screen, DraftScreen) or self.screen.part.settle()
 
-    def taken_over(self, told: str) -> None:
+    def taken_over(self, message: str) -> None:
         """Another text has taken the place of the draft: every screen reads it again."""
         for screen in self.draft_screens():
             screen.replaced()
-        self.tell(told)
+        self.tell(message)
         self.post_message(Edited())
 
     def action_save(self) -> None:
@@ -194,8 +194,8 @@ class BuildApp(InTurn):
     def _tell_lost_environment(self) -> None:
         before, self._lost = self._lost, self.session.standing.lost_environment
         if self._lost not in (None, before):
-            told = f"There is no environment {self._lost} now; the line stands in the file's own"
-            self.tell(told)
+            message = f"There is no environment {self._lost} now; the line stands in the file's own"
+            self.tell(message)
 
     def _mend(self, *, as_judged: bool = False) -> None:
         """Open the text where the draft cannot be read; or, `as_judged`, has mistakes."""

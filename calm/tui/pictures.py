@@ -229,9 +229,9 @@ class Pictures(Vertical):
         shapes, named = self._beside()
         picture = self.query_one(Picture)
         self.query_one(Tabs).show(self.tab, self._note, focused=picture.has_focus)
-        told = self.query_one("#beside", Static)
-        told.update(f"dashed: {named}")
-        told.display = bool(named) and self.tab in ("elevation", "plan")
+        caption = self.query_one("#beside", Static)
+        caption.update(f"dashed: {named}")
+        caption.display = bool(named) and self.tab in ("elevation", "plan")
         picture.show(self._view, self.tab, shapes)
 
     def on_descendant_focus(self) -> None:

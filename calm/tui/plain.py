@@ -56,10 +56,14 @@ def shows_all_signs(environ: Mapping[str, str], output: TextIO | None) -> bool:
     """
     if environ.get("TEXTUAL_DRIVER"):
         return True  # a page in a browser
-    told = [environ[name] for name in _LOCALE if environ.get(name)]
-    if len(told) > 1 and told[0] == environ.get("LC_CTYPE") and told[0].lower() in _OF_PYTHON:
-        told.pop(0)
-    name, _, coded = (told[0] if told else "").partition("@")[0].partition(".")
+    locales = [environ[name] for name in _LOCALE if environ.get(name)]
+    if (
+        len(locales) > 1
+        and locales[0] == environ.get("LC_CTYPE")
+        and locales[0].lower() in _OF_PYTHON
+    ):
+        locales.pop(0)
+    name, _, coded = (locales[0] if locales else "").partition("@")[0].partition(".")
     if name in ("C", "POSIX") and not coded:
         return False
     return _is_utf(coded or "utf-8") and _is_utf(getattr(output, "encoding", None) or "ascii")

@@ -17,11 +17,11 @@ def moment(seconds: float) -> str:
 def offer(session: Session, kept: Kept) -> Question:
     """Whether it is to be recovered; it says when it was kept and whether the file is newer."""
     whose = "" if kept.keeper.is_here else f" on {kept.keeper.host}, where it may still be open"
-    told = [f"An earlier run ended before {session.name} was saved. It kept its work"]
-    told.append(f"{moment(kept.at)}{whose}.")
+    sentences = [f"An earlier run ended before {session.name} was saved. It kept its work"]
+    sentences.append(f"{moment(kept.at)}{whose}.")
     if session.file.is_of_another(kept):
         stamp = session.file.stamp
-        told.append(
+        sentences.append(
             "The file is gone since that work was begun: saving writes it again."
             if stamp is None
             else f"The file was changed, {moment(stamp[0] / 1e9)}, after that work was begun: "
@@ -32,7 +32,7 @@ def offer(session: Session, kept: Kept) -> Question:
         Answer("k", "keep it for later; go on with the file", "later"),
         Answer("d", "throw it away", "discard"),
     ]
-    return Question("Work that was not saved", " ".join(told), answers, must=True)
+    return Question("Work that was not saved", " ".join(sentences), answers, must=True)
 
 
 def confirmation(kept: Kept) -> Question:

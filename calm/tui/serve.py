@@ -84,9 +84,9 @@ class Browser(Server):
 
     def serve(self, debug: bool = False) -> None:
         """Listen until it is interrupted, and say where as soon as it does."""
-        told = f"calm build is at {self.address}\nCtrl+C ends it"
+        greeting = f"calm build is at {self.address}\nCtrl+C ends it"
         web.run_app(
-            self._make_app(), host=self.host, port=self.port, print=lambda *_: self._tell(told)
+            self._make_app(), host=self.host, port=self.port, print=lambda *_: self._tell(greeting)
         )
 
     async def handle_index(self, request: web.Request) -> web.Response:

@@ -99,8 +99,8 @@ def choose_theme(environ: Mapping[str, str]) -> str:
     sixteen, which its owner has chosen to be legible. The ground is light where `COLORFGBG`, which
     many terminals set, names a light colour as the last of its two or three.
     """
-    told = (environ.get("COLORTERM"), environ.get("TEXTUAL_COLOR_SYSTEM"))
-    many = "256" in environ.get("TERM", "") or not _MANY.isdisjoint(told)
+    announced = (environ.get("COLORTERM"), environ.get("TEXTUAL_COLOR_SYSTEM"))
+    many = "256" in environ.get("TERM", "") or not _MANY.isdisjoint(announced)
     if environ.get("COLORFGBG", "").rpartition(";")[2] in _LIGHT_GROUNDS:
         return LIGHT.name if many else "ansi-light"
     return DARK.name if many else "ansi-dark"

@@ -49,7 +49,7 @@ class VerdictPane(Scrolled, can_focus=True):
         """A line was chosen: the rows that it is about, none to go back, and what it says."""
 
         places: tuple[Place, ...]
-        told: str = ""
+        text: str = ""
 
     def __init__(self, *, id: str | None = None) -> None:
         super().__init__(id=id)
@@ -126,8 +126,8 @@ class VerdictPane(Scrolled, can_focus=True):
         """To the row that the line is about."""
         if self._is_a_way(self._chosen):
             said = self._said[self._chosen][0]
-            told = f"{said.sign} {said.heading}: ".replace(" : ", " ") + said.text
-            self.post_message(self.RowWanted(said.places, told))
+            text = f"{said.sign} {said.heading}: ".replace(" : ", " ") + said.text
+            self.post_message(self.RowWanted(said.places, text))
 
     def action_leave(self) -> None:
         """Back to the line as it was."""

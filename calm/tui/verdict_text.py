@@ -59,8 +59,8 @@ def headline(view: View | None) -> Saying:
     said = _judged(view.findings)
     if view.complete or view.missing:
         return said
-    told = said.text if said.state in (State.FAIL, State.WARN) else "nothing fails"
-    return Saying(f"{told} so far", pending=True)
+    outcome = said.text if said.state in (State.FAIL, State.WARN) else "nothing fails"
+    return Saying(f"{outcome} so far", pending=True)
 
 
 def _judged(findings: Sequence[Finding]) -> Saying:
@@ -72,7 +72,7 @@ def _judged(findings: Sequence[Finding]) -> Saying:
     state = worst(list(counts))
     if state is None:
         return Saying("solved")
-    told = [
+    phrases = [
         f"{counts[each]} {word}{'s' * (counts[each] != 1)}"
         for each, word in ((State.FAIL, "failure"), (State.WARN, "warning"))
         if counts[each]
@@ -81,9 +81,9 @@ def _judged(findings: Sequence[Finding]) -> Saying:
     unknown = f"{missing} figure{'s' * (missing != 1)} unknown"
     if state is State.UNKNOWN:
         return Saying(f"nothing fails, {unknown}", state=state)
-    if not told:
+    if not phrases:
         return Saying("passes every check", state=State.PASS)
-    return Saying(", ".join([*told, *([unknown] if missing else [])]), state=state)
+    return Saying(", ".join([*phrases, *([unknown] if missing else [])]), state=state)
 
 
 def sayings(view: View | None) -> Iterator[Saying]:

@@ -18,9 +18,9 @@ def _radius() -> float:
     try:
         solve_mooring(line_of(point(20_000.0, 100.0), rope), stream(_DEPTH, 0.0))
     except NoEquilibrium as refusal:
-        told = re.search(r"radius of (\d+) m", refusal.message)
-        if refusal.status == "slack" and told:
-            return float(told[1])
+        radius = re.search(r"radius of (\d+) m", refusal.message)
+        if refusal.status == "slack" and radius:
+            return float(radius[1])
         raise
     raise AssertionError("a slack line in still water was given a shape")
 

@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from calm.cli.workers import begun
+from calm.cli.workers import begun, mapped
 
 
 @pytest.mark.parametrize("cores", [1, 2])
@@ -24,3 +24,11 @@ def test_what_fails_there_fails_where_it_is_called_for():
     made = begun(divmod, 7, 0)
     with pytest.raises(ZeroDivisionError):
         made()
+
+
+@pytest.mark.parametrize(("workers", "meantime"), [(2, ["meanwhile"]), (1, [])])
+def test_something_else_is_done_while_other_processes_work(workers, meantime):
+    done = []
+    tasks = [-3, 1, -4, 1, -5]
+    made = mapped(abs, tasks, workers, "tasks", lambda: done.append("meanwhile"))
+    assert (made, done) == ([3, 1, 4, 1, 5], meantime)

@@ -67,8 +67,8 @@ def sha256_of(text: str) -> str:
 def differences(before: Any, now: Any) -> str:
     """What differs between two identities, in words."""
     found = list(_differing("", before, now))
-    told = "; ".join(found[:MOST_TOLD])
-    return f"{told}; and {len(found) - MOST_TOLD} more" if len(found) > MOST_TOLD else told
+    listed = "; ".join(found[:MOST_TOLD])
+    return f"{listed}; and {len(found) - MOST_TOLD} more" if len(found) > MOST_TOLD else listed
 
 
 def _differing(place: str, before: Any, now: Any) -> Iterator[str]:

@@ -196,14 +196,14 @@ def refuse_another(path: Path, before: str, now: str) -> None:
     if before == now:
         return
     try:
-        told = differences(json.loads(before), json.loads(now))
+        changes = differences(json.loads(before), json.loads(now))
     except ValueError:
         raise UsageError(
             f"{path} is damaged: it no longer shows what it was made from. Remove it, and the same "
             "command begins anew"
         ) from None
     raise UsageError(
-        f"{path} was made from another input: {told}. "
+        f"{path} was made from another input: {changes}. "
         "It is kept; give another name to the result, or remove it"
     )
 

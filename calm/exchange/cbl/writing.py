@@ -119,10 +119,10 @@ def cbl_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
     if problem.load is not None:
         problem.segment(_link(problem), 0.001)
     text = _text(design, problem, buoy_figures(buoy, design, density, lost), density, floating)
-    told = remarks(design, lost)
-    head = [f"{design.name}, by CALM; lost:", *(f"- {each}" for each in told)]
+    losses = remarks(design, lost)
+    head = [f"{design.name}, by CALM; lost:", *(f"- {each}" for each in losses)]
     comment = "\n   ".join(line.replace("*/", "* /") for line in head)
-    return f"/* {comment} */\n{text}".encode(), told
+    return f"/* {comment} */\n{text}".encode(), losses
 
 
 def _lay(problem: _Problem, part: Part, lost: list[str]) -> None:

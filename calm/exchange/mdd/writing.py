@@ -64,11 +64,11 @@ def mdd_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
             "the hull of the float: there it sinks, and drags, in proportion to the buoyancy it "
             "uses; its Cd is such that it drags as here in this current"
         )
-    told = remarks(design, lost)
-    variables["lost"] = _texts([f"by CALM from {design.name}; lost:", *told])
+    losses = remarks(design, lost)
+    variables["lost"] = _texts([f"by CALM from {design.name}; lost:", *losses])
     content = io.BytesIO()
     savemat(content, variables, format="5", oned_as="row")
-    return content.getvalue(), told
+    return content.getvalue(), losses
 
 
 def _element(part: Part, lost: list[str]) -> tuple[float, ...]:

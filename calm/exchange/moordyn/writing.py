@@ -141,8 +141,8 @@ def moordyn_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
             "pull found here"
         )
     system.end_point("Fixed" if afloat else "Free")
-    told = remarks(design, lost)
-    return _text(design, system, density, told).encode(), told
+    losses = remarks(design, lost)
+    return _text(design, system, density, losses).encode(), losses
 
 
 def _lay(system: _System, part: Part, path: Path) -> None:

@@ -28,5 +28,5 @@ def number(cell: str) -> tuple[float | None, str]:
     plain = found[0].replace("−", "-").replace(",", ".")
     value = float("".join(plain.split()).replace("\u00a0", ""))
     rest = bare[found.end() :].strip()
-    told = f"`{cell}` read as {value:g}" if rest or bare != text else ""
-    return value, told
+    reading = f"`{cell}` read as {value:g}" if rest or bare != text else ""
+    return value, reading

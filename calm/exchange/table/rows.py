@@ -124,10 +124,10 @@ def _row(
     for what, column in known.items():
         if what in WORDS:
             continue
-        value, told = number(_cell(cells, column))
+        value, reading = number(_cell(cells, column))
         if value is None:
-            if told and what != "material":
-                mistakes.append(f"{row.where}: {column.heading}: {told}")
+            if reading and what != "material":
+                mistakes.append(f"{row.where}: {column.heading}: {reading}")
             continue
         scale = KILOGRAM_FORCE if column.by_mass else 1.0
         figure = value * column.factor * scale
@@ -137,8 +137,8 @@ def _row(
         row.figures[what] = figure
         if column.per_metre:
             row.metre.add(what)
-        if told:
-            row.guesses[what] = told
+        if reading:
+            row.guesses[what] = reading
     count = row.figures.pop("count", 1.0)
     if not 1.0 <= round(count) <= _MOST:
         mistakes.append(f"{row.where}: {count:.12g} of them")

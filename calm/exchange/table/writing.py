@@ -18,9 +18,9 @@ def csv_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
     lost = ["the water", "hulls and wind: floats drag in full at the surface"]
     if design.tow is not None:
         lost.append("the speed of the ship: a list is a mooring's")
-    told = remarks(design, lost)
+    losses = remarks(design, lost)
     text = io.StringIO()
-    for line in (f"{design.name}, by CALM; lost:", *told):
+    for line in (f"{design.name}, by CALM; lost:", *losses):
         text.write(f"# {' '.join(line.split())}\n")
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(HEADER)
@@ -33,7 +33,7 @@ def csv_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
         mass = "" if anchor.mass is None else f"{anchor.mass:.9g}"
         shown = ["anchor", "anchor", "anchor", "anchor", "", f"{anchor.length:.9g}", "", mass]
         writer.writerow([*shown, f"{-weight:.9g}", "", "", ""])
-    return text.getvalue().encode(), told
+    return text.getvalue().encode(), losses
 
 
 def _row(part: Part, at: str) -> list[str]:

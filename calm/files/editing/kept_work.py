@@ -126,9 +126,9 @@ def _started(process: int) -> str:
     It is not known of one that has ended, though its parent has not asked for that yet.
     """
     try:
-        told = Path(f"/proc/{process}/stat").read_text()
+        stat = Path(f"/proc/{process}/stat").read_text()
     except (OSError, ValueError):
         return ""
     # behind the name, which stands in brackets and may hold anything
-    values = told.rpartition(")")[2].split()
+    values = stat.rpartition(")")[2].split()
     return "" if values[0] in "ZX" else values[19]

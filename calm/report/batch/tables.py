@@ -112,16 +112,16 @@ def levels_tables(summary: Summary) -> Iterator[Table | Prose]:
     for response in summary.responses:
         name = QUANTITY[response.name]
         title = TITLES[response.name].capitalize()
-        told = [fit for fit in response.return_levels if isinstance(fit, Fit)]
-        if told:
+        fits = [fit for fit in response.return_levels if isinstance(fit, Fit)]
+        if fits:
             columns = (
                 Column("method"),
                 Column("return period", "years", numeric=True),
                 replace(quantity_column(name), heading="level"),
                 replace(quantity_column(name), heading="95 % interval"),
             )
-            rows = tuple(_level(name, fit, level) for fit in told for level in fit.levels)
-            yield Table(title, columns, rows, " ".join(f"{_rules(fit)}." for fit in told))
+            rows = tuple(_level(name, fit, level) for fit in fits for level in fit.levels)
+            yield Table(title, columns, rows, " ".join(f"{_rules(fit)}." for fit in fits))
     for reason in refusals(summary):
         yield Prose((f"{reason[0].upper()}{reason[1:]}.",), State.UNKNOWN)
 

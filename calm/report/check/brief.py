@@ -57,13 +57,19 @@ def check_part(assessments: Sequence[Assessment]) -> Part:
         for each in assessments
         for finding in (*each.all_findings(), *each.tighter_findings())
     ]
-    told = (
+    reported = (
         block
         for each in assessments
         for block in (*_told(each), *_worded(_accepted(each)), *_worded(_departing(each)))
     )
     likely = likelihood_tables([(each.name, [*each.all_findings()]) for each in assessments])
-    blocks = (*_matrix(assessments), _verdict(every), _worst(assessments, every), *likely, *told)
+    blocks = (
+        *_matrix(assessments),
+        _verdict(every),
+        _worst(assessments, every),
+        *likely,
+        *reported,
+    )
     return Part("", (*blocks, Note(UNSEEN[:1])))
 
 

@@ -98,12 +98,12 @@ class Advising:
                 return
             path, environment = before.path, before.environment
             view = judge(made.text, path, environment, catalogs, keep=before)
-            told = differences(judge_fully(before, catalogs), judge_fully(view, catalogs))
-            later(self._show, offer, draft, made, told)
+            lines = differences(judge_fully(before, catalogs), judge_fully(view, catalogs))
+            later(self._show, offer, draft, made, lines)
 
         self._line.run_worker(work, thread=True, group="advice", exclusive=True)
 
-    def _show(self, offer: Offer, before: Draft, made: Draft, told: list[str]) -> None:
+    def _show(self, offer: Offer, before: Draft, made: Draft, lines: list[str]) -> None:
         session = self._workspace.session
 
         def take(answer: str | None) -> None:
@@ -116,4 +116,4 @@ class Advising:
 
         self._workspace.tell("")
         answers = [Answer("y", "take it", "take")]
-        self._app.push_screen(Question(offer.title, "\n".join(told), answers), take)
+        self._app.push_screen(Question(offer.title, "\n".join(lines), answers), take)

@@ -99,7 +99,7 @@ class LineBody(Horizontal):
         numbers = sorted(rows[place] for place in event.places if place in rows)
         if numbers:  # again and again: the next of them
             table.cursor = next((each for each in numbers if each > table.cursor), numbers[0])
-            self.workspace.tell(event.told)
+            self.workspace.tell(event.text)
             self.line.came_from_verdict = True
         table.focus()
 
@@ -147,8 +147,8 @@ class LineBody(Horizontal):
         if purpose == "replace" and spot is not None:
             kept: list[str] = []
             if self.line.attempt(lambda: kept.extend(session.replace(spot, values))):
-                told = f"; kept from the one before: {', '.join(kept)}" if kept else ""
-                self.workspace.tell(f"now {use}{told}")
+                kept_keys = f"; kept from the one before: {', '.join(kept)}" if kept else ""
+                self.workspace.tell(f"now {use}{kept_keys}")
             self._close_catalogue()
             return
         if purpose == "clamp" and spot is not None:

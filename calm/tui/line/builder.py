@@ -128,8 +128,8 @@ class BuilderScreen(DraftScreen):
             return
         standing.environment = name = standing.next_environment
         self.show_draft()
-        told = f"environment {name}" if name else "own `environment:`"
-        self.tell(f"The line stands in the file's {told}")
+        which = f"environment {name}" if name else "own `environment:`"
+        self.tell(f"The line stands in the file's {which}")
         self.workspace.edited()
 
     def action_advise(self) -> None:

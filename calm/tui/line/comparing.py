@@ -76,20 +76,20 @@ class Comparing:
                 before = judge(text, view.path, view.environment, catalogs, keep=view)
             else:
                 before = judge(text, file, None, catalogs)
-            told = differences(judge_fully(before, catalogs), judge_fully(view, catalogs))
-            told += ["", *changed_lines(text, view.text)]
-            self._line.call_later(self._show, name, before, told)
+            lines = differences(judge_fully(before, catalogs), judge_fully(view, catalogs))
+            lines += ["", *changed_lines(text, view.text)]
+            self._line.call_later(self._show, name, before, lines)
 
         self._workspace.tell("Comparing …")
         self._line.run_worker(work, thread=True, group="advice", exclusive=True)
 
-    def _show(self, name: str, before: View, told: list[str]) -> None:
+    def _show(self, name: str, before: View, lines: list[str]) -> None:
         self._workspace.tell("")
         view = self._workspace.view
         if before.result is not None and view and type(before.result) is type(view.result):
             self._pictures.put_beside((name, before.result.shape))
         answers = [Answer("b", "back to the line", "back")]
-        self._app.push_screen(Question(f"Beside {name}", "\n".join(told), answers))
+        self._app.push_screen(Question(f"Beside {name}", "\n".join(lines), answers))
 
 
 def changed_lines(before: str, after: str) -> list[str]:

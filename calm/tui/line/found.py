@@ -46,8 +46,8 @@ class Found:
     def _tell(self, found: list[Saying]) -> None:
         if found:
             gravest = found[0]
-            told = f"{gravest.sign} {gravest.heading}: {gravest.text}"
-            self._workspace.tell(told, wrong=gravest.state is State.FAIL)
+            message = f"{gravest.sign} {gravest.heading}: {gravest.text}"
+            self._workspace.tell(message, wrong=gravest.state is State.FAIL)
 
     def _of(self, spot: Place) -> list[Saying]:
         view = self._workspace.view

@@ -86,19 +86,19 @@ class LinePane(Vertical):
         self.cells.leave()
         self.table.mark(frozenset())
 
-    def attempt(self, change: Callable[[], object], told: str = "") -> bool:
+    def attempt(self, change: Callable[[], object], message: str = "") -> bool:
         """Make a change, after what is typed in place is taken. Whether it was made."""
         if not self.settle():
             return False
         is_made, spot = self.workspace.attempt(change)
         if is_made:
-            self._show_edited(spot, told)
+            self._show_edited(spot, message)
         return is_made
 
-    def _show_edited(self, spot: Place | None = None, told: str = "") -> None:
+    def _show_edited(self, spot: Place | None = None, message: str = "") -> None:
         """Show the draft, which was edited, and have it judged."""
         self.show_draft(spot)
-        self.workspace.tell(told)
+        self.workspace.tell(message)
         self.workspace.edited()
 
     # the cursor and the marks

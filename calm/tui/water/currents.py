@@ -96,8 +96,8 @@ class Currents:
             path, time, water = texts["file"], texts["time"], self._pane.water
             if texts["how"] == "refer":
                 given = {"file": path} | ({"time": time} if time else {})
-                told = f"current of {path}"
-                self._pane.change(lambda water: water.put_form(("current",), given), told)
+                message = f"current of {path}"
+                self._pane.change(lambda water: water.put_form(("current",), given), message)
                 return
             self._workspace.tell(f"Reading {path} …")
             file = _File(water.variant, path, time, water.depth or USUAL_DEPTH)
@@ -123,8 +123,8 @@ class Currents:
 
     def _take(self, file: _File, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
         if file.variant != self._pane.water.variant:
-            told = f"{file.path} was read for another environment; read it again"
-            self._workspace.tell(told, wrong=True)
+            message = f"{file.path} was read for another environment; read it again"
+            self._workspace.tell(message, wrong=True)
         else:
             self._pane.put_table(columns, rows, f"current of {file.path}")
             self._workspace.tell(f"The current of {file.path} is in the table")

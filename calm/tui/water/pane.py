@@ -151,8 +151,10 @@ class WaterPane(Horizontal):
         names = ["own" if name is None else name for name in self.session.standing.environments]
         names += [file] if file else []
         here = file or water.variant or "own"
-        told = "   ".join(f"[{name}]" if name == here else name for name in names)
-        self.query_one("#environment-names", Static).update(f"Environment     {told}", layout=False)
+        listing = "   ".join(f"[{name}]" if name == here else name for name in names)
+        self.query_one("#environment-names", Static).update(
+            f"Environment     {listing}", layout=False
+        )
         for choice in self.query(FormChoice):
             place = _place(choice)
             choice.set_class(not self._is_shown(place), "gone")
@@ -191,12 +193,12 @@ class WaterPane(Horizontal):
 
     # changes
 
-    def change(self, make: Callable[[Water], Draft], label: str, told: str = "") -> bool:
+    def change(self, make: Callable[[Water], Draft], label: str, message: str = "") -> bool:
         """Change the file; a refusal is reported. Whether it was changed."""
         is_made, _ = self.workspace.attempt(lambda: self.session.do(make(self.water), label))
         self.show_draft()
         if is_made:
-            self.workspace.tell(told)
+            self.workspace.tell(message)
             self.workspace.edited()
         return is_made
 
@@ -213,12 +215,12 @@ class WaterPane(Horizontal):
         key = (water.variant, place, form)
         is_new = key not in self._left
         value = water.begun(place, form) if is_new else self._left[key]
-        told = ""
+        message = ""
         if is_new and value is not None:
-            told = "Filled with typical figures, to be replaced"
+            message = "Filled with typical figures, to be replaced"
             if water.depth is None:
-                told += f"; no depth is given, so tables go down to {USUAL_DEPTH:g} m"
-        self.change(lambda water: water.put_form(place, value), f"{place[-1]}: {form}", told)
+                message += f"; no depth is given, so tables go down to {USUAL_DEPTH:g} m"
+        self.change(lambda water: water.put_form(place, value), f"{place[-1]}: {form}", message)
 
     # what is typed
 

@@ -1,5 +1,6 @@
 """What is common to a record, against the same law written out and iterated to its end."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -49,9 +50,12 @@ def record(seed, factor, datum, wrong, memory=0.0):
     )  # fmt: skip
 
 
-def best(one, gap):
-    """Value and covariance of the factor, the datum and two offsets, the scale: all written out."""
-    prior_of = np.diag([0.15, 0.01 * 200.0, 1.0, 1.0]) ** 2
+def best(one, start=None):
+    """Value and covariance of the factor, the datum and two offsets, the scale: all written out.
+
+    And how far down the line the lower sensor has moved, if it has from some time on.
+    """
+    prior_of = np.diag([0.15, 0.01 * 200.0, 1.0, 1.0, 20.0][: 4 + (start is not None)]) ** 2
     known = np.isfinite(one.depth)
     square = one.u**2
     own = np.hypot(0.05, 0.01 / one.u)
@@ -59,7 +63,7 @@ def best(one, gap):
     spread = currents + own[:, :, None] ** 2 * np.eye(2)
     apart = np.abs(STILL[SENSORS][:, None] - STILL[SENSORS])
     alike_down = np.exp(-apart / (0.25 * np.ptp(STILL)))
-    state, scale = np.zeros(4), 1.0
+    state, scale = np.zeros(len(prior_of)), 1.0
     for _ in range(12):
         factor = np.exp(state[0])
         down = factor * square @ GAIN[SENSORS].T
@@ -69,13 +73,7 @@ def best(one, gap):
         rest = rest + (0.07 * down)[:, :, None] * alike_down * (0.07 * down)[:, None, :]
         rest = rest + np.where(known, 0.0, 1e8)[:, :, None] * np.eye(2)
         bend = 0.5 * np.einsum("nss->ns", by_currents) / np.maximum(down, 1.0)
-        left = one.depth - STILL[SENSORS] - down - state[1] - state[2:] - bend
-        left = np.where(known, left, 0.0)
-        scale, _ = _scale(left, rest + by_currents, by_currents, scale)
-        by_currents = scale**2 * slope @ spread @ slope.transpose(0, 2, 1)
-        inverse = np.linalg.inv(rest + by_currents)
-        misfit = np.einsum("ns,nst,nt->n", left, inverse, left)
-        weight = (4.0 + known.sum(axis=1)) / (4.0 + misfit)
+        left = one.depth - STILL[SENSORS] - down - state[1] - state[2:4] - bend
         seen = np.concatenate(
             [
                 (np.exp(0.05) - 1.0) / 0.05 * down[:, :, None],
@@ -84,6 +82,18 @@ def best(one, gap):
             ],
             axis=2,
         )
+        if start is not None:  # the line below the point in the middle leans so much
+            middle = factor * square @ GAIN[1]
+            share = (80.0 + down[:, 1] - middle) / 80.0
+            fall = np.where(np.arange(TIMES) >= start, share, 0.0)
+            seen = np.concatenate([seen, (fall[:, None] * [0.0, 1.0])[:, :, None]], axis=2)
+            left = left - seen[:, :, 4] * state[4]
+        left = np.where(known, left, 0.0)
+        scale, _ = _scale(left, rest + by_currents, by_currents, scale)
+        by_currents = scale**2 * slope @ spread @ slope.transpose(0, 2, 1)
+        inverse = np.linalg.inv(rest + by_currents)
+        misfit = np.einsum("ns,nst,nt->n", left, inverse, left)
+        weight = (4.0 + known.sum(axis=1)) / (4.0 + misfit)
         normal = np.einsum("n,nsi,nst,ntj->ij", weight, seen, inverse, seen)
         each = np.einsum("n,nsi,nst,nt->ni", weight, seen, inverse, left)
         memory = _alike(each[:, 0])
@@ -103,10 +113,58 @@ def test_the_common_factor_is_that_of_the_law_written_out(
     monkeypatch.setattr(module, "Forward", Line)
     one = record(seed, factor, datum, wrong, memory)
     found = estimate_common(MOORING, one, ("cable_drag",))
-    state, covariance, scale, repeated = best(one, found.gap)
+    state, covariance, scale, repeated = best(one)
     deviation = np.sqrt(np.diag(covariance))
     mine = np.concatenate([[np.log(found.factors["cable_drag"]), found.datum], found.offset])
     assert (np.abs(mine - state) < 0.03 * deviation).all()
     assert np.sqrt(np.diag(found.covariance)[:4]) == pytest.approx(deviation, rel=0.05)
     assert found.scale == pytest.approx(scale)
     assert (repeated > 1.5) == (memory > 0.0)
+
+
+def slipped(seed, size, memory=0.0, start=80):
+    """The lower sensor hangs lower from a time on, its errors may repeat; no first reading."""
+    one = record(seed, 1.1, 1.0, 1.0)
+    random = np.random.default_rng(seed)
+    error = 0.8 * random.standard_normal(TIMES)
+    for i in range(1, TIMES):
+        error[i] = memory * error[i - 1] + np.sqrt(1.0 - memory**2) * error[i]
+    depth = one.depth + np.array([0.0, 1.0]) * (size * (np.arange(TIMES) >= start))[:, None]
+    depth[:, 1] += error * (memory > 0.0)
+    depth[0] = np.nan
+    return replace(one, depth=depth)
+
+
+def test_a_sensor_that_slips_is_as_if_that_were_known(monkeypatch):
+    monkeypatch.setattr(module, "Forward", Line)
+    one = slipped(4, 4.0)
+    found = estimate_common(MOORING, one, ("cable_drag",))
+    state, covariance, scale, _ = best(one, 80)
+    deviation = np.sqrt(np.diag(covariance))
+    mine = np.concatenate([[np.log(found.factors["cable_drag"]), found.datum], found.offset])
+    mine = np.append(mine, found.moved[1])
+    assert (np.abs(mine - state) < 0.05 * deviation).all()
+    assert found.scale == pytest.approx(scale)
+    assert (
+        found.since.tolist() == one.time[[80, 80]].tolist()
+    )  # what never moves is as the file says
+    assert found.elsewhere[1] > 0.99 and found.elsewhere[0] < 0.01
+
+
+@pytest.mark.parametrize(
+    ("seed", "memory", "low", "high"),
+    [(6, 0.0, 0.95, 1.0), (10, 0.9, 0.0, 0.5), (8, 0.9, 0.95, 1.0)],
+)
+def test_errors_that_repeat_make_a_slip_less_sure(monkeypatch, seed, memory, low, high):
+    """A small one, beside errors that are white, that cannot be told from it, and that can."""
+    monkeypatch.setattr(module, "Forward", Line)
+    found = estimate_common(MOORING, slipped(seed, 1.5, memory), ("cable_drag",))
+    assert low <= found.elsewhere[1] <= high
+
+
+def test_a_sensor_elsewhere_throughout_is_so_from_the_first_time_of_the_record(monkeypatch):
+    monkeypatch.setattr(module, "Forward", Line)
+    one = slipped(4, 9.0, start=0)
+    found = estimate_common(MOORING, one, ("cable_drag",))
+    assert found.elsewhere[1] > 0.99 and found.since[1] == one.time[0]
+    assert found.factors["cable_drag"] == pytest.approx(1.1, rel=0.05)

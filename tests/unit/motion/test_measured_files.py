@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray
 
-from calm.errors import InputError
+from calm.errors import InputError, UsageError
 from calm.motion.currents import read_currents
 from calm.motion.sensors import depth_of, read_sensors
 
@@ -137,3 +137,82 @@ def test_the_worse_flag_of_both_components_of_a_profile_counts(tmp_path):
     (found,) = read_currents([tmp_path / "c.nc"], 61.0, None, None, 5.0)
     assert found.flag.tolist() == np.maximum(u_flag, v_flag).tolist()
     assert found.depth[0] == pytest.approx([41.0, 39.0, 37.0])
+
+
+def two(**more):
+    """Two instruments in one variable, neither their times nor their flags in order."""
+    values = np.stack([DBAR, 100.0 + 2.0 * np.arange(TIMES)], 1)[::-1]
+    values[1, 1] = np.nan
+    flags = np.ones(values.shape, np.int8)
+    flags[0, 1], flags[1, 1], flags[2, 1], flags[5, 0] = 4, 4, 8, 3
+    attributes = {"standard_name": "sea_water_pressure", "units": "dbar"}
+    place = {"units": "m", "positive": "down"}
+    return xarray.Dataset(
+        {
+            "p": (("time", "instrument"), values, attributes),
+            "p_qc": (("time", "instrument"), flags),
+            "nominal_depth": ("instrument", [44.0, 104.0], place),
+            **more,
+        },
+        {"time": ("time", DAYS[::-1], SINCE), "instrument": ["a", "b"]},
+    )
+
+
+def test_each_instrument_has_its_own_depths_flags_and_place_in_the_order_of_time(tmp_path):
+    two().to_netcdf(tmp_path / "a.nc", engine="h5netcdf")
+    for latitude, flags in ((-32.0, {1, 2}), (70.0, {1, 2, 8})):  # 8 is never a measurement
+        a, b = read_sensors([str(tmp_path / "a.nc")], frozenset(flags), latitude, 300.0)
+        assert (a.label, a.nominal, a.dropped) == ("a", 44.0, 1)
+        assert (b.label, b.nominal, b.dropped) == ("b", 104.0, 2)  # what is NaN is not left out
+        expected = depth_of(DBAR, latitude)
+        expected[0] = np.nan
+        assert a.depth == pytest.approx(expected, abs=1e-9, nan_ok=True)
+        expected = depth_of(100.0 + 2.0 * np.arange(TIMES), latitude)
+        expected[[3, 4, 5]] = np.nan
+        assert b.depth == pytest.approx(expected, abs=1e-9, nan_ok=True)
+        assert (np.diff(a.time) > np.timedelta64(0)).all()
+    # 9.8 N/kg at 32 degrees, 9.83 at 70: a third of a per cent
+    assert depth_of(np.array([1000.0]), 70.0) == pytest.approx(
+        0.9969 * depth_of(np.array([1000.0]), -32.0), rel=1e-4
+    )
+
+
+def test_depths_over_time_are_taken_as_they_are(tmp_path):
+    one = instrument("DEPTH", "depth", "cm", values=100.0 * DBAR)
+    (found,) = read(tmp_path, one)
+    assert found.depth[0] == pytest.approx(DBAR[0], abs=1e-4)
+    (found,) = read(tmp_path, instrument().isel(TIME=[0]))  # of one time
+    assert found.depth == pytest.approx(depth_of(DBAR[:1], -32.0), abs=1e-4)
+
+
+def test_columns_of_a_table_are_pressures_or_depths_each_in_its_unit(tmp_path):
+    path = tmp_path / "a=b.csv"
+    rows = "2026-03-01T01:00,6,2000,\n2026-03-01T00:00,5,1000,inf\n"
+    path.write_text("time,a[bar],b [cm],c[dbar]\n" + rows)
+    found = read_sensors([str(path)], frozenset({1}), 48.0, 300.0)
+    assert [one.label for one in found] == ["a", "b", "c"]
+    assert found[0].depth == pytest.approx(depth_of(np.array([50.0, 60.0]), 48.0))
+    assert found[1].depth == pytest.approx([10.0, 20.0])
+    assert np.isnan(found[2].depth).all()
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (["x=two.nc"], "holds 2 sensors; `x=` names only one"),
+        (["a=one.nc", "two.nc"], "two sensors are called `a`"),
+        (["wide.nc"], "is not of times and instruments"),
+    ],
+)
+def test_labels_name_one_sensor_each(tmp_path, monkeypatch, given, said):
+    monkeypatch.chdir(tmp_path)
+    two().to_netcdf("two.nc", engine="h5netcdf")
+    instrument().to_netcdf("one.nc", engine="h5netcdf")
+    wide = two()[["p"]].expand_dims(station=2).drop_vars("instrument")
+    wide.to_netcdf("wide.nc", engine="h5netcdf")
+    with pytest.raises((InputError, UsageError)) as refused:
+        read_sensors(given, frozenset({1, 2}), 48.0, 300.0)
+    assert said in str(refused.value)
+    # without labels several are matched by their places
+    nameless = read_sensors(["one.nc", "one.nc"], frozenset({1, 2}), 48.0, 300.0)
+    assert [one.label for one in nameless] == ["", ""]

@@ -22,6 +22,7 @@ def own(path, labels=("float", "elsewhere", "middle"), engine="h5netcdf", **more
         {
             "TEMP": (("TIME", "INSTRUMENT"), np.full(shape, 4.5), {"units": "degC"}),
             "raw": (("TIME", "INSTRUMENT"), np.full(shape, np.nan)),
+            "instrument": ("TIME", ["one", "on", "each", "time"]),
             **{name: (("TIME", "INSTRUMENT"), np.zeros(shape)) for name in more.pop("there", ())},
         },
         {"TIME": time, "label": ("INSTRUMENT", list(labels))},

@@ -30,6 +30,7 @@ class Solved:
     knockdown: np.ndarray
     top_depth: np.ndarray
     status: np.ndarray
+    tension: np.ndarray
 
 
 class Line:
@@ -45,7 +46,7 @@ class Line:
         lost = ~np.isfinite(u).all(axis=1)
         status = np.where(lost, STATUSES.index("no-current"), 0).astype(np.int8)
         return Solved(depth[:, :2], depth[:, 2:], 0.0 * depth[:, :2], 0.0 * depth[:, 2:],
-                      depth[:, 2] - 1.5, status)  # fmt: skip
+                      depth[:, 2] - 1.5, status, u + 10.0 * v)  # fmt: skip
 
 
 def measured(**more):
@@ -92,6 +93,7 @@ def test_a_block_has_the_estimated_depths_and_what_is_known_besides(monkeypatch)
     down = depth - STILL - 2.0 - sea[:, None]
     assert profiles.clamp_knockdown == pytest.approx(down[:, :2], nan_ok=True)
     assert profiles.knockdown == pytest.approx(down[:, 2:], nan_ok=True)
+    assert profiles.tension == pytest.approx(likely.tension, nan_ok=True)
     names = [STATUSES[code] for code in profiles.status.tolist()]
     assert names == [STATUSES[0], STATUSES[0], "implausible-current", STATUSES[0]]
     assert likely.status[2] == STATUSES.index("no-current")

@@ -1,10 +1,12 @@
+from dataclasses import replace
+
 import pypdfium2
 import pytest
 
 import calm
 from calm.report.blocks import Part, Prose, Report, Section
 from calm.report.check.section import mooring_section
-from calm.report.pdf import printed, report_pdf, result_pdf
+from calm.report.pdf import pdf_leaf, printed, report_pdf, result_pdf
 from tests.judged import FORMULA, LINES, judged, judged_hostile
 
 
@@ -95,3 +97,9 @@ def test_what_is_accepted_can_be_printed():
     accepted = Section("M", (Part("Said", (Prose(("plain",)),)),), worst=(object(),))
     report = Report("T", "S", (), (accepted,))
     assert printed(report).startswith(b"%PDF")
+
+
+def test_leaves_made_beforehand_give_the_same_bytes(sections):
+    leaves = [pdf_leaf(section) for section in sections]
+    bare = [replace(section, parts=()) for section in sections]
+    assert report_pdf(bare, leaves) == report_pdf(sections)
