@@ -24,8 +24,10 @@ _fast = False
 
 def expect(solves: float) -> None:
     """Many lines are about to be solved: from now on fast if that pays for so many of them."""
+    if _fast:
+        return
     wish = os.environ.get("CALM_COMPILED")
-    if _fast or wish == "never" or find_spec("numba") is None:
+    if wish == "never" or find_spec("numba") is None:
         return
     if wish == "always" or solves >= COLD or (solves >= WARM and is_kept()):
         march_fast(True)
