@@ -18,6 +18,7 @@ from calm.motion.posterior import settled
 from calm.motion.slipped import Evidence, first_time, fits, placed
 from calm.motion.unknowns import Common
 from calm.physics.line import Floats, Integers
+from calm.solve import expect_many
 
 MOST_TIMES = 500
 """So many times, spread evenly over the record, are what it is estimated from."""
@@ -26,6 +27,8 @@ TURNS, ENOUGH = 12, 0.02
 its standard deviation."""
 ROBUST = 4.0
 """Degrees of freedom of Student's law for the misfit of a time."""
+SOLVES = 500
+"""Moorings whose solving takes as long as laying out for the lanes all that are tried here."""
 FURTHEST = 1.0
 """Of the logarithm of a factor, at most."""
 SCALES = (0.5, 2.5)
@@ -77,6 +80,7 @@ def estimate_common(mooring: Mooring, measured: Measured, names: Sequence[str]) 
     known = assumed(mooring, part, names)
     if not len(part.time):
         return known
+    expect_many(SOLVES)
     common, sensors = known, len(part.label)
     for _ in range(TURNS):
         moments = Moments(part, *forwards_of(mooring, common))
