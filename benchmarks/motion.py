@@ -78,11 +78,12 @@ def processor() -> float:
 def main() -> None:
     """Print the seconds of the command."""
     print(describe("calm-mooring", "numpy", "numba", "h5py"))
-    hours = SMOKE if sys.argv[1:] == ["--smoke"] else HOURS
+    smoke = sys.argv[1:] == ["--smoke"]
+    hours, threads_of = (SMOKE, (2,)) if smoke else (HOURS, (1, 2))
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         words = write_records(folder, hours)  # and the march is compiled
-        for workers in (1, 2):
+        for workers in threads_of:
             output = folder / f"{workers}.nc"
             start, spent = time.perf_counter(), processor()
             subprocess.run(
