@@ -60,7 +60,9 @@ class Preprocessor:
         ------
         InputError
             A file cannot be read or may not be included, a directive cannot be read, or macros
-            expand without end. UsageError A macro given from outside has no proper name.
+            expand without end.
+        UsageError
+            A macro given from outside has no proper name.
         """
         for name, value in self.defines.items():
             if not _NAME.fullmatch(name):
