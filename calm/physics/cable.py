@@ -9,7 +9,7 @@ from calm.physics.element import Vector, axis_along, drag_force, drag_share
 from calm.physics.friction import BERTEAUX, HOERNER, friction_force, turning_friction
 from calm.physics.profile import Sea, distance_to_level, water_at
 from calm.physics.reference import REFERENCE_DENSITY
-from calm.physics.state import MarchError, State
+from calm.physics.state import NO_BALANCE, State
 from calm.physics.stretch import Knot, curve_strain, mean_curve_strain
 from calm.physics.strumming import Vibration, amplified_share, strummed
 from calm.physics.track import Cable
@@ -66,7 +66,8 @@ def pass_segment(
     sea: Sea,
     state: State,
     cut: float,
-    passes: int = PASSES,
+    near: float,
+    expected: Vector,
 ) -> tuple[State, float]:
     """The state below one segment of an unstretched length [m], and its strain.
 
@@ -75,12 +76,13 @@ def pass_segment(
 
     Parameters
     ----------
-    passes : at most; where there are fewer than `PASSES` it need not settle in them
+    near : how far its middle may be from where the water is looked up [m]; 0 lets it settle to the
+        last digits
+    expected : load of a metre, where the passes begin, by the segment above [N/m]
 
-    Raises
-    ------
-    MarchError
-        Where it does not settle.
+    Returns
+    -------
+    The state, and the strain: `NO_BALANCE` where there is none.
     """
     x, y, z, fx, fy, fz, tz, level = state
     kn, kt, friction, beat = cable.normal_drag, cable.tangential_drag, cable.friction, cable.beat
@@ -89,11 +91,17 @@ def pass_segment(
     half = 0.5 * cut
     tension = sqrt(fx * fx + fy * fy + fz * fz)
     strain = strain_at(cable, knots, tension)
+    ex, ey, ez = expected
+    tx, ty, tz_expected = -fx - half * ex, -fy - half * ey, -fz - half * ez
     rise = tz * (1.0 + strain)
-    tx, ty, tz = -fx, -fy, -fz
+    size = sqrt(tx * tx + ty * ty + tz_expected * tz_expected)
+    if size > 0.0:
+        rise = tz_expected / size * (1.0 + strain)
+    tz = tz_expected
+    settled = max(near / half, 1e-12) if half > 0.0 else inf
     qx = qy = qz = 0.0
     earlier = inf
-    for _ in range(passes):
+    for _ in range(PASSES):
         u, v, w, density, level = water_at(sea, -z - half * rise, level)
         area = segment_area(cable, cut, density, strain)
         lift = segment_lift(cable, cut, density, gravity)
@@ -122,12 +130,11 @@ def pass_segment(
             strain = mean_curve_strain(knots, first_knot, end_knot, middle, 0.5 * growth)
         change = abs(tz * (1.0 + strain) - rise)
         rise = tz * (1.0 + strain)
-        if change < 1e-12 or change * change < 1e-12 * earlier < inf:
+        if change < settled or change * change < 1e-12 * earlier < inf:
             break
         earlier = change
     else:
-        if passes == PASSES:
-            raise MarchError("a segment finds no balance")
+        strain = NO_BALANCE
     long = cut * (1.0 + strain)
     return (
         (x + long * tx, y + long * ty, z + long * tz, fx + qx, fy + qy, fz + qz, tz, level),
@@ -172,13 +179,25 @@ def vibrating_share(
 
 
 def touchdown(
-    cable: Cable, knots: Sequence[Knot], vibration: Vibration, sea: Sea, state: State, cut: float
+    cable: Cable,
+    knots: Sequence[Knot],
+    vibration: Vibration,
+    sea: Sea,
+    state: State,
+    cut: float,
+    near: float,
+    expected: Vector,
 ) -> float:
-    """How much of a segment hangs before its end has nothing left to carry [m]; at most `cut`."""
+    """How much of a segment hangs before its end has nothing left to carry [m]; at most `cut`.
+
+    `near` and `expected` are as in `pass_segment`.
+    """
     low, high, hanging = 0.0, cut, cut
     _, _, _, _, _, carried, _, _ = state
     for _ in range(PASSES):
-        (_, _, _, _, _, fz, _, _), _ = pass_segment(cable, knots, vibration, sea, state, hanging)
+        (_, _, _, _, _, fz, _, _), _ = pass_segment(
+            cable, knots, vibration, sea, state, hanging, near, expected
+        )
         if hanging == cut and fz > 0.0:
             return cut
         if abs(fz) <= 1e-12 * carried:

@@ -22,13 +22,65 @@ import numpy as np
 
 Law = Callable[..., Any]
 
+SOURCES = ("physics", "solve", "batch")
+"""Packages that have functions to be compiled."""
+
+OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
+"""Nothing is allocated by a compiled law, so that arrays need not be counted when they are passed
+on: that takes as long as a segment. No law divides by zero, and none raises."""
+
+
+def set_row(rows: Any, i: int, row: Any) -> None:
+    """Put a named tuple in its place among others: a list, or compiled an array of records."""
+    rows[i] = row
+
 
 @cache
 def compiled(law: Law) -> Any:
     """A law and all that it calls, compiled when first called, and kept for the next process."""
     import numba
 
-    return kept(numba.njit, clone(law, called), cache_folder(), nogil=True, error_model="python")
+    return kept(numba.njit, clone(law), cache_folder(), **OPTIONS)
+
+
+_entries: dict[Law, Any] = {}
+
+
+def entry(law: Law, *arguments: Any) -> Any:
+    """A law compiled for the types of some arguments, whose types it does not look at again.
+
+    All that it is ever given has these types: that saves what a short solve takes.
+    """
+    found = _entries.get(law)
+    if found is None:
+        numba: Any = __import__("numba")
+        dispatcher = compiled(law)
+        types = tuple(numba.typeof(argument) for argument in arguments)
+        dispatcher.compile(types)
+        found = _entries[law] = dispatcher.overloads[types].entry_point
+    return found
+
+
+def by_address(law: Law, *arguments: Any) -> Any:
+    """A law compiled for the types of some arguments, and called by its address.
+
+    The last argument and what it returns are floats. Those that call it are not compiled anew with
+    it, which would take as long for each.
+    """
+    numba: Any = __import__("numba")
+    types = tuple(numba.typeof(argument) for argument in arguments)
+    return _by_address(law, numba.float64(*types, numba.float64))
+
+
+@cache
+def _by_address(law: Law, signature: Any) -> Any:
+    import numba
+
+    def compiler(law: Law, **options: Any) -> Any:
+        return numba.cfunc(signature, **options)(law)
+
+    options = {name: OPTIONS[name] for name in ("error_model", "_nrt")}
+    return kept(compiler, clone(law), cache_folder(), **options)
 
 
 @cache
@@ -36,18 +88,39 @@ def called(law: Law) -> Any:
     """A law compiled into those that call it."""
     import numba
 
+    if law is set_row:
+        return _record_setter()
     njit: Any = numba.njit
-    return njit(
-        clone(law, called),
-        nogil=True,
-        error_model="python",
-        no_cpython_wrapper=True,
-        no_cfunc_wrapper=True,
-    )
+    return njit(clone(law), no_cpython_wrapper=True, no_cfunc_wrapper=True, **OPTIONS)
 
 
-def clone(law: Law, called: Callable[[Law], Any]) -> Law:
-    """The function, with what it calls as `called` has it, and arrays of its tables."""
+@cache
+def _record_setter() -> Law:
+    """`set_row` as compiled laws know it: field by field."""
+    from numba.core import types
+    from numba.extending import overload
+
+    def set_record(rows: Any, i: int, row: Any) -> None:
+        raise NotImplementedError
+
+    @overload(set_record)
+    def for_types(rows: Any, i: Any, row: Any) -> Any:
+        if isinstance(row, types.Record):
+
+            def whole(rows: Any, i: int, row: Any) -> None:
+                rows[i] = row
+
+            return whole
+        names: dict[str, Any] = {}
+        fields = "\n".join(f"    rows[i].{name} = row.{name}" for name in rows.dtype.fields)
+        exec(f"def by_field(rows, i, row):\n{fields}", names)
+        return names["by_field"]
+
+    return set_record
+
+
+def clone(law: Law) -> Law:
+    """The function, with what it calls compiled, and arrays of its tables."""
     assert isinstance(law, FunctionType)
     names = {**law.__globals__}
     for name in law.__code__.co_names:
@@ -94,7 +167,7 @@ def _packer(kind: Any) -> Callable[[Any], Any]:
         return number
     if not get_args(kind):
         return packed
-    (item,) = get_args(kind)
+    item = get_args(kind)[0]
     of = np.dtype(np.float64) if item is float else record_type(item)
     return lambda part: np.array(part if isinstance(part, np.ndarray) else list(part), of)
 
@@ -111,19 +184,14 @@ def record_type(named: type) -> np.dtype[Any]:
 
 
 @cache
-def cache_folder(name: str = "laws", *rooms: Path) -> Path | None:
+def cache_folder() -> Path | None:
     """Where compiled code is kept; None where no such folder can be written.
 
     `NUMBA_CACHE_DIR`, or else CALM's folder in the user's cache. What is compiled from other
     sources has another folder, as numba itself looks at one file alone.
-
-    Parameters
-    ----------
-    name : of what is compiled
-    rooms : folders of the sources, besides those of the laws
     """
     given = os.environ.get("NUMBA_CACHE_DIR")
-    folder = (Path(given) if given else _user_cache() / "calm") / f"{name}-{fingerprint(*rooms)}"
+    folder = (Path(given) if given else _user_cache() / "calm") / f"solver-{fingerprint()}"
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
@@ -146,10 +214,11 @@ def _user_cache() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
 
 
-def fingerprint(*rooms: Path) -> str:
-    """Of the sources of everything that may be compiled: the laws, and those in more folders."""
+def fingerprint() -> str:
+    """Of the sources of everything that may be compiled: the laws, and the search."""
     digest = hashlib.sha256()
-    for room in (Path(__file__).parent, *rooms):
-        for source in sorted(room.glob("*.py")):
+    package = Path(__file__).parents[1]
+    for folder in SOURCES:
+        for source in sorted((package / folder).glob("*.py")):
             digest.update(source.read_bytes())
     return digest.hexdigest()[:16]

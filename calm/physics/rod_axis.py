@@ -10,7 +10,7 @@ from calm.physics.load import force_at, load_lift, load_variation, speed_across
 from calm.physics.profile import Sea, viscosity_at, water_at
 from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.reynolds import Smooth, varying_share
-from calm.physics.state import MarchError, State
+from calm.physics.state import NO_BALANCE, State
 from calm.physics.track import Load, Stage
 
 _PASSES = 200
@@ -18,7 +18,9 @@ _HALVINGS = 60
 _NOTHING = 1e-12
 
 
-def rod_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) -> Vector:
+def rod_axis(
+    rod: Stage, loads: Sequence[Load], sea: Sea, state: State, near: float
+) -> Vector:
     """Axis for which the moments about the rod's middle vanish.
 
     With several loads q_i at distances a_i from the top the rule of one load becomes
@@ -27,24 +29,33 @@ def rod_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) -> Vecto
     its drag curve included, and only shear along the rod is left to the passes; where several
     drags follow curves, these are, too.
 
-    Raises
-    ------
-    MarchError
-        Where the passes do not settle.
+    Parameters
+    ----------
+    near : how far a load may be from where the water is looked up [m]; 0 lets the axis settle to
+        the last digits
+
+    Returns
+    -------
+    The axis; its rise is `NO_BALANCE` where there is none.
     """
-    _, _, _, _, _, _, rise, _ = state
+    _, _, _, fx, fy, fz, rise, _ = state
     tx, ty, tz = 0.0, 0.0, rise
-    pace, earlier = 1.0, inf
+    damping, earlier, settled = 1.0, inf, 1e-12
+    if near > 0.0:
+        pull = sqrt(fx * fx + fy * fy + fz * fz)
+        if pull > 0.0:
+            tx, ty, tz = -fx / pull, -fy / pull, -fz / pull
+        settled = min(near / rod.length, 1e-4) if rod.length > 0.0 else 1e-4
     for _ in range(_PASSES):
-        x, y, z = next_axis(rod, loads, sea, state, tx, ty, tz)
+        x, y, z = _following_axis(rod, loads, sea, state, tz, tx, ty, tz)
         change = abs(x - tx) + abs(y - ty) + abs(z - tz)
-        if change < 1e-12:
+        if change < settled:
             return x, y, z
         if change > 0.7 * earlier:
-            pace *= 0.5
+            damping *= 0.5
         earlier = change
-        if pace < 1.0:
-            x, y, z = tx + pace * (x - tx), ty + pace * (y - ty), tz + pace * (z - tz)
+        if damping < 1.0:
+            x, y, z = tx + damping * (x - tx), ty + damping * (y - ty), tz + damping * (z - tz)
             size = sqrt(x * x + y * y + z * z)
             if size == 0.0:
                 break
@@ -61,10 +72,7 @@ def bracketed_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) ->
     falls through zero in between, which is bisected. Where r jumps there, as it does for a float
     that lends nothing of its buoyancy where the current begins, no force turns it.
 
-    Raises
-    ------
-    MarchError
-        Where a force does.
+    Where a force does, its rise is `NO_BALANCE`.
     """
     low, high = -1.0, 1.0
     tx, ty, tz = 0.0, 0.0, -1.0
@@ -81,7 +89,7 @@ def bracketed_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) ->
     across = sqrt(max(1.0 - low * low, 0.0))
     tx, ty, tz = across * east, across * north, low
     if _turning(rod, loads, sea, state, tx, ty, tz) > _NOTHING:
-        raise MarchError("a rigid piece finds no balance")
+        return tx, ty, NO_BALANCE
     return tx, ty, tz
 
 
@@ -96,16 +104,16 @@ def _axis_in_water_at(
     tz: float,
 ) -> Vector:
     """The axis that balances in the water of the depths that the loads have at a rise."""
-    pace, earlier = 1.0, inf
+    damping, earlier = 1.0, inf
     for _ in range(_PASSES):
         x, y, z = _following_axis(rod, loads, sea, state, rise, tx, ty, tz)
         change = abs(x - tx) + abs(y - ty) + abs(z - tz)
         if change < 1e-15:
             return x, y, z
         if change > 0.7 * earlier:
-            pace *= 0.7
+            damping *= 0.7
         earlier = change
-        x, y, z = tx + pace * (x - tx), ty + pace * (y - ty), tz + pace * (z - tz)
+        x, y, z = tx + damping * (x - tx), ty + damping * (y - ty), tz + damping * (z - tz)
         size = sqrt(x * x + y * y + z * z)
         if size == 0.0:
             return tx, ty, tz
@@ -127,19 +135,6 @@ def _turning(
     return speed_across(fx, fy, fz, tx, ty, tz) / own if own > 0.0 else 0.0
 
 
-def next_axis(
-    rod: Stage,
-    loads: Sequence[Load],
-    sea: Sea,
-    state: State,
-    tx: float,
-    ty: float,
-    tz: float,
-) -> Vector:
-    """The axis of a rod whose loads are looked up, and gathered, at another one: see `rod_axis`."""
-    return _following_axis(rod, loads, sea, state, tz, tx, ty, tz)
-
-
 def _following_axis(
     rod: Stage,
     loads: Sequence[Load],
@@ -150,7 +145,10 @@ def _following_axis(
     ty: float,
     tz: float,
 ) -> Vector:
-    """`next_axis` with the loads looked up where they are at a rise."""
+    """The axis of a rod whose drags are gathered at another one, t: see `rod_axis`.
+
+    The water is looked up where the loads are at a `rise`.
+    """
     _, _, z, fx, fy, fz, _, level = state
     ax, ay, az = fx, fy, fz
     normals = 0

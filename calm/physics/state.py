@@ -19,6 +19,20 @@ State = tuple[float, float, float, float, float, float, float, int]
 last axis's rise, the interval of the water. A bare tuple: in CPython a named one costs as much as
 half of a segment's balance."""
 
+GOES_ON, RUNS_OFF, SEGMENT_UNBALANCED, ROD_UNBALANCED, ENDLESS, NO_ROOM = range(6)
+"""Whether a march can go on, or why it cannot."""
+FAILURES = (
+    "",
+    "the line runs off to infinity",
+    "a segment finds no balance",
+    "a rigid piece finds no balance",
+    "the line would need more than 50000 segments",
+    "there is no room for so many segments",
+)
+"""The same in words."""
+NO_BALANCE = -2.0
+"""In place of the strain of a segment, or of the rise of a rod, that finds no balance."""
+
 
 Record = Any
 """Columns of numbers, as written by `write_node`: lists, or the rows of an array."""

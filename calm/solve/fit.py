@@ -11,9 +11,10 @@ from calm.physics.march import march
 from calm.physics.profile import Profile
 from calm.physics.state import MarchError
 from calm.physics.track import Track
-from calm.solve.closing import COARSE_STEP, REACH
+from calm.solve.problem import COARSE_STEP, REACH
 from calm.solve.root import root_near
 from calm.solve.solution import Settings
+from calm.solve.speed import runs_compiled
 from calm.solve.standing import refuse_unsupported, standing_lift, too_heavy
 from calm.solve.status import Status
 from calm.solve.tow import Towing, solve_tow
@@ -39,7 +40,9 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
     still, goal = Profile(still_water), line.anchor_height - water.depth
     room = water.depth - line.anchor_height - top_depth
 
-    def miss(length: float) -> float:
+    compiled = runs_compiled(settings)
+
+    def miss(_: None, length: float) -> float:
         track = Track.of(line.with_length(piece, length))
         # a plumb line's strain is linear along it, so long segments are exact
         end = march(
@@ -48,6 +51,7 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
             top_depth,
             angle_step=COARSE_STEP,
             reach=4 * REACH * water.depth,
+            compiled=compiled,
         )
         return end.z - goal
 
@@ -55,17 +59,12 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
     others = float(line.length.sum()) - float(line.length[piece])
     shortest = float(line.clamp_at[line.clamp_piece == piece].max(initial=0.0))
     try:
-        found = root_near(
-            miss,
-            room - others,
-            -1.0,
-            (shortest, water.depth),
-            small=small,
-            narrow=1e-9 * water.depth,
+        found, fitting, left, _ = root_near(
+            miss, None, room - others, -1.0, shortest, water.depth, small, 1e-9 * water.depth
         )
     except MarchError as error:
         raise Status.NOT_CONVERGED.because(f"The march stopped: {error}.", piece) from error
-    if found is None or abs(found[1]) > settings.tolerance * water.depth:
+    if not found or abs(left) > settings.tolerance * water.depth:
         lift = standing_lift(line, water)
         if float(lift.sum()) <= 0.0:
             raise too_heavy(lift)
@@ -75,7 +74,7 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
             f"other pieces, {others:.2f} m uncut{clamped}, have {room:.2f} m of water to stand in.",
             piece,
         )
-    return found[0]
+    return fitting
 
 
 def fit_tow_length(
@@ -97,7 +96,7 @@ def fit_tow_length(
     bottomless = replace(water, depth=inf)
     node = len(line.length) - 1 - piece
 
-    def lacking(length: float) -> float:
+    def lacking(_: None, length: float) -> float:
         try:
             out = line.with_length(piece, length)
             solution = solve_tow(out, bottomless, towing, settings)
@@ -111,16 +110,16 @@ def fit_tow_length(
     longest = 1000.0 * depth
     start = max(depth + towing.height, shortest)
     # where a solution's cuts change their number its depth makes a step, within its accuracy
-    found = root_near(
-        lacking, start, -1.0, (shortest, longest), small=1e-7 * depth, narrow=1e-9 * depth
+    found, fitting, left, _ = root_near(
+        lacking, None, start, -1.0, shortest, longest, 1e-7 * depth, 1e-9 * depth
     )
-    if found is None or found[1] > 1e-4 * depth:
-        short = lacking(shortest)
-        out, lack = (shortest, short) if short < 0.0 else (longest, lacking(longest))
+    if not found or left > 1e-4 * depth:
+        short = lacking(None, shortest)
+        out, lack = (shortest, short) if short < 0.0 else (longest, lacking(None, longest))
         raise Status.NO_EQUILIBRIUM.because(
             f"No length of {{piece}} brings its lower end to {depth:g} m at this speed: "
             f"with {out:g} m out it runs at {depth - lack:.2f} m.",
             piece,
             "Choose another depth or speed, or change what the cable or its body weighs.",
         )
-    return found[0]
+    return fitting
