@@ -97,20 +97,13 @@ def called(law: Law) -> Any:
 @cache
 def _record_setter() -> Law:
     """`set_row` as compiled laws know it: field by field."""
-    from numba.core import types
     from numba.extending import overload
 
-    def set_record(rows: Any, i: int, row: Any) -> None:
+    def set_record(rows, i, row):  # type: ignore[no-untyped-def]
         raise NotImplementedError
 
     @overload(set_record)
-    def for_types(rows: Any, i: Any, row: Any) -> Any:
-        if isinstance(row, types.Record):
-
-            def whole(rows: Any, i: int, row: Any) -> None:
-                rows[i] = row
-
-            return whole
+    def for_types(rows, i, row):  # type: ignore[no-untyped-def]
         names: dict[str, Any] = {}
         fields = "\n".join(f"    rows[i].{name} = row.{name}" for name in rows.dtype.fields)
         exec(f"def by_field(rows, i, row):\n{fields}", names)
