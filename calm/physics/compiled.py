@@ -120,7 +120,7 @@ def clone(law: Law) -> Law:
         value = names.get(name)
         if isinstance(value, FunctionType) and value.__module__.startswith("calm."):
             names[name] = called(value)
-        elif isinstance(value, tuple) and value and all(type(x) is float for x in value):
+        elif type(value) is tuple and value and all(type(x) is float for x in value):
             names[name] = np.array(value)
     clone = FunctionType(law.__code__, names, law.__name__, law.__defaults__, law.__closure__)
     clone.__module__, clone.__qualname__ = law.__module__, law.__qualname__

@@ -17,7 +17,6 @@ from math import isfinite
 from typing import NamedTuple
 
 from calm.physics.cable import pass_segment, segment_length, touchdown
-from calm.physics.element import Vector
 from calm.physics.profile import Sea, interval_at
 from calm.physics.rod import floating_depth, pass_clamp, pass_rod
 from calm.physics.state import (
@@ -43,9 +42,6 @@ segments were used, and nodes passed; the stage where the line came down on the 
 did not, and the unstretched length of that stage above the seabed [m]: of a rod or clamp inf, it
 stands there, or 0, it lies there; why the march stopped, see `calm.physics.state`."""
 LEFT = 9
-
-NOTHING_EXPECTED: Vector = (0.0, 0.0, 0.0)
-
 
 class How(NamedTuple):
     """How a line is to be marched.
@@ -161,7 +157,7 @@ def pass_cable(
     """
     cable, knots, vibration = course.cables[place], course.knots, course.vibration
     first, done, hanging = used, 0.0, -1.0
-    near, expected = how.near, NOTHING_EXPECTED
+    near, expected = how.near, (0.0, 0.0, 0.0)
     while used - first < counts[place] if how.given else done < cable.length or used == first:
         if used == len(cuts):
             return state, hanging, used, nodes, NO_ROOM
