@@ -64,23 +64,22 @@ def entry(law: Law, *arguments: Any) -> Any:
 def by_address(law: Law, *arguments: Any) -> Any:
     """A law compiled for the types of some arguments, and called by its address.
 
-    The last argument and what it returns are floats. Those that call it are not compiled anew with
-    it, which would take as long for each.
+    Its last argument, besides these, and what it returns are floats. Those that call it are not
+    compiled anew with it, which would take as long for each. As with `entry`, it is only ever given
+    arguments of these types.
     """
-    numba: Any = __import__("numba")
-    types = tuple(numba.typeof(argument) for argument in arguments)
-    return _by_address(law, numba.float64(*types, numba.float64))
+    found = _entries.get(law)
+    if found is None:
+        numba: Any = __import__("numba")
+        types = tuple(numba.typeof(argument) for argument in arguments)
+        signature = numba.float64(*types, numba.float64)
+        options = {name: OPTIONS[name] for name in ("error_model", "_nrt")}
 
+        def compiler(law: Law, **options: Any) -> Any:
+            return numba.cfunc(signature, **options)(law)
 
-@cache
-def _by_address(law: Law, signature: Any) -> Any:
-    import numba
-
-    def compiler(law: Law, **options: Any) -> Any:
-        return numba.cfunc(signature, **options)(law)
-
-    options = {name: OPTIONS[name] for name in ("error_model", "_nrt")}
-    return kept(compiler, clone(law), cache_folder(), **options)
+        found = _entries[law] = kept(compiler, clone(law), cache_folder(), **options)
+    return found
 
 
 @cache
@@ -91,7 +90,15 @@ def called(law: Law) -> Any:
     if law is set_row:
         return _record_setter()
     njit: Any = numba.njit
-    return njit(clone(law), no_cpython_wrapper=True, no_cfunc_wrapper=True, **OPTIONS)
+    dispatcher = njit(clone(law), no_cpython_wrapper=True, no_cfunc_wrapper=True, **OPTIONS)
+    resolve, plain = dispatcher.get_call_template, numba.types.unliteral
+
+    def once_for_all_numbers(types: Any, named: Any) -> Any:
+        """Not anew for every constant that it is given."""
+        return resolve(tuple(map(plain, types)), named)
+
+    dispatcher.get_call_template = once_for_all_numbers
+    return dispatcher
 
 
 @cache
