@@ -43,6 +43,9 @@ did not, and the unstretched length of that stage above the seabed [m]: of a rod
 stands there, or 0, it lies there; why the march stopped, see `calm.physics.state`."""
 LEFT = 9
 
+SHORT = 1e-6
+"""Length of a segment, as a share of the longest, that says nothing of the load of the next."""
+
 class How(NamedTuple):
     """How a line is to be marched.
 
@@ -184,7 +187,7 @@ def pass_cable(
             return state, hanging, used, nodes, SEGMENT_UNBALANCED
         if not isfinite(x + y + z + fx + fy + fz):
             return state, hanging, used, nodes, RUNS_OFF
-        if hung > 0.0:
+        if hung > SHORT * how.reach:
             expected = (fx - ax) / hung, (fy - ay) / hung, (fz - az) / hung
         if hung < cut:
             state = x, y, z, fx, fy, 0.0, tz, level

@@ -7,15 +7,18 @@ root: two or three marches close it.
 
 from __future__ import annotations
 
+from math import isnan
+
 import numpy as np
 
 from calm.physics.compiled import entry
 from calm.physics.line import Floats, Line, Water
+from calm.physics.passing import FAILURE
 from calm.physics.state import Trace
 from calm.physics.track import Track
 from calm.solve.audit import referee_of
 from calm.solve.closing import Closed, Root, not_closed, planned, polish
-from calm.solve.endings import FOUND
+from calm.solve.endings import FOUND, MARCH_STOPPED
 from calm.solve.finish import closing_refusal, finished, refuse_out_of_the_water
 from calm.solve.locate import locate
 from calm.solve.mooring import search_of, solve_mooring
@@ -149,6 +152,8 @@ def close_coarsely(search: Search, lands: bool) -> Closed:
     if located.ending != FOUND:
         return not_closed(located.ending, located.value, located.root)
     root = planned(search, located.root, search.problem.limits.angle_step)
+    if isnan(root.miss):
+        return not_closed(MARCH_STOPPED, search.problem.work.left[FAILURE], root)
     return polish(search, root, CHOSEN, FINE)
 
 

@@ -11,14 +11,15 @@ neighbours, and that is added.
 
 from __future__ import annotations
 
-from math import degrees, sqrt
+from math import degrees, isnan, sqrt
 from typing import Any, NamedTuple
 
 from calm.physics.element import Vector
+from calm.physics.passing import FAILURE
 from calm.physics.profile import interval_at
 from calm.physics.state import Record
 from calm.solve.closing import Closed, Root, halve, not_closed, planned, polish
-from calm.solve.endings import BELOW_SEABED, FOUND, NO_SHAPE_NEAR
+from calm.solve.endings import BELOW_SEABED, FOUND, MARCH_STOPPED, NO_SHAPE_NEAR
 from calm.solve.problem import CHOSEN, COARSE, FINE, HALVED, Problem, Search
 
 DEPTH_TARGET = 4e-5
@@ -66,6 +67,9 @@ def refine(search: Search, root: Root, hangs: bool) -> Refined:
     refined = Refined(not_closed(NO_SHAPE_NEAR, 0.0, root), 0, UNKNOWN_ERRORS)
     for _ in range(MOST_ROUNDS):
         root = planned(search, root, 2.0 * step)
+        if isnan(root.miss):
+            stopped = not_closed(MARCH_STOPPED, problem.work.left[FAILURE], root)
+            return Refined(stopped, 0, UNKNOWN_ERRORS)
         coarse = polish_hanging(search, root, CHOSEN, COARSE, hangs)
         if coarse.ending != FOUND:
             return Refined(coarse, 0, UNKNOWN_ERRORS)
