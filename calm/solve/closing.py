@@ -41,8 +41,6 @@ from calm.solve.root import bracketed_root, root_near
 
 NEARLY_LINEAR = 5e-3
 """Miss, as a share of the span, below which a secant through a far larger one finds the root."""
-SHARE_TOLERANCE = 1e-9
-"""How well the share of a surface float's buoyancy in use is found."""
 COARSEST_BRACKET = 1e-7
 NARROWEST_BRACKET = 1e-15
 """Width of the last bracket, as a share of the whole range: of a march that chooses its cuts, and
@@ -256,7 +254,8 @@ def planned(search: Search, root: Root, step: float) -> Root:
     With its free choice of cuts the march is not quite continuous, so this is no solution yet. On
     the cuts it took last it is: the root is a last step away, which the caller marches.
     """
-    small = 1e-6 * search.problem.limits.span
+    limits = search.problem.limits
+    small = (1e-4 if limits.near > 0.0 else 1e-6) * limits.span
     found = near_root(search, root, step, CHOSEN, False, NOT_RECORDED, small, COARSEST_BRACKET)
     if not found.found and not isnan(found.miss):
         return root
@@ -300,7 +299,7 @@ def close_near(search: Search, root: Root, cuts: int, record: int) -> Closed:
     problem, limits = search.problem, search.problem.limits
     small = 0.1 * limits.allowed
     if root.unknown.sought != BELOW:
-        small = min(small, SHARE_TOLERANCE * abs(root.slope))
+        small = min(small, limits.share_allowed * abs(root.slope))
     found = near_root(
         search, root, limits.angle_step, cuts, True, record, small, NARROWEST_BRACKET
     )

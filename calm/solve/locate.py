@@ -116,6 +116,8 @@ def locate(search: Search, lands: bool) -> Located:
                     deepest = root
                 else:
                     highest = root
+                if problem.limits.near > 0.0:
+                    return Located(FOUND, 0.0, highest, deepest)
             before = lower
     if not highest.found:
         return Located(DRAGGED_DOWN, 0.0, none, none)

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
-
 from calm.physics.compiled import by_address, entry
 from calm.physics.line import Line, Water
 from calm.physics.passing import FAILURE
@@ -22,7 +20,15 @@ from calm.solve.problem import (
     Search,
     problem_of,
 )
-from calm.solve.search import Found, find_shape
+from calm.solve.search import (
+    Asked,
+    Found,
+    Referee,
+    as_told,
+    find_asked,
+    find_now,
+    find_shape,
+)
 from calm.solve.solution import Settings, Solution
 from calm.solve.speed import runs_compiled
 from calm.solve.standing import refuse_unsupported, standing_lift
@@ -61,8 +67,7 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
         problem = problem_of(line, water, settings, compiled=compiled, room=room)
         search = search_of(problem, compiled)
         referee = referee_of(line, water, 0.0, compiled)
-        find: Any = entry(find_shape, search, referee) if compiled else find_shape
-        found: Found = find(search, referee)
+        found = find_compiled(search, referee) if compiled else find_shape(search, referee)
         if not lacks_room(problem):
             break
         room *= MORE_ROOM
@@ -77,6 +82,14 @@ def solve_mooring(line: Line, water: Water, settings: Settings | None = None) ->
         other_depth=other,
         other_grounded_length=grounded,
     )
+
+
+def find_compiled(search: Search, referee: Referee) -> Found:
+    """`find_shape`, compiled."""
+    asked = Asked(search, referee)
+    find = by_address(find_asked, asked)
+    entry(find_now, find, asked)(find, asked)
+    return as_told(list(search.problem.work.found))
 
 
 def search_of(problem: Problem, compiled: bool) -> Search:

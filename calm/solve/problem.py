@@ -27,6 +27,14 @@ ROOM = 512
 MOST_AFLOAT = 16
 """Floats at the surface one after the other: each is sought with all those above it."""
 MOST_SAMPLES = 64
+SHARE_TOLERANCE = 1e-9
+"""How well the share of a surface float's buoyancy in use is found."""
+ROUGH, ROUGH_SHARE, ROUGHLY_NEAR = 5e-6, 3e-6, 2e-6
+"""The miss allowed of one of many lines, how well its share is found, and how far from a load the
+water may be looked up, as shares of the water depth and of the buoyancy."""
+
+TOLD = 32
+"""Numbers by which a search tells what it has found."""
 
 COARSE, FINE, KEPT, OTHER = range(4)
 """The records of shapes: on the cuts that the march chose, on these halved, and those kept while
@@ -75,9 +83,10 @@ class Limits(NamedTuple):
     towed : whether the line is towed
     angle_step, coarse_step : turn of one segment [rad]
     allowed : the greatest miss of a solution [m]
+    share_allowed : how well the share of a float's buoyancy in use is found [-]
     friction : of a line on the seabed [-]
     excess : what a displaced cubic metre lifts more at the seabed than in reference water [N/m³]
-    near : as in `How`
+    near : as in `How`; where it is not 0 the line is one of many, whose shape is not audited
     length, standing : of the line, uncut, and standing upright in still water [m]
     lift : net force of all of it [N]
     rides : whether it is known how the first float rides
@@ -94,6 +103,7 @@ class Limits(NamedTuple):
     angle_step: float
     coarse_step: float
     allowed: float
+    share_allowed: float
     friction: float
     excess: float
     near: float
@@ -120,6 +130,7 @@ class Work(NamedTuple):
     samples : unknowns and misses
     even : intervals of an even current
     elements : (3, n) numbers for every element of a shape
+    found : see `calm.solve.search.tell`
     """
 
     left: MutableSequence[float]
@@ -131,6 +142,7 @@ class Work(NamedTuple):
     samples: Sequence[MutableSequence[float]]
     even: MutableSequence[Interval]
     elements: Sequence[MutableSequence[float]]
+    found: MutableSequence[float]
 
 
 class Problem(NamedTuple):
@@ -214,7 +226,7 @@ def problem_of(
     frequency: float = 0.0,
     tow_height: float = 0.0,
     track: Track | None = None,
-    near: float = 0.0,
+    rough: bool = False,
     room: int = ROOM,
 ) -> Problem:
     """Lay out a line and its water.
@@ -225,7 +237,7 @@ def problem_of(
     frequency : of the cables that strum [Hz]
     tow_height : of the tow point above the surface [m]
     track : the line laid out, where it is known
-    near : as in `How` [m]
+    rough : whether it is solved as one of many, without an audit
     room : for how many segments
     """
     track = track or Track.of(line, frequency)
@@ -253,10 +265,11 @@ def problem_of(
         towed=bool(line.towed),
         angle_step=float(settings.angle_step),
         coarse_step=max(COARSE_STEP, 2.0 * settings.angle_step),
-        allowed=float(settings.tolerance * span),
+        allowed=float((ROUGH if rough else settings.tolerance) * span),
+        share_allowed=ROUGH_SHARE if rough else SHARE_TOLERANCE,
         friction=float(settings.seabed_friction),
         excess=excess,
-        near=float(near),
+        near=ROUGHLY_NEAR * span if rough else 0.0,
         length=float(line.length.sum()),
         standing=float(standing),
         lift=float(lift.sum()),
@@ -302,6 +315,7 @@ def work_for(course: Course, intervals: int, room: int, compiled: bool) -> Work:
             samples=np.zeros((2, MOST_SAMPLES)),
             even=even,
             elements=np.zeros((3, nodes)),
+            found=np.zeros(TOLD),
         )
 
     def rows(count: int, length: int) -> list[list[float]]:
@@ -317,6 +331,7 @@ def work_for(course: Course, intervals: int, room: int, compiled: bool) -> Work:
         samples=rows(2, MOST_SAMPLES),
         even=[Interval(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)] * intervals,
         elements=rows(3, nodes),
+        found=[0.0] * TOLD,
     )
 
 

@@ -6,12 +6,13 @@ water or in the seabed, and audited.
 
 from __future__ import annotations
 
-from collections.abc import MutableSequence, Sequence
+from collections.abc import Callable, MutableSequence, Sequence
 from math import nan
 from typing import NamedTuple
 
 from calm.physics.compiled import set_row
-from calm.physics.passing import FAILURE, LANDED
+from calm.physics.passing import FAILURE
+from calm.physics.passing import LANDED as CAME_DOWN
 from calm.physics.referee import (
     Body,
     Moored,
@@ -125,6 +126,68 @@ def find_shape(search: Search, referee: Referee) -> Found:
     return second if lands_first else first
 
 
+class Asked(NamedTuple):
+    """What `find_asked` is asked for."""
+
+    search: Search
+    referee: Referee
+
+
+def find_asked(asked: Asked, _: float) -> float:
+    """Look for a shape, and tell what was found in the work of the problem; how it ended."""
+    found = find_shape(asked.search, asked.referee)
+    tell(found, asked.search.problem.work.found)
+    return float(found.ending)
+
+
+def find_now(find: Callable[[Asked, float], float], asked: Asked) -> float:
+    """Call a search by its address."""
+    return find(asked, 0.0)
+
+
+ENDING, VALUE, PIECE, GOAL, SOUGHT, RIDES, LANDS, STAGES, UNKNOWN_VALUE, MISS, SLOPE = range(11)
+NODES, HANGING, LANDED, GROUNDED, SEGMENTS, FIRST_ERROR = range(11, 17)
+CLOSURE, MOMENT, OTHER_DEPTH, OTHER_GROUNDED = range(22, 26)
+"""Where it stands in what a search tells; from `FIRST_ERROR` on the errors."""
+
+
+def tell(found: Found, told: MutableSequence[float]) -> None:
+    """Write down what was found."""
+    closed, errors = found.refined.closed, found.errors
+    root = closed.root
+    unknown = root.unknown
+    told[ENDING], told[VALUE], told[PIECE] = found.ending, found.value, found.piece
+    told[GOAL], told[SOUGHT] = unknown.goal, unknown.sought
+    told[RIDES], told[LANDS], told[STAGES] = unknown.rides, unknown.lands, unknown.stages
+    told[UNKNOWN_VALUE], told[MISS], told[SLOPE] = root.x, root.miss, root.slope
+    told[NODES], told[HANGING] = closed.nodes, closed.hanging
+    told[LANDED], told[GROUNDED] = closed.landed, closed.grounded
+    told[SEGMENTS] = found.refined.segments
+    told[FIRST_ERROR], told[FIRST_ERROR + 1] = errors.depth, errors.tension
+    told[FIRST_ERROR + 2] = errors.relative
+    told[FIRST_ERROR + 3], told[FIRST_ERROR + 4] = errors.lift, errors.pull
+    told[CLOSURE], told[MOMENT] = found.closure, found.moment
+    told[OTHER_DEPTH], told[OTHER_GROUNDED] = found.other_depth, found.other_grounded
+
+
+def as_told(told: Sequence[float]) -> Found:
+    """What was found, by what was written down."""
+    whole = [int(told[i]) for i in range(len(told)) if i in WHOLE]
+    ending, piece, sought, rides, lands, stages, nodes, hanging, landed, segments = whole
+    unknown = Unknown(told[GOAL], sought, bool(rides), bool(lands), stages)
+    root = Root(True, unknown, told[UNKNOWN_VALUE], told[MISS], told[SLOPE])
+    value = float(told[VALUE])
+    closed = Closed(
+        ending, value, piece, root, nodes, hanging, bool(landed), float(told[GROUNDED])
+    )
+    errors = Errors(*(float(error) for error in told[FIRST_ERROR : FIRST_ERROR + 5]))
+    last = [float(told[i]) for i in (CLOSURE, MOMENT, OTHER_DEPTH, OTHER_GROUNDED)]
+    return Found(ending, value, piece, Refined(closed, segments, errors), errors, *last)
+
+
+WHOLE = (ENDING, PIECE, SOUGHT, RIDES, LANDS, STAGES, NODES, HANGING, LANDED, SEGMENTS)
+
+
 def is_slack(found: Found) -> bool:
     """Whether a line is refused as slack."""
     return found.ending == SLACK_AT_REST or found.ending == SLACK_ON_DIGITS
@@ -154,7 +217,7 @@ def highest(search: Search, referee: Referee, lands: bool) -> Found:
     if located.ending != FOUND:
         return refused(located.ending, located.value, -1, located.root)
     found = shape_near(search, referee, located.root, lands)
-    if found.ending != FOUND or not located.deeper.found:
+    if found.ending != FOUND or not located.deeper.found or problem.limits.near > 0.0:
         return found
     keep(problem, OTHER, FINE, found)
     other = shape_near(search, referee, located.deeper, lands)
@@ -195,7 +258,7 @@ def shape_near(search: Search, referee: Referee, root: Root, lands: bool) -> Fou
     search.miss(about, root.x)
     if problem.work.left[FAILURE] > 0.0:
         return refused(MARCH_STOPPED, problem.work.left[FAILURE], -1, root)
-    if problem.work.left[LANDED] < 0.0:
+    if problem.work.left[CAME_DOWN] < 0.0:
         return audited(problem, referee, refine(search, clear, False))
     landed = audited(problem, referee, refine(search, root, False))
     if landed.ending != FOUND:
@@ -238,6 +301,8 @@ def audited(problem: Problem, referee: Referee, refined: Refined) -> Found:
     if piece >= 0:
         ending = ABOVE_SURFACE if height > 0.0 else BELOW_SEABED
         return refused(ending, abs(height), piece, closed.root)
+    if problem.limits.near > 0.0:
+        return Found(FOUND, 0.0, -1, refined, errors, 0.0, 0.0, NO_OTHER, 0.0)
     off, moment = audit_shape(problem, referee, closed)
     ending, value = ending_of_audit(off, moment)
     if ending != FOUND:
