@@ -186,11 +186,6 @@ def ended(outcome: Outcome, output: Path, total: int) -> ExitCode:
             f"{output}: {grouped(done - solved)} of {grouped(done)} profiles are NaN: "
             f"{', '.join(_kinds(outcome))}"
         )
-    if outcome.alone:
-        narrate(
-            f"{output}: {grouped(outcome.alone)} profiles were solved one by one, as `calm run` "
-            "does, each 500 to 3000 times as long as the others"
-        )
     return ExitCode.DONE if solved else ExitCode.NO_EQUILIBRIUM
 
 

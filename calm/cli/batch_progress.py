@@ -60,10 +60,7 @@ def bar(progress: Progress) -> str:
 
 
 def state(progress: Progress, seconds: float) -> str:
-    """How many are done, the rate, the time that the rest takes at it, and the failures so far.
-
-    Those solved one by one are reported as well, since they hold the others up.
-    """
+    """How many are done, the rate, the time that the rest takes at it, and the failures so far."""
     from calm.batch.statuses import Ending
 
     text = f"{grouped(progress.done)} of {grouped(progress.total)} profiles"
@@ -75,8 +72,6 @@ def state(progress: Progress, seconds: float) -> str:
     for ending, count in progress.endings.items():
         if count and ending is not Ending.SOLVED:
             text += f", {grouped(count)} {ending.value}"
-    if progress.alone:
-        text += f", {grouped(progress.alone)} one by one"
     return text
 
 

@@ -16,12 +16,14 @@ from calm.solve.endings import (
     ABOVE_SURFACE,
     BELOW_SEABED,
     DRAGGED_DOWN,
+    FOLDED,
     FOUND,
     MARCH_STOPPED,
     MISSES,
     NO_SHAPE_NEAR,
     NOT_CLOSED,
     NOT_LYING,
+    OUT_OF_BALANCE,
     RISES,
     SLACK_AT_REST,
     SLACK_ON_DIGITS,
@@ -34,6 +36,26 @@ from calm.solve.search import NO_OTHER, Found, Referee, audit_shape, ending_of_a
 from calm.solve.solution import Settings, Solution
 from calm.solve.standing import standing_lift, too_heavy
 from calm.solve.status import Status
+
+STATUS_OF = {
+    FOUND: Status.CONVERGED,
+    MARCH_STOPPED: Status.NOT_CONVERGED,
+    NO_SHAPE_NEAR: Status.NOT_CONVERGED,
+    MISSES: Status.NOT_CONVERGED,
+    SLACK_ON_DIGITS: Status.SLACK,
+    SLACK_AT_REST: Status.SLACK,
+    TOO_MANY_AFLOAT: Status.ABOVE_SURFACE,
+    RISES: Status.ABOVE_SURFACE,
+    DRAGGED_DOWN: Status.GROUNDED,
+    NOT_LYING: Status.GROUNDED,
+    UNSUPPORTED: Status.NO_EQUILIBRIUM,
+    BELOW_SEABED: Status.GROUNDED,
+    ABOVE_SURFACE: Status.ABOVE_SURFACE,
+    NOT_CLOSED: Status.NOT_CONVERGED,
+    OUT_OF_BALANCE: Status.NOT_CONVERGED,
+    FOLDED: Status.SLACK,
+}
+"""What an ending comes to."""
 
 _OF_CLAMP = {
     "clamp_buoyancy": "buoyancy",

@@ -22,8 +22,9 @@ COARSE_STEP = np.radians(4.0).item()
 """Angle step of the marches that only look for the neighbourhood of a root."""
 REACH = 0.01
 """Longest segment at an angle step of 1°, as a share of the span."""
-ROOM = 512
-"""Segments that there is room for at first; where a line needs more, it is solved with more."""
+ROOM, MANY_ROOM = 512, 256
+"""Segments that there is room for at first, of one line and of many; where a line needs more, it is
+solved with more."""
 MOST_AFLOAT = 16
 """Floats at the surface one after the other: each is sought with all those above it."""
 MOST_SAMPLES = 64
@@ -228,6 +229,7 @@ def problem_of(
     track: Track | None = None,
     rough: bool = False,
     room: int = ROOM,
+    intervals: int = 0,
 ) -> Problem:
     """Lay out a line and its water.
 
@@ -239,6 +241,7 @@ def problem_of(
     track : the line laid out, where it is known
     rough : whether it is solved as one of many, without an audit
     room : for how many segments
+    intervals : of other water that it is to be solved in, at most
     """
     track = track or Track.of(line, frequency)
     profile = Profile(water)
@@ -289,7 +292,7 @@ def problem_of(
         course = course._replace(loads=loads.copy())
         rows: Any = np.array(surfacing, record_type(Surfacing))
         hulls: Any = np.array(list(hull), record_type(Waterline))
-        work = work_for(course, len(sea.intervals), room, True)
+        work = work_for(course, max(len(sea.intervals), intervals), room, True)
         return Problem(course, sea, loads, flexible, rows, afloat, hulls, limits, work)
     loads = course.loads
     course = course._replace(loads=list(loads))
