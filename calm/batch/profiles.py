@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import prod
 from typing import Any
@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from calm.assemble import assemble_water
 from calm.batch.plausible import implausible
 from calm.batch.solving import (
     HEAPED,
@@ -26,7 +27,6 @@ from calm.batch.solving import (
 )
 from calm.batch.statuses import STATUSES
 from calm.batch.threads import processors
-from calm.assemble import assemble_water
 from calm.case import Mooring
 from calm.case.measure import clamps_down, clamps_of, components_of
 from calm.files import CurrentTable
@@ -40,6 +40,7 @@ from calm.solve.finish import STATUS_OF
 from calm.solve.mooring import MORE_ROOM, search_of
 from calm.solve.problem import MANY_ROOM, problem_of
 from calm.solve.search import Asked, find_asked
+from calm.solve.starts import fill_starts
 
 BLOCK = 1024
 """Profiles that a worker takes at a time."""
@@ -130,6 +131,7 @@ class Batch:
     """A mooring made ready for many profiles, which may come in several goes."""
 
     mooring: Mooring
+    _starts: Floats | None = field(default=None, init=False, repr=False, compare=False)
 
     @cached_property
     def water(self) -> Water:
@@ -211,6 +213,10 @@ class Batch:
             intervals=levels + 2,
         )  # fmt: skip
         search, referee = search_of(problem, True), referee_of(line, water, 0.0, True)
+        if self._starts is None:
+            entry(fill_starts, search)(search)
+            vars(self).update(_starts=problem.starts)
+        problem.starts[:] = self._starts
         intervals: Any = np.zeros(levels + 2, record_type(Interval))
         pieces = len(line.length)
         chain = [piece.component.kind == "chain" for piece in mooring.file.pieces[:-1]]
@@ -279,9 +285,7 @@ def _shaped(profiles: Profiles, shape: tuple[int, ...]) -> Profiles:
     return replace(profiles, **columns)
 
 
-def _measured(
-    mooring: Mooring, rows: Results, status: NDArray[np.int8]
-) -> Profiles:
+def _measured(mooring: Mooring, rows: Results, status: NDArray[np.int8]) -> Profiles:
     """The results with the anchor, and with the knockdown from the shape in still water."""
     pieces, clamps, ends = rows
     above = mooring.file.pieces[:-1]

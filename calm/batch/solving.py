@@ -128,7 +128,8 @@ def in_current(problem: Problem, paper: Paper, total: int) -> Problem:
     levels, intervals = paper.levels[: total + 2], paper.intervals[: total + 1]
     return Problem(
         problem.course, Sea(levels, intervals, sea.gravity, sea.strata), problem.loads,
-        problem.flexible, problem.surfacing, problem.afloat, problem.hull, limits, problem.work,
+        problem.flexible, problem.surfacing, problem.afloat, problem.hull, limits, problem.starts,
+        problem.work,
     )  # fmt: skip
 
 
@@ -156,9 +157,7 @@ def tilt_of(x: float, y: float, z: float) -> float:
     return atan2(sqrt(x * x + y * y), z) * 180.0 / pi
 
 
-def measure(
-    problem: Problem, referee: Referee, paper: Paper, results: Results, case: int
-) -> None:
+def measure(problem: Problem, referee: Referee, paper: Paper, results: Results, case: int) -> None:
     """Write what the shape of a profile leads to in its row."""
     told, records = problem.work.found, problem.work.records
     fine, coarse = records[FINE], records[COARSE]
@@ -280,4 +279,3 @@ def used_buoyancy(problem: Problem) -> float:
         total += lift
         used += share * lift
     return used / total
-

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import inf, sqrt
 
-from calm.physics.element import Vector, axis_along, drag_force, drag_share
+from calm.physics.element import Vector, axis_along, drag_force, drag_share, few_steps_share
 from calm.physics.friction import BERTEAUX, HOERNER, friction_force, turning_friction
 from calm.physics.profile import Sea, distance_to_level, water_at
 from calm.physics.reference import REFERENCE_DENSITY
@@ -15,6 +15,9 @@ from calm.physics.strumming import Vibration, amplified_share, strummed
 from calm.physics.track import Cable
 
 PASSES = 200
+LITTLE_TURN = 1e-6
+"""How much the last of a few steps may turn a segment, squared [rad²], and be good enough where it
+need not settle to the last digits."""
 
 
 def strain_at(cable: Cable, knots: Sequence[Knot], tension: float) -> float:
@@ -111,7 +114,11 @@ def pass_segment(
             ax, ay, az = ax + pull * u, ay + pull * v, az + pull * w
         factor = 1.0
         if beat == 0.0:
-            c = drag_share(ax, ay, az, 0.5 * kn * area, u, v, w)
+            c, doubt = 0.0, 1.0
+            if near > 0.0 and size > 0.0:
+                c, doubt = few_steps_share(ax, ay, az, 0.5 * kn * area, size, u, v, w, 1)
+            if not doubt < LITTLE_TURN:
+                c = drag_share(ax, ay, az, 0.5 * kn * area, u, v, w)
         else:
             c, factor = vibrating_share(
                 vibration, beat, ax, ay, az, 0.5 * kn * area, u, v, w, tx, ty, tz

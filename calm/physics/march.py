@@ -129,7 +129,9 @@ def march(
     return End(float(left[Z]), force, cuts, columns, int(left[NODES]))
 
 
-def _paper(course: Any, cuts: Cuts | None, room: int, nodes: int, compiled: bool) -> tuple[Any, ...]:
+def _paper(
+    course: Any, cuts: Cuts | None, room: int, nodes: int, compiled: bool
+) -> tuple[Any, ...]:
     """Cuts and their counts, the record and what is left, for a march to write on."""
     cables = len(course.cables)
     if compiled:

@@ -46,6 +46,7 @@ LEFT = 9
 SHORT = 1e-6
 """Length of a segment, as a share of the longest, that says nothing of the load of the next."""
 
+
 class How(NamedTuple):
     """How a line is to be marched.
 
@@ -167,9 +168,7 @@ def pass_cable(
         cut = cuts[used]
         if not how.given:
             left = cable.length - done
-            cut = segment_length(
-                cable, knots, vibration, sea, state, how.angle_step, how.reach
-            )
+            cut = segment_length(cable, knots, vibration, sea, state, how.angle_step, how.reach)
             cut = min(left, cut)
             if left - cut < 0.01 * cut:
                 cut = left
@@ -179,9 +178,7 @@ def pass_cable(
         if lands and state[5] > 0.0:
             hung = touchdown(cable, knots, vibration, sea, state, cut, near, expected)
         _, _, _, ax, ay, az, _, _ = state
-        state, strain = pass_segment(
-            cable, knots, vibration, sea, state, hung, near, expected
-        )
+        state, strain = pass_segment(cable, knots, vibration, sea, state, hung, near, expected)
         x, y, z, fx, fy, fz, tz, level = state
         if strain == NO_BALANCE:
             return state, hanging, used, nodes, SEGMENT_UNBALANCED

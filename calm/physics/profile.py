@@ -148,7 +148,6 @@ class Profile:
         sea: Sea = packed(self.sea)
         return sea
 
-
     def excess_at(self, depth: float) -> float:
         """What a displaced cubic metre lifts more at a depth than in reference water [N/m³]."""
         *_, density, _ = water_at(self.sea, depth, 0)

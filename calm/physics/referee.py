@@ -20,7 +20,6 @@ from calm.physics.state import Record
 from calm.physics.stretch import Knot, mean_curve_strain
 from calm.physics.strumming import Vibration, strummed
 
-
 ROUNDING = 32.0 * float_info.epsilon
 """Of a coordinate, or a force, as a share of the greatest."""
 
@@ -259,9 +258,7 @@ def strumming(
     return strummed(here, min(across / speed, 1.0))
 
 
-def worst_moment(
-    moored: Moored, shape: Shape, loads: Sequence[MutableSequence[float]]
-) -> float:
+def worst_moment(moored: Moored, shape: Shape, loads: Sequence[MutableSequence[float]]) -> float:
     """Largest angle between an element's axis and the mean of the forces at its ends [rad].
 
     The forces follow from the loads. Or, where that is larger, departure of a cable's strain from

@@ -83,9 +83,7 @@ def pass_rod(
     return below, inf if landed else -1.0, nodes
 
 
-def floating_depth(
-    rod: Stage, loads: Sequence[Load], sea: Sea, out: float, near: float
-) -> float:
+def floating_depth(rod: Stage, loads: Sequence[Load], sea: Sea, out: float, near: float) -> float:
     """Depth of the free end that has a length `out` of the head above the surface [m].
 
     Where the head finds no balance, it is upright. The head of the line leans as its loads have it, and they depend a little on its depth.

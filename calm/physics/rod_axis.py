@@ -13,14 +13,12 @@ from calm.physics.reynolds import Smooth, varying_share
 from calm.physics.state import NO_BALANCE, State
 from calm.physics.track import Load, Stage
 
-_PASSES = 200
+_PASSES, _FEW = 200, 6
 _HALVINGS = 60
 _NOTHING = 1e-12
 
 
-def rod_axis(
-    rod: Stage, loads: Sequence[Load], sea: Sea, state: State, near: float
-) -> Vector:
+def rod_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State, near: float) -> Vector:
     """Axis for which the moments about the rod's middle vanish.
 
     With several loads q_i at distances a_i from the top the rule of one load becomes
@@ -46,6 +44,10 @@ def rod_axis(
         if pull > 0.0:
             tx, ty, tz = -fx / pull, -fy / pull, -fz / pull
         settled = min(near / rod.length, 1e-4) if rod.length > 0.0 else 1e-4
+        if rod.size == 1 and loads[rod.first].diameter == 0.0:
+            x, y, z = lone_axis(loads[rod.first], sea, state, tx, ty, tz, settled)
+            if z != NO_BALANCE:
+                return x, y, z
     for _ in range(_PASSES):
         x, y, z = _following_axis(rod, loads, sea, state, tz, tx, ty, tz)
         change = abs(x - tx) + abs(y - ty) + abs(z - tz)
@@ -62,6 +64,36 @@ def rod_axis(
             x, y, z = x / size, y / size, z / size
         tx, ty, tz = x, y, z
     return bracketed_axis(rod, loads, sea, state)
+
+
+def lone_axis(
+    load: Load, sea: Sea, state: State, tx: float, ty: float, tz: float, settled: float
+) -> Vector:
+    """The axis of a rod of one load of constant drag, from another one, in few passes.
+
+    Its rise is `NO_BALANCE` where they do not settle.
+    """
+    _, _, z, fx, fy, fz, _, level = state
+    for _ in range(_FEW):
+        depth = -z - load.at * tz
+        u, v, w, density, level = water_at(sea, depth, level)
+        squared = u * u + v * v + w * w
+        ax, ay = fx + load.lever * load.push_east, fy + load.lever * load.push_north
+        az = fz + load.lever * load_lift(load, squared, density, sea.gravity)
+        k = load.lever * density / REFERENCE_DENSITY * load.normal_drag
+        if load.directional:
+            c = drag_share(ax, ay, az, k, u, v, w)
+        else:
+            c = k * sqrt(squared)
+        x, y, rise = axis_along(ax, ay, az, c, u, v, w)
+        change = abs(rise - tz)
+        tx, ty, tz = x, y, rise
+        if change < settled:
+            # pulled, and not pushed
+            if (ax + c * u) * x + (ay + c * v) * y + (az + c * w) * rise < 0.0 or fz <= 0.0:
+                return x, y, rise
+            break
+    return tx, ty, NO_BALANCE
 
 
 def bracketed_axis(rod: Stage, loads: Sequence[Load], sea: Sea, state: State) -> Vector:

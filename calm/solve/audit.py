@@ -30,6 +30,7 @@ from calm.physics.track import head_count
 from calm.solve.search import Referee
 from calm.solve.solution import Solution, sizes
 
+
 class Audit:
     """A solution laid out once, as it is loaded, for all its checks.
 

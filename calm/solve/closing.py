@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from calm.physics.compiled import set_row
 from calm.physics.hull import Riding, riding_of
-from calm.physics.passing import FAILURE, FX, FY, HANGING, LANDED, NODES, Z, How, pass_line
+from calm.physics.passing import FAILURE, FX, FY, HANGING, LANDED, NODES, How, Z, pass_line
 from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.seabed import lay_line
 from calm.physics.state import GOES_ON
@@ -255,7 +255,7 @@ def planned(search: Search, root: Root, step: float) -> Root:
     the cuts it took last it is: the root is a last step away, which the caller marches.
     """
     limits = search.problem.limits
-    small = (1e-4 if limits.near > 0.0 else 1e-6) * limits.span
+    small = (2e-3 if limits.near > 0.0 else 1e-6) * limits.span
     found = near_root(search, root, step, CHOSEN, False, NOT_RECORDED, small, COARSEST_BRACKET)
     if not found.found and not isnan(found.miss):
         return root
@@ -297,18 +297,16 @@ def polish(search: Search, root: Root, cuts: int, record: int) -> Closed:
 def close_near(search: Search, root: Root, cuts: int, record: int) -> Closed:
     """Close a line, or a part of it, on fixed segments."""
     problem, limits = search.problem, search.problem.limits
-    small = 0.1 * limits.allowed
+    small = (4.0 if cuts == CHOSEN and limits.near > 0.0 else 0.1) * limits.allowed
     if root.unknown.sought != BELOW:
         small = min(small, limits.share_allowed * abs(root.slope))
-    found = near_root(
-        search, root, limits.angle_step, cuts, True, record, small, NARROWEST_BRACKET
-    )
+    found = near_root(search, root, limits.angle_step, cuts, True, record, small, NARROWEST_BRACKET)
     left = problem.work.left
     if isnan(found.miss):
         return not_closed(MARCH_STOPPED, left[FAILURE], found)
     if not found.found:
         return not_closed(NO_SHAPE_NEAR, 0.0, found)
-    if abs(found.miss) > limits.allowed:
+    if abs(found.miss) > max(limits.allowed, small):
         ending = MISSES if found.unknown.sought == BELOW else SLACK_ON_DIGITS
         return not_closed(ending, abs(found.miss), found)
     nodes, landed, grounded = int(left[NODES]), left[LANDED] >= 0.0, 0.0

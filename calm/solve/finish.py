@@ -300,5 +300,3 @@ def other_of(found: Found) -> tuple[float | None, float]:
     """Depth of the free end in another equilibrium, and its length on the seabed [m]."""
     depth = None if found.other_depth == NO_OTHER else found.other_depth
     return depth, found.other_grounded
-
-

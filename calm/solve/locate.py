@@ -227,7 +227,6 @@ def growth_below(sea: Sea, depth: float) -> float:
 def largest_fall(search: Search, unknown: Unknown, depth: float) -> float:
     """Knockdown if the greatest current ran at every level [m]."""
     problem, sea = search.problem, search.problem.sea
-    even = problem.work.even
     greatest, fastest = 1, -1.0
     for k in range(1, len(sea.intervals)):
         here = sea.intervals[k]
@@ -235,23 +234,27 @@ def largest_fall(search: Search, unknown: Unknown, depth: float) -> float:
         if square > fastest:
             greatest, fastest = k, square
     most = sea.intervals[greatest]
+    about = coarse_about(search, unknown)
+    evenly = in_even_current(problem, most.u, most.v, most.w)
+    miss = search.miss(
+        About(evenly, unknown, about.step, about.cuts, about.given, about.record), depth
+    )
+    return nan if isnan(miss) else max(miss, problem.limits.allowed)
+
+
+def in_even_current(problem: Problem, u: float, v: float, w: float) -> Problem:
+    """The same problem with one current at every level."""
+    sea, even = problem.sea, problem.work.even
     for k in range(len(sea.intervals)):
         here = sea.intervals[k]
-        row = Interval(
-            here.origin, most.u, 0.0, most.v, 0.0, most.w, 0.0, here.density, here.ddensity
-        )
+        row = Interval(here.origin, u, 0.0, v, 0.0, w, 0.0, here.density, here.ddensity)
         set_row(even, k, row)
-    evenly = Problem(
-        problem.course, Sea(sea.levels, even, sea.gravity, sea.strata), problem.loads,
+    return Problem(
+        problem.course, Sea(sea.levels, even[: len(sea.intervals)], sea.gravity, sea.strata),
+        problem.loads,
         problem.flexible, problem.surfacing, problem.afloat, problem.hull, problem.limits,
-        problem.work,
+        problem.starts, problem.work,
     )  # fmt: skip
-    here_about = coarse_about(search, unknown)
-    about = About(
-        evenly, unknown, here_about.step, here_about.cuts, here_about.given, here_about.record
-    )
-    miss = search.miss(about, depth)
-    return nan if isnan(miss) else max(miss, problem.limits.allowed)
 
 
 def awash(search: Search, unknown: Unknown, immersed: float) -> Root:

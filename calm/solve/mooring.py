@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+
 from calm.physics.compiled import by_address, entry
 from calm.physics.line import Line, Water
 from calm.physics.passing import FAILURE

@@ -107,9 +107,7 @@ class Nearby:
         base, compiled = self.solution, self._compiled
         if closed.landed != base.landed:
             raise Status.NOT_CONVERGED.because("It lies on the seabed, or hangs, unlike the other.")
-        errors = Errors(
-            base.depth_error, base.tension_error, 0.0, base.lift_error, base.pull_error
-        )
+        errors = Errors(base.depth_error, base.tension_error, 0.0, base.lift_error, base.pull_error)
         referee = referee_of(line, water, 0.0, compiled)
         refined = Refined(closed, len(self._cuts), errors)
         return finished(

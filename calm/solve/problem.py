@@ -20,17 +20,20 @@ from calm.solve.standing import SUPPORTED, standing_length, standing_lift, suppo
 
 COARSE_STEP = np.radians(4.0).item()
 """Angle step of the marches that only look for the neighbourhood of a root."""
-REACH = 0.01
-"""Longest segment at an angle step of 1°, as a share of the span."""
+REACH, ROUGH_REACH = 0.01, 0.013
+"""Longest segment at an angle step of 1°, as a share of the span: of a line, and of one of many."""
 ROOM, MANY_ROOM = 512, 256
 """Segments that there is room for at first, of one line and of many; where a line needs more, it is
 solved with more."""
 MOST_AFLOAT = 16
 """Floats at the surface one after the other: each is sought with all those above it."""
 MOST_SAMPLES = 64
+STARTS, FASTEST, START_ROWS = 41, 4.0, 6
+"""Even currents in which a line is sought beforehand, the fastest [m/s], and what is known of each.
+"""
 SHARE_TOLERANCE = 1e-9
 """How well the share of a surface float's buoyancy in use is found."""
-ROUGH, ROUGH_SHARE, ROUGHLY_NEAR = 5e-6, 3e-6, 2e-6
+ROUGH, ROUGH_SHARE, ROUGHLY_NEAR = 1e-5, 1e-5, 2e-6
 """The miss allowed of one of many lines, how well its share is found, and how far from a load the
 water may be looked up, as shares of the water depth and of the buoyancy."""
 
@@ -156,6 +159,7 @@ class Problem(NamedTuple):
     flexible : whether a piece is a cable or chain
     surfacing : the floats, from the top down
     afloat, hull : the first of them at the surface, and the rows of its hull
+    starts : where one of many is found in even currents of growing speed, see `calm.solve.starts`
     """
 
     course: Course
@@ -166,6 +170,7 @@ class Problem(NamedTuple):
     afloat: SurfaceFloat
     hull: Sequence[Waterline]
     limits: Limits
+    starts: Sequence[Sequence[float]]
     work: Work
 
 
@@ -292,13 +297,14 @@ def problem_of(
         course = course._replace(loads=loads.copy())
         rows: Any = np.array(surfacing, record_type(Surfacing))
         hulls: Any = np.array(list(hull), record_type(Waterline))
+        starts: Any = np.zeros((START_ROWS, STARTS if rough else 0))
         work = work_for(course, max(len(sea.intervals), intervals), room, True)
-        return Problem(course, sea, loads, flexible, rows, afloat, hulls, limits, work)
-    loads = course.loads
+        return Problem(course, sea, loads, flexible, rows, afloat, hulls, limits, starts, work)
+    loads, none = course.loads, [[0.0] * 0] * START_ROWS
     course = course._replace(loads=list(loads))
     work = work_for(course, len(sea.intervals), room, False)
     return Problem(
-        course, sea, loads, flexible.tolist(), surfacing, afloat, hull, limits, work
+        course, sea, loads, flexible.tolist(), surfacing, afloat, hull, limits, none, work
     )
 
 
@@ -340,7 +346,8 @@ def work_for(course: Course, intervals: int, room: int, compiled: bool) -> Work:
 
 def reach_of(limits: Limits, step: float) -> float:
     """The longest segment at an angle step [m]."""
-    return REACH * degrees(step) * limits.span
+    reach = ROUGH_REACH if limits.near > 0.0 else REACH
+    return reach * degrees(step) * limits.span
 
 
 def _surfacing(line: Line, water: Water, track: Track, lift: Floats) -> list[Surfacing]:
@@ -372,5 +379,3 @@ def _surfacing(line: Line, water: Water, track: Track, lift: Floats) -> list[Sur
             )
         place += len(part.loads)
     return found
-
-

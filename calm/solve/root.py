@@ -43,7 +43,13 @@ def bracketed_root(
             a, b, c = b, c, b
             fa, fb, fc = fb, fc, fb
         half = 0.5 * (c - b)
-        if isnan(fb) or abs(fb) <= small or abs(half) <= 0.5 * narrow or b + half == b or b + half == c:
+        if (
+            isnan(fb)
+            or abs(fb) <= small
+            or abs(half) <= 0.5 * narrow
+            or b + half == b
+            or b + half == c
+        ):
             return b, fb, (fc - fb) / (c - b) if c != b else 0.0
         if abs(fa) <= abs(fb):
             step = earlier = half

@@ -51,6 +51,7 @@ from calm.solve.problem import (
     Unknown,
 )
 from calm.solve.refine import UNKNOWN_ERRORS, Errors, Refined, refine, tension_at
+from calm.solve.starts import NOWHERE_NEAR, start_of
 
 LARGEST_CLOSURE = 1e-6
 LARGEST_MOMENT = 1e-8
@@ -177,9 +178,7 @@ def as_told(told: Sequence[float]) -> Found:
     unknown = Unknown(told[GOAL], sought, bool(rides), bool(lands), stages)
     root = Root(True, unknown, told[UNKNOWN_VALUE], told[MISS], told[SLOPE])
     value = float(told[VALUE])
-    closed = Closed(
-        ending, value, piece, root, nodes, hanging, bool(landed), float(told[GROUNDED])
-    )
+    closed = Closed(ending, value, piece, root, nodes, hanging, bool(landed), float(told[GROUNDED]))
     errors = Errors(*(float(error) for error in told[FIRST_ERROR : FIRST_ERROR + 5]))
     last = [float(told[i]) for i in (CLOSURE, MOMENT, OTHER_DEPTH, OTHER_GROUNDED)]
     return Found(ending, value, piece, Refined(closed, segments, errors), errors, *last)
@@ -213,6 +212,11 @@ def highest(search: Search, referee: Referee, lands: bool) -> Found:
     if not lands and problem.limits.lift <= 0.0:
         nowhere = Root(False, whole_line(problem, lands), nan, nan, nan)
         return refused(UNSUPPORTED, 0.0, -1, nowhere)
+    start = start_of(search, lands)
+    if start.found:
+        found = shape_near(search, referee, start, lands)
+        if found.ending == FOUND and is_surely_highest(found):
+            return found
     located = locate(search, lands)
     if located.ending != FOUND:
         return refused(located.ending, located.value, -1, located.root)
@@ -230,6 +234,14 @@ def highest(search: Search, referee: Referee, lands: bool) -> Found:
     if fall <= 2.0 * (found.errors.depth + other.errors.depth):
         return found
     return beside(found, depth, other.refined.closed.grounded)
+
+
+def is_surely_highest(found: Found) -> bool:
+    """Whether a line found from its start needs no other search: see `calm.solve.starts`."""
+    root = found.refined.closed.root
+    if root.unknown.sought == BELOW:
+        return root.x > 0.0
+    return root.x < NOWHERE_NEAR
 
 
 def keep(problem: Problem, to: int, of: int, found: Found) -> None:
