@@ -212,6 +212,8 @@ class Batch:
             line, water, mooring.settings, compiled=True, rough=True, room=room,
             intervals=levels + 2,
         )  # fmt: skip
+        # a profile that is without current is told apart from the others
+        problem = problem._replace(limits=problem.limits._replace(at_rest=False))
         search, referee = search_of(problem, True), referee_of(line, water, 0.0, True)
         if self._starts is None:
             entry(fill_starts, search)(search)

@@ -297,7 +297,9 @@ def polish(search: Search, root: Root, cuts: int, record: int) -> Closed:
 def close_near(search: Search, root: Root, cuts: int, record: int) -> Closed:
     """Close a line, or a part of it, on fixed segments."""
     problem, limits = search.problem, search.problem.limits
-    small = (4.0 if cuts == CHOSEN and limits.near > 0.0 else 0.1) * limits.allowed
+    small = 0.1 * limits.allowed
+    if limits.near > 0.0:
+        small = (4.0 if cuts == CHOSEN else 0.5) * limits.allowed
     if root.unknown.sought != BELOW:
         small = min(small, limits.share_allowed * abs(root.slope))
     found = near_root(search, root, limits.angle_step, cuts, True, record, small, NARROWEST_BRACKET)

@@ -61,13 +61,13 @@ def start_of(search: Search, lands: bool) -> Root:
     if len(problem.starts[0]) == 0 or limits.at_rest:
         return nowhere
     row = 3 if lands else 0
-    fastest, speed = speeds_of(problem.sea, limits.depth)
+    upright = max(-limits.standing - unknown.goal, 0.0)
+    fastest, speed = speeds_of(problem.sea, upright, limits.depth)
     x = at_speed(problem.starts[row], speed)
     slope = at_speed(problem.starts[row + 1], speed)
     if isnan(x) or not slope < 0.0:
         return nowhere
     if x >= 0.0:
-        upright = max(-limits.standing - unknown.goal, 0.0)
         growth = growth_below(problem.sea, upright)
         if growth * at_speed(problem.starts[row + 2], fastest) > GROWS or upright == 0.0:
             return nowhere
@@ -84,25 +84,31 @@ def at_speed(row: list[float], speed: float) -> float:
     return row[k] + (at - k) * (row[k + 1] - row[k])
 
 
-def speeds_of(sea: Sea, depth: float) -> tuple[float, float]:
-    """The greatest speed of a current, and that of an even one that drags a line about alike [m/s].
+def speeds_of(sea: Sea, top: float, depth: float) -> tuple[float, float]:
+    """The greatest speed of a current, and that of an even one that drags a line down alike [m/s].
 
-    What is near the surface counts most: it drags all that is below.
+    A taut cable leans by what drags it above, and is dragged down by the square of its lean.
+
+    Parameters
+    ----------
+    top, depth : of the line, and of the water [m]
     """
-    greatest = east = north = whole = 0.0
+    greatest = east = north = lean = 0.0
     for k in range(1, len(sea.intervals)):
         here = sea.intervals[k]
-        square = here.u * here.u + here.v * here.v + here.w * here.w
-        greatest = max(greatest, square)
-        upper = 0.0 if k == 1 else here.origin
+        greatest = max(greatest, here.u * here.u + here.v * here.v + here.w * here.w)
+        upper = top if k == 1 else max(here.origin, top)
         lower = min(sea.levels[k + 1], depth)
         if lower <= upper:
             continue
-        thick, middle = lower - upper, 0.5 * (lower + upper)
-        u, v = here.u + here.du * 0.5 * thick, here.v + here.dv * 0.5 * thick
-        weight = thick * (1.0 - 0.7 * middle / depth)
-        speed = sqrt(u * u + v * v)
-        whole += weight
-        east, north = east + weight * speed * u, north + weight * speed * v
-    drag = sqrt(east * east + north * north) / max(whole, 1e-300)
-    return sqrt(greatest), sqrt(drag)
+        thick, middle = lower - upper, 0.5 * (lower + upper) - here.origin
+        if k == 1 and middle < 0.0:
+            middle = 0.0
+        u, v = here.u + here.du * middle, here.v + here.dv * middle
+        drag = 0.5 * thick * sqrt(u * u + v * v)
+        east, north = east + drag * u, north + drag * v
+        lean += thick * (east * east + north * north)
+        east, north = east + drag * u, north + drag * v
+    length = max(depth - top, 1e-3 * depth)
+    even = sqrt(3.0 * lean / (length * length * length))
+    return sqrt(greatest), sqrt(even)
