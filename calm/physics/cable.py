@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import inf, sqrt
 
+from calm.physics.compiled import within
 from calm.physics.element import Vector, axis_along, drag_force, drag_share, few_steps_share
 from calm.physics.friction import BERTEAUX, HOERNER, friction_force, turning_friction
 from calm.physics.profile import Sea, distance_to_level, water_at
@@ -20,6 +21,7 @@ LITTLE_TURN = 1e-6
 need not settle to the last digits."""
 
 
+@within
 def strain_at(cable: Cable, knots: Sequence[Knot], tension: float) -> float:
     """Strain of a cable at a tension [N]: by its compliance, or by its curve if it has one."""
     if cable.first_knot == cable.end_knot:
@@ -27,11 +29,13 @@ def strain_at(cable: Cable, knots: Sequence[Knot], tension: float) -> float:
     return curve_strain(knots, cable.first_knot, cable.end_knot, tension)
 
 
+@within
 def segment_lift(cable: Cable, cut: float, density: float, gravity: float) -> float:
     """Net force in water of a segment of an unstretched length [m], + up [N]."""
     return cut * (cable.buoyancy + (density - REFERENCE_DENSITY) * gravity * cable.volume)
 
 
+@within
 def segment_area(cable: Cable, cut: float, density: float, strain: float) -> float:
     """Metres of cable unstretched and in reference water that are dragged as a segment is [m].
 
@@ -43,6 +47,7 @@ def segment_area(cable: Cable, cut: float, density: float, strain: float) -> flo
     return area
 
 
+@within
 def segment_drag(
     friction: int,
     kn: float,
@@ -62,6 +67,7 @@ def segment_drag(
     return qx + px, qy + py, qz + pz
 
 
+@within
 def pass_segment(
     cable: Cable,
     knots: Sequence[Knot],
@@ -218,6 +224,7 @@ def touchdown(
     return hanging
 
 
+@within
 def segment_length(
     cable: Cable,
     knots: Sequence[Knot],
@@ -251,6 +258,7 @@ def segment_length(
     return min(distance_to_level(sea.levels, -z, sinking, level, 0.01 * length), length)
 
 
+@within
 def rate_of_turn(
     cable: Cable,
     kn: float,

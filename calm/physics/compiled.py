@@ -16,7 +16,7 @@ from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from types import FunctionType
-from typing import Any, get_args, get_type_hints
+from typing import Any, TypeVar, get_args, get_type_hints
 
 import numpy as np
 
@@ -28,6 +28,18 @@ SOURCES = ("physics", "solve", "batch")
 OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
 """Nothing is allocated by a compiled law, so that arrays need not be counted when they are passed
 on: that takes as long as a segment. No law divides by zero, and none raises."""
+
+
+Fn = TypeVar("Fn", bound=Law)
+
+
+def within(law: Fn) -> Fn:
+    """Mark a short law that is compiled within those that call it, as if it were written there."""
+    _within.add(law)
+    return law
+
+
+_within: set[Law] = set()
 
 
 def set_row(rows: Any, i: int, row: Any) -> None:
@@ -90,7 +102,10 @@ def called(law: Law) -> Any:
     if law is set_row:
         return _record_setter()
     njit: Any = numba.njit
-    dispatcher = njit(clone(law), no_cpython_wrapper=True, no_cfunc_wrapper=True, **OPTIONS)
+    dispatcher = njit(
+        clone(law), no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=law in _within,
+        **OPTIONS,
+    )  # fmt: skip
     resolve, plain = dispatcher.get_call_template, numba.types.unliteral
 
     def once_for_all_numbers(types: Any, named: Any) -> Any:

@@ -7,7 +7,7 @@ from functools import cached_property
 from math import inf, isfinite
 from typing import NamedTuple
 
-from calm.physics.compiled import packed
+from calm.physics.compiled import packed, within
 from calm.physics.line import Floats, Water
 from calm.physics.reference import REFERENCE_DENSITY
 
@@ -69,6 +69,7 @@ def interval_at(levels: Sequence[float], depth: float, i: int) -> int:
     return i
 
 
+@within
 def water_at(sea: Sea, depth: float, i: int) -> tuple[float, float, float, float, int]:
     """Current u, v, w [m/s], density [kg/m³] and interval at a depth [m], searched from one."""
     levels = sea.levels

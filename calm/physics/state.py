@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from calm.physics.compiled import within
 from calm.physics.line import Floats, Integers
 
 
@@ -39,6 +40,7 @@ Record = Any
 COLUMNS = 10
 
 
+@within
 def write_node(record: Record, n: int, state: State) -> None:
     """Write node n: the place [m] and the force above it [N] of a state."""
     x, y, z, fx, fy, fz, _, _ = state
@@ -50,6 +52,7 @@ def write_node(record: Record, n: int, state: State) -> None:
     record[5][n] = fz
 
 
+@within
 def write_element(
     record: Record, n: int, piece: int, clamp: int, cut: float, strain: float
 ) -> None:
