@@ -6,6 +6,7 @@ or the ship that tows it. It falls as the free end goes deeper and as more buoya
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import isnan, nan
 from typing import NamedTuple
 
@@ -131,6 +132,11 @@ def miss_at(about: About, x: float) -> float:
     if work.left[FAILURE] != GOES_ON:
         return nan
     return work.left[Z] - unknown.goal
+
+
+def miss_now(miss: Callable[[About, float], float], about: About, x: float) -> float:
+    """Call a march by its address."""
+    return miss(about, x)
 
 
 def place(problem: Problem, unknown: Unknown, x: float) -> tuple[float, float]:

@@ -11,6 +11,7 @@ from calm.errors import NoEquilibrium
 from calm.physics.compiled import compiled as compiled_law
 from calm.physics.line import Line, Water
 from calm.physics.state import FAILURES, Trace
+from calm.physics.track import Load
 from calm.solve.closing import Closed
 from calm.solve.endings import (
     ABOVE_SURFACE,
@@ -149,10 +150,10 @@ def _carried(line: Line, problem: Problem) -> Line:
     """The line as it is loaded: what is at the surface by what is in the water and in use of it."""
     columns = {name: getattr(line, name).copy() for name in (*_OF_PIECE, *_OF_CLAMP)}
     for i in range(int(problem.work.left[CHANGED])):
-        load = problem.course.loads[i]
+        load = Load(*problem.course.loads[i])
         where, names = (load.piece, _OF_PIECE) if load.clamp < 0 else (load.clamp, _OF_CLAMP)
         for column, name in names.items():
-            columns[column][where] = getattr(load, name)
+            columns[column][int(where)] = getattr(load, name)
     return replace(line, **columns)
 
 

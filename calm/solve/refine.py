@@ -26,6 +26,7 @@ DEPTH_TARGET = 4e-5
 TENSION_TARGET = 1.6e-4
 """Error estimates, relative to the span and to the tension, above which the step is taken
 smaller, at an angle step of 1°; they follow its square."""
+AS_FOUND = 0.25
 MOST_ROUNDS = 6
 MOST_SEGMENTS = 20_000
 AT_A_LEVEL = 0.05
@@ -79,17 +80,22 @@ def refine(search: Search, root: Root, hangs: bool) -> Refined:
             return Refined(fine, 0, UNKNOWN_ERRORS)
         errors = errors_of(problem, coarse, fine)
         refined = Refined(fine, segments, errors)
-        excess = excess_of(problem, errors)
+        excess = excess_of(problem, errors, fine.landed)
         if excess <= 1.0 or segments > MOST_SEGMENTS:
             break
         root, step = fine.root, step * max(0.8 / sqrt(excess), 0.2)
     return with_bends(problem, refined)
 
 
-def excess_of(problem: Problem, errors: Errors) -> float:
-    """How many times the errors are what is aimed at."""
+def excess_of(problem: Problem, errors: Errors, landed: bool) -> float:
+    """How many times the errors of a shape are what is aimed at.
+
+    That is less for one of many that has landed, which is not extrapolated.
+    """
     target = degrees(problem.limits.angle_step)
     target *= target
+    if landed and problem.limits.near > 0.0:
+        target *= AS_FOUND
     return max(
         errors.depth / (DEPTH_TARGET * target * problem.limits.span),
         errors.relative / (TENSION_TARGET * target),

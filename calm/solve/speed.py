@@ -1,7 +1,7 @@
 """At which of its two speeds the solver runs: interpreted as it stands, or compiled by numba.
 
 Both are of one source and give the same digits. Compiled it is many times as fast, once it is
-there: that costs as much as `WARM` moorings to fetch it, and as `COLD` ones to compile it first. Who
+there: that costs as much as `WARM` moorings to fetch it, as `COLD` ones to compile it first. Who
 solves says by `Settings.compiled` which it is to be. Where that is left open it is compiled once
 that pays: for whoever has said by `expect_many` how many lines are to come, or has solved many, if
 compiled code is kept.

@@ -19,6 +19,7 @@ from calm.solve.closing import (
     coarse_root,
     coarser,
     halve,
+    miss_now,
     planned,
     polish,
     whole_line,
@@ -167,7 +168,7 @@ class Towed:
             problem = self.search.problem
             errors: Errors = self._law(errors_of)(problem, coarse, self.closed)
             refined = Refined(self.closed, segments, errors)
-            excess = excess_of(problem, errors)
+            excess = excess_of(problem, errors, False)
             if excess <= 1.0 or segments > MOST_SEGMENTS:
                 break
             step *= max(0.8 / sqrt(excess), 0.2)
@@ -192,7 +193,8 @@ class Towed:
 
     def _miss(self, x: float, step: float, record: int) -> float:
         about = About(self.search.problem, self.root.unknown, step, CHOSEN, False, record)
-        return self.search.miss(about, x)
+        miss: float = self._law(miss_now)(self.search.miss, about, x)
+        return miss
 
     def _lay_out(self, room: int) -> None:
         compiled = self.compiled
