@@ -218,7 +218,8 @@ class Batch:
         if self._starts is None:
             entry(fill_starts, search)(search)
             vars(self).update(_starts=problem.starts)
-        problem.starts[:] = self._starts
+        known: Any = problem.starts
+        known[:] = self._starts
         intervals: Any = np.zeros(levels + 2, record_type(Interval))
         pieces = len(line.length)
         chain = [piece.component.kind == "chain" for piece in mooring.file.pieces[:-1]]

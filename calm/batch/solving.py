@@ -62,11 +62,11 @@ class Paper(NamedTuple):
 
     read: Floats
     joined: Floats
-    levels: Floats
+    levels: Any
     intervals: Any
     fixed: Floats
-    first: Integers
-    last: Integers
+    first: Any
+    last: Any
     may_lie: Integers
 
 
@@ -167,7 +167,7 @@ def measure(problem: Problem, referee: Referee, paper: Paper, results: Results, 
     last = paper.last
     if before > 0:
         find_ends(Shape(coarse, before, before - 1, paper.first, last))
-    pieces, clamps, ends = results
+    pieces, _, ends = results
     head = referee.moored.head
     for p in range(len(referee.first)):
         a, b = referee.first[p], referee.last[p]

@@ -14,10 +14,9 @@ from __future__ import annotations
 
 from math import inf, sqrt
 
-Vector = tuple[float, float, float]
-
-
 from calm.physics.compiled import within
+
+Vector = tuple[float, float, float]
 
 
 def drag_share(ax: float, ay: float, az: float, k: float, vx: float, vy: float, vz: float) -> float:

@@ -120,10 +120,10 @@ def element_loads(moored: Moored, shape: Shape, loads: Sequence[MutableSequence[
             amount = cut
         elif clamp < 0:
             top, bottom = shape.first[piece], shape.last[piece]
+            # of those without length the last has it
+            amount = 1.0 if bottom == i + 1 else 0.0
             if body.length > 0.0:
                 amount = cut / body.length
-            else:  # of those without length the last has it
-                amount = 1.0 if bottom == i + 1 else 0.0
         dx, dy, dz = chord(shape, top, bottom)
         size = sqrt(dx * dx + dy * dy + dz * dz)
         grown = 1.0

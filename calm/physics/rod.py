@@ -86,7 +86,8 @@ def pass_rod(
 def floating_depth(rod: Stage, loads: Sequence[Load], sea: Sea, out: float, near: float) -> float:
     """Depth of the free end that has a length `out` of the head above the surface [m].
 
-    Where the head finds no balance, it is upright. The head of the line leans as its loads have it, and they depend a little on its depth.
+    The head of the line leans as its loads have it, and they depend a little on its depth. Where it
+    finds no balance it is upright.
     """
     depth = -out
     for _ in range(_LEANINGS):

@@ -81,10 +81,7 @@ def lone_axis(
         ax, ay = fx + load.lever * load.push_east, fy + load.lever * load.push_north
         az = fz + load.lever * load_lift(load, squared, density, sea.gravity)
         k = load.lever * density / REFERENCE_DENSITY * load.normal_drag
-        if load.directional:
-            c = drag_share(ax, ay, az, k, u, v, w)
-        else:
-            c = k * sqrt(squared)
+        c = drag_share(ax, ay, az, k, u, v, w) if load.directional else k * sqrt(squared)
         x, y, rise = axis_along(ax, ay, az, c, u, v, w)
         change = abs(rise - tz)
         tx, ty, tz = x, y, rise

@@ -91,7 +91,8 @@ def moored_of(line: Line, water: Water, frequency: float, compiled: bool) -> Moo
     )
     if not compiled:
         return moored
-    return moored._replace(knots=np.array(knots, record_type(Knot)))
+    records: Any = np.array(knots, record_type(Knot))
+    return moored._replace(knots=records)
 
 
 def referee_of(line: Line, water: Water, frequency: float, compiled: bool) -> Referee:

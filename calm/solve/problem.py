@@ -170,7 +170,7 @@ class Problem(NamedTuple):
     afloat: SurfaceFloat
     hull: Sequence[Waterline]
     limits: Limits
-    starts: Sequence[Sequence[float]]
+    starts: Sequence[MutableSequence[float]]
     work: Work
 
 
@@ -313,18 +313,18 @@ def work_for(course: Course, intervals: int, room: int, compiled: bool) -> Work:
     cables = len(course.cables)
     nodes = 2 * room + 3 * len(course.loads) + 2 * len(course.stages) + 2
     if compiled:
-        even: Any = np.zeros(intervals, record_type(Interval))
+        zeros: Any = np.zeros
         return Work(
-            left=np.zeros(LAST + 1),
-            chosen=np.zeros(room),
-            halved=np.zeros(2 * room),
-            counts=np.zeros((2, cables), np.int64),
-            records=np.zeros((OTHER + 1, COLUMNS, nodes)),
-            shares=np.zeros((2, MOST_AFLOAT + 1)),
-            samples=np.zeros((2, MOST_SAMPLES)),
-            even=even,
-            elements=np.zeros((3, nodes)),
-            found=np.zeros(TOLD),
+            left=zeros(LAST + 1),
+            chosen=zeros(room),
+            halved=zeros(2 * room),
+            counts=zeros((2, cables), np.int64),
+            records=zeros((OTHER + 1, COLUMNS, nodes)),
+            shares=zeros((2, MOST_AFLOAT + 1)),
+            samples=zeros((2, MOST_SAMPLES)),
+            even=zeros(intervals, record_type(Interval)),
+            elements=zeros((3, nodes)),
+            found=zeros(TOLD),
         )
 
     def rows(count: int, length: int) -> list[list[float]]:

@@ -90,16 +90,14 @@ def refine(search: Search, root: Root, hangs: bool) -> Refined:
 def excess_of(problem: Problem, errors: Errors, landed: bool) -> float:
     """How many times the errors of a shape are what is aimed at.
 
-    That is less for one of many that has landed, which is not extrapolated.
+    That is less for one of many, the places of which are extrapolated where it has not landed.
     """
     target = degrees(problem.limits.angle_step)
     target *= target
-    if landed and problem.limits.near > 0.0:
-        target *= AS_FOUND
-    return max(
-        errors.depth / (DEPTH_TARGET * target * problem.limits.span),
-        errors.relative / (TENSION_TARGET * target),
-    )
+    rough = problem.limits.near > 0.0
+    place = DEPTH_TARGET * target * (AS_FOUND if rough and landed else 1.0)
+    tension = TENSION_TARGET * target * (AS_FOUND if rough else 1.0)
+    return max(errors.depth / (place * problem.limits.span), errors.relative / tension)
 
 
 def with_bends(problem: Problem, refined: Refined) -> Refined:
@@ -273,11 +271,13 @@ def bend_of(
     first = (values[k - 1] - values[k - 2]) / above
     second = (values[k] - values[k - 1]) / own
     third = (values[k + 1] - values[k]) / below
-    return (third - second) / fall - (second - first) / rise
+    bend: float = (third - second) / fall - (second - first) / rise
+    return bend
 
 
 def along(record: Record, node: int, tension: float, x: float, y: float, z: float) -> float:
     """How much of a vector is along the force at a node."""
     if tension == 0.0:
         return 0.0
-    return abs(x * record[3][node] + y * record[4][node] + z * record[5][node]) / tension
+    pulled: float = abs(x * record[3][node] + y * record[4][node] + z * record[5][node])
+    return pulled / tension

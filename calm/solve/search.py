@@ -7,7 +7,7 @@ water or in the seabed, and audited.
 from __future__ import annotations
 
 from collections.abc import Callable, MutableSequence, Sequence
-from math import nan
+from math import isnan, nan
 from typing import NamedTuple
 
 from calm.physics.compiled import set_row
@@ -23,7 +23,7 @@ from calm.physics.referee import (
     worst_moment,
 )
 from calm.physics.track import Load
-from calm.solve.closing import Closed, Root, not_closed, whole_line
+from calm.solve.closing import Closed, Root, not_closed, planned, whole_line
 from calm.solve.endings import (
     ABOVE_SURFACE,
     BELOW_SEABED,
@@ -213,7 +213,9 @@ def highest(search: Search, referee: Referee, lands: bool) -> Found:
         nowhere = Root(False, whole_line(problem, lands), nan, nan, nan)
         return refused(UNSUPPORTED, 0.0, -1, nowhere)
     start = start_of(search, lands)
-    if start.found:
+    if start.found and lands:
+        start = planned(search, start, problem.limits.coarse_step)
+    if start.found and not isnan(start.miss):
         found = shape_near(search, referee, start, lands)
         if found.ending == FOUND and is_surely_highest(found):
             return found

@@ -6,6 +6,7 @@ company changes a digit.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import isnan, nan, sqrt
 
 from calm.physics.profile import Sea
@@ -77,7 +78,7 @@ def start_of(search: Search, lands: bool) -> Root:
     return Root(True, with_sought(unknown, 0, unknown.rides), 1.0 + x, 0.0, slope)
 
 
-def at_speed(row: list[float], speed: float) -> float:
+def at_speed(row: Sequence[float], speed: float) -> float:
     """What is known of a line in an even current, linear between the speeds."""
     at = min(speed / FASTEST, 1.0) * (STARTS - 1)
     k = min(int(at), STARTS - 2)

@@ -36,6 +36,7 @@ from calm.solve.problem import (
     NOT_RECORDED,
     ROOM,
     About,
+    Search,
     problem_of,
 )
 from calm.solve.refine import (
@@ -47,6 +48,7 @@ from calm.solve.refine import (
     excess_of,
     with_bends,
 )
+from calm.solve.search import Referee
 from calm.solve.solution import Settings
 from calm.solve.speed import runs_compiled
 
@@ -71,6 +73,8 @@ class Towed:
         self.frequency = 0.0
         self._height = height
         self.compiled = runs_compiled(settings, line)
+        self.search: Search
+        self.referee: Referee
         self._lay_out(ROOM)
         self.root = Root(False, whole_line(self.search.problem, False), 0.0, 0.0, 0.0)
         self.closed: Closed
@@ -84,7 +88,7 @@ class Towed:
     def force(self) -> Vector:
         """The force at the end of the last march [N]."""
         left = self.search.problem.work.left
-        return left[FX], left[FY], left[FZ]
+        return float(left[FX]), float(left[FY]), float(left[FZ])
 
     def coarse_miss(self, x: float) -> float:
         """The miss with the free end at a depth, at the coarse step [m].
