@@ -33,7 +33,7 @@ STARTS, FASTEST, START_ROWS = 41, 4.0, 6
 """
 SHARE_TOLERANCE = 1e-9
 """How well the share of a surface float's buoyancy in use is found."""
-ROUGH, ROUGH_SHARE, ROUGHLY_NEAR = 1e-5, 1.5e-6, 2e-6
+ROUGH, ROUGH_SHARE, ROUGHLY_NEAR = 1e-5, 1e-7, 2e-6
 """The miss allowed of one of many lines, how well its share is found, and how far from a load the
 water may be looked up, as shares of the water depth and of the buoyancy."""
 
