@@ -16,8 +16,8 @@ import numpy as np
 from calm.analytic.chart_branch import Branch, check_k
 from calm.analytic.chart_given import ANGLES, SIZES, check, mirrored
 from calm.analytic.chart_length import LengthSearch
-from calm.analytic.chart_reasons import Refusal, contradiction, family, is_taut, reason
-from calm.analytic.chart_search import Piece, Search, size_of
+from calm.analytic.chart_reasons import ChartRefusal, contradiction, family, is_taut, reason
+from calm.analytic.chart_search import ChartSearch, Piece, size_of
 from calm.analytic.chart_straight import straight
 
 
@@ -130,7 +130,7 @@ def chart_solve(
         for name, value in sunk.items()
     }
     answer = _solve(float(k), over_weight, floats)
-    if isinstance(answer, Refusal):
+    if isinstance(answer, ChartRefusal):
         return ChartAnswer(answer.status, float(k), (), answer.message, answer.advice)
     solutions = [_weighted(solution, abs(weight)) for solution in answer]
     if floats:
@@ -146,7 +146,7 @@ def _weighted(solution: ChartSolution, weight: float) -> ChartSolution:
     )
 
 
-def _solve(k: float, known: dict[str, float], floats: bool) -> list[ChartSolution] | Refusal:
+def _solve(k: float, known: dict[str, float], floats: bool) -> list[ChartSolution] | ChartRefusal:
     """The cables that sink, tensions over w; those that float have been turned upside down."""
     refusal = contradiction(known)
     if refusal:
@@ -180,7 +180,7 @@ def _on_branch(
     turned = dict(sizes)
     if "distance" in sizes:
         turned["distance"] *= branch.sign
-    search = Search(branch, turned)
+    search = ChartSearch(branch, turned)
     if start is None and end is None and search.log_ratio() is None:
         (third,) = sizes.keys() - {"distance", "length"}
         length = sizes["length"]

@@ -13,7 +13,7 @@ _LEAST_SLACK = 1e-12
 
 
 @dataclass(frozen=True)
-class Refusal:
+class ChartRefusal:
     """Why there is no answer: its status, what is wrong and what to change."""
 
     status: str
@@ -21,12 +21,14 @@ class Refusal:
     advice: str
 
 
-def family(what: str) -> Refusal:
+def family(what: str) -> ChartRefusal:
     """The refusal of quantities that leave one free."""
-    return Refusal("one-parameter-family", what, "Give another quantity in place of one of these.")
+    return ChartRefusal(
+        "one-parameter-family", what, "Give another quantity in place of one of these."
+    )
 
 
-def contradiction(known: Mapping[str, float]) -> Refusal | None:
+def contradiction(known: Mapping[str, float]) -> ChartRefusal | None:
     """What is wrong with the quantities of a sinking cable whatever K is; None if nothing is.
 
     Tensions are over w [m]. A cable that floats comes here upside down; messages hold for both.
@@ -60,7 +62,7 @@ def is_taut(known: Mapping[str, float]) -> bool:
     return "length" in known and chord >= known["length"] * (1.0 - _LEAST_SLACK)
 
 
-def reason(k: float, known: Mapping[str, float], floats: bool) -> Refusal:
+def reason(k: float, known: Mapping[str, float], floats: bool) -> ChartRefusal:
     """Why no cable has quantities that do not contradict each other.
 
     Parameters
@@ -99,9 +101,9 @@ def reason(k: float, known: Mapping[str, float], floats: bool) -> Refusal:
     )
 
 
-def _inconsistent(message: str, advice: str) -> Refusal:
-    return Refusal("inconsistent", message, advice)
+def _inconsistent(message: str, advice: str) -> ChartRefusal:
+    return ChartRefusal("inconsistent", message, advice)
 
 
-def _none(message: str, advice: str) -> Refusal:
-    return Refusal("no-equilibrium", message, advice)
+def _none(message: str, advice: str) -> ChartRefusal:
+    return ChartRefusal("no-equilibrium", message, advice)

@@ -36,7 +36,7 @@ _WINDOW = 2 * _AROUND + 1
 
 
 @dataclass(frozen=True)
-class Search:
+class ChartSearch:
     """A branch and the sizes given.
 
     Parameters

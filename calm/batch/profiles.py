@@ -17,8 +17,7 @@ from calm.batch.kernel.outcome import OF_CLAMP, OF_ENDS, OF_PIECE
 from calm.batch.kernel.plan import Plan, plan_of
 from calm.batch.kernel.solve import Kernel
 from calm.batch.kernel.stragglers import solve_one, water_of
-from calm.batch.plausible import implausible
-from calm.batch.statuses import STATUSES
+from calm.batch.statuses import STATUSES, implausible
 from calm.batch.threads import processors
 from calm.case import Mooring
 from calm.case.measure import clamps_down, clamps_of, components_of

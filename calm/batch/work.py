@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from calm.batch.dataset import arrays_of
 from calm.batch.profiles import Batch, Profiles
-from calm.batch.shape import Shape
+from calm.batch.shape import ShapeNodes
 from calm.batch.statuses import STATUSES, Ending, endings
 from calm.batch.store.store import Arrays, Store
 from calm.batch.threads import in_threads
@@ -57,7 +57,7 @@ class Work:
         batch: Batch,
         record: Record,
         store: Store,
-        shape: Shape | None,
+        shape: ShapeNodes | None,
         progress: Callable[[Progress], None] | None,
         stop: Event,
     ) -> None:

@@ -25,7 +25,7 @@ _OF_THE_FILE = "part"
 """The column with the models of the file, left out of JSON and of a data frame."""
 
 
-class Columns(Generic[Row]):
+class ColumnTable(Generic[Row]):
     """A table whose dataclass fields are its columns, all of one length, as those of `record`."""
 
     record: ClassVar[type[Any]]
@@ -138,7 +138,7 @@ class ClampRow:
 
 
 @dataclass(frozen=True)
-class Components(Columns[ComponentRow]):
+class Components(ColumnTable[ComponentRow]):
     """The n pieces of the line in file order; NaN where a figure is unknown.
 
     Those of a mooring from the free end down, the anchor last; those of a tow from the ship.
@@ -187,7 +187,7 @@ class Components(Columns[ComponentRow]):
 
 
 @dataclass(frozen=True)
-class Clamps(Columns[ClampRow]):
+class Clamps(ColumnTable[ClampRow]):
     """The m instruments clamped on the line, in file order.
 
     Attributes

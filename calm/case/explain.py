@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from calm.case.attribution import FAIR, Attribution, SolverPart, attribute, with_drag
-from calm.case.columns import Columns
-from calm.case.figures import Figures, figures_of
+from calm.case.columns import ColumnTable
 from calm.case.measure import clamps_in
 from calm.case.mooring import Mooring
 from calm.case.parts import TOP, one_part
+from calm.case.targets import Figures, figures_of
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Place
 from calm.physics.line import Floats, Integers, Line, Water
@@ -43,7 +43,7 @@ class Cause:
 
 
 @dataclass(frozen=True)
-class Causes(Columns[Cause]):
+class Causes(ColumnTable[Cause]):
     """The p pieces and clamped instruments that have drag, in file order.
 
     Attributes

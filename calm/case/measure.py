@@ -24,7 +24,7 @@ def clamps_down(pieces: Sequence[Piece]) -> list[Clamp]:
     return [clamp for piece in pieces for clamp in sorted(piece.clamps, key=lambda clamp: clamp.at)]
 
 
-class Measured(NamedTuple):
+class PieceMeasures(NamedTuple):
     """The n pieces that are solved for, first-listed first.
 
     Attributes
@@ -47,7 +47,7 @@ class Measured(NamedTuple):
     knockdown: Floats
 
 
-def measured(solution: Solution, still: Solution | None = None) -> Measured:
+def measured(solution: Solution, still: Solution | None = None) -> PieceMeasures:
     """The pieces of a solution; `still` is the same line in still water, for the knockdown."""
     towed = solution.line.towed
     ahead = slice(None, None, -1) if towed else slice(None)
@@ -69,7 +69,7 @@ def measured(solution: Solution, still: Solution | None = None) -> Measured:
     knockdown = np.full(len(first), np.nan)
     if still is not None:
         knockdown = still.position[still.piece_nodes[:, 0], 2] - top[:, 2]
-    return Measured(
+    return PieceMeasures(
         top=top,
         bottom=bottom,
         tension_top=tension[upper],

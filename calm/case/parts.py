@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 
+from calm.errors import NoEquilibrium
 from calm.files import Clamp, Piece
 from calm.files.explain import unknown
 
@@ -61,3 +63,21 @@ def _listed(labels: Sequence[str]) -> str:
     if len(labels) <= 6:
         return ", ".join(labels)
     return f"{', '.join(labels[:3])} … {labels[-1]}"
+
+
+@contextmanager
+def naming_the_piece(pieces: Sequence[Piece], *, towed: bool = False) -> Iterator[None]:
+    """Adds the label of a piece to what the solver reports of it.
+
+    Parameters
+    ----------
+    pieces : in the order of the file
+    towed : whether the solver counts them from the other end
+    """
+    try:
+        yield
+    except NoEquilibrium as error:
+        if error.piece is None:
+            raise
+        piece = pieces[len(pieces) - 1 - error.piece if towed else error.piece]
+        raise error.naming(f"{piece.label} (piece {piece.index + 1})") from error

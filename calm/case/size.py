@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from calm.case.adjustment import Adjustment
-from calm.case.changes import parse_change, parse_range
-from calm.case.figures import Figures, figures_of
+from calm.case.adjustment import Adjustment, parse_change, parse_range
 from calm.case.mooring import Mooring
 from calm.case.result import Result
-from calm.case.targets import Target, parse_target
+from calm.case.targets import Figures, Target, figures_of, parse_target
 from calm.errors import NoEquilibrium, UsageError
 from calm.solve import expect_many
 from calm.solve.least_change import LeastChange
@@ -136,7 +134,7 @@ def size(
     Parameters
     ----------
     target : e.g. ``knockdown(top) <= 20 m``, see `calm.case.targets`
-    change : e.g. ``top float.buoyancy``, see `calm.case.changes`
+    change : e.g. ``top float.buoyancy``, see `calm.case.adjustment`
     between : the range of the change, each end with its unit; by default a buoyancy goes from 0
         to a hundred times what it is, a length to twice the water depth, a count to 1000
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from calm.case import Mooring, Result
-from calm.case.band import FACTOR
+from calm.case.strumming import FACTOR
 from calm.checks.assessment import Situation
 from calm.checks.deployed import as_deployed, cut_like, differs
 from calm.checks.finding import AS_GIVEN

@@ -20,7 +20,7 @@ from calm.errors import UsageError
 
 if TYPE_CHECKING:
     from calm.batch.records.record import Record
-    from calm.batch.run import Outcome
+    from calm.batch.run import BatchOutcome
     from calm.case import Mooring
 
 BATCH_EXAMPLES = """Examples:
@@ -157,9 +157,9 @@ def _summarized(output: Path, mooring: Mooring, stop: Event) -> bool:
     return False
 
 
-def _implausible(outcome: Outcome, mooring: Mooring, record: Record) -> str:
+def _implausible(outcome: BatchOutcome, mooring: Mooring, record: Record) -> str:
     """How many profiles have a current that cannot be true, and the first of them."""
-    from calm.batch.plausible import first_implausible
+    from calm.batch.statuses import first_implausible
 
     greatest = mooring.file.environment.maximum_speed
     count = grouped(outcome.counts["implausible-current"])
@@ -169,7 +169,7 @@ def _implausible(outcome: Outcome, mooring: Mooring, record: Record) -> str:
     )
 
 
-def ended(outcome: Outcome, output: Path, total: int) -> ExitCode:
+def ended(outcome: BatchOutcome, output: Path, total: int) -> ExitCode:
     """Tell how the batch ended."""
     from calm.batch.statuses import Ending
 
@@ -194,7 +194,7 @@ def ended(outcome: Outcome, output: Path, total: int) -> ExitCode:
     return ExitCode.DONE if solved else ExitCode.NO_EQUILIBRIUM
 
 
-def _kinds(outcome: Outcome) -> Iterator[str]:
+def _kinds(outcome: BatchOutcome) -> Iterator[str]:
     """Profiles that are NaN, by what they come to, and by status where that says more."""
     from calm.batch.statuses import Ending, ending_of
 

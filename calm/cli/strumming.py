@@ -13,7 +13,7 @@ from calm.cli.outputs import OutputPath, Outputs
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
-    from calm.case.bare_cable import BareCable
+    from calm.case.strumming import BareCable
 
 STRUMMING_EXAMPLES = """Examples:
 
@@ -81,7 +81,7 @@ def strumming(
 
 def _cable(given: dict[str, float]) -> BareCable:
     """The cable that was measured, or what is wrong with it."""
-    from calm.case.bare_cable import BareCable
+    from calm.case.strumming import BareCable
     from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
 
     if ("weight" in given) == ("solid_density" in given):

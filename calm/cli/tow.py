@@ -132,7 +132,7 @@ def _only_tows(files: list[Path], environment: str | None, catalogs: list[Path])
 
 
 def _sweep(file: Path, each: Tow, speeds: list[float]) -> _Tabulated:
-    from calm.case.sweep import SOLVES, sweep
+    from calm.case.tow import SOLVES, sweep
     from calm.report.tabulation import by_speed
     from calm.solve import expect_many
 
@@ -153,7 +153,7 @@ def _sweep(file: Path, each: Tow, speeds: list[float]) -> _Tabulated:
 
 
 def _vary(file: Path, each: Tow) -> _Tabulated:
-    from calm.case.sweep import sensitivity
+    from calm.case.tow import sensitivity
     from calm.report.tabulation import by_coefficient
 
     return _Tabulated(file, by_coefficient(each, sensitivity(each)))

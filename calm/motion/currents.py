@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.plausible import implausible
 from calm.batch.records.choice import choose_profiles
 from calm.batch.records.opening import open_record
+from calm.batch.statuses import implausible
 from calm.errors import InputError, Problem
 from calm.files.current_file import holds_arrays
 from calm.files.current_netcdf import open_current, reading

@@ -13,7 +13,7 @@ import numpy as np
 
 from calm.batch.dataset import laid_out, layout_of
 from calm.batch.profiles import Batch
-from calm.batch.run import Outcome, run_kept
+from calm.batch.run import BatchOutcome, run_kept
 from calm.batch.store.identity import identity_of, to_text
 from calm.batch.store.store import Store, open_store
 from calm.batch.threads import processors
@@ -58,7 +58,7 @@ def run_motion(
     progress: Callable[[Progress], None] | None = None,
     tell: Callable[[str], None] = lambda _: None,
     stop: Event | None = None,
-) -> Outcome:
+) -> BatchOutcome:
     """Estimate every time, and write the result; see `calm.batch.run.run_batch`.
 
     Parameters

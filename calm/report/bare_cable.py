@@ -11,7 +11,7 @@ from calm.physics.strumming import BourgetMarichal
 from calm.report.blocks import Pairs, Part, Prose
 
 if TYPE_CHECKING:
-    from calm.case.bare_cable import BareCable
+    from calm.case.strumming import BareCable
 
 
 def bare_cable_document(cable: BareCable) -> dict[str, Any]:

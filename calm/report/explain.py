@@ -12,7 +12,7 @@ from calm.report.blocks import Block, Cell, Column, Part, Prose, Span, Table
 
 if TYPE_CHECKING:
     from calm.case.explain import Causes, Explanation
-    from calm.case.figures import Figures
+    from calm.case.targets import Figures
 
 SMALLEST_SHARE = 0.005
 """Of every whole; drags that cause less of all of them are summed up in one row."""

@@ -16,7 +16,7 @@ from calm.solve import Status
 
 if TYPE_CHECKING:
     from calm.case import Result
-    from calm.case.band import StrummingBand
+    from calm.case.strumming import StrummingBand
 
 _MOORING_COLUMNS = (
     "length",

@@ -17,7 +17,7 @@ from calm.units import KNOT
 
 if TYPE_CHECKING:
     from calm.case import Tow, TowResult
-    from calm.case.sweep import Variation
+    from calm.case.tow import Variation
 
 FIGURES = ("depth", "layback", "tension", "angle", "body_tension", "frequency")
 """What a row tells of a result: depth and layback of the body, tension and angle at the ship."""

@@ -38,7 +38,7 @@ class Seat(NamedTuple):
     clamped: bool = False
 
 
-class Series:
+class ResultColumns:
     """A batch result over time, n profiles, NaN where a profile was not solved.
 
     A result lies on the disk by profiles; here it is turned once, into a temporary file by

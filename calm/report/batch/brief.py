@@ -22,9 +22,8 @@ from calm.report.batch.labels import (
 from calm.report.blocks import Block, Cell, Column, Heading, Part, Prose, Span, Table
 
 if TYPE_CHECKING:
-    from calm.batch.statistics.distribution import Distribution
-    from calm.batch.statistics.judgement import RuleShare
-    from calm.batch.statistics.summary import Summary
+    from calm.batch.statistics.limits import RuleShare
+    from calm.batch.statistics.summary import Distribution, Summary
 
 _QUANTITIES = ("knockdown", "tilt", "tension")
 _PERIODS = (10, 50, 100)

@@ -7,14 +7,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from calm.batch.statistics.distribution import PERCENTILES
-from calm.batch.statistics.extremes import Fit, Refusal
+from calm.batch.statistics.extremes import Fit, LevelsRefused
+from calm.batch.statistics.summary import PERCENTILES
 from calm.report.check.document import limit_document
 
 if TYPE_CHECKING:
-    from calm.batch.statistics.distribution import Distribution
-    from calm.batch.statistics.judgement import Exceedance, RuleShare
-    from calm.batch.statistics.summary import Part, Profile, Response, Summary
+    from calm.batch.statistics.limits import Exceedance, RuleShare
+    from calm.batch.statistics.summary import (
+        Distribution,
+        PartDistributions,
+        Response,
+        Summary,
+        WorstProfile,
+    )
 
 
 def summary_document(summary: Summary) -> dict[str, Any]:
@@ -57,7 +62,7 @@ def summary_document(summary: Summary) -> dict[str, Any]:
     }
 
 
-def _part(part: Part) -> dict[str, Any]:
+def _part(part: PartDistributions) -> dict[str, Any]:
     return {
         "label": part.label,
         "knockdown": _distribution(part.knockdown),
@@ -90,10 +95,10 @@ def _response(response: Response) -> dict[str, Any]:
     }
 
 
-def _fit(fit: Fit | Refusal) -> dict[str, Any]:
+def _fit(fit: Fit | LevelsRefused) -> dict[str, Any]:
     said = asdict(fit)
     del said["method"]
-    return {"refused": said["reason"]} if isinstance(fit, Refusal) else said
+    return {"refused": said["reason"]} if isinstance(fit, LevelsRefused) else said
 
 
 def _rule(rule: RuleShare) -> dict[str, Any]:
@@ -124,7 +129,7 @@ def _limit(rule: RuleShare, one: Exceedance) -> dict[str, Any]:
     }
 
 
-def _profile(profile: Profile) -> dict[str, Any]:
+def _profile(profile: WorstProfile) -> dict[str, Any]:
     return asdict(profile) | {"time": _time(profile.time)}
 
 

@@ -26,8 +26,7 @@ from calm.report.graph import (
 )
 
 if TYPE_CHECKING:
-    from calm.batch.statistics.distribution import Distribution
-    from calm.batch.statistics.summary import Part, Response, Summary
+    from calm.batch.statistics.summary import Distribution, PartDistributions, Response, Summary
 
 _WIDTH = 533.0  # points: an A4 page between its margins
 _SIZE = 7.0  # points, of the letters
@@ -93,7 +92,7 @@ def exceedance_figure(summary: Summary) -> str:
     return _shares("how often values are passed", panels, 150.0)
 
 
-def parts_figure(parts: list[Part]) -> str:
+def parts_figure(parts: list[PartDistributions]) -> str:
     """The same of the knockdown and the tilt of some parts, those that move most, as SVG."""
     panels = []
     for name in ("knockdown", "tilt"):

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.statistics.extremes import Refusal
+from calm.batch.statistics.extremes import LevelsRefused
 from calm.batch.statistics.summary import Summary
 
 TITLES = {
@@ -91,7 +91,7 @@ def refusals(summary: Summary) -> Iterator[str]:
     reasons: dict[str, list[str]] = {}
     for response in summary.responses:
         for fit in response.return_levels:
-            if isinstance(fit, Refusal):
+            if isinstance(fit, LevelsRefused):
                 said = f"no return levels by {METHODS_IN_SHORT[fit.method]}: {fit.reason}"
                 reasons.setdefault(said, []).append(TITLES[response.name])
     for said, of in reasons.items():

@@ -6,9 +6,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from calm.batch.statistics.distribution import PERCENTILES
 from calm.batch.statistics.extremes import METHODS, Fit, Level
-from calm.batch.statistics.summary import WORST
+from calm.batch.statistics.summary import PERCENTILES, WORST
 from calm.checks.finding import State
 from calm.quantities import QUANTITIES
 from calm.report.batch.labels import QUANTITY, TITLES, grouped, percent, refusals, when
@@ -16,9 +15,8 @@ from calm.report.blocks import Cell, Column, Prose, Table
 from calm.report.line import figure_cell, quantity_column
 
 if TYPE_CHECKING:
-    from calm.batch.statistics.distribution import Distribution
-    from calm.batch.statistics.judgement import Exceedance, RuleShare
-    from calm.batch.statistics.summary import Summary
+    from calm.batch.statistics.limits import Exceedance, RuleShare
+    from calm.batch.statistics.summary import Distribution, Summary
 
 
 def rules_table(summary: Summary) -> Table:

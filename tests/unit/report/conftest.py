@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from calm.case import TowResult
-from calm.case.band import StrummingBand
+from calm.case.strumming import StrummingBand
 from calm.files import Place
 from calm.files.strumming import BourgetMarichalKeys
 

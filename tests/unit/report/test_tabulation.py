@@ -5,7 +5,7 @@ import io
 import pytest
 from rich.console import Console
 
-from calm.case.sweep import Variation
+from calm.case.tow import Variation
 from calm.errors import NoEquilibrium
 from calm.report.plot_sweep import draw_sweep
 from calm.report.tabulation import (
