@@ -1,4 +1,4 @@
-"""The pieces of a file as arrays: net forces, drags, stiffness."""
+"""The pieces of a file as arrays: net forces, drags, stiffness, and how its cables strum."""
 
 from __future__ import annotations
 

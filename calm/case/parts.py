@@ -1,4 +1,4 @@
-"""Finding pieces and clamped instruments by what a person calls them."""
+"""Pieces and clamped instruments by what a person calls them, and their names for the solver's."""
 
 from __future__ import annotations
 

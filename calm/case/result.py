@@ -1,4 +1,5 @@
-"""What a solved mooring shows, in the names and units of the result format."""
+"""The result of a solved mooring, in the names and units of the result format: its ends, its anchor,
+its pieces, its knockdown, and its JSON object."""
 
 from __future__ import annotations
 
@@ -12,7 +13,7 @@ import numpy as np
 
 from calm.case.columns import ClampRow, Clamps, ComponentRow, Components, Shape
 from calm.case.measure import clamps_down, clamps_of, components_of, shape_of
-from calm.case.strumming import StrummingBand, mooring_band, strumming_of
+from calm.case.strumming import Strumming, StrummingBand, mooring_band, strumming_of
 from calm.case.warnings import warnings_of
 from calm.files import Clamp, Piece
 from calm.physics.anchor import required_weight
@@ -111,19 +112,6 @@ class AnchorLoad:
     weight: float
     friction: float
     grounded_length: float
-
-
-@dataclass(frozen=True)
-class Strumming:
-    """How the cables strum: the frequency [Hz], and the range of their Cn.
-
-    `frequency` is that at which all of a towed cable vibrates; of a mooring, the highest at which
-    any cable sheds its vortices.
-    """
-
-    frequency: float
-    cn_min: float
-    cn_max: float
 
 
 class Solved:

@@ -1,4 +1,4 @@
-"""What a solution gives for the strumming of its cables."""
+"""Strumming of cables: what a solution gives for it, what it could do at worst, and a cable alone."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calm.case.result import Strumming
 from calm.errors import NoEquilibrium
 from calm.files import Solver
 from calm.physics.drag import line_drag
@@ -21,6 +20,19 @@ if TYPE_CHECKING:
     from calm.case.mooring import Mooring
     from calm.case.tow import Tow
     from calm.physics.line import Line
+
+
+@dataclass(frozen=True)
+class Strumming:
+    """How the cables strum: the frequency [Hz], and the range of their Cn.
+
+    `frequency` is that at which all of a towed cable vibrates; of a mooring, the highest at which
+    any cable sheds its vortices.
+    """
+
+    frequency: float
+    cn_min: float
+    cn_max: float
 
 
 def strumming_of(solver: Solver, solution: Solution) -> Strumming | None:

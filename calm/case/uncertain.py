@@ -227,7 +227,13 @@ class Indices:
 
 
 def sobol_indices(normals: Floats, values: Floats) -> Indices | None:
-    """The indices of a figure from samples of it.
+    """Return the Sobol' indices of a figure from samples of it, by a fit of Hermite polynomials.
+
+    A figure y of independent standard normal inputs z is written y = Σ c_a ψ_a(z), ψ_a products of
+    normalised Hermite polynomials. These are orthonormal, so that c_a² is the part of the variance
+    that the term adds: all terms of one input alone give its first-order index, all terms that it
+    is in its total index. The coefficients are found by least squares (Sudret, Reliability
+    Engineering and System Safety 93, 2008, 964-979).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The criteria of the design check as they are counted in every profile of a batch."""
+"""The criteria of the design check in every profile of a batch, and how often each is broken."""
 
 from __future__ import annotations
 

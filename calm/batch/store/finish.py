@@ -1,4 +1,4 @@
-"""From a store whose blocks are all done to the result: a NetCDF file or a zarr folder."""
+"""One batch at a time on one result, and the result of a store whose blocks are all done."""
 
 from __future__ import annotations
 
