@@ -1,5 +1,7 @@
-"""The result of a solved mooring, in the names and units of the result format: its ends, its anchor,
-its pieces, its knockdown, and its JSON object."""
+"""The result of a solved mooring, in the names and units of the result format.
+
+Its ends, its anchor, its pieces, its knockdown, and its JSON object.
+"""
 
 from __future__ import annotations
 

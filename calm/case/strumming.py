@@ -1,4 +1,4 @@
-"""Strumming of cables: what a solution gives for it, what it could do at worst, and a cable alone."""
+"""Strumming of cables: what a solution gives for it, what it could do at worst, a cable alone."""
 
 from __future__ import annotations
 
