@@ -19,7 +19,7 @@ from math import hypot, inf, isfinite, sqrt, tanh
 import numpy as np
 from numpy.typing import ArrayLike
 
-from calm.analytic.station import Floats
+from calm.analytic.hodograph import Floats
 
 
 def position(

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calm.analytic.chart_branch import critical_angle
-from calm.analytic.chart_curve import CurvePoints, curve
+from calm.analytic.chart_branch import CurvePoints, critical_angle, curve
 from calm.errors import UsageError
 from calm.report.chart_labels import Labels
 from calm.report.picture import image

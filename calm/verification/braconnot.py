@@ -6,8 +6,7 @@ from functools import cache, partial
 from math import cos, degrees, radians, sin
 
 from calm.analytic.chart import ChartSolution, chart_solve
-from calm.analytic.chart_branch import critical_angle
-from calm.analytic.chart_curve import CurvePoints, curve
+from calm.analytic.chart_branch import CurvePoints, critical_angle, curve
 from calm.physics.line import Line, Water
 from calm.solve import Solution, solve_mooring
 from calm.verification.case import PRINTED, Case, Figure, Kind, Source, table

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache, partial
 from math import cos, radians, sin
 
-from calm.analytic.station import Station
+from calm.analytic.hodograph import Station
 from calm.analytic.villain_guillot import linear_cable
 from calm.verification.case import PRINTED, Figure, Kind, Source, table
 
