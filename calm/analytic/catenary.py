@@ -25,7 +25,7 @@ from calm.analytic.hodograph import Floats
 def position(
     arc: ArrayLike, horizontal: ArrayLike, vertical: ArrayLike, weight: ArrayLike
 ) -> tuple[Floats, Floats]:
-    """Where an inextensible line is at a distance from a point whose pull is known.
+    """Return where an inextensible line is at a distance from a point whose pull is known.
 
     Parameters
     ----------

@@ -57,7 +57,7 @@ class ChartSolution:
 
 @dataclass(frozen=True)
 class ChartAnswer:
-    """What three quantities say about a cable.
+    """Hold what three quantities say about a cable.
 
     Parameters
     ----------
@@ -261,7 +261,9 @@ def check(known: Mapping[str, float], weight: float) -> None:
 
 
 def mirrored(values: Mapping[str, float]) -> dict[str, float]:
-    """The same cable upside down: a floating one becomes a sinking one and the other way round."""
+    """Return the same cable upside down: a floating one becomes a sinking one and the other way
+    round.
+    """
     swapped = {"a": "b", "b": "a"}
     mirrored = {}
     for name, value in values.items():

@@ -16,7 +16,7 @@ _LEAST_SLACK = 1e-12
 
 @dataclass(frozen=True)
 class ChartRefusal:
-    """Why there is no answer: its status, what is wrong and what to change."""
+    """Describe why there is no answer: its status, what is wrong and what to change."""
 
     status: str
     message: str
@@ -31,7 +31,8 @@ def family(what: str) -> ChartRefusal:
 
 
 def contradiction(known: Mapping[str, float]) -> ChartRefusal | None:
-    """What is wrong with the quantities of a sinking cable whatever K is; None if nothing is.
+    """Return what is wrong with the quantities of a sinking cable whatever K is; None if nothing
+    is.
 
     Tensions are over w [m]. A cable that floats comes here upside down; messages hold for both.
     """
@@ -59,13 +60,13 @@ def contradiction(known: Mapping[str, float]) -> ChartRefusal | None:
 
 
 def is_taut(known: Mapping[str, float]) -> bool:
-    """Whether the cable is no longer than the straight way between its ends, to rounding."""
+    """Return whether the cable is no longer than the straight way between its ends, to rounding."""
     chord = math.hypot(known.get("height", 0.0), known.get("distance", 0.0))
     return "length" in known and chord >= known["length"] * (1.0 - _LEAST_SLACK)
 
 
 def reason(k: float, known: Mapping[str, float], floats: bool) -> ChartRefusal:
-    """Why no cable has quantities that do not contradict each other.
+    """Return why no cable has quantities that do not contradict each other.
 
     Parameters
     ----------

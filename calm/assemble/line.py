@@ -260,7 +260,7 @@ def _strumming_cn(cable: Cable, cn: float, solver: Solver) -> float:
 
 
 def _mass(cable: Cable) -> float:
-    """Of a metre [kg/m]; where it is not given, from the weight in water and the diameter."""
+    """Return the mass of a metre [kg/m], if need be from its weight in water and its diameter."""
     if cable.mass is not None:
         return cable.mass
     displaced = CATALOGUE_DENSITY * pi * cable.diameter**2 / 4

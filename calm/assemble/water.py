@@ -74,7 +74,7 @@ def _gravity(environment: Environment) -> float:
 
 
 def _surface_drift(environment: Environment) -> list[CurrentTable]:
-    """What the wind adds to the current; nothing where it drives no surface drift."""
+    """Return what the wind adds to the current; nothing where it drives no surface drift."""
     wind = environment.wind
     if wind is None or wind.surface_drift == 0.0:
         return []

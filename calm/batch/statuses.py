@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Ending(Enum):
-    """What a status comes to, in words."""
+    """Name what a status comes to."""
 
     SOLVED = "solved"
     NO_EQUILIBRIUM = "without equilibrium"
@@ -44,7 +44,7 @@ _ENDINGS = {
 
 
 def ending_of(status: str) -> Ending:
-    """What a status of `STATUSES` comes to."""
+    """Return what a status of `STATUSES` comes to."""
     return _ENDINGS.get(status, Ending.NO_EQUILIBRIUM)
 
 
@@ -67,7 +67,7 @@ _AT_ONCE = 8192
 def implausible(
     depth: Floats, u: Floats, v: Floats, w: Floats | None, maximum_speed: float
 ) -> NDArray[np.bool_]:
-    """Which levels (n, k) are faster than `maximum_speed` [m/s], or deeper than any sea.
+    """Return which levels (n, k) are faster than `maximum_speed` [m/s], or deeper than any sea.
 
     An infinite speed is faster. Levels above the surface and those without a value drop out
     first, and are none of them.

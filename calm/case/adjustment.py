@@ -159,7 +159,7 @@ class Length(Adjustment):
 
 
 class Count(Adjustment):
-    """How many times a component stands in line, with its own clamps each time."""
+    """Describe how many times a component stands in line, with its own clamps each time."""
 
     whole = True
 

@@ -55,7 +55,7 @@ class ColumnTable(Generic[Row]):
         return tuple(map(self.record, *plain))
 
     def with_row(self, row: Row) -> Self:
-        """The same table with one more row."""
+        """Return the same table with one more row."""
         columns = {name: getattr(self, name) for name in self._names()}
         longer = {
             name: [*column, getattr(row, name)]
@@ -112,7 +112,7 @@ class ComponentRow:
 
     @property
     def place(self) -> Place:
-        """Which piece it is."""
+        """Return which piece it is."""
         return self.part.place
 
 
@@ -133,7 +133,7 @@ class ClampRow:
 
     @property
     def place(self) -> Place:
-        """Which clamp it is."""
+        """Return which clamp it is."""
         return self.part.place
 
 

@@ -31,7 +31,7 @@ CHANGE = 0.1
 
 @dataclass(frozen=True, slots=True)
 class Cause:
-    """What the drag of a piece or clamp causes: a row of `Causes`."""
+    """Hold what the drag of a piece or clamp causes: a row of `Causes`."""
 
     index: int
     label: str
@@ -77,7 +77,7 @@ class WhatIf:
 
 @dataclass(frozen=True)
 class Explanation:
-    """What causes the knockdown and excursion of a mooring, and what would change them.
+    """Hold what causes the knockdown and excursion of a mooring, and what would change them.
 
     Attributes
     ----------
@@ -256,7 +256,7 @@ def _variations(mooring: Mooring) -> Iterator[tuple[str, Mooring]]:
 
 
 def _with(mooring: Mooring, line: Line | None = None, water: Water | None = None) -> Mooring:
-    """The same mooring with a line or water that differs from its file."""
+    """Return the same mooring with a line or water that differs from its file."""
     return Mooring(mooring.file, line=line or mooring.line, water=water or mooring.water)
 
 

@@ -100,7 +100,7 @@ class Top:
 
 @dataclass(frozen=True)
 class AnchorLoad:
-    """What the line does to its anchor [N]; `angle` is from the vertical [degrees].
+    """Hold what the line does to its anchor [N]; `angle` is from the vertical [degrees].
 
     `required_weight` is the weight in water that holds it, `weight` what it has, `friction` its
     coefficient on the bed; `grounded_length` is the unstretched length of line on the seabed [m].
@@ -117,7 +117,7 @@ class AnchorLoad:
 
 
 class Solved:
-    """How a result shows its table, whatever was solved.
+    """Describe how a result shows its table, whatever was solved.
 
     `notebook_form` makes HTML of a result; the rooms above set it.
     """
@@ -168,7 +168,9 @@ class Result(Solved):
 
     @property
     def other_equilibrium(self) -> dict[str, float] | None:
-        """Where the free end is in another equilibrium, and what lies on the seabed there [m]."""
+        """Return where the free end is in another equilibrium, and what lies on the seabed there
+        [m].
+        """
         if self.other_depth is None:
             return None
         return {"depth": self.other_depth, "grounded_length": self.other_grounded_length}
@@ -180,7 +182,7 @@ class Result(Solved):
 
     @cached_property
     def strumming_band(self) -> StrummingBand | None:
-        """The same mooring with more drag on its cables; solved when first asked for."""
+        """Return the same mooring with more drag on its cables; solved when first asked for."""
         still = self.still_shape
         return mooring_band(self.mooring, None if still is None else float(still.depth[0]))
 
@@ -272,7 +274,9 @@ def _with_anchor(above: Components, anchor: Piece, depth: float) -> Components:
 
 
 def _on_anchor(clamp: Clamp, anchor: ComponentRow) -> ClampRow:
-    """What is clamped on the anchor stands still with it, and is held with the line's pull."""
+    """Return what is clamped on the anchor stands still with it, and is held with the line's
+    pull.
+    """
     return ClampRow(
         part=clamp,
         index=anchor.index,
@@ -288,7 +292,7 @@ def _on_anchor(clamp: Clamp, anchor: ComponentRow) -> ClampRow:
 
 
 def anchor_load(mooring: Mooring, solution: Solution) -> AnchorLoad:
-    """What the line of a mooring does to its anchor."""
+    """Return what the line of a mooring does to its anchor."""
     force, friction = solution.force[-1], _friction(mooring)
     vertical, horizontal = float(force[2]), float(np.hypot(force[0], force[1]))
     factor = mooring.file.checks.anchor_factor
@@ -305,7 +309,9 @@ def anchor_load(mooring: Mooring, solution: Solution) -> AnchorLoad:
 
 
 def _accuracy(mooring: Mooring, solution: Solution) -> Accuracy:
-    """What the solver states of its errors, and what follows for the weight of the anchor."""
+    """Return what the solver states of its errors, and what follows for the weight of the
+    anchor.
+    """
     lift, pull = solution.lift_error, solution.pull_error
     factor = mooring.file.checks.anchor_factor
     return Accuracy(
@@ -317,6 +323,6 @@ def _accuracy(mooring: Mooring, solution: Solution) -> Accuracy:
 
 
 def _friction(mooring: Mooring) -> float:
-    """Of the anchor on the bed: its own, or that of the checks."""
+    """Return the friction of the anchor on the bed: its own, or that of the checks."""
     own = mooring.file.anchor.friction
     return mooring.file.checks.anchor_friction if own is None else own

@@ -46,7 +46,7 @@ class Trial:
 
     @property
     def figures(self) -> Figures | None:
-        """Of the line and its top."""
+        """Return the figures of the line and its top."""
         return None if self.result is None else figures_of(self.result)
 
 
@@ -79,7 +79,7 @@ class Sizing:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What to keep in mind with the answer."""
+        """Return what to keep in mind with the answer."""
         notes = [self.change.note] if self.change.note and self.status == MET else []
         if not self.steady:
             notes.append(
@@ -231,7 +231,7 @@ def _understood(
 
 
 def _why_not(search: LeastChange, trials: _Trials) -> tuple[str, str]:
-    """Why no value was found, and what to do."""
+    """Return why no value was found, and what to do."""
     change, target = trials.change, trials.target
     least = search.least
     span = f"from {with_unit(search.low, change.unit)} to {with_unit(search.high, change.unit)}"

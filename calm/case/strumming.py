@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Strumming:
-    """How the cables strum: the frequency [Hz], and the range of their Cn.
+    """Describe how the cables strum: the frequency [Hz], and the range of their Cn.
 
     `frequency` is that at which all of a towed cable vibrates; of a mooring, the highest at which
     any cable sheds its vortices.
@@ -57,7 +57,7 @@ FACTOR = 1.5
 
 @dataclass(frozen=True)
 class StrummingBand:
-    """The same line with Cn × `factor` on all its cables, None where that has no equilibrium.
+    """Hold the same line with Cn × `factor` on all its cables, None where that has no equilibrium.
 
     Attributes
     ----------

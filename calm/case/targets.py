@@ -153,7 +153,9 @@ class Spot:
 
 
 def spot_of(result: Result, place: Place | None = None) -> Spot:
-    """What a result says of the part at a place; of the top of the line where none is given."""
+    """Return what a result says of the part at a place; of the top of the line where none is
+    given.
+    """
     row: ComponentRow | ClampRow = result.components[0]
     if place is not None:
         row = next(row for row in (*result.components, *result.clamps) if row.place == place)

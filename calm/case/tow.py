@@ -26,7 +26,7 @@ from calm.solve import Settings, Solution, Status, Towing, fit_tow_length, solve
 
 @dataclass(frozen=True)
 class TowPoint:
-    """What the line does to the ship: its tension, downward and backward [N].
+    """Hold what the line does to the ship: its tension, downward and backward [N].
 
     `angle` is that of the line there below the horizontal [degrees].
     """
@@ -92,7 +92,7 @@ class TowResult(Solved):
 
     @cached_property
     def strumming_band(self) -> StrummingBand | None:
-        """The same tow with more drag on its cables; solved when first asked for."""
+        """Return the same tow with more drag on its cables; solved when first asked for."""
         return tow_band(self.tow)
 
     def to_dict(self) -> dict[str, Any]:
@@ -127,7 +127,7 @@ class Tow:
         vars(self).update(file=file, memory=memory, _line=line)
 
     def __reduce__(self) -> tuple[type[Tow], tuple[object, ...]]:
-        """What another process needs: all else follows from it."""
+        """Return what another process needs: all else follows from it."""
         return Tow, (self.file, None, self._line)
 
     @property
@@ -143,7 +143,7 @@ class Tow:
 
     @property
     def settings(self) -> Settings:
-        """How the line is solved."""
+        """Return how the line is solved."""
         return Settings(self.file.solver.angle_step, self.file.solver.tolerance)
 
     @property
@@ -180,7 +180,9 @@ class Tow:
         return line
 
     def at_speed(self, speed: float) -> Tow:
-        """The same tow at another speed of the ship [m/s], a fitted cable as long as at its own."""
+        """Return the same tow at another speed of the ship [m/s], a fitted cable as long as at its
+        own.
+        """
         keys = self.keys.model_copy(update={"speed": speed})
         return Tow(replace(self.file, tow=keys), line=self.line)
 
@@ -292,7 +294,8 @@ def sweep(tow: Tow, speeds: Iterable[float]) -> list[TowResult | NoEquilibrium]:
 
 
 def sensitivity(tow: Tow) -> list[Variation]:
-    """How a tow answers to A₁, B₁ and C₁ of its strumming, each smaller and greater by `CHANGE`.
+    """Return how a tow answers to A₁, B₁ and C₁ of its strumming, each smaller and greater by
+    `CHANGE`.
 
     Returns
     -------
@@ -328,7 +331,7 @@ def _attempt(tow: Tow) -> TowResult | NoEquilibrium:
 
 
 def _with_strumming(tow: Tow, keys: BourgetMarichalKeys) -> Tow:
-    """The same tow, a fitted cable as long as it is, with other coefficients."""
+    """Return the same tow, a fitted cable as long as it is, with other coefficients."""
     pieces = tuple(
         replace(piece, length=float(tow.line.length[piece.index]), fit_body_depth=None)
         if piece.fit_body_depth is not None

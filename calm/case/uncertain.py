@@ -46,7 +46,7 @@ class Contribution:
 
 @dataclass(frozen=True)
 class Uncertain:
-    """How sure the figures of a mooring are. Percentiles are in the order of `LEVELS`.
+    """Describe how sure the figures of a mooring are. Percentiles are in the order of `LEVELS`.
 
     Attributes
     ----------
@@ -115,7 +115,7 @@ def uncertain(
     mapped: Mapped = map,
     normals: Callable[[], Floats] | None = None,
 ) -> Uncertain:
-    """How sure the figures of a solved mooring are.
+    """Return how sure the figures of a solved mooring are.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ def uncertain(
 def _figures(
     mooring: Mooring, draws: Sequence[Draw]
 ) -> list[tuple[Floats, tuple[float, float]] | NoEquilibrium]:
-    """Of each draw (5, p) figures of the pieces, in the order of `Uncertain`, and the anchor's."""
+    """Return of each draw (5, p) figures of the pieces, ordered as in `Uncertain`, and the anchor's."""
     figures: list[tuple[Floats, tuple[float, float]] | NoEquilibrium] = []
     for one in drawn(mooring, draws):
         try:

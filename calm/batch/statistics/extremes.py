@@ -99,7 +99,7 @@ class Fit:
 
 @dataclass(frozen=True)
 class LevelsRefused:
-    """Why there are no return levels by one of the `METHODS`."""
+    """Describe why there are no return levels by one of the `METHODS`."""
 
     method: str
     reason: str
@@ -140,7 +140,7 @@ def return_levels(
 
 
 def _censored(statuses: Mapping[str, int]) -> str:
-    """Why the extremes may be among the profiles that were not solved, or nothing."""
+    """Return why the extremes may be among the profiles that were not solved, or nothing."""
     ended = {ending: 0 for ending in (Ending.NO_EQUILIBRIUM, Ending.NOT_CONVERGED)}
     for status, count in statuses.items():
         if ending_of(status) in ended and status not in IN_WEAK_CURRENT:
@@ -153,7 +153,7 @@ def _censored(statuses: Mapping[str, int]) -> str:
 
 
 def _unfit(time: Times, values: Column) -> str:
-    """Why nothing can be fitted, or nothing."""
+    """Return why nothing can be fitted, or nothing."""
     count = int(np.count_nonzero(np.isfinite(values)))
     if count < 2:
         return f"there are {count} values"
@@ -224,7 +224,7 @@ def _over(
 
 
 def _gaps(time: Times, values: Column, step: np.timedelta64) -> str:
-    """What is reported of the share of a record that is missing."""
+    """Return what is reported of the share of a record that is missing."""
     room = 1.0 + float((time[-1] - time[0]) / step)
     missing = 1.0 - int(np.count_nonzero(np.isfinite(values))) / room
     if missing < _FEW_GAPS:

@@ -58,7 +58,7 @@ class CountedLimit:
 
     @property
     def least(self) -> bool:
-        """Whether values may not fall short of the limit, rather than not pass it."""
+        """Return whether values may not fall short of the limit, rather than not pass it."""
         return self.criterion.least
 
     @property
@@ -116,7 +116,7 @@ def _greatest_tension(series: ResultColumns, part: Judged, mooring: Mooring) -> 
 
 
 def _least_tension(series: ResultColumns, part: Judged, mooring: Mooring) -> Column:
-    """Of the ends of a piece; NaN where all of it lies on the seabed."""
+    """Return the least at the ends of a piece; NaN where all of it lies on the seabed."""
     lies = series.depth(_seat(part)) >= mooring.water.depth * (1.0 - _LYING)
     least = series.least_tension(_seat(part))
     least[lies] = np.nan
@@ -124,7 +124,7 @@ def _least_tension(series: ResultColumns, part: Judged, mooring: Mooring) -> Col
 
 
 def _greatest_depth(series: ResultColumns, part: Judged, mooring: Mooring) -> Column:
-    """Of both ends of a piece, the lower one being the upper one of the piece below."""
+    """Return the depth of the deeper end of a piece, whose lower end is the top of the next one."""
     depth = series.depth(_seat(part))
     floats = depth <= (AT_SURFACE if reaches_the_surface(mooring) else -np.inf)
     if part.clamp is None:
@@ -182,7 +182,8 @@ _LYING = 1e-6  # of the depth: what is no further above the seabed lies on it
 
 @dataclass(frozen=True)
 class Exceedance:
-    """How often a limit is broken: `share` of the `count` profiles in which it can be judged.
+    """Describe how often a limit is broken: `share` of the `count` profiles in which it can be
+    judged.
 
     `worst` is the value furthest beyond the limit, or nearest to it, and `time` its time; None
     where there is no limit or nothing to judge.
@@ -197,7 +198,7 @@ class Exceedance:
 
 @dataclass(frozen=True)
 class RuleShare:
-    """How often a rule fails, or warns, anywhere on the line.
+    """Describe how often a rule fails, or warns, anywhere on the line.
 
     Attributes
     ----------
@@ -220,7 +221,7 @@ class RuleShare:
 
 
 def equilibrium_share(ended: Mapping[Ending, int]) -> RuleShare:
-    """How often the line has no equilibrium; a profile that did not converge is not judged.
+    """Return how often the line has no equilibrium; a profile that did not converge is not judged.
 
     Parameters
     ----------
@@ -234,7 +235,7 @@ def equilibrium_share(ended: Mapping[Ending, int]) -> RuleShare:
 def shares_of(
     series: ResultColumns, limits: Iterable[CountedLimit], unsolved: int
 ) -> Iterator[RuleShare]:
-    """How often each rule fails, from its limits, which follow one another.
+    """Return how often each rule fails, from its limits, which follow one another.
 
     Parameters
     ----------
@@ -281,7 +282,9 @@ def _rule_share(
 def _exceedance(
     series: ResultColumns, limit: CountedLimit, beyond: NDArray[np.bool_], judged: NDArray[np.bool_]
 ) -> Exceedance:
-    """How often a limit is broken; adds the profiles beyond it, and those judged, to the others."""
+    """Return how often a limit is broken; adds the profiles beyond it, and those judged, to the
+    others.
+    """
     if limit.limit is None:
         return Exceedance(limit, 0, None, None, None)
     values = limit.values(series)

@@ -26,7 +26,7 @@ _FIGURE = np.dtype(np.float32)
 
 
 class Seat(NamedTuple):
-    """Where a part of the line has its column in a result.
+    """Describe where a part of the line has its column in a result.
 
     Attributes
     ----------
@@ -104,12 +104,12 @@ class ResultColumns:
 
     @property
     def seats(self) -> tuple[Seat, ...]:
-        """Of the components, then of the clamps."""
+        """Return the seats of the components, then those of the clamps."""
         components, clamps = len(self.component_label), len(self.clamp_label)
         return (*map(Seat, range(components)), *(Seat(each, True) for each in range(clamps)))
 
     def label(self, seat: Seat) -> str:
-        """What a part is called."""
+        """Return what a part is called."""
         return (self.clamp_label if seat.clamped else self.component_label)[seat.number]
 
     def ends(self, name: str) -> Column:

@@ -277,7 +277,7 @@ MOST_INTERVALS = 1000
 
 @dataclass(frozen=True)
 class Distribution:
-    """How a quantity is distributed over the n profiles in which it is known.
+    """Describe how a quantity is distributed over the n profiles in which it is known.
 
     Attributes
     ----------
@@ -326,7 +326,7 @@ def distribution_of(values: Column, time: Times) -> Distribution | None:
 
 
 def envelope_of(values: Column, time: Times) -> tuple[Times, Column, Column]:
-    """When each of `MOST_INTERVALS` intervals begins, and its least and greatest value.
+    """Return when each of `MOST_INTERVALS` intervals begins, and its least and greatest value.
 
     The intervals hold the same number of profiles; of a shorter record each profile is one.
     """

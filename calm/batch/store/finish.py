@@ -20,12 +20,12 @@ ENDINGS = (".nc", ".zarr")
 
 
 def store_folder(output: Path) -> Path:
-    """Where the work on a result is kept: beside it."""
+    """Return where the work on a result is kept: beside it."""
     return output.with_name(f"{output.name}.part")
 
 
 def is_finished(output: Path, identity: str) -> bool:
-    """Whether a result is there already.
+    """Return whether a result is there already.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def is_finished(output: Path, identity: str) -> bool:
 
 
 def left_behind(output: Path) -> bool:
-    """Whether there is more of the work on a result than the result."""
+    """Return whether there is more of the work on a result than the result."""
     folder = store_folder(output)
     emptied = folder.is_dir() and not any(folder.iterdir())
     parts = (folder / WORK, output / WORK, lock_file(folder))
@@ -101,7 +101,7 @@ def finish(store: Store, output: Path, check: Callable[[], None]) -> list[int]:
 
 
 def lock_file(folder: Path) -> Path:
-    """Of a work folder: beside it, so that the folder can be removed while it is held."""
+    """Return the lock of a work folder: beside it, as the folder may be removed while it is held."""
     return folder.with_name(f"{folder.name}.lock")
 
 
@@ -175,7 +175,7 @@ def _has_lock(handle: int) -> bool:
 
 
 def _is_still(lock: Path, handle: int) -> bool:
-    """Whether the name leads to the file that is open."""
+    """Return whether the name leads to the file that is open."""
     try:
         return os.path.samestat(os.stat(lock), os.fstat(handle))
     except FileNotFoundError:

@@ -63,12 +63,12 @@ class Store:
 
     @property
     def count(self) -> int:
-        """How many blocks there are."""
+        """Return how many blocks there are."""
         return -(-self.layout.sizes["time"] // self.block)
 
     @cached_property
     def arrays(self) -> Mapping[str, zarr.Array[Any]]:
-        """Those that go with time, by their names."""
+        """Return those that go with time, by their names."""
         import zarr
 
         with zarr.config.set({"array.write_empty_chunks": True}):
