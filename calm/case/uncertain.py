@@ -171,7 +171,7 @@ def uncertain(
 def _figures(
     mooring: Mooring, draws: Sequence[Draw]
 ) -> list[tuple[Floats, tuple[float, float]] | NoEquilibrium]:
-    """Return of each draw (5, p) figures of the pieces, ordered as in `Uncertain`, and the anchor's."""
+    """Return (5, p) figures of the pieces and those of the anchor, draw by draw."""
     figures: list[tuple[Floats, tuple[float, float]] | NoEquilibrium] = []
     for one in drawn(mooring, draws):
         try:

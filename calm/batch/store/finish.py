@@ -101,7 +101,7 @@ def finish(store: Store, output: Path, check: Callable[[], None]) -> list[int]:
 
 
 def lock_file(folder: Path) -> Path:
-    """Return the lock of a work folder: beside it, as the folder may be removed while it is held."""
+    """Return the lock of a work folder, beside it: the folder may go while the lock is held."""
     return folder.with_name(f"{folder.name}.lock")
 
 
