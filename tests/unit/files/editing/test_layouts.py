@@ -184,7 +184,7 @@ def test_what_is_taken_out_leaves_all_else(name: str) -> None:
 
 
 def words(text: str) -> Counter[str]:
-    return Counter(re.findall(r"[^\s,]+", text))
+    return Counter(re.findall(r"[^\s,\[\]{}]+", text))
 
 
 @pytest.mark.parametrize("name", REFUSED)
