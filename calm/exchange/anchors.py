@@ -6,7 +6,7 @@ from pathlib import Path
 
 from calm.case import Mooring, load
 from calm.errors import CalmError
-from calm.exchange.design import Component, Design
+from calm.exchange.design import Design, ImportedComponent
 from calm.exchange.writing import written
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY, STEEL_DENSITY
 from calm.quantities import rounded
@@ -46,7 +46,7 @@ def hold(design: Design, environment: list[str] | None, output: Path) -> None:
 
 
 def _pull(
-    design: Design, anchor: Component, environment: list[str] | None, output: Path
+    design: Design, anchor: ImportedComponent, environment: list[str] | None, output: Path
 ) -> tuple[float | None, float]:
     """The upward pull of the line, and the weight that holds it [N]."""
     figures = dict(anchor.figures)

@@ -6,14 +6,14 @@ import numpy as np
 
 from calm.case import Mooring, Tow
 from calm.errors import NoEquilibrium, UsageError
-from calm.exchange.parts import Assembled, Part
+from calm.exchange.parts import ExportedLine, ExportedPart
 from calm.physics.line import Line, Water
 from calm.physics.reference import REFERENCE_DENSITY
 
 _DIGITS = 9  # of a speed in m/s
 
 
-def assembled(mooring: Mooring | Tow) -> Assembled:
+def assembled(mooring: Mooring | Tow) -> ExportedLine:
     """The parts of a mooring or a tow.
 
     Raises
@@ -34,7 +34,7 @@ def assembled(mooring: Mooring | Tow) -> Assembled:
         on = [k for k in range(len(line.clamp_at)) if line.clamp_piece[k] == i]
         clamps = tuple(
             (
-                Part(
+                ExportedPart(
                     clamp.use, clamp.label, clamp.component.role, clamp.component, False,
                     float(getattr(clamp.component, "length", 0.0)),
                     float(line.clamp_buoyancy[k]),
@@ -48,7 +48,7 @@ def assembled(mooring: Mooring | Tow) -> Assembled:
         compliance = float(line.compliance[i])
         stiffness = secant.get(i, 1.0 / compliance if compliance else 0.0)
         parts.append(
-            Part(
+            ExportedPart(
                 piece.use, piece.label, piece.component.role, piece.component,
                 bool(line.flexible[i]), float(line.length[i]), float(line.buoyancy[i]),
                 float(line.buoyancy[i] + excess * line.volume[i]), density,
@@ -65,7 +65,7 @@ def assembled(mooring: Mooring | Tow) -> Assembled:
         tow = keys.speed, keys.toward, keys.height
     else:
         anchor = file.anchor, mooring.anchor_weight
-    return Assembled(
+    return ExportedLine(
         name=file.name,
         description=file.description,
         parts=tuple(parts),
@@ -95,7 +95,7 @@ def _reaches(mooring: Mooring | Tow) -> bool:
 
 
 def _riding(mooring: Mooring | Tow) -> tuple[tuple[float, float], tuple[float, float]]:
-    """How the float stands at the surface here: `riding` and `windage` of `Assembled`."""
+    """How the float stands at the surface here: `riding` and `windage` of `ExportedLine`."""
     floating = mooring.line.floating
     if not _reaches(mooring):
         return (1.0, 1.0), (0.0, 1.0)

@@ -12,11 +12,11 @@ from calm.exchange.assembling import assembled
 from calm.exchange.cbl.writing import cbl_file
 from calm.exchange.mdd.writing import mdd_file
 from calm.exchange.moordyn.writing import CURRENTS, current_profile, moordyn_file
-from calm.exchange.parts import Assembled
+from calm.exchange.parts import ExportedLine
 from calm.exchange.table.writing import csv_file
 from calm.files.explain import unknown
 
-Writer = Callable[[Assembled], tuple[bytes, tuple[str, ...]]]
+Writer = Callable[[ExportedLine], tuple[bytes, tuple[str, ...]]]
 
 WRITERS: dict[str, Writer] = {
     "mdd": mdd_file, "cbl": cbl_file, "csv": csv_file, "moordyn": moordyn_file,

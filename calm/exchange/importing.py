@@ -9,9 +9,9 @@ from pathlib import Path
 from calm.errors import InputError, Problem, UsageError
 from calm.exchange.anchors import hold
 from calm.exchange.cbl.reading import is_cbl, read_cbl
-from calm.exchange.design import MOST_PIECES, Design, Record, Remark
+from calm.exchange.design import MOST_PIECES, CurrentRecord, Design, Remark
 from calm.exchange.environments import environment_lines
-from calm.exchange.matching import Match, match
+from calm.exchange.matching import CatalogueMatch, match
 from calm.exchange.mdd.matfile import is_mat
 from calm.exchange.mdd.reading import read_mdd
 from calm.exchange.moordyn.reading import read_moordyn
@@ -26,7 +26,7 @@ from calm.version import __version__
 
 
 @dataclass(frozen=True)
-class Options:
+class ImportOptions:
     """The options of a command line.
 
     Attributes
@@ -44,35 +44,35 @@ class Options:
 
 
 @dataclass(frozen=True)
-class Format:
+class ImportFormat:
     """A format of files that can be imported: its name, how it is recognised and read."""
 
     name: str
     program: str
     recognises: Callable[[Path, bytes], bool]
-    read: Callable[[Path, Options], Design]
+    read: Callable[[Path, ImportOptions], Design]
 
 
 FORMATS = (
-    Format(
+    ImportFormat(
         "mdd", "Mooring Design & Dynamics", lambda path, content: is_mat(content),
         lambda path, options: read_mdd(path),
     ),
-    Format(
+    ImportFormat(
         "cbl", "WHOI Cable", lambda path, content: is_cbl(content),
         lambda path, options: read_cbl(
             path, options.defines, allow_include=options.allow_include
         ),
     ),
-    Format(
+    ImportFormat(
         "moordyn", "MoorDyn or MoorPy", lambda path, content: is_moordyn(content),
         lambda path, options: read_moordyn(path),
     ),
-    Format(
+    ImportFormat(
         "moords", "moords", lambda path, content: is_moords(content),
         lambda path, options: read_moords(path),
     ),
-    Format(
+    ImportFormat(
         "table", "a list in CSV or a spreadsheet", lambda path, content: is_table(content),
         lambda path, options: read_table(path, options.columns, options.elements),
     ),
@@ -98,8 +98,8 @@ class Imported:
     text: str
     guessed: tuple[Remark, ...]
     dropped: tuple[Remark, ...]
-    matched: tuple[Match, ...]
-    record: Record | None
+    matched: tuple[CatalogueMatch, ...]
+    record: CurrentRecord | None
 
 
 _HEAD = 70_000  # bytes from which a format is recognised
@@ -111,7 +111,7 @@ def import_file(
     *,
     format: str | None = None,
     environment: Path | None = None,
-    options: Options | None = None,
+    options: ImportOptions | None = None,
     match_catalogue: bool = False,
 ) -> Imported:
     """Read a file of another program.
@@ -130,7 +130,7 @@ def import_file(
     UsageError
         There is no such format.
     """
-    options = options or Options()
+    options = options or ImportOptions()
     chosen = format_of(path, format, listed=options.elements is not None)
     if options.elements is not None and chosen.name != "table":
         raise refused(path, f"is of {chosen.program}; --elements is for lists")
@@ -159,7 +159,7 @@ def import_file(
     )  # fmt: skip
 
 
-def format_of(path: Path, name: str | None, *, listed: bool = False) -> Format:
+def format_of(path: Path, name: str | None, *, listed: bool = False) -> ImportFormat:
     """The format of a file: as named, or by its content.
 
     Parameters

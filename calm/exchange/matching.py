@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from pydantic import ValidationError
 
 from calm.assemble.line import drag_of
-from calm.exchange.design import Component, Design
+from calm.exchange.design import Design, ImportedComponent
 from calm.exchange.writing import figure_text
 from calm.files import Anchor, Assembly, Catalogue, Rigid
 from calm.files.components import FLEXIBLE_KINDS, KINDS
-from calm.files.components import Component as Model
+from calm.files.components import ImportedComponent as Model
 
 TOLERANCE = 0.05
 """Share by which size, net force and drag may differ from those of a catalogue entry."""
@@ -21,14 +21,14 @@ _COMMON_WORDS = 0.5  # share of the words of a name that an entry must have, two
 
 
 @dataclass(frozen=True)
-class Match:
+class CatalogueMatch:
     """A component, by its name in the file, and the catalogue entry used in its place."""
 
     name: str
     entry: str
 
 
-def match(design: Design) -> tuple[Match, ...]:
+def match(design: Design) -> tuple[CatalogueMatch, ...]:
     """Use catalogue entries for the components whose name and figures agree with one.
 
     A component is of the same kind, shares half the words of its name, and is within `TOLERANCE` in
@@ -38,7 +38,7 @@ def match(design: Design) -> tuple[Match, ...]:
     entries = {
         id: entry for id, entry in catalogue.all().items() if not isinstance(entry, Assembly)
     }
-    matched: dict[str, Match] = {}
+    matched: dict[str, CatalogueMatch] = {}
     for component in design.components():
         model = _model(component)
         if model is None or component.entry:
@@ -49,12 +49,12 @@ def match(design: Design) -> tuple[Match, ...]:
                 _weighs_alike(model, entry) if sizeless else _agree(model, entry)
             ):
                 component.entry = id
-                matched[id + component.name] = Match(component.name, id)
+                matched[id + component.name] = CatalogueMatch(component.name, id)
                 break
     return tuple(matched.values())
 
 
-def _model(component: Component) -> Model | None:
+def _model(component: ImportedComponent) -> Model | None:
     per_metre = component.kind in FLEXIBLE_KINDS
     fields = {
         key: figure_text(key, value, per_metre=per_metre, in_kilograms=False)

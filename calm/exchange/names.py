@@ -6,7 +6,7 @@ import re
 import unicodedata
 from collections.abc import Iterable
 
-from calm.exchange.design import Component
+from calm.exchange.design import ImportedComponent
 
 _LONGEST = 40
 _NO_IDS = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}  # other words in YAML
@@ -21,7 +21,7 @@ def kebab(name: str) -> str:
     return re.sub(r"[^a-z0-9]+", "-", text)[:_LONGEST].strip("-")
 
 
-def ids_of(components: Iterable[Component], taken: Iterable[str] = ()) -> dict[int, str]:
+def ids_of(components: Iterable[ImportedComponent], taken: Iterable[str] = ()) -> dict[int, str]:
     """The id of every component, by its `id()`; those with the same figures share one.
 
     Parameters

@@ -17,12 +17,12 @@ from calm.physics.reference import REFERENCE_DENSITY
 
 _LEAST_MASS = 0.1  # of what its net force weighs
 
-Place = tuple[float, float, float]
+Coordinates = tuple[float, float, float]
 """East and north of the anchor, and depth [m]."""
 
 
 @dataclass(frozen=True)
-class Part:
+class ExportedPart:
     """A piece, or what is clamped on one.
 
     Attributes
@@ -52,7 +52,7 @@ class Part:
     kt: float
     directional: bool
     stiffness: float
-    clamps: tuple[tuple[Part, float], ...] = ()
+    clamps: tuple[tuple[ExportedPart, float], ...] = ()
 
     @property
     def diameter(self) -> float:
@@ -66,7 +66,7 @@ class Part:
 
 
 @dataclass(frozen=True)
-class Assembled:
+class ExportedLine:
     """The parts of a line from its first piece to its last, the anchor apart.
 
     Attributes
@@ -87,7 +87,7 @@ class Assembled:
 
     name: str
     description: str
-    parts: tuple[Part, ...]
+    parts: tuple[ExportedPart, ...]
     anchor: tuple[Anchor, float] | None
     depth: float
     levels: tuple[tuple[float, float, float, float, float], ...]
@@ -100,7 +100,7 @@ class Assembled:
     unsaid: tuple[str, ...]
     solve: Callable[[], Result | TowResult]
 
-    def paths(self) -> list[Path]:
+    def paths(self) -> list[PartPath]:
         """The equilibrium: where each part lies, from the top down.
 
         Raises
@@ -117,18 +117,18 @@ class Assembled:
             end = start + int(np.flatnonzero(gap <= gap.min() + 1e-9)[0])
             first = np.array([[row.x_top, row.y_top, row.depth_top]])
             inner = nodes[start + 1 : end]
-            paths.append(Path(np.vstack([first, inner, low[np.newaxis]])))
+            paths.append(PartPath(np.vstack([first, inner, low[np.newaxis]])))
             start = end
         return paths
 
 
 @dataclass(frozen=True)
-class Path:
-    """Where a part lies in equilibrium: nodes from its upper end, (n, 3) as `Place` has them."""
+class PartPath:
+    """Hold where a part lies in equilibrium: (n, 3) `Coordinates` of nodes from its upper end."""
 
     nodes: np.ndarray[tuple[int, int], np.dtype[np.float64]]
 
-    def at(self, share: float) -> Place:
+    def at(self, share: float) -> Coordinates:
         """The place at a share of its length from its upper end."""
         steps = np.linalg.norm(np.diff(self.nodes, axis=0), axis=1)
         along = np.concatenate([[0.0], np.cumsum(steps)])
@@ -136,7 +136,7 @@ class Path:
         return place[0], place[1], place[2]
 
 
-def area(part: Part, density: float | None = None, *, along: bool = False) -> float:
+def area(part: ExportedPart, density: float | None = None, *, along: bool = False) -> float:
     """Drag coefficient times area [m²], across the line or along it, of a cable per metre.
 
     Parameters
@@ -148,7 +148,7 @@ def area(part: Part, density: float | None = None, *, along: bool = False) -> fl
     return own if density is None else own * part.density / density
 
 
-def as_point(design: Assembled, density: float) -> tuple[float, float]:
+def as_point(design: ExportedLine, density: float) -> tuple[float, float]:
     """Net force [N] and drag area [m²] of a float below the surface as a point at the line's end.
 
     For programs in which a float is a point: its drag is in the flow at the end, not at its middle,
@@ -178,12 +178,12 @@ def as_point(design: Assembled, density: float) -> tuple[float, float]:
     return row.tension_bottom * cos(tilt), row.tension_bottom * sin(tilt) / (0.5 * density * end)
 
 
-def remarks(design: Assembled, more: Sequence[str]) -> tuple[str, ...]:
+def remarks(design: ExportedLine, more: Sequence[str]) -> tuple[str, ...]:
     """What other programs cannot hold, each remark once."""
     return tuple(dict.fromkeys((*more, *design.unsaid)))
 
 
-def mass_of(part: Part) -> float:
+def mass_of(part: ExportedPart) -> float:
     """Mass in air [kg, kg/m]: as given, or from weight and size."""
     if part.mass is not None:
         return part.mass

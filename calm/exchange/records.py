@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from calm.exchange.design import Record
+from calm.exchange.design import CurrentRecord
 
 
-def record_file(record: Record, source: str) -> bytes:
+def record_file(record: CurrentRecord, source: str) -> bytes:
     """A record as a classic NetCDF file by the CF conventions."""
     import xarray as xr
 

@@ -7,7 +7,15 @@ import re
 from dataclasses import dataclass, field
 from textwrap import wrap
 
-from calm.exchange.design import Component, Design, Figure, Item, Remark, Water, one_line
+from calm.exchange.design import (
+    Design,
+    FigureOrWord,
+    ImportedComponent,
+    ImportedPiece,
+    ImportedWater,
+    Remark,
+    one_line,
+)
 from calm.exchange.names import ids_of
 from calm.files import Catalogue
 from calm.files.components import FLEXIBLE_KINDS
@@ -116,7 +124,7 @@ def quoted(text: str) -> str:
     return json.dumps(text, ensure_ascii=False)
 
 
-def _write_water(page: _Page, water: Water) -> None:
+def _write_water(page: _Page, water: ImportedWater) -> None:
     page.add("environment:")
     if water.depth is not None:
         _keyed(page, "depth", f"{number(water.depth)} m", water)
@@ -147,32 +155,34 @@ def _write_water(page: _Page, water: Water) -> None:
     page.add()
 
 
-def _keyed(page: _Page, key: str, value: str, water: Water) -> None:
+def _keyed(page: _Page, key: str, value: str, water: ImportedWater) -> None:
     page.add(f"  {key}: {value}", water.guesses.get(key, ""), f"environment.{key}")
 
 
-def _counted(items: list[Item]) -> list[Item]:
+def _counted(items: list[ImportedPiece]) -> list[ImportedPiece]:
     """Equal items that follow each other as one with a count."""
-    counted: list[Item] = []
+    counted: list[ImportedPiece] = []
     for item in items:
         last = counted[-1] if counted else None
         if last is not None and _bare(last) and _bare(item) and _same(last, item):
-            last = counted[-1] = Item(last.component, last.length, count=last.count + item.count)
+            last = counted[-1] = ImportedPiece(
+                last.component, last.length, count=last.count + item.count
+            )
         else:
             counted.append(item)
     return counted
 
 
-def _bare(item: Item) -> bool:
+def _bare(item: ImportedPiece) -> bool:
     return not (item.clamps or item.guess or item.label)
 
 
-def _same(one: Item, other: Item) -> bool:
+def _same(one: ImportedPiece, other: ImportedPiece) -> bool:
     alike = one.component.says() == other.component.says()
     return alike and one.length == other.length and one.component.entry == other.component.entry
 
 
-def _write_item(page: _Page, item: Item, ids: dict[int, str]) -> None:
+def _write_item(page: _Page, item: ImportedPiece, ids: dict[int, str]) -> None:
     use = ids[id(item.component)]
     pairs = [f"use: {use}"]
     if item.length is not None:
@@ -205,7 +215,9 @@ def _write_solver(page: _Page, design: Design) -> None:
     page.add()
 
 
-def _write_component(page: _Page, component: Component, id_: str, in_kilograms: bool) -> None:
+def _write_component(
+    page: _Page, component: ImportedComponent, id_: str, in_kilograms: bool
+) -> None:
     page.add(f"  {id_}:")
     if component.comment:
         page.remark(one_line(component.comment), "    ")
@@ -227,7 +239,7 @@ def _write_component(page: _Page, component: Component, id_: str, in_kilograms: 
             page.add(f"        - {row}")
 
 
-def figure_text(key: str, value: Figure, *, per_metre: bool, in_kilograms: bool) -> str:
+def figure_text(key: str, value: FigureOrWord, *, per_metre: bool, in_kilograms: bool) -> str:
     """A figure of a component as the mooring file has it."""
     if isinstance(value, str):
         return quoted(value)

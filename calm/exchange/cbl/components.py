@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass
 
 from calm.exchange.cbl.hulls import displacement, largest
-from calm.exchange.cbl.problem import Definition, Value, Values
+from calm.exchange.cbl.problem import CableDefinition, KeyValue, KeyValues
 from calm.exchange.cbl.water import number, value_at
-from calm.exchange.design import Component, Figure, Remark
+from calm.exchange.design import FigureOrWord, ImportedComponent, Remark
 from calm.exchange.refusal import refused
 from calm.exchange.words import is_chain, role_of
 from calm.files.definition import CATALOGUE_DENSITY
@@ -25,7 +25,7 @@ _YIELDS = ("swl", "yield")
 
 
 @dataclass
-class Makers:
+class ComponentMaker:
     """Makes components in the water of the problem; keys without a counterpart go to `dropped`."""
 
     density: float
@@ -33,8 +33,8 @@ class Makers:
     dropped: list[Remark]
 
     def material(
-        self, definition: Definition, length: float, depth: float, speed: float
-    ) -> Component:
+        self, definition: CableDefinition, length: float, depth: float, speed: float
+    ) -> ImportedComponent:
         """A cable of a length [m], with its drag at a depth [m] and a speed [m/s]."""
         values, name = definition.values, definition.name
         across, inside = number(values, "d") or number(values, "diam"), number(values, "id")
@@ -46,7 +46,7 @@ class Makers:
         wet = number(values, "wet") or dry - area * self.density * self.gravity
         if not mass and not dry and not number(values, "wet"):
             raise definition.token.refuse(f"material `{name}` has neither `m` nor `wet`")
-        figures: dict[str, Figure] = {
+        figures: dict[str, FigureOrWord] = {
             "diameter": across,
             "cn": self._drag(values, "cdn", depth, speed),
             "ct": self._drag(values, "cdt", depth, speed),
@@ -58,7 +58,7 @@ class Makers:
         figures["buoyancy" if weight < 0.0 else "weight"] = abs(weight)
         if mass:
             figures["mass"] = mass
-        component = Component(name, kind, figures)
+        component = ImportedComponent(name, kind, figures)
         if (
             mass
             and length > _ROPE
@@ -72,7 +72,9 @@ class Makers:
         self._drop(definition)
         return component
 
-    def _stretch(self, component: Component, definition: Definition, section: float) -> None:
+    def _stretch(
+        self, component: ImportedComponent, definition: CableDefinition, section: float
+    ) -> None:
         values = definition.values
         stiffness = number(values, "ea") or number(values, "e") * section
         tension = values.get("t")
@@ -87,13 +89,16 @@ class Makers:
         if limit["swl"] > 0.0 and (not limit["yield"] or limit["swl"] <= limit["yield"]):
             component.figures["working_load"] = limit["swl"]
 
-    def connector(self, definition: Definition) -> Component:
+    def connector(self, definition: CableDefinition) -> ImportedComponent:
         """A point in the line: a sphere of its drag, of the length that the file gives."""
         values, name = definition.values, definition.name
         wet, mass = self._at_reference(
             number(values, "wet"), number(values, "m") or number(values, "mass")
         )
-        figures: dict[str, Figure] = {"length": number(values, "length"), "buoyancy": 0.0 - wet}
+        figures: dict[str, FigureOrWord] = {
+            "length": number(values, "length"),
+            "buoyancy": 0.0 - wet,
+        }
         across, drag = number(values, "d") or number(values, "diam"), number(values, "cdn")
         if across > 0.0:
             kind = "sphere"
@@ -105,12 +110,14 @@ class Makers:
             figures["mass"] = mass
         figures["role"] = role_of(name, -wet, fastener=abs(wet) < 20.0)
         self._drop(definition)
-        return Component(name, kind, figures)
+        return ImportedComponent(name, kind, figures)
 
-    def anchor(self, definition: Definition | None, name: str, friction: float) -> Component:
+    def anchor(
+        self, definition: CableDefinition | None, name: str, friction: float
+    ) -> ImportedComponent:
         """The lower end; without a weight where the file gives none."""
-        values: Values = definition.values if definition else {}
-        figures: dict[str, Figure] = {}
+        values: KeyValues = definition.values if definition else {}
+        figures: dict[str, FigureOrWord] = {}
         wet, mass = number(values, "wet"), number(values, "m") or number(values, "mass")
         if wet > 0.0:
             figures["weight"], known = self._at_reference(wet, mass)
@@ -121,12 +128,12 @@ class Makers:
         mu = number(values, "mu") or friction
         if mu > 0.0:
             figures["friction"] = mu
-        component = Component(name, "anchor", figures)
+        component = ImportedComponent(name, "anchor", figures)
         if "mass" in figures and "weight" not in figures:
             component.guesses["mass"] = "taken for steel: the file gives no weight in water"
         return component
 
-    def buoy(self, definition: Definition, *, afloat: bool) -> Component:
+    def buoy(self, definition: CableDefinition, *, afloat: bool) -> ImportedComponent:
         """The upper end, or what is towed.
 
         Its hull is that of the file. Where it does not float, it is a point, as in that program.
@@ -146,7 +153,7 @@ class Makers:
             raise refused(definition.token.path, f"buoy `{name}` has no size and no buoyancy")
         drag = number(values, "cdn")
         across = number(values, "d") or number(values, "diam")
-        figures: dict[str, Figure]
+        figures: dict[str, FigureOrWord]
         if shape == "sphere":
             kind, figures = "sphere", {"diameter": across, "length": height, "cx": drag}
         elif shape == "cylinder" and afloat:
@@ -155,7 +162,7 @@ class Makers:
             figures["inclination"] = "insensitive"
         else:
             kind, figures = "body", {"length": height, "drag_area": area, "cd": drag}
-        component = Component(name, kind, figures)
+        component = ImportedComponent(name, kind, figures)
         if not afloat:
             figures["length"] = 0.0
             component.comment = "That program treats it as a point: the line ends at its depth."
@@ -182,13 +189,13 @@ class Makers:
         volume = (mass - wet / self.gravity) / self.density
         return wet + (self.density - CATALOGUE_DENSITY) * self.gravity * volume, mass
 
-    def _drag(self, values: Values, key: str, depth: float, speed: float) -> float:
+    def _drag(self, values: KeyValues, key: str, depth: float, speed: float) -> float:
         value = values.get(key)
         if value is None:
             return 0.0
         return value_at(value, depth if counts_on_depth(value) else speed)
 
-    def _drop(self, definition: Definition) -> None:
+    def _drop(self, definition: CableDefinition) -> None:
         found = [key for key in _DYNAMICS if key in definition.values]
         what = ", ".join({"ei": "EI", "gj": "GJ"}.get(key, key) for key in found)
         remark = Remark(definition.name, f"stiffness in bending, added mass and the like ({what})")
@@ -196,12 +203,12 @@ class Makers:
             self.dropped.append(remark)
 
 
-def counts_on_depth(value: Value) -> bool:
+def counts_on_depth(value: KeyValue) -> bool:
     """Whether a drag is a function of depth; a table up to speeds that occur is one of speed."""
     return not value.rows or value.rows[-1][0].at() > _FASTEST
 
 
-def varies(definition: Definition) -> bool:
+def varies(definition: CableDefinition) -> bool:
     """Whether a drag of a material is a function of depth."""
     return any(
         value is not None

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.exchange.cbl.problem import Value
+from calm.exchange.cbl.problem import KeyValue
 from calm.exchange.refusal import refused
 from calm.files.document import read_text
 
@@ -39,7 +39,7 @@ class GriddedCurrent:
         return lambda depth: float(np.interp(depth, self.depth, column))
 
 
-def gridded_current(value: Value, folder: Path, *, allow_include: bool) -> GriddedCurrent | None:
+def gridded_current(value: KeyValue, folder: Path, *, allow_include: bool) -> GriddedCurrent | None:
     """The currents of a file beside the problem; None where there is no such file.
 
     It begins with step, start and count of time, depth, x and y; the speeds to x, y and z follow,

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 from calm.errors import InputError, Problem
-from calm.exchange.cbl.source import Line
+from calm.exchange.cbl.source import SourceLine
 from calm.exchange.cbl.tokens import Token, tokens_of
 from calm.exchange.design import one_line
 
@@ -43,7 +43,7 @@ _BINARY: tuple[dict[str, Callable[[float, float], float]], ...] = (
 """Signs between two values: those of a row bind more loosely than those of the next."""
 
 
-class Words:
+class TokenStream:
     """Words taken one after the other."""
 
     def __init__(self, tokens: list[Token]) -> None:
@@ -132,14 +132,14 @@ class Expression:
 
 def constant(text: str) -> float:
     """The value of a formula without names."""
-    words = Words(list(tokens_of([Line(text, "", 1)])))
+    words = TokenStream(list(tokens_of([SourceLine(text, "", 1)])))
     value = read_expression(words).at()
     if words.next.kind != "end":
         raise words.next.refuse(f"`{words.next.text}` is left over")
     return value
 
 
-def read_expression(words: Words) -> Expression:
+def read_expression(words: TokenStream) -> Expression:
     """Read a formula, as far as it goes.
 
     Raises
@@ -155,7 +155,7 @@ def read_expression(words: Words) -> Expression:
 class _Reader:
     """Reads by descent, from the signs that bind loosely to those that bind tightly."""
 
-    def __init__(self, words: Words, names: set[str]) -> None:
+    def __init__(self, words: TokenStream, names: set[str]) -> None:
         self._words = words
         self._names = names
 
@@ -237,7 +237,7 @@ class _Reader:
     def _cut(self, token: Token) -> Token:
         """The name before the first stroke; what follows comes next."""
         head, _, rest = token.text.partition("/")
-        line = Line(f"/{rest}", token.path, token.line)
+        line = SourceLine(f"/{rest}", token.path, token.line)
         self._words.put([each for each in tokens_of([line]) if each.kind != "end"])
         return replace(token, text=head)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from math import pi, sqrt
 
-from calm.exchange.parts import Assembled, Part, area, as_point, mass_of
+from calm.exchange.parts import ExportedLine, ExportedPart, area, as_point, mass_of
 from calm.files import Cylinder, Rigid, Sphere
 from calm.files.rigid import Displacement
 from calm.physics.hull import Hull, cylindrical_hull, spherical_hull, tabulated_hull
@@ -13,7 +13,7 @@ from calm.physics.hull import Hull, cylindrical_hull, spherical_hull, tabulated_
 _LEAST = 1e-3  # m of diameter, kg of mass
 
 
-def buoy_figures(part: Part, design: Assembled, density: float, lost: list[str]) -> str:
+def buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost: list[str]) -> str:
     """Its size, mass, buoyancy and drag, in the words of that program.
 
     Parameters
@@ -57,7 +57,7 @@ def buoy_figures(part: Part, design: Assembled, density: float, lost: list[str])
     return f"{size}  m = {mass:.9g}  buoyancy = {lift:.9g}  Cdn = {drag:.9g}{wind}"
 
 
-def _windage(part: Part, design: Assembled) -> str:
+def _windage(part: ExportedPart, design: ExportedLine) -> str:
     """The area of a float in the wind, where there is wind or the file gives it."""
     component = part.component
     if not isinstance(component, Rigid):
@@ -69,7 +69,7 @@ def _windage(part: Part, design: Assembled) -> str:
     return shown + (f"  Cdw = {coefficient:.9g}" if coefficient else "")
 
 
-def _drag_share(design: Assembled, hull: Hull, mass: float, net: float, most: float) -> float:
+def _drag_share(design: ExportedLine, hull: Hull, mass: float, net: float, most: float) -> float:
     """Factor on the drag of a hull with which it drags, at its draft, as in CALM.
 
     Parameters

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from calm.exchange.cbl.expressions import Expression, Words, read_expression
+from calm.exchange.cbl.expressions import Expression, TokenStream, read_expression
 from calm.exchange.cbl.problem import (
-    Attachment,
-    Definition,
-    Problem,
-    Segment,
-    Terminal,
-    Value,
-    Values,
+    CableAttachment,
+    CableDefinition,
+    CableProblem,
+    CableSegment,
+    CableTerminal,
+    KeyValue,
+    KeyValues,
 )
 from calm.exchange.cbl.source import Preprocessor
 from calm.exchange.cbl.tokens import Token, tokens_of
@@ -33,7 +33,7 @@ _LONG_SECTIONS = {"problem": "description", "analysis": "parameters"}
 _MOST_NODES = 1_000_000
 
 
-def read_problem(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> Problem:
+def read_problem(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> CableProblem:
     """Read a file.
 
     Raises
@@ -42,14 +42,14 @@ def read_problem(path: Path, defines: Mapping[str, str], *, allow_include: bool)
         It cannot be read; with line and column.
     """
     lines = Preprocessor(defines, allow_include).read(path)
-    words = Words(list(tokens_of(lines)))
-    problem = Problem(path)
+    words = TokenStream(list(tokens_of(lines)))
+    problem = CableProblem(path)
     while words.next.kind != "end":
         _section(words, problem)
     return problem
 
 
-def _section(words: Words, problem: Problem) -> None:
+def _section(words: TokenStream, problem: CableProblem) -> None:
     name = _section_name(words)
     if name is None:
         raise words.next.refuse(f"`{words.next.text}` stands where a section should begin")
@@ -68,7 +68,7 @@ def _section(words: Words, problem: Problem) -> None:
         _definitions(words, getattr(problem, "buoys" if name == "platforms" else name))
 
 
-def _section_name(words: Words) -> str | None:
+def _section_name(words: TokenStream) -> str | None:
     """The section that begins here, if one does."""
     token = words.next
     if token.kind != "name":
@@ -82,38 +82,38 @@ def _section_name(words: Words) -> str | None:
     return None
 
 
-def _definitions(words: Words, found: dict[str, Definition]) -> None:
+def _definitions(words: TokenStream, found: dict[str, CableDefinition]) -> None:
     while words.next.kind in ("name", "text") and _section_name(words) is None:
         token = words.take()
         if token.text in found:
             raise token.refuse(f"`{token.text}` is defined twice")
-        found[token.text] = Definition(token, _values(words))
+        found[token.text] = CableDefinition(token, _values(words))
 
 
-def _values(words: Words) -> Values:
+def _values(words: TokenStream) -> KeyValues:
     """Keys and their values, as far as they go; the last of a key holds."""
-    values: Values = {}
+    values: KeyValues = {}
     while words.next.kind == "key" and words.next.text not in _LAYOUT:
         key = words.take()
         values[key.text] = _value(words, key)
     return values
 
 
-def _value(words: Words, key: Token) -> Value:
+def _value(words: TokenStream, key: Token) -> KeyValue:
     if key.text in _TEXTS:
-        return Value(key, text=_word(words, key))
+        return KeyValue(key, text=_word(words, key))
     if words.next.kind == "sign" and words.next.text == "{":  # the name of a profile
         words.take()
         words.take()
         words.expect("}")
     if words.next.kind == "sign" and words.next.text == "(" and (rows := _rows(words)):
-        return Value(key, rows=rows, repeats=words.comes("+"))
+        return KeyValue(key, rows=rows, repeats=words.comes("+"))
     if words.next.kind == "text":
-        return Value(key, text=words.take().text)
-    return Value(key, formula=read_expression(words))
+        return KeyValue(key, text=words.take().text)
+    return KeyValue(key, formula=read_expression(words))
 
 
-def _word(words: Words, key: Token) -> str:
+def _word(words: TokenStream, key: Token) -> str:
     token = words.take()
     if token.kind not in ("name", "text", "number"):
         raise key.refuse(f"a name is missing after `{key.text} =`")
@@ -124,7 +124,7 @@ def _word(words: Words, key: Token) -> str:
     return text
 
 
-def _rows(words: Words) -> list[tuple[Expression, ...]]:
+def _rows(words: TokenStream) -> list[tuple[Expression, ...]]:
     """Rows such as ``(0, 0.5) (100, 0.2)``; none where the parenthesis is one of a formula."""
     rows: list[tuple[Expression, ...]] = []
     while True:
@@ -147,12 +147,12 @@ def _rows(words: Words) -> list[tuple[Expression, ...]]:
 _LAYOUT = frozenset(["terminal", "segment", "branch"])
 
 
-def _layout(words: Words, problem: Problem) -> None:
+def _layout(words: TokenStream, problem: CableProblem) -> None:
     """Terminals, segments and what joins them, from the anchor up."""
     while words.next.kind == "key":
         key = words.take()
         if key.text == "terminal":
-            problem.layout.append(Terminal(key, _block(words)))
+            problem.layout.append(CableTerminal(key, _block(words)))
         elif key.text == "segment":
             problem.layout.append(_segment(words, key))
         elif key.text == "connector":
@@ -164,14 +164,14 @@ def _layout(words: Words, problem: Problem) -> None:
             raise key.refuse(f"`{key.text} =` has no place in a layout")
 
 
-def _block(words: Words) -> Values:
+def _block(words: TokenStream) -> KeyValues:
     words.expect("{")
     values = _values(words)
     words.expect("}")
     return values
 
 
-def _skip_block(words: Words, key: Token) -> None:
+def _skip_block(words: TokenStream, key: Token) -> None:
     words.expect("{")
     depth = 1
     while depth:
@@ -181,8 +181,8 @@ def _skip_block(words: Words, key: Token) -> None:
         depth += {"{": 1, "}": -1}.get(token.text, 0) if token.kind == "sign" else 0
 
 
-def _segment(words: Words, key: Token) -> Segment:
-    segment = Segment(key, {})
+def _segment(words: TokenStream, key: Token) -> CableSegment:
+    segment = CableSegment(key, {})
     words.expect("{")
     while words.next.kind == "key":
         name = words.take()
@@ -194,9 +194,9 @@ def _segment(words: Words, key: Token) -> Segment:
     return segment
 
 
-def _connector(words: Words, key: Token, layout: list[Terminal | Segment]) -> None:
+def _connector(words: TokenStream, key: Token, layout: list[CableTerminal | CableSegment]) -> None:
     below = layout[-1] if layout else None
-    if not isinstance(below, Segment):
+    if not isinstance(below, CableSegment):
         raise key.refuse("a connector stands above a segment")
     if words.next.kind == "sign" and words.next.text == "{":
         below.joint = _block(words)
@@ -211,20 +211,20 @@ def _renamed(token: Token, text: str) -> Token:
     return Token("name", text, token.path, token.line, token.column)
 
 
-def _attachments(words: Words, key: Token) -> list[Attachment]:
+def _attachments(words: TokenStream, key: Token) -> list[CableAttachment]:
     """Lists such as ``meter : (3 9 27), light : [2, 2, 40]``."""
-    found: list[Attachment] = []
+    found: list[CableAttachment] = []
     while words.next.kind in ("name", "text"):
         token = words.take()
         words.comes(":")
-        found.append(Attachment(token, _nodes(words, token)))
+        found.append(CableAttachment(token, _nodes(words, token)))
         words.comes(",")
     if not found:
         raise key.refuse("`attachments` names nothing")
     return found
 
 
-def _nodes(words: Words, token: Token) -> list[int]:
+def _nodes(words: TokenStream, token: Token) -> list[int]:
     spaced = words.comes("[")
     if not spaced:
         words.expect("(")

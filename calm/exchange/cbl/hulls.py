@@ -5,21 +5,21 @@ from __future__ import annotations
 import math
 from itertools import pairwise
 
-from calm.exchange.cbl.problem import Definition
+from calm.exchange.cbl.problem import CableDefinition
 from calm.exchange.cbl.water import number
 
 _STEPS = 12  # rows of a table between two diameters
 _SLIGHT = 1e-9
 
 
-def largest(definition: Definition, shape: str) -> tuple[float, float, float]:
+def largest(definition: CableDefinition, shape: str) -> tuple[float, float, float]:
     """Volume [m³], area shown to the current [m²] and height [m] of the whole hull."""
     rows = displacement(definition, shape)
     draft, volume, area = rows[-1]
     return volume, area, draft
 
 
-def displacement(definition: Definition, shape: str) -> tuple[tuple[float, float, float], ...]:
+def displacement(definition: CableDefinition, shape: str) -> tuple[tuple[float, float, float], ...]:
     """Rows of draft [m], displaced volume [m³] and immersed area [m²].
 
     Raises
@@ -55,7 +55,7 @@ def displacement(definition: Definition, shape: str) -> tuple[tuple[float, float
     return tuple(rows)
 
 
-def _turned(definition: Definition) -> tuple[tuple[float, float, float], ...]:
+def _turned(definition: CableDefinition) -> tuple[tuple[float, float, float], ...]:
     """Of a hull given by its diameters at levels above its keel."""
     value = definition.values.get("diameters")
     if value is None or len(value.rows) < 2 or any(len(row) != 2 for row in value.rows):

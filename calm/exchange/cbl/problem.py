@@ -10,7 +10,7 @@ from calm.exchange.cbl.tokens import Token
 
 
 @dataclass
-class Value:
+class KeyValue:
     """The value of a key: a word, a formula, or rows in parentheses."""
 
     token: Token
@@ -26,15 +26,15 @@ class Value:
         return self.formula.at(**values)
 
 
-Values = dict[str, Value]
+KeyValues = dict[str, KeyValue]
 
 
 @dataclass
-class Definition:
+class CableDefinition:
     """A buoy, an anchor, a connector or a material."""
 
     token: Token
-    values: Values
+    values: KeyValues
 
     @property
     def name(self) -> str:
@@ -43,7 +43,7 @@ class Definition:
 
 
 @dataclass
-class Attachment:
+class CableAttachment:
     """A connector hung on nodes of a segment."""
 
     token: Token
@@ -51,26 +51,26 @@ class Attachment:
 
 
 @dataclass
-class Segment:
+class CableSegment:
     """A length of one material, and what joins it to the next one up."""
 
     token: Token
-    values: Values
-    attachments: list[Attachment] = field(default_factory=list)
+    values: KeyValues
+    attachments: list[CableAttachment] = field(default_factory=list)
     connector: Token | None = None
-    joint: Values = field(default_factory=dict)
+    joint: KeyValues = field(default_factory=dict)
 
 
 @dataclass
-class Terminal:
+class CableTerminal:
     """An end of the line."""
 
     token: Token
-    values: Values
+    values: KeyValues
 
 
 @dataclass
-class Problem:
+class CableProblem:
     """The content of a problem file.
 
     Attributes
@@ -82,12 +82,12 @@ class Problem:
     """
 
     path: Path
-    description: Values = field(default_factory=dict)
-    environment: Values = field(default_factory=dict)
-    analysis: Values = field(default_factory=dict)
-    buoys: dict[str, Definition] = field(default_factory=dict)
-    anchors: dict[str, Definition] = field(default_factory=dict)
-    connectors: dict[str, Definition] = field(default_factory=dict)
-    materials: dict[str, Definition] = field(default_factory=dict)
-    layout: list[Terminal | Segment] = field(default_factory=list)
+    description: KeyValues = field(default_factory=dict)
+    environment: KeyValues = field(default_factory=dict)
+    analysis: KeyValues = field(default_factory=dict)
+    buoys: dict[str, CableDefinition] = field(default_factory=dict)
+    anchors: dict[str, CableDefinition] = field(default_factory=dict)
+    connectors: dict[str, CableDefinition] = field(default_factory=dict)
+    materials: dict[str, CableDefinition] = field(default_factory=dict)
+    layout: list[CableTerminal | CableSegment] = field(default_factory=list)
     branch: Token | None = None

@@ -7,15 +7,15 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
+from calm.errors import CableProblem as Mistake
 from calm.errors import InputError
-from calm.errors import Problem as Mistake
-from calm.exchange.cbl.components import Makers
+from calm.exchange.cbl.components import ComponentMaker
 from calm.exchange.cbl.expressions import UnknownNameError
 from calm.exchange.cbl.grammar import read_problem
-from calm.exchange.cbl.problem import Problem, Segment, Terminal
+from calm.exchange.cbl.problem import CableProblem, CableSegment, CableTerminal
 from calm.exchange.cbl.segments import defined, laid
 from calm.exchange.cbl.water import USUAL_GRAVITY, number, value_at, water_of
-from calm.exchange.design import Design, Item, Remark, Tow
+from calm.exchange.design import Design, ImportedPiece, ImportedTow, Remark
 from calm.exchange.refusal import refused
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.quantities import bearing_of
@@ -80,8 +80,8 @@ def read_cbl(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> 
 def _read(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> Design:
     problem = read_problem(path, defines, allow_include=allow_include)
     kind = _kind(problem)
-    ends = [each for each in problem.layout if isinstance(each, Terminal)]
-    segments = [each for each in problem.layout if isinstance(each, Segment)]
+    ends = [each for each in problem.layout if isinstance(each, CableTerminal)]
+    segments = [each for each in problem.layout if isinstance(each, CableSegment)]
     _refuse_other_shapes(problem, kind, ends, segments)
     length = sum(number(segment.values, "length") for segment in segments)
     title = problem.description.get("title")
@@ -97,7 +97,7 @@ def _read(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> Des
     for key, value in (("density", density), ("gravity", gravity)):
         if value < 0.0 or (key == "gravity" and value == 0.0):
             raise refused(path, f"its {key} is {value:g}")
-    makers = Makers(density or CATALOGUE_DENSITY, gravity, design.dropped)
+    makers = ComponentMaker(density or CATALOGUE_DENSITY, gravity, design.dropped)
     items = laid(problem, segments, makers, design)
     if kind == "towing":
         _lay_tow(problem, ends, items, makers, design)
@@ -106,13 +106,13 @@ def _read(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> Des
     return design
 
 
-def _kind(problem: Problem) -> str:
+def _kind(problem: CableProblem) -> str:
     given = problem.description.get("type")
     return given.text.lower() if given else "general"
 
 
 def _refuse_other_shapes(
-    problem: Problem, kind: str, ends: list[Terminal], segments: list[Segment]
+    problem: CableProblem, kind: str, ends: list[CableTerminal], segments: list[CableSegment]
 ) -> None:
     """Refuse all but a single line from an anchor to a float, or from a ship to a body."""
     path = problem.path
@@ -126,7 +126,9 @@ def _refuse_other_shapes(
         raise problem.branch.refuse("a branch: a mooring of several legs is not a single line")
     if len(ends) != 2 or not segments:
         raise refused(path, f"the layout has {len(ends)} terminals and {len(segments)} segments")
-    if not isinstance(problem.layout[0], Terminal) or not isinstance(problem.layout[-1], Terminal):
+    if not isinstance(problem.layout[0], CableTerminal) or not isinstance(
+        problem.layout[-1], CableTerminal
+    ):
         raise refused(path, "the layout must lead from one terminal to the other")
     anchored = ["anchor" in end.values for end in ends]
     if any("node" in end.values for end in ends):
@@ -142,11 +144,11 @@ def _refuse_other_shapes(
 
 
 def _lay_mooring(
-    problem: Problem,
+    problem: CableProblem,
     kind: str,
-    ends: list[Terminal],
-    items: list[Item],
-    makers: Makers,
+    ends: list[CableTerminal],
+    items: list[ImportedPiece],
+    makers: ComponentMaker,
     design: Design,
 ) -> None:
     if "anchor" in ends[1].values:
@@ -165,11 +167,17 @@ def _lay_mooring(
     afloat = kind == "surface" or (
         kind == "general"
         and sum(
-            number(each.values, "length") for each in problem.layout if isinstance(each, Segment)
+            number(each.values, "length")
+            for each in problem.layout
+            if isinstance(each, CableSegment)
         )
         >= 0.97 * design.water.depth
     )
-    design.items = [Item(makers.buoy(buoy, afloat=afloat)), *reversed(items), Item(anchor)]
+    design.items = [
+        ImportedPiece(makers.buoy(buoy, afloat=afloat)),
+        *reversed(items),
+        ImportedPiece(anchor),
+    ]
     friction = number(problem.environment, "bottom-friction")
     if friction > 0.0:
         design.solver["seabed_friction"] = friction, "its bottom-friction"
@@ -177,10 +185,10 @@ def _lay_mooring(
 
 
 def _lay_tow(
-    problem: Problem,
-    ends: list[Terminal],
-    items: list[Item],
-    makers: Makers,
+    problem: CableProblem,
+    ends: list[CableTerminal],
+    items: list[ImportedPiece],
+    makers: ComponentMaker,
     design: Design,
 ) -> None:
     """The line from the ship down; a ship at rest in a current is one that moves against it."""
@@ -203,13 +211,13 @@ def _lay_tow(
     speed = math.hypot(east, north)
     if speed == 0.0:
         raise ship.token.refuse("the ship of this tow does not move")
-    design.tow = Tow(speed, bearing_of(east, north))
+    design.tow = ImportedTow(speed, bearing_of(east, north))
     buoy = defined(problem.buoys, towed, body.token)
-    design.items = [*items[::-1], Item(makers.buoy(buoy, afloat=False))]
+    design.items = [*items[::-1], ImportedPiece(makers.buoy(buoy, afloat=False))]
     _drop_dynamics(ends, design)
 
 
-def _drop_dynamics(ends: list[Terminal], design: Design) -> None:
+def _drop_dynamics(ends: list[CableTerminal], design: Design) -> None:
     known = {"buoy", "platform", "anchor", "mu", "x-speed", "y-speed", "x", "y", "z", *_FORCES}
     for end in ends:
         found = [key for key in end.values if key not in known]

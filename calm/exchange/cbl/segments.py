@@ -4,20 +4,29 @@ from __future__ import annotations
 
 import math
 
-from calm.exchange.cbl.components import Makers, counts_on_depth, varies
-from calm.exchange.cbl.problem import Definition, Problem, Segment, Value
+from calm.exchange.cbl.components import ComponentMaker, counts_on_depth, varies
+from calm.exchange.cbl.problem import CableDefinition, CableProblem, CableSegment, KeyValue
 from calm.exchange.cbl.tokens import Token
 from calm.exchange.cbl.water import number
-from calm.exchange.design import Component, Design, Hung, Item, Remark, Water
+from calm.exchange.design import (
+    Design,
+    ImportedClamp,
+    ImportedComponent,
+    ImportedPiece,
+    ImportedWater,
+    Remark,
+)
 
 _PARTS = 12  # lengths of a segment whose drag changes with depth
 _CHANGE = 0.02  # of a drag that is worth two lengths
 
 
-def laid(problem: Problem, segments: list[Segment], makers: Makers, design: Design) -> list[Item]:
+def laid(
+    problem: CableProblem, segments: list[CableSegment], makers: ComponentMaker, design: Design
+) -> list[ImportedPiece]:
     """The pieces between the ends, from the lower one up."""
     assert design.water is not None
-    items: list[Item] = []
+    items: list[ImportedPiece] = []
     below = 0.0
     seabed = design.water.depth or sum(number(each.values, "length") for each in segments)
     for segment in segments:
@@ -33,18 +42,20 @@ def laid(problem: Problem, segments: list[Segment], makers: Makers, design: Desi
                 design.dropped.append(Remark(f"segment of {material.name}", f"{key}: on a winch"))
         joint = segment.connector
         if joint is not None and joint.text.lower() not in ("pinned", "spliced"):
-            items.append(Item(makers.connector(_named(problem.connectors, joint, "connector"))))
+            items.append(
+                ImportedPiece(makers.connector(_named(problem.connectors, joint, "connector")))
+            )
     return items
 
 
 def _pieces(
-    material: Definition,
+    material: CableDefinition,
     length: float,
     lower: float,
-    clamps: list[tuple[float, Component]],
-    makers: Makers,
-    water: Water,
-) -> list[Item]:
+    clamps: list[tuple[float, ImportedComponent]],
+    makers: ComponentMaker,
+    water: ImportedWater,
+) -> list[ImportedPiece]:
     """A segment as one piece, or as several where its drag changes with depth; lower end first.
 
     Parameters
@@ -53,7 +64,7 @@ def _pieces(
     clamps : height above its lower end [m], and what hangs there
     """
     count = _PARTS if varies(material) else 1
-    made: list[tuple[float, Component]] = []
+    made: list[tuple[float, ImportedComponent]] = []
     for part in range(count):
         depth = max(lower - length * (part + 0.5) / count, 0.0)
         component = makers.material(material, length, depth, _speed(water, depth))
@@ -64,12 +75,12 @@ def _pieces(
     items, start = [], 0.0
     for part_length, component in made:
         guess = "its drag at the depth where it stands upright" if len(made) > 1 else ""
-        item = Item(component, part_length, guess=guess)
+        item = ImportedPiece(component, part_length, guess=guess)
         end = start + part_length
         last = component is made[-1][1]
         for height, hung in clamps:
             if start <= height < end or (last and height >= end):
-                item.clamps.append(Hung(hung, min(max(end - height, 0.0), part_length)))
+                item.clamps.append(ImportedClamp(hung, min(max(end - height, 0.0), part_length)))
         item.clamps.sort(key=lambda clamp: clamp.at)
         items.append(item)
         start = end
@@ -82,7 +93,7 @@ def _pieces(
     return items
 
 
-def _alike(one: Component, other: Component) -> bool:
+def _alike(one: ImportedComponent, other: ImportedComponent) -> bool:
     for key in ("cn", "ct"):
         a, b = float(one.figures[key]), float(other.figures[key])
         if abs(a - b) > _CHANGE * max(abs(a), abs(b)):
@@ -90,7 +101,7 @@ def _alike(one: Component, other: Component) -> bool:
     return True
 
 
-def _speed(water: Water, depth: float) -> float:
+def _speed(water: ImportedWater, depth: float) -> float:
     """Of the current at the level next to a depth [m/s]."""
     if not water.current:
         return 0.0
@@ -99,8 +110,8 @@ def _speed(water: Water, depth: float) -> float:
 
 
 def _clamps(
-    problem: Problem, segment: Segment, length: float, makers: Makers
-) -> list[tuple[float, Component]]:
+    problem: CableProblem, segment: CableSegment, length: float, makers: ComponentMaker
+) -> list[tuple[float, ImportedComponent]]:
     """What hangs on the nodes of a segment, with the height above its lower end."""
     if not segment.attachments:
         return []
@@ -117,7 +128,7 @@ def _clamps(
     return found
 
 
-def _heights(segment: Segment, length: float) -> list[float]:
+def _heights(segment: CableSegment, length: float) -> list[float]:
     """Of the nodes of a segment above its lower end [m]."""
     nodes = segment.values.get("nodes")
     if nodes is None or not nodes.rows or any(len(row) != 2 for row in nodes.rows):
@@ -134,7 +145,9 @@ def _heights(segment: Segment, length: float) -> list[float]:
     return heights
 
 
-def defined(definitions: dict[str, Definition], value: Value | None, token: Token) -> Definition:
+def defined(
+    definitions: dict[str, CableDefinition], value: KeyValue | None, token: Token
+) -> CableDefinition:
     """The definition that a value names, else a problem at the value, or at `token` without one."""
     if value is None or not value.text:
         raise token.refuse("a name is missing: a material, or a buoy")
@@ -144,7 +157,7 @@ def defined(definitions: dict[str, Definition], value: Value | None, token: Toke
     return found
 
 
-def _named(definitions: dict[str, Definition], token: Token, what: str) -> Definition:
+def _named(definitions: dict[str, CableDefinition], token: Token, what: str) -> CableDefinition:
     found = definitions.get(token.text)
     if found is None:
         raise token.refuse(f"the {what} `{token.text}` is defined nowhere")

@@ -22,7 +22,7 @@ _LONGEST = 100_000  # characters of one line once expanded
 
 
 @dataclass(frozen=True)
-class Line:
+class SourceLine:
     """A line of text and where it stands."""
 
     text: str
@@ -49,11 +49,11 @@ class Preprocessor:
     defines: Mapping[str, str] = field(default_factory=dict)
     allow_include: bool = False
     _macros: dict[str, _Macro] = field(default_factory=dict)
-    _lines: list[Line] = field(default_factory=list)
+    _lines: list[SourceLine] = field(default_factory=list)
     _size: int = 0
     _expansions: int = 0
 
-    def read(self, path: Path) -> list[Line]:
+    def read(self, path: Path) -> list[SourceLine]:
         """The lines of a file, and of those it includes.
 
         Raises
@@ -180,7 +180,7 @@ class Preprocessor:
         self._size += len(expanded) + 1
         if self._size > _MOST_TEXT:
             raise refused_at(path, number, 1, "macros and includes make the text too long")
-        self._lines.append(Line(expanded, path, number))
+        self._lines.append(SourceLine(expanded, path, number))
 
     def _expanded(self, text: str, hidden: frozenset[str] = frozenset()) -> str:
         """A text with its macros replaced; quoted texts stay as they are."""

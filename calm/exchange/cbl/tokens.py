@@ -6,12 +6,12 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from calm.exchange.cbl.source import Line
+from calm.exchange.cbl.source import SourceLine
 from calm.exchange.refusal import refused_at
 
 _NUMBER = re.compile(r"(?:\d+\.\d*|\.\d+|\d+)(?:[eE][+-]?\d+)?")
 _KEY = re.compile(r"([A-Za-z_][\w.-]*)[ \t]*=(?!=)")
-_NAME = re.compile(r"[A-Za-z_][\w/.:]*")
+_WORD = re.compile(r"[A-Za-z_][\w/.:]*")
 _QUOTED = re.compile(r"\"([^\"]*)\"|'([^']*)'")
 _SIGN = re.compile(r"&&|\|\||==|!=|<=|>=|<<|>>|[-+*/%<>!~?:|^&(){}\[\],]")
 
@@ -36,7 +36,7 @@ class Token:
         return refused_at(self.path, self.line, self.column, message)
 
 
-def tokens_of(lines: Iterable[Line]) -> Iterator[Token]:
+def tokens_of(lines: Iterable[SourceLine]) -> Iterator[Token]:
     """The words of the lines, and an ``end``.
 
     Raises
@@ -44,14 +44,14 @@ def tokens_of(lines: Iterable[Line]) -> Iterator[Token]:
     InputError
         A sign that has no place in such a file.
     """
-    last = Line("", "", 0)
+    last = SourceLine("", "", 0)
     for line in lines:
         yield from _words(line)
         last = line
     yield Token("end", "the end", last.path, last.number, 1)
 
 
-def _words(line: Line) -> Iterator[Token]:
+def _words(line: SourceLine) -> Iterator[Token]:
     text, at = line.text, 0
     while at < len(text):
         if text[at].isspace():
@@ -64,7 +64,7 @@ def _words(line: Line) -> Iterator[Token]:
             yield Token("text", found[1] if found[1] is not None else found[2], *place)
         elif found := _NUMBER.match(text, at):
             yield Token("number", found[0], *place, number=float(found[0]))
-        elif found := _NAME.match(text, at):
+        elif found := _WORD.match(text, at):
             name = found[0].rstrip(":")  # of a list: `meter: (3 5)`
             yield Token("name", name, *place)
             at += len(name)

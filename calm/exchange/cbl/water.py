@@ -8,8 +8,8 @@ from itertools import pairwise
 from pathlib import Path
 
 from calm.exchange.cbl.currents import GriddedCurrent, gridded_current
-from calm.exchange.cbl.problem import Value, Values
-from calm.exchange.design import Remark, Water
+from calm.exchange.cbl.problem import KeyValue, KeyValues
+from calm.exchange.design import ImportedWater, Remark
 from calm.quantities import bearing_of
 
 USUAL_GRAVITY = 9.81
@@ -23,20 +23,20 @@ _DYNAMICS = ("forcing-method", "input-type", "velocity-file", "force-file")
 _SEABED = ("bottom-stiffness", "bottom-damping", "bottom-elevation")
 
 
-def number(values: Values, key: str, default: float = 0.0) -> float:
+def number(values: KeyValues, key: str, default: float = 0.0) -> float:
     """A number of a section; it may depend on the time, which is 0."""
     value = values.get(key)
     return default if value is None else value.number(t=0.0)
 
 
 def water_of(
-    environment: Values,
+    environment: KeyValues,
     deepest: float,
     dropped: list[Remark],
     *,
     folder: Path,
     allow_include: bool,
-) -> Water:
+) -> ImportedWater:
     """Depth, density, gravity, current and wind.
 
     Parameters
@@ -46,7 +46,7 @@ def water_of(
     allow_include : whether they may stand elsewhere
     """
     depth = number(environment, "depth")
-    water = Water(depth if depth > 0.0 else None)
+    water = ImportedWater(depth if depth > 0.0 else None)
     water.density = number(environment, "rho") or number(environment, "density") or None
     water.gravity = number(environment, "gravity", USUAL_GRAVITY)
     if "gravity" not in environment:
@@ -72,7 +72,7 @@ def water_of(
 
 
 def _current(
-    environment: Values, gridded: GriddedCurrent | None, deepest: float
+    environment: KeyValues, gridded: GriddedCurrent | None, deepest: float
 ) -> tuple[tuple[float, float, float, float], ...]:
     """Rows of depth, and speed to the east (x), to the north (y) and up (z), at the time 0."""
     axes = [_profile(environment, axis, gridded) for axis in "xyz"]
@@ -101,7 +101,7 @@ _Profile = tuple[Callable[[float], float], list[float]]
 """A speed by depth, and the depths between which it is linear."""
 
 
-def _profile(environment: Values, axis: str, gridded: GriddedCurrent | None) -> _Profile | None:
+def _profile(environment: KeyValues, axis: str, gridded: GriddedCurrent | None) -> _Profile | None:
     scale = number(environment, f"{axis}-current-scale", 1.0)
     if scale == 1.0:
         scale = number(environment, "current-scale", 1.0)
@@ -120,7 +120,7 @@ def _profile(environment: Values, axis: str, gridded: GriddedCurrent | None) -> 
     return (lambda depth: scale * value_at(value, depth)), knots
 
 
-def value_at(value: Value, depth: float) -> float:
+def value_at(value: KeyValue, depth: float) -> float:
     """A formula or a table at a depth (or whatever it counts on), lines prolonged at both ends."""
     if not value.rows:
         return value.number(H=depth, h=depth, t=0.0)

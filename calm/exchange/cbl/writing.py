@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from math import cos, pi, radians, sin, sqrt
 
 from calm.exchange.cbl.floats import buoy_figures
-from calm.exchange.parts import Assembled, Part, area, mass_of, remarks
+from calm.exchange.parts import ExportedLine, ExportedPart, area, mass_of, remarks
 from calm.exchange.words import is_chain
 from calm.files import Chain
 
@@ -26,7 +26,7 @@ class _Load:
     mass: float = 0.0
     area: float = 0.0
 
-    def add(self, part: Part, density: float) -> None:
+    def add(self, part: ExportedPart, density: float) -> None:
         """Add what a part does at this point, in water of a density [kg/m³]."""
         self.names.append(part.use)
         self.net += part.net
@@ -59,7 +59,7 @@ class _Problem:
             f"    segment = {{ length = {length:.10g}  material = {name}  nodes = ({count}, 1.0) }}"
         )
 
-    def at_a_point(self, part: Part) -> None:
+    def at_a_point(self, part: ExportedPart) -> None:
         """Add a load at the point that the line has reached."""
         if self.load is None:
             self.load = _Load()
@@ -80,7 +80,7 @@ class _Problem:
         self.layout.append(f"    connector = {name}")
 
 
-def cbl_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
+def cbl_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
     """The content of the file, and what it cannot hold."""
     lost: list[str] = []
     density = sum(row[4] for row in design.levels) / len(design.levels)
@@ -125,7 +125,7 @@ def cbl_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
     return f"/* {comment} */\n{text}".encode(), losses
 
 
-def _lay(problem: _Problem, part: Part, lost: list[str]) -> None:
+def _lay(problem: _Problem, part: ExportedPart, lost: list[str]) -> None:
     """A part, from its lower end up."""
     if part.flexible or (part.directional and part.length > 0.0):
         name = _material(problem, part)
@@ -157,7 +157,7 @@ def _link(problem: _Problem) -> str:
     return _keep(problem.materials, "link", figures)
 
 
-def _material(problem: _Problem, part: Part) -> str:
+def _material(problem: _Problem, part: ExportedPart) -> str:
     """The material of a cable, a chain or a cylinder, per metre."""
     per = 1.0 if part.flexible else part.length
     wet, across = 0.0 - part.net / per, part.diameter or area(part) / per
@@ -190,7 +190,9 @@ def _word(text: str) -> str:
     return word if word[:1].isalpha() else f"n_{word}"
 
 
-def _text(design: Assembled, problem: _Problem, buoy: str, density: float, floating: bool) -> str:
+def _text(
+    design: ExportedLine, problem: _Problem, buoy: str, density: float, floating: bool
+) -> str:
     kind = "towing" if design.tow else "surface" if floating else "subsurface"
     lines = [
         "Problem Description",
@@ -234,7 +236,7 @@ def _text(design: Assembled, problem: _Problem, buoy: str, density: float, float
     return "\n".join(lines)
 
 
-def _wind(design: Assembled) -> list[str]:
+def _wind(design: ExportedLine) -> list[str]:
     speed, toward = design.wind
     if not speed:
         return []
@@ -242,7 +244,7 @@ def _wind(design: Assembled) -> list[str]:
     return [f"    x-wind = {east:.9g}   y-wind = {north:.9g}"]
 
 
-def _ends(design: Assembled, layout: list[str]) -> list[str]:
+def _ends(design: ExportedLine, layout: list[str]) -> list[str]:
     if design.tow is None:
         assert design.anchor is not None
         height = design.anchor[0].length

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from calm.exchange.design import MOST_PIECES
-from calm.exchange.mdd.value import Floats, Value, names, numbers
+from calm.exchange.mdd.value import MatValue, RealArray, names, numbers
 
 
 @dataclass(frozen=True)
-class Element:
+class MddElement:
     """One column of ``H``, and the figures that go with it.
 
     Attributes
@@ -52,7 +52,9 @@ MODULI = (1.38e11, 3.45e8, 8.0e8, 3.45e8, 6.9e8, 6.9e10, 7.6e10, 1.0e11)
 polyethylene, Kevlar, aluminium, Dyneema [Pa]."""
 
 
-def read_elements(variables: Mapping[str, Value], suffix: str) -> tuple[list[Element], list[str]]:
+def read_elements(
+    variables: Mapping[str, MatValue], suffix: str
+) -> tuple[list[MddElement], list[str]]:
     """The elements of a line in the order of the file, and what is wrong with them.
 
     Parameters
@@ -76,7 +78,7 @@ def read_elements(variables: Mapping[str, Value], suffix: str) -> tuple[list[Ele
     for i in range(count):
         length, width, diameter, flag = (float(value) for value in size[:, i])
         elements.append(
-            Element(
+            MddElement(
                 name=called[i],
                 length=length,
                 width=width,
@@ -94,7 +96,7 @@ def read_elements(variables: Mapping[str, Value], suffix: str) -> tuple[list[Ele
     return elements, problems
 
 
-def mistakes_of(element: Element, where: str) -> list[str]:
+def mistakes_of(element: MddElement, where: str) -> list[str]:
     """The figures of an element that no piece of a mooring can have."""
     sizes = {
         "length": element.length, "width": element.width, "diameter": element.diameter,
@@ -110,7 +112,7 @@ def mistakes_of(element: Element, where: str) -> list[str]:
     return wrong
 
 
-def _matrix(variables: Mapping[str, Value], name: str, problems: list[str]) -> Floats:
+def _matrix(variables: Mapping[str, MatValue], name: str, problems: list[str]) -> RealArray:
     """``H``: four rows, one column an element; the flag is 0 where a row is missing."""
     try:
         size = numbers(variables.get(name))
@@ -129,7 +131,9 @@ def _matrix(variables: Mapping[str, Value], name: str, problems: list[str]) -> F
     return size if size.shape[0] == 4 else np.vstack([size, np.zeros(size.shape[1])])
 
 
-def _row(variables: Mapping[str, Value], name: str, count: int, problems: list[str]) -> Floats:
+def _row(
+    variables: Mapping[str, MatValue], name: str, count: int, problems: list[str]
+) -> RealArray:
     try:
         row = numbers(variables.get(name)).ravel()
     except ValueError as error:
@@ -141,14 +145,14 @@ def _row(variables: Mapping[str, Value], name: str, count: int, problems: list[s
     return row
 
 
-def _optional(variables: Mapping[str, Value], name: str) -> Floats:
+def _optional(variables: Mapping[str, MatValue], name: str) -> RealArray:
     try:
         return numbers(variables.get(name)).ravel()
     except ValueError:
         return np.zeros(0)
 
 
-def _names(variables: Mapping[str, Value], name: str, count: int) -> list[str]:
+def _names(variables: Mapping[str, MatValue], name: str, count: int) -> list[str]:
     """A name for every element, also where the file has none."""
     value = variables.get(name)
     found = names(value) if value is not None else []

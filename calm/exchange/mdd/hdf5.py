@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from calm.exchange.mdd.octave import spread
-from calm.exchange.mdd.value import Value, fits
+from calm.exchange.mdd.value import MatValue, fits
 
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _TEXTS = ("char", "string", "sq_string")
@@ -21,7 +21,7 @@ def is_hdf5(content: bytes) -> bool:
     return _SIGNATURE in (content[:8], content[512:520])
 
 
-def read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, Value]:
+def read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
     """The wanted variables that a file has; links to other files are not followed.
 
     Raises
@@ -31,7 +31,7 @@ def read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, Value]:
     """
     import h5py
 
-    found: dict[str, Value] = {}
+    found: dict[str, MatValue] = {}
     with h5py.File(io.BytesIO(content), "r") as file:
         for name in wanted:
             if isinstance(file.get(name, getlink=True), h5py.HardLink):
@@ -39,7 +39,7 @@ def read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, Value]:
     return found
 
 
-def _variable(file: Any, node: Any, depth: int) -> Value:
+def _variable(file: Any, node: Any, depth: int) -> MatValue:
     """A dataset, as MATLAB writes it, or one of Octave's, which are in groups."""
     import h5py
 
@@ -61,7 +61,7 @@ def _number(key: str) -> int:
     return int(key[1:])
 
 
-def _values(file: Any, node: Any, kind: str, depth: int) -> Value:
+def _values(file: Any, node: Any, kind: str, depth: int) -> MatValue:
     """The values of a dataset; HDF5 has the dimensions in reverse order."""
     import h5py
 

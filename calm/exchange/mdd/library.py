@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from calm.exchange.mdd.matfile import read_variables
-from calm.exchange.mdd.value import Value, names, numbers
+from calm.exchange.mdd.value import MatValue, names, numbers
 from calm.exchange.refusal import refused
 
 GROUPS = ("floats", "wires", "chains", "acrels", "cms", "anchors", "miscs")
@@ -21,7 +21,7 @@ _METRE = 100.0  # cm: the length of a line whose figures are those of a metre
 
 
 @dataclass(frozen=True)
-class Entry:
+class MddEntry:
     """An element: net buoyancy [kg, of a line per metre], sizes [m], Cd and number of material."""
 
     name: str
@@ -34,7 +34,7 @@ class Entry:
     material: float
 
 
-def read_entries(path: Path) -> list[Entry]:
+def read_entries(path: Path) -> list[MddEntry]:
     """The elements of a file such as `mdcodes.mat`.
 
     Raises
@@ -54,7 +54,7 @@ def read_entries(path: Path) -> list[Entry]:
     return entries
 
 
-def _width(variables: Mapping[str, Value]) -> int:
+def _width(variables: Mapping[str, MatValue]) -> int:
     """Bytes of a name: `format` has the columns of the name and of each figure."""
     try:
         columns = numbers(variables.get("format"))
@@ -63,7 +63,7 @@ def _width(variables: Mapping[str, Value]) -> int:
     return int(columns[0, -1]) if columns.ndim == 2 and 0 < columns.size <= 100 else _NAME
 
 
-def _entry(text: str, group: str, end: int) -> Entry | None:
+def _entry(text: str, group: str, end: int) -> MddEntry | None:
     """An element of a row; None for a row that cannot be read."""
     content = text.encode()
     try:
@@ -73,7 +73,7 @@ def _entry(text: str, group: str, end: int) -> Entry | None:
     if len(figures) not in _FIGURES:
         return None
     length, width, diameter, cd, material = figures[-5:]
-    return Entry(
+    return MddEntry(
         name=content[:end].decode("utf-8", "replace").strip(),
         is_line=group in _LINES and length == _METRE,
         lift=figures[0],

@@ -15,7 +15,7 @@ import numpy as np
 
 from calm.exchange.mdd.hdf5 import is_hdf5, read_hdf5
 from calm.exchange.mdd.octave import is_octave_text, read_octave_text
-from calm.exchange.mdd.value import Value, fits
+from calm.exchange.mdd.value import MatValue, fits
 from calm.exchange.refusal import refused
 from calm.files.document import read_content
 
@@ -27,7 +27,7 @@ _OCTAVE_BINARY = b"Octave-1-"
 _HEAD = 70_000  # bytes by which a compressed file is recognised
 
 
-def read_variables(path: Path, wanted: Collection[str]) -> dict[str, Value]:
+def read_variables(path: Path, wanted: Collection[str]) -> dict[str, MatValue]:
     """The wanted variables that a file has.
 
     Raises
@@ -86,7 +86,7 @@ def _is_version_4(content: bytes) -> bool:
     return False
 
 
-def _matlab(content: bytes, wanted: Collection[str]) -> dict[str, Value]:
+def _matlab(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
     from scipy.io import loadmat, whosmat
 
     names = [name for name, shape, _ in whosmat(io.BytesIO(content)) if fits(name, shape)]

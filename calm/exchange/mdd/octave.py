@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from calm.exchange.mdd.value import MOST, Value
+from calm.exchange.mdd.value import MOST, MatValue
 
 _CELL = "<cell-element>"
 
@@ -17,7 +17,7 @@ def is_octave_text(content: bytes) -> bool:
     return b"\0" not in start and start.lstrip().startswith(b"#") and b"# name:" in content[:65536]
 
 
-def read_octave_text(text: str) -> dict[str, Value]:
+def read_octave_text(text: str) -> dict[str, MatValue]:
     """Every variable that can be read; the others are left out.
 
     Raises
@@ -25,8 +25,8 @@ def read_octave_text(text: str) -> dict[str, Value]:
     ValueError
         A matrix has fewer numbers than its header says, or a header cannot be read.
     """
-    variables: dict[str, Value] = {}
-    cell: list[Value] | None = None
+    variables: dict[str, MatValue] = {}
+    cell: list[MatValue] | None = None
     for name, header, rows in _blocks(text.splitlines()):
         kind = header.get("type", "").removeprefix("global ").strip()
         value = _value(name, kind, header, rows)
@@ -70,7 +70,7 @@ def _header(line: str) -> tuple[str, str]:
     return key.strip().lower(), value.strip()
 
 
-def _value(name: str, kind: str, header: dict[str, str], rows: list[str]) -> Value | None:
+def _value(name: str, kind: str, header: dict[str, str], rows: list[str]) -> MatValue | None:
     if kind in ("string", "sq_string"):
         return _texts(rows)
     if kind == "cell" or not kind:
@@ -100,7 +100,7 @@ def _value(name: str, kind: str, header: dict[str, str], rows: list[str]) -> Val
     return _shaped(name, array, [size or 0 for size in stated], order="C")
 
 
-def spread(name: str, first: float, last: float, step: float) -> Value:
+def spread(name: str, first: float, last: float, step: float) -> MatValue:
     """The numbers of a range, the last included where a step ends at it.
 
     Raises
@@ -118,7 +118,7 @@ def _whole(text: str) -> int | None:
     return int(text) if text.isdigit() else None
 
 
-def _shaped(name: str, array: Value, shape: list[int], *, order: str) -> Value:
+def _shaped(name: str, array: MatValue, shape: list[int], *, order: str) -> MatValue:
     assert isinstance(array, np.ndarray)
     if int(np.prod(shape)) != array.size:
         size = "×".join(str(length) for length in shape)
@@ -126,9 +126,9 @@ def _shaped(name: str, array: Value, shape: list[int], *, order: str) -> Value:
     return array.reshape(shape, order="F" if order == "F" else "C")
 
 
-def _texts(rows: list[str]) -> list[Value]:
+def _texts(rows: list[str]) -> list[MatValue]:
     """The rows of a character matrix: each line after its length."""
-    texts: list[Value] = []
+    texts: list[MatValue] = []
     for i, row in enumerate(rows):
         if _header(row)[0] == "length":
             behind = rows[i + 1] if i + 1 < len(rows) else ""

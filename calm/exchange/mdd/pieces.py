@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 import re
 
-from calm.exchange.design import Component, Figure
-from calm.exchange.mdd.elements import Element
+from calm.exchange.design import FigureOrWord, ImportedComponent
+from calm.exchange.mdd.elements import MddElement
 from calm.exchange.words import is_chain, role_of
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
@@ -17,12 +17,12 @@ _SOFT = 1e10  # Pa: the modulus of a rope is below, of a wire above
 _HARD = re.compile(r"\bwire|\bchain|\bsteel", re.I)
 
 
-def component_of(element: Element) -> Component:
+def component_of(element: MddElement) -> ImportedComponent:
     """The definition of an element that is not the anchor."""
     return _flexible(element) if element.is_line else rigid(element)
 
 
-def rigid(element: Element) -> Component:
+def rigid(element: MddElement) -> ImportedComponent:
     """The definition of a rigid element, or of one clamped on.
 
     That program takes an element with a diameter for a sphere of that diameter, whatever its
@@ -31,7 +31,7 @@ def rigid(element: Element) -> Component:
     """
     lift = element.lift * KILOGRAM_FORCE
     role = role_of(element.name, lift, fastener=element.is_fastener)
-    figures: dict[str, Figure]
+    figures: dict[str, FigureOrWord]
     if element.diameter > 0.0:
         kind = "sphere"
         figures = {"diameter": element.diameter, "length": element.length, "cx": element.cd}
@@ -44,7 +44,7 @@ def rigid(element: Element) -> Component:
     figures["buoyancy"] = lift
     if lift > 0.0 and element.mass is not None:
         figures["mass"] = element.mass
-    component = Component(element.name, kind, {**figures, "role": role})
+    component = ImportedComponent(element.name, kind, {**figures, "role": role})
     if kind == "body":
         component.comment = "The file gives it no size, so that it has no drag."
     elif _is_too_small(element):
@@ -55,7 +55,7 @@ def rigid(element: Element) -> Component:
     return component
 
 
-def rides_by_buoyancy(component: Component) -> None:
+def rides_by_buoyancy(component: ImportedComponent) -> None:
     """Let a float ride as in that program: its draft and drag follow the buoyancy it uses.
 
     Its hull displaces, in proportion to the draft, no more than its net buoyancy needs.
@@ -76,7 +76,7 @@ def rides_by_buoyancy(component: Component) -> None:
     component.comment = "At the surface it sinks, and drags, in proportion to the buoyancy it uses."
 
 
-def _is_too_small(element: Element) -> bool:
+def _is_too_small(element: MddElement) -> bool:
     """Whether a float of this size cannot displace enough water for its buoyancy."""
     if element.diameter > 0.0:
         volume = math.pi * element.diameter**2 * max(element.diameter / 6.0, element.length / 4.0)
@@ -85,12 +85,12 @@ def _is_too_small(element: Element) -> bool:
     return element.lift > CATALOGUE_DENSITY * volume
 
 
-def _flexible(element: Element) -> Component:
+def _flexible(element: MddElement) -> ImportedComponent:
     """The definition of a wire, rope or chain: its Cd is of its width, without drag along it."""
     chain = is_chain(element.name)
-    figures: dict[str, Figure] = {"diameter": element.across, "cn": element.cd, "ct": 0.0}
+    figures: dict[str, FigureOrWord] = {"diameter": element.across, "cn": element.cd, "ct": 0.0}
     weight = 0.0 - element.lift * KILOGRAM_FORCE
-    component = Component(element.name, "chain" if chain else "cable", figures)
+    component = ImportedComponent(element.name, "chain" if chain else "cable", figures)
     if weight < 0.0 and not chain:
         figures["buoyancy"] = -weight
     else:
@@ -113,10 +113,10 @@ def _flexible(element: Element) -> Component:
     return component
 
 
-def anchor_of(element: Element) -> Component:
+def anchor_of(element: MddElement) -> ImportedComponent:
     """The definition of the lowest element; files give its weight with either sign."""
-    figures: dict[str, Figure] = {
+    figures: dict[str, FigureOrWord] = {
         "weight": abs(element.lift) * KILOGRAM_FORCE,
         "length": element.length,
     }
-    return Component(element.name, "anchor", figures)
+    return ImportedComponent(element.name, "anchor", figures)

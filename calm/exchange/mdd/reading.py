@@ -6,12 +6,12 @@ import math
 from collections.abc import Mapping
 from pathlib import Path
 
-from calm.exchange.design import Design, Hung, Item, Remark, Tow
-from calm.exchange.mdd.elements import Element, read_elements
+from calm.exchange.design import Design, ImportedClamp, ImportedPiece, ImportedTow, Remark
+from calm.exchange.mdd.elements import MddElement, read_elements
 from calm.exchange.mdd.library import GROUPS
 from calm.exchange.mdd.matfile import read_variables
 from calm.exchange.mdd.pieces import anchor_of, component_of, rides_by_buoyancy, rigid
-from calm.exchange.mdd.value import Value, numbers
+from calm.exchange.mdd.value import MatValue, numbers
 from calm.exchange.mdd.water import read_water
 from calm.exchange.refusal import refused
 from calm.quantities import bearing_of
@@ -74,7 +74,7 @@ def read_mdd(path: Path) -> Design:
     return design
 
 
-def _flat(value: Value) -> list[float]:
+def _flat(value: MatValue) -> list[float]:
     try:
         return [float(each) for each in numbers(value).ravel()]
     except ValueError:
@@ -82,20 +82,20 @@ def _flat(value: Value) -> list[float]:
 
 
 def _lay_mooring(
-    design: Design, elements: list[Element], variables: Mapping[str, Value], path: Path
+    design: Design, elements: list[MddElement], variables: Mapping[str, MatValue], path: Path
 ) -> None:
     last = elements[-1]
     if last.is_line or len(elements) < 2 or last.lift == 0.0:
         raise refused(path, f"element {last.number}, {last.name}, is not an anchor with a weight")
     design.items = [_item(element) for element in elements[:-1]]
-    design.items.append(Item(anchor_of(last)))
+    design.items.append(ImportedPiece(anchor_of(last)))
     depth = design.water.depth if design.water is not None else None
     if depth is None or _STRETCHED * sum(_length(item) for item in design.items) >= depth:
         rides_by_buoyancy(design.items[0].component)
 
 
 def _lay_tow(
-    design: Design, elements: list[Element], variables: Mapping[str, Value], path: Path
+    design: Design, elements: list[MddElement], variables: Mapping[str, MatValue], path: Path
 ) -> None:
     """Lay a tow: the file runs from the body up, and ends with a mark for the ship."""
     end = elements[-1]
@@ -106,20 +106,24 @@ def _lay_tow(
     speed = math.hypot(east, north)
     if speed == 0.0:
         raise refused(path, "the ship of this tow does not move (`Usp`, `Vsp`)")
-    design.tow = Tow(speed, bearing_of(east, north))
+    design.tow = ImportedTow(speed, bearing_of(east, north))
     height = next(iter(_flat(variables.get("afh", []))), 0.0)
     if height > 0.0:
         what = f"an A-frame of {height:g} m is only drawn: the wire counts from the water"
         design.dropped.append(Remark("afh", what))
 
 
-def _item(element: Element) -> Item:
+def _item(element: MddElement) -> ImportedPiece:
     component = component_of(element)
-    return Item(component, element.length if element.is_line else None)
+    return ImportedPiece(component, element.length if element.is_line else None)
 
 
 def _clamp(
-    design: Design, hung: list[Element], variables: Mapping[str, Value], towed: bool, path: Path
+    design: Design,
+    hung: list[MddElement],
+    variables: Mapping[str, MatValue],
+    towed: bool,
+    path: Path,
 ) -> None:
     """Hang what is clamped on: by element and share of its length, counted from its lower end."""
     if not hung:
@@ -146,12 +150,12 @@ def _clamp(
             guess = f"`ZCO` has it at {height[i]:g} m, elsewhere than `Jobj` and `Pobj`"
         elif not by_share:
             guess = "from its height alone"
-        design.items[number].clamps.append(Hung(rigid(element), at, guess))
+        design.items[number].clamps.append(ImportedClamp(rigid(element), at, guess))
     for item in design.items:
         item.clamps.sort(key=lambda clamp: clamp.at)
 
 
-def _length(item: Item) -> float:
+def _length(item: ImportedPiece) -> float:
     if item.length is not None:
         return item.length
     length = item.component.figures.get("length", 0.0)
@@ -159,7 +163,7 @@ def _length(item: Item) -> float:
 
 
 def _by_share(
-    items: list[Item], host: float, share: float, towed: bool
+    items: list[ImportedPiece], host: float, share: float, towed: bool
 ) -> tuple[int, float] | None:
     """The piece that an element became, and how far below its upper end a share of it is."""
     number = round(host) - 1
@@ -172,7 +176,7 @@ def _by_share(
     return number, min(max((1.0 - share) * length, 0.0), length)
 
 
-def _by_height(items: list[Item], height: float, towed: bool) -> tuple[int, float] | None:
+def _by_height(items: list[ImportedPiece], height: float, towed: bool) -> tuple[int, float] | None:
     """The piece at a height above the seabed (in a tow above the lower end of the body)."""
     below = 0.0
     for number in range(len(items) - 1, -1, -1):

@@ -8,16 +8,16 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-Value: TypeAlias = "NDArray[Any] | str | list[Value]"
+MatValue: TypeAlias = "NDArray[Any] | str | list[MatValue]"
 """A variable: numbers or characters, a text, or the elements of a cell array."""
 
 MOST = 20_000_000
 """Most elements of a variable."""
 
-Floats = NDArray[np.float64]
+RealArray = NDArray[np.float64]
 
 
-def numbers(value: Value | None) -> Floats:
+def numbers(value: MatValue | None) -> RealArray:
     """A variable as numbers; an empty array where there is none.
 
     Raises
@@ -47,7 +47,7 @@ def fits(name: str, shape: tuple[int, ...]) -> bool:
     return True
 
 
-def names(value: Value | None) -> list[str]:
+def names(value: MatValue | None) -> list[str]:
     """A variable as texts: a character matrix, a cell array, or codes of characters."""
     if value is None:
         return []
@@ -67,7 +67,7 @@ def names(value: Value | None) -> list[str]:
     return ["".join(_sign(code) for code in row).strip() for row in rows]
 
 
-def _inner(value: object) -> Value:
+def _inner(value: object) -> MatValue:
     return value if isinstance(value, (np.ndarray, str, list)) else str(value)
 
 

@@ -6,16 +6,16 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from calm.exchange.design import Record, Remark, Water
-from calm.exchange.mdd.value import Floats, Value, numbers
+from calm.exchange.design import CurrentRecord, ImportedWater, Remark
+from calm.exchange.mdd.value import MatValue, RealArray, numbers
 
 _MATLAB_EPOCH = 719529.0  # datenum of 1 January 1970
 _EARLIEST, _LATEST = 500_000.0, 1_000_000.0  # datenums that are dates of this age
 
 
 def read_water(
-    variables: Mapping[str, Value], towed: bool, guessed: list[Remark]
-) -> tuple[Water | None, Record | None]:
+    variables: Mapping[str, MatValue], towed: bool, guessed: list[Remark]
+) -> tuple[ImportedWater | None, CurrentRecord | None]:
     """The environment of a file, None where it has none; the record, where it has several profiles.
 
     In a mooring `z` is the height above the seabed and its greatest the depth of the water, in a
@@ -49,7 +49,7 @@ def read_water(
     depth = depth if towed else depth[order]
     u, v, w = u[order], v[order], w[order]
     keep = np.append(True, np.diff(depth) > 0.0)
-    water = Water(None if towed else seabed)
+    water = ImportedWater(None if towed else seabed)
     if density.size:
         rows = list(zip(depth[keep].tolist(), density[order][keep].tolist(), strict=True))
         alike = all(row[1] == rows[0][1] for row in rows)
@@ -60,17 +60,17 @@ def read_water(
     if times == 1:
         return water, None
     days, epoch = _days(_numbers(variables, "time").ravel(), times, guessed)
-    return water, Record(days, epoch, depth[keep], u[keep].T, v[keep].T, w[keep].T)
+    return water, CurrentRecord(days, epoch, depth[keep], u[keep].T, v[keep].T, w[keep].T)
 
 
-def _numbers(variables: Mapping[str, Value], name: str) -> Floats:
+def _numbers(variables: Mapping[str, MatValue], name: str) -> RealArray:
     try:
         return numbers(variables.get(name))
     except ValueError as error:
         raise ValueError(f"`{name}` {error}") from None
 
 
-def _profiles(variables: Mapping[str, Value], name: str, levels: int) -> Floats | None:
+def _profiles(variables: Mapping[str, MatValue], name: str, levels: int) -> RealArray | None:
     """Speeds by level and time: one profile lies down or stands, several have a row a level."""
     values = _numbers(variables, name)
     if values.size == 0:
@@ -84,7 +84,7 @@ def _profiles(variables: Mapping[str, Value], name: str, levels: int) -> Floats 
     raise ValueError(f"`{name}` is {shape} for {levels} values of `z`")
 
 
-def _filled(values: Floats | None, name: str, levels: int, times: int) -> Floats:
+def _filled(values: RealArray | None, name: str, levels: int, times: int) -> RealArray:
     if values is None:
         return np.zeros((levels, times))
     if values.shape[1] not in (1, times):
@@ -94,7 +94,7 @@ def _filled(values: Floats | None, name: str, levels: int, times: int) -> Floats
     return np.broadcast_to(values, (levels, times))
 
 
-def _days(time: Floats, times: int, guessed: list[Remark]) -> tuple[Floats, str]:
+def _days(time: RealArray, times: int, guessed: list[Remark]) -> tuple[RealArray, str]:
     """Days, and the date from which they count."""
     if time.size != times:
         guessed.append(Remark("record.time", "an hour between profiles, from 2000-01-01"))

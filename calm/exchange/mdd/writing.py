@@ -7,7 +7,7 @@ from math import cos, pi, radians, sin, sqrt
 
 import numpy as np
 
-from calm.exchange.parts import Assembled, Part, area, remarks
+from calm.exchange.parts import ExportedLine, ExportedPart, area, remarks
 from calm.files import Chain, Cylinder, Sphere
 from calm.physics.reference import REFERENCE_DENSITY
 from calm.units import KILOGRAM_FORCE
@@ -17,7 +17,7 @@ _LONGEST = 32  # characters of a name
 _LEAST_USED = 1e-3  # share of the buoyancy, for a float that hardly any is used of
 
 
-def mdd_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
+def mdd_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
     """The content of the file, MATLAB 5, and what it cannot hold."""
     from scipy.io import savemat
 
@@ -71,7 +71,7 @@ def mdd_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
     return content.getvalue(), losses
 
 
-def _element(part: Part, lost: list[str]) -> tuple[float, ...]:
+def _element(part: ExportedPart, lost: list[str]) -> tuple[float, ...]:
     """Length, width, diameter, flag, buoyancy [kg], Cd, modulus and mass of a column."""
     lift = part.net / KILOGRAM_FORCE
     if part.flexible:
@@ -86,7 +86,7 @@ def _element(part: Part, lost: list[str]) -> tuple[float, ...]:
     return part.length, width, diameter, flag, lift, drag, np.inf, mass
 
 
-def _size(part: Part, lost: list[str]) -> tuple[float, float, float]:
+def _size(part: ExportedPart, lost: list[str]) -> tuple[float, float, float]:
     """Width, diameter and Cd with which an element drags as the rigid part does."""
     component = part.component
     if part.kn == 0.0:
@@ -106,7 +106,7 @@ def _size(part: Part, lost: list[str]) -> tuple[float, float, float]:
     return 0.0, sqrt(4.0 * area(part) / pi), 1.0
 
 
-def _water(design: Assembled) -> dict[str, object]:
+def _water(design: ExportedLine) -> dict[str, object]:
     """Levels as heights above the seabed, in a tow as depths; columns."""
     depth, u, v, w, density = np.array(design.levels).T
     heights = depth if design.tow is not None else design.depth - depth
@@ -114,7 +114,7 @@ def _water(design: Assembled) -> dict[str, object]:
     return {name: values.reshape(-1, 1) for name, values in columns.items()}
 
 
-def _clamps(design: Assembled, lost: list[str]) -> dict[str, object]:
+def _clamps(design: ExportedLine, lost: list[str]) -> dict[str, object]:
     """What is clamped on, from the top down: element, share of its length from its lower end."""
     rows, names, places = [], [], []
     count = len(design.parts)
@@ -145,7 +145,7 @@ def _clamps(design: Assembled, lost: list[str]) -> dict[str, object]:
     }
 
 
-def _name(part: Part) -> str:
+def _name(part: ExportedPart) -> str:
     """Its id; that of a chain with the word "chain", by which it is recognised."""
     name = part.use
     if isinstance(part.component, Chain) and "chain" not in name:

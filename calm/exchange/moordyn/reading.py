@@ -5,8 +5,16 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from calm.exchange.design import MOST_PIECES, Component, Design, Figure, Item, Remark, Water
-from calm.exchange.moordyn.sections import Row, Sections, read_sections
+from calm.exchange.design import (
+    MOST_PIECES,
+    Design,
+    FigureOrWord,
+    ImportedComponent,
+    ImportedPiece,
+    ImportedWater,
+    Remark,
+)
+from calm.exchange.moordyn.sections import MoorDynSections, SectionRow, read_sections
 from calm.exchange.refusal import refused
 from calm.exchange.words import is_chain
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
@@ -55,17 +63,19 @@ def read_moordyn(path: Path) -> Design:
         length = line.number("length")
         if length <= 0.0:
             raise line.refuse("a line has no length")
-        items.append(Item(_cable(kind, gravity), length))
+        items.append(ImportedPiece(_cable(kind, gravity), length))
     design.items = [_upper_end(_last(points, way), items, design), *items[::-1]]
-    design.items.append(Item(_anchor(anchor, design.water)))
+    design.items.append(ImportedPiece(_anchor(anchor, design.water)))
     what = "damping, stiffness in bending, added mass"
     design.dropped.append(Remark("line types", what))
     return design
 
 
-def _way(points: dict[str, Row], lines: list[Row], path: Path) -> list[tuple[Row, Row]]:
+def _way(
+    points: dict[str, SectionRow], lines: list[SectionRow], path: Path
+) -> list[tuple[SectionRow, SectionRow]]:
     """The lines in order from the anchor up, each with the point at its lower end."""
-    at: dict[str, list[Row]] = {}
+    at: dict[str, list[SectionRow]] = {}
     for line in lines:
         for end in ("a", "b"):
             name = line.words.get(end, "")
@@ -83,7 +93,7 @@ def _way(points: dict[str, Row], lines: list[Row], path: Path) -> list[tuple[Row
     lower = points[ends[0]]
     if not _is(lower, _FIXED):
         raise lower.refuse("the lower end is not fixed: it is not an anchor")
-    way: list[tuple[Row, Row]] = []
+    way: list[tuple[SectionRow, SectionRow]] = []
     here, left = ends[0], list(lines)
     while met := [each for each in left if here in _ends(each)]:
         way.append((points[here], met[0]))
@@ -95,27 +105,27 @@ def _way(points: dict[str, Row], lines: list[Row], path: Path) -> list[tuple[Row
     return way
 
 
-def _ends(line: Row) -> tuple[str, str]:
+def _ends(line: SectionRow) -> tuple[str, str]:
     return line.words["a"], line.words["b"]
 
 
-def _last(points: dict[str, Row], way: list[tuple[Row, Row]]) -> Row:
+def _last(points: dict[str, SectionRow], way: list[tuple[SectionRow, SectionRow]]) -> SectionRow:
     point, line = way[-1]
     a, b = _ends(line)
     return points[b] if points[a] is point else points[a]
 
 
-def _is(point: Row, words: tuple[str, ...]) -> bool:
+def _is(point: SectionRow, words: tuple[str, ...]) -> bool:
     return point.words.get("attachment", "").lower().startswith(words)
 
 
-def _water(sections: Sections, points: dict[str, Row], path: Path) -> Water:
+def _water(sections: MoorDynSections, points: dict[str, SectionRow], path: Path) -> ImportedWater:
     options = sections.options
     lowest = min(point.number("z") for point in points.values())
     depth = _option(options, "wtrdpth", "depth", default=-lowest)
     if depth <= 0.0:
         raise refused(path, "gives no depth of the water (`WtrDpth`)")
-    water = Water(depth)
+    water = ImportedWater(depth)
     water.density = _option(options, "wtrdnsty", "rhow", "rho", default=CATALOGUE_DENSITY)
     water.gravity = _option(options, "g", "gravity", default=STANDARD_GRAVITY)  # its own
     beside = path.with_name(_CURRENTS)
@@ -147,7 +157,7 @@ def _currents(path: Path) -> tuple[tuple[float, float, float, float], ...]:
     return tuple(sorted(rows))
 
 
-def _cable(kind: Row, gravity: float) -> Component:
+def _cable(kind: SectionRow, gravity: float) -> ImportedComponent:
     """A line type; its weight in water follows from its mass and the water it displaces."""
     across = kind.number("diameter")
     if across <= 0.0:
@@ -155,7 +165,7 @@ def _cable(kind: Row, gravity: float) -> Component:
     mass = kind.number("mass")
     volume = math.pi / 4.0 * across**2
     wet = (mass - CATALOGUE_DENSITY * volume) * gravity
-    figures: dict[str, Figure] = {
+    figures: dict[str, FigureOrWord] = {
         "diameter": across, "cn": kind.number("cd", 0.0), "ct": kind.number("cdt", 0.0),
     }  # fmt: skip
     name = kind.words["name"]
@@ -165,10 +175,10 @@ def _cable(kind: Row, gravity: float) -> Component:
     stiffness = kind.number("ea", 0.0)
     if stiffness > 0.0:
         figures["stiffness"] = stiffness
-    return Component(name, "chain" if heavy and is_chain(name) else "cable", figures)
+    return ImportedComponent(name, "chain" if heavy and is_chain(name) else "cable", figures)
 
 
-def _point(point: Row, design: Design) -> Item | None:
+def _point(point: SectionRow, design: Design) -> ImportedPiece | None:
     """What is at the joint of two lengths; None where it has neither weight nor drag."""
     if not _is(point, _FREE):
         raise point.refuse("a joint between two lengths is held: CALM has lines that hang free")
@@ -177,10 +187,10 @@ def _point(point: Row, design: Design) -> Item | None:
         return None
     lifts = CATALOGUE_DENSITY * float(figures["volume"]) > float(figures["mass"])
     figures["role"] = "float" if lifts else "instrument"
-    return Item(Component(f"point {point.words['id']}", "body", figures))
+    return ImportedPiece(ImportedComponent(f"point {point.words['id']}", "body", figures))
 
 
-def _figures(point: Row) -> dict[str, Figure]:
+def _figures(point: SectionRow) -> dict[str, FigureOrWord]:
     for key in ("fx", "fy", "fz"):
         if point.number(key, 0.0) != 0.0:
             raise point.refuse(f"`{key}` pulls at the line from outside")
@@ -190,14 +200,16 @@ def _figures(point: Row) -> dict[str, Figure]:
     }  # fmt: skip
 
 
-def _upper_end(top: Row, items: list[Item], design: Design) -> Item:
+def _upper_end(top: SectionRow, items: list[ImportedPiece], design: Design) -> ImportedPiece:
     """A free point is the float; one that is held at the surface gets a float that is guessed."""
     assert design.water is not None and design.water.depth is not None
     if _is(top, _FREE):
         figures = _figures(top)
         if CATALOGUE_DENSITY * float(figures["volume"]) <= float(figures["mass"]):
             raise top.refuse("the upper end is free, and does not float")
-        return Item(Component(f"point {top.words['id']}", "body", {**figures, "role": "float"}))
+        return ImportedPiece(
+            ImportedComponent(f"point {top.words['id']}", "body", {**figures, "role": "float"})
+        )
     depth = 0.0 - top.number("z")
     if depth > max(_NEAR * design.water.depth, _NEAR_AT_LEAST):
         raise top.refuse(
@@ -207,20 +219,20 @@ def _upper_end(top: Row, items: list[Item], design: Design) -> Item:
     if CATALOGUE_DENSITY * float(figures["volume"]) > float(figures["mass"]):
         guess = {"volume": "the file holds the upper end; here a float of its point, free to move"}
         figures["role"] = "float"
-        return Item(Component(f"point {top.words['id']}", "body", figures, guess))
+        return ImportedPiece(ImportedComponent(f"point {top.words['id']}", "body", figures, guess))
     gravity = design.water.gravity or STANDARD_GRAVITY
     lift = 1.5 * sum(_weight(item, gravity) for item in items) + 1e4
     volume = lift / (CATALOGUE_DENSITY * gravity)
     across = (6.0 * volume / math.pi) ** (1.0 / 3.0)
-    component = Component(
+    component = ImportedComponent(
         "float", "sphere",
         {"diameter": across, "buoyancy": lift, "cx": 0.0, "role": "float"},
         {"buoyancy": "the file holds the upper end; here a float without drag, free to move"},
     )  # fmt: skip
-    return Item(component)
+    return ImportedPiece(component)
 
 
-def _weight(item: Item, gravity: float) -> float:
+def _weight(item: ImportedPiece, gravity: float) -> float:
     """Weight in water [N] under a gravity [m/s²]; 0 of what floats."""
     figures = item.component.figures
     mass, volume = float(figures.get("mass", 0.0)), float(figures.get("volume", 0.0))
@@ -229,7 +241,7 @@ def _weight(item: Item, gravity: float) -> float:
     return float(figures.get("weight", 0.0)) * item.length
 
 
-def _anchor(point: Row, water: Water) -> Component:
+def _anchor(point: SectionRow, water: ImportedWater) -> ImportedComponent:
     assert water.depth is not None
     height = water.depth + point.number("z")
-    return Component("anchor", "anchor", {"length": height} if height > 1e-6 else {})
+    return ImportedComponent("anchor", "anchor", {"length": height} if height > 1e-6 else {})

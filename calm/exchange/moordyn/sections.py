@@ -31,7 +31,7 @@ _COLUMNS = {
 
 
 @dataclass(frozen=True)
-class Row:
+class SectionRow:
     """A row of a table: its words by heading, and its place in the file."""
 
     path: str
@@ -63,10 +63,10 @@ class Row:
 
 
 @dataclass
-class Sections:
+class MoorDynSections:
     """The tables of a file, and its options."""
 
-    rows: dict[str, list[Row]] = field(default_factory=dict)
+    rows: dict[str, list[SectionRow]] = field(default_factory=dict)
     options: dict[str, str] = field(default_factory=dict)
 
 
@@ -77,7 +77,7 @@ def is_moordyn(content: bytes) -> bool:
     return b"\0" not in content and {"types", "lines"} <= found
 
 
-def read_sections(path: Path) -> Sections:
+def read_sections(path: Path) -> MoorDynSections:
     """Read a file.
 
     Raises
@@ -85,7 +85,7 @@ def read_sections(path: Path) -> Sections:
     InputError
         A table has a row with too few words.
     """
-    sections, current, headings, skip = Sections(), "", list[str](), 0
+    sections, current, headings, skip = MoorDynSections(), "", list[str](), 0
     for number, text in enumerate(read_text(path).splitlines(), 1):
         line = text.split("#")[0] if not text.lstrip().startswith("(") else text
         if line.strip().startswith("---"):
@@ -105,7 +105,7 @@ def read_sections(path: Path) -> Sections:
             if len(words) < min(len(headings), 4):
                 raise refused_at(str(path), number, 1, f"the row has {len(words)} words")
             kept = dict(zip(headings, words, strict=False))
-            sections.rows.setdefault(current, []).append(Row(str(path), number, kept))
+            sections.rows.setdefault(current, []).append(SectionRow(str(path), number, kept))
     return sections
 
 

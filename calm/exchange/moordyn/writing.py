@@ -7,7 +7,16 @@ from itertools import groupby
 from math import pi, sqrt
 
 from calm.errors import UsageError
-from calm.exchange.parts import Assembled, Part, Path, Place, area, as_point, mass_of, remarks
+from calm.exchange.parts import (
+    Coordinates,
+    ExportedLine,
+    ExportedPart,
+    PartPath,
+    area,
+    as_point,
+    mass_of,
+    remarks,
+)
 
 CURRENTS = "current_profile.txt"
 """The name under which that program looks for the current, beside its input."""
@@ -34,7 +43,7 @@ class _Load:
     area: float = 0.0
     along: float = 0.0
 
-    def add(self, part: Part, share: float = 1.0) -> None:
+    def add(self, part: ExportedPart, share: float = 1.0) -> None:
         """Add a part with what is clamped on it; `share` is of its drag."""
         for each in (part, *(clamp for clamp, _ in part.clamps)):
             self.net += each.net
@@ -55,7 +64,7 @@ class _System:
 
     density: float
     gravity: float
-    place: Place
+    place: Coordinates
     types: dict[str, str] = field(default_factory=dict)
     points: list[str] = field(default_factory=list)
     lines: list[str] = field(default_factory=list)
@@ -73,7 +82,7 @@ class _System:
         self.points.append(f"{number}  {kind}  {x:.6f}  {y:.6f}  {-depth:.6f}  {figures}")
         return number
 
-    def line(self, name: str, figures: str, length: float, to: Place) -> None:
+    def line(self, name: str, figures: str, length: float, to: Coordinates) -> None:
         """A length of a type, from the point that the line has reached."""
         below = self.end_point("Free" if self.points else "Fixed")
         chosen, number = name, 1
@@ -97,7 +106,7 @@ class _System:
         )
 
 
-def moordyn_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
+def moordyn_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
     """The content of the file, and what it cannot hold.
 
     Raises
@@ -145,7 +154,7 @@ def moordyn_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
     return _text(design, system, density, losses).encode(), losses
 
 
-def _lay(system: _System, part: Part, path: Path) -> None:
+def _lay(system: _System, part: ExportedPart, path: PartPath) -> None:
     """A cable or chain from its lower end up, cut where something is clamped on.
 
     It is cut into short lengths too, since that program starts with each as it hangs in still
@@ -155,7 +164,7 @@ def _lay(system: _System, part: Part, path: Path) -> None:
     load.add(replace(part, clamps=()))
     figures = system.figures(load, part.stiffness)
     count = min(max(round(part.length / _LENGTH), 1), _MOST)
-    cuts: dict[float, list[Part]] = {part.length * k / count: [] for k in range(count)}
+    cuts: dict[float, list[ExportedPart]] = {part.length * k / count: [] for k in range(count)}
     for clamp, at in part.clamps:
         near = min(cuts, key=lambda cut: abs(cut - at))
         place = near if abs(near - at) < _CLOSE else at
@@ -169,7 +178,7 @@ def _lay(system: _System, part: Part, path: Path) -> None:
             system.load.add(clamp)
 
 
-def _lay_rigid(system: _System, parts: list[Part], top: Place) -> None:
+def _lay_rigid(system: _System, parts: list[ExportedPart], top: Coordinates) -> None:
     """Rigid pieces in a row, from the lowest up."""
     load, length = _Load(system.density), sum(part.length for part in parts)
     for part in parts:
@@ -182,7 +191,7 @@ def _lay_rigid(system: _System, parts: list[Part], top: Place) -> None:
     system.line(name, system.figures(load.per_metre(length), _stiff(length)), length, top)
 
 
-def _lay_float(system: _System, design: Assembled, path: Path) -> None:
+def _lay_float(system: _System, design: ExportedLine, path: PartPath) -> None:
     """The uppermost piece: a point, on a stiff length as long as its draft.
 
     That length takes a share of its mass, neutral in water: that program steps too finely where a
@@ -213,7 +222,7 @@ def _word(text: str) -> str:
     return "".join(sign if sign.isalnum() and sign.isascii() else "_" for sign in text)
 
 
-def _text(design: Assembled, system: _System, density: float, lost: tuple[str, ...]) -> str:
+def _text(design: ExportedLine, system: _System, density: float, lost: tuple[str, ...]) -> str:
     title = f"{design.name}, by CALM; the current stands in {CURRENTS}; lost:"
     options = (
         ("0", "writeLog"), ("0.1", "CFL"), ("RK2", "tScheme"), ("3.0e5", "kBot"),
@@ -245,7 +254,7 @@ def _text(design: Assembled, system: _System, density: float, lost: tuple[str, .
     return "\n".join(lines)
 
 
-def current_profile(design: Assembled) -> bytes:
+def current_profile(design: ExportedLine) -> bytes:
     """The current for that program: heights from below the seabed to above the water."""
     rows = [[0.0 - row[0], *row[1:4]] for row in reversed(design.levels)]
     rows = [[rows[0][0] - 10.0, *rows[0][1:]], *rows, [10.0, *rows[-1][1:]]]

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 import re
 
-from calm.exchange.design import Component, Figure
+from calm.exchange.design import FigureOrWord, ImportedComponent
 from calm.exchange.mdd.elements import MODULI
-from calm.exchange.table.rows import Row
+from calm.exchange.table.rows import ListRow
 from calm.exchange.words import is_chain, role_of
 from calm.physics.reference import REFERENCE_DENSITY
 from calm.units import KILOGRAM_FORCE
@@ -19,7 +19,7 @@ _ROUND = 1.5  # times its diameter: a float no longer is a sphere
 _HALF_DENSITY = 0.5 * REFERENCE_DENSITY
 
 
-def component_of(row: Row, problems: list[str], *, anchor: bool) -> Component:
+def component_of(row: ListRow, problems: list[str], *, anchor: bool) -> ImportedComponent:
     """The definition of a row; what it lacks is added to `problems`."""
     for what in ("length", "diameter", "width", "cd", "area", "drag_area", "mass", "stiffness"):
         if row.figures.get(what, 0.0) < 0.0:
@@ -29,25 +29,25 @@ def component_of(row: Row, problems: list[str], *, anchor: bool) -> Component:
     return _line(row, problems) if row.is_line else _rigid(row, problems)
 
 
-def _anchor(row: Row) -> Component:
+def _anchor(row: ListRow) -> ImportedComponent:
     figures, guesses = row.figures, dict(row.guesses)
-    kept: dict[str, Figure] = {}
+    kept: dict[str, FigureOrWord] = {}
     if figures.get("buoyancy"):
         kept["weight"] = abs(figures["buoyancy"])
     elif figures.get("mass"):
         kept["mass"] = figures["mass"]
         guesses["mass"] = "taken for steel: the list gives no weight in water"
     kept["length"] = figures.get("length", 0.0)
-    return Component(row.name, "anchor", kept, _of(guesses, kept))
+    return ImportedComponent(row.name, "anchor", kept, _of(guesses, kept))
 
 
-def _rigid(row: Row, problems: list[str]) -> Component:
+def _rigid(row: ListRow, problems: list[str]) -> ImportedComponent:
     figures, guesses = row.figures, dict(row.guesses)
     if "buoyancy" not in figures:
         problems.append(f"{row.where}: its weight in water or its buoyancy is missing{row.hint}")
     lift, length = figures.get("buoyancy", 0.0), figures.get("length", 0.0)
     kind, across = _shape(row)
-    kept: dict[str, Figure]
+    kept: dict[str, FigureOrWord]
     if "drag_area" in figures and figures.get("tangential_area") is not None:
         normal, along = figures["drag_area"], figures["tangential_area"]
         kind, kept = "body", {"length": length}
@@ -69,10 +69,10 @@ def _rigid(row: Row, problems: list[str]) -> Component:
     kept["buoyancy"] = lift
     _keep(row, kept, lift, ("breaking_load",))
     kept["role"] = row.role if row.role in _ROLES else role_of(row.name, lift)
-    return Component(row.name, kind, kept, _of(guesses, kept))
+    return ImportedComponent(row.name, kind, kept, _of(guesses, kept))
 
 
-def _shape(row: Row) -> tuple[str, float]:
+def _shape(row: ListRow) -> tuple[str, float]:
     """The kind of a rigid piece by its size, and its diameter [m].
 
     Where a list has widths and diameters, a diameter is that of a sphere. Elsewhere a float that is
@@ -91,7 +91,7 @@ def _shape(row: Row) -> tuple[str, float]:
     return "sphere" if round_ else "cylinder", across
 
 
-def _line(row: Row, problems: list[str]) -> Component:
+def _line(row: ListRow, problems: list[str]) -> ImportedComponent:
     figures, guesses = row.figures, dict(row.guesses)
     if figures.get("length", 0.0) <= 0.0:
         problems.append(f"{row.where}: a line needs its length")
@@ -103,7 +103,7 @@ def _line(row: Row, problems: list[str]) -> Component:
             problems.append(f"{row.where}: its diameter is missing")
             across = 0.01
         guesses["diameter"] = "from its name"
-    kept: dict[str, Figure] = {"diameter": across}
+    kept: dict[str, FigureOrWord] = {"diameter": across}
     lift = figures.get("buoyancy")
     if lift is None:
         problems.append(f"{row.where}: its weight in water is missing{row.hint}")
@@ -128,10 +128,10 @@ def _line(row: Row, problems: list[str]) -> Component:
     material = figures.get("material", 0.0)
     if "stiffness" not in kept and material in range(1, len(MODULI) + 1):
         kept["stiffness"] = MODULI[round(material) - 1] * math.pi / 4.0 * across**2
-    return Component(row.name, kind, kept, _of(guesses, kept))
+    return ImportedComponent(row.name, kind, kept, _of(guesses, kept))
 
 
-def _coefficient(row: Row, kind: str, guesses: dict[str, str]) -> dict[str, Figure]:
+def _coefficient(row: ListRow, kind: str, guesses: dict[str, str]) -> dict[str, FigureOrWord]:
     """The drag coefficient of the list, or the usual one of the kind as a guess."""
     key = _COEFFICIENT[kind]
     guesses[key] = row.guesses.get("cd", "")
@@ -140,7 +140,7 @@ def _coefficient(row: Row, kind: str, guesses: dict[str, str]) -> dict[str, Figu
     return {key: row.figures.get("cd", _USUAL[kind])}
 
 
-def _keep(row: Row, kept: dict[str, Figure], lift: float, names: tuple[str, ...]) -> None:
+def _keep(row: ListRow, kept: dict[str, FigureOrWord], lift: float, names: tuple[str, ...]) -> None:
     """Take over further figures; a mass lighter than the piece is in water is left out."""
     mass = row.figures.get("mass", 0.0)
     if mass > 0.0 and mass * KILOGRAM_FORCE >= max(-lift, 0.0):
@@ -150,7 +150,7 @@ def _keep(row: Row, kept: dict[str, Figure], lift: float, names: tuple[str, ...]
             kept[name] = row.figures[name]
 
 
-def _of(guesses: dict[str, str], kept: dict[str, Figure]) -> dict[str, str]:
+def _of(guesses: dict[str, str], kept: dict[str, FigureOrWord]) -> dict[str, str]:
     """The guesses for the figures that are kept."""
     return {key: text for key, text in guesses.items() if key in kept and text}
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from calm.exchange.refusal import refused
-from calm.exchange.table.sheet import Rows
+from calm.exchange.table.sheet import SheetRows
 from calm.files.explain import unknown
 from calm.units import KILOGRAM_FORCE
 
@@ -64,7 +64,7 @@ _MEASURES = {"length", "buoyancy", "weight", "mass"}
 
 
 @dataclass(frozen=True)
-class Column:
+class ListColumn:
     """A column: where it stands, its heading, and what its numbers are multiplied by.
 
     `by_mass`: forces are counted in kilograms; `per_metre`: figures of lines are those of a metre;
@@ -81,29 +81,29 @@ class Column:
 
 
 @dataclass(frozen=True)
-class Headings:
+class ListHeadings:
     """The row of the headings, the columns that are understood, and the headings of the others."""
 
     row: int
-    columns: dict[str, Column]
+    columns: dict[str, ListColumn]
     others: tuple[str, ...]
 
 
-def headings_of(rows: Rows, given: Mapping[str, str]) -> Headings | None:
+def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | None:
     """The headings of a sheet; None where no row has a name and a length or a force.
 
     Parameters
     ----------
     given : headings by what they hold, which come before those that are recognised
     """
-    best: tuple[int, int, Headings] | None = None
+    best: tuple[int, int, ListHeadings] | None = None
     for i in range(min(len(rows), _SEARCHED)):
         cells = _with_units(rows, i)
         found = _columns(cells, given)
         if "name" not in found and len(found) >= 2:
             index = _unnamed(rows, i, found)
             if index is not None:
-                found["name"] = Column(index, "")
+                found["name"] = ListColumn(index, "")
         if "name" not in found or not _MEASURES & found.keys():
             continue
         merit = len(found), sum(column.known for column in found.values())
@@ -112,11 +112,11 @@ def headings_of(rows: Rows, given: Mapping[str, str]) -> Headings | None:
             others = tuple(
                 heading for index, heading in enumerate(rows[i]) if heading and index not in taken
             )
-            best = *merit, Headings(i, found, others)
+            best = *merit, ListHeadings(i, found, others)
     return best[2] if best else None
 
 
-def check_given(sheets: Mapping[str, Rows], given: Mapping[str, str], path: Path) -> None:
+def check_given(sheets: Mapping[str, SheetRows], given: Mapping[str, str], path: Path) -> None:
     """Check that `--columns` names figures of a piece, and headings of the list.
 
     Raises
@@ -137,8 +137,8 @@ def check_given(sheets: Mapping[str, Rows], given: Mapping[str, str], path: Path
             raise refused(path, f"--columns: no column is called `{heading}` ({what})")
 
 
-def _columns(row: list[str], given: Mapping[str, str]) -> dict[str, Column]:
-    found: dict[str, Column] = {}
+def _columns(row: list[str], given: Mapping[str, str]) -> dict[str, ListColumn]:
+    found: dict[str, ListColumn] = {}
     plain = [_plain(cell) for cell in row]
     taken: set[int] = set()
     for what, heading in given.items():
@@ -161,7 +161,7 @@ def _columns(row: list[str], given: Mapping[str, str]) -> dict[str, Column]:
     return found
 
 
-def _settle(found: dict[str, Column]) -> None:
+def _settle(found: dict[str, ListColumn]) -> None:
     """Where there is no length, a height is one; a weight beside a buoyancy is in air."""
     if "length" not in found and "height" in found and _plain(found["height"].heading) == "height":
         found["length"] = found.pop("height")
@@ -170,11 +170,11 @@ def _settle(found: dict[str, Column]) -> None:
         found["mass"] = _column("mass", found["weight"].index, found.pop("weight").heading)
 
 
-def _plain_of(found: dict[str, Column], what: str) -> str:
+def _plain_of(found: dict[str, ListColumn], what: str) -> str:
     return _plain(found[what].heading) if what in found else ""
 
 
-def _with_units(rows: Rows, i: int) -> list[str]:
+def _with_units(rows: SheetRows, i: int) -> list[str]:
     """A row of headings, with the units that stand below them."""
     row = rows[i]
     below = rows[i + 1] if i + 1 < len(rows) else []
@@ -192,7 +192,7 @@ def _is_unit(cell: str) -> bool:
     return bool(words) and words[0] in _UNITS
 
 
-def _unnamed(rows: Rows, i: int, found: dict[str, Column]) -> int | None:
+def _unnamed(rows: SheetRows, i: int, found: dict[str, ListColumn]) -> int | None:
     """The first column without a heading whose cells are words."""
     taken = {column.index for column in found.values()}
     below = rows[i + 1 : i + 16]
@@ -205,16 +205,16 @@ def _unnamed(rows: Rows, i: int, found: dict[str, Column]) -> int | None:
     return None
 
 
-def _column(what: str, index: int, heading: str) -> Column:
+def _column(what: str, index: int, heading: str) -> ListColumn:
     if what in WORDS:
-        return Column(index, heading)
+        return ListColumn(index, heading)
     words = re.findall(r"[a-z]+(?:\^?2|²)?", _plain(heading, keep="²^/"))
     unit = next((word for word in reversed(words) if word in _UNITS and word != what), None)
     per_metre = bool(re.search(r"/ ?m\b|per m|par m|lineique", _plain(heading, keep="/")))
     if per_metre and unit == "m":
         unit = next((word for word in words if word in _UNITS and word not in ("m", what)), None)
     by_mass = unit in _MASSES if unit else what in ("buoyancy", "weight")
-    return Column(
+    return ListColumn(
         index=index,
         heading=heading,
         factor=_UNITS[unit] if unit else 1.0,

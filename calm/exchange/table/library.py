@@ -10,8 +10,8 @@ from calm.exchange.mdd.library import read_entries
 from calm.exchange.mdd.matfile import is_mat
 from calm.exchange.refusal import refused
 from calm.exchange.table.headings import headings_of
-from calm.exchange.table.rows import Row, rows_of, weights_as_buoyancy
-from calm.exchange.table.sheet import Rows, read_sheets
+from calm.exchange.table.rows import ListRow, rows_of, weights_as_buoyancy
+from calm.exchange.table.sheet import SheetRows, read_sheets
 from calm.exchange.words import is_line
 from calm.files.document import read_content
 from calm.files.explain import nearest
@@ -23,7 +23,7 @@ _SHEETS = 3  # with headings of their own make a library
 
 
 @dataclass(frozen=True)
-class Element:
+class LibraryElement:
     """An element of a library: its figures in SI, those of a line per metre."""
 
     name: str
@@ -31,7 +31,7 @@ class Element:
     figures: dict[str, float]
 
 
-Library = Mapping[str, Element]
+Library = Mapping[str, LibraryElement]
 """Elements by their name without capitals and blanks."""
 
 
@@ -47,13 +47,13 @@ def read_library(path: Path) -> Library:
     """
     content = read_content(path, largest=200_000_000)
     elements = _of_matrices(path) if is_mat(content) else _of_sheets(path)
-    library: dict[str, Element] = {}
+    library: dict[str, LibraryElement] = {}
     for element in elements:
         library.setdefault(key_of(element.name), element)
     return library
 
 
-def is_library(sheets: Mapping[str, Rows]) -> bool:
+def is_library(sheets: Mapping[str, SheetRows]) -> bool:
     """Whether sheets are a library: several with headings, or the table of moords."""
     headed = [found for rows in sheets.values() if (found := headings_of(rows, {})) is not None]
     moords = {"buoyancy_kg", "length_m", "width_m", "diameter_m"}
@@ -67,7 +67,7 @@ def key_of(name: str) -> str:
     return "".join(name.lower().split())
 
 
-def complete(rows: Iterable[Row], library: Library, source: str) -> None:
+def complete(rows: Iterable[ListRow], library: Library, source: str) -> None:
     """Give rows the figures that they lack, from the element of their name."""
     for row in rows:
         element = library.get(key_of(row.name))
@@ -87,16 +87,16 @@ def complete(rows: Iterable[Row], library: Library, source: str) -> None:
                 row.metre.add(what)
 
 
-def _of_matrices(path: Path) -> Iterable[Element]:
+def _of_matrices(path: Path) -> Iterable[LibraryElement]:
     for entry in read_entries(path):
         figures = {
             "buoyancy": entry.lift * KILOGRAM_FORCE, "length": entry.length, "width": entry.width,
             "diameter": entry.diameter, "cd": entry.cd, "material": entry.material,
         }  # fmt: skip
-        yield Element(entry.name, entry.is_line, figures)
+        yield LibraryElement(entry.name, entry.is_line, figures)
 
 
-def _of_sheets(path: Path) -> Iterable[Element]:
+def _of_sheets(path: Path) -> Iterable[LibraryElement]:
     found = False
     for title, cells in read_sheets(path).items():
         headings = headings_of(cells, {})
@@ -106,12 +106,12 @@ def _of_sheets(path: Path) -> Iterable[Element]:
         weights_as_buoyancy(rows, [])
         for row in rows:
             found = True
-            yield Element(row.name, _is_line(row, title), _figures(row))
+            yield LibraryElement(row.name, _is_line(row, title), _figures(row))
     if not found:
         raise refused(path, "holds no elements: no sheet has headings that CALM knows")
 
 
-def _is_line(row: Row, title: str) -> bool:
+def _is_line(row: ListRow, title: str) -> bool:
     """Whether an element is a line, with figures per metre."""
     floats = row.figures.get("buoyancy", 0.0) > 0.0 and row.figures.get("diameter", 0.0) > 0.0
     if abs(row.figures.get("length", 1.0) - 1.0) > _A_METRE or (floats and "width" in row.figures):
@@ -119,5 +119,5 @@ def _is_line(row: Row, title: str) -> bool:
     return bool(row.metre) or row.is_line or is_line(title)
 
 
-def _figures(row: Row) -> dict[str, float]:
+def _figures(row: ListRow) -> dict[str, float]:
     return {what: value for what, value in row.figures.items() if what not in _NOT_THEIRS}

@@ -7,8 +7,14 @@ import io
 import math
 from pathlib import Path
 
-from calm.exchange.design import MOST_PIECES, Component, Design, Hung, Item
-from calm.exchange.mdd.elements import MODULI, Element, mistakes_of
+from calm.exchange.design import (
+    MOST_PIECES,
+    Design,
+    ImportedClamp,
+    ImportedComponent,
+    ImportedPiece,
+)
+from calm.exchange.mdd.elements import MODULI, MddElement, mistakes_of
 from calm.exchange.mdd.pieces import anchor_of, component_of, rigid
 from calm.exchange.refusal import refused
 from calm.files.document import read_text
@@ -45,34 +51,36 @@ def read_moords(path: Path) -> Design:
         problems.append("row 2: a clamp stands before the first piece")
     if problems:
         raise refused(path, *problems)
-    items = [Item(_anchor(elements[0]))]
+    items = [ImportedPiece(_anchor(elements[0]))]
     for row, element in zip(rows[1:], elements[1:], strict=True):
         if row.get("bool_clampon") == "True":
             _hang(items[-1], element, float(row["height_along_inline"] or 0.0))
         else:
-            items.append(Item(component_of(element), element.length if element.is_line else None))
+            items.append(
+                ImportedPiece(component_of(element), element.length if element.is_line else None)
+            )
     for item in items:
         item.clamps.sort(key=lambda clamp: clamp.at)
     name = rows[0].get("mooring") or path.stem
     return Design("moords", name, items[::-1], None, notes=[_NOTE], in_kilograms=True)
 
 
-def _anchor(element: Element) -> Component:
+def _anchor(element: MddElement) -> ImportedComponent:
     anchor = anchor_of(element)
     if not element.lift:
         del anchor.figures["weight"]
     return anchor
 
 
-def _hang(host: Item, element: Element, height: float) -> None:
+def _hang(host: ImportedPiece, element: MddElement, height: float) -> None:
     """Clamp an element on a piece, at a height above its lower end [m]."""
     length = host.length or float(host.component.figures.get("length", 0.0))
     at = length - height
     guess = "" if -_SLIGHT <= at <= length + _SLIGHT else "its place was off the piece"
-    host.clamps.append(Hung(rigid(element), min(max(at, 0.0), length), guess))
+    host.clamps.append(ImportedClamp(rigid(element), min(max(at, 0.0), length), guess))
 
 
-def _element(row: dict[str, str], place: int, problems: list[str]) -> Element:
+def _element(row: dict[str, str], place: int, problems: list[str]) -> MddElement:
     is_line = row.get("bool_line") == "True"
     length = _number(row, "length", place, problems)
     lift = _number(row, "buoyancy", place, problems)
@@ -81,7 +89,7 @@ def _element(row: dict[str, str], place: int, problems: list[str]) -> Element:
         length = 1.0
     material = _number(row, "material", place, problems)
     known = is_line and 1.0 <= material <= len(MODULI)
-    element = Element(
+    element = MddElement(
         name=row["name"] or f"row {place}",
         length=length,
         width=_number(row, "width", place, problems),

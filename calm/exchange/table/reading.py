@@ -7,15 +7,23 @@ from pathlib import Path
 
 import numpy as np
 
-from calm.exchange.design import MOST_PIECES, Component, Design, Hung, Item, Remark, Water
+from calm.exchange.design import (
+    MOST_PIECES,
+    Design,
+    ImportedClamp,
+    ImportedComponent,
+    ImportedPiece,
+    ImportedWater,
+    Remark,
+)
 from calm.exchange.mdd.water import read_water
 from calm.exchange.refusal import refused
 from calm.exchange.table.cells import number
 from calm.exchange.table.components import component_of
-from calm.exchange.table.headings import Headings, check_given, headings_of
+from calm.exchange.table.headings import ListHeadings, check_given, headings_of
 from calm.exchange.table.library import Library, complete, is_library, key_of, read_library
-from calm.exchange.table.rows import Row, count_lines, names_in, rows_of, weights_as_buoyancy
-from calm.exchange.table.sheet import Rows, read_sheets
+from calm.exchange.table.rows import ListRow, count_lines, names_in, rows_of, weights_as_buoyancy
+from calm.exchange.table.sheet import SheetRows, read_sheets
 from calm.files.components import FLEXIBLE_KINDS
 
 _NOTE = "A list says nothing about the water, and little about drag. See `calm docs import-table`."
@@ -76,7 +84,9 @@ def read_table(path: Path, columns: Mapping[str, str], elements: Path | None = N
     return design
 
 
-def _sheet(sheets: Mapping[str, Rows], columns: Mapping[str, str]) -> tuple[Rows, Headings] | None:
+def _sheet(
+    sheets: Mapping[str, SheetRows], columns: Mapping[str, str]
+) -> tuple[SheetRows, ListHeadings] | None:
     """The longest sheet that has headings, and those."""
     found = [
         (rows, headings)
@@ -86,7 +96,9 @@ def _sheet(sheets: Mapping[str, Rows], columns: Mapping[str, str]) -> tuple[Rows
     return found[0] if found else None
 
 
-def _names(sheets: Mapping[str, Rows], design: Design, path: Path, library: Library) -> list[Row]:
+def _names(
+    sheets: Mapping[str, SheetRows], design: Design, path: Path, library: Library
+) -> list[ListRow]:
     """The rows of a list that holds names alone, in the longest sheet.
 
     The first is the name of the mooring where the library has no such element.
@@ -111,7 +123,7 @@ def _names(sheets: Mapping[str, Rows], design: Design, path: Path, library: Libr
     return rows
 
 
-def _water(sheets: Mapping[str, Rows], design: Design, path: Path) -> Water | None:
+def _water(sheets: Mapping[str, SheetRows], design: Design, path: Path) -> ImportedWater | None:
     """The environment in a sheet of heights, `z`, as in workbooks of Mooring Design & Dynamics."""
     for rows in sheets.values():
         headings = [cell.lower() for cell in rows[0]]
@@ -130,7 +142,7 @@ def _water(sheets: Mapping[str, Rows], design: Design, path: Path) -> Water | No
     return None
 
 
-def _from_the_top(rows: list[Row], path: Path, design: Design) -> list[Row]:
+def _from_the_top(rows: list[ListRow], path: Path, design: Design) -> list[ListRow]:
     """The rows from the top down; lists run either way, clamps follow their piece."""
     pieces = [row for row in rows if "at" not in row.figures]
     if len(pieces) < 2:
@@ -152,11 +164,11 @@ def _from_the_top(rows: list[Row], path: Path, design: Design) -> list[Row]:
         design.notes.append("The list runs from the lower end up: here it is reversed.")
         rows = _turned(rows)
     design.guessed.append(Remark("line.anchor", "the list has none"))
-    return [*rows, Row(0, "anchor", kind="anchor", role="anchor")]
+    return [*rows, ListRow(0, "anchor", kind="anchor", role="anchor")]
 
 
-def _turned(rows: list[Row]) -> list[Row]:
-    groups: list[list[Row]] = []
+def _turned(rows: list[ListRow]) -> list[ListRow]:
+    groups: list[list[ListRow]] = []
     for row in rows:
         if "at" in row.figures and groups:
             groups[-1].append(row)
@@ -165,14 +177,16 @@ def _turned(rows: list[Row]) -> list[Row]:
     return [row for group in reversed(groups) for row in group]
 
 
-def _items(rows: list[Row], problems: list[str]) -> list[Item]:
-    items: list[Item] = []
+def _items(rows: list[ListRow], problems: list[str]) -> list[ImportedPiece]:
+    items: list[ImportedPiece] = []
     for row in rows:
-        component: Component = component_of(row, problems, anchor=row is rows[-1] and row.is_anchor)
+        component: ImportedComponent = component_of(
+            row, problems, anchor=row is rows[-1] and row.is_anchor
+        )
         at = row.figures.get("at")
         if at is None:
             length = row.figures.get("length") if component.kind in FLEXIBLE_KINDS else None
-            items += [Item(component, length, label=row.label) for _ in range(row.count)]
+            items += [ImportedPiece(component, length, label=row.label) for _ in range(row.count)]
         elif items:
-            items[-1].clamps.append(Hung(component, at))
+            items[-1].clamps.append(ImportedClamp(component, at))
     return items

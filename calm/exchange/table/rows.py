@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 
 from calm.exchange.design import Remark
 from calm.exchange.table.cells import number
-from calm.exchange.table.headings import WORDS, Column, Headings
-from calm.exchange.table.sheet import Rows
+from calm.exchange.table.headings import WORDS, ListColumn, ListHeadings
+from calm.exchange.table.sheet import SheetRows
 from calm.exchange.words import is_anchor, is_connector, is_line, is_release
 from calm.units import KILOGRAM_FORCE
 
@@ -24,7 +24,7 @@ _SPREAD = ("buoyancy", "mass", "area", "drag_area", "tangential_area")  # along 
 
 
 @dataclass(eq=False)
-class Row:
+class ListRow:
     """A row: its name, its figures, what was guessed in it, and its count.
 
     `metre` names the figures of a line that are per metre; `line` says whether it is a cable or
@@ -64,20 +64,20 @@ class Row:
 
 
 def rows_of(
-    cells: Rows,
-    headings: Headings,
+    cells: SheetRows,
+    headings: ListHeadings,
     problems: list[str],
     dropped: list[Remark],
     *,
     bare: Callable[[str], bool] = lambda name: False,
-) -> list[Row]:
+) -> list[ListRow]:
     """The rows below the headings; sums and rows without figures go to `dropped`.
 
     Parameters
     ----------
     bare : whether a name alone makes a piece, since a library has its figures
     """
-    rows: list[Row] = []
+    rows: list[ListRow] = []
     known = headings.columns
     for place, each in enumerate(cells[headings.row + 1 :], headings.row + 2):
         name = _cell(each, known["name"])
@@ -96,7 +96,7 @@ def rows_of(
     return rows
 
 
-def names_in(cells: Rows) -> list[Row]:
+def names_in(cells: SheetRows) -> list[ListRow]:
     """The rows of a sheet that holds names alone: the words of the column that has most."""
     counts: dict[int, int] = {}
     for row in cells:
@@ -104,23 +104,23 @@ def names_in(cells: Rows) -> list[Row]:
             counts[index] = counts.get(index, 0) + bool(re.search(r"[^\W\d]{2}", cell))
     best = max(counts, key=lambda index: counts[index], default=0)
     return [
-        Row(place, row[best])
+        ListRow(place, row[best])
         for place, row in enumerate(cells, 1)
         if best < len(row) and row[best] and not _TOTAL.match(row[best])
     ]
 
 
-def _cell(row: list[str], column: Column | None) -> str:
+def _cell(row: list[str], column: ListColumn | None) -> str:
     if column is None or column.index >= len(row):
         return ""
     return row[column.index].strip().removeprefix("'")
 
 
 def _row(
-    cells: list[str], place: int, name: str, known: dict[str, Column], mistakes: list[str]
-) -> Row:
+    cells: list[str], place: int, name: str, known: dict[str, ListColumn], mistakes: list[str]
+) -> ListRow:
     words = {what: _cell(cells, known.get(what)) for what in WORDS}
-    row = Row(place, name, words["label"], words["kind"], words["role"])
+    row = ListRow(place, name, words["label"], words["kind"], words["role"])
     for what, column in known.items():
         if what in WORDS:
             continue
@@ -147,7 +147,7 @@ def _row(
     return row
 
 
-def weights_as_buoyancy(rows: Iterable[Row], guessed: list[Remark]) -> None:
+def weights_as_buoyancy(rows: Iterable[ListRow], guessed: list[Remark]) -> None:
     """Give every row its net force as buoyancy, positive up.
 
     Weights are positive down; where they are negative for what sinks by its name, positive up.
@@ -175,7 +175,7 @@ def weights_as_buoyancy(rows: Iterable[Row], guessed: list[Remark]) -> None:
             row.guesses["buoyancy"] = guess
 
 
-def count_lines(rows: Iterable[Row], known: dict[str, Column]) -> None:
+def count_lines(rows: Iterable[ListRow], known: dict[str, ListColumn]) -> None:
     """Make figures of lines per metre, where the list gives them of the whole length."""
     lines = [row for row in rows if row.is_line and row.figures.get("length", 0.0) > 0.0]
     for what in _SPREAD:
@@ -199,12 +199,12 @@ def count_lines(rows: Iterable[Row], known: dict[str, Column]) -> None:
                 )
 
 
-def _within_a_metre(lines: list[Row], what: str) -> bool:
+def _within_a_metre(lines: list[ListRow], what: str) -> bool:
     """Whether the figures of every line could be those of a metre."""
     return all(row.figures[what] <= _FULL * row.figures.get("diameter", 0.0) for row in lines)
 
 
-def _same_for_all(lines: list[Row], what: str) -> bool:
+def _same_for_all(lines: list[ListRow], what: str) -> bool:
     """Whether lines of one name and different lengths have one weight, which is per metre then."""
     seen: dict[str, tuple[float, float]] = {}
     for row in lines:

@@ -14,7 +14,7 @@ _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 _LARGEST = 20_000_000
 _MOST_ROWS, _MOST_COLUMNS = 20_000, 500
 
-Rows = list[list[str]]
+SheetRows = list[list[str]]
 """Cells as text, up to the last that is not empty."""
 
 
@@ -34,7 +34,7 @@ def is_table(content: bytes) -> bool:
     return b"\0" not in content and cut
 
 
-def read_sheets(path: Path) -> dict[str, Rows]:
+def read_sheets(path: Path) -> dict[str, SheetRows]:
     """The rows of every sheet by its name; lines that begin with # are comments.
 
     A sheet without a cell is left out; text has one sheet, without a name.
@@ -53,7 +53,7 @@ def read_sheets(path: Path) -> dict[str, Rows]:
     return {name: cleaned for name, rows in sheets.items() if (cleaned := _cleaned(rows))}
 
 
-def _cleaned(rows: Rows) -> Rows:
+def _cleaned(rows: SheetRows) -> SheetRows:
     """Rows without blanks at the ends of cells, empty cells at the end, and comments."""
     cleaned = []
     for row in rows:
@@ -65,7 +65,7 @@ def _cleaned(rows: Rows) -> Rows:
     return cleaned
 
 
-def _csv(path: Path, content: bytes) -> Rows:
+def _csv(path: Path, content: bytes) -> SheetRows:
     lines = [line for line in _text(path, content).splitlines() if line.strip()]
     plain = [line for line in lines if not line.startswith("#")]
     # the sign that most lines have; commas may be decimal ones beside the others
@@ -88,7 +88,7 @@ def _text(path: Path, content: bytes) -> str:
         return content.decode("cp1252", "replace")
 
 
-def _workbook(path: Path, content: bytes) -> dict[str, Rows]:
+def _workbook(path: Path, content: bytes) -> dict[str, SheetRows]:
     try:
         import python_calamine
     except ImportError:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 
-from calm.exchange.parts import Assembled, Part, area, remarks
+from calm.exchange.parts import ExportedLine, ExportedPart, area, remarks
 
 HEADER = (
     "name", "label", "kind", "role", "clamped at[m]", "length[m]", "diameter[m]", "whole mass[kg]",
@@ -13,7 +13,7 @@ HEADER = (
 )  # fmt: skip
 
 
-def csv_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
+def csv_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
     """The content of the file, and what it cannot hold."""
     lost = ["the water", "hulls and wind: floats drag in full at the surface"]
     if design.tow is not None:
@@ -36,7 +36,7 @@ def csv_file(design: Assembled) -> tuple[bytes, tuple[str, ...]]:
     return text.getvalue().encode(), losses
 
 
-def _row(part: Part, at: str) -> list[str]:
+def _row(part: ExportedPart, at: str) -> list[str]:
     whole = part.length if part.flexible else 1.0
     mass = "" if part.mass is None else f"{part.mass * whole:.9g}"
     stiffness = f"{part.stiffness:.9g}" if part.stiffness else ""
