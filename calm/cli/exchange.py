@@ -70,8 +70,7 @@ def import_(
     json
         Write what was guessed and left out as JSON, - to print it.
     """
-    from calm.exchange.importing import ImportOptions, import_file
-    from calm.exchange.records import record_file
+    from calm.exchange.importing import ImportOptions, import_file, record_file
     from calm.report.write import check_destination, write_file
 
     if not files:

@@ -11,6 +11,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from calm.errors import InputError, Problem
+
 MOST_PIECES = 2_000
 """Most pieces of a line, and most levels of its water."""
 
@@ -165,3 +167,13 @@ class Design:
             yield item.component
             for clamp in item.clamps:
                 yield clamp.component
+
+
+def refused(path: object, *messages: str) -> InputError:
+    """Why a file cannot be read, or what in it CALM cannot represent."""
+    return InputError([Problem(str(path), 0, 0, one_line(message)) for message in messages])
+
+
+def refused_at(path: object, line: int, column: int, message: str) -> InputError:
+    """The same, with the place in a text."""
+    return InputError([Problem(str(path), line, column, one_line(message))])

@@ -9,7 +9,7 @@ import yaml
 
 from calm.case import load
 from calm.errors import InputError, UsageError
-from calm.exchange.cbl.expressions import constant
+from calm.exchange.cable_formulas import constant
 from calm.exchange.importing import ImportOptions, import_file
 
 PROBLEMS = Path(__file__).parent / "problems"
