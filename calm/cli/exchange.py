@@ -70,13 +70,14 @@ def import_(
     json
         Write what was guessed and left out as JSON, - to print it.
     """
-    from calm.exchange.importing import Options, import_file
-    from calm.exchange.records import record_file
+    from calm.exchange.importing import ImportOptions, import_file, record_file
     from calm.report.write import check_destination, write_file
 
     if not files:
         raise UsageError("calm import needs a file")
-    options = Options(_pairs("--define", define or []), _columns(columns), elements, allow_include)
+    options = ImportOptions(
+        _pairs("--define", define or []), _columns(columns), elements, allow_include
+    )
     targets = _targets(files, output)
     if json is not None and json != STDOUT:
         check_destination(json)

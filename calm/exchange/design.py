@@ -11,10 +11,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from calm.errors import InputError, Problem
+
 MOST_PIECES = 2_000
 """Most pieces of a line, and most levels of its water."""
 
-Figure = float | str
+FigureOrWord = float | str
 """A number in SI, or a word of the mooring file such as ``insensitive``."""
 
 
@@ -35,7 +37,7 @@ class Remark:
 
 
 @dataclass(eq=False)
-class Component:
+class ImportedComponent:
     """A definition, with the figures of the file it comes from.
 
     Attributes
@@ -51,7 +53,7 @@ class Component:
 
     name: str
     kind: str
-    figures: dict[str, Figure]
+    figures: dict[str, FigureOrWord]
     guesses: dict[str, str] = field(default_factory=dict)
     comment: str = ""
     hull: tuple[tuple[float, float, float], ...] = ()
@@ -64,28 +66,28 @@ class Component:
 
 
 @dataclass(eq=False)
-class Hung:
+class ImportedClamp:
     """A component clamped on a piece, `at` metres from the piece's upper end."""
 
-    component: Component
+    component: ImportedComponent
     at: float
     guess: str = ""
 
 
 @dataclass(eq=False)
-class Item:
+class ImportedPiece:
     """A piece of the line; `length` [m] is that of a cable or chain."""
 
-    component: Component
+    component: ImportedComponent
     length: float | None = None
-    clamps: list[Hung] = field(default_factory=list)
+    clamps: list[ImportedClamp] = field(default_factory=list)
     guess: str = ""
     label: str = ""
     count: int = 1
 
 
 @dataclass(eq=False)
-class Record:
+class CurrentRecord:
     """Currents at several times: `u`, `v`, `w` [m/s] by time and level, `depth` [m] of the levels.
 
     `days` count from `epoch`, a date.
@@ -100,7 +102,7 @@ class Record:
 
 
 @dataclass(eq=False)
-class Water:
+class ImportedWater:
     """The environment of the line.
 
     Attributes
@@ -122,7 +124,7 @@ class Water:
 
 
 @dataclass(eq=False)
-class Tow:
+class ImportedTow:
     """Speed [m/s], course [degrees], height of the sheave above the water [m]."""
 
     speed: float
@@ -148,20 +150,30 @@ class Design:
 
     program: str
     name: str
-    items: list[Item]
-    water: Water | None
+    items: list[ImportedPiece]
+    water: ImportedWater | None
     description: str = ""
-    tow: Tow | None = None
-    record: Record | None = None
-    solver: dict[str, tuple[Figure, str]] = field(default_factory=dict)
+    tow: ImportedTow | None = None
+    record: CurrentRecord | None = None
+    solver: dict[str, tuple[FigureOrWord, str]] = field(default_factory=dict)
     guessed: list[Remark] = field(default_factory=list)
     dropped: list[Remark] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     in_kilograms: bool = False
 
-    def components(self) -> Iterator[Component]:
+    def components(self) -> Iterator[ImportedComponent]:
         """Every definition in use, those of clamps after that of their piece; repeats included."""
         for item in self.items:
             yield item.component
             for clamp in item.clamps:
                 yield clamp.component
+
+
+def refused(path: object, *messages: str) -> InputError:
+    """Why a file cannot be read, or what in it CALM cannot represent."""
+    return InputError([Problem(str(path), 0, 0, one_line(message)) for message in messages])
+
+
+def refused_at(path: object, line: int, column: int, message: str) -> InputError:
+    """The same, with the place in a text."""
+    return InputError([Problem(str(path), line, column, one_line(message))])

@@ -6,27 +6,25 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy as np
+
 from calm.errors import InputError, Problem, UsageError
-from calm.exchange.anchors import hold
-from calm.exchange.cbl.reading import is_cbl, read_cbl
-from calm.exchange.design import MOST_PIECES, Design, Record, Remark
-from calm.exchange.environments import environment_lines
-from calm.exchange.matching import Match, match
-from calm.exchange.mdd.matfile import is_mat
-from calm.exchange.mdd.reading import read_mdd
-from calm.exchange.moordyn.reading import read_moordyn
-from calm.exchange.moordyn.sections import is_moordyn
-from calm.exchange.refusal import refused
-from calm.exchange.table.moords import is_moords, read_moords
-from calm.exchange.table.reading import read_table
-from calm.exchange.table.sheet import is_table
-from calm.exchange.writing import written
+from calm.exchange.cable_reader import is_cbl, read_cbl
+from calm.exchange.design import MOST_PIECES, CurrentRecord, Design, Remark, refused
+from calm.exchange.design_writer import written
+from calm.exchange.import_completion import CatalogueMatch, environment_lines, hold, match
+from calm.exchange.list_headings import is_table
+from calm.exchange.list_reader import read_table
+from calm.exchange.mat_file import is_mat
+from calm.exchange.mdd_reader import read_mdd
+from calm.exchange.moords_reader import is_moords, read_moords
+from calm.exchange.moordyn_reader import is_moordyn, read_moordyn
 from calm.files import read_mooring
 from calm.version import __version__
 
 
 @dataclass(frozen=True)
-class Options:
+class ImportOptions:
     """The options of a command line.
 
     Attributes
@@ -44,35 +42,35 @@ class Options:
 
 
 @dataclass(frozen=True)
-class Format:
+class ImportFormat:
     """A format of files that can be imported: its name, how it is recognised and read."""
 
     name: str
     program: str
     recognises: Callable[[Path, bytes], bool]
-    read: Callable[[Path, Options], Design]
+    read: Callable[[Path, ImportOptions], Design]
 
 
 FORMATS = (
-    Format(
+    ImportFormat(
         "mdd", "Mooring Design & Dynamics", lambda path, content: is_mat(content),
         lambda path, options: read_mdd(path),
     ),
-    Format(
+    ImportFormat(
         "cbl", "WHOI Cable", lambda path, content: is_cbl(content),
         lambda path, options: read_cbl(
             path, options.defines, allow_include=options.allow_include
         ),
     ),
-    Format(
+    ImportFormat(
         "moordyn", "MoorDyn or MoorPy", lambda path, content: is_moordyn(content),
         lambda path, options: read_moordyn(path),
     ),
-    Format(
+    ImportFormat(
         "moords", "moords", lambda path, content: is_moords(content),
         lambda path, options: read_moords(path),
     ),
-    Format(
+    ImportFormat(
         "table", "a list in CSV or a spreadsheet", lambda path, content: is_table(content),
         lambda path, options: read_table(path, options.columns, options.elements),
     ),
@@ -98,8 +96,8 @@ class Imported:
     text: str
     guessed: tuple[Remark, ...]
     dropped: tuple[Remark, ...]
-    matched: tuple[Match, ...]
-    record: Record | None
+    matched: tuple[CatalogueMatch, ...]
+    record: CurrentRecord | None
 
 
 _HEAD = 70_000  # bytes from which a format is recognised
@@ -111,7 +109,7 @@ def import_file(
     *,
     format: str | None = None,
     environment: Path | None = None,
-    options: Options | None = None,
+    options: ImportOptions | None = None,
     match_catalogue: bool = False,
 ) -> Imported:
     """Read a file of another program.
@@ -130,7 +128,7 @@ def import_file(
     UsageError
         There is no such format.
     """
-    options = options or Options()
+    options = options or ImportOptions()
     chosen = format_of(path, format, listed=options.elements is not None)
     if options.elements is not None and chosen.name != "table":
         raise refused(path, f"is of {chosen.program}; --elements is for lists")
@@ -159,7 +157,7 @@ def import_file(
     )  # fmt: skip
 
 
-def format_of(path: Path, name: str | None, *, listed: bool = False) -> Format:
+def format_of(path: Path, name: str | None, *, listed: bool = False) -> ImportFormat:
     """The format of a file: as named, or by its content.
 
     Parameters
@@ -207,3 +205,37 @@ def _blamed(problem: Problem, text: str) -> str:
     if not 0 < problem.line <= len(lines):
         return problem.message
     return f"{problem.message} (in `{' '.join(lines[problem.line - 1].split())[:80]}`)"
+
+
+def record_file(record: CurrentRecord, source: str) -> bytes:
+    """A record as a classic NetCDF file by the CF conventions."""
+    import xarray as xr
+
+    speeds = {
+        name: (
+            ("time", "depth"),
+            np.ascontiguousarray(values, np.float64),
+            {"standard_name": standard_name, "units": "m s-1"},
+        )
+        for name, standard_name, values in (
+            ("u", "eastward_sea_water_velocity", record.u),
+            ("v", "northward_sea_water_velocity", record.v),
+            ("w", "upward_sea_water_velocity", record.w),
+        )
+    }
+    seconds = np.rint(record.days * 86_400e3) / 1e3  # days hold a millisecond, hardly more
+    time = {
+        "standard_name": "time",
+        "units": f"seconds since {record.epoch}",
+        "calendar": "standard",
+    }
+    depth = {"standard_name": "depth", "units": "m", "positive": "down", "axis": "Z"}
+    dataset = xr.Dataset(
+        speeds,
+        {
+            "time": ("time", seconds, {**time, "axis": "T"}),
+            "depth": ("depth", np.asarray(record.depth, np.float64), depth),
+        },
+        {"Conventions": "CF-1.11", "title": "Currents", "source": source},
+    )
+    return bytes(dataset.to_netcdf(engine="scipy"))

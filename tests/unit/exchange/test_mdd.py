@@ -11,8 +11,8 @@ from scipy.io import savemat
 from calm.case import load
 from calm.errors import InputError
 from calm.exchange.importing import import_file
-from calm.exchange.mdd.octave import read_octave_text
-from calm.exchange.mdd.reading import read_mdd
+from calm.exchange.mat_file import read_octave_text
+from calm.exchange.mdd_reader import read_mdd
 from tests.unit.exchange.mat_files import (
     HEIGHT,
     NAMES,
@@ -380,7 +380,7 @@ def test_octaves_own_format_and_bombs_are_refused_by_name(tmp_path, monkeypatch)
     path.write_bytes(b"Octave-1-L" + bytes(400))
     with pytest.raises(InputError, match="Octave's binary format"):
         import_file(path, tmp_path / "design.yaml")
-    monkeypatch.setattr("calm.exchange.mdd.matfile.LARGEST", 1_000_000)
+    monkeypatch.setattr("calm.exchange.mat_file.LARGEST", 1_000_000)
     path.write_bytes(gzip.compress(b"# name: z\n# type: matrix\n" + bytes(2_000_000)))
     with pytest.raises(InputError, match="more than 1 MB once it is decompressed"):
         import_file(path, tmp_path / "design.yaml", format="mdd")

@@ -1,0 +1,286 @@
+"""Buoys, anchors, connectors and materials of WHOI Cable, with that program's drag."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+
+from calm.exchange.cable_grammar import CableDefinition, KeyValue, KeyValues
+from calm.exchange.cable_water import number, value_at
+from calm.exchange.design import FigureOrWord, ImportedComponent, Remark, refused
+from calm.exchange.part_names import is_chain, role_of
+from calm.files.definition import CATALOGUE_DENSITY
+from calm.units import KILOGRAM_FORCE
+
+_TOO_WIDE = 20.0  # times what mass and weight say: no cable, whatever its fairing
+_ROPE = 10.0  # m: what is shorter may be a frame, whose diameter is that of its drag
+_FASTEST = 10.0  # m/s: a drag tabulated beyond it counts on depth
+_DYNAMICS = (
+    "ei", "gj", "am", "amn", "amt", "can", "cat", "cmn", "cmt", "bn", "bt", "b", "cg", "cl",
+    "i", "j", "g", "nu",
+)  # fmt: skip
+_YIELDS = ("swl", "yield")
+
+
+@dataclass
+class ComponentMaker:
+    """Makes components in the water of the problem; keys without a counterpart go to `dropped`."""
+
+    density: float
+    gravity: float
+    dropped: list[Remark]
+
+    def material(
+        self, definition: CableDefinition, length: float, depth: float, speed: float
+    ) -> ImportedComponent:
+        """A cable of a length [m], with its drag at a depth [m] and a speed [m/s]."""
+        values, name = definition.values, definition.name
+        across, inside = number(values, "d") or number(values, "diam"), number(values, "id")
+        if across <= 0.0:
+            raise definition.token.refuse(f"material `{name}` has no diameter")
+        area, bore = math.pi / 4.0 * across**2, math.pi / 4.0 * inside**2
+        mass = number(values, "m") or number(values, "mass")
+        dry = number(values, "w") or mass * self.gravity
+        wet = number(values, "wet") or dry - area * self.density * self.gravity
+        if not mass and not dry and not number(values, "wet"):
+            raise definition.token.refuse(f"material `{name}` has neither `m` nor `wet`")
+        figures: dict[str, FigureOrWord] = {
+            "diameter": across,
+            "cn": self._drag(values, "cdn", depth, speed),
+            "ct": self._drag(values, "cdt", depth, speed),
+        }
+        kind = "chain" if is_chain(name) else "cable"
+        weight, mass = self._at_reference(wet, mass)
+        if weight < 0.0 and kind == "chain":
+            kind = "cable"
+        figures["buoyancy" if weight < 0.0 else "weight"] = abs(weight)
+        if mass:
+            figures["mass"] = mass
+        component = ImportedComponent(name, kind, figures)
+        if (
+            mass
+            and length > _ROPE
+            and _TOO_WIDE * (mass - weight / self.gravity) < CATALOGUE_DENSITY * area
+        ):
+            component.guesses["diameter"] = (
+                f"kept as it is: a metre of it displaces {CATALOGUE_DENSITY * area:.3g} kg of "
+                f"water, but has a mass of {mass:.3g} kg and weighs {weight:.3g} N"
+            )
+        self._stretch(component, definition, area - bore)
+        self._drop(definition)
+        return component
+
+    def _stretch(
+        self, component: ImportedComponent, definition: CableDefinition, section: float
+    ) -> None:
+        values = definition.values
+        stiffness = number(values, "ea") or number(values, "e") * section
+        tension = values.get("t")
+        if not stiffness and tension is not None:
+            stiffness = value_at(tension, 0.01) / 0.01
+            component.guesses["stiffness"] = "its tension at a strain of 0.01; the file has a curve"
+        if stiffness > 0.0:
+            component.figures["stiffness"] = stiffness
+        limit = {key: number(values, key) for key in _YIELDS}
+        if limit["yield"] > 0.0:
+            component.figures["breaking_load"] = limit["yield"]
+        if limit["swl"] > 0.0 and (not limit["yield"] or limit["swl"] <= limit["yield"]):
+            component.figures["working_load"] = limit["swl"]
+
+    def connector(self, definition: CableDefinition) -> ImportedComponent:
+        """A point in the line: a sphere of its drag, of the length that the file gives."""
+        values, name = definition.values, definition.name
+        wet, mass = self._at_reference(
+            number(values, "wet"), number(values, "m") or number(values, "mass")
+        )
+        figures: dict[str, FigureOrWord] = {
+            "length": number(values, "length"),
+            "buoyancy": 0.0 - wet,
+        }
+        across, drag = number(values, "d") or number(values, "diam"), number(values, "cdn")
+        if across > 0.0:
+            kind = "sphere"
+            figures = {"diameter": across, **figures, "cx": drag}
+        else:
+            kind = "body"
+            figures |= {"drag_area": 0.0, "cd": drag}
+        if mass:
+            figures["mass"] = mass
+        figures["role"] = role_of(name, -wet, fastener=abs(wet) < 20.0)
+        self._drop(definition)
+        return ImportedComponent(name, kind, figures)
+
+    def anchor(
+        self, definition: CableDefinition | None, name: str, friction: float
+    ) -> ImportedComponent:
+        """The lower end; without a weight where the file gives none."""
+        values: KeyValues = definition.values if definition else {}
+        figures: dict[str, FigureOrWord] = {}
+        wet, mass = number(values, "wet"), number(values, "m") or number(values, "mass")
+        if wet > 0.0:
+            figures["weight"], known = self._at_reference(wet, mass)
+            if known:
+                figures["mass"] = known
+        elif mass > 0.0:
+            figures["mass"] = mass
+        mu = number(values, "mu") or friction
+        if mu > 0.0:
+            figures["friction"] = mu
+        component = ImportedComponent(name, "anchor", figures)
+        if "mass" in figures and "weight" not in figures:
+            component.guesses["mass"] = "taken for steel: the file gives no weight in water"
+        return component
+
+    def buoy(self, definition: CableDefinition, *, afloat: bool) -> ImportedComponent:
+        """The upper end, or what is towed.
+
+        Its hull is that of the file. Where it does not float, it is a point, as in that program.
+        """
+        values, name = definition.values, definition.name
+        shape = values["type"].text.lower() if "type" in values else "sphere"
+        if shape in ("ship", "platform"):
+            raise definition.token.refuse(
+                f"`{name}` is a {shape}: CALM has lines that end in a float or at a towing ship"
+            )
+        volume, area, height = largest(definition, shape)
+        mass = number(values, "m") or number(values, "mass")
+        mass = mass or number(values, "w") / self.gravity
+        lift = number(values, "buoyancy")
+        whole = lift / (self.density * self.gravity) if lift else volume
+        if not whole:
+            raise refused(definition.token.path, f"buoy `{name}` has no size and no buoyancy")
+        drag = number(values, "cdn")
+        across = number(values, "d") or number(values, "diam")
+        figures: dict[str, FigureOrWord]
+        if shape == "sphere":
+            kind, figures = "sphere", {"diameter": across, "length": height, "cx": drag}
+        elif shape == "cylinder" and afloat:
+            kind = "cylinder"
+            figures = {"diameter": across, "length": height, "cn": drag}
+            figures["inclination"] = "insensitive"
+        else:
+            kind, figures = "body", {"length": height, "drag_area": area, "cd": drag}
+        component = ImportedComponent(name, kind, figures)
+        if not afloat:
+            figures["length"] = 0.0
+            component.comment = "That program treats it as a point: the line ends at its depth."
+        elif kind == "body":
+            component.hull = displacement(definition, shape)
+            whole = max(whole, component.hull[-1][1]) if not lift else whole
+        figures |= {"mass": mass, "volume": whole}
+        windage, wind_drag = number(values, "sw"), number(values, "cdw") or drag
+        if afloat and (windage or wind_drag):
+            figures |= {"wind_area": windage} if windage else {}
+            figures["wind_cd"] = wind_drag
+        net = (self.density * whole - mass) * self.gravity
+        figures["role"] = "float" if net > 0.0 else "instrument"
+        self._drop(definition)
+        return component
+
+    def _at_reference(self, wet: float, mass: float) -> tuple[float, float]:
+        """A weight in CALM's water, and the mass; 0 for an impossible mass.
+
+        What is displaced follows from both, so that the weight in the file's own water comes out.
+        """
+        if mass * KILOGRAM_FORCE < wet or mass <= 0.0:
+            return wet, 0.0
+        volume = (mass - wet / self.gravity) / self.density
+        return wet + (self.density - CATALOGUE_DENSITY) * self.gravity * volume, mass
+
+    def _drag(self, values: KeyValues, key: str, depth: float, speed: float) -> float:
+        value = values.get(key)
+        if value is None:
+            return 0.0
+        return value_at(value, depth if counts_on_depth(value) else speed)
+
+    def _drop(self, definition: CableDefinition) -> None:
+        found = [key for key in _DYNAMICS if key in definition.values]
+        what = ", ".join({"ei": "EI", "gj": "GJ"}.get(key, key) for key in found)
+        remark = Remark(definition.name, f"stiffness in bending, added mass and the like ({what})")
+        if found and remark not in self.dropped:
+            self.dropped.append(remark)
+
+
+def counts_on_depth(value: KeyValue) -> bool:
+    """Whether a drag is a function of depth; a table up to speeds that occur is one of speed."""
+    return not value.rows or value.rows[-1][0].at() > _FASTEST
+
+
+def varies(definition: CableDefinition) -> bool:
+    """Whether a drag of a material is a function of depth."""
+    return any(
+        value is not None
+        and counts_on_depth(value)
+        and (bool(value.rows) or bool(value.formula and value.formula.names))
+        for value in (definition.values.get("cdn"), definition.values.get("cdt"))
+    )
+
+
+_STEPS = 12  # rows of a table between two diameters
+_SLIGHT = 1e-9
+
+
+def largest(definition: CableDefinition, shape: str) -> tuple[float, float, float]:
+    """Volume [m³], area shown to the current [m²] and height [m] of the whole hull."""
+    rows = displacement(definition, shape)
+    draft, volume, area = rows[-1]
+    return volume, area, draft
+
+
+def displacement(definition: CableDefinition, shape: str) -> tuple[tuple[float, float, float], ...]:
+    """Rows of draft [m], displaced volume [m³] and immersed area [m²].
+
+    Raises
+    ------
+    InputError
+        The hull has no size, or a shape that is not known.
+    """
+    values = definition.values
+    across = number(values, "d") or number(values, "diam")
+    height = number(values, "h") or number(values, "height")
+    if shape == "axisymmetric":
+        return _turned(definition)
+    if across <= 0.0:
+        raise definition.token.refuse(f"buoy `{definition.name}` has no diameter")
+    radius = across / 2.0
+    top = height if shape == "cylinder" else across
+    if top <= 0.0:
+        raise definition.token.refuse(f"buoy `{definition.name}` has no height `h`")
+    rows = []
+    for step in range(2 * _STEPS + 1):
+        draft = top * step / (2 * _STEPS)
+        if shape == "cylinder":
+            rows.append((draft, math.pi * radius**2 * draft, across * draft))
+            continue
+        angle = 2.0 * math.acos(max(-1.0, min(1.0, (radius - draft) / radius)))
+        disc = 0.5 * radius**2 * (angle - math.sin(angle))
+        volume = (1.5 * across - draft) * draft**2 * math.pi / 3.0
+        if shape == "capsule":
+            volume += disc * max(height - across, 0.0)
+        elif shape != "sphere":
+            raise definition.token.refuse(f"buoy `{definition.name}` is of an unknown type")
+        rows.append((draft, volume, disc))
+    return tuple(rows)
+
+
+def _turned(definition: CableDefinition) -> tuple[tuple[float, float, float], ...]:
+    """Of a hull given by its diameters at levels above its keel."""
+    value = definition.values.get("diameters")
+    if value is None or len(value.rows) < 2 or any(len(row) != 2 for row in value.rows):
+        raise definition.token.refuse(f"buoy `{definition.name}` needs `diameters` at two levels")
+    levels = [(row[0].at(), row[1].at()) for row in value.rows]
+    if any(b[0] <= a[0] or a[1] < 0.0 for a, b in pairwise(levels)):
+        raise value.token.refuse("the levels of `diameters` must go on growing")
+    rows = [(0.0, 0.0, 0.0)]
+    volume = area = 0.0
+    keel = levels[0][0]
+    for (low, narrow), (high, wide) in pairwise(levels):
+        for step in range(1, _STEPS + 1):
+            part = (high - low) * step / _STEPS
+            across = narrow + (wide - narrow) * step / _STEPS
+            cone = math.pi / 12.0 * part * (narrow**2 + narrow * across + across**2)
+            shown = 0.5 * part * (narrow + across)
+            rows.append((low - keel + part, volume + cone, area + shown))
+        _, volume, area = rows[-1]
+    return tuple(row for i, row in enumerate(rows) if i == 0 or row[1] > rows[i - 1][1] + _SLIGHT)

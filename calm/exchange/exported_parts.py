@@ -1,0 +1,358 @@
+"""A mooring or a tow for other programs: parts with their net force and drag."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from math import cos, pi, radians, sin
+
+import numpy as np
+
+from calm.case import Mooring, Result, Tow, TowResult
+from calm.errors import NoEquilibrium, UsageError
+from calm.files import Anchor, Component, Sphere
+from calm.files.definition import STANDARD_GRAVITY
+from calm.files.rigid import Displacement
+from calm.physics.line import Line, Water
+from calm.physics.reference import REFERENCE_DENSITY
+
+_LEAST_MASS = 0.1  # of what its net force weighs
+
+Coordinates = tuple[float, float, float]
+"""East and north of the anchor, and depth [m]."""
+
+
+@dataclass(frozen=True)
+class ExportedPart:
+    """A piece, or what is clamped on one.
+
+    Attributes
+    ----------
+    use, label, role : as in the mooring file
+    component : its definition
+    flexible : whether it is a cable or chain, whose figures are per metre
+    length : unstretched [m]
+    buoyancy : net force in water of the reference density, + up [N or N/m]
+    net, density : the same, and the density [kg/m³], in the water where it stands upright
+    kn, kt : drag across and along it at 1 m/s and 1025 kg/m³ [N/(m/s)², per metre where flexible]
+    directional : whether its drag depends on its axis
+    stiffness : EA [N]; 0 where it does not stretch
+    clamps : with their distance from its upper end [m]
+    """
+
+    use: str
+    label: str
+    role: str
+    component: Component
+    flexible: bool
+    length: float
+    buoyancy: float
+    net: float
+    density: float
+    kn: float
+    kt: float
+    directional: bool
+    stiffness: float
+    clamps: tuple[tuple[ExportedPart, float], ...] = ()
+
+    @property
+    def diameter(self) -> float:
+        """As its definition has it; 0 for a body [m]."""
+        return float(getattr(self.component, "diameter", 0.0))
+
+    @property
+    def mass(self) -> float | None:
+        """In air, where it is known [kg or kg/m]."""
+        return getattr(self.component, "mass", None)
+
+
+@dataclass(frozen=True)
+class ExportedLine:
+    """The parts of a line from its first piece to its last, the anchor apart.
+
+    Attributes
+    ----------
+    name, description : of the file
+    parts : of a mooring from the top, of a tow from the ship
+    anchor : the anchor, and its weight with what is clamped on it [N]; None for a tow
+    depth, levels, u, v, w, density : of the water [m, m/s, kg/m³], first at the surface
+    gravity : [m/s²]
+    tow : speed [m/s], direction [degrees] and height of the sheave [m]
+    afloat : whether the line reaches the surface, and whether its float has a draft there
+    riding : share of its buoyancy that the float uses here, and of its drag that acts on it; 1, 1
+        below the surface
+    windage : of the float: its area in the air here [m²], and its drag coefficient there
+    unsaid : what other programs cannot hold
+    solve : finds the equilibrium
+    """
+
+    name: str
+    description: str
+    parts: tuple[ExportedPart, ...]
+    anchor: tuple[Anchor, float] | None
+    depth: float
+    levels: tuple[tuple[float, float, float, float, float], ...]
+    gravity: float
+    wind: tuple[float, float]
+    tow: tuple[float, float, float] | None
+    afloat: tuple[bool, bool]
+    riding: tuple[float, float]
+    windage: tuple[float, float]
+    unsaid: tuple[str, ...]
+    solve: Callable[[], Result | TowResult]
+
+    def paths(self) -> list[PartPath]:
+        """The equilibrium: where each part lies, from the top down.
+
+        Raises
+        ------
+        NoEquilibrium
+            There is none.
+        """
+        result = self.solve()
+        nodes = np.column_stack([result.shape.x, result.shape.y, result.shape.depth])
+        paths, start = [], 0
+        for row in (result.components[i] for i in range(len(self.parts))):
+            low = np.array([row.x_bottom, row.y_bottom, row.depth_bottom])
+            gap = np.linalg.norm(nodes[start:] - low, axis=1)
+            end = start + int(np.flatnonzero(gap <= gap.min() + 1e-9)[0])
+            first = np.array([[row.x_top, row.y_top, row.depth_top]])
+            inner = nodes[start + 1 : end]
+            paths.append(PartPath(np.vstack([first, inner, low[np.newaxis]])))
+            start = end
+        return paths
+
+
+@dataclass(frozen=True)
+class PartPath:
+    """Hold where a part lies in equilibrium: (n, 3) `Coordinates` of nodes from its upper end."""
+
+    nodes: np.ndarray[tuple[int, int], np.dtype[np.float64]]
+
+    def at(self, share: float) -> Coordinates:
+        """The place at a share of its length from its upper end."""
+        steps = np.linalg.norm(np.diff(self.nodes, axis=0), axis=1)
+        along = np.concatenate([[0.0], np.cumsum(steps)])
+        place = [float(np.interp(share * along[-1], along, column)) for column in self.nodes.T]
+        return place[0], place[1], place[2]
+
+
+def area(part: ExportedPart, density: float | None = None, *, along: bool = False) -> float:
+    """Drag coefficient times area [m²], across the line or along it, of a cable per metre.
+
+    Parameters
+    ----------
+    density : of a program that has a single one [kg/m³]: the area that drags there as the part does
+    in its own water
+    """
+    own = (part.kt if along else part.kn) / (0.5 * REFERENCE_DENSITY)
+    return own if density is None else own * part.density / density
+
+
+def as_point(design: ExportedLine, density: float) -> tuple[float, float]:
+    """Net force [N] and drag area [m²] of a float below the surface as a point at the line's end.
+
+    For programs in which a float is a point: its drag is in the flow at the end, not at its middle,
+    and has no axis. Force and area are such that it pulls as it does here; without an equilibrium
+    they are its own.
+
+    Parameters
+    ----------
+    density : of the water there [kg/m³]
+    """
+    part = design.parts[0]
+    own = part.net, area(part, density)
+    try:
+        row = design.solve().components[0]
+    except NoEquilibrium:
+        return own
+    depths, *parts = np.array(design.levels)[:, :4].T
+    middle, end = (
+        sum(float(np.interp(depth, depths, part)) ** 2 for part in parts)
+        for depth in ((row.depth_top + row.depth_bottom) / 2.0, row.depth_top)
+    )
+    if end == 0.0:
+        return own
+    if not part.directional or part.clamps:
+        return part.net, own[1] * middle / end
+    tilt = radians(row.tilt)
+    return row.tension_bottom * cos(tilt), row.tension_bottom * sin(tilt) / (0.5 * density * end)
+
+
+def remarks(design: ExportedLine, more: Sequence[str]) -> tuple[str, ...]:
+    """What other programs cannot hold, each remark once."""
+    return tuple(dict.fromkeys((*more, *design.unsaid)))
+
+
+def mass_of(part: ExportedPart) -> float:
+    """Mass in air [kg, kg/m]: as given, or from weight and size."""
+    if part.mass is not None:
+        return part.mass
+    hull = getattr(part.component, "hull", None)
+    volume = part.component.displaced_volume
+    if isinstance(hull, Displacement):
+        volume = hull.displacement[-1][1]
+    if not volume:
+        across = part.diameter
+        round_ = pi / 6.0 * across**3 if isinstance(part.component, Sphere) else 0.0
+        volume = round_ or pi / 4.0 * across**2 * (1.0 if part.flexible else part.length)
+    weighed = part.net / STANDARD_GRAVITY
+    return max(REFERENCE_DENSITY * volume - weighed, _LEAST_MASS * abs(weighed))
+
+
+_DIGITS = 9  # of a speed in m/s
+
+
+def assembled(mooring: Mooring | Tow) -> ExportedLine:
+    """The parts of a mooring or a tow.
+
+    Raises
+    ------
+    NoEquilibrium
+        A piece is to be cut to fit, and no length does.
+    """
+    file, water, line = mooring.file, mooring.water, mooring.line
+    if file.environment.fluid == "air":
+        raise UsageError(f"{file.path} is towed in air; the other programs know water alone")
+    secant = _secants(mooring)
+    depths = _depths(line, water, isinstance(mooring, Tow))
+    parts = []
+    for i in range(len(line.length)):
+        piece = file.pieces[i]
+        density = float(water.at(np.array(depths[i]))[1])
+        excess = (density - REFERENCE_DENSITY) * float(water.gravity)
+        on = [k for k in range(len(line.clamp_at)) if line.clamp_piece[k] == i]
+        clamps = tuple(
+            (
+                ExportedPart(
+                    clamp.use, clamp.label, clamp.component.role, clamp.component, False,
+                    float(getattr(clamp.component, "length", 0.0)),
+                    float(line.clamp_buoyancy[k]),
+                    float(line.clamp_buoyancy[k] + excess * line.clamp_volume[k]), density,
+                    float(line.clamp_drag[k]), float(line.clamp_drag[k]), False, 0.0,
+                ),
+                float(line.clamp_at[k]),
+            )
+            for k, clamp in zip(on, piece.clamps, strict=True)
+        )  # fmt: skip
+        compliance = float(line.compliance[i])
+        stiffness = secant.get(i, 1.0 / compliance if compliance else 0.0)
+        parts.append(
+            ExportedPart(
+                piece.use, piece.label, piece.component.role, piece.component,
+                bool(line.flexible[i]), float(line.length[i]), float(line.buoyancy[i]),
+                float(line.buoyancy[i] + excess * line.volume[i]), density,
+                float(line.normal_drag[i]), float(line.tangential_drag[i]),
+                bool(line.directional[i]), stiffness, clamps,
+            )
+        )  # fmt: skip
+    wind = file.environment.wind
+    riding, windage = _riding(mooring)
+    anchor = None
+    tow = None
+    if isinstance(mooring, Tow):
+        keys = mooring.keys
+        tow = keys.speed, keys.toward, keys.height
+    else:
+        anchor = file.anchor, mooring.anchor_weight
+    return ExportedLine(
+        name=file.name,
+        description=file.description,
+        parts=tuple(parts),
+        anchor=anchor,
+        depth=float(water.depth),
+        levels=_levels(water, 2.0 * float(line.length.sum()) if tow else float(water.depth)),
+        gravity=float(water.gravity),
+        wind=(0.0, 0.0) if wind is None else (wind.speed, wind.toward),
+        tow=tow,
+        afloat=(_reaches(mooring), line.floating is not None and line.floating.hull is not None),
+        riding=riding,
+        windage=windage,
+        unsaid=_unsaid(mooring),
+        solve=mooring.solve,
+    )
+
+
+def _reaches(mooring: Mooring | Tow) -> bool:
+    """Whether a mooring floats at the surface; by its length where it has no equilibrium."""
+    if isinstance(mooring, Tow):
+        return False
+    try:
+        return mooring.solve().type == "surface"
+    except NoEquilibrium:
+        whole = mooring.line.anchor_height + float(mooring.line.length.sum())
+        return whole >= float(mooring.water.depth)
+
+
+def _riding(mooring: Mooring | Tow) -> tuple[tuple[float, float], tuple[float, float]]:
+    """How the float stands at the surface here: `riding` and `windage` of `ExportedLine`."""
+    floating = mooring.line.floating
+    if not _reaches(mooring):
+        return (1.0, 1.0), (0.0, 1.0)
+    assert isinstance(mooring, Mooring)
+    try:
+        used = mooring.solve().top.used_buoyancy
+    except NoEquilibrium:
+        used = 1.0
+    if floating is None:
+        return (used, 1.0), (0.0, 1.0)
+    seen = floating.riding(used).drag
+    area = floating.wind_area
+    if area is None:
+        area = 0.0 if floating.hull is None else floating.hull.area * (1.0 - seen)
+    return (used, seen), (area, floating.wind_cd)
+
+
+def _secants(mooring: Mooring | Tow) -> dict[int, float]:
+    """Stiffness of the pieces that stretch by a table, as it is at their tension here [N]."""
+    curves = mooring.line.elongation
+    if not any(curves):
+        return {}
+    rows = mooring.solve().components
+    secants = {}
+    for i, curve in enumerate(curves):
+        if curve is not None:
+            strain = rows[i].length / rows[i].cut_length - 1.0
+            tension = (rows[i].tension_top + rows[i].tension_bottom) / 2.0
+            secants[i] = tension / strain if strain > 0.0 else 0.0
+    return secants
+
+
+def _depths(line: Line, water: Water, towed: bool) -> list[float]:
+    """Depths of the middle of every piece, upright above the anchor or below the ship [m]."""
+    below = np.cumsum(line.length) - line.length / 2.0
+    if not towed:
+        below += float(water.depth) - line.anchor_height - float(line.length.sum())
+    return [max(float(depth), 0.0) for depth in below]
+
+
+def _levels(water: Water, deepest: float) -> tuple[tuple[float, float, float, float, float], ...]:
+    """Rows of depth, u, v, w and density, from the surface to the seabed."""
+    inside = [float(depth) for depth in water.level if 0.0 < depth < deepest]
+    rows = []
+    for depth in (0.0, *inside, deepest):
+        u, v, w, density = (
+            round(float(np.interp(depth, water.level, values)), _DIGITS) + 0.0
+            for values in (water.u, water.v, water.w, water.density)
+        )
+        rows.append((depth, u, v, w, density))
+    return tuple(rows)
+
+
+def _unsaid(mooring: Mooring | Tow) -> tuple[str, ...]:
+    """What a mooring file says that other programs do not know."""
+    file = mooring.file
+    unsaid = [
+        "limits of the design check, strengths, ratings and tilts of components",
+    ]
+    if file.solver.strumming is not None:
+        unsaid.append("strumming: the drag of cables is that at rest")
+    if file.solver.drag == "reynolds":
+        unsaid.append("`drag: reynolds`: drags are those of the constant coefficients")
+    if file.solver.friction != "berteaux":
+        unsaid.append(f"`friction: {file.solver.friction}`")
+    if any(mooring.line.elongation):
+        unsaid.append("elongation tables: stiffness is that at the tension found here")
+    if any(mooring.line.lift) or any(mooring.line.clamp_lift):
+        unsaid.append("lift of towed bodies")
+    return tuple(unsaid)

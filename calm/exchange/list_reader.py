@@ -1,0 +1,315 @@
+"""A list of pieces as a design."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from calm.exchange.design import (
+    MOST_PIECES,
+    Design,
+    ImportedClamp,
+    ImportedComponent,
+    ImportedPiece,
+    ImportedWater,
+    Remark,
+    refused,
+)
+from calm.exchange.list_headings import (
+    ListHeadings,
+    SheetRows,
+    check_given,
+    headings_of,
+    number,
+    read_sheets,
+)
+from calm.exchange.list_rows import (
+    ListRow,
+    component_of,
+    count_lines,
+    names_in,
+    rows_of,
+    weights_as_buoyancy,
+)
+from calm.exchange.mat_file import is_mat
+from calm.exchange.mdd_elements import read_entries
+from calm.exchange.mdd_reader import read_water
+from calm.exchange.part_names import is_line
+from calm.files.components import FLEXIBLE_KINDS
+from calm.files.document import read_content
+from calm.files.explain import nearest
+from calm.units import KILOGRAM_FORCE
+
+_NOTE = "A list says nothing about the water, and little about drag. See `calm docs import-table`."
+_WATER = ("z", "U", "V", "W", "rho")  # headings of a sheet of Mooring Design & Dynamics
+_NAMES = 3  # at least, in a list of names alone
+
+
+def read_table(path: Path, columns: Mapping[str, str], elements: Path | None = None) -> Design:
+    """Read a CSV file or a workbook.
+
+    Parameters
+    ----------
+    columns : headings by what they hold
+    elements : a library with the figures that the list lacks
+
+    Raises
+    ------
+    InputError
+        No headings are recognised, a figure is missing, or no end is an anchor.
+    """
+    sheets = read_sheets(path)
+    check_given(sheets, columns, path)
+    if elements is None and not columns and is_library(sheets):
+        raise refused(
+            path,
+            "is a library of elements, not a mooring; a list takes its figures: --elements FILE",
+        )
+    library = read_library(elements) if elements is not None else {}
+    design = Design("a list", path.stem, [], None, notes=[_NOTE])
+    design.water = _water(sheets, design, path)
+    problems: list[str] = []
+    chosen = _sheet(sheets, columns)
+    headings = None
+    if chosen is not None:
+        cells, headings = chosen
+        weighed = {"buoyancy", "weight"} & headings.columns.keys()
+        rows = rows_of(
+            cells, headings, problems, design.dropped,
+            bare=lambda name: bool(library) and (not weighed or key_of(name) in library),
+        )  # fmt: skip
+        weights_as_buoyancy(rows, design.guessed)
+        if headings.others:
+            design.dropped.append(Remark("columns", ", ".join(headings.others)))
+    else:
+        rows = _names(sheets, design, path, library)
+    if elements is not None:
+        complete(rows, library, elements.name)
+    count_lines(rows, headings.columns if headings else {})
+    if sum(row.count for row in rows) > MOST_PIECES:
+        raise refused(path, f"has more than {MOST_PIECES} pieces")
+    rows = _from_the_top(rows, path, design)
+    design.items = _items(rows, problems)
+    if problems:
+        raise refused(path, *problems)
+    design.in_kilograms = headings is None or any(
+        headings.columns[key].by_mass for key in ("buoyancy", "weight") if key in headings.columns
+    )
+    return design
+
+
+def _sheet(
+    sheets: Mapping[str, SheetRows], columns: Mapping[str, str]
+) -> tuple[SheetRows, ListHeadings] | None:
+    """The longest sheet that has headings, and those."""
+    found = [
+        (rows, headings)
+        for rows in sorted(sheets.values(), key=len, reverse=True)
+        if (headings := headings_of(rows, columns)) is not None
+    ]
+    return found[0] if found else None
+
+
+def _names(
+    sheets: Mapping[str, SheetRows], design: Design, path: Path, library: Library
+) -> list[ListRow]:
+    """The rows of a list that holds names alone, in the longest sheet.
+
+    The first is the name of the mooring where the library has no such element.
+    """
+    longest = max(sheets.values(), key=len, default=[])
+    rows = names_in(longest)
+    filled = sum(bool(cell) for row in longest for cell in row)
+    if len(rows) < _NAMES or 2 * len(rows) < filled:
+        raise refused(
+            path, "has no headings that CALM knows; name them: --columns name=…,length=…,weight=…"
+        )
+    if not library:
+        raise refused(
+            path,
+            f"holds names and no figures (`{rows[0].name}`, `{rows[1].name}` …); "
+            "give the library of these elements: --elements FILE",
+        )
+    if key_of(rows[0].name) not in library:
+        if key_of(rows[0].name) != "name":
+            design.name = rows[0].name
+        rows = rows[1:]
+    return rows
+
+
+def _water(sheets: Mapping[str, SheetRows], design: Design, path: Path) -> ImportedWater | None:
+    """The environment in a sheet of heights, `z`, as in workbooks of Mooring Design & Dynamics."""
+    for rows in sheets.values():
+        headings = [cell.lower() for cell in rows[0]]
+        if not {"z", "u"} <= set(headings):
+            continue
+        columns = {
+            name: np.array([number(row[i])[0] or 0.0 for row in rows[1:] if i < len(row)])
+            for name in _WATER
+            if name.lower() in headings and (i := headings.index(name.lower())) >= 0
+        }
+        try:
+            water, _ = read_water(columns, False, design.guessed)
+        except ValueError as error:
+            raise refused(path, str(error)) from None
+        return water
+    return None
+
+
+def _from_the_top(rows: list[ListRow], path: Path, design: Design) -> list[ListRow]:
+    """The rows from the top down; lists run either way, clamps follow their piece."""
+    pieces = [row for row in rows if "at" not in row.figures]
+    if len(pieces) < 2:
+        raise refused(path, f"has {len(pieces)} pieces")
+    anchored = [i for i, row in enumerate(pieces) if row.is_anchor]
+    if anchored and anchored[0] == 0 and anchored[-1] != len(pieces) - 1:
+        design.notes.append("The list runs from the anchor up: here it is reversed.")
+        return _turned(rows)
+    if anchored and anchored[-1] == len(pieces) - 1:
+        return rows
+    lifts = [row.figures.get("buoyancy", 0.0) for row in (pieces[0], pieces[-1])]
+    if max(lifts) <= 0.0:
+        raise refused(
+            path,
+            "no end of the list is a float, and none is an anchor; a list of what is towed is not "
+            "read, since it has neither ship nor speed",
+        )
+    if lifts[0] < lifts[1]:
+        design.notes.append("The list runs from the lower end up: here it is reversed.")
+        rows = _turned(rows)
+    design.guessed.append(Remark("line.anchor", "the list has none"))
+    return [*rows, ListRow(0, "anchor", kind="anchor", role="anchor")]
+
+
+def _turned(rows: list[ListRow]) -> list[ListRow]:
+    groups: list[list[ListRow]] = []
+    for row in rows:
+        if "at" in row.figures and groups:
+            groups[-1].append(row)
+        else:
+            groups.append([row])
+    return [row for group in reversed(groups) for row in group]
+
+
+def _items(rows: list[ListRow], problems: list[str]) -> list[ImportedPiece]:
+    items: list[ImportedPiece] = []
+    for row in rows:
+        component: ImportedComponent = component_of(
+            row, problems, anchor=row is rows[-1] and row.is_anchor
+        )
+        at = row.figures.get("at")
+        if at is None:
+            length = row.figures.get("length") if component.kind in FLEXIBLE_KINDS else None
+            items += [ImportedPiece(component, length, label=row.label) for _ in range(row.count)]
+        elif items:
+            items[-1].clamps.append(ImportedClamp(component, at))
+    return items
+
+
+_NOT_THEIRS = ("at", "count", "height")  # of an element, whatever the heading says
+_A_METRE = 1e-6  # m by which the length of a line's figures may miss a metre
+_SHEETS = 3  # with headings of their own make a library
+
+
+@dataclass(frozen=True)
+class LibraryElement:
+    """An element of a library: its figures in SI, those of a line per metre."""
+
+    name: str
+    is_line: bool
+    figures: dict[str, float]
+
+
+Library = Mapping[str, LibraryElement]
+"""Elements by their name without capitals and blanks."""
+
+
+def read_library(path: Path) -> Library:
+    """The elements of Mooring Design & Dynamics' `mdcodes.mat`, or of a table or workbook.
+
+    Of several elements of one name the first holds.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or holds no elements.
+    """
+    content = read_content(path, largest=200_000_000)
+    elements = _of_matrices(path) if is_mat(content) else _of_sheets(path)
+    library: dict[str, LibraryElement] = {}
+    for element in elements:
+        library.setdefault(key_of(element.name), element)
+    return library
+
+
+def is_library(sheets: Mapping[str, SheetRows]) -> bool:
+    """Whether sheets are a library: several with headings, or the table of moords."""
+    headed = [found for rows in sheets.values() if (found := headings_of(rows, {})) is not None]
+    moords = {"buoyancy_kg", "length_m", "width_m", "diameter_m"}
+    return len(headed) >= _SHEETS or any(
+        moords <= {column.heading for column in found.columns.values()} for found in headed
+    )
+
+
+def key_of(name: str) -> str:
+    """A name without capitals and blanks, as libraries are searched."""
+    return "".join(name.lower().split())
+
+
+def complete(rows: Iterable[ListRow], library: Library, source: str) -> None:
+    """Give rows the figures that they lack, from the element of their name."""
+    for row in rows:
+        element = library.get(key_of(row.name))
+        if element is None:
+            near = nearest(row.name.lower(), [each.name.lower() for each in library.values()])
+            if "buoyancy" not in row.figures and near is not None:
+                row.hint = f"; {source} has `{near}`"
+            elif "buoyancy" not in row.figures:
+                row.hint = f"; {source} has no element of that name"
+            continue
+        row.line = element.is_line
+        for what, value in element.figures.items():
+            if what in row.figures or (element.is_line and what == "length"):
+                continue
+            row.figures[what] = value
+            if element.is_line:
+                row.metre.add(what)
+
+
+def _of_matrices(path: Path) -> Iterable[LibraryElement]:
+    for entry in read_entries(path):
+        figures = {
+            "buoyancy": entry.lift * KILOGRAM_FORCE, "length": entry.length, "width": entry.width,
+            "diameter": entry.diameter, "cd": entry.cd, "material": entry.material,
+        }  # fmt: skip
+        yield LibraryElement(entry.name, entry.is_line, figures)
+
+
+def _of_sheets(path: Path) -> Iterable[LibraryElement]:
+    found = False
+    for title, cells in read_sheets(path).items():
+        headings = headings_of(cells, {})
+        if headings is None:
+            continue
+        rows = rows_of(cells, headings, [], [])
+        weights_as_buoyancy(rows, [])
+        for row in rows:
+            found = True
+            yield LibraryElement(row.name, _is_line(row, title), _figures(row))
+    if not found:
+        raise refused(path, "holds no elements: no sheet has headings that CALM knows")
+
+
+def _is_line(row: ListRow, title: str) -> bool:
+    """Whether an element is a line, with figures per metre."""
+    floats = row.figures.get("buoyancy", 0.0) > 0.0 and row.figures.get("diameter", 0.0) > 0.0
+    if abs(row.figures.get("length", 1.0) - 1.0) > _A_METRE or (floats and "width" in row.figures):
+        return False
+    return bool(row.metre) or row.is_line or is_line(title)
+
+
+def _figures(row: ListRow) -> dict[str, float]:
+    return {what: value for what, value in row.figures.items() if what not in _NOT_THEIRS}

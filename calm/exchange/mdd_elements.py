@@ -1,0 +1,361 @@
+"""Elements of Mooring Design & Dynamics as components of CALM, with that program's drag."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from calm.exchange.design import MOST_PIECES, FigureOrWord, ImportedComponent, refused
+from calm.exchange.mat_file import MatValue, RealArray, names, numbers, read_variables
+from calm.exchange.part_names import is_chain, role_of
+from calm.files.definition import CATALOGUE_DENSITY
+from calm.units import KILOGRAM_FORCE
+
+_SLIGHT = 1e-6  # by which a hull takes more than its net buoyancy
+_FLAT = 1e-3  # m: height of a float that the file gives none
+_SOFT = 1e10  # Pa: the modulus of a rope is below, of a wire above
+_HARD = re.compile(r"\bwire|\bchain|\bsteel", re.I)
+
+
+def component_of(element: MddElement) -> ImportedComponent:
+    """The definition of an element that is not the anchor."""
+    return _flexible(element) if element.is_line else rigid(element)
+
+
+def rigid(element: MddElement) -> ImportedComponent:
+    """The definition of a rigid element, or of one clamped on.
+
+    That program takes an element with a diameter for a sphere of that diameter, whatever its
+    length, and one with a width alone for a cylinder, whose Cd is for flow across it, without end
+    faces.
+    """
+    lift = element.lift * KILOGRAM_FORCE
+    role = role_of(element.name, lift, fastener=element.is_fastener)
+    figures: dict[str, FigureOrWord]
+    if element.diameter > 0.0:
+        kind = "sphere"
+        figures = {"diameter": element.diameter, "length": element.length, "cx": element.cd}
+    elif element.width > 0.0 and element.length > 0.0:
+        kind = "cylinder"
+        figures = {"diameter": element.width, "length": element.length, "cn": element.cd, "ct": 0.0}
+    else:
+        kind = "body"
+        figures = {"length": element.length, "drag_area": 0.0, "cd": element.cd}
+    figures["buoyancy"] = lift
+    if lift > 0.0 and element.mass is not None:
+        figures["mass"] = element.mass
+    component = ImportedComponent(element.name, kind, {**figures, "role": role})
+    if kind == "body":
+        component.comment = "The file gives it no size, so that it has no drag."
+    elif _is_too_small(element):
+        component.guesses["diameter"] = (
+            f"kept as it is, a placeholder: nothing of this size lifts {element.lift:g} kgf, "
+            "so its drag is missing"
+        )
+    return component
+
+
+def rides_by_buoyancy(component: ImportedComponent) -> None:
+    """Let a float ride as in that program: its draft and drag follow the buoyancy it uses.
+
+    Its hull displaces, in proportion to the draft, no more than its net buoyancy needs.
+    """
+    figures = component.figures
+    lift, height = float(figures.get("buoyancy", 0.0)), float(figures.get("length", 0.0))
+    if component.kind not in ("sphere", "cylinder", "body") or lift <= 0.0:
+        return
+    across = float(figures.get("diameter", 0.0))
+    shown = {
+        "sphere": math.pi / 4.0 * across**2,
+        "cylinder": across * height,
+        "body": float(figures.get("drag_area", 0.0)),
+    }
+    figures.pop("mass", None)
+    volume = (1.0 + _SLIGHT) * lift / (CATALOGUE_DENSITY * KILOGRAM_FORCE)
+    component.hull = ((0.0, 0.0, 0.0), (height or _FLAT, volume, shown[component.kind]))
+    component.comment = "At the surface it sinks, and drags, in proportion to the buoyancy it uses."
+
+
+def _is_too_small(element: MddElement) -> bool:
+    """Whether a float of this size cannot displace enough water for its buoyancy."""
+    if element.diameter > 0.0:
+        volume = math.pi * element.diameter**2 * max(element.diameter / 6.0, element.length / 4.0)
+    else:
+        volume = math.pi * element.width**2 * element.length / 4.0
+    return element.lift > CATALOGUE_DENSITY * volume
+
+
+def _flexible(element: MddElement) -> ImportedComponent:
+    """The definition of a wire, rope or chain: its Cd is of its width, without drag along it."""
+    chain = is_chain(element.name)
+    figures: dict[str, FigureOrWord] = {"diameter": element.across, "cn": element.cd, "ct": 0.0}
+    weight = 0.0 - element.lift * KILOGRAM_FORCE
+    component = ImportedComponent(element.name, "chain" if chain else "cable", figures)
+    if weight < 0.0 and not chain:
+        figures["buoyancy"] = -weight
+    else:
+        figures["weight"] = weight
+    modulus = element.modulus
+    if modulus is not None and math.isfinite(modulus):
+        figures["stiffness"] = modulus * math.pi / 4.0 * element.across**2
+        if _HARD.search(element.name) and modulus < _SOFT:
+            component.guesses["stiffness"] = (
+                f"the file's modulus of {modulus / 1e9:g} GPa is that of a rope; is it a remnant "
+                "of an edit?"
+            )
+    if chain:
+        component.comment = (
+            "The width that the file gives stands as diameter, which is not that of the bar; "
+            "Cd counts on it."
+        )
+    if element.width > 0.0 and element.diameter > 0.0:
+        component.guesses["diameter"] = "the file gives a width and a diameter of a sphere"
+    return component
+
+
+def anchor_of(element: MddElement) -> ImportedComponent:
+    """The definition of the lowest element; files give its weight with either sign."""
+    figures: dict[str, FigureOrWord] = {
+        "weight": abs(element.lift) * KILOGRAM_FORCE,
+        "length": element.length,
+    }
+    return ImportedComponent(element.name, "anchor", figures)
+
+
+@dataclass(frozen=True)
+class MddElement:
+    """One column of ``H``, and the figures that go with it.
+
+    Attributes
+    ----------
+    length, width, diameter : [m]; a sphere has a diameter, all else a width
+    is_line : whether its figures are per metre: wire, rope or chain
+    is_fastener : shackles, links, swivels
+    lift : net buoyancy, of a line per metre [kg]
+    mass : in air, where that version of the program has it [kg]
+    modulus : of a line [Pa]; None where it is not known, inf where it does not stretch
+    number : its column, from 1
+    """
+
+    name: str
+    length: float
+    width: float
+    diameter: float
+    is_line: bool
+    is_fastener: bool
+    lift: float
+    cd: float
+    mass: float | None
+    modulus: float | None
+    number: int
+
+    @property
+    def across(self) -> float:
+        """Width, or the diameter where there is none [m]."""
+        return self.width or self.diameter
+
+
+_LARGEST = 1e9  # m, kg: of no piece
+
+MODULI = (1.38e11, 3.45e8, 8.0e8, 3.45e8, 6.9e8, 6.9e10, 7.6e10, 1.0e11)
+"""Of the materials that the program numbers from 1: steel, nylon, Dacron, polypropylene,
+polyethylene, Kevlar, aluminium, Dyneema [Pa]."""
+
+
+def read_elements(
+    variables: Mapping[str, MatValue], suffix: str
+) -> tuple[list[MddElement], list[str]]:
+    """The elements of a line in the order of the file, and what is wrong with them.
+
+    Parameters
+    ----------
+    suffix : ``t`` for the matrices of a tow, ``CO`` for what is clamped on, or nothing
+    """
+    prefix = "moorele"
+    problems: list[str] = []
+    size = _matrix(variables, f"H{suffix}", problems)
+    count = size.shape[1]
+    lift = _row(variables, f"B{suffix}", count, problems)
+    drag = _row(variables, f"Cd{suffix}", count, problems)
+    if count > MOST_PIECES:
+        problems.append(f"`H{suffix}` has {count} elements; more than {MOST_PIECES} are not read")
+    if problems or not count:
+        return [], problems
+    modulus = _optional(variables, f"ME{suffix}")
+    mass = _optional(variables, f"Wt{suffix}")
+    called = _names(variables, f"{prefix}{suffix}", count)
+    elements = []
+    for i in range(count):
+        length, width, diameter, flag = (float(value) for value in size[:, i])
+        elements.append(
+            MddElement(
+                name=called[i],
+                length=length,
+                width=width,
+                diameter=diameter,
+                is_line=round(flag) == 1,
+                is_fastener=round(flag) == 2,
+                lift=float(lift[i]),
+                cd=float(drag[i]),
+                mass=float(mass[i]) if mass.size == count and mass[i] > 0.0 else None,
+                modulus=_modulus(float(modulus[i])) if modulus.size == count else None,
+                number=i + 1,
+            )
+        )
+        problems += mistakes_of(elements[-1], f"element {i + 1}, {called[i]}")
+    return elements, problems
+
+
+def mistakes_of(element: MddElement, where: str) -> list[str]:
+    """The figures of an element that no piece of a mooring can have."""
+    sizes = {
+        "length": element.length, "width": element.width, "diameter": element.diameter,
+        "drag coefficient": element.cd,
+    }  # fmt: skip
+    wrong = [
+        f"{where}: its {what} is {value:g}"
+        for what, value in sizes.items()
+        if not 0.0 <= value <= _LARGEST
+    ]
+    if not abs(element.lift) <= _LARGEST:
+        wrong.append(f"{where}: its buoyancy is {element.lift:g}")
+    return wrong
+
+
+def _matrix(variables: Mapping[str, MatValue], name: str, problems: list[str]) -> RealArray:
+    """``H``: four rows, one column an element; the flag is 0 where a row is missing."""
+    try:
+        size = numbers(variables.get(name))
+    except ValueError as error:
+        problems.append(f"`{name}` {error}")
+        return np.zeros((4, 0))
+    if size.size == 0:
+        return np.zeros((4, 0))
+    size = np.atleast_2d(size)
+    if size.ndim == 2 and size.shape[0] not in (3, 4) and size.shape[1] in (3, 4):
+        size = size.T
+    if size.ndim != 2 or size.shape[0] not in (3, 4):
+        shape = "×".join(str(length) for length in size.shape)
+        problems.append(f"`{name}` is {shape}; it must have 4 rows, one column an element")
+        return np.zeros((4, 0))
+    return size if size.shape[0] == 4 else np.vstack([size, np.zeros(size.shape[1])])
+
+
+def _row(
+    variables: Mapping[str, MatValue], name: str, count: int, problems: list[str]
+) -> RealArray:
+    try:
+        row = numbers(variables.get(name)).ravel()
+    except ValueError as error:
+        problems.append(f"`{name}` {error}")
+        return np.zeros(count)
+    if row.size != count:
+        problems.append(f"`{name}` has {row.size} values for {count} elements")
+        return np.zeros(count)
+    return row
+
+
+def _optional(variables: Mapping[str, MatValue], name: str) -> RealArray:
+    try:
+        return numbers(variables.get(name)).ravel()
+    except ValueError:
+        return np.zeros(0)
+
+
+def _names(variables: Mapping[str, MatValue], name: str, count: int) -> list[str]:
+    """A name for every element, also where the file has none."""
+    value = variables.get(name)
+    found = names(value) if value is not None else []
+    if len(found) != count and isinstance(value, np.ndarray) and value.ndim == 2:
+        found = names(value.T)
+    found = (found + [""] * count)[:count]
+    return [each or f"element {i}" for i, each in enumerate(found, 1)]
+
+
+def _modulus(value: float) -> float | None:
+    """A modulus of elasticity [Pa]; small whole numbers stand for a material."""
+    if math.isnan(value) or value <= 0.0:
+        return None
+    if value <= len(MODULI) and value == int(value):
+        return MODULI[int(value) - 1]
+    return value
+
+
+GROUPS = ("floats", "wires", "chains", "acrels", "cms", "anchors", "miscs")
+"""The variables that hold elements."""
+
+_LINES = ("wires", "chains")
+_NAME = 16  # bytes of a name, where the file does not say
+_FIGURES = (6, 7)  # behind it: buoyancy, mass in air of late, length, width, diameter, Cd, material
+_CENTIMETRE = 0.01
+_METRE = 100.0  # cm: the length of a line whose figures are those of a metre
+
+
+@dataclass(frozen=True)
+class MddEntry:
+    """An element: net buoyancy [kg, of a line per metre], sizes [m], Cd and number of material."""
+
+    name: str
+    is_line: bool
+    lift: float
+    length: float
+    width: float
+    diameter: float
+    cd: float
+    material: float
+
+
+def read_entries(path: Path) -> list[MddEntry]:
+    """The elements of a file such as `mdcodes.mat`.
+
+    Raises
+    ------
+    InputError
+        It holds none.
+    """
+    variables = read_variables(path, [*GROUPS, "format"])
+    entries = [
+        entry
+        for group in GROUPS
+        for text in names(variables.get(group))
+        if (entry := _entry(text, group, _width(variables))) is not None
+    ]
+    if not entries:
+        raise refused(path, "holds no element library of that program (`floats`, `wires` …)")
+    return entries
+
+
+def _width(variables: Mapping[str, MatValue]) -> int:
+    """Bytes of a name: `format` has the columns of the name and of each figure."""
+    try:
+        columns = numbers(variables.get("format"))
+    except ValueError:
+        return _NAME
+    return int(columns[0, -1]) if columns.ndim == 2 and 0 < columns.size <= 100 else _NAME
+
+
+def _entry(text: str, group: str, end: int) -> MddEntry | None:
+    """An element of a row; None for a row that cannot be read."""
+    content = text.encode()
+    try:
+        figures = [float(word) for word in content[end:].split()]
+    except ValueError:
+        return None
+    if len(figures) not in _FIGURES:
+        return None
+    length, width, diameter, cd, material = figures[-5:]
+    return MddEntry(
+        name=content[:end].decode("utf-8", "replace").strip(),
+        is_line=group in _LINES and length == _METRE,
+        lift=figures[0],
+        length=length * _CENTIMETRE,
+        width=width * _CENTIMETRE,
+        diameter=diameter * _CENTIMETRE,
+        cd=cd,
+        material=material,
+    )

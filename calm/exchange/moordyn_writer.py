@@ -1,0 +1,268 @@
+"""A mooring as an input file of MoorDyn 2, its points where they stand in equilibrium."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from itertools import groupby
+from math import pi, sqrt
+
+from calm.errors import UsageError
+from calm.exchange.exported_parts import (
+    Coordinates,
+    ExportedLine,
+    ExportedPart,
+    PartPath,
+    area,
+    as_point,
+    mass_of,
+    remarks,
+)
+
+CURRENTS = "current_profile.txt"
+"""The name under which that program looks for the current, beside its input."""
+
+_RIGID = 1e7  # N: EA of what does not stretch; stiffer lines need shorter steps
+_SHORT = 0.5  # m: what is rigid and shorter is softer in proportion, for the same reason
+_OWN = 0.5  # share of its mass with which a float moves the length that stands for its own
+_LENGTH, _MOST = 20.0, 60  # m of a length between two points, lengths of a cable
+_CLOSE = 0.5  # m: a clamp as close to a point stands there
+_SEGMENTS = 4  # of a length
+_LEAST = 1e-3  # kg of mass and of displaced water per metre, for what has none
+
+
+@dataclass
+class _Load:
+    """Parts at one point, or in one stiff length, in water of a density [kg/m³].
+
+    Net force [N], mass [kg], and drag areas across and along the line [m²] together.
+    """
+
+    density: float
+    net: float = 0.0
+    mass: float = 0.0
+    area: float = 0.0
+    along: float = 0.0
+
+    def add(self, part: ExportedPart, share: float = 1.0) -> None:
+        """Add a part with what is clamped on it; `share` is of its drag."""
+        for each in (part, *(clamp for clamp, _ in part.clamps)):
+            self.net += each.net
+            self.mass += mass_of(each)
+            own = share if each is part else 1.0
+            self.area += own * area(each, self.density)
+            self.along += own * area(each, self.density, along=True)
+
+    def per_metre(self, length: float) -> _Load:
+        """The same, spread over a length [m]."""
+        figures = (self.net, self.mass, self.area, self.along)
+        return _Load(self.density, *(each / length for each in figures))
+
+
+@dataclass
+class _System:
+    """Types, points and lines of the file, as they grow from the anchor up."""
+
+    density: float
+    gravity: float
+    place: Coordinates
+    types: dict[str, str] = field(default_factory=dict)
+    points: list[str] = field(default_factory=list)
+    lines: list[str] = field(default_factory=list)
+    load: _Load = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.load = _Load(self.density)
+
+    def end_point(self, kind: str) -> int:
+        """The number of the point that the line has reached, written with what acts there."""
+        volume = (self.load.mass + self.load.net / self.gravity) / self.density
+        figures = f"{self.load.mass:.9g}  {volume:.9g}  {self.load.area:.9g}  0"
+        x, y, depth = self.place
+        number = len(self.points) + 1
+        self.points.append(f"{number}  {kind}  {x:.6f}  {y:.6f}  {-depth:.6f}  {figures}")
+        return number
+
+    def line(self, name: str, figures: str, length: float, to: Coordinates) -> None:
+        """A length of a type, from the point that the line has reached."""
+        below = self.end_point("Free" if self.points else "Fixed")
+        chosen, number = name, 1
+        while self.types.setdefault(chosen, figures) != figures:
+            number += 1
+            chosen = f"{name}_{number}"
+        segments = _SEGMENTS if length > 1.0 else 1
+        self.lines.append(
+            f"{len(self.lines) + 1}  {chosen}  {below}  {below + 1}  {length:.9g}  {segments}  -"
+        )
+        self.place, self.load = to, _Load(self.density)
+
+    def figures(self, load: _Load, stiffness: float) -> str:
+        """The line type for what acts on a metre."""
+        mass = max(load.mass, _LEAST - load.net / self.gravity)
+        volume = (mass + load.net / self.gravity) / self.density
+        across = sqrt(4.0 * volume / pi)
+        return (
+            f"{across:.9g}  {mass:.9g}  {stiffness or _RIGID:.9g}  -0.8  0"
+            f"  {load.area / across:.9g}  1.0  {load.along / (pi * across):.9g}  0.0"
+        )
+
+
+def moordyn_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
+    """The content of the file, and what it cannot hold.
+
+    Raises
+    ------
+    UsageError
+        It is a tow.
+    NoEquilibrium
+        There is none: its points have no places.
+    """
+    if design.tow is not None:
+        raise UsageError("a tow has no anchor; MoorDyn is given moorings alone")
+    paths = design.paths()
+    density = sum(row[4] for row in design.levels) / len(design.levels)
+    system = _System(density, design.gravity, paths[-1].at(1.0))
+    lost = ["rigid pieces in a row: each row is one stiff length"]
+    numbered = list(enumerate(design.parts))[::-1]
+    for flexible, group in groupby(numbered, key=lambda pair: pair[1].flexible):
+        members = list(group)
+        if flexible:
+            for i, part in members:
+                _lay(system, part, paths[i])
+            continue
+        upper = members[-1][0]
+        if upper == 0:
+            members.pop()
+        if members:
+            _lay_rigid(system, [part for _, part in members], paths[members[-1][0]].at(0.0))
+        if upper == 0:
+            _lay_float(system, design, paths[0])
+    if design.wind[0]:
+        lost.append("wind")
+    afloat, _ = design.afloat
+    if afloat:
+        lost.append(
+            "the hull of the float: the upper end is held where it is; its point keeps the float's "
+            "mass, volume and drag as it floats here"
+        )
+    else:
+        lost.append(
+            "that the drag of the float acts at its middle and by its axis: its point has the "
+            "pull found here"
+        )
+    system.end_point("Fixed" if afloat else "Free")
+    losses = remarks(design, lost)
+    return _text(design, system, density, losses).encode(), losses
+
+
+def _lay(system: _System, part: ExportedPart, path: PartPath) -> None:
+    """A cable or chain from its lower end up, cut where something is clamped on.
+
+    It is cut into short lengths too, since that program starts with each as it hangs in still
+    water.
+    """
+    load = _Load(system.density)
+    load.add(replace(part, clamps=()))
+    figures = system.figures(load, part.stiffness)
+    count = min(max(round(part.length / _LENGTH), 1), _MOST)
+    cuts: dict[float, list[ExportedPart]] = {part.length * k / count: [] for k in range(count)}
+    for clamp, at in part.clamps:
+        near = min(cuts, key=lambda cut: abs(cut - at))
+        place = near if abs(near - at) < _CLOSE else at
+        cuts.setdefault(place, []).append(clamp)
+    below = part.length
+    for at in sorted(cuts, reverse=True):
+        if below > at:
+            system.line(_word(part.use), figures, below - at, path.at(at / part.length))
+            below = at
+        for clamp in cuts[at]:
+            system.load.add(clamp)
+
+
+def _lay_rigid(system: _System, parts: list[ExportedPart], top: Coordinates) -> None:
+    """Rigid pieces in a row, from the lowest up."""
+    load, length = _Load(system.density), sum(part.length for part in parts)
+    for part in parts:
+        load.add(part)
+    if length <= 0.0:
+        for part in parts:
+            system.load.add(part)
+        return
+    name = _word("_and_".join(dict.fromkeys(part.use for part in parts[:2])))
+    system.line(name, system.figures(load.per_metre(length), _stiff(length)), length, top)
+
+
+def _lay_float(system: _System, design: ExportedLine, path: PartPath) -> None:
+    """The uppermost piece: a point, on a stiff length as long as its draft.
+
+    That length takes a share of its mass, neutral in water: that program steps too finely where a
+    length is light.
+    """
+    part, afloat = design.parts[0], design.afloat[0]
+    top, bottom = path.at(0.0), path.at(1.0)
+    below = bottom[2] / (bottom[2] - top[2]) if top[2] < 0.0 else 1.0
+    length = part.length * below
+    if length > 0.0:
+        own = _Load(system.density, mass=_OWN * mass_of(part)).per_metre(length)
+        figures = system.figures(own, _stiff(length))
+        system.line("float", figures, length, path.at(1.0 - below))
+        system.load.mass -= own.mass * length
+    system.load.add(part, design.riding[1])
+    if not afloat:
+        net, shown = as_point(design, system.density)
+        system.load.net += net - part.net
+        system.load.area += shown - area(part, system.density)
+
+
+def _stiff(length: float) -> float:
+    """EA of a rigid length [N]."""
+    return _RIGID * min(length / _SHORT, 1.0)
+
+
+def _word(text: str) -> str:
+    return "".join(sign if sign.isalnum() and sign.isascii() else "_" for sign in text)
+
+
+def _text(design: ExportedLine, system: _System, density: float, lost: tuple[str, ...]) -> str:
+    title = f"{design.name}, by CALM; the current stands in {CURRENTS}; lost:"
+    options = (
+        ("0", "writeLog"), ("0.1", "CFL"), ("RK2", "tScheme"), ("3.0e5", "kBot"),
+        ("3.0e4", "cBot"), (f"{density:.9g}", "rho"), (f"{design.gravity:.9g}", "g"),
+        (f"{design.depth:.9g}", "WtrDpth"), ("1.0", "dtIC"), ("0.0", "TmaxIC"),
+        ("4.0", "CdScaleIC"), ("0.0005", "threshIC"), ("0", "WaveKin"), ("1", "Currents"),
+        ("1", "disableOutput"), ("1", "disableOutTime"),
+    )  # fmt: skip
+    lines = [
+        "--------------------- MoorDyn Input File ------------------------------------",
+        *(" ".join(f"{each}".split()) for each in (title, *(f"  {each}" for each in lost))),
+        "---------------------- LINE TYPES -----------------------------------",
+        "TypeName   Diam    Mass/m     EA     BA/-zeta    EI    Cd     Ca    CdAx    CaAx",
+        "(name)     (m)     (kg/m)     (N)    (N-s/-)   (N-m^2) (-)    (-)   (-)     (-)",
+        *(f"{name}  {figures}" for name, figures in system.types.items()),
+        "---------------------- POINTS ---------------------------------------",
+        "ID   Attachment  X   Y   Z   Mass   Volume   CdA   Ca",
+        "(#)  (-)        (m) (m) (m)  (kg)   (m^3)   (m^2)  (-)",
+        *system.points,
+        "---------------------- LINES ----------------------------------------",
+        "ID   LineType   AttachA  AttachB  UnstrLen  NumSegs  LineOutputs",
+        "(#)  (name)     (#)      (#)      (m)       (-)      (-)",
+        *system.lines,
+        "---------------------- OPTIONS --------------------------------------",
+        *(f"{value}   {name}" for value, name in options),
+        "------------------------- need this line ----------------------------",
+        "",
+    ]
+    return "\n".join(lines)
+
+
+def current_profile(design: ExportedLine) -> bytes:
+    """The current for that program: heights from below the seabed to above the water."""
+    rows = [[0.0 - row[0], *row[1:4]] for row in reversed(design.levels)]
+    rows = [[rows[0][0] - 10.0, *rows[0][1:]], *rows, [10.0, *rows[-1][1:]]]
+    lines = [
+        "--------------------- MoorDyn steady currents File ------------------",
+        f"Currents of {' '.join(design.name.split())}, by CALM",
+        "z (m), ux (m/s), uy (m/s), uz (m/s)",
+        *(" ".join(f"{value:.9g}" for value in row) for row in rows),
+        "",
+    ]
+    return "\n".join(lines).encode()
