@@ -1,8 +1,7 @@
 """Mooring files and catalogues: text in, validated models in SI out. Nothing is computed here."""
 
-from calm.files.accept import Accept
 from calm.files.catalogue import Assembly, Catalogue
-from calm.files.checks import Checks, SafetyFactors
+from calm.files.checks import Accept, Checks, SafetyFactors
 from calm.files.components import Anchor, Body, Cable, Chain, Component, Cylinder, Sphere
 from calm.files.environment import Environment, Fouling, Position, Wind
 from calm.files.flexible import Flexible

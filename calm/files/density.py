@@ -9,9 +9,9 @@ from pydantic import Discriminator, Field, Tag
 
 from calm.errors import Problem
 from calm.files.definition import CATALOGUE_DENSITY, DENSITY
+from calm.files.document import Section
 from calm.files.explain import about_quantity
 from calm.files.fields import Model, Quantity
-from calm.files.section import Section
 from calm.files.tables import (
     SALINITY,
     TEMPERATURE,

@@ -14,9 +14,9 @@ from calm.errors import InputError, Problem
 from calm.files.current_terms import DEEPEST, Terms, too_fast
 from calm.files.definition import DENSITY
 from calm.files.density import USUAL_DENSITY, Density, check_density, read_density
+from calm.files.document import Section
 from calm.files.explain import shown, validate
 from calm.files.fields import POSITIVE_LENGTH, Model, Quantity, Text
-from calm.files.section import Section
 from calm.files.tables import (
     DIRECTION,
     CurrentTable,

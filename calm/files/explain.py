@@ -9,8 +9,7 @@ from typing import Any, Literal, TypeVar, get_args, get_origin
 from pydantic import BaseModel, ValidationError
 
 from calm.errors import Problem
-from calm.files.document import Location
-from calm.files.section import Section
+from calm.files.document import Location, Section
 from calm.units import QuantityError
 
 LONGEST_TEXT = 60

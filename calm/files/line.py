@@ -7,20 +7,17 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from calm.errors import Problem
-from calm.files.catalogue import Assembly, Catalogue, define
+from calm.files.catalogue import Assembly, Catalogue, Entry, define
 from calm.files.checks import LimitKey
-from calm.files.components import Cable, Component
+from calm.files.components import Cable, Component, contradicted
 from calm.files.definition import IN_AIR
-from calm.files.entries import Entry
+from calm.files.document import Section
 from calm.files.explain import about_quantity, shown, unknown, validate
 from calm.files.fields import LENGTH, POSITIVE_LENGTH, Quantity
 from calm.files.flexible import Flexible, strain_under
-from calm.files.labels import placed
 from calm.files.logbook import EQUIPMENT_KEYS, LengthAt, check_serials, read_equipment
-from calm.files.mooring import Clamp, Piece, Place
-from calm.files.overrides import contradicted
+from calm.files.mooring import Clamp, Piece, Place, placed
 from calm.files.rigid import Rigid
-from calm.files.section import Section
 from calm.units import QuantityError
 
 MOST_PIECES = 10_000

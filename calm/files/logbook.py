@@ -8,11 +8,11 @@ from typing import Annotated, Any, TypeGuard
 from pydantic import AfterValidator, Field, WithJsonSchema
 
 from calm.errors import Problem
-from calm.files.accept import Day
+from calm.files.checks import Day
+from calm.files.document import Section
 from calm.files.environment import Position
 from calm.files.explain import shown, unknown, validate
 from calm.files.fields import POSITIVE_LENGTH, Model, Quantity, Text
-from calm.files.section import Section
 from calm.files.times import TimeChoiceError, parse_time
 
 

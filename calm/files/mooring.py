@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Annotated, Any, Literal, Protocol
 
 from pydantic import AfterValidator, Field
 
-from calm.files.accept import Accept
-from calm.files.checks import Checks, LimitKey
+from calm.files.checks import Accept, Checks, LimitKey
 from calm.files.components import Anchor, Component
 from calm.files.environment import Environment, Position
 from calm.files.fields import LENGTH, Model, Quantity
@@ -227,3 +227,44 @@ class MooringFile:
         anchor = self.pieces[-1].component
         assert isinstance(anchor, Anchor)
         return anchor
+
+
+def placed(piece: Piece, place: Place) -> Piece:
+    """The piece, with its clamps and the serial numbers there, at another place of the line."""
+    clamps = tuple(
+        replace(
+            clamp,
+            place=replace(place, clamp=number),
+            equipment=clamp.equipment.of(place.repeat),
+        )
+        for number, clamp in enumerate(piece.clamps)
+    )
+    return replace(piece, place=place, clamps=clamps, equipment=piece.equipment.of(place.repeat))
+
+
+def numbered(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
+    """The pieces with their index, and labels that occur more than once numbered down the line."""
+    pieces = tuple(pieces)
+    labels = [[piece.label, *(clamp.label for clamp in piece.clamps)] for piece in pieces]
+    total = Counter(label for group in labels for label in group)
+    seen: Counter[str] = Counter()
+
+    def numbered_label(text: str) -> str:
+        if total[text] == 1:
+            return text
+        seen[text] += 1
+        while f"{text} {seen[text]}" in total:
+            seen[text] += 1
+        return f"{text} {seen[text]}"
+
+    return tuple(
+        replace(
+            piece,
+            index=index,
+            label=numbered_label(piece.label),
+            clamps=tuple(
+                replace(clamp, label=numbered_label(clamp.label)) for clamp in piece.clamps
+            ),
+        )
+        for index, piece in enumerate(pieces)
+    )

@@ -9,20 +9,17 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field
 
 from calm.errors import InputError, Problem
-from calm.files.accept import read_accepts
 from calm.files.catalogue import Catalogue
-from calm.files.checks import Checks
+from calm.files.checks import Checks, read_accepts
 from calm.files.components import Anchor
-from calm.files.document import compose, read_document
+from calm.files.document import Section, compose, read_document
 from calm.files.environment import Position, read_environment
 from calm.files.explain import validate
 from calm.files.fields import Model, Text
 from calm.files.flexible import Flexible
-from calm.files.labels import numbered
 from calm.files.line import LineReader
 from calm.files.logbook import Deployed, DocumentKeys, ReleaseKeys, check_deployed
-from calm.files.mooring import Clamp, MooringFile, Piece, Place, Solver, TowKeys
-from calm.files.section import Section
+from calm.files.mooring import Clamp, MooringFile, Piece, Place, Solver, TowKeys, numbered
 from calm.files.uncertainty import Uncertainty
 from calm.files.variants import choose_environment
 from calm.units import QuantityError

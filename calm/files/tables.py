@@ -12,9 +12,9 @@ from pydantic import Field, ValidationError
 from calm.errors import Problem
 from calm.files.current_terms import Terms, too_deep, too_fast
 from calm.files.definition import DENSITY
+from calm.files.document import Section
 from calm.files.explain import about_quantity, shown, unknown
 from calm.files.fields import Model, Quantity, Text
-from calm.files.section import Section
 from calm.quantities import bearing_of
 from calm.units import DIMENSIONS, QuantityError, unit_factor
 

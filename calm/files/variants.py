@@ -8,11 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from calm.errors import InputError, Problem
-from calm.files.document import read_document
+from calm.files.document import Section, read_document
 from calm.files.environment import read_environment
 from calm.files.explain import unknown, validate
 from calm.files.fields import Model, Text
-from calm.files.section import Section
 
 
 class EnvironmentFileKeys(Model):

@@ -9,15 +9,21 @@ from typing import Any
 
 from calm.errors import InputError, Problem
 from calm.files import document
-from calm.files.composition import compose
+from calm.files.composition import Node, compose
 from calm.files.document import Location
-from calm.files.editing.changes import NAMED, EditError, Page
-from calm.files.editing.data import cells_that_differ, data_of, has_control, with_value, without
+from calm.files.editing.changes import (
+    NAMED,
+    EditError,
+    Page,
+    cells_that_differ,
+    data_of,
+    has_control,
+    with_value,
+    without,
+)
 from calm.files.editing.items import Item, item_of, read_snippet
-from calm.files.editing.layout import Layout, Value, Worded
-from calm.files.editing.lists import items_of
-from calm.files.editing.spans import Patch, patched
-from calm.files.nodes import Node
+from calm.files.editing.splicing import Patch, items_of, patched
+from calm.files.editing.writing import Layout, Value, Worded
 
 LINE: Location = ("line",)
 """Where the items of the line stand."""

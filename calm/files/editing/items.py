@@ -5,11 +5,9 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from calm.files.composition import compose
-from calm.files.editing.layout import Layout, Value, Wording, inline
-from calm.files.editing.lists import Items, Slot
-from calm.files.editing.spans import line_start
-from calm.files.nodes import Node
+from calm.files.composition import Node, compose
+from calm.files.editing.splicing import Items, Slot, line_start
+from calm.files.editing.writing import Layout, Value, Wording, inline
 
 _LINE_BREAK = re.compile(r"\r\n|\n")
 

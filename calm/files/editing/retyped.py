@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from difflib import SequenceMatcher
 from typing import NamedTuple
 
-from calm.files.editing.layout import Layout
+from calm.files.editing.writing import Layout
 
 _ENDINGS = ("\r\n", "\n", "\r")
 

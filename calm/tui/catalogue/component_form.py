@@ -9,12 +9,10 @@ from types import UnionType
 from typing import Any, Literal, Union, get_args, get_origin
 
 from calm.errors import Problem
-from calm.files.catalogue import define
+from calm.files.catalogue import Entry, define
 from calm.files.components import KINDS, Component
-from calm.files.document import Document
-from calm.files.entries import Entry
+from calm.files.document import Document, Section
 from calm.files.fields import Quantity
-from calm.files.section import Section
 from calm.tui.checking import Check, Reading, anything, quantity
 from calm.units import DIMENSIONS
 

@@ -9,10 +9,8 @@ from functools import cached_property
 from math import inf
 
 from calm.errors import InputError
-from calm.files.catalogue import Catalogue
-from calm.files.document import compose
-from calm.files.entries import FAMILY_ROLES, Entry
-from calm.files.section import Section
+from calm.files.catalogue import FAMILY_ROLES, Catalogue, Entry
+from calm.files.document import Section, compose
 from calm.tui.catalogue.figures import Figures, figures_of, wanted
 from calm.tui.catalogue.synonyms import with_synonyms
 

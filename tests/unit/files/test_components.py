@@ -6,12 +6,10 @@ import pytest
 
 from calm.errors import Problem
 from calm.files import Anchor, Body, Cable, Chain, Cylinder, Sphere
-from calm.files.catalogue import Assembly, define
+from calm.files.catalogue import Assembly, Entry, define
 from calm.files.components import Component
 from calm.files.definition import CATALOGUE_DENSITY
-from calm.files.document import Document
-from calm.files.entries import Entry
-from calm.files.section import Section
+from calm.files.document import Document, Section
 from calm.physics.reference import REFERENCE_DENSITY
 
 G = 9.80665

@@ -8,9 +8,8 @@ import pytest
 
 from calm.errors import Problem
 from calm.files import DepthTable, Environment, MooringFile, SeaWater, mooring_schema
-from calm.files.document import read_document
+from calm.files.document import Section, read_document
 from calm.files.environment import read_environment
-from calm.files.section import Section
 from tests.core_yaml import loaded
 
 from .conftest import GOOD, Place
