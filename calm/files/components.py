@@ -19,7 +19,7 @@ from calm.files.definition import (
     refuse_weight_above_mass,
     volume_from_weights,
 )
-from calm.files.fields import Quantity, Role
+from calm.files.fields import QuantityField, Role
 from calm.files.flexible import Cable, Chain, Flexible
 from calm.files.rigid import DRAG_FORMS, Body, Cylinder, CylinderShape, Rigid, Sphere, SphereShape
 
@@ -56,14 +56,14 @@ class Anchor(Definition):
     role: Role = "anchor"
     kind: Literal["anchor"] = Field(description="which kind of component it is")
     mass: Mass = None
-    weight: Annotated[float | None, Quantity("force", at_least=0)] = Field(
+    weight: Annotated[float | None, QuantityField("force", at_least=0)] = Field(
         default=None,
         description="in sea water of 1025 kg/m^3 (per metre of a cable or chain)",
         examples=["5000 N"],
     )
     density: MaterialDensity = None
     length: Length = 0.0
-    friction: Annotated[float | None, Quantity("number", above=0)] = Field(
+    friction: Annotated[float | None, QuantityField("number", above=0)] = Field(
         default=None, description="coefficient on the seabed", examples=[0.6]
     )
     kt: TangentialDrag = None

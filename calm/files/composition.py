@@ -80,7 +80,7 @@ def compose(text: str) -> Composition:
                 pass  # which the parser in Python says better
         return _composed_by_python(text, start, plain)
     except _TooDeep:
-        return Composition(None, (Refusal(0, 0, "is nested too deeply"),))
+        return Composition(None, (YamlMistake(0, 0, "is nested too deeply"),))
 
 
 def _is_read_differently(text: str) -> bool:
@@ -106,16 +106,16 @@ def _composed_by_python(text: str, start: int, plain: str) -> Composition:
         refusals = _syntax_refusals(plain, error)
     except (YAMLError, ValueError, OverflowError) as error:
         first_line = str(error).partition("\n")[0]
-        refusals = [Refusal(0, 0, f"is not valid YAML: {first_line}")]
+        refusals = [YamlMistake(0, 0, f"is not valid YAML: {first_line}")]
     shown = [one._replace(message=one.message.replace(stand_in, "?")) for one in refusals]
     return Composition(None, tuple(shown))
 
 
-def _syntax_refusals(text: str, error: MarkedYAMLError) -> list[Refusal]:
+def _syntax_refusals(text: str, error: MarkedYAMLError) -> list[YamlMistake]:
     """Tabs in the indentation are the usual cause and are all shown; else what the parser says."""
     if "\\t" in str(error.problem):
         found = [
-            Refusal(number, line.index("\t") + 1, "a tab; YAML is indented with spaces")
+            YamlMistake(number, line.index("\t") + 1, "a tab; YAML is indented with spaces")
             for number, line in enumerate(text.splitlines(), 1)
             if "\t" in line[: len(line) - len(line.lstrip())]
         ]
@@ -125,7 +125,7 @@ def _syntax_refusals(text: str, error: MarkedYAMLError) -> list[Refusal]:
     what = error.problem or error.context
     if error.context and error.context_mark and error.problem:
         what = f"{error.context} from line {error.context_mark.line + 1}, {what}"
-    return [Refusal(mark.line + 1, mark.column + 1, f"is not valid YAML: {what}")]
+    return [YamlMistake(mark.line + 1, mark.column + 1, f"is not valid YAML: {what}")]
 
 
 class _Reader:
@@ -143,7 +143,7 @@ class _Reader:
         self._text = text
         self._start = start
         self._next = next_event
-        self._refusals: list[Refusal] = []
+        self._refusals: list[YamlMistake] = []
         self._anchors: set[str] = set()
 
     def read(self) -> Composition:
@@ -241,7 +241,7 @@ class _Reader:
 
     def _refuse(self, event: NodeEvent, message: str) -> None:
         mark = event.start_mark
-        self._refusals.append(Refusal(mark.line + 1, mark.column + 1, message))
+        self._refusals.append(YamlMistake(mark.line + 1, mark.column + 1, message))
 
     def _skip(self, event: Event) -> None:
         """Pass over a node that an event begins."""
@@ -306,7 +306,7 @@ class Node(NamedTuple):
     children: tuple[Node, ...] = ()
 
 
-class Refusal(NamedTuple):
+class YamlMistake(NamedTuple):
     """Something that is no YAML, or YAML that these files do not allow; places count from 1."""
 
     line: int
@@ -318,4 +318,4 @@ class Composition(NamedTuple):
     """The nodes of a text (None: it is empty, or no YAML), and what in it is not allowed."""
 
     root: Node | None
-    refusals: tuple[Refusal, ...] = ()
+    refusals: tuple[YamlMistake, ...] = ()

@@ -9,7 +9,6 @@ from unicodedata import category
 
 from calm.errors import CalmError
 from calm.files.composition import Node
-from calm.files.document import Location
 from calm.files.editing.items import new_slot, snippet_of, worded_slot
 from calm.files.editing.splicing import (
     Items,
@@ -20,7 +19,8 @@ from calm.files.editing.splicing import (
     set_scalar,
     set_value,
 )
-from calm.files.editing.writing import Layout, Value, Worded
+from calm.files.editing.writing import Value, Worded, WritingStyle
+from calm.files.yaml_document import Location
 
 NAMED = ("components", "environments")
 """Sections that hold definitions by name."""
@@ -33,7 +33,7 @@ class EditError(CalmError):
 class Page:
     """A text that ends in a line break, its nodes and its manner."""
 
-    def __init__(self, text: str, root: Node, layout: Layout) -> None:
+    def __init__(self, text: str, root: Node, layout: WritingStyle) -> None:
         self.text = text
         self.root = root
         self.layout = layout

@@ -9,7 +9,7 @@ from itertools import pairwise
 from typing import Literal, NamedTuple
 
 from calm.files.composition import Node
-from calm.files.editing.writing import SECTIONS, Layout, Value, inline, place_of, written
+from calm.files.editing.writing import SECTIONS, Value, WritingStyle, inline, place_of, written
 
 COMMENT = re.compile(r"[ \t]*#[^\n]*(?:\n|\Z)")
 BEHIND = re.compile(r"[ \t]*(?:#[^\n]*)?(?:\r?\n|\Z)")
@@ -238,7 +238,7 @@ _BLANK_LINE = re.compile(r"^[ \t]*\r?\n(?=(?:[ ]*#.*\n|[ \t]*\r?\n)*\S)", re.MUL
 
 
 def add_entry(
-    text: str, mapping: Node, name: str, value: Value, layout: Layout, *, open: bool = False
+    text: str, mapping: Node, name: str, value: Value, layout: WritingStyle, *, open: bool = False
 ) -> list[Patch]:
     """A key that a mapping does not have, and its value, where the format has it.
 
@@ -332,7 +332,7 @@ def _with_lines(text: str, start: int, end: int) -> tuple[int, int]:
 
 
 def set_value(
-    text: str, mapping: Node, at: int, value: Value, layout: Layout, *, open: bool = False
+    text: str, mapping: Node, at: int, value: Value, layout: WritingStyle, *, open: bool = False
 ) -> list[Patch]:
     """Another value for a key."""
     key, old = mapping.keys[at], mapping.children[at]

@@ -17,7 +17,7 @@ from threading import RLock
 
 from calm.errors import CalmError, InputError
 from calm.files.catalogue import GRAIN
-from calm.files.document import decoded, read_content
+from calm.files.yaml_document import decoded, read_content
 from calm.whole_file import put, sweep
 
 _UNREADABLE = b"\0"
@@ -149,7 +149,7 @@ class WorkingFile:
             self._drop(*self._places, *([self._adopted] if self._adopted else []))
             self._adopted = None
 
-    def left_behind(self) -> Kept | None:
+    def left_behind(self) -> KeptWork | None:
         """The latest work that no session keeps any more and that is not in the file."""
         content = self._content()
         found = []
@@ -169,11 +169,11 @@ class WorkingFile:
         own = set(self._places)
         return any(each.keeper.is_running and each.place not in own for each in self._copies())
 
-    def is_of_another(self, kept: Kept) -> bool:
+    def is_of_another(self, kept: KeptWork) -> bool:
         """Whether the file is another than that which the work began with."""
         return self.path is not None and kept.base != digest(self._content())
 
-    def adopt(self, kept: Kept) -> None:
+    def adopt(self, kept: KeptWork) -> None:
         """Go on with kept work: its copy stays until this is saved or given up.
 
         A file that is another than the work began with is then `changed_on_disk`.
@@ -182,7 +182,7 @@ class WorkingFile:
         if self.is_of_another(kept):
             self._see(_UNREADABLE)
 
-    def discard(self, kept: Kept) -> None:
+    def discard(self, kept: KeptWork) -> None:
         """Remove a copy whose work is not wanted."""
         self._drop(kept.place)
 
@@ -207,7 +207,7 @@ class WorkingFile:
         away = state_folder(), f"{target.name[:40]}-{sign}"
         return [(target.parent, f".{target.name}"), away]
 
-    def _copies(self) -> list[Kept]:
+    def _copies(self) -> list[KeptWork]:
         return [each for folder in self._folders() for each in kept_in(*folder)]
 
     def _keep(self, text: str) -> Path:
@@ -308,7 +308,7 @@ class Keeper:
 
 
 @dataclass(frozen=True)
-class Kept:
+class KeptWork:
     """Unsaved work as it was found.
 
     Attributes
@@ -343,7 +343,7 @@ def with_record(text: str, base: str) -> bytes:
     return f"{_BEGIN}{record}\n{text}".encode()
 
 
-def kept_in(folder: Path, stem: str) -> Iterator[Kept]:
+def kept_in(folder: Path, stem: str) -> Iterator[KeptWork]:
     """The copies of a name in a folder; what is no copy is passed over."""
     with contextlib.suppress(OSError):
         for place in sorted(folder.iterdir()):
@@ -353,7 +353,7 @@ def kept_in(folder: Path, stem: str) -> Iterator[Kept]:
                     yield _read(place)
 
 
-def _read(place: Path) -> Kept:
+def _read(place: Path) -> KeptWork:
     status = place.stat()
     if not stat.S_ISREG(status.st_mode):
         raise ValueError("not a regular file")
@@ -362,7 +362,7 @@ def _read(place: Path) -> Kept:
         raise ValueError("no record")
     record = json.loads(first.removeprefix(_BEGIN))
     keeper = Keeper(str(record["host"]), int(record["process"]), str(record["started"]))
-    return Kept(place, text, keeper, str(record["base"]), status.st_mtime)
+    return KeptWork(place, text, keeper, str(record["base"]), status.st_mtime)
 
 
 def _started(process: int) -> str:

@@ -111,7 +111,7 @@ _LAST = "clamps"
 
 
 @dataclass(frozen=True)
-class Layout:
+class WritingStyle:
     """The manner of a file.
 
     Attributes
@@ -128,7 +128,7 @@ class Layout:
     dash: int = 2
 
     @classmethod
-    def of(cls, text: str, root: Node | None) -> Layout:
+    def of(cls, text: str, root: Node | None) -> WritingStyle:
         """The manner of a text, as its first places show it."""
         ending = text.find("\n")
         line_break = "\r\n" if ending > 0 and text[ending - 1] == "\r" else "\n"

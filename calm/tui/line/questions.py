@@ -10,7 +10,7 @@ _MOST_STEPS = 9
 
 
 def beginning() -> Question:
-    """Which mooring an empty line begins with; it answers with its number in `TEMPLATES`, from 1."""
+    """Ask with which of the `TEMPLATES` an empty line begins; the answer is its number, from 1."""
     answers = [
         Answer(str(number), f"{kind}: {meaning}", str(number))
         for number, (kind, meaning) in enumerate(TEMPLATES.items(), 1)

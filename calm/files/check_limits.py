@@ -13,17 +13,17 @@ from pydantic import AfterValidator, Field, WithJsonSchema, model_validator
 from pydantic.fields import FieldInfo
 
 from calm.errors import Problem
-from calm.files.document import Section
-from calm.files.explain import shown, unknown
-from calm.files.fields import LENGTH, POSITIVE_LENGTH, Model, Quantity, Text, quantity_of
-from calm.files.rules import ACCEPTABLE
+from calm.files.fields import LENGTH, POSITIVE_LENGTH, Model, QuantityField, Text, quantity_of
+from calm.files.mistakes import shown, unknown
+from calm.files.rule_texts import ACCEPTABLE
+from calm.files.yaml_document import SourceMapping
 
-_FACTOR = Quantity("number", above=0)
-_SAFETY = Quantity("number", at_least=1)
+_FACTOR = QuantityField("number", above=0)
+_SAFETY = QuantityField("number", at_least=1)
 """At least 1: a smaller factor would pass what breaks, or an anchor that is lifted."""
-_SHARE = Quantity("number", at_least=0, at_most=1)
-_SPEED = Quantity("speed", at_least=0)
-_LEAST_TENSION = Quantity("force", at_least=0)
+_SHARE = QuantityField("number", at_least=0, at_most=1)
+_SPEED = QuantityField("speed", at_least=0)
+_LEAST_TENSION = QuantityField("force", at_least=0)
 
 THIS_PROGRAM = "a default of this program"
 THE_DESIGN = "the design"
@@ -133,7 +133,7 @@ class Checks(Model):
     )
     maximum_tilt: Annotated[
         float | None,
-        Quantity("angle", above=0, at_most=90),
+        QuantityField("angle", above=0, at_most=90),
         Limit(THE_DESIGN),
     ] = Field(default=None, description="most that a piece may lean", examples=["30 deg"])
     minimum_top_depth: Annotated[
@@ -300,7 +300,10 @@ class Accept:
 
 
 def read_accepts(
-    keys: Sequence[AcceptKeys], labels: Sequence[str] | None, top: Section, problems: list[Problem]
+    keys: Sequence[AcceptKeys],
+    labels: Sequence[str] | None,
+    top: SourceMapping,
+    problems: list[Problem],
 ) -> tuple[Accept, ...]:
     """What a mooring file accepts, the most specific first; mistakes are added to `problems`.
 
@@ -321,7 +324,7 @@ def _accept(
     keys: AcceptKeys,
     number: int,
     labels: Sequence[str] | None,
-    top: Section,
+    top: SourceMapping,
     problems: list[Problem],
 ) -> Accept | None:
     def wrong(key: str, message: str) -> None:

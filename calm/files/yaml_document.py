@@ -142,7 +142,7 @@ def _refused(path: Path, message: str, line: int = 0) -> InputError:
 
 
 @dataclass(frozen=True)
-class Section:
+class SourceMapping:
     """A mapping within a document, possibly laid over a mapping of another one.
 
     Attributes
@@ -158,25 +158,25 @@ class Section:
     document: Document
     location: Location
     data: dict[str, Any]
-    base: Section | None = None
+    base: SourceMapping | None = None
     own: frozenset[str] = field(default_factory=frozenset)
 
     @classmethod
-    def of(cls, document: Document, location: Location, data: dict[str, Any]) -> Section:
+    def of(cls, document: Document, location: Location, data: dict[str, Any]) -> SourceMapping:
         """The mapping `data` that stands at `location` of a document."""
         return cls(document, location, data, None, frozenset(data))
 
-    def over(self, base: Section, *, dropping: frozenset[str] = frozenset()) -> Section:
+    def over(self, base: SourceMapping, *, dropping: frozenset[str] = frozenset()) -> SourceMapping:
         """This mapping laid over another one, of which some keys are dropped."""
         kept = {key: value for key, value in base.data.items() if key not in dropping}
-        return Section(self.document, self.location, {**kept, **self.data}, base, self.own)
+        return SourceMapping(self.document, self.location, {**kept, **self.data}, base, self.own)
 
-    def child(self, key: str) -> Section:
+    def child(self, key: str) -> SourceMapping:
         """The mapping under a key."""
         home = self.home(key)
-        return Section.of(home.document, (*home.location, key), self.data[key])
+        return SourceMapping.of(home.document, (*home.location, key), self.data[key])
 
-    def home(self, key: str | int) -> Section:
+    def home(self, key: str | int) -> SourceMapping:
         """The layer that a key comes from."""
         if self.base is None or key in self.own or key not in self.data:
             return self
