@@ -1,4 +1,4 @@
-"""Figures measured on a solution: its pieces, clamps, shape and anchor, and the result they make."""
+"""Figures measured on a solution: pieces, clamps, shape and anchor, and the result they make."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from calm.case.columns import ClampRow, Clamps, ComponentRow, Components, Shape
+from calm.case.parts import clamps_down
 from calm.case.result import Accuracy, AnchorLoad, Result, Top
 from calm.case.strumming import strumming_of
 from calm.case.warnings import warnings_of
@@ -21,16 +22,6 @@ from calm.solve import Solution, Status
 
 if TYPE_CHECKING:
     from calm.case.mooring import Mooring
-
-
-def clamps_in(pieces: Sequence[Piece]) -> list[Clamp]:
-    """The clamps of a line in the order of the file, which is that of the solver."""
-    return [clamp for piece in pieces for clamp in piece.clamps]
-
-
-def clamps_down(pieces: Sequence[Piece]) -> list[Clamp]:
-    """The clamps of a mooring's line from its top to its anchor, the order of its results."""
-    return [clamp for piece in pieces for clamp in sorted(piece.clamps, key=lambda clamp: clamp.at)]
 
 
 class PieceMeasures(NamedTuple):
