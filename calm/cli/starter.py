@@ -11,7 +11,7 @@ from cyclopts import Parameter
 from calm.cli.exit_codes import ExitCode
 from calm.cli.streams import narrate, show
 from calm.errors import UsageError
-from calm.templates import Start, start
+from calm.starts import Start, start
 
 NEW_EXAMPLES = """Examples:
 

@@ -23,4 +23,4 @@ STARTS: dict[Start, str] = {
 
 def start(kind: Start) -> str:
     """The text of the file of a kind."""
-    return (files("calm.templates") / f"{kind}.yaml").read_text(encoding="utf-8")
+    return (files("calm.starts") / f"{kind}.yaml").read_text(encoding="utf-8")

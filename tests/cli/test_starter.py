@@ -2,7 +2,7 @@ import json
 import os
 
 import pytest
-from calm.templates import STARTS
+from calm.starts import STARTS
 from jsonschema import Draft202012Validator
 
 from tests.core_yaml import loaded

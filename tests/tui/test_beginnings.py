@@ -1,7 +1,7 @@
 """Starts, assemblies of one's own, the history, and components changed in their form."""
 
 import pytest
-from calm.templates import STARTS, start
+from calm.starts import STARTS, start
 
 from calm.checks.finding import State
 from calm.files.editing import Draft, EditError

@@ -169,7 +169,7 @@ class BuilderScreen(DraftScreen):
 
     def action_begin(self) -> None:
         """Begin an empty line with a mooring."""
-        from calm.templates import STARTS, start
+        from calm.starts import STARTS, start
         from calm.tui.line.questions import beginning
 
         session = self.workspace.session

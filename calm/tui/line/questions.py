@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from calm.templates import STARTS
+from calm.starts import STARTS
 from calm.tui.dialogs import Answer, Asked, Question, Sheet
 from calm.tui.session import Session
 
