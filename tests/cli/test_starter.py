@@ -2,9 +2,9 @@ import json
 import os
 
 import pytest
-from calm.starts import STARTS
 from jsonschema import Draft202012Validator
 
+from calm.starts import STARTS
 from tests.core_yaml import loaded
 
 

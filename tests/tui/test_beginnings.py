@@ -1,10 +1,10 @@
 """Starts, assemblies of one's own, the history, and components changed in their form."""
 
 import pytest
-from calm.starts import STARTS, start
 
 from calm.checks.finding import State
 from calm.files.editing import Draft, EditError
+from calm.starts import STARTS, start
 from calm.tui.launch import open_session
 from calm.tui.line.rows import table_rows
 from calm.tui.live import judge, judge_fully
