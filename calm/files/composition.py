@@ -32,9 +32,6 @@ _NO_BREAKS = str.maketrans(dict.fromkeys("\x85\u2028\u2029", " "))
 
 _TAG = re.compile(r"(?<![^\s\[{,])!")
 
-# The parser in Python takes these within brackets for the sign of a key.
-_INNER_QUESTION_MARK = re.compile(r"(?<=[^\s,\[\]{}])\?|(?<=[^\s,\[\]{}:?-]) +\?")
-
 # They would move the cursor of a terminal, turn the figures beside them round, or be no text.
 _CONTROL_CHARACTER = re.compile(
     "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
@@ -55,13 +52,26 @@ _PLAIN_TAGS = frozenset(
 
 
 class _Parser(yaml.SafeLoader):
-    """The parser in Python, to which a tab between values within brackets is a space."""
+    """The parser in Python, which reads tabs and question marks within brackets as libyaml does."""
+
+    _within_plain = False
 
     def scan_to_next_token(self) -> None:
         super().scan_to_next_token()
         while self.flow_level and self.peek() == "\t":
             self.forward()
             super().scan_to_next_token()
+
+    def scan_plain(self) -> yaml.Token:
+        self._within_plain = True
+        token = super().scan_plain()
+        self._within_plain = False
+        return token
+
+    def peek(self, index: int = 0) -> str:
+        # Here a question mark would end a plain text; what is taken of it comes from the buffer.
+        sign = super().peek(index)
+        return "x" if self._within_plain and sign == "?" else sign
 
 
 class _TooDeep(Exception):
@@ -89,29 +99,16 @@ def _is_read_differently(text: str) -> bool:
 
 
 def _composed_by_python(text: str, start: int, plain: str) -> Composition:
-    # Messages would show a sign that cannot be printed by its number.
-    stand_in = next((sign for sign in map(chr, range(0x4E00, 0x9FFF)) if sign not in plain), "?")
-    masked = _INNER_QUESTION_MARK.sub(lambda found: found[0].replace("?", stand_in), plain)
-
-    def next_event() -> Event:
-        event = parser.get_event()
-        if isinstance(event, ScalarEvent):
-            event.value = event.value.replace(stand_in, "?")
-        return event
-
     try:
-        parser = _Parser(masked)
-        return _Reader(text, start, next_event).read()
+        return _Reader(text, start, _Parser(plain).get_event).read()
     except MarkedYAMLError as error:
-        refusals = _syntax_refusals(plain, error)
+        return Composition(None, tuple(_syntax_mistakes(plain, error)))
     except (YAMLError, ValueError, OverflowError) as error:
         first_line = str(error).partition("\n")[0]
-        refusals = [YamlMistake(0, 0, f"is not valid YAML: {first_line}")]
-    shown = [one._replace(message=one.message.replace(stand_in, "?")) for one in refusals]
-    return Composition(None, tuple(shown))
+        return Composition(None, (YamlMistake(0, 0, f"is not valid YAML: {first_line}"),))
 
 
-def _syntax_refusals(text: str, error: MarkedYAMLError) -> list[YamlMistake]:
+def _syntax_mistakes(text: str, error: MarkedYAMLError) -> list[YamlMistake]:
     """Tabs in the indentation are the usual cause and are all shown; else what the parser says."""
     if "\\t" in str(error.problem):
         found = [
