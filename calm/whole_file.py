@@ -21,7 +21,7 @@ _TOGETHER = 32  # files handed to the disk at once: one by one each waits for a 
 
 @contextlib.contextmanager
 def beside(target: Path) -> Iterator[Path]:
-    """An empty file beside another, which takes its place once the block ends without an error.
+    """Open an empty file beside another; it takes its place once the block ends without an error.
 
     Raises
     ------

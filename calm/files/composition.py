@@ -52,7 +52,7 @@ _PLAIN_TAGS = frozenset(
 
 
 class _Parser(yaml.SafeLoader):
-    """The parser in Python, which reads tabs and question marks within brackets as libyaml does."""
+    """Parse in Python, reading tabs and question marks within brackets as libyaml does."""
 
     _within_plain = False
 
@@ -79,7 +79,7 @@ class _TooDeep(Exception):
 
 
 def compose(text: str) -> Composition:
-    """The nodes of a YAML text, before which a byte order mark may stand."""
+    """Return the nodes of a YAML text, before which a byte order mark may stand."""
     start = int(text.startswith("\ufeff"))
     plain = text[start:] if text.isascii() else text[start:].translate(_NO_BREAKS)
     try:
@@ -94,7 +94,7 @@ def compose(text: str) -> Composition:
 
 
 def _is_read_differently(text: str) -> bool:
-    """Whether the parser in Python sees other tabs, byte order marks or tags in it."""
+    """Return whether the parser in Python sees other tabs, byte order marks or tags in it."""
     return "\t" in text or "\ufeff" in text or ("!" in text and _TAG.search(text) is not None)
 
 
@@ -126,7 +126,7 @@ def _syntax_mistakes(text: str, error: MarkedYAMLError) -> list[YamlMistake]:
 
 
 class _Reader:
-    """Turns the events of a text into nodes, noting what is not allowed.
+    """Turn the events of a text into nodes, noting what is not allowed.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ class _Reader:
         self._anchors: set[str] = set()
 
     def read(self) -> Composition:
-        """The nodes of the only document."""
+        """Return the nodes of the only document."""
         self._next()  # the stream begins
         if isinstance(self._next(), StreamEndEvent):
             return Composition(None)
@@ -158,7 +158,7 @@ class _Reader:
         return Composition(root, tuple(self._refusals))
 
     def _node(self, event: NodeEvent, depth: int) -> Node:
-        """The node that an event begins, and all below it."""
+        """Return the node that an event begins, and all below it."""
         if depth > _DEEPEST:
             raise _TooDeep
         mark = event.start_mark
@@ -190,14 +190,14 @@ class _Reader:
         return Node(kind, start, end, *place, style, data, tuple(keys), tuple(children))
 
     def _items(self, depth: int) -> tuple[list[Node], CollectionEndEvent]:
-        """The items of a sequence, and what ends it."""
+        """Return the items of a sequence, and what ends it."""
         items = []
         while not isinstance(event := self._next(), CollectionEndEvent):
             items.append(self._node(event, depth))
         return items, event
 
     def _entries(self, keys: list[Node], depth: int) -> tuple[list[Node], CollectionEndEvent]:
-        """The values of a mapping, whose keys are put into `keys`, and what ends it."""
+        """Return the values of a mapping, whose keys are put into `keys`, and what ends it."""
         lines: dict[str, int] = {}
         values = []
         while not isinstance(event := self._next(), CollectionEndEvent):
@@ -273,7 +273,7 @@ Kind = Literal["mapping", "sequence", "scalar"]
 
 
 class Node(NamedTuple):
-    """A value in a text.
+    """Represent a value in a text.
 
     Attributes
     ----------
@@ -304,7 +304,7 @@ class Node(NamedTuple):
 
 
 class YamlMistake(NamedTuple):
-    """Something that is no YAML, or YAML that these files do not allow; places count from 1."""
+    """Hold what is no YAML, or YAML that these files do not allow; places count from 1."""
 
     line: int
     column: int
@@ -312,7 +312,7 @@ class YamlMistake(NamedTuple):
 
 
 class Composition(NamedTuple):
-    """The nodes of a text (None: it is empty, or no YAML), and what in it is not allowed."""
+    """Hold the nodes of a text (None: it is empty, or no YAML), and what in it is not allowed."""
 
     root: Node | None
     refusals: tuple[YamlMistake, ...] = ()

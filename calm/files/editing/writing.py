@@ -20,7 +20,7 @@ _ESCAPED = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r", "\t": "\\t"}
 
 
 def written(text: str, *, flow: bool, quote: str = "") -> str:
-    """A text as a scalar of YAML.
+    """Write a text as a scalar of YAML.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ Value = str | None | Mapping[str, "Value"] | Sequence["Value"]
 
 
 class Wording(NamedTuple):
-    """An item of a list as it is written.
+    """Hold an item of a list as it is written.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class Wording(NamedTuple):
 
 
 class Worded(list[Value]):
-    """Items of a list that keep their wording."""
+    """Hold items of a list that keep their wording."""
 
     def __init__(self, wordings: Iterable[Wording]) -> None:
         self.wordings = tuple(wordings)
@@ -112,7 +112,7 @@ _LAST = "clamps"
 
 @dataclass(frozen=True)
 class WritingStyle:
-    """The manner of a file.
+    """Hold how a file is written: its line breaks and indentation.
 
     Attributes
     ----------
@@ -129,7 +129,7 @@ class WritingStyle:
 
     @classmethod
     def of(cls, text: str, root: Node | None) -> WritingStyle:
-        """The manner of a text, as its first places show it."""
+        """Return the manner of a text, as its first places show it."""
         ending = text.find("\n")
         line_break = "\r\n" if ending > 0 and text[ending - 1] == "\r" else "\n"
         step = dash = None
@@ -144,7 +144,7 @@ class WritingStyle:
         return cls(line_break, step, step if dash is None else dash)
 
     def entry(self, name: str, value: Value, column: int, *, open: bool = False) -> str:
-        """The lines of an entry of a block mapping whose keys stand in a column (from 1).
+        """Write the lines of an entry of a block mapping whose keys stand in a column (from 1).
 
         `open` writes a mapping below its key even where it is short.
         """
@@ -153,7 +153,7 @@ class WritingStyle:
         return key + head + self.line_break + below
 
     def parts(self, name: str, value: Value, column: int, *, open: bool = False) -> tuple[str, str]:
-        """What follows the colon of a key, and the lines below it."""
+        """Write what follows the colon of a key, and the lines below it."""
         if value is None:
             return "", ""
         if isinstance(value, str):
@@ -172,12 +172,12 @@ class WritingStyle:
         return "", "".join(self.item(one, column + self.dash) for one in value)
 
     def moved(self, lines: str, column: int) -> str:
-        """Lines that begin in column 1, in another one."""
+        """Move lines that begin in column 1 to another one."""
         indented = re.sub(r"^(?=[^\n])", " " * (column - 1), lines, flags=re.MULTILINE)
         return indented.replace("\n", self.line_break)
 
     def item(self, value: Value, column: int, *, block: bool = False) -> str:
-        """The lines of an item whose dash stands in a column.
+        """Write the lines of an item whose dash stands in a column.
 
         An item that has items of its own is written a key a line, and so is any with `block`.
         """
@@ -189,7 +189,7 @@ class WritingStyle:
 
 
 def inline(value: Value) -> str:
-    """A value on one line, as it stands within brackets."""
+    """Write a value on one line, as it stands within brackets."""
     if value is None:
         return "null"
     if isinstance(value, str):
@@ -203,7 +203,7 @@ def inline(value: Value) -> str:
 
 
 def place_of(name: str, names: Sequence[str]) -> int:
-    """Where a new key goes among the keys of a mapping: the order of the format, else the end."""
+    """Return where a new key goes among others: in the order of the format, else at the end."""
     order = next((one for one in _ORDERS if name in one), ())
     if name in order:
         before = order[: order.index(name)]
@@ -216,7 +216,7 @@ def place_of(name: str, names: Sequence[str]) -> int:
 
 
 def _is_deep(value: Mapping[str, Value]) -> bool:
-    """Whether a mapping holds more than texts and short lists of texts."""
+    """Return whether a mapping holds more than texts and short lists of texts."""
     return any(
         isinstance(one, Mapping)
         or (one is not None and not isinstance(one, str) and any(map(_is_long, one)))
@@ -229,7 +229,7 @@ def _is_long(value: Value) -> bool:
 
 
 def _below_keys(node: Node) -> Iterator[tuple[Node, Node]]:
-    """Block collections that stand below a key: with the mapping of the key."""
+    """Return the block collections that stand below a key: with the mapping of the key."""
     for child in node.children:
         if child.style == "block":
             if node.kind == "mapping":
