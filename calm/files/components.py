@@ -84,7 +84,7 @@ class Anchor(Definition):
 
     @property
     def material_density(self) -> float | None:
-        """Return the density given, or that of its material [kg/m³]; None of one that is not known."""
+        """Return the density given, or that of its material [kg/m³]; None if unknown."""
         return self.density or ANCHOR_DENSITIES.get((self.material or "").strip().casefold())
 
     @property

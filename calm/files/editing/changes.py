@@ -42,7 +42,7 @@ class Page:
         """Return what stands at a location, None where nothing does."""
         node: Node | None = self.root
         for step in location:
-            node = child_of(node, step) if node else None
+            node = _child_of(node, step) if node else None
         return node
 
     def put(self, location: Location, value: Value) -> list[Patch]:
@@ -50,7 +50,7 @@ class Page:
         outer: Node | None = None
         node = self.root
         for depth, step in enumerate(location):
-            child = child_of(node, step)
+            child = _child_of(node, step)
             if child is None:
                 new = nested(location[depth:], value)
                 if node.kind == "mapping" and (node.keys or outer is None or not depth):
@@ -157,7 +157,7 @@ def _shown(location: Location) -> str:
     return "`" + ".".join(map(str, location)) + "`"
 
 
-def child_of(node: Node, step: str | int) -> Node | None:
+def _child_of(node: Node, step: str | int) -> Node | None:
     """Return what stands below a node under a key or number."""
     if node.kind == "mapping":
         named = zip(node.keys, node.children, strict=True)

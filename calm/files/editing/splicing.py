@@ -11,8 +11,8 @@ from typing import Literal, NamedTuple
 from calm.files.composition import Node
 from calm.files.editing.writing import SECTIONS, Value, WritingStyle, inline, place_of, written
 
-COMMENT = re.compile(r"[ \t]*#[^\n]*(?:\n|\Z)")
-BEHIND = re.compile(r"[ \t]*(?:#[^\n]*)?(?:\r?\n|\Z)")
+_COMMENT = re.compile(r"[ \t]*#[^\n]*(?:\n|\Z)")
+_BEHIND = re.compile(r"[ \t]*(?:#[^\n]*)?(?:\r?\n|\Z)")
 """What may follow a value on its line: a comment."""
 
 
@@ -45,25 +45,25 @@ def line_end(text: str, place: int) -> int:
     return len(text) if found < 0 else found + 1
 
 
-def first_on_line(text: str, place: int) -> bool:
+def _first_on_line(text: str, place: int) -> bool:
     """Return whether only spaces stand before a place on its line."""
     return not text[line_start(text, place) : place].strip(" \t")
 
 
-def own_end(text: str, place: int, column: int) -> int:
+def _own_end(text: str, place: int, column: int) -> int:
     """Return where the lines of something end, of which `place` is the end of the value.
 
     Comments directly below that stand further right than its `column` (from 1) are its own.
     """
     end = line_end(text, place)
-    while (comment := COMMENT.match(text, end)) and end < len(text):
+    while (comment := _COMMENT.match(text, end)) and end < len(text):
         if _column(comment.group()) <= column:
             break
         end = comment.end()
     return end
 
 
-def own_start(text: str, place: int, least: int, column: int | None = None) -> int:
+def _own_start(text: str, place: int, least: int, column: int | None = None) -> int:
     """Return where the lines of something begin that starts at `place`, the first on its line.
 
     Comments directly above it are its own, but not above `least`, and not those further right
@@ -72,7 +72,7 @@ def own_start(text: str, place: int, least: int, column: int | None = None) -> i
     start = line_start(text, place)
     while start > least:
         above = line_start(text, start - 1)
-        comment = COMMENT.match(text, above)
+        comment = _COMMENT.match(text, above)
         if above < least or comment is None or comment.end() != start:
             break
         if column is not None and _column(comment.group()) > column:
@@ -180,16 +180,16 @@ def items_of(text: str, node: Node) -> Items | None:
 
 def _block(text: str, node: Node) -> Items | None:
     dash = re.compile(rf"^[ ]{{{node.column - 1}}}-(?=\s)", re.MULTILINE)
-    if not first_on_line(text, node.start):
+    if not _first_on_line(text, node.start):
         return None
-    starts, ends = [own_start(text, node.start, 0)], []
+    starts, ends = [_own_start(text, node.start, 0)], []
     for child, following in zip(node.children, (*node.children[1:], None), strict=True):
-        ends.append(own_end(text, child.end, node.column))
+        ends.append(_own_end(text, child.end, node.column))
         if following is not None:
             found = dash.search(text, line_end(text, child.end))
             if found is None:
                 return None
-            starts.append(own_start(text, found.start(), ends[-1], node.column))
+            starts.append(_own_start(text, found.start(), ends[-1], node.column))
     slots = [Slot(text[start:end]) for start, end in zip(starts, ends, strict=True)]
     gaps = ["", *(text[end:start] for end, start in zip(ends, starts[1:], strict=False))]
     return Items(starts[0], ends[-1], "block", node.column, slots, gaps)
@@ -203,14 +203,14 @@ def _rows(text: str, node: Node) -> Items | None:
     gaps: list[str] = []
     comma = False
     for child in node.children:
-        if not first_on_line(text, child.start):
+        if not _first_on_line(text, child.start):
             return None
         least = ends[-1] if ends else line_end(text, node.start)
         if line_start(text, child.start) < least:
             return None
-        start = own_start(text, child.start, least)
+        start = _own_start(text, child.start, least)
         comma = text.startswith(",", child.end)
-        behind = BEHIND.match(text, child.end + comma)
+        behind = _BEHIND.match(text, child.end + comma)
         if behind is None:
             return None
         gaps.append(text[ends[-1] : start] if ends else "")
@@ -219,7 +219,7 @@ def _rows(text: str, node: Node) -> Items | None:
         ends.append(behind.end())
     if any(not text.startswith(",", child.end) for child in node.children[:-1]):
         return None
-    if not first_on_line(text, node.end - 1) or (not comma and _COMMA.match(text, ends[-1])):
+    if not _first_on_line(text, node.end - 1) or (not comma and _COMMA.match(text, ends[-1])):
         return None
     column = node.children[0].column
     return Items(starts[0], ends[-1], "rows", column, slots, gaps, "", comma)
@@ -250,11 +250,11 @@ def add_entry(
     column = mapping.column
     lines = layout.entry(name, value, column, open=open)
     if at:
-        place = own_end(text, mapping.children[at - 1].end, column)
+        place = _own_end(text, mapping.children[at - 1].end, column)
         apart = column == 1 and name in SECTIONS and _BLANK_LINE.search(text)
         return [Patch(place, place, (layout.line_break if apart else "") + lines)]
     first = mapping.keys[0].start
-    if first_on_line(text, first):
+    if _first_on_line(text, first):
         place = _start(text, mapping, 0)
         return [Patch(place, place, lines)]
     indent = column - 1
@@ -266,9 +266,9 @@ def _start(text: str, mapping: Node, at: int) -> int:
 
     Those that a file begins with are about the file.
     """
-    least = own_end(text, mapping.children[at - 1].end, mapping.column) if at else 0
+    least = _own_end(text, mapping.children[at - 1].end, mapping.column) if at else 0
     key = mapping.keys[at].start
-    start = own_start(text, key, least, mapping.column)
+    start = _own_start(text, key, least, mapping.column)
     is_head = mapping.column == 1 and start == line_start(text, 0)
     return line_start(text, key) if is_head else start
 
@@ -293,8 +293,8 @@ def remove_entry(text: str, mapping: Node, at: int) -> list[Patch]:
     if mapping.style == "flow":
         return _without_flow_entry(text, mapping, at)
     start = mapping.keys[at].start
-    end = own_end(text, mapping.children[at].end, mapping.column)
-    if first_on_line(text, start):
+    end = _own_end(text, mapping.children[at].end, mapping.column)
+    if _first_on_line(text, start):
         return [Patch(_start(text, mapping, at), end, "")]
     # On the line of a dash: what comes next moves up to it.
     end += len(text[end:]) - len(text[end:].lstrip(" "))
@@ -325,8 +325,8 @@ def _comma_first(between: str) -> bool:
 
 def _with_lines(text: str, start: int, end: int) -> tuple[int, int]:
     """Return the whole of the lines of a part that has them for itself, but for a comment."""
-    comment = COMMENT.match(text, end)
-    if not first_on_line(text, start) or not (comment or text[end:].lstrip(" \t\r")[:1] == "\n"):
+    comment = _COMMENT.match(text, end)
+    if not _first_on_line(text, start) or not (comment or text[end:].lstrip(" \t\r")[:1] == "\n"):
         return start, end
     return line_start(text, start), line_end(text, end)
 
@@ -348,7 +348,7 @@ def set_value(
     assert colon is not None
     if mapping.style == "block" and old.line > key.line:
         # Lines below the key: a comment behind the key stays.
-        start, end = line_end(text, colon), own_end(text, old.end, old.column - 1)
+        start, end = line_end(text, colon), _own_end(text, old.end, old.column - 1)
         return [Patch(colon, colon, head), Patch(start, end, below)]
     patches = [Patch(colon, old.end, head)]
     if below:

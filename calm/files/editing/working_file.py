@@ -54,7 +54,7 @@ class WorkingFile:
         self._seen: bytes | None = None
         self._looked: Stamp | None = None
         self._differs = False
-        self._places = [place_of(*each) for each in self._folders()]
+        self._places = [_place_of(*each) for each in self._folders()]
         self._adopted: Path | None = None
         self._lock = RLock()  # a signal may ask for the copy while it is being removed
 
@@ -171,7 +171,7 @@ class WorkingFile:
 
     def is_of_another(self, kept: KeptWork) -> bool:
         """Return whether the file is another than that which the work began with."""
-        return self.path is not None and kept.base != digest(self._content())
+        return self.path is not None and kept.base != _digest(self._content())
 
     def adopt(self, kept: KeptWork) -> None:
         """Go on with kept work: its copy stays until this is saved or given up.
@@ -208,10 +208,10 @@ class WorkingFile:
         return [(target.parent, f".{target.name}"), away]
 
     def _copies(self) -> list[KeptWork]:
-        return [each for folder in self._folders() for each in kept_in(*folder)]
+        return [each for folder in self._folders() for each in _kept_in(*folder)]
 
     def _keep(self, text: str) -> Path:
-        content = with_record(text, digest(self._seen))
+        content = _with_record(text, _digest(self._seen))
         like = None if self.path is None else _status(self.path)
         reasons = []
         for place in self._places:
@@ -239,7 +239,7 @@ def state_folder() -> Path:
 def _replace(target: Path, content: bytes, like: os.stat_result | None) -> None:
     if target.exists() and not target.is_file():
         raise ValueError("it is not a regular file")
-    put(target, content, like=like, settled=True)
+    put(target, content, like=like, durable=True)
 
 
 def _lost(before: os.stat_result | None, after: os.stat_result | None) -> str:
@@ -316,7 +316,7 @@ class KeptWork:
     place : where it is
     text : of the mooring file
     keeper : whose it is
-    base : the `digest` of what the file held when the work began
+    base : the `_digest` of what the file held when the work began
     at : when it was kept [s since 1970]
     """
 
@@ -327,23 +327,23 @@ class KeptWork:
     at: float
 
 
-def digest(content: bytes | None) -> str:
+def _digest(content: bytes | None) -> str:
     """Return a short sign of a content; empty of none."""
     return "" if content is None else hashlib.sha256(content).hexdigest()[:16]
 
 
-def place_of(folder: Path, stem: str) -> Path:
+def _place_of(folder: Path, stem: str) -> Path:
     """Return a new name for a copy in a folder."""
     return folder / f"{stem}.{os.urandom(4).hex()}{SUFFIX}"
 
 
-def with_record(text: str, base: str) -> bytes:
+def _with_record(text: str, base: str) -> bytes:
     """Return the content of a copy."""
     record = json.dumps(asdict(Keeper.this()) | {"base": base})
     return f"{_BEGIN}{record}\n{text}".encode()
 
 
-def kept_in(folder: Path, stem: str) -> Iterator[KeptWork]:
+def _kept_in(folder: Path, stem: str) -> Iterator[KeptWork]:
     """Return the copies of a name in a folder; what is no copy is passed over."""
     with contextlib.suppress(OSError):
         for place in sorted(folder.iterdir()):

@@ -1,4 +1,7 @@
-"""A text as YAML writes it: plain where that reads back, in quotes where it would not."""
+"""How values are written into a file: after its manner, in the order of the keys in the models.
+
+A text is plain where that reads back, and in quotes where it would not.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from calm.files.composition import Node
+from calm.files.environment import Position
+from calm.files.logbook import DocumentKeys
+from calm.files.mooring_file import Solver
+from calm.files.reader import MooringKeys
+from calm.files.tables import TableKeys
 
 # Read otherwise by YAML, or by other programs that read it.
 _WORD = re.compile(r"(?:~|=|<<|null|true|false|yes|no|on|off)?", re.IGNORECASE)
@@ -17,35 +25,6 @@ _BEGINNING = r"(?:[^\s\-?:,\[\]{}#&*!|>'\"%@`]|-(?=[^\s,\[\]{}]))"
 _PLAIN = re.compile(_BEGINNING + r"(?:[^\S\r\n\t](?=[^\s#])|:(?=\S)|[^\s:])*")
 _NOT_IN_FLOW = re.compile(r"[,\[\]{}?]|:(?=[,\[\]{}]|$)")
 _ESCAPED = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r", "\t": "\\t"}
-
-
-def written(text: str, *, flow: bool, quote: str = "") -> str:
-    """Write a text as a scalar of YAML.
-
-    Parameters
-    ----------
-    text : str
-    flow : bool
-        It is to stand within brackets, where commas and brackets end a plain text.
-    quote : str
-        The sign it was quoted with so far, which is kept.
-    """
-    if quote == "'" and text.isprintable():
-        return "'" + text.replace("'", "''") + "'"
-    if quote != '"' and _stands_plain(text, flow):
-        return text
-    escaped = "".join(_ESCAPED.get(sign) or _escaped(sign) for sign in text)
-    return f'"{escaped}"'
-
-
-def _stands_plain(text: str, flow: bool) -> bool:
-    if _WORD.fullmatch(text) or text.startswith(("---", "...")) or not text.isprintable():
-        return False
-    return bool(_PLAIN.fullmatch(text)) and not (flow and _NOT_IN_FLOW.search(text))
-
-
-def _escaped(sign: str) -> str:
-    return sign if sign.isprintable() else f"\\U{ord(sign):08x}"
 
 
 Value = str | None | Mapping[str, "Value"] | Sequence["Value"]
@@ -79,33 +58,22 @@ class Worded(list[Value]):
         super().__init__(one.value for one in self.wordings)
 
 
-SECTIONS = frozenset(
-    {
-        *("document", "environment", "line", "components", "environments", "solver", "checks"),
-        *("uncertainty", "releases", "deployed"),
-    }
-)
+SECTIONS = frozenset(MooringKeys.model_fields) - {"name", "description", "position", "tow"}
 """Keys whose values are written below them, a line each."""
 
 _ORDERS: tuple[tuple[str, ...], ...] = (
-    (
-        *("name", "description", "document", "position", "tow", "environment", "line"),
-        *("components", "environments", "solver", "checks", "uncertainty", "releases", "deployed"),
-    ),
+    tuple(MooringKeys.model_fields),
     ("fluid", "depth", "depth_range", "density", "gravity", "current", "wind", "fouling"),
     (
         *("use", "at", "label", "count", "length", "top_depth", "body_depth", "length_at"),
         *("termination", "serial", "calibrated", "sampling", "battery_until"),
     ),
-    (
-        *("id", "revision", "date", "author", "checked", "approved", "project", "ship", "cruise"),
-        "history",
-    ),
-    ("columns", "rows"),
+    tuple(DocumentKeys.model_fields),
+    tuple(TableKeys.model_fields),
     ("speed", "toward", "w", "height", "surface_drift", "drift_depth"),
     ("file", "time"),
-    ("latitude", "longitude"),
-    ("angle_step", "tolerance", "drag", "friction", "strumming", "buoy_drag", "seabed_friction"),
+    tuple(Position.model_fields),
+    tuple(Solver.model_fields),
 )
 _LAST = "clamps"
 
@@ -235,3 +203,32 @@ def _below_keys(node: Node) -> Iterator[tuple[Node, Node]]:
             if node.kind == "mapping":
                 yield node, child
             yield from _below_keys(child)
+
+
+def written(text: str, *, flow: bool, quote: str = "") -> str:
+    """Write a text as a scalar of YAML.
+
+    Parameters
+    ----------
+    text : str
+    flow : bool
+        It is to stand within brackets, where commas and brackets end a plain text.
+    quote : str
+        The sign it was quoted with so far, which is kept.
+    """
+    if quote == "'" and text.isprintable():
+        return "'" + text.replace("'", "''") + "'"
+    if quote != '"' and _stands_plain(text, flow):
+        return text
+    escaped = "".join(_ESCAPED.get(sign) or _escaped(sign) for sign in text)
+    return f'"{escaped}"'
+
+
+def _stands_plain(text: str, flow: bool) -> bool:
+    if _WORD.fullmatch(text) or text.startswith(("---", "...")) or not text.isprintable():
+        return False
+    return bool(_PLAIN.fullmatch(text)) and not (flow and _NOT_IN_FLOW.search(text))
+
+
+def _escaped(sign: str) -> str:
+    return sign if sign.isprintable() else f"\\U{ord(sign):08x}"
