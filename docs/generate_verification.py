@@ -21,7 +21,7 @@ from calm.report.verification import COLUMNS, by_kind, figures
 from calm.verification import (
     SOURCES,
     Kind,
-    Outcome,
+    CaseOutcome,
     Source,
     cdms_1,
     convergence,
@@ -127,7 +127,7 @@ def figures_section(source: Source) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def table(outcomes: list[Outcome]) -> Iterator[str]:
+def table(outcomes: list[CaseOutcome]) -> Iterator[str]:
     """The lines of a table."""
     yield f"| {' | '.join(COLUMNS)} |"
     yield "| --- | ---: | ---: | ---: | ---: | --- |"
@@ -142,7 +142,7 @@ def draw_cdms_1() -> Figure:
     """Shape and tensions of CDMS-1 with what the programs print."""
     figure = Figure(figsize=(9, 5), layout="constrained")
     shape, tension = figure.subplots(1, 2, sharey=True)
-    answer = cdms_1.solved()
+    answer = cdms_1.solved_cdms_1()
     shape.plot(answer.offset, answer.height, color=LINE, label="CALM")
     tension.plot(answer.tension[1:], answer.height[1:], color=LINE, label="CALM")
     heights = [answer.height[node] for node in answer.nodes_of_tensions]
@@ -162,15 +162,15 @@ def draw_s1000() -> Figure:
     """Shape of S1000 with the known place of its float, and the errors by angle step."""
     figure = Figure(figsize=(9, 4.5), layout="constrained")
     shape, errors = figure.subplots(1, 2)
-    solution = s1000.solved(1.0)
+    solution = s1000.solved_s1000(1.0)
     shape.plot(solution.position[:, 0], -solution.position[:, 2], color=LINE, label="CALM at 1°")
     shape.plot(s1000.OFFSET, s1000.DEPTH, "o", color="#cc3311", label="float, known")
     shape.set(xlabel="offset [m]", ylabel="depth [m]", ylim=(1100.0, 0.0))
     shape.legend(frameon=False)
 
     steps = np.array(convergence.ANGLE_STEPS)
-    solved = [s1000.solved(step) for step in steps.tolist()]
-    depth = np.array([abs(s1000.depth(each) - s1000.DEPTH) for each in solved])
+    solved = [s1000.solved_s1000(step) for step in steps.tolist()]
+    depth = np.array([abs(s1000.float_depth(each) - s1000.DEPTH) for each in solved])
     offset = np.array([abs(each.position[0, 0] - s1000.OFFSET) for each in solved])
     stated = np.array([each.depth_error for each in solved])
     errors.plot(steps, depth, "o-", color=LINE, label="depth of the float")
@@ -225,10 +225,10 @@ def draw_drag_curves() -> Figure:
 
 
 PICTURES: dict[str, Callable[[], Figure]] = {
-    cdms_1.SOURCE.picture: draw_cdms_1,
-    s1000.SOURCE.picture: draw_s1000,
-    convergence.SOURCE.picture: draw_convergence,
-    drag_curves.SOURCE.picture: draw_drag_curves,
+    cdms_1.CDMS_1.picture: draw_cdms_1,
+    s1000.S1000.picture: draw_s1000,
+    convergence.CONVERGENCE.picture: draw_convergence,
+    drag_curves.DRAG_CURVES.picture: draw_drag_curves,
 }
 
 

@@ -11,12 +11,12 @@ import numpy as np
 from calm.physics.line import Line
 from calm.physics.strumming import BourgetMarichal
 from calm.solve import Settings
-from calm.verification.case import PRINTED, Case, Figure, Kind, Source, table
+from calm.verification.case import PRINTED, Case, CaseColumn, Kind, Source, table
 from calm.verification.ends import Wake, towed
 from calm.verification.pieces import (
     GRAVITY,
     HALF_DENSITY,
-    Piece,
+    LinePiece,
     deep_water,
     line_of,
     point,
@@ -25,16 +25,16 @@ from calm.verification.pieces import (
 
 _DENSITY = 1000.0
 _SPEED = 1.30
-_DIAMETER, _LENGTH = 0.017, 3.845
+_DIAMETER, _CABLE_LENGTH = 0.017, 3.845
 _WEIGHT = (2383.0 - _DENSITY) * GRAVITY * pi / 4.0 * _DIAMETER**2
 _SPHERE_WEIGHT = (1.47 - _DENSITY * pi / 6.0 * 0.1**3) * GRAVITY
 _SPHERE_DRAG = sphere_drag(0.1, 0.90)
 _LAW = BourgetMarichal()
 
 
-def _line(length: float, *others: Piece, strums: bool = True) -> Line:
+def _line(length: float, *others: LinePiece, strums: bool = True) -> Line:
     """A length of the cable, and what it tows."""
-    cable = Piece(length, True, -_WEIGHT, HALF_DENSITY * _DIAMETER * _LAW.rest)
+    cable = LinePiece(length, True, -_WEIGHT, HALF_DENSITY * _DIAMETER * _LAW.rest)
     diameter = np.array([_DIAMETER] + [0.0] * len(others))
     return replace(
         line_of(cable, *others), diameter=diameter, strumming=_LAW if strums else None
@@ -44,7 +44,7 @@ def _line(length: float, *others: Piece, strums: bool = True) -> Line:
 @cache
 def _example(strums: bool) -> Wake:
     sphere = point(-_SPHERE_WEIGHT, _SPHERE_DRAG)
-    return towed(_line(_LENGTH, sphere, strums=strums), deep_water(_DENSITY), _SPEED)
+    return towed(_line(_CABLE_LENGTH, sphere, strums=strums), deep_water(_DENSITY), _SPEED)
 
 
 @cache
@@ -75,7 +75,7 @@ _FITTED = (
     "One unit of the last digit: A₁, B₁ and C₁ are fitted to these figures and given to six digits."
 )
 
-SOURCE = Source(
+BOURGET_MARICHAL = Source(
     "Bourget & Marichal",
     """Bourget & Marichal's towed cable: V = 1.30 m/s, 3.845 m of cable of 17 mm and 2383 kg/m³, a
 sphere of 100 mm and 1.47 kg, Cx 0.90, in fresh water. The whole cable strums at one frequency,
@@ -111,9 +111,9 @@ The paper computes 3.56 Hz and measured 4.07 Hz; CALM's 3.559 Hz is the former, 
         ),
         *table(
             [
-                Figure[Wake]("angle at the ship", "°", 5.5e-4, lambda wake: wake.angle),
-                Figure[Wake]("immersion of the sphere", "m", 5.5e-5, lambda wake: wake.depth),
-                Figure[Wake]("tension at the ship", "N", 5.5e-5, lambda wake: wake.tension),
+                CaseColumn[Wake]("angle at the ship", "°", 5.5e-4, lambda wake: wake.angle),
+                CaseColumn[Wake]("immersion of the sphere", "m", 5.5e-5, lambda wake: wake.depth),
+                CaseColumn[Wake]("tension at the ship", "N", 5.5e-5, lambda wake: wake.tension),
             ],
             [("constant C = 1.2", lambda: _example(False), (24.362, 1.9191, 16.9495))],
             PRINTED,

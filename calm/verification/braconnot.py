@@ -9,9 +9,9 @@ from calm.analytic.chart import ChartSolution, chart_solve
 from calm.analytic.chart_branch import CurvePoints, critical_angle, curve
 from calm.physics.line import Line, Water
 from calm.solve import Solution, solve_mooring
-from calm.verification.case import PRINTED, Case, Figure, Kind, Source, table
+from calm.verification.case import PRINTED, Case, CaseColumn, Kind, Source, table
 from calm.verification.ends import FINE, Ends, Wake, finely, towed
-from calm.verification.pieces import Piece, deep_water, line_of, point, stream
+from calm.verification.pieces import LinePiece, deep_water, line_of, point, stream
 
 _K = 2.4
 _BUOY_WEIGHT, _TOW_WEIGHT = 5.0, 0.5
@@ -58,7 +58,7 @@ def _point() -> CurvePoints:
 
 def buoy(buoyancy: float, depth: float) -> tuple[Line, Water]:
     """The buoy with a buoyancy [N] in water of a depth [m]: K w = 12 N/m of drag at 1 m/s."""
-    cable = Piece(28.467, True, -_BUOY_WEIGHT, normal_drag=_K * _BUOY_WEIGHT)
+    cable = LinePiece(28.467, True, -_BUOY_WEIGHT, normal_drag=_K * _BUOY_WEIGHT)
     return line_of(point(buoyancy, _BUOY_TENSION * cos(_BUOY_ANGLE)), cable), stream(depth, 1.0)
 
 
@@ -77,21 +77,21 @@ def _towed() -> Wake:
     """The tow by the march: a body that pulls its cable as the printed T_A at φ_A does."""
     pull, angle = 63.401, radians(116.373)
     body = point(-pull * sin(angle), -pull * cos(angle))
-    cable = Piece(100.0, True, -_TOW_WEIGHT, normal_drag=_K * _TOW_WEIGHT)
+    cable = LinePiece(100.0, True, -_TOW_WEIGHT, normal_drag=_K * _TOW_WEIGHT)
     return towed(line_of(cable, body), deep_water(), 1.0)
 
 
 def _figures(
     place: float, angle: float, tension: float, length: float | None = None
-) -> dict[str, Figure[ChartSolution]]:
+) -> dict[str, CaseColumn[ChartSolution]]:
     return {
-        "L": Figure("length L", "m", length or place, lambda cable: cable.length),
-        "D": Figure("distance D", "m", place, lambda cable: cable.distance),
-        "H": Figure("depth H", "m", place, lambda cable: cable.height),
-        "phi_a": Figure("angle φ_A", "°", angle, lambda cable: degrees(cable.phi_a)),
-        "phi_b": Figure("angle φ_B", "°", angle, lambda cable: degrees(cable.phi_b)),
-        "T_A": Figure("tension T_A", "N", tension, lambda cable: cable.tension_a),
-        "T_B": Figure("tension T_B", "N", tension, lambda cable: cable.tension_b),
+        "L": CaseColumn("length L", "m", length or place, lambda cable: cable.length),
+        "D": CaseColumn("distance D", "m", place, lambda cable: cable.distance),
+        "H": CaseColumn("depth H", "m", place, lambda cable: cable.height),
+        "phi_a": CaseColumn("angle φ_A", "°", angle, lambda cable: degrees(cable.phi_a)),
+        "phi_b": CaseColumn("angle φ_B", "°", angle, lambda cable: degrees(cable.phi_b)),
+        "T_A": CaseColumn("tension T_A", "N", tension, lambda cable: cable.tension_a),
+        "T_B": CaseColumn("tension T_B", "N", tension, lambda cable: cable.tension_b),
     }
 
 
@@ -100,7 +100,7 @@ _TOWED = _figures(5.5e-4, 5.5e-4, 5.5e-4)
 _EIGHT = _figures(5.5e-7, 5.5e-6, 5.5e-7)
 _READ = _figures(0.02 * 20.0, 0.5, 0.02 * 250.0)
 
-SOURCE = Source(
+BRACONNOT = Source(
     "Braconnot's charts",
     """H. Braconnot's charts of cables in a uniform current with normal drag only (EDF),
 K = ρ Cx D V²/(2w); A is the lower end of the cable, B the upper, angles are to the current.
@@ -129,10 +129,10 @@ against the march as well.""",
         ),
         *table(
             [
-                Figure[Ends]("height of the buoy, march", "m", 1e-3, lambda ends: ends.z),
-                Figure[Ends]("distance D, march", "m", 1e-3, lambda ends: ends.x),
-                Figure[Ends]("tension T_A, march", "N", 5e-3, lambda ends: ends.tension),
-                Figure[Ends]("angle φ_A, march", "°", 2e-3, lambda ends: 90.0 - ends.lean),
+                CaseColumn[Ends]("height of the buoy, march", "m", 1e-3, lambda ends: ends.z),
+                CaseColumn[Ends]("distance D, march", "m", 1e-3, lambda ends: ends.x),
+                CaseColumn[Ends]("tension T_A, march", "N", 5e-3, lambda ends: ends.tension),
+                CaseColumn[Ends]("angle φ_A, march", "°", 2e-3, lambda ends: 90.0 - ends.lean),
             ],
             [("buoy", _below_the_surface, (20.0, 18.782, 250.00, 22.027))],
             "The cable is cut to 28.467 m, half a millimetre being the last digit of its length.",
@@ -140,10 +140,10 @@ against the march as well.""",
         ),
         *table(
             [
-                Figure[Solution](
+                CaseColumn[Solution](
                     "vertical pull, march", "N", 5e-3, lambda s: s.buoyancy_used * _BUOYANCY
                 ),
-                Figure[Solution]("reserve, march", "N", 5e-3, lambda s: s.reserve),
+                CaseColumn[Solution]("reserve, march", "N", 5e-3, lambda s: s.reserve),
             ],
             [("buoy of 1000 N, afloat", _afloat, (338.0740, 661.9260))],
             "The cable is cut to 28.467 m, half a millimetre being the last digit of its length.",
@@ -151,8 +151,8 @@ against the march as well.""",
         ),
         *table(
             [
-                Figure[ChartSolution]("length L", "m", 5.5e-3, lambda cable: cable.length),
-                Figure[ChartSolution]("distance D", "m", 5.5e-3, lambda cable: cable.distance),
+                CaseColumn[ChartSolution]("length L", "m", 5.5e-3, lambda cable: cable.length),
+                CaseColumn[ChartSolution]("distance D", "m", 5.5e-3, lambda cable: cable.distance),
             ],
             [("buoy at its true K, 2.7", partial(_buoy, 2.7), (30.71, 21.50))],
             PRINTED,
@@ -166,10 +166,10 @@ against the march as well.""",
         ),
         *table(
             [
-                Figure[Wake]("depth H, march", "m", 1e-3, lambda wake: wake.depth),
-                Figure[Wake]("distance D, march", "m", 1e-3, lambda wake: -wake.aft),
-                Figure[Wake]("angle φ_B, march", "°", 2e-3, lambda wake: 180.0 - wake.angle),
-                Figure[Wake]("tension T_B, march", "N", 2e-3, lambda wake: wake.tension),
+                CaseColumn[Wake]("depth H, march", "m", 1e-3, lambda wake: wake.depth),
+                CaseColumn[Wake]("distance D, march", "m", 1e-3, lambda wake: -wake.aft),
+                CaseColumn[Wake]("angle φ_B, march", "°", 2e-3, lambda wake: 180.0 - wake.angle),
+                CaseColumn[Wake]("tension T_B, march", "N", 2e-3, lambda wake: wake.tension),
             ],
             [("tow", _towed, (73.198, -67.215, 140.0, 100.0))],
             "T_A and φ_A of the body are printed to 5e-4 N and 5e-4°.",
@@ -189,9 +189,9 @@ against the march as well.""",
         ),
         *table(
             [
-                Figure[CurvePoints]("s′", "", 5.5e-6, lambda point: float(point.arc)),
-                Figure[CurvePoints]("y′", "", 5.5e-6, lambda point: float(point.distance)),
-                Figure[CurvePoints]("z′", "", 5.5e-6, lambda point: float(point.height)),
+                CaseColumn[CurvePoints]("s′", "", 5.5e-6, lambda point: float(point.arc)),
+                CaseColumn[CurvePoints]("y′", "", 5.5e-6, lambda point: float(point.distance)),
+                CaseColumn[CurvePoints]("z′", "", 5.5e-6, lambda point: float(point.height)),
             ],
             [("curve at 75°", _point, (0.96945, 0.75437, 0.49348))],
             PRINTED,

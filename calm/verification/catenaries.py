@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike
 from calm.analytic.catenary import Catenary, between
 from calm.physics.line import Line
 from calm.solve import Solution, solve_mooring
-from calm.verification.case import PRINTED, Case, Figure, Kind, Source, table
+from calm.verification.case import PRINTED, Case, CaseColumn, Kind, Source, table
 from calm.verification.ends import FINE, ends_of
-from calm.verification.pieces import Piece, line_of, point, stream
+from calm.verification.pieces import LinePiece, line_of, point, stream
 
 _MARCH = (
     "1e-6 of the line's length or of the pull; the float pulls with the printed forces, and the "
@@ -61,7 +61,7 @@ def _pulled(pull: tuple[float, float], length: float, weight: float, stiffness: 
     """A float that pulls sideways and up in a current of 1 m/s, above a line without drag."""
     horizontal, vertical = pull
     return line_of(
-        point(vertical, horizontal), Piece(length, True, -weight, compliance=1.0 / stiffness)
+        point(vertical, horizontal), LinePiece(length, True, -weight, compliance=1.0 / stiffness)
     )
 
 
@@ -76,34 +76,38 @@ def _march_to_the_seabed() -> Solution:
     return solve_mooring(line, stream(_DEPTH, 1.0), FINE)
 
 
-def _pulls(force: float) -> tuple[Figure[Catenary], ...]:
+def _pulls(force: float) -> tuple[CaseColumn[Catenary], ...]:
     return (
-        Figure("horizontal pull", "N", force, lambda line: _number(line.horizontal)),
-        Figure("vertical pull at the top", "N", force, lambda line: _number(line.vertical)),
-        Figure("tension at the top", "N", force, lambda line: float(line.tension_top)),
+        CaseColumn("horizontal pull", "N", force, lambda line: _number(line.horizontal)),
+        CaseColumn("vertical pull at the top", "N", force, lambda line: _number(line.vertical)),
+        CaseColumn("tension at the top", "N", force, lambda line: float(line.tension_top)),
     )
 
 
-_LOWER_END = Figure[Catenary](
+_LOWER_END = CaseColumn[Catenary](
     "vertical pull at the lower end", "N", 5.5e-4, lambda line: float(line.vertical_bottom)
 )
-_GROUNDED = Figure[Catenary]("length on the seabed", "m", 5.5e-7, lambda line: float(line.grounded))
+_GROUNDED = CaseColumn[Catenary](
+    "length on the seabed", "m", 5.5e-7, lambda line: float(line.grounded)
+)
 _SPAN = (
-    Figure[Solution]("distance of the ends, march", "m", 5e-4, lambda line: ends_of(line).x),
-    Figure[Solution]("height of the ends, march", "m", 5e-4, lambda line: ends_of(line).z),
+    CaseColumn[Solution]("distance of the ends, march", "m", 5e-4, lambda line: ends_of(line).x),
+    CaseColumn[Solution]("height of the ends, march", "m", 5e-4, lambda line: ends_of(line).z),
 )
 _LANDED = (
-    Figure[Solution]("distance of the ends, march", "m", 7e-6, lambda line: ends_of(line).x),
-    Figure[Solution](
+    CaseColumn[Solution]("distance of the ends, march", "m", 7e-6, lambda line: ends_of(line).x),
+    CaseColumn[Solution](
         "vertical pull, march", "N", 3.4e-6, lambda line: line.buoyancy_used * _BUOYANCY
     ),
-    Figure[Solution]("length on the seabed, march", "m", 7e-6, lambda line: line.grounded_length),
-    Figure[Solution](
+    CaseColumn[Solution](
+        "length on the seabed, march", "m", 7e-6, lambda line: line.grounded_length
+    ),
+    CaseColumn[Solution](
         "tension at the anchor, march", "N", 8e-7, lambda line: float(line.tension[-1])
     ),
 )
 
-SOURCE = Source(
+CATENARIES = Source(
     "Catenaries",
     """The elastic catenary of M. Irvine, *Cable Structures* (1981), on four sets of figures (C12 to
 C14): ends 400 m apart and 300 m above each other, 50 N/m, EA 5 MN, once 520 m long and once

@@ -40,7 +40,7 @@ def _order(coarse: float, fine: float) -> float:
     return log2(heavy_line_error(coarse) / heavy_line_error(fine)) / log2(coarse / fine)
 
 
-SOURCE = Source(
+CONVERGENCE = Source(
     "Order of convergence",
     """The heavy line of C5 at 1 m/s, a current without shear, marched at angle steps from 4° to
 0.125°, against the closed form of `calm.analytic.uniform`, which shares nothing with the march. The

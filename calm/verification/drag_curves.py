@@ -55,7 +55,7 @@ def cheng(reynolds: float) -> float:
     return creeping + middle + 1.2 * (1.0 - exp(-pow(reynolds / 4500.0, 0.7)))
 
 
-SOURCE = Source(
+DRAG_CURVES = Source(
     "Drag curves of smooth bodies",
     """Cn of a long smooth cylinder against Reynolds number (C23): Wieselsberger's measurements
 (NACA report 121) up to 1.61e5 and the recommendation of DNV-RP-C205, figure 6-6, from 2.1e5. In the

@@ -7,7 +7,7 @@ from functools import cache
 from calm.solve import solve_mooring
 from calm.verification.case import Case, Kind, Source
 from calm.verification.ends import Ends, ends_of
-from calm.verification.pieces import Piece, line_of, point, stream
+from calm.verification.pieces import LinePiece, line_of, point, stream
 
 _LENGTH, _WEIGHT, _LOAD, _STIFFNESS = 1000.0, 0.3, 2000.0, 97_817.4
 
@@ -17,19 +17,19 @@ _WHY = (
 )
 
 
-LINE = line_of(
+HANGING_ROPE = line_of(
     point(_LOAD + _WEIGHT * _LENGTH, 0.0),
-    Piece(_LENGTH, True, -_WEIGHT, compliance=1.0 / _STIFFNESS),
+    LinePiece(_LENGTH, True, -_WEIGHT, compliance=1.0 / _STIFFNESS),
 )
-SEA = stream(1100.0, 0.0)
+HANGING_SEA = stream(1100.0, 0.0)
 
 
 @cache
 def _hanging() -> Ends:
-    return ends_of(solve_mooring(LINE, SEA))
+    return ends_of(solve_mooring(HANGING_ROPE, HANGING_SEA))
 
 
-SOURCE = Source(
+ELASTIC_HANG = Source(
     "Elastic hang",
     """A 19 mm nylon rope of 1000 m in still water (C15), 0.3 N/m, 2000 N at its lower end,
 EA 97 817.4 N (3.45e8 Pa on its section, the modulus of R. Dewey's *Mooring Design & Dynamics*):

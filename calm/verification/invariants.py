@@ -19,7 +19,7 @@ from calm.verification.ends import FINE, towed
 from calm.verification.pieces import (
     GRAVITY,
     HALF_DENSITY,
-    Piece,
+    LinePiece,
     cable,
     deep_water,
     line_of,
@@ -34,16 +34,16 @@ _DRAG = sphere_drag(1.25, 0.6)
 # A line with something of everything: floats, wire, rope that stretches, instruments that follow
 # the line or not, clamps, chain; it hangs below the surface in a current that veers.
 _PIECES = (
-    Piece(1.25, False, 7000.0, _DRAG, _DRAG, False, volume=1.02),
+    LinePiece(1.25, False, 7000.0, _DRAG, _DRAG, False, volume=1.02),
     replace(
         cable(300.0, 0.008, 1.6, 1.3, 0.009, 1.0 / 3e6),
         clamps=((20.0, -80.0, 0.004, 9.0), (150.0, -40.0, 0.002, 4.0)),
     ),
-    Piece(1.8, False, -180.0, 55.0, 3.0, volume=0.05),
+    LinePiece(1.8, False, -180.0, 55.0, 3.0, volume=0.05),
     cable(400.0, 0.016, 0.35, 1.3, 0.013, 1.0 / 2e5),
-    *[Piece(0.43, False, 225.0, 72.0, 72.0, False, volume=0.042)] * 4,
-    Piece(0.8, False, -240.0, 60.0, 60.0, False, volume=0.02),
-    Piece(15.0, True, -31.0, HALF_DENSITY * 0.013 * 2.75, HALF_DENSITY * pi * 0.013 * 0.46),
+    *[LinePiece(0.43, False, 225.0, 72.0, 72.0, False, volume=0.042)] * 4,
+    LinePiece(0.8, False, -240.0, 60.0, 60.0, False, volume=0.02),
+    LinePiece(15.0, True, -31.0, HALF_DENSITY * 0.013 * 2.75, HALF_DENSITY * pi * 0.013 * 0.46),
 )
 _LINE = line_of(*_PIECES, anchor_height=0.7)
 _SEA = Water(
@@ -119,8 +119,10 @@ def _similar(length: float, force: float, speed: float) -> float:
 def _split() -> float:
     """S1000 with its cable in ten pieces, against the cable in one."""
     finest = Settings(radians(0.01), tolerance=1e-10)
-    whole, split = (solve_mooring(s1000.mooring(parts), s1000.SEA, finest) for parts in (1, 10))
-    place = np.abs(whole.position[0] - split.position[0]).max() / s1000.SEA.depth
+    whole, split = (
+        solve_mooring(s1000.s1000_mooring(parts), s1000.S1000_SEA, finest) for parts in (1, 10)
+    )
+    place = np.abs(whole.position[0] - split.position[0]).max() / s1000.S1000_SEA.depth
     force = np.abs(whole.force[-1] - split.force[-1]).max() / whole.tension.max()
     return float(max(place, force))
 
@@ -183,7 +185,7 @@ def _tension_by_height() -> float:
 def _tension_by_height_and_friction() -> float:
     """|T_ship − T_body − w Δz − F s| of a tow whose friction is constant, over T_ship."""
     weight, friction, length, pull = 2.5, 0.3, 300.0, 2000.0
-    line = line_of(Piece(length, True, -weight, 8.0, friction), point(-pull, 0.0))
+    line = line_of(LinePiece(length, True, -weight, 8.0, friction), point(-pull, 0.0))
     wake = towed(replace(line, friction=Friction.CONSTANT), deep_water(), 1.0)
     return abs(wake.tension - pull - weight * wake.depth - friction * length) / wake.tension
 
@@ -201,7 +203,7 @@ def _plumb() -> float:
 @cache
 def _undercurrent() -> Solution:
     """A float of 500 N on 100 m of thread, and a current that sets in below it."""
-    line = line_of(point(500.0, 100.0), Piece(100.0, True, 0.0))
+    line = line_of(point(500.0, 100.0), LinePiece(100.0, True, 0.0))
     return solve_mooring(line, profile(110.0, [(0.0, 0.2), (12.0, 0.2), (30.0, 3.0)]), _TIGHT)
 
 
@@ -212,7 +214,7 @@ def _nothing(name: str, tolerance: float, why: str, got: Callable[[], float]) ->
 _SAME = "The same segments: rounding, and 1e-9 of the depth where each search for the root stops."
 _RODS = "The rods keep it to 1 − cos of half an angle step, 4e-7 at 0.1°."
 
-SOURCE = Source(
+INVARIANTS = Source(
     "Invariants",
     """What needs no reference (C20). A line with something of everything (a float, 300 m of wire
 with two clamps, an instrument that follows the line, 400 m of rope that stretches, four glass

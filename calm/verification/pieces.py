@@ -18,7 +18,7 @@ HALF_DENSITY = REFERENCE_DENSITY / 2.0
 
 
 @dataclass(frozen=True)
-class Piece:
+class LinePiece:
     """One piece of a line; the names and units are those of `calm.physics.line.Line`.
 
     `clamps` holds (distance from the piece's top, buoyancy, volume, drag) of each.
@@ -36,9 +36,9 @@ class Piece:
     clamps: tuple[tuple[float, float, float, float], ...] = ()
 
 
-def point(buoyancy: float, drag: float) -> Piece:
+def point(buoyancy: float, drag: float) -> LinePiece:
     """A piece without length: buoyancy [N], drag at 1 m/s [N/(m/s)²]."""
-    return Piece(0.0, False, buoyancy, drag, drag, directional=False)
+    return LinePiece(0.0, False, buoyancy, drag, drag, directional=False)
 
 
 def sphere_drag(diameter: float, cx: float) -> float:
@@ -48,15 +48,15 @@ def sphere_drag(diameter: float, cx: float) -> float:
 
 def cable(
     length: float, diameter: float, weight: float, cn: float, ct: float, compliance: float = 0.0
-) -> Piece:
+) -> LinePiece:
     """Rope or wire: weight in water [N/m], Cn on its diameter, Ct on its surface π D."""
     normal, tangential = HALF_DENSITY * diameter * cn, HALF_DENSITY * pi * diameter * ct
-    return Piece(
+    return LinePiece(
         length, True, -weight, normal, tangential, compliance=compliance, thinning=0.5
     )  # fmt: skip
 
 
-def line_of(*pieces: Piece, anchor_height: float = 0.0) -> Line:
+def line_of(*pieces: LinePiece, anchor_height: float = 0.0) -> Line:
     """The arrays of a list of pieces, free end first."""
     held = [(owner, *clamp) for owner, piece in enumerate(pieces) for clamp in piece.clamps]
     clamps = np.array(held, dtype=np.float64).reshape(len(held), 5)

@@ -9,9 +9,9 @@ from math import degrees, radians
 from calm.analytic.pode import CableFunctions, cable_functions
 from calm.analytic.uniform import critical_angle, critical_weight_ratio, tension_ratio
 from calm.physics.friction import Friction
-from calm.verification.case import PRINTED, Case, Figure, Kind, Source, table
+from calm.verification.case import PRINTED, Case, CaseColumn, Kind, Source, table
 from calm.verification.ends import Wake, towed
-from calm.verification.pieces import Piece, deep_water, line_of, point
+from calm.verification.pieces import LinePiece, deep_water, line_of, point
 
 _TABLE = (
     (10, 0.00, 60, 1.017122, 0.588029, 0.158486, 0.559210),
@@ -53,7 +53,7 @@ def _functions(critical: float, friction: float, angle: float) -> CableFunctions
 def _march(critical: float, friction: float, arc: float) -> Wake:
     """A body of 100 N without drag on a cable whose normal drag is 1 N/m at 1 m/s."""
     weight = float(critical_weight_ratio(radians(critical)))
-    cable = Piece(_PULL * arc, True, -weight, 1.0, friction)
+    cable = LinePiece(_PULL * arc, True, -weight, 1.0, friction)
     line = replace(line_of(cable, point(-_PULL, 0.0)), friction=Friction.CONSTANT)
     return towed(line, deep_water(), 1.0)
 
@@ -88,7 +88,7 @@ def _critical_angle(ratio: float) -> float:
     return degrees(float(critical_angle(ratio)))
 
 
-SOURCE = Source(
+PODE = Source(
     "Pode's cable functions",
     """L. Pode's functions of a heavy cable in a uniform stream (David Taylor Model Basin reports
 687 and 717, 1951), constant friction F = f R along it (C6): τ, σ, ξ, η between φ and 90°, as
@@ -99,10 +99,10 @@ cos φc = √(1 + p²/4) − p/2, is E. E. Zajac's, too (Bell System Technical J
     (
         *table(
             [
-                Figure[CableFunctions]("τ", "", 5.5e-7, lambda row: float(row.tau)),
-                Figure[CableFunctions]("σ", "", 5.5e-7, lambda row: float(row.sigma)),
-                Figure[CableFunctions]("ξ", "", 5.5e-7, lambda row: float(row.xi)),
-                Figure[CableFunctions]("η", "", 5.5e-7, lambda row: float(row.eta)),
+                CaseColumn[CableFunctions]("τ", "", 5.5e-7, lambda row: float(row.tau)),
+                CaseColumn[CableFunctions]("σ", "", 5.5e-7, lambda row: float(row.sigma)),
+                CaseColumn[CableFunctions]("ξ", "", 5.5e-7, lambda row: float(row.xi)),
+                CaseColumn[CableFunctions]("η", "", 5.5e-7, lambda row: float(row.eta)),
             ],
             [(_name(*given), partial(_functions, *given), row)
              for *given, tau, sigma, xi, eta in _TABLE
@@ -112,10 +112,10 @@ cos φc = √(1 + p²/4) − p/2, is E. E. Zajac's, too (Bell System Technical J
         ),
         *table(
             [
-                Figure[Wake]("φ, march", "°", 1e-4, lambda wake: wake.angle),
-                Figure[Wake]("τ, march", "", 2e-6, lambda wake: wake.tension / _PULL),
-                Figure[Wake]("ξ, march", "", 2e-6, lambda wake: wake.aft / _PULL),
-                Figure[Wake]("η, march", "", 2e-6, lambda wake: wake.depth / _PULL),
+                CaseColumn[Wake]("φ, march", "°", 1e-4, lambda wake: wake.angle),
+                CaseColumn[Wake]("τ, march", "", 2e-6, lambda wake: wake.tension / _PULL),
+                CaseColumn[Wake]("ξ, march", "", 2e-6, lambda wake: wake.aft / _PULL),
+                CaseColumn[Wake]("η, march", "", 2e-6, lambda wake: wake.depth / _PULL),
             ],
             [(_name(critical, f, angle), partial(_march, critical, f, sigma),
               (angle, tau, xi, eta))

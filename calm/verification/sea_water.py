@@ -47,7 +47,7 @@ def _density(salinity: float, temperature: float, depth: float) -> float:
     return float(seawater.absolute_density(salinity, temperature, depth, _LATITUDE))
 
 
-SOURCE = Source(
+SEA_WATER = Source(
     "Sea water and gravity",
     """Viscosity by Sharqawy, Lienhard & Zubair (Desalination and Water Treatment 16, 2010,
 equations 22 and 23; themselves good to 1.5 %), density by TEOS-10 (at 30° of latitude), gravity by

@@ -9,7 +9,7 @@ from calm.verification.case import PRINTED, Case, Kind, Source
 
 _AMPLITUDES = (0.3, 0.5, 0.9, 1.0, 1.4)
 
-SOURCE = Source(
+STRUMMING_FACTORS = Source(
     "Strumming factors",
     """Cn of a line that strums over Cn at rest, from its amplitude A/D: Vandiver (1983),
 1 + 1.043 (2 Y_rms/D)^0.65 with Y_rms = A/√2; Blevins (1990), 1 + 2.1 A/D; Skop, Griffin & Ramberg

@@ -5,11 +5,11 @@ from __future__ import annotations
 from functools import cache, partial
 
 from calm.solve import Settings
-from calm.verification.case import Figure, Kind, Source, table
+from calm.verification.case import CaseColumn, Kind, Source, table
 from calm.verification.ends import Wake, towed
 from calm.verification.pieces import (
     HALF_DENSITY,
-    Piece,
+    LinePiece,
     cable,
     deep_water,
     line_of,
@@ -29,14 +29,14 @@ def _bare(speed: float) -> Wake:
 def _with_body(speed: float) -> Wake:
     normal, tangential = HALF_DENSITY * _CN * _DIAMETER, HALF_DENSITY * 0.02 * _DIAMETER
     line = line_of(
-        Piece(300.0, True, -_WEIGHT, normal, tangential), point(-2000.0, HALF_DENSITY * 0.05)
+        LinePiece(300.0, True, -_WEIGHT, normal, tangential), point(-2000.0, HALF_DENSITY * 0.05)
     )
     return towed(line, deep_water(), speed)
 
 
-_ANGLE = "angle at the ship"
+_AT_THE_SHIP = "angle at the ship"
 
-SOURCE = Source(
+TOWED_CABLES = Source(
     "Towed cables",
     """A cable of 10 mm, 2.5 N/m, Cn 1.5, towed bare (C7): it is straight at the critical angle,
 cos φc = √(1 + p²/4) − p/2 with p the weight over the normal drag square to the stream. And 300 m
@@ -45,7 +45,7 @@ of it with a body of 2000 N in water and 0.05 m² of drag area (C8), friction
 1e-10) without CALM. The march of CALM is held against them, at an angle step of 0.1° in C8.""",
     (
         *table(
-            [Figure[Wake](_ANGLE, "°", 5.5e-5, lambda wake: wake.angle)],
+            [CaseColumn[Wake](_AT_THE_SHIP, "°", 5.5e-5, lambda wake: wake.angle)],
             [
                 (f"C7 bare cable, {speed} m/s", partial(_bare, speed), (angle,))
                 for speed, angle in ((1.0, 31.7304), (2.0, 16.2243), (3.0, 10.8582), (5.0, 6.5277))
@@ -56,10 +56,10 @@ of it with a body of 2000 N in water and 0.05 m² of drag area (C8), friction
         ),
         *table(
             [
-                Figure[Wake]("tension at the ship", "N", 1e-6, lambda wake: wake.tension, True),
-                Figure[Wake](_ANGLE, "°", 1e-4, lambda wake: wake.angle),
-                Figure[Wake]("body aft of the ship", "m", 3e-4, lambda wake: wake.aft),
-                Figure[Wake]("depth of the body", "m", 3e-4, lambda wake: wake.depth),
+                CaseColumn[Wake]("tension at the ship", "N", 1e-6, lambda wake: wake.tension, True),
+                CaseColumn[Wake](_AT_THE_SHIP, "°", 1e-4, lambda wake: wake.angle),
+                CaseColumn[Wake]("body aft of the ship", "m", 3e-4, lambda wake: wake.aft),
+                CaseColumn[Wake]("depth of the body", "m", 3e-4, lambda wake: wake.depth),
             ],
             [
                 (f"C8 with a body, {speed} m/s", partial(_with_body, speed), figures)

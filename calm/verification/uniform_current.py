@@ -6,9 +6,9 @@ from functools import cache, partial
 from math import hypot
 
 from calm.physics.line import Line, Water
-from calm.verification.case import Case, Figure, Kind, Source, table
+from calm.verification.case import Case, CaseColumn, Kind, Source, table
 from calm.verification.ends import Ends, finely
-from calm.verification.pieces import Piece, cable, line_of, point, sphere_drag, stream
+from calm.verification.pieces import LinePiece, cable, line_of, point, sphere_drag, stream
 
 _FLOAT = point(4905.0, sphere_drag(1.0, 0.65))
 _LENGTH = 1000.0
@@ -23,13 +23,13 @@ _SEVEN_DIGITS = (
 
 def float_on_a_thread(speed: float) -> tuple[Line, Water]:
     """C1 at a speed [m/s]."""
-    return line_of(_FLOAT, Piece(100.0, True, 0.0)), stream(110.0, speed)
+    return line_of(_FLOAT, LinePiece(100.0, True, 0.0)), stream(110.0, speed)
 
 
 def ball_on_a_thread() -> tuple[Line, Water]:
     """C2."""
     ball = point(0.337612, sphere_drag(0.04, 1.0))
-    return line_of(ball, Piece(0.5, True, 0.0)), stream(1.0, 0.5, density=1027.0)
+    return line_of(ball, LinePiece(0.5, True, 0.0)), stream(1.0, 0.5, density=1027.0)
 
 
 def float_on_a_rope(weight: float, ct: float, speed: float) -> tuple[Line, Water]:
@@ -70,26 +70,26 @@ def _identity(speed: float) -> Case:
     )  # fmt: skip
 
 
-def _thread(length: float, force: float, place: float, angle: float) -> list[Figure[Ends]]:
+def _thread(length: float, force: float, place: float, angle: float) -> list[CaseColumn[Ends]]:
     """The figures printed of a float on a thread, with their tolerances."""
     return [
-        Figure("drag", "N", force, lambda ends: ends.horizontal),
-        Figure("tension", "N", force, lambda ends: ends.tension),
-        Figure("angle from the vertical", "°", angle, lambda ends: ends.lean),
-        Figure("offset", "m", place, lambda ends: ends.x),
-        Figure("drop", "m", place, partial(_drop, length)),
+        CaseColumn("drag", "N", force, lambda ends: ends.horizontal),
+        CaseColumn("tension", "N", force, lambda ends: ends.tension),
+        CaseColumn("angle from the vertical", "°", angle, lambda ends: ends.lean),
+        CaseColumn("offset", "m", place, lambda ends: ends.x),
+        CaseColumn("drop", "m", place, partial(_drop, length)),
     ]
 
 
-_TENSION = Figure[Ends]("tension at the anchor", "N", 1e-6, lambda ends: ends.tension, True)
-_ANGLE = Figure[Ends]("angle at the anchor", "°", 6e-5, lambda ends: ends.lean)
-_OFFSET = Figure[Ends]("offset of the float", "m", 1e-6 * _LENGTH, lambda ends: ends.x)
-_KNOCKDOWN = Figure[Ends]("knockdown", "m", 1e-6 * _LENGTH, partial(_drop, _LENGTH))
-_HEIGHT = Figure[Ends]("height of the float", "m", 1e-6 * _LENGTH, lambda ends: ends.z)
-_HORIZONTAL = Figure[Ends]("anchor, horizontal", "N", 5e-3, lambda ends: ends.horizontal)
-_VERTICAL = Figure[Ends]("anchor, vertical", "N", 5e-3, lambda ends: ends.vertical)
+_TENSION = CaseColumn[Ends]("tension at the anchor", "N", 1e-6, lambda ends: ends.tension, True)
+_ANGLE = CaseColumn[Ends]("angle at the anchor", "°", 6e-5, lambda ends: ends.lean)
+_OFFSET = CaseColumn[Ends]("offset of the float", "m", 1e-6 * _LENGTH, lambda ends: ends.x)
+_KNOCKDOWN = CaseColumn[Ends]("knockdown", "m", 1e-6 * _LENGTH, partial(_drop, _LENGTH))
+_HEIGHT = CaseColumn[Ends]("height of the float", "m", 1e-6 * _LENGTH, lambda ends: ends.z)
+_HORIZONTAL = CaseColumn[Ends]("anchor, horizontal", "N", 5e-3, lambda ends: ends.horizontal)
+_VERTICAL = CaseColumn[Ends]("anchor, vertical", "N", 5e-3, lambda ends: ends.vertical)
 
-SOURCE = Source(
+UNIFORM_CURRENT = Source(
     "Floats and lines in a uniform current",
     """A float of 500 kgf and 1 m (Cx 0.65) on 100 m of line without weight or drag (C1); a ball
 on a thread, the check of the R package *mooring* by D. Kelley, in water of 1027 kg/m³ (C2); the

@@ -7,7 +7,7 @@ from math import cos, radians, sin
 
 from calm.analytic.hodograph import Station
 from calm.analytic.villain_guillot import linear_cable
-from calm.verification.case import PRINTED, Figure, Kind, Source, table
+from calm.verification.case import PRINTED, CaseColumn, Kind, Source, table
 
 _LENGTH, _UNIT = 1.25, 0.5
 """L and ℓ = T₀/√((μg)² + (kV)²) of the figure."""
@@ -20,7 +20,7 @@ def _cable(start: float, mean: float) -> Station:
     return linear_cable(_LENGTH, _UNIT, radians(start), sin(angle), cos(angle))
 
 
-SOURCE = Source(
+VILLAIN_GUILLOT = Source(
     "Villain-Guillot, figure 1",
     """S. Villain-Guillot's towed cable with a drag linear in each component of the velocity, equal
 along and across (D = 1, k_t = k_n): tan α_d = μg/(kV), ℓ = T₀/√((μg)² + (kV)²), with L = 1.25 and
@@ -29,9 +29,9 @@ along and across (D = 1, k_t = k_n): tan α_d = μg/(kV), ℓ = T₀/√((μg)²
 shape are right.""",
     table(
         [
-            Figure("x", "", 5.5e-7, lambda cable: float(cable.x)),
-            Figure("y", "", 5.5e-7, lambda cable: float(cable.z)),
-            Figure("T/T₀", "", 5.5e-7, lambda cable: float(cable.tension) / _UNIT),
+            CaseColumn("x", "", 5.5e-7, lambda cable: float(cable.x)),
+            CaseColumn("y", "", 5.5e-7, lambda cable: float(cable.z)),
+            CaseColumn("T/T₀", "", 5.5e-7, lambda cable: float(cable.tension) / _UNIT),
         ],
         [
             (f"α₀ {start}°, α_d {mean}°", partial(_cable, start, mean), (x, y, 3.402959))

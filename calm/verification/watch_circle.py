@@ -9,14 +9,14 @@ from calm.solve import solve_mooring
 from calm.verification.case import Case, Kind, Source
 from calm.verification.pieces import cable, line_of, point, stream
 
-_DEPTH, _SCOPE = 540.0, 2.0
+_SLACK_DEPTH, _SCOPE = 540.0, 2.0
 
 
 def _radius() -> float:
     """The radius reported with the refusal of a line that has no unique shape [m]."""
-    rope = cable(_SCOPE * _DEPTH, 0.02, 1.0, 1.3, 0.0)
+    rope = cable(_SCOPE * _SLACK_DEPTH, 0.02, 1.0, 1.3, 0.0)
     try:
-        solve_mooring(line_of(point(20_000.0, 100.0), rope), stream(_DEPTH, 0.0))
+        solve_mooring(line_of(point(20_000.0, 100.0), rope), stream(_SLACK_DEPTH, 0.0))
     except NoEquilibrium as refusal:
         radius = re.search(r"radius of (\d+) m", refusal.message)
         if refusal.status == "slack" and radius:
@@ -25,7 +25,7 @@ def _radius() -> float:
     raise AssertionError("a slack line in still water was given a shape")
 
 
-SOURCE = Source(
+WATCH_CIRCLE = Source(
     "Watch circle",
     """A surface mooring of scope 2 in 540 m of water without current (C22) is slack and has no
 unique shape: CALM refuses it with the status `slack` and reports the radius of its watch circle, at

@@ -32,9 +32,9 @@ LINES = {
         for name, rope in ROPES.items()
         for speed in (0.3, 0.5, 1.0)
     },
-    "elastic hang": (elastic_hang.LINE, elastic_hang.SEA),
-    "CDMS-1": (cdms_1.mooring(), cdms_1.SEA),
-    "CDMS-1 with tangential drag": (cdms_1.mooring(0.009), cdms_1.SEA),
+    "elastic hang": (elastic_hang.HANGING_ROPE, elastic_hang.HANGING_SEA),
+    "CDMS-1": (cdms_1.cdms_1_mooring(), cdms_1.CDMS_1_SEA),
+    "CDMS-1 with tangential drag": (cdms_1.cdms_1_mooring(0.009), cdms_1.CDMS_1_SEA),
     "Braconnot's buoy below the surface": braconnot.buoy(braconnot.BUOY_LIFT, 25.0),
     "Braconnot's buoy afloat": braconnot.buoy(1000.0, 20.0),
 }
@@ -68,7 +68,10 @@ def test_referee_has_the_last_digits_of_the_neutral_line(speed) -> None:
 def test_tangential_drag_hardly_matters_to_cdms_1() -> None:
     """Berteaux's Ct of 0.009, a rough finish: no tension changes by more than 0.01 %."""
     without, rough = (
-        np.linalg.norm(solve_continuous(cdms_1.mooring(ct), cdms_1.SEA).shape.force_bottom, axis=1)
+        np.linalg.norm(
+            solve_continuous(cdms_1.cdms_1_mooring(ct), cdms_1.CDMS_1_SEA).shape.force_bottom,
+            axis=1,
+        )
         for ct in (0.0, 0.009)
     )
     assert rough == pytest.approx(without, rel=1e-4)
