@@ -11,7 +11,7 @@ from calm.checks.finding import State
 from calm.report.blocks import Block, Cell, Column, Heading, Line, Part, Prose, Span, Table
 
 if TYPE_CHECKING:
-    from calm.verification import Case, Kind, CaseOutcome, Source
+    from calm.verification import Case, CaseOutcome, Kind, Source
 
     Findings = Sequence[tuple[Source, Sequence[CaseOutcome]]]
 

@@ -5,27 +5,21 @@ from a file. `calm.verification.published_case` defines a case.
 """
 
 from calm.verification.anchor_drop import ANCHOR_DROP
-from calm.verification.bourget_marichal import BOURGET_MARICHAL
-from calm.verification.braconnot import BRACONNOT
-from calm.verification.calm_paper import CALM_PAPER
-from calm.verification.case import Case as Case
-from calm.verification.case import CaseOutcome as CaseOutcome
-from calm.verification.case import Kind as Kind
-from calm.verification.case import Source as Source
-from calm.verification.catenaries import CATENARIES
-from calm.verification.cdms_1 import CDMS_1
-from calm.verification.convergence import CONVERGENCE
-from calm.verification.drag_curves import DRAG_CURVES
-from calm.verification.elastic_hang import ELASTIC_HANG
-from calm.verification.invariants import INVARIANTS
-from calm.verification.pode import PODE
-from calm.verification.s1000 import S1000
-from calm.verification.sea_water import SEA_WATER
-from calm.verification.strumming_factors import STRUMMING_FACTORS
-from calm.verification.towed_cables import TOWED_CABLES
-from calm.verification.uniform_current import UNIFORM_CURRENT
-from calm.verification.villain_guillot import VILLAIN_GUILLOT
-from calm.verification.watch_circle import WATCH_CIRCLE
+from calm.verification.cable_papers import BOURGET_MARICHAL, BRACONNOT, VILLAIN_GUILLOT
+from calm.verification.drag_and_sea_water import (
+    CALM_PAPER,
+    DRAG_CURVES,
+    SEA_WATER,
+    STRUMMING_FACTORS,
+)
+from calm.verification.march_properties import CONVERGENCE, INVARIANTS
+from calm.verification.published_case import Case as Case
+from calm.verification.published_case import CaseOutcome as CaseOutcome
+from calm.verification.published_case import Kind as Kind
+from calm.verification.published_case import Source as Source
+from calm.verification.solved_moorings import CDMS_1, S1000
+from calm.verification.still_water import CATENARIES, ELASTIC_HANG, WATCH_CIRCLE
+from calm.verification.uniform_current import PODE, TOWED_CABLES, UNIFORM_CURRENT
 
 SOURCES: tuple[Source, ...] = (
     S1000,

@@ -1,7 +1,7 @@
 """S1000 along its whole length, against the referee.
 
-The figures known of it are cases of `calm.verification.s1000`; here the referee, which shares
-nothing with CALM, has them too, and judges every other place and tension.
+The figures known of it are cases of `calm.verification.solved_moorings`; here the referee, which
+shares nothing with CALM, has them too, and judges every other place and tension.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 
 from calm.solve import Settings, solve_mooring
-from calm.verification import s1000
-from calm.verification.s1000 import S1000_SEA
+from calm.verification import solved_moorings
+from calm.verification.solved_moorings import S1000_SEA
 from tests.validation.agreement import difference
 from tests.validation.closing import solve_continuous
 
-LINE = s1000.s1000_mooring()
+LINE = solved_moorings.s1000_mooring()
 
 
 @pytest.fixture(scope="module")
@@ -27,11 +27,13 @@ def referee():
 
 
 def test_referee_has_the_known_digits(referee) -> None:
-    assert referee.depth == pytest.approx(s1000.DEPTH, abs=5e-5)
-    assert referee.shape.top[0, 0] == pytest.approx(s1000.OFFSET, abs=5e-5)
-    assert np.linalg.norm(referee.shape.force_bottom[-1]) == pytest.approx(s1000.TENSION, abs=5e-4)
+    assert referee.depth == pytest.approx(solved_moorings.DEPTH, abs=5e-5)
+    assert referee.shape.top[0, 0] == pytest.approx(solved_moorings.OFFSET, abs=5e-5)
+    assert np.linalg.norm(referee.shape.force_bottom[-1]) == pytest.approx(
+        solved_moorings.TENSION, abs=5e-4
+    )
     upright = solve_continuous(LINE, S1000_SEA.still()).depth
-    assert referee.depth - upright == pytest.approx(s1000.KNOCKDOWN, abs=1e-4)
+    assert referee.depth - upright == pytest.approx(solved_moorings.KNOCKDOWN, abs=1e-4)
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from calm.verification.case import CaseColumn, Kind, table
+from calm.verification.published_case import CaseColumn, Kind, table
 from tests.unit.verification.fakes import BAD, GOOD, case, failing
 
 
@@ -52,6 +52,8 @@ def test_a_table_gives_a_case_for_every_cell():
 def test_a_row_needs_a_figure_for_every_column():
     with pytest.raises(ValueError, match="shorter"):
         table(
-            [CaseColumn("x", "m", 0.1, float), CaseColumn("y", "m", 0.1, float)], [("a", float, (1,))], "",
+            [CaseColumn("x", "m", 0.1, float), CaseColumn("y", "m", 0.1, float)],
+            [("a", float, (1,))],
+            "",
             Kind.PUBLISHED,
-        )  # fmt: skip
+        )

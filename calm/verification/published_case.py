@@ -1,4 +1,4 @@
-"""A figure to reproduce, how CALM comes to it, and what a check of it finds."""
+"""Define a figure to reproduce, how CALM comes to it, and what a check of it finds."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from enum import StrEnum
 from math import nan
 from typing import Generic, TypeVar
 
-Solved = TypeVar("Answer")
+Solved = TypeVar("Solved")
 
 PRINTED = "Half a unit of the last digit printed, and a tenth."
 """The reason for a tolerance where CALM is exact beside the figure as printed."""
