@@ -13,8 +13,8 @@ from calm.case.columns import Clamps, Components, Shape
 from calm.case.measure import clamps_of, components_of, shape_of
 from calm.case.memory import Forgetful, Memory
 from calm.case.parts import naming_the_piece
-from calm.case.result import Accuracy, Solved, Strumming, document_of, known
-from calm.case.strumming import StrummingBand, strumming_of, tow_band
+from calm.case.result import Accuracy, Solved, document_of, known
+from calm.case.strumming import Strumming, StrummingBand, strumming_of, tow_band
 from calm.case.warnings import tow_warnings_of
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import MooringFile, TowKeys

@@ -8,7 +8,7 @@ from datetime import date as calendar_date
 from fnmatch import fnmatchcase
 from typing import Annotated
 
-from pydantic import AfterValidator, WithJsonSchema, model_validator
+from pydantic import AfterValidator, Field, WithJsonSchema, model_validator
 
 from calm.errors import Problem
 from calm.files.explain import shown, unknown
@@ -47,12 +47,25 @@ Reason = Annotated[Text, AfterValidator(_said)]
 class AcceptKeys(Model):
     """An item of `checks: accept:`."""
 
-    rule: Annotated[Text, WithJsonSchema({"enum": list(ACCEPTABLE)})]
-    reason: Reason
-    component: Text | None = None
-    by: Text | None = None
-    date: Day | None = None
-    until: Day | None = None
+    rule: Annotated[Text, WithJsonSchema({"enum": list(ACCEPTABLE)})] = Field(
+        description="of the design check", examples=["knockdown"]
+    )
+    reason: Reason = Field(
+        description="why the finding is accepted",
+        examples=["the maker gives no load; hung on chain"],
+    )
+    component: Text | None = Field(
+        default=None,
+        description="label of the line, or a pattern of labels; all when absent",
+        examples=["glass *"],
+    )
+    by: Text | None = Field(default=None, description="who accepts it", examples=["A. Martin"])
+    date: Day | None = Field(
+        default=None, description="day, e.g. 2026-11-20", examples=["2026-11-22"]
+    )
+    until: Day | None = Field(
+        default=None, description="last day on which it counts", examples=["2027-12-31"]
+    )
 
     @model_validator(mode="after")
     def _ends_after_it_begins(self) -> AcceptKeys:

@@ -13,6 +13,8 @@ from itertools import islice
 from pathlib import Path
 from typing import Any, Literal
 
+from pydantic import Field
+
 from calm.errors import InputError, Problem, UsageError
 from calm.files.components import KINDS, Component
 from calm.files.definition import Definition
@@ -26,8 +28,11 @@ from calm.shipped import shipped_folder
 class Assembly(Definition):
     """Pieces that are always used together; `parts` are items as in the `line` of a mooring."""
 
-    kind: Literal["assembly"]
-    parts: tuple[dict[str, Any], ...]
+    kind: Literal["assembly"] = Field(description="which kind of component it is")
+    parts: tuple[dict[str, Any], ...] = Field(
+        description="pieces as in `line`, from the top",
+        examples=[[{"use": "glass-17in", "count": 2}, {"use": "chain-13", "length": "1 m"}]],
+    )
 
 
 @dataclass(frozen=True)

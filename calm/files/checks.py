@@ -11,7 +11,7 @@ from pydantic import Field
 from pydantic.fields import FieldInfo
 
 from calm.files.accept import AcceptKeys
-from calm.files.fields import LENGTH, POSITIVE_LENGTH, Model, Quantity
+from calm.files.fields import LENGTH, POSITIVE_LENGTH, Model, Quantity, quantity_of
 
 _FACTOR = Quantity("number", above=0)
 _SAFETY = Quantity("number", at_least=1)
@@ -26,16 +26,14 @@ THE_DESIGN = "the design"
 
 @dataclass(frozen=True)
 class Limit:
-    """Annotation of a key of `checks:`: what it limits, and who gives its default.
+    """Annotation of a key of `checks:`: who gives its default.
 
     Attributes
     ----------
-    meaning : for the schema and for people
     source : of the default; of one that is judged only where it is given, the design
     default : [SI, degrees] where the model has None: it is judged all the same
     """
 
-    meaning: str
     source: str = THIS_PROGRAM
     default: float | None = None
 
@@ -50,16 +48,26 @@ _URI = "URI GSO mooring program"
 class SafetyFactors(Model):
     """Least breaking load over tension."""
 
-    steel: Annotated[float, _SAFETY, Limit("of steel and everything that is not rope", _UFC)] = 3.0
-    synthetic: Annotated[float, _SAFETY, Limit("of synthetic rope", _PRACTICE)] = 5.0
-    surface: Annotated[float, _SAFETY, Limit("of all pieces of a surface mooring", _PRACTICE)] = 5.0
+    steel: Annotated[float, _SAFETY, Limit(_UFC)] = Field(
+        default=3.0, description="of steel and everything that is not rope", examples=[3]
+    )
+    synthetic: Annotated[float, _SAFETY, Limit(_PRACTICE)] = Field(
+        default=5.0, description="of synthetic rope", examples=[5]
+    )
+    surface: Annotated[float, _SAFETY, Limit(_PRACTICE)] = Field(
+        default=5.0, description="of all pieces of a surface mooring", examples=[5]
+    )
 
 
 class MinimumTensions(Model):
     """Least tension above the release [N]."""
 
-    wire: Annotated[float, _LEAST_TENSION, Limit("in wire", _NO_FIGURE)] = 500.0
-    rope: Annotated[float, _LEAST_TENSION, Limit("in synthetic rope", _NO_FIGURE)] = 300.0
+    wire: Annotated[float, _LEAST_TENSION, Limit(_NO_FIGURE)] = Field(
+        default=500.0, description="in wire", examples=["500 N"]
+    )
+    rope: Annotated[float, _LEAST_TENSION, Limit(_NO_FIGURE)] = Field(
+        default=300.0, description="in synthetic rope", examples=["300 N"]
+    )
 
 
 class Checks(Model):
@@ -68,45 +76,75 @@ class Checks(Model):
     A limit without a default is judged only when given.
     """
 
-    safety_factor: SafetyFactors = Field(default_factory=SafetyFactors)
-    anchor_factor: Annotated[
-        float, _SAFETY, Limit("required weight of the anchor over V + H / friction", _DEWEY)
-    ] = 1.5
-    anchor_friction: Annotated[
-        float, _FACTOR, Limit("of an anchor on the seabed that gives none of its own", _DEWEY)
-    ] = 0.6
-    minimum_tension: MinimumTensions = Field(default_factory=MinimumTensions)
-    backup_margin: Annotated[
-        float, _SHARE, Limit("share of the weight lifted, and 250 N, left after any break", _URI)
-    ] = 0.1
-    minimum_rise_speed: Annotated[float, _SPEED, Limit("of the line without its anchor")] = 0.3
-    launch_safety_factor: Annotated[
-        float, _SAFETY, Limit("breaking load over tension in the launch", _URI)
-    ] = 2.0
-    launch_working_factor: Annotated[
-        float, _FACTOR, Limit("times the working load that is borne in the launch")
-    ] = 1.0
-    minimum_reserve: Annotated[
-        float, _SHARE, Limit("share of the surface float's buoyancy that is left")
-    ] = 0.3
-    rating_margin: Annotated[float, LENGTH, Limit("left of a depth rating in the current")] = 100.0
-    maximum_knockdown: Annotated[float | None, POSITIVE_LENGTH, Limit("of the top", THE_DESIGN)] = (
-        None
+    safety_factor: SafetyFactors = Field(
+        default_factory=SafetyFactors,
+        description="least breaking load over tension, by the material of a piece",
+        examples=[{"steel": 3, "synthetic": 5}],
     )
-    maximum_excursion: Annotated[
-        float | None, POSITIVE_LENGTH, Limit("of the top, sideways", THE_DESIGN)
-    ] = None
+    anchor_factor: Annotated[float, _SAFETY, Limit(_DEWEY)] = Field(
+        default=1.5,
+        description="required weight of the anchor: factor × (vertical + horizontal / friction)",
+        examples=[1.5],
+    )
+    anchor_friction: Annotated[float, _FACTOR, Limit(_DEWEY)] = Field(
+        default=0.6, description="of an anchor on the seabed, where it gives none", examples=[0.6]
+    )
+    minimum_tension: MinimumTensions = Field(
+        default_factory=MinimumTensions,
+        description="above the release",
+        examples=[{"wire": "500 N", "rope": "300 N"}],
+    )
+    backup_margin: Annotated[float, _SHARE, Limit(_URI)] = Field(
+        default=0.1,
+        description="of the weight lifted, left in buoyancy after any break",
+        examples=[0.1],
+    )
+    minimum_rise_speed: Annotated[float, _SPEED, Limit()] = Field(
+        default=0.3,
+        description="of what comes up once the release has opened",
+        examples=["0.3 m/s"],
+    )
+    launch_safety_factor: Annotated[float, _SAFETY, Limit(_URI)] = Field(
+        default=2.0,
+        description="breaking load over tension, as the line falls behind its anchor",
+        examples=[2],
+    )
+    launch_working_factor: Annotated[float, _FACTOR, Limit()] = Field(
+        default=1.0, description="working load over tension there", examples=[1]
+    )
+    minimum_reserve: Annotated[float, _SHARE, Limit()] = Field(
+        default=0.3,
+        description="share of a surface float's buoyancy that must be left",
+        examples=[0.3],
+    )
+    rating_margin: Annotated[float, LENGTH, Limit()] = Field(
+        default=100.0, description="depth that must be left to a depth rating", examples=["100 m"]
+    )
+    maximum_knockdown: Annotated[float | None, POSITIVE_LENGTH, Limit(THE_DESIGN)] = Field(
+        default=None, description="most that the top may be pushed down", examples=["50 m"]
+    )
+    maximum_excursion: Annotated[float | None, POSITIVE_LENGTH, Limit(THE_DESIGN)] = Field(
+        default=None, description="most that the top may go to the side", examples=["200 m"]
+    )
     maximum_tilt: Annotated[
         float | None,
         Quantity("angle", above=0, at_most=90),
-        Limit("of instruments and releases", THE_DESIGN),
-    ] = None
+        Limit(THE_DESIGN),
+    ] = Field(default=None, description="most that a piece may lean", examples=["30 deg"])
     minimum_top_depth: Annotated[
         float | None,
         LENGTH,
-        Limit("of a sub-surface line's top, at low water too", THIS_PROGRAM, default=10.0),
-    ] = None
-    accept: tuple[AcceptKeys, ...] = ()
+        Limit(THIS_PROGRAM, default=10.0),
+    ] = Field(
+        default=None,
+        description="least depth of the top of a sub-surface line, at low water too",
+        examples=["10 m"],
+    )
+    accept: tuple[AcceptKeys, ...] = Field(
+        default=(),
+        description="findings that this design accepts, each with its reason",
+        examples=[[{"rule": "strength", "component": "glass *", "reason": "hung on chain"}]],
+    )
 
 
 @dataclass(frozen=True)
@@ -158,7 +196,7 @@ def _defaults(model: type[Model]) -> tuple[tuple[str, LimitKey | None], ...]:
 
 def _default(name: str, field: FieldInfo) -> LimitKey | None:
     limit = next((one for one in field.metadata if isinstance(one, Limit)), None)
-    quantity = next((one for one in field.metadata if isinstance(one, Quantity)), None)
+    quantity = quantity_of(field)
     if limit is None or quantity is None:
         return None
     default = limit.default if field.default is None else field.default

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from calm.files.definition import (
     CATALOGUE_DENSITY,
-    DENSITY,
-    MASS,
     STANDARD_GRAVITY,
     STEEL_DENSITY,
     Definition,
+    Length,
+    Mass,
+    MaterialDensity,
+    TangentialDrag,
     refuse_weight_above_mass,
     volume_from_weights,
 )
-from calm.files.fields import DRAG, LENGTH, Quantity, Role
+from calm.files.fields import Quantity, Role
 from calm.files.flexible import Cable, Chain, Flexible
 from calm.files.rigid import Body, Cylinder, CylinderShape, Rigid, Sphere, SphereShape
 
@@ -51,13 +53,19 @@ class Anchor(Definition):
     """The lower end: stands on the seabed, carries no drag."""
 
     role: Role = "anchor"
-    kind: Literal["anchor"]
-    mass: Annotated[float | None, MASS] = None
-    weight: Annotated[float | None, Quantity("force", at_least=0)] = None
-    density: Annotated[float | None, DENSITY] = None
-    length: Annotated[float, LENGTH] = 0.0
-    friction: Annotated[float | None, Quantity("number", above=0)] = None
-    kt: Annotated[float | None, DRAG] = None
+    kind: Literal["anchor"] = Field(description="which kind of component it is")
+    mass: Mass = None
+    weight: Annotated[float | None, Quantity("force", at_least=0)] = Field(
+        default=None,
+        description="in sea water of 1025 kg/m^3 (per metre of a cable or chain)",
+        examples=["5000 N"],
+    )
+    density: MaterialDensity = None
+    length: Length = 0.0
+    friction: Annotated[float | None, Quantity("number", above=0)] = Field(
+        default=None, description="coefficient on the seabed", examples=[0.6]
+    )
+    kt: TangentialDrag = None
 
     @property
     def net_buoyancy(self) -> float:

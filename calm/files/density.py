@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated
 
-from pydantic import Discriminator, Tag
+from pydantic import Discriminator, Field, Tag
 
 from calm.errors import Problem
 from calm.files.definition import CATALOGUE_DENSITY, DENSITY
@@ -46,11 +46,11 @@ class SeaWaterKeys(Model):
     temperature: Annotated[
         Annotated[float, TEMPERATURE, Tag("constant")] | Annotated[Table, Tag("table")],
         Discriminator(_table_or_constant),
-    ]
+    ] = Field(description="in situ, a constant or a table", examples=["10 degC"])
     salinity: Annotated[
         Annotated[float, SALINITY, Tag("constant")] | Annotated[Table, Tag("table")],
         Discriminator(_table_or_constant),
-    ]
+    ] = Field(description="practical, a constant or a table", examples=[35])
 
 
 Density = Annotated[

@@ -6,7 +6,15 @@ import math
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, GetJsonSchemaHandler, WithJsonSchema
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    GetJsonSchemaHandler,
+    WithJsonSchema,
+)
+from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
 from calm.units import DIMENSIONS, QuantityError, parse_quantity
@@ -79,4 +87,12 @@ COEFFICIENT = Quantity("number", at_least=0)
 DRAG = Quantity("drag", at_least=0)
 TILT = Quantity("angle", above=0, at_most=180)
 
-Role = Literal["float", "instrument", "release", "connector", "line", "anchor"]
+Role = Annotated[
+    Literal["float", "instrument", "release", "connector", "line", "anchor"],
+    Field(description="what the piece is for", examples=["instrument"]),
+]
+
+
+def quantity_of(field: FieldInfo) -> Quantity | None:
+    """Return the quantity that a field of a model holds, None where it holds none."""
+    return next((one for one in field.metadata if isinstance(one, Quantity)), None)

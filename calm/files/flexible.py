@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, ValidationInfo, model_validator
+from pydantic import AfterValidator, Field, ValidationInfo, model_validator
 
 from calm.files.definition import (
     CATALOGUE_DENSITY,
-    DENSITY,
     STANDARD_GRAVITY,
     STEEL_DENSITY,
     Definition,
+    Diameter,
+    MaterialDensity,
+    NormalCoefficient,
+    TangentialCoefficient,
     is_in_air,
     refuse_weight_above_mass,
     volume_from_weights,
 )
-from calm.files.fields import COEFFICIENT, DIAMETER, POSITIVE_FORCE, Quantity, Role
+from calm.files.fields import POSITIVE_FORCE, Quantity, Role
 from calm.physics.stretch import ElongationCurve
 
 _LOAD = Quantity("number", at_least=0, at_most=1)
@@ -40,27 +43,59 @@ Elongation = Annotated[
 """Load over breaking load, and the strain under it: rows by growing load."""
 
 
+WeightPerMetre = Annotated[
+    float | None,
+    Quantity("force per length"),
+    Field(description="in sea water of 1025 kg/m^3 (per metre of a cable or chain)"),
+]
+MassPerMetre = Annotated[
+    float | None,
+    Quantity("mass per length", at_least=0),
+    Field(description="in air (per metre of a cable or chain)"),
+]
+
+
 class Flexible(Definition):
     """A cable or chain: all its figures are per metre."""
 
     role: Role = "line"
-    diameter: Annotated[float, DIAMETER]
-    weight: Annotated[float | None, Quantity("force per length")] = None
-    mass: Annotated[float | None, Quantity("mass per length", at_least=0)] = None
-    density: Annotated[float | None, DENSITY] = None
-    cn: Annotated[float | None, COEFFICIENT] = None
-    ct: Annotated[float | None, COEFFICIENT] = None
-    stiffness: Annotated[float | None, POSITIVE_FORCE] = None
+    diameter: Diameter
+    weight: WeightPerMetre = Field(default=None, examples=["2.1 N/m"])
+    mass: MassPerMetre = Field(default=None, examples=["0.2 kg/m"])
+    density: MaterialDensity = None
+    cn: NormalCoefficient = None
+    ct: TangentialCoefficient = None
+    stiffness: Annotated[float | None, POSITIVE_FORCE] = Field(
+        default=None,
+        description="EA, the force that would double the length, e.g. 4 MN",
+        examples=["4 MN"],
+    )
 
 
 class Cable(Flexible):
     """A rope, wire or electrical cable."""
 
-    kind: Literal["cable"]
-    buoyancy: Annotated[float | None, Quantity("force per length")] = None
-    finish: Literal["smooth", "rough", "very-rough"] | None = None
-    elongation: Elongation | None = None
-    permanent_elongation: Annotated[float | None, Quantity("number", at_least=0, at_most=1)] = None
+    kind: Literal["cable"] = Field(description="which kind of component it is")
+    buoyancy: Annotated[float | None, Quantity("force per length")] = Field(
+        default=None,
+        description="net force in sea water of 1025 kg/m^3, positive up (per metre of a cable)",
+        examples=["0.1 N/m"],
+    )
+    finish: Literal["smooth", "rough", "very-rough"] | None = Field(
+        default=None, description="of the surface of a cable", examples=["rough"]
+    )
+    elongation: Elongation | None = Field(
+        default=None,
+        description="rows of load over breaking load and strain, e.g. [[0.1, 0.03], [0.3, 0.08]]",
+        examples=[[[0.05, 0.05], [0.1, 0.08], [0.2, 0.12]]],
+    )
+    permanent_elongation: Annotated[float | None, Quantity("number", at_least=0, at_most=1)] = (
+        Field(
+            default=None,
+            description="of a rope that has been loaded, at every tension, e.g. 4 %",
+            examples=["4 %"],
+        )
+    )
 
     @property
     def net_buoyancy(self) -> float:
@@ -125,7 +160,9 @@ def strain_under(component: Flexible, load: float) -> float:
 class Chain(Flexible):
     """A chain; `diameter` is that of its bar."""
 
-    kind: Literal["chain"]
+    kind: Literal["chain"] = Field(description="which kind of component it is")
+    weight: WeightPerMetre = Field(default=None, examples=["27 N/m"])
+    mass: MassPerMetre = Field(default=None, examples=["3.2 kg/m"])
 
     @property
     def net_buoyancy(self) -> float:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal, Protocol
 
-from pydantic import AfterValidator
+from pydantic import AfterValidator, Field
 
 from calm.files.accept import Accept
 from calm.files.checks import Checks, LimitKey
@@ -22,9 +22,15 @@ from calm.files.uncertainty import Uncertainty
 class TowKeys(Model):
     """What tows the line: speed over ground [m/s], where to [degrees], height above water [m]."""
 
-    speed: Annotated[float, Quantity("speed", above=0)]
-    toward: Annotated[float, Quantity("angle")]
-    height: Annotated[float, LENGTH] = 0.0
+    speed: Annotated[float, Quantity("speed", above=0)] = Field(
+        description="of the ship over the ground", examples=["0.5 m/s"]
+    )
+    toward: Annotated[float, Quantity("angle")] = Field(
+        description="course, clockwise from north", examples=["90 deg"]
+    )
+    height: Annotated[float, LENGTH] = Field(
+        default=0.0, description="of the tow point above the water, e.g. 4 m", examples=["4 m"]
+    )
 
 
 class Solver(Model):
@@ -32,13 +38,37 @@ class Solver(Model):
 
     angle_step: Annotated[
         float, Quantity("angle", above=0, at_most=10), AfterValidator(math.radians)
-    ] = math.radians(1)
-    tolerance: Annotated[float, Quantity("number", above=0, at_most=2e-4)] = 1e-7
-    drag: Literal["constant", "reynolds"] = "constant"
-    friction: Literal["berteaux", "hoerner", "constant"] = "berteaux"
-    strumming: Strumming = None
-    buoy_drag: Literal["immersed", "full"] = "immersed"
-    seabed_friction: Annotated[float, Quantity("number", at_least=0)] = 0.0
+    ] = Field(
+        default=math.radians(1),
+        description="how much a cable may turn from one segment to the next, e.g. 1 deg",
+        examples=["1 deg"],
+    )
+    tolerance: Annotated[float, Quantity("number", above=0, at_most=2e-4)] = Field(
+        default=1e-7,
+        description="of the depth of the anchor, as a share of the water depth",
+        examples=[1e-07],
+    )
+    drag: Literal["constant", "reynolds"] = Field(
+        default="constant",
+        description="constant coefficients, or by Reynolds number for what is `surface: smooth`",
+        examples=["reynolds"],
+    )
+    friction: Literal["berteaux", "hoerner", "constant"] = Field(
+        default="berteaux", description="law of friction along cables", examples=["berteaux"]
+    )
+    strumming: Strumming = Field(
+        default=None,
+        description="how much vibration raises the Cn of cables",
+        examples=[{"factor": 1.5}],
+    )
+    buoy_drag: Literal["immersed", "full"] = Field(
+        default="immersed",
+        description="of a float at the surface: at its draft, or fully immersed",
+        examples=["immersed"],
+    )
+    seabed_friction: Annotated[float, Quantity("number", at_least=0)] = Field(
+        default=0.0, description="of line that lies on the seabed", examples=[0.3]
+    )
 
 
 @dataclass(frozen=True, order=True)

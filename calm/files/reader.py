@@ -40,20 +40,70 @@ def _given(value: object) -> object:
 class MooringKeys(Model):
     """The keys at the top level of a mooring file."""
 
-    name: Text | None = None
-    description: Text | None = None
-    document: DocumentKeys | None = None
-    position: Position | None = None
-    tow: Annotated[TowKeys | None, BeforeValidator(_given, json_schema_input_type=TowKeys)] = None
-    environment: dict[str, Any] = Field(default_factory=dict)
-    line: Annotated[tuple[Any, ...], Field(min_length=1)]
-    components: dict[str, Any] | None = None
-    environments: dict[str, dict[str, Any]] | None = None
-    solver: Solver | None = None
-    checks: Checks | None = None
-    uncertainty: Uncertainty | None = None
-    releases: tuple[ReleaseKeys, ...] | None = None
-    deployed: Deployed | None = None
+    name: Text | None = Field(
+        default=None, description="what people call it", examples=["Shelf edge 2026"]
+    )
+    description: Text | None = Field(
+        default=None, description="what it is for", examples=["Slope currents, first year"]
+    )
+    document: DocumentKeys | None = Field(
+        default=None,
+        description="what the title block of a drawing says",
+        examples=[{"id": "M-2026-17", "revision": "B"}],
+    )
+    position: Position | None = Field(
+        default=None,
+        description="where it stands",
+        examples=[{"latitude": "48.3 deg", "longitude": "-5.2 deg"}],
+    )
+    tow: Annotated[TowKeys | None, BeforeValidator(_given, json_schema_input_type=TowKeys)] = Field(
+        default=None,
+        description="what tows the line, in place of an anchor",
+        examples=[{"speed": "4 knot", "toward": "90 deg"}],
+    )
+    environment: dict[str, Any] = Field(
+        default_factory=dict, description="the water", examples=[{"depth": "1100 m"}]
+    )
+    line: Annotated[tuple[Any, ...], Field(min_length=1)] = Field(
+        description="the pieces from the top to the anchor; in a tow, from the ship to the towed "
+        "body",
+        examples=[[{"use": "sphere-steel-1250"}, {"use": "anchor-wheels-4"}]],
+    )
+    components: dict[str, Any] | None = Field(
+        default=None,
+        description="definitions of your own, used only here",
+        examples=[{"my-float": {"kind": "sphere", "diameter": "1.2 m", "buoyancy": "7000 N"}}],
+    )
+    environments: dict[str, dict[str, Any]] | None = Field(
+        default=None,
+        description="named variants, each overriding keys of `environment`",
+        examples=[{"storm": {"current": {"speed": "1.2 m/s", "toward": "90 deg"}}}],
+    )
+    solver: Solver | None = Field(
+        default=None,
+        description="how the line is solved",
+        examples=[{"angle_step": "1 deg", "strumming": "vandiver"}],
+    )
+    checks: Checks | None = Field(
+        default=None,
+        description="limits of the design check",
+        examples=[{"anchor_factor": 1.5, "maximum_knockdown": "50 m"}],
+    )
+    uncertainty: Uncertainty | None = Field(
+        default=None,
+        description="how well the inputs of the design are known",
+        examples=[{"current": "10 %", "cable_drag": ["-15 %", "30 %"]}],
+    )
+    releases: tuple[ReleaseKeys, ...] | None = Field(
+        default=None,
+        description="the codes of each release by its serial number",
+        examples=[[{"serial": 1729, "codes": {"enable": "0A51", "release": "0A55"}}]],
+    )
+    deployed: Deployed | None = Field(
+        default=None,
+        description="where and when it was deployed, and what differs from the design",
+        examples=[{"date": "2027-03-02T10:40", "depth": "1103 m"}],
+    )
 
 
 def read_mooring(

@@ -18,7 +18,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Literal, cast, get_args
 
-from pydantic import BeforeValidator, ConfigDict, Discriminator, Tag, ValidationInfo
+from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag, ValidationInfo
 
 from calm.files.explain import nearest, not_among, shown
 from calm.files.fields import COEFFICIENT, Model, Quantity
@@ -36,13 +36,17 @@ _Name = Literal["none", "bourget-marichal", AmplitudeName]
 class StrummingFactor(Model):
     """The Cn of every cable, multiplied."""
 
-    factor: Annotated[float, _FACTOR]
+    factor: Annotated[float, _FACTOR] = Field(
+        description="what the Cn of every cable is multiplied by, e.g. 1.5", examples=[1.5]
+    )
 
 
 class ConstantCn(Model):
     """One Cn for every cable, whatever its own: the habit for towed cables, 1.8 to 1.9."""
 
-    cn: Annotated[float, COEFFICIENT]
+    cn: Annotated[float, COEFFICIENT] = Field(
+        description="drag coefficient across the axis", examples=[1.2]
+    )
 
 
 class BourgetMarichalKeys(Model):
@@ -53,19 +57,37 @@ class BourgetMarichalKeys(Model):
 
     model_config = ConfigDict(json_schema_extra={"required": ["model"]})
 
-    model: Literal["bourget-marichal"] = "bourget-marichal"
-    a1: Annotated[float, _NUMBER] = BourgetMarichal.a1
-    b1: Annotated[float, _NUMBER] = BourgetMarichal.b1
-    c1: Annotated[float, _NUMBER] = BourgetMarichal.c1
-    c0: Annotated[float, _RESTING_CN] = BourgetMarichal.rest
-    strouhal: Annotated[float, _FACTOR] = BourgetMarichal.strouhal
+    model: Literal["bourget-marichal"] = Field(
+        default="bourget-marichal", description="the law", examples=["bourget-marichal"]
+    )
+    a1: Annotated[float, _NUMBER] = Field(
+        default=BourgetMarichal.a1,
+        description="amplitude over diameter of the cable's vibration where φ is 0",
+        examples=[0.45],
+    )
+    b1: Annotated[float, _NUMBER] = Field(
+        default=BourgetMarichal.b1, description="what φ adds to `a1`, per degree", examples=[0.01]
+    )
+    c1: Annotated[float, _NUMBER] = Field(
+        default=BourgetMarichal.c1,
+        description="what φ² adds to `a1`, per square degree",
+        examples=[0.0],
+    )
+    c0: Annotated[float, _RESTING_CN] = Field(
+        default=BourgetMarichal.rest, description="Cn of the cable at rest", examples=[1.2]
+    )
+    strouhal: Annotated[float, _FACTOR] = Field(
+        default=BourgetMarichal.strouhal,
+        description="frequency of the cable times diameter over the speed across it",
+        examples=[0.2],
+    )
 
 
 @dataclass(frozen=True)
 class AmplitudeModel:
     """The law, by name, that raises Cn with the amplitude at which each segment vibrates."""
 
-    name: AmplitudeName
+    name: Annotated[AmplitudeName, Field(description="the law", examples=["vandiver"])]
 
 
 _FORMS: Mapping[str, type[Model]] = {

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from pydantic import ValidationError
+from pydantic import Field, ValidationError
 
 from calm.errors import Problem
 from calm.files.current_terms import Terms, too_deep, too_fast
@@ -57,8 +57,14 @@ _WATER = {
 class Table(Model):
     """Columns, each a name and its unit, and rows of values."""
 
-    columns: tuple[Text, ...]
-    rows: tuple[tuple[Text | None, ...], ...]
+    columns: tuple[Text, ...] = Field(
+        description="each a name and its unit: depth m, speed m/s, toward deg; or u m/s, v m/s, "
+        "w m/s",
+        examples=[["depth m", "speed m/s", "toward deg"]],
+    )
+    rows: tuple[tuple[Text | None, ...], ...] = Field(
+        description="values, top to bottom", examples=[[[0, 0.8, 90], [1100, 0.05, 60]]]
+    )
 
 
 @dataclass(frozen=True)

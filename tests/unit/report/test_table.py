@@ -4,8 +4,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from calm.case.result import Strumming
-from calm.case.strumming import StrummingBand
+from calm.case.strumming import Strumming, StrummingBand
 from calm.report.line import Mark, safety_mark, tilt_mark
 from calm.report.sheet import result_part
 from calm.report.terminal import shown
