@@ -39,8 +39,8 @@ from calm.exchange.mdd_elements import read_entries
 from calm.exchange.mdd_reader import read_water
 from calm.exchange.part_names import is_line
 from calm.files.components import FLEXIBLE_KINDS
-from calm.files.document import read_content
-from calm.files.explain import nearest
+from calm.files.mistakes import nearest
+from calm.files.yaml_document import read_content
 from calm.units import KILOGRAM_FORCE
 
 _NOTE = "A list says nothing about the water, and little about drag. See `calm docs import-table`."
