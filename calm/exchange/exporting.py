@@ -8,14 +8,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from calm.files.mistakes import unknown
-
 from calm.case import load
 from calm.errors import UsageError
 from calm.exchange.cable_writer import cbl_file
 from calm.exchange.exported_parts import ExportedLine, ExportedPart, assembled
 from calm.exchange.mdd_writer import mdd_file
 from calm.exchange.moordyn_writer import CURRENTS, current_profile, moordyn_file
+from calm.files.mistakes import unknown
 
 
 @dataclass(frozen=True)
