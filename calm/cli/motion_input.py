@@ -25,7 +25,7 @@ def fitted(text: str | None) -> tuple[str, ...]:
     UsageError
         What is asked for cannot be estimated.
     """
-    from calm.files.explain import unknown
+    from calm.files.mistakes import unknown
     from calm.motion.forward import FACTORS
 
     asked = [] if text is None else [name.strip() for name in text.split(",")]
@@ -69,7 +69,7 @@ def read_measured(
     """What was measured, on common times; what is said of it, and its source."""
     import numpy as np
 
-    from calm.files.explain import not_among
+    from calm.files.mistakes import not_among
     from calm.motion.currents import read_currents
     from calm.motion.flags import parse_flags
     from calm.motion.forward import Forward

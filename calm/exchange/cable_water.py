@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from calm.exchange.cable_grammar import KeyValue, KeyValues
 from calm.exchange.design import ImportedWater, Remark, refused
-from calm.files.document import read_text
+from calm.files.yaml_document import read_text
 from calm.quantities import bearing_of
 
 USUAL_GRAVITY = 9.81

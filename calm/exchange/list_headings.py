@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from calm.exchange.design import refused
-from calm.files.document import read_content
-from calm.files.explain import unknown
+from calm.files.mistakes import unknown
+from calm.files.yaml_document import read_content
 from calm.units import KILOGRAM_FORCE
 
 COLUMNS = (

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Literal, NamedTuple
 
 import yaml
 from yaml.error import MarkedYAMLError, YAMLError
@@ -23,8 +23,6 @@ from yaml.events import (
     SequenceStartEvent,
     StreamEndEvent,
 )
-
-from calm.files.nodes import Composition, Kind, Node, Refusal
 
 _DEEPEST = 100
 """Mappings and lists within others; the time to read brackets grows with the square of this."""
@@ -82,7 +80,7 @@ def compose(text: str) -> Composition:
                 pass  # which the parser in Python says better
         return _composed_by_python(text, start, plain)
     except _TooDeep:
-        return Composition(None, (Refusal(0, 0, "is nested too deeply"),))
+        return Composition(None, (YamlMistake(0, 0, "is nested too deeply"),))
 
 
 def _is_read_differently(text: str) -> bool:
@@ -108,16 +106,16 @@ def _composed_by_python(text: str, start: int, plain: str) -> Composition:
         refusals = _syntax_refusals(plain, error)
     except (YAMLError, ValueError, OverflowError) as error:
         first_line = str(error).partition("\n")[0]
-        refusals = [Refusal(0, 0, f"is not valid YAML: {first_line}")]
+        refusals = [YamlMistake(0, 0, f"is not valid YAML: {first_line}")]
     shown = [one._replace(message=one.message.replace(stand_in, "?")) for one in refusals]
     return Composition(None, tuple(shown))
 
 
-def _syntax_refusals(text: str, error: MarkedYAMLError) -> list[Refusal]:
+def _syntax_refusals(text: str, error: MarkedYAMLError) -> list[YamlMistake]:
     """Tabs in the indentation are the usual cause and are all shown; else what the parser says."""
     if "\\t" in str(error.problem):
         found = [
-            Refusal(number, line.index("\t") + 1, "a tab; YAML is indented with spaces")
+            YamlMistake(number, line.index("\t") + 1, "a tab; YAML is indented with spaces")
             for number, line in enumerate(text.splitlines(), 1)
             if "\t" in line[: len(line) - len(line.lstrip())]
         ]
@@ -127,7 +125,7 @@ def _syntax_refusals(text: str, error: MarkedYAMLError) -> list[Refusal]:
     what = error.problem or error.context
     if error.context and error.context_mark and error.problem:
         what = f"{error.context} from line {error.context_mark.line + 1}, {what}"
-    return [Refusal(mark.line + 1, mark.column + 1, f"is not valid YAML: {what}")]
+    return [YamlMistake(mark.line + 1, mark.column + 1, f"is not valid YAML: {what}")]
 
 
 class _Reader:
@@ -145,7 +143,7 @@ class _Reader:
         self._text = text
         self._start = start
         self._next = next_event
-        self._refusals: list[Refusal] = []
+        self._refusals: list[YamlMistake] = []
         self._anchors: set[str] = set()
 
     def read(self) -> Composition:
@@ -243,7 +241,7 @@ class _Reader:
 
     def _refuse(self, event: NodeEvent, message: str) -> None:
         mark = event.start_mark
-        self._refusals.append(Refusal(mark.line + 1, mark.column + 1, message))
+        self._refusals.append(YamlMistake(mark.line + 1, mark.column + 1, message))
 
     def _skip(self, event: Event) -> None:
         """Pass over a node that an event begins."""
@@ -272,3 +270,52 @@ def _shown(value: str) -> str:
     if value.isprintable():
         return value
     return _CONTROL_CHARACTER.sub("\N{REPLACEMENT CHARACTER}", value)
+
+
+Kind = Literal["mapping", "sequence", "scalar"]
+
+
+class Node(NamedTuple):
+    """A value in a text.
+
+    Attributes
+    ----------
+    kind : "mapping", "sequence" or "scalar"
+    start, end : int
+        Its text is ``text[start:end]``; an empty value is right after its colon or dash.
+    line, column : int
+        Of its start, counted from 1.
+    style : str
+        Of a collection `block` or `flow`; of a scalar its first sign when quoted or a block.
+    data : dict, list, str or None
+        What it says, scalars as the text the person wrote. Shared: not to be changed.
+    keys : tuple of Node
+        Of a mapping, in the order of the file.
+    children : tuple of Node
+        The values of a mapping, or the items of a sequence.
+    """
+
+    kind: Kind
+    start: int
+    end: int
+    line: int
+    column: int
+    style: str
+    data: Any
+    keys: tuple[Node, ...] = ()
+    children: tuple[Node, ...] = ()
+
+
+class YamlMistake(NamedTuple):
+    """Something that is no YAML, or YAML that these files do not allow; places count from 1."""
+
+    line: int
+    column: int
+    message: str
+
+
+class Composition(NamedTuple):
+    """The nodes of a text (None: it is empty, or no YAML), and what in it is not allowed."""
+
+    root: Node | None
+    refusals: tuple[YamlMistake, ...] = ()

@@ -20,7 +20,7 @@ from calm.files.fields import (
     POSITIVE_LENGTH,
     TILT,
     Model,
-    Quantity,
+    QuantityField,
     Role,
     Text,
 )
@@ -41,8 +41,8 @@ DISAGREEMENT = 0.01
 IN_AIR: Mapping[str, object] = {"fluid": "air"}
 """Context of a definition that is read for use in air, where its mass is all that is needed."""
 
-MASS = Quantity("mass", at_least=0)
-DENSITY = Quantity("density", above=0)
+MASS = QuantityField("mass", at_least=0)
+DENSITY = QuantityField("density", above=0)
 
 
 Length = Annotated[

@@ -9,21 +9,21 @@ from pydantic import Discriminator, Field, Tag
 
 from calm.errors import Problem
 from calm.files.definition import CATALOGUE_DENSITY, DENSITY
-from calm.files.explain import about_quantity
-from calm.files.fields import Model, Quantity
-from calm.files.section import Section
+from calm.files.fields import Model, QuantityField
+from calm.files.mistakes import about_quantity
 from calm.files.tables import (
     SALINITY,
     TEMPERATURE,
     WATER_DENSITY,
     DepthTable,
     SeaWater,
-    Table,
+    TableKeys,
     read_profile,
     read_water,
     report_at,
     table_of,
 )
+from calm.files.yaml_document import SourceMapping
 from calm.units import QuantityError
 
 USUAL_DENSITY = {"water": CATALOGUE_DENSITY, "air": 1.225}
@@ -44,39 +44,39 @@ class SeaWaterKeys(Model):
     """Temperature [°C] and practical salinity, each a constant or a table by depth."""
 
     temperature: Annotated[
-        Annotated[float, TEMPERATURE, Tag("constant")] | Annotated[Table, Tag("table")],
+        Annotated[float, TEMPERATURE, Tag("constant")] | Annotated[TableKeys, Tag("table")],
         Discriminator(_table_or_constant),
     ] = Field(description="in situ, a constant or a table", examples=["10 degC"])
     salinity: Annotated[
-        Annotated[float, SALINITY, Tag("constant")] | Annotated[Table, Tag("table")],
+        Annotated[float, SALINITY, Tag("constant")] | Annotated[TableKeys, Tag("table")],
         Discriminator(_table_or_constant),
     ] = Field(description="practical, a constant or a table", examples=[35])
 
 
 Density = Annotated[
     Annotated[float, DENSITY, Tag("constant")]
-    | Annotated[Table, Tag("table")]
+    | Annotated[TableKeys, Tag("table")]
     | Annotated[SeaWaterKeys, Tag("sea water")],
     Discriminator(_form),
 ]
 """The value of `density:` as a person writes it."""
 
 
-_RANGES: Mapping[str, Quantity] = {"water": WATER_DENSITY, "air": DENSITY}
+_RANGES: Mapping[str, QuantityField] = {"water": WATER_DENSITY, "air": DENSITY}
 _FALL = 0.1
 """Water that gets lighter by more than this with depth turns over [kg/m³]."""
 
 
 def read_density(
-    given: float | Table | SeaWaterKeys,
+    given: float | TableKeys | SeaWaterKeys,
     fluid: str,
-    section: Section,
+    section: SourceMapping,
     problems: list[Problem],
     notices: list[str],
 ) -> float | DepthTable | SeaWater | None:
     """The density of a section's `density:`; None, with its mistakes reported, when it has any."""
     density = _RANGES[fluid]
-    if isinstance(given, Table):
+    if isinstance(given, TableKeys):
         report = report_at(section, "density")
         table = read_water(given.columns, given.rows, report, problems, density)
         if isinstance(table, DepthTable):
@@ -108,7 +108,7 @@ def _falls(table: DepthTable) -> list[str]:
     return []
 
 
-def check_density(section: Section, problems: list[Problem]) -> None:
+def check_density(section: SourceMapping, problems: list[Problem]) -> None:
     """Report the mistakes in the tables below `density:`, whatever else is wrong with it."""
     given = section.data.get("density")
     density = _RANGES["air" if section.data.get("fluid") == "air" else "water"]
@@ -122,9 +122,9 @@ def check_density(section: Section, problems: list[Problem]) -> None:
 
 
 def _profile(
-    name: str, given: float | Table, section: Section, problems: list[Problem]
+    name: str, given: float | TableKeys, section: SourceMapping, problems: list[Problem]
 ) -> DepthTable | None:
-    if isinstance(given, Table):
+    if isinstance(given, TableKeys):
         report = report_at(section, "density", name)
         return read_profile(name, given.columns, given.rows, report, problems)
     return DepthTable((0.0,), (given,))

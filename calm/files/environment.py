@@ -14,35 +14,35 @@ from calm.errors import InputError, Problem
 from calm.files.current_terms import DEEPEST, Terms, too_fast
 from calm.files.definition import DENSITY
 from calm.files.density import USUAL_DENSITY, Density, check_density, read_density
-from calm.files.explain import shown, validate
-from calm.files.fields import POSITIVE_LENGTH, Model, Quantity, Text
-from calm.files.section import Section
+from calm.files.fields import POSITIVE_LENGTH, Model, QuantityField, Text
+from calm.files.mistakes import shown, validate
 from calm.files.tables import (
     DIRECTION,
     CurrentTable,
     DepthTable,
     SeaWater,
-    Table,
+    TableKeys,
     components,
     read_current,
     report_at,
     table_of,
 )
 from calm.files.times import TimeChoiceError
+from calm.files.yaml_document import SourceMapping
 from calm.units import QuantityError
 
-_SPEED = Quantity("speed", at_least=0)
-_WATER_DEPTH = Quantity("length", above=0, at_most=DEEPEST)
+_SPEED = QuantityField("speed", at_least=0)
+_WATER_DEPTH = QuantityField("length", above=0, at_most=DEEPEST)
 _MAXIMUM_SPEED = 5.0
 
 
 class Position(Model):
     """Where the mooring stands [degrees]."""
 
-    latitude: Annotated[float, Quantity("angle", at_least=-90, at_most=90)] = Field(
+    latitude: Annotated[float, QuantityField("angle", at_least=-90, at_most=90)] = Field(
         description="north positive", examples=["48.3 deg"]
     )
-    longitude: Annotated[float, Quantity("angle", at_least=-360, at_most=360)] = Field(
+    longitude: Annotated[float, QuantityField("angle", at_least=-360, at_most=360)] = Field(
         description="east positive", examples=["-5.2 deg"]
     )
 
@@ -97,7 +97,7 @@ class Fouling(Model):
     depth: Annotated[float, POSITIVE_LENGTH] = Field(
         description="how far down it grows", examples=["50 m"]
     )
-    thickness: Annotated[float, Quantity("length", usual_unit="mm", above=0)] = Field(
+    thickness: Annotated[float, QuantityField("length", usual_unit="mm", above=0)] = Field(
         description="of the growth all around, e.g. 20 mm", examples=["20 mm"]
     )
     density: Annotated[float | None, DENSITY] = Field(
@@ -120,7 +120,7 @@ class Wind(Model):
     toward: Annotated[float, DIRECTION] = Field(
         description="where it blows to, clockwise from north", examples=["90 deg"]
     )
-    surface_drift: Annotated[float, Quantity("number", at_least=0, at_most=0.1)] = Field(
+    surface_drift: Annotated[float, QuantityField("number", at_least=0, at_most=0.1)] = Field(
         default=0.0,
         description="share of the wind's speed that the surface water drifts at",
         examples=["2 %"],
@@ -144,7 +144,7 @@ class UniformCurrent(Model):
         description="direction it flows or goes to, clockwise from north, e.g. 90 deg",
         examples=["90 deg"],
     )
-    w: Annotated[float, Quantity("speed")] = Field(
+    w: Annotated[float, QuantityField("speed")] = Field(
         default=0.0, description="vertical speed, positive up", examples=["0.01 m/s"]
     )
 
@@ -163,10 +163,12 @@ class CurrentFile(Model):
         description="of the profile wanted, e.g. 2026-03-01T06:00",
         examples=["2026-03-01T06:00"],
     )
-    declination: Annotated[float | None, Quantity("angle", at_least=-180, at_most=180)] = Field(
-        default=None,
-        description="turns directions that a file gives from magnetic north; east positive",
-        examples=["12.5 deg"],
+    declination: Annotated[float | None, QuantityField("angle", at_least=-180, at_most=180)] = (
+        Field(
+            default=None,
+            description="turns directions that a file gives from magnetic north; east positive",
+            examples=["12.5 deg"],
+        )
     )
 
 
@@ -207,11 +209,11 @@ class TowEnvironmentKeys(Model):
         description="of the water: one, a table, or by temperature and salinity",
         examples=["1025 kg/m^3"],
     )
-    gravity: Annotated[float | None, Quantity("acceleration", above=0)] = Field(
+    gravity: Annotated[float | None, QuantityField("acceleration", above=0)] = Field(
         default=None, description="acceleration", examples=["9.81 m/s^2"]
     )
     current: Annotated[
-        Annotated[Table, Tag("table")]
+        Annotated[TableKeys, Tag("table")]
         | Annotated[CurrentFile, Tag("file")]
         | Annotated[UniformCurrent, Tag("uniform")],
         Discriminator(_current_form),
@@ -236,7 +238,7 @@ class EnvironmentKeys(TowEnvironmentKeys):
     depth: Annotated[float, _WATER_DEPTH] = Field(
         description="of the water, e.g. 1100 m", examples=["1100 m"]
     )
-    maximum_speed: Annotated[float, Quantity("speed", above=0)] = Field(
+    maximum_speed: Annotated[float, QuantityField("speed", above=0)] = Field(
         default=_MAXIMUM_SPEED, description="a faster current is an error", examples=["3 m/s"]
     )
     depth_range: Annotated[_Levels | None, BeforeValidator(_two_depths)] = Field(
@@ -252,7 +254,7 @@ class EnvironmentKeys(TowEnvironmentKeys):
 
 
 def read_environment(
-    section: Section,
+    section: SourceMapping,
     name: str | None,
     problems: list[Problem],
     notices: list[str],
@@ -303,7 +305,9 @@ def read_environment(
     )
 
 
-def _check_depth_range(keys: TowEnvironmentKeys, section: Section, problems: list[Problem]) -> None:
+def _check_depth_range(
+    keys: TowEnvironmentKeys, section: SourceMapping, problems: list[Problem]
+) -> None:
     """Low water, then high water, and the depth between them."""
     depth, levels = keys.depth, getattr(keys, "depth_range", None)
     if levels is None or depth is None:
@@ -317,7 +321,7 @@ def _check_depth_range(keys: TowEnvironmentKeys, section: Section, problems: lis
         problems.append(section.problem(("depth_range",), message, key=True))
 
 
-def _check_wind(keys: TowEnvironmentKeys, section: Section, problems: list[Problem]) -> None:
+def _check_wind(keys: TowEnvironmentKeys, section: SourceMapping, problems: list[Problem]) -> None:
     """Wind blows over water, and drives it down to a known depth."""
     if keys.wind is None:
         return
@@ -331,7 +335,7 @@ def _check_wind(keys: TowEnvironmentKeys, section: Section, problems: list[Probl
 
 def _current(
     keys: TowEnvironmentKeys,
-    section: Section,
+    section: SourceMapping,
     problems: list[Problem],
     notices: list[str],
     open_files: bool,
@@ -340,7 +344,7 @@ def _current(
     current = keys.current
     report = report_at(section, "current")
     maximum_speed = getattr(keys, "maximum_speed", math.inf)
-    if isinstance(current, Table):
+    if isinstance(current, TableKeys):
         terms = Terms(maximum_speed=maximum_speed)
         return read_current(current.columns, current.rows, report, problems, terms)
     if isinstance(current, UniformCurrent):
@@ -375,7 +379,7 @@ def _current(
     return None
 
 
-def _check_tables(section: Section, problems: list[Problem]) -> None:
+def _check_tables(section: SourceMapping, problems: list[Problem]) -> None:
     """Look into the tables although other keys are wrong, to report all mistakes at once."""
     check_density(section, problems)
     table = table_of(section.data.get("current"))

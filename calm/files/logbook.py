@@ -8,12 +8,12 @@ from typing import Annotated, Any, TypeGuard
 from pydantic import AfterValidator, Field, WithJsonSchema
 
 from calm.errors import Problem
-from calm.files.accept import Day
+from calm.files.check_limits import Day
 from calm.files.environment import Position
-from calm.files.explain import shown, unknown, validate
-from calm.files.fields import POSITIVE_LENGTH, Model, Quantity, Text
-from calm.files.section import Section
+from calm.files.fields import POSITIVE_LENGTH, Model, QuantityField, Text
+from calm.files.mistakes import shown, unknown, validate
 from calm.files.times import TimeChoiceError, parse_time
+from calm.files.yaml_document import SourceMapping
 
 
 def _moment(text: str) -> str:
@@ -126,7 +126,7 @@ class Deployed(Model):
         description="where it stands",
         examples=[{"latitude": "48.3 deg", "longitude": "-5.2 deg"}],
     )
-    depth: Annotated[float | None, Quantity("length", above=0)] = Field(
+    depth: Annotated[float | None, QuantityField("length", above=0)] = Field(
         default=None, description="of the water there", examples=["1100 m"]
     )
     items: tuple[DeployedItem, ...] = Field(
@@ -176,7 +176,7 @@ class Equipment(Model):
         return self.model_copy(update={"serial": self.serial[min(repeat, len(self.serial) - 1)]})
 
 
-LOAD = Quantity("force", usual_unit="kN", at_least=0)
+LOAD = QuantityField("force", usual_unit="kN", at_least=0)
 
 
 class LengthAt(Model):
@@ -192,16 +192,16 @@ EQUIPMENT_KEYS = frozenset(Equipment.model_fields)
 NO_EQUIPMENT = Equipment()
 
 
-def read_equipment(item: Section, problems: list[Problem]) -> Equipment:
+def read_equipment(item: SourceMapping, problems: list[Problem]) -> Equipment:
     """What an item or a clamp says of the individual thing; mistakes are added to `problems`."""
     given = {key: item.data[key] for key in item.data.keys() & EQUIPMENT_KEYS}
     if not given:
         return NO_EQUIPMENT
-    section = Section.of(item.document, item.location, given)
+    section = SourceMapping.of(item.document, item.location, given)
     return validate(Equipment, section, problems) or NO_EQUIPMENT
 
 
-def check_serials(item: Section, count: int, problems: list[Problem]) -> None:
+def check_serials(item: SourceMapping, count: int, problems: list[Problem]) -> None:
     """Of an item and of its clamps: a list of serial numbers has one for each of the count."""
     clamps: Any = item.data.get("clamps")
     below = [(("clamps", i), one) for i, one in enumerate(clamps if _is_list(clamps) else ())]
@@ -220,7 +220,7 @@ def check_deployed(
     deployed: Deployed,
     labels: Sequence[str],
     cables: Sequence[str],
-    top: Section,
+    top: SourceMapping,
     problems: list[Problem],
 ) -> None:
     """What was deployed is of the line, each piece or clamp once, and only cables are cut.

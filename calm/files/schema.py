@@ -16,7 +16,7 @@ from calm.files.catalogue import Assembly
 from calm.files.components import KINDS, Component
 from calm.files.environment import EnvironmentKeys, TowEnvironmentKeys, UniformCurrent
 from calm.files.fields import LENGTH, quantity_of
-from calm.files.line import MOST_PIECES
+from calm.files.line_items import MOST_PIECES
 from calm.files.logbook import Equipment, LengthAt
 from calm.files.reader import MooringKeys
 

@@ -12,9 +12,9 @@ from pydantic import Field, ValidationError
 from calm.errors import Problem
 from calm.files.current_terms import Terms, too_deep, too_fast
 from calm.files.definition import DENSITY
-from calm.files.explain import about_quantity, shown, unknown
-from calm.files.fields import Model, Quantity, Text
-from calm.files.section import Section
+from calm.files.fields import Model, QuantityField, Text
+from calm.files.mistakes import about_quantity, shown, unknown
+from calm.files.yaml_document import SourceMapping
 from calm.quantities import bearing_of
 from calm.units import DIMENSIONS, QuantityError, unit_factor
 
@@ -24,17 +24,17 @@ Report = Callable[[Sequence[str | int], str], Problem]
 _HEADING = re.compile(r"^([^\s\[(]*)\s*(.*)$", re.DOTALL)
 _BARE_NUMBER = re.compile(r"[-+.,/\deE ]*")
 
-TEMPERATURE = Quantity("temperature", at_least=-6, at_most=40)
-SALINITY = Quantity("salinity", at_least=0, at_most=42)
+TEMPERATURE = QuantityField("temperature", at_least=-6, at_most=40)
+SALINITY = QuantityField("salinity", at_least=0, at_most=42)
 """Temperatures and salinities are limited to those that TEOS-10 is valid for."""
 
-WATER_DENSITY = Quantity("density", at_least=900, at_most=1350)
+WATER_DENSITY = QuantityField("density", at_least=900, at_most=1350)
 """From fresh water under a glacier to the brines at the bottom of the Red Sea."""
 
-DIRECTION = Quantity("angle", at_least=-360, at_most=360)
+DIRECTION = QuantityField("angle", at_least=-360, at_most=360)
 
-_DEPTH = Quantity("length")
-_SPEED = Quantity("speed")
+_DEPTH = QuantityField("length")
+_SPEED = QuantityField("speed")
 _CURRENT = {
     "depth": _DEPTH,
     "u": _SPEED,
@@ -54,7 +54,7 @@ _WATER = {
 }
 
 
-class Table(Model):
+class TableKeys(Model):
     """Columns, each a name and its unit, and rows of values."""
 
     columns: tuple[Text, ...] = Field(
@@ -220,7 +220,7 @@ def read_water(
     rows: Sequence[Sequence[str | None]],
     report: Report,
     problems: list[Problem],
-    density: Quantity = WATER_DENSITY,
+    density: QuantityField = WATER_DENSITY,
 ) -> DepthTable | SeaWater | None:
     """Densities [kg/m³], or sea water, from a table as that of `read_current`.
 
@@ -259,15 +259,15 @@ def read_profile(
     return DepthTable(tuple(values["depth"]), tuple(values[name]))
 
 
-def table_of(value: object) -> Table | None:
+def table_of(value: object) -> TableKeys | None:
     """The table that a value of a file is, None where it is none."""
     try:
-        return Table.model_validate(value)
+        return TableKeys.model_validate(value)
     except ValidationError:
         return None
 
 
-def report_at(section: Section, *place: str) -> Report:
+def report_at(section: SourceMapping, *place: str) -> Report:
     """Tells problems at places below a key of a section, or below a key under that."""
     return lambda location, message: section.problem((*place, *location), message)
 
@@ -292,7 +292,7 @@ def speed_and_direction(u: float, v: float) -> tuple[float, float]:
 def _read_columns(
     columns: Sequence[str],
     rows: Sequence[Sequence[str | None]],
-    known: Mapping[str, Quantity],
+    known: Mapping[str, QuantityField],
     report: Report,
     problems: list[Problem],
 ) -> dict[str, list[float]]:
@@ -321,7 +321,7 @@ def _read_columns(
 
 def _read_headings(
     columns: Sequence[str],
-    known: Mapping[str, Quantity],
+    known: Mapping[str, QuantityField],
     report: Report,
     problems: list[Problem],
 ) -> dict[str, str]:
@@ -354,7 +354,7 @@ def _read_headings(
     return units
 
 
-def _read_cell(text: str | None, unit: str, quantity: Quantity) -> float:
+def _read_cell(text: str | None, unit: str, quantity: QuantityField) -> float:
     if text is not None and unit and _BARE_NUMBER.fullmatch(text):
         text = f"{text} {unit}"
     return quantity.read(text)

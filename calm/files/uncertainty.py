@@ -8,12 +8,12 @@ from typing import Annotated, Any
 from pydantic import Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
-from calm.files.fields import Model, Quantity
+from calm.files.fields import Model, QuantityField
 from calm.units import QuantityError
 
 MOST_DEVIATION = 0.25
 """Of a share: a normal distribution wider than this would often pass below nothing."""
-_SHARE = Quantity("number", at_least=0.0)
+_SHARE = QuantityField("number", at_least=0.0)
 _TOO_WIDE = "is too wide for a deviation, 25 % at most; give a pair, its 5 and 95 %"
 
 
@@ -41,8 +41,8 @@ class SpreadOf:
     end : what the 5 and the 95 % may be
     """
 
-    one: Quantity
-    end: Quantity
+    one: QuantityField
+    end: QuantityField
 
     def read(self, value: object) -> Spread:
         """Of one text with a unit, or of two in a list."""
@@ -79,10 +79,10 @@ class SpreadOf:
         return {"anyOf": [self.one.json_schema(), pair]}
 
 
-_SHARES = (_SHARE, Quantity("number", above=-1.0, at_most=10.0))
+_SHARES = (_SHARE, QuantityField("number", above=-1.0, at_most=10.0))
 _ANGLES = (
-    Quantity("angle", at_least=0.0, at_most=180.0),
-    Quantity("angle", at_least=-180.0, at_most=180.0),
+    QuantityField("angle", at_least=0.0, at_most=180.0),
+    QuantityField("angle", at_least=-180.0, at_most=180.0),
 )
 
 

@@ -10,9 +10,9 @@ from pathlib import Path
 
 from calm.errors import InputError, Problem
 from calm.files.current_csv import is_content
-from calm.files.document import read_text
-from calm.files.explain import shown, unknown
+from calm.files.mistakes import shown, unknown
 from calm.files.tables import heading
+from calm.files.yaml_document import read_text
 from calm.units import DIMENSIONS, QuantityError, unit_factor
 
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")

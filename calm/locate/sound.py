@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from calm.errors import InputError, Problem
-from calm.files.explain import shown
+from calm.files.mistakes import shown
 from calm.locate.columns import NUMBER, lacking, read_columns
 from calm.physics.line import Floats
 from calm.units import DIMENSIONS

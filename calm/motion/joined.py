@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import UsageError
-from calm.files.explain import unknown
+from calm.files.mistakes import unknown
 from calm.files.quality_flags import MISSING
 from calm.motion.currents import Currents
 from calm.motion.measured import FREE, Measured

@@ -9,7 +9,7 @@ import numpy as np
 from calm.case import Mooring
 from calm.case.parts import clamps_down
 from calm.errors import UsageError
-from calm.files.explain import nearest
+from calm.files.mistakes import nearest
 from calm.motion.sensors import Sensor
 from calm.physics.line import Floats
 

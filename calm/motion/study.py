@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from calm.case import Mooring
 from calm.errors import UsageError
-from calm.files.explain import unknown
+from calm.files.mistakes import unknown
 from calm.motion.doubts import doubts, false_currents, said_of_currents, said_of_datum
 from calm.motion.forward import Forward
 from calm.motion.judge import (

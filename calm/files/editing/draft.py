@@ -8,16 +8,22 @@ from functools import cached_property
 from typing import Any
 
 from calm.errors import InputError, Problem
-from calm.files import document
-from calm.files.composition import compose
-from calm.files.document import Location
-from calm.files.editing.changes import NAMED, EditError, Page
-from calm.files.editing.data import cells_that_differ, data_of, has_control, with_value, without
-from calm.files.editing.items import Item, item_of, read_snippet
-from calm.files.editing.layout import Layout, Value, Worded
-from calm.files.editing.lists import items_of
-from calm.files.editing.spans import Patch, patched
-from calm.files.nodes import Node
+from calm.files import yaml_document
+from calm.files.composition import Node, compose
+from calm.files.editing.changes import (
+    NAMED,
+    EditError,
+    Page,
+    cells_that_differ,
+    data_of,
+    has_control,
+    with_value,
+    without,
+)
+from calm.files.editing.items import LineItem, item_of, read_snippet
+from calm.files.editing.splicing import Patch, items_of, patched
+from calm.files.editing.writing import Value, Worded, WritingStyle
+from calm.files.yaml_document import Location
 
 LINE: Location = ("line",)
 """Where the items of the line stand."""
@@ -86,13 +92,13 @@ class Draft:
         if self._root is not None:
             return ()
         try:
-            document.compose("", self.text)
+            yaml_document.compose("", self.text)
         except InputError as error:
             return error.problems
         raise AssertionError("a text that can be read has nodes")
 
     @cached_property
-    def items(self) -> tuple[Item, ...]:
+    def items(self) -> tuple[LineItem, ...]:
         """The items of `line` as written: not expanded, and whatever they say."""
         node = self._line
         if node is None or not node.children:
@@ -262,13 +268,13 @@ class Draft:
     def _page(self) -> Page:
         if self._root is None:
             raise EditError("the text has mistakes; correct them first")
-        return Page(self._padded, self._root, Layout.of(self.text, self._root))
+        return Page(self._padded, self._root, WritingStyle.of(self.text, self._root))
 
     @cached_property
     def _padded(self) -> str:
         """The text with a last line break."""
         ends = self.text.endswith("\n")
-        return self.text if ends else self.text + Layout.of(self.text, None).line_break
+        return self.text if ends else self.text + WritingStyle.of(self.text, None).line_break
 
     @property
     def _data(self) -> Any:

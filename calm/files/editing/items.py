@@ -5,17 +5,15 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from calm.files.composition import compose
-from calm.files.editing.layout import Layout, Value, Wording, inline
-from calm.files.editing.lists import Items, Slot
-from calm.files.editing.spans import line_start
-from calm.files.nodes import Node
+from calm.files.composition import Node, compose
+from calm.files.editing.splicing import Items, Slot, line_start
+from calm.files.editing.writing import Value, Wording, WritingStyle, inline
 
 _LINE_BREAK = re.compile(r"\r\n|\n")
 
 
 @dataclass(frozen=True)
-class Item:
+class LineItem:
     """An item of a line, or a clamp of one.
 
     Attributes
@@ -33,11 +31,11 @@ class Item:
     line: int
     column: int
     values: dict[str, str]
-    clamps: tuple[Item, ...]
+    clamps: tuple[LineItem, ...]
     text: str
 
 
-def item_of(node: Node, text: str, *, lines: str = "") -> Item:
+def item_of(node: Node, text: str, *, lines: str = "") -> LineItem:
     """The item that a node of a text is; `lines` where it takes more of the text than its own."""
     entries = list(zip(node.keys, node.children, strict=False))
     values = {key.data: child.data or "" for key, child in entries if child.kind == "scalar"}
@@ -45,7 +43,7 @@ def item_of(node: Node, text: str, *, lines: str = "") -> Item:
     measured = next((child.data for key, child in entries if key.data == "length_at"), None)
     if isinstance(measured, dict):
         values["length_at"] = f"{measured.get('length', '?')} at {measured.get('load', '?')}"
-    return Item(
+    return LineItem(
         line=node.line,
         column=node.column,
         values=values,
@@ -54,7 +52,7 @@ def item_of(node: Node, text: str, *, lines: str = "") -> Item:
     )
 
 
-def new_slot(value: Value, items: Items, layout: Layout, *, block: bool) -> Slot:
+def new_slot(value: Value, items: Items, layout: WritingStyle, *, block: bool) -> Slot:
     """A new item for a list, written after its form; `block`: a key a line where that can be."""
     if items.form == "block":
         return Slot(layout.item(value, items.column, block=block))
@@ -63,7 +61,7 @@ def new_slot(value: Value, items: Items, layout: Layout, *, block: bool) -> Slot
     return Slot(inline(value))
 
 
-def worded_slot(wording: Wording, items: Items, layout: Layout) -> Slot:
+def worded_slot(wording: Wording, items: Items, layout: WritingStyle) -> Slot:
     """An item for a list as it is worded; what stands in brackets in one line loses comments."""
     if items.form == "block":
         return Slot(layout.moved(wording.lines, items.column))

@@ -6,24 +6,24 @@ from collections.abc import Sequence
 from difflib import SequenceMatcher
 from typing import NamedTuple
 
-from calm.files.editing.layout import Layout
+from calm.files.editing.writing import WritingStyle
 
 _ENDINGS = ("\r\n", "\n", "\r")
 
 
-class Line(NamedTuple):
+class TextLine(NamedTuple):
     """What a line says, and the line break after it: none after the last."""
 
     text: str
     line_break: str
 
 
-def lines_of(text: str) -> list[Line]:
+def lines_of(text: str) -> list[TextLine]:
     """The lines of a text as `str.splitlines` has them; an empty one after the last line break."""
-    lines = [Line(one.splitlines()[0], one) for one in text.splitlines(keepends=True)]
-    found = [Line(text, whole[len(text) :]) for text, whole in lines]
+    lines = [TextLine(one.splitlines()[0], one) for one in text.splitlines(keepends=True)]
+    found = [TextLine(text, whole[len(text) :]) for text, whole in lines]
     if not text or text.endswith(_ENDINGS):
-        found.append(Line("", ""))
+        found.append(TextLine("", ""))
     return found
 
 
@@ -34,7 +34,7 @@ def retyped(text: str, lines: Sequence[str]) -> str:
     place of; those of new lines follow the manner of the file.
     """
     old = lines_of(text)
-    usual = Layout.of(text, None).line_break
+    usual = WritingStyle.of(text, None).line_break
     of_old = _taken_from([line.text for line in old], lines)
     ends = [usual if i is None else old[i].line_break or usual for i in of_old]
     ends[-1] = old[-1].line_break if of_old[-1] == len(old) - 1 else ""

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import json
 import os
+import re
+import socket
+import stat
 import time
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from threading import RLock
 
 from calm.errors import CalmError, InputError
-from calm.files.document import decoded, read_content
-from calm.files.editing.kept_work import Kept, digest, kept_in, place_of, with_record
-from calm.files.unchanged import GRAIN
+from calm.files.catalogue import GRAIN
+from calm.files.yaml_document import decoded, read_content
 from calm.whole_file import put, sweep
 
 _UNREADABLE = b"\0"
@@ -144,7 +149,7 @@ class WorkingFile:
             self._drop(*self._places, *([self._adopted] if self._adopted else []))
             self._adopted = None
 
-    def left_behind(self) -> Kept | None:
+    def left_behind(self) -> KeptWork | None:
         """The latest work that no session keeps any more and that is not in the file."""
         content = self._content()
         found = []
@@ -164,11 +169,11 @@ class WorkingFile:
         own = set(self._places)
         return any(each.keeper.is_running and each.place not in own for each in self._copies())
 
-    def is_of_another(self, kept: Kept) -> bool:
+    def is_of_another(self, kept: KeptWork) -> bool:
         """Whether the file is another than that which the work began with."""
         return self.path is not None and kept.base != digest(self._content())
 
-    def adopt(self, kept: Kept) -> None:
+    def adopt(self, kept: KeptWork) -> None:
         """Go on with kept work: its copy stays until this is saved or given up.
 
         A file that is another than the work began with is then `changed_on_disk`.
@@ -177,7 +182,7 @@ class WorkingFile:
         if self.is_of_another(kept):
             self._see(_UNREADABLE)
 
-    def discard(self, kept: Kept) -> None:
+    def discard(self, kept: KeptWork) -> None:
         """Remove a copy whose work is not wanted."""
         self._drop(kept.place)
 
@@ -202,7 +207,7 @@ class WorkingFile:
         away = state_folder(), f"{target.name[:40]}-{sign}"
         return [(target.parent, f".{target.name}"), away]
 
-    def _copies(self) -> list[Kept]:
+    def _copies(self) -> list[KeptWork]:
         return [each for folder in self._folders() for each in kept_in(*folder)]
 
     def _keep(self, text: str) -> Path:
@@ -255,3 +260,120 @@ def _status(path: Path) -> os.stat_result | None:
         return path.stat()
     except (OSError, ValueError):
         return None
+
+
+SUFFIX = ".calm-autosave"
+_BEGIN = "# calm build: not saved; "
+_TOKEN = re.compile(r"\.[0-9a-f]{8}" + re.escape(SUFFIX))
+
+
+@dataclass(frozen=True)
+class Keeper:
+    """The process that keeps a copy.
+
+    Attributes
+    ----------
+    host : its machine
+    process : its number there
+    started : when it began, as that machine counts; empty where this cannot be known
+    """
+
+    host: str
+    process: int
+    started: str
+
+    @classmethod
+    def this(cls) -> Keeper:
+        """The process that asks."""
+        return cls(socket.gethostname(), os.getpid(), _started(os.getpid()))
+
+    @property
+    def is_here(self) -> bool:
+        """Whether it is, or was, on this machine."""
+        return self.host == socket.gethostname()
+
+    @property
+    def is_running(self) -> bool:
+        """Whether it is known to be running still; of another machine this is not known."""
+        if not self.is_here or os.name != "posix":
+            return False
+        try:
+            os.kill(self.process, 0)
+        except (ProcessLookupError, OverflowError):
+            return False
+        except OSError:
+            pass  # it is another person's
+        # a number is given again, in a container soon
+        return self.started == _started(self.process)
+
+
+@dataclass(frozen=True)
+class KeptWork:
+    """Unsaved work as it was found.
+
+    Attributes
+    ----------
+    place : where it is
+    text : of the mooring file
+    keeper : whose it is
+    base : the `digest` of what the file held when the work began
+    at : when it was kept [s since 1970]
+    """
+
+    place: Path
+    text: str
+    keeper: Keeper
+    base: str
+    at: float
+
+
+def digest(content: bytes | None) -> str:
+    """A short sign of a content; empty of none."""
+    return "" if content is None else hashlib.sha256(content).hexdigest()[:16]
+
+
+def place_of(folder: Path, stem: str) -> Path:
+    """A new name for a copy in a folder."""
+    return folder / f"{stem}.{os.urandom(4).hex()}{SUFFIX}"
+
+
+def with_record(text: str, base: str) -> bytes:
+    """The content of a copy."""
+    record = json.dumps(asdict(Keeper.this()) | {"base": base})
+    return f"{_BEGIN}{record}\n{text}".encode()
+
+
+def kept_in(folder: Path, stem: str) -> Iterator[KeptWork]:
+    """The copies of a name in a folder; what is no copy is passed over."""
+    with contextlib.suppress(OSError):
+        for place in sorted(folder.iterdir()):
+            ends = place.name.removeprefix(stem)
+            if place.name.startswith(stem) and _TOKEN.fullmatch(ends):
+                with contextlib.suppress(OSError, ValueError, TypeError, KeyError):
+                    yield _read(place)
+
+
+def _read(place: Path) -> KeptWork:
+    status = place.stat()
+    if not stat.S_ISREG(status.st_mode):
+        raise ValueError("not a regular file")
+    first, _, text = place.read_bytes().decode().partition("\n")
+    if not first.startswith(_BEGIN):
+        raise ValueError("no record")
+    record = json.loads(first.removeprefix(_BEGIN))
+    keeper = Keeper(str(record["host"]), int(record["process"]), str(record["started"]))
+    return KeptWork(place, text, keeper, str(record["base"]), status.st_mtime)
+
+
+def _started(process: int) -> str:
+    """When a process began, in ticks since this machine did; empty where that is not known.
+
+    It is not known of one that has ended, though its parent has not asked for that yet.
+    """
+    try:
+        stat = Path(f"/proc/{process}/stat").read_text()
+    except (OSError, ValueError):
+        return ""
+    # behind the name, which stands in brackets and may hold anything
+    values = stat.rpartition(")")[2].split()
+    return "" if values[0] in "ZX" else values[19]

@@ -13,7 +13,7 @@ from typing import Any
 
 from calm.errors import InputError, Problem
 from calm.files import composition
-from calm.files.nodes import Node
+from calm.files.composition import Node
 
 LARGEST_FILE = 1_000_000
 """Largest text file that is read [bytes]."""
@@ -139,3 +139,53 @@ def decoded(path: Path, content: bytes) -> str:
 
 def _refused(path: Path, message: str, line: int = 0) -> InputError:
     return InputError([Problem(str(path), line, 1 if line else 0, message)])
+
+
+@dataclass(frozen=True)
+class SourceMapping:
+    """A mapping within a document, possibly laid over a mapping of another one.
+
+    Attributes
+    ----------
+    document, location
+        Where the mapping (the upper one) stands; problems without a key are put there.
+    data : dict
+        The mapping, its own keys over those it overlays.
+    base : Section or None
+        What lies below.
+    """
+
+    document: Document
+    location: Location
+    data: dict[str, Any]
+    base: SourceMapping | None = None
+    own: frozenset[str] = field(default_factory=frozenset)
+
+    @classmethod
+    def of(cls, document: Document, location: Location, data: dict[str, Any]) -> SourceMapping:
+        """The mapping `data` that stands at `location` of a document."""
+        return cls(document, location, data, None, frozenset(data))
+
+    def over(self, base: SourceMapping, *, dropping: frozenset[str] = frozenset()) -> SourceMapping:
+        """This mapping laid over another one, of which some keys are dropped."""
+        kept = {key: value for key, value in base.data.items() if key not in dropping}
+        return SourceMapping(self.document, self.location, {**kept, **self.data}, base, self.own)
+
+    def child(self, key: str) -> SourceMapping:
+        """The mapping under a key."""
+        home = self.home(key)
+        return SourceMapping.of(home.document, (*home.location, key), self.data[key])
+
+    def home(self, key: str | int) -> SourceMapping:
+        """The layer that a key comes from."""
+        if self.base is None or key in self.own or key not in self.data:
+            return self
+        return self.base.home(key)
+
+    def problem(
+        self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""
+    ) -> Problem:
+        """A problem at a value below this mapping, or at its key."""
+        home = self.home(location[0]) if location else self
+        place = (*home.location, *location)
+        return home.document.problem(place, message, key=key, lacks=lacks)

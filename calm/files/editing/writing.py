@@ -1,4 +1,4 @@
-"""How new values are laid out, after the manner of the file they go into."""
+"""A text as YAML writes it: plain where that reads back, in quotes where it would not."""
 
 from __future__ import annotations
 
@@ -7,8 +7,46 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from calm.files.editing.scalars import written
-from calm.files.nodes import Node
+from calm.files.composition import Node
+
+# Read otherwise by YAML, or by other programs that read it.
+_WORD = re.compile(r"(?:~|=|<<|null|true|false|yes|no|on|off)?", re.IGNORECASE)
+
+# What may stand without quotes: no sign of YAML at its beginning, no `: ` nor ` #` within.
+_BEGINNING = r"(?:[^\s\-?:,\[\]{}#&*!|>'\"%@`]|-(?=[^\s,\[\]{}]))"
+_PLAIN = re.compile(_BEGINNING + r"(?:[^\S\r\n\t](?=[^\s#])|:(?=\S)|[^\s:])*")
+_NOT_IN_FLOW = re.compile(r"[,\[\]{}?]|:(?=[,\[\]{}]|$)")
+_ESCAPED = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r", "\t": "\\t"}
+
+
+def written(text: str, *, flow: bool, quote: str = "") -> str:
+    """A text as a scalar of YAML.
+
+    Parameters
+    ----------
+    text : str
+    flow : bool
+        It is to stand within brackets, where commas and brackets end a plain text.
+    quote : str
+        The sign it was quoted with so far, which is kept.
+    """
+    if quote == "'" and text.isprintable():
+        return "'" + text.replace("'", "''") + "'"
+    if quote != '"' and _stands_plain(text, flow):
+        return text
+    escaped = "".join(_ESCAPED.get(sign) or _escaped(sign) for sign in text)
+    return f'"{escaped}"'
+
+
+def _stands_plain(text: str, flow: bool) -> bool:
+    if _WORD.fullmatch(text) or text.startswith(("---", "...")) or not text.isprintable():
+        return False
+    return bool(_PLAIN.fullmatch(text)) and not (flow and _NOT_IN_FLOW.search(text))
+
+
+def _escaped(sign: str) -> str:
+    return sign if sign.isprintable() else f"\\U{ord(sign):08x}"
+
 
 Value = str | None | Mapping[str, "Value"] | Sequence["Value"]
 """What a file can hold: text, nothing, or a mapping or list of what it can hold."""
@@ -73,7 +111,7 @@ _LAST = "clamps"
 
 
 @dataclass(frozen=True)
-class Layout:
+class WritingStyle:
     """The manner of a file.
 
     Attributes
@@ -90,7 +128,7 @@ class Layout:
     dash: int = 2
 
     @classmethod
-    def of(cls, text: str, root: Node | None) -> Layout:
+    def of(cls, text: str, root: Node | None) -> WritingStyle:
         """The manner of a text, as its first places show it."""
         ending = text.find("\n")
         line_break = "\r\n" if ending > 0 and text[ending - 1] == "\r" else "\n"

@@ -20,14 +20,14 @@ from typing import Annotated, Literal, cast, get_args
 
 from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag, ValidationInfo
 
-from calm.files.explain import nearest, not_among, shown
-from calm.files.fields import COEFFICIENT, Model, Quantity
+from calm.files.fields import COEFFICIENT, Model, QuantityField
+from calm.files.mistakes import nearest, not_among, shown
 from calm.physics.strumming import BourgetMarichal
 from calm.units import QuantityError
 
-_NUMBER = Quantity("number")
-_FACTOR = Quantity("number", above=0)
-_RESTING_CN = Quantity("number", above=0, at_most=BourgetMarichal.ceiling)
+_NUMBER = QuantityField("number")
+_FACTOR = QuantityField("number", above=0)
+_RESTING_CN = QuantityField("number", above=0, at_most=BourgetMarichal.ceiling)
 
 AmplitudeName = Literal["vandiver", "blevins", "skop-griffin"]
 _Name = Literal["none", "bourget-marichal", AmplitudeName]

@@ -3,29 +3,29 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Annotated, Any, Literal, Protocol
 
 from pydantic import AfterValidator, Field
 
-from calm.files.accept import Accept
-from calm.files.checks import Checks, LimitKey
+from calm.files.check_limits import Accept, Checks, LimitKey
 from calm.files.components import Anchor, Component
 from calm.files.environment import Environment, Position
-from calm.files.fields import LENGTH, Model, Quantity
+from calm.files.fields import LENGTH, Model, QuantityField
 from calm.files.logbook import NO_EQUIPMENT, Deployed, DocumentKeys, Equipment, ReleaseKeys
-from calm.files.strumming import Strumming
+from calm.files.strumming_keys import Strumming
 from calm.files.uncertainty import Uncertainty
 
 
 class TowKeys(Model):
     """What tows the line: speed over ground [m/s], where to [degrees], height above water [m]."""
 
-    speed: Annotated[float, Quantity("speed", above=0)] = Field(
+    speed: Annotated[float, QuantityField("speed", above=0)] = Field(
         description="of the ship over the ground", examples=["0.5 m/s"]
     )
-    toward: Annotated[float, Quantity("angle")] = Field(
+    toward: Annotated[float, QuantityField("angle")] = Field(
         description="course, clockwise from north", examples=["90 deg"]
     )
     height: Annotated[float, LENGTH] = Field(
@@ -37,13 +37,13 @@ class Solver(Model):
     """How the line is solved; `angle_step` in radians, `tolerance` as a share of the depth."""
 
     angle_step: Annotated[
-        float, Quantity("angle", above=0, at_most=10), AfterValidator(math.radians)
+        float, QuantityField("angle", above=0, at_most=10), AfterValidator(math.radians)
     ] = Field(
         default=math.radians(1),
         description="how much a cable may turn from one segment to the next, e.g. 1 deg",
         examples=["1 deg"],
     )
-    tolerance: Annotated[float, Quantity("number", above=0, at_most=2e-4)] = Field(
+    tolerance: Annotated[float, QuantityField("number", above=0, at_most=2e-4)] = Field(
         default=1e-7,
         description="of the depth of the anchor, as a share of the water depth",
         examples=[1e-07],
@@ -66,7 +66,7 @@ class Solver(Model):
         description="of a float at the surface: at its draft, or fully immersed",
         examples=["immersed"],
     )
-    seabed_friction: Annotated[float, Quantity("number", at_least=0)] = Field(
+    seabed_friction: Annotated[float, QuantityField("number", at_least=0)] = Field(
         default=0.0, description="of line that lies on the seabed", examples=[0.3]
     )
 
@@ -102,7 +102,7 @@ class Place:
         return Place(self.item) if self.part >= 0 else Place(self.item, clamp=self.clamp)
 
 
-class Part(Protocol):
+class LinePart(Protocol):
     """A piece or a clamp, or what was found for one."""
 
     @property
@@ -227,3 +227,44 @@ class MooringFile:
         anchor = self.pieces[-1].component
         assert isinstance(anchor, Anchor)
         return anchor
+
+
+def placed(piece: Piece, place: Place) -> Piece:
+    """The piece, with its clamps and the serial numbers there, at another place of the line."""
+    clamps = tuple(
+        replace(
+            clamp,
+            place=replace(place, clamp=number),
+            equipment=clamp.equipment.of(place.repeat),
+        )
+        for number, clamp in enumerate(piece.clamps)
+    )
+    return replace(piece, place=place, clamps=clamps, equipment=piece.equipment.of(place.repeat))
+
+
+def numbered(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
+    """The pieces with their index, and labels that occur more than once numbered down the line."""
+    pieces = tuple(pieces)
+    labels = [[piece.label, *(clamp.label for clamp in piece.clamps)] for piece in pieces]
+    total = Counter(label for group in labels for label in group)
+    seen: Counter[str] = Counter()
+
+    def numbered_label(text: str) -> str:
+        if total[text] == 1:
+            return text
+        seen[text] += 1
+        while f"{text} {seen[text]}" in total:
+            seen[text] += 1
+        return f"{text} {seen[text]}"
+
+    return tuple(
+        replace(
+            piece,
+            index=index,
+            label=numbered_label(piece.label),
+            clamps=tuple(
+                replace(clamp, label=numbered_label(clamp.label)) for clamp in piece.clamps
+            ),
+        )
+        for index, piece in enumerate(pieces)
+    )

@@ -7,26 +7,23 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from calm.errors import Problem
-from calm.files.catalogue import Assembly, Catalogue, define
-from calm.files.checks import LimitKey
-from calm.files.components import Cable, Component
+from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, define
+from calm.files.check_limits import LimitKey
+from calm.files.components import Cable, Component, contradicted
 from calm.files.definition import IN_AIR
-from calm.files.entries import Entry
-from calm.files.explain import about_quantity, shown, unknown, validate
-from calm.files.fields import LENGTH, POSITIVE_LENGTH, Quantity
+from calm.files.fields import LENGTH, POSITIVE_LENGTH, QuantityField
 from calm.files.flexible import Flexible, strain_under
-from calm.files.labels import placed
 from calm.files.logbook import EQUIPMENT_KEYS, LengthAt, check_serials, read_equipment
-from calm.files.mooring import Clamp, Piece, Place
-from calm.files.overrides import contradicted
+from calm.files.mistakes import about_quantity, shown, unknown, validate
+from calm.files.mooring_file import Clamp, Piece, Place, placed
 from calm.files.rigid import Rigid
-from calm.files.section import Section
+from calm.files.yaml_document import SourceMapping
 from calm.units import QuantityError
 
 MOST_PIECES = 10_000
 """Pieces a line may have, after assemblies and counts are expanded."""
 
-_COUNT = Quantity("number", at_least=1, at_most=MOST_PIECES)
+_COUNT = QuantityField("number", at_least=1, at_most=MOST_PIECES)
 _ITEM_KEYS = EQUIPMENT_KEYS | {
     *("use", "label", "count", "length", "length_at", "top_depth", "body_depth", "clamps")
 }
@@ -77,7 +74,7 @@ class LineReader:
                 if isinstance(definition, Assembly):
                     self._assembly(entry, entry.section)
 
-    def read(self, section: Section, key: str) -> tuple[Piece, ...]:
+    def read(self, section: SourceMapping, key: str) -> tuple[Piece, ...]:
         """The pieces of the list of items under a key; those with mistakes are left out."""
         pieces: list[Piece] = []
         items = self._items(section, key)
@@ -88,7 +85,7 @@ class LineReader:
                 return ()
         return tuple(pieces)
 
-    def _items(self, section: Section, key: str) -> list[Section]:
+    def _items(self, section: SourceMapping, key: str) -> list[SourceMapping]:
         """The items of a list, each a mapping."""
         found = section.data[key]
         if not isinstance(found, (list, tuple)):
@@ -97,13 +94,13 @@ class LineReader:
         items = []
         for i, item in enumerate(found[: MOST_PIECES + 1]):
             if isinstance(item, dict):
-                items.append(Section.of(section.document, (*section.location, key, i), item))
+                items.append(SourceMapping.of(section.document, (*section.location, key, i), item))
             else:
                 message = f"`{shown(item)}` is not an item; write `{{use: {shown(item) or '…'}}}`"
                 self._refuse(section, (key, i), message)
         return items
 
-    def _item(self, item: Section) -> tuple[Piece, ...]:
+    def _item(self, item: SourceMapping) -> tuple[Piece, ...]:
         count = self._count(item)
         check_serials(item, count, self._problems)
         entry = self._entry(item)
@@ -128,7 +125,7 @@ class LineReader:
             for part, piece in enumerate(once, first)
         )
 
-    def _piece(self, component: Component, item: Section) -> Piece:
+    def _piece(self, component: Component, item: SourceMapping) -> Piece:
         length: float | None
         load = 0.0
         if not isinstance(component, Flexible):
@@ -167,7 +164,7 @@ class LineReader:
             measured_load=load,
         )
 
-    def _measured(self, item: Section, component: Flexible) -> tuple[float, float]:
+    def _measured(self, item: SourceMapping, component: Flexible) -> tuple[float, float]:
         """The unstretched length of what is measured under a load [m], and that load [N]."""
         if not isinstance(item.data["length_at"], dict):
             example = "{load: 2 kN, length: 480 m}"
@@ -182,7 +179,7 @@ class LineReader:
             self._refuse(item, ("length_at", "load"), message)
         return measured.length / (1.0 + strain_under(component, measured.load)), measured.load
 
-    def _fit_depth(self, item: Section, *, fits: bool) -> float | None:
+    def _fit_depth(self, item: SourceMapping, *, fits: bool) -> float | None:
         """The depth a piece is cut to fit: of the line's top, in a tow of its own lower end."""
         key, foreign, home = ("top_depth", "body_depth", "tows")
         if self._towed:
@@ -192,7 +189,7 @@ class LineReader:
             self._refuse(item, (foreign,), message, key=True)
         if fits and (key in item.data or foreign not in item.data):
             # depths are counted from the water, above which a tow in air may end
-            kind = Quantity("length") if self._in_air else LENGTH
+            kind = QuantityField("length") if self._in_air else LENGTH
             return self._quantity(item, key, kind, "`length: fit` needs it")
         if key in item.data:
             self._refuse(item, (key,), f"`{key}` goes with `length: fit`", key=True)
@@ -205,7 +202,7 @@ class LineReader:
             if notice not in self._notices:
                 self._notices.append(notice)
 
-    def _clamps(self, item: Section, length: float | None) -> tuple[Clamp, ...]:
+    def _clamps(self, item: SourceMapping, length: float | None) -> tuple[Clamp, ...]:
         """The clamps of an item, none beyond its length where that is known."""
         clamps: list[Clamp] = []
         for clamp in self._items(item, "clamps") if "clamps" in item.data else ():
@@ -226,7 +223,7 @@ class LineReader:
                 self._refuse(clamp, ("use",), message)
         return tuple(clamps)
 
-    def _assembly(self, entry: Entry, item: Section) -> tuple[Piece, ...]:
+    def _assembly(self, entry: CatalogueEntry, item: SourceMapping) -> tuple[Piece, ...]:
         """The pieces of an assembly, all at the place of the item that uses it."""
         if entry.id in self._open:
             self._refuse(item, ("use",), f"assembly `{entry.id}` contains itself")
@@ -242,7 +239,7 @@ class LineReader:
             for piece in self._assemblies[entry.id]
         )
 
-    def _entry(self, item: Section) -> Entry | None:
+    def _entry(self, item: SourceMapping) -> CatalogueEntry | None:
         """The catalogue entry that an item uses."""
         use = item.data.get("use")
         if not isinstance(use, str):
@@ -264,7 +261,7 @@ class LineReader:
         return entry
 
     def _definition(
-        self, entry: Entry, item: Section, item_keys: frozenset[str]
+        self, entry: CatalogueEntry, item: SourceMapping, item_keys: frozenset[str]
     ) -> Component | Assembly | None:
         """What an item uses, the item's overrides applied."""
         if entry.id not in self._defined:
@@ -286,7 +283,7 @@ class LineReader:
             self._refuse(item, ("kind",), message, key=True)
             return None
         void = contradicted(definition.kind, entry.section.data.keys(), overriding.keys())
-        override = Section.of(item.document, item.location, overriding)
+        override = SourceMapping.of(item.document, item.location, overriding)
         section = override.over(entry.section, dropping=void)
         hinted = item_keys if isinstance(definition, Cable) else item_keys - {"termination"}
         component = self._define(entry, section, also_allowed=hinted)
@@ -302,7 +299,11 @@ class LineReader:
         return component
 
     def _keep_looser_limits(
-        self, entry: Entry, item: Section, definition: Component, component: Component
+        self,
+        entry: CatalogueEntry,
+        item: SourceMapping,
+        definition: Component,
+        component: Component,
     ) -> None:
         """Keep what the line lets a component bear beyond its own definition."""
         for key, dimension in _LIMITS.items():
@@ -312,12 +313,12 @@ class LineReader:
                 self.looser.append(LimitKey(name, dimension, after, before, source))
 
     def _define(
-        self, entry: Entry, section: Section, *, also_allowed: Iterable[str] = ()
+        self, entry: CatalogueEntry, section: SourceMapping, *, also_allowed: Iterable[str] = ()
     ) -> Component | Assembly | None:
         context = IN_AIR if self._in_air else None
         return define(entry, section, self._problems, also_allowed=also_allowed, context=context)
 
-    def _count(self, item: Section) -> int:
+    def _count(self, item: SourceMapping) -> int:
         text = item.data.get("count", "1")
         try:
             count = _COUNT.read(text)
@@ -328,7 +329,9 @@ class LineReader:
             return 1
         return int(count)
 
-    def _quantity(self, item: Section, key: str, kind: Quantity, need: str) -> float | None:
+    def _quantity(
+        self, item: SourceMapping, key: str, kind: QuantityField, need: str
+    ) -> float | None:
         if item.data.get(key) is None:
             there = key in item.data
             message = f"`{key}` has no value" if there else f"`{key}` is missing: {need}"
@@ -342,7 +345,7 @@ class LineReader:
             self._refuse(item, (key,), about_quantity(key, item.data[key], error))
             return None
 
-    def _label(self, item: Section) -> str:
+    def _label(self, item: SourceMapping) -> str:
         label = item.data.get("label", item.data["use"])
         if not isinstance(label, str):
             self._refuse(item, ("label",), "`label` must be plain text")
@@ -350,7 +353,7 @@ class LineReader:
 
     def _refuse(
         self,
-        section: Section,
+        section: SourceMapping,
         location: tuple[str | int, ...],
         message: str,
         *,

@@ -9,8 +9,7 @@ from typing import Any, Literal, TypeVar, get_args, get_origin
 from pydantic import BaseModel, ValidationError
 
 from calm.errors import Problem
-from calm.files.document import Location
-from calm.files.section import Section
+from calm.files.yaml_document import Location, SourceMapping
 from calm.units import QuantityError
 
 LONGEST_TEXT = 60
@@ -20,7 +19,7 @@ M = TypeVar("M", bound=BaseModel)
 
 def validate(
     model: type[M],
-    section: Section,
+    section: SourceMapping,
     problems: list[Problem],
     *,
     also_allowed: Iterable[str] = (),
@@ -80,7 +79,10 @@ def about_quantity(name: str, value: object, error: QuantityError) -> str:
 
 
 def _explain(
-    error: ValidationError, model: type[BaseModel], section: Section, also_allowed: Iterable[str]
+    error: ValidationError,
+    model: type[BaseModel],
+    section: SourceMapping,
+    also_allowed: Iterable[str],
 ) -> list[Problem]:
     found: list[Problem] = []
     missing: list[tuple[Location, str]] = []
