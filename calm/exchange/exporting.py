@@ -11,7 +11,7 @@ from pathlib import Path
 from calm.case import load
 from calm.errors import UsageError
 from calm.exchange.cable_writer import cbl_file
-from calm.exchange.exported_parts import ExportedLine, ExportedPart, area, assembled, remarks
+from calm.exchange.exported_parts import ExportedLine, ExportedPart, assembled
 from calm.exchange.mdd_writer import mdd_file
 from calm.exchange.moordyn_writer import CURRENTS, current_profile, moordyn_file
 from calm.files.mistakes import unknown
@@ -37,7 +37,7 @@ def csv_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
     lost = ["the water", "hulls and wind: floats drag in full at the surface"]
     if design.tow is not None:
         lost.append("the speed of the ship: a list is a mooring's")
-    losses = remarks(design, lost)
+    losses = design.losses(lost)
     text = io.StringIO()
     for line in (f"{design.name}, by CALM; lost:", *losses):
         text.write(f"# {' '.join(line.split())}\n")
@@ -60,8 +60,8 @@ def _row(part: ExportedPart, at: str) -> list[str]:
     mass = "" if part.mass is None else f"{part.mass * whole:.9g}"
     stiffness = f"{part.stiffness:.9g}" if part.stiffness else ""
     diameter = f"{part.diameter:.9g}" if part.diameter else ""
-    along = f"{area(part, along=True) * whole:.9g}" if part.directional else ""
-    figures = [diameter, mass, f"{part.buoyancy * whole:.9g}", f"{area(part) * whole:.9g}"]
+    along = f"{part.area(along=True) * whole:.9g}" if part.directional else ""
+    figures = [diameter, mass, f"{part.buoyancy * whole:.9g}", f"{part.area() * whole:.9g}"]
     figures += [along, stiffness]
     words = [part.use, part.label, part.component.kind, part.role]
     return [_cell(word) for word in words] + [at, f"{part.length:.9g}", *figures]
