@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from calm.exchange.cable_grammar import CableDefinition, KeyValue, KeyValues
-from calm.exchange.cable_water import number, value_at
 from calm.exchange.design import FigureOrWord, ImportedComponent, Remark, refused
 from calm.exchange.part_names import is_chain, role_of
 from calm.files.definition import CATALOGUE_DENSITY
@@ -36,14 +35,14 @@ class ComponentMaker:
     ) -> ImportedComponent:
         """A cable of a length [m], with its drag at a depth [m] and a speed [m/s]."""
         values, name = definition.values, definition.name
-        across, inside = number(values, "d") or number(values, "diam"), number(values, "id")
+        across, inside = values.number("d", "diam"), values.number("id")
         if across <= 0.0:
             raise definition.token.refuse(f"material `{name}` has no diameter")
         area, bore = math.pi / 4.0 * across**2, math.pi / 4.0 * inside**2
-        mass = number(values, "m") or number(values, "mass")
-        dry = number(values, "w") or mass * self.gravity
-        wet = number(values, "wet") or dry - area * self.density * self.gravity
-        if not mass and not dry and not number(values, "wet"):
+        mass = values.number("m", "mass")
+        dry = values.number("w") or mass * self.gravity
+        wet = values.number("wet") or dry - area * self.density * self.gravity
+        if not mass and not dry and not values.number("wet"):
             raise definition.token.refuse(f"material `{name}` has neither `m` nor `wet`")
         figures: dict[str, FigureOrWord] = {
             "diameter": across,
@@ -71,14 +70,14 @@ class ComponentMaker:
         self, component: ImportedComponent, definition: CableDefinition, section: float
     ) -> None:
         values = definition.values
-        stiffness = number(values, "ea") or number(values, "e") * section
+        stiffness = values.number("ea") or values.number("e") * section
         tension = values.get("t")
         if not stiffness and tension is not None:
-            stiffness = value_at(tension, 0.01) / 0.01
+            stiffness = tension.at(0.01) / 0.01
             component.guesses["stiffness"] = "its tension at a strain of 0.01; the file has a curve"
         if stiffness > 0.0:
             component.figures["stiffness"] = stiffness
-        limit = {key: number(values, key) for key in _YIELDS}
+        limit = {key: values.number(key) for key in _YIELDS}
         if limit["yield"] > 0.0:
             component.figures["breaking_load"] = limit["yield"]
         if limit["swl"] > 0.0 and (not limit["yield"] or limit["swl"] <= limit["yield"]):
@@ -87,14 +86,12 @@ class ComponentMaker:
     def connector(self, definition: CableDefinition) -> ImportedComponent:
         """A point in the line: a sphere of its drag, of the length that the file gives."""
         values, name = definition.values, definition.name
-        wet, mass = self._at_reference(
-            number(values, "wet"), number(values, "m") or number(values, "mass")
-        )
+        wet, mass = self._at_reference(values.number("wet"), values.number("m", "mass"))
         figures: dict[str, FigureOrWord] = {
-            "length": number(values, "length"),
+            "length": values.number("length"),
             "buoyancy": 0.0 - wet,
         }
-        across, drag = number(values, "d") or number(values, "diam"), number(values, "cdn")
+        across, drag = values.number("d", "diam"), values.number("cdn")
         if across > 0.0:
             kind = "sphere"
             figures = {"diameter": across, **figures, "cx": drag}
@@ -111,16 +108,16 @@ class ComponentMaker:
         self, definition: CableDefinition | None, name: str, friction: float
     ) -> ImportedComponent:
         """The lower end; without a weight where the file gives none."""
-        values: KeyValues = definition.values if definition else {}
+        values = definition.values if definition else KeyValues()
         figures: dict[str, FigureOrWord] = {}
-        wet, mass = number(values, "wet"), number(values, "m") or number(values, "mass")
+        wet, mass = values.number("wet"), values.number("m", "mass")
         if wet > 0.0:
             figures["weight"], known = self._at_reference(wet, mass)
             if known:
                 figures["mass"] = known
         elif mass > 0.0:
             figures["mass"] = mass
-        mu = number(values, "mu") or friction
+        mu = values.number("mu") or friction
         if mu > 0.0:
             figures["friction"] = mu
         component = ImportedComponent(name, "anchor", figures)
@@ -140,14 +137,14 @@ class ComponentMaker:
                 f"`{name}` is a {shape}: CALM has lines that end in a float or at a towing ship"
             )
         volume, area, height = largest(definition, shape)
-        mass = number(values, "m") or number(values, "mass")
-        mass = mass or number(values, "w") / self.gravity
-        lift = number(values, "buoyancy")
+        mass = values.number("m", "mass")
+        mass = mass or values.number("w") / self.gravity
+        lift = values.number("buoyancy")
         whole = lift / (self.density * self.gravity) if lift else volume
         if not whole:
             raise refused(definition.token.path, f"buoy `{name}` has no size and no buoyancy")
-        drag = number(values, "cdn")
-        across = number(values, "d") or number(values, "diam")
+        drag = values.number("cdn")
+        across = values.number("d", "diam")
         figures: dict[str, FigureOrWord]
         if shape == "sphere":
             kind, figures = "sphere", {"diameter": across, "length": height, "cx": drag}
@@ -165,7 +162,7 @@ class ComponentMaker:
             component.hull = displacement(definition, shape)
             whole = max(whole, component.hull[-1][1]) if not lift else whole
         figures |= {"mass": mass, "volume": whole}
-        windage, wind_drag = number(values, "sw"), number(values, "cdw") or drag
+        windage, wind_drag = values.number("sw"), values.number("cdw") or drag
         if afloat and (windage or wind_drag):
             figures |= {"wind_area": windage} if windage else {}
             figures["wind_cd"] = wind_drag
@@ -188,7 +185,7 @@ class ComponentMaker:
         value = values.get(key)
         if value is None:
             return 0.0
-        return value_at(value, depth if counts_on_depth(value) else speed)
+        return value.at(depth if counts_on_depth(value) else speed)
 
     def _drop(self, definition: CableDefinition) -> None:
         found = [key for key in _DYNAMICS if key in definition.values]
@@ -233,8 +230,8 @@ def displacement(definition: CableDefinition, shape: str) -> tuple[tuple[float, 
         The hull has no size, or a shape that is not known.
     """
     values = definition.values
-    across = number(values, "d") or number(values, "diam")
-    height = number(values, "h") or number(values, "height")
+    across = values.number("d", "diam")
+    height = values.number("h", "height")
     if shape == "axisymmetric":
         return _turned(definition)
     if across <= 0.0:
