@@ -33,7 +33,15 @@ class ComponentMaker:
     def material(
         self, definition: CableDefinition, length: float, depth: float, speed: float
     ) -> ImportedComponent:
-        """A cable of a length [m], with its drag at a depth [m] and a speed [m/s]."""
+        """Return a cable of a length [m], with its drag at a depth [m] and a speed [m/s].
+
+        Parameters
+        ----------
+        definition : of the material
+        length : of the segment [m]
+        depth : for which a drag by depth is taken [m]
+        speed : for which a drag by speed is taken [m/s]
+        """
         values, name = definition.values, definition.name
         across, inside = values.number("d", "diam"), values.number("id")
         if across <= 0.0:
@@ -84,7 +92,7 @@ class ComponentMaker:
             component.figures["working_load"] = limit["swl"]
 
     def connector(self, definition: CableDefinition) -> ImportedComponent:
-        """A point in the line: a sphere of its drag, of the length that the file gives."""
+        """Return a point in the line: a sphere of its drag, as long as the file says."""
         values, name = definition.values, definition.name
         wet, mass = self._at_reference(values.number("wet"), values.number("m", "mass"))
         figures: dict[str, FigureOrWord] = {
@@ -107,7 +115,14 @@ class ComponentMaker:
     def anchor(
         self, definition: CableDefinition | None, name: str, friction: float
     ) -> ImportedComponent:
-        """The lower end; without a weight where the file gives none."""
+        """Return the lower end; without a weight where the file gives none.
+
+        Parameters
+        ----------
+        definition : None where the file defines none
+        name : as the layout calls it
+        friction : of the layout; 0 where it gives none
+        """
         values = definition.values if definition else KeyValues()
         figures: dict[str, FigureOrWord] = {}
         wet, mass = values.number("wet"), values.number("m", "mass")
@@ -126,7 +141,7 @@ class ComponentMaker:
         return component
 
     def buoy(self, definition: CableDefinition, *, afloat: bool) -> ImportedComponent:
-        """The upper end, or what is towed.
+        """Return the upper end, or what is towed.
 
         Its hull is that of the file. Where it does not float, it is a point, as in that program.
         """
@@ -172,7 +187,7 @@ class ComponentMaker:
         return component
 
     def _at_reference(self, wet: float, mass: float) -> tuple[float, float]:
-        """A weight in CALM's water, and the mass; 0 for an impossible mass.
+        """Return a weight in CALM's water, and the mass; 0 for an impossible mass.
 
         What is displaced follows from both, so that the weight in the file's own water comes out.
         """
@@ -196,12 +211,12 @@ class ComponentMaker:
 
 
 def counts_on_depth(value: KeyValue) -> bool:
-    """Whether a drag is a function of depth; a table up to speeds that occur is one of speed."""
+    """Return whether a drag counts on depth; a table up to speeds that occur is one of speed."""
     return not value.rows or value.rows[-1][0].at() > _FASTEST
 
 
 def varies(definition: CableDefinition) -> bool:
-    """Whether a drag of a material is a function of depth."""
+    """Return whether a drag of a material is a function of depth."""
     return any(
         value is not None
         and counts_on_depth(value)
@@ -258,7 +273,7 @@ def displacement(definition: CableDefinition, shape: str) -> tuple[tuple[float, 
 
 
 def _turned(definition: CableDefinition) -> tuple[tuple[float, float, float], ...]:
-    """Of a hull given by its diameters at levels above its keel."""
+    """Return the rows of a hull given by its diameters at levels above its keel."""
     value = definition.values.get("diameters")
     if value is None or len(value.rows) < 2 or any(len(row) != 2 for row in value.rows):
         raise definition.token.refuse(f"buoy `{definition.name}` needs `diameters` at two levels")

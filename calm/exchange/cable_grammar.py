@@ -28,7 +28,7 @@ _MOST_NODES = 1_000_000
 
 @dataclass
 class KeyValue:
-    """The value of a key: a word, a formula, or rows in parentheses."""
+    """Hold the value of a key: a word, a formula, or rows in parentheses."""
 
     token: Token
     text: str = ""
@@ -85,20 +85,20 @@ class KeyValues(dict[str, KeyValue]):
 
 @dataclass
 class CableDefinition:
-    """A buoy, an anchor, a connector or a material."""
+    """Represent a buoy, an anchor, a connector or a material."""
 
     token: Token
     values: KeyValues
 
     @property
     def name(self) -> str:
-        """As the layout calls it."""
+        """The name by which the layout calls it."""
         return self.token.text
 
 
 @dataclass
 class CableAttachment:
-    """A connector hung on nodes of a segment."""
+    """Represent a connector hung on nodes of a segment."""
 
     token: Token
     nodes: list[int]
@@ -106,7 +106,7 @@ class CableAttachment:
 
 @dataclass
 class CableSegment:
-    """A length of one material, and what joins it to the next one up."""
+    """Represent a length of one material, and what joins it to the next one up."""
 
     token: Token
     values: KeyValues
@@ -117,7 +117,7 @@ class CableSegment:
 
 @dataclass
 class CableTerminal:
-    """An end of the line."""
+    """Represent an end of the line."""
 
     token: Token
     values: KeyValues
@@ -125,7 +125,7 @@ class CableTerminal:
 
 @dataclass
 class CableProblem:
-    """The content of a problem file.
+    """Hold the content of a problem file.
 
     Attributes
     ----------
@@ -171,6 +171,12 @@ class CableProblem:
 def read_problem(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> CableProblem:
     """Read a file.
 
+    Parameters
+    ----------
+    path : of the problem
+    defines : macros from outside, by name
+    allow_include : whether files outside its folder may be included
+
     Raises
     ------
     InputError
@@ -204,7 +210,7 @@ def _section(words: TokenStream, problem: CableProblem) -> None:
 
 
 def _section_name(words: TokenStream) -> str | None:
-    """The section that begins here, if one does."""
+    """Return the section that begins here, if one does."""
     token = words.next
     if token.kind != "name":
         return None

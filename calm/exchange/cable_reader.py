@@ -58,13 +58,19 @@ _NOTE = (
 
 
 def is_cbl(content: bytes) -> bool:
-    """Whether a file looks like a problem: it names two of the sections that each must have."""
+    """Return whether a file looks like a problem: it names two sections that each must have."""
     text = content.decode("latin-1").lower()
     return b"\0" not in content and len(set(_HEADS.findall(text))) >= 2
 
 
 def read_cbl(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> Design:
     """Read a mooring or a tow.
+
+    Parameters
+    ----------
+    path : of the problem
+    defines : macros from outside, by name
+    allow_include : whether files outside its folder may be read
 
     Raises
     ------
@@ -232,7 +238,7 @@ def _pieces(
     makers: ComponentMaker,
     water: ImportedWater,
 ) -> list[ImportedPiece]:
-    """A segment as one piece, or as several where its drag changes with depth; lower end first.
+    """Return a segment as one piece, or as several where its drag changes with depth, from below.
 
     Parameters
     ----------
@@ -277,7 +283,7 @@ def _alike(one: ImportedComponent, other: ImportedComponent) -> bool:
 
 
 def _speed(water: ImportedWater, depth: float) -> float:
-    """Of the current at the level next to a depth [m/s]."""
+    """Return the speed of the current at the level next to a depth [m/s]."""
     if not water.current:
         return 0.0
     row = min(water.current, key=lambda each: abs(each[0] - depth))
@@ -287,7 +293,7 @@ def _speed(water: ImportedWater, depth: float) -> float:
 def _clamps(
     problem: CableProblem, segment: CableSegment, length: float, makers: ComponentMaker
 ) -> list[tuple[float, ImportedComponent]]:
-    """What hangs on the nodes of a segment, with the height above its lower end."""
+    """Return what hangs on the nodes of a segment, with the height above its lower end."""
     if not segment.attachments:
         return []
     heights = _heights(segment, length)
@@ -304,7 +310,7 @@ def _clamps(
 
 
 def _heights(segment: CableSegment, length: float) -> list[float]:
-    """Of the nodes of a segment above its lower end [m]."""
+    """Return the heights of the nodes of a segment above its lower end [m]."""
     nodes = segment.values.get("nodes")
     if nodes is None or not nodes.rows or any(len(row) != 2 for row in nodes.rows):
         raise segment.token.refuse("attachments need `nodes = (count, share)`")
@@ -323,7 +329,7 @@ def _heights(segment: CableSegment, length: float) -> list[float]:
 def _defined(
     definitions: dict[str, CableDefinition], value: KeyValue | None, token: Token
 ) -> CableDefinition:
-    """The definition that a value names, else a problem at the value, or at `token` without one."""
+    """Return the definition that a value names; a problem stands at the value, or at `token`."""
     if value is None or not value.text:
         raise token.refuse("a name is missing: a material, or a buoy")
     found = definitions.get(value.text)

@@ -144,7 +144,7 @@ _AXES = ("time", "depth", "x", "y")
 
 @dataclass(frozen=True)
 class GriddedCurrent:
-    """The profile at the anchor at the time 0.
+    """Hold the profile at the anchor at the time 0.
 
     Attributes
     ----------
@@ -158,16 +158,22 @@ class GriddedCurrent:
     others: tuple[str, ...]
 
     def axis(self, number: int) -> Callable[[float], float]:
-        """A speed by depth, constant beyond the first and the last level, as in that program."""
+        """Return a speed by depth, constant beyond the first and the last level, as there."""
         column = self.speeds[:, number]
         return lambda depth: float(np.interp(depth, self.depth, column))
 
 
 def gridded_current(value: KeyValue, folder: Path, *, allow_include: bool) -> GriddedCurrent | None:
-    """The currents of a file beside the problem; None where there is no such file.
+    """Return the currents of a file beside the problem; None where there is no such file.
 
     It begins with step, start and count of time, depth, x and y; the speeds to x, y and z follow,
     the depth running fastest, then x, then y, then the time.
+
+    Parameters
+    ----------
+    value : that names the file
+    folder : of the problem
+    allow_include : whether the file may lie elsewhere
 
     Raises
     ------
@@ -216,7 +222,7 @@ def _numbers(path: Path) -> NDArray[np.float64]:
 
 
 def _at_zero(grid: NDArray[np.float64], axis: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The grid at 0 of its first axis, or at that end of it which is nearer."""
+    """Return the grid at 0 of its first axis, or at that end of it which is nearer."""
     order = np.argsort(axis)
     axis, grid = axis[order], grid[order]
     place = min(max(0.0, axis[0]), axis[-1])
