@@ -57,13 +57,13 @@ class Assembly(Definition):
 
 @dataclass(frozen=True)
 class Catalogue:
-    """Component definitions in levels, the nearest first: it hides those of the same id below."""
+    """Hold definitions in levels, the nearest first: it hides those of the same id below."""
 
     levels: tuple[Level, ...]
 
     @classmethod
     def load(cls, files: Sequence[str | Path] = ()) -> Catalogue:
-        """The shipped catalogue, under the user's own, under the files given (the last on top).
+        """Load the shipped catalogue, the user's own above it, and the files given on top.
 
         Raises
         ------
@@ -87,39 +87,39 @@ class Catalogue:
 
     @classmethod
     def shipped(cls) -> Catalogue:
-        """The catalogue that comes with CALM."""
+        """Return the catalogue that comes with CALM."""
         return cls((UnreadLevel(_shipped_files()),))
 
     def under(self, definitions: SourceMapping, problems: list[Problem]) -> Catalogue:
-        """This catalogue under the `components:` of a mooring file."""
+        """Lay this catalogue under the `components:` of a mooring file."""
         entries = entries_of(definitions, None, problems)
         return Catalogue(({entry.id: entry for entry in entries}, *self.levels))
 
     def ids(self) -> list[str]:
-        """Every id, in the order of the files."""
+        """Return every id, in the order of the files."""
         return list(dict.fromkeys(id for level in reversed(self.levels) for id in level))
 
     def entry(self, id: str) -> CatalogueEntry | None:
-        """The definition of an id as written; None when there is none."""
+        """Return the definition of an id as written; None when there is none."""
         return next(self._of(id), None)
 
     def hidden(self, id: str) -> CatalogueEntry | None:
-        """The definition that a nearer one of the same id hides."""
+        """Return the definition that a nearer one of the same id hides."""
         return next(islice(self._of(id), 1, None), None)
 
     def _of(self, id: str) -> Iterator[CatalogueEntry]:
-        """The definitions of an id, the nearest first."""
+        """Return the definitions of an id, the nearest first."""
         return (level[id] for level in self.levels if id in level)
 
     def _all(self) -> dict[str, CatalogueEntry]:
         return {id: next(self._of(id)) for id in self.ids()}
 
     def nearest(self, id: str) -> str | None:
-        """The id most like a text."""
+        """Return the id most like a text."""
         return nearest(id, self.ids())
 
     def get(self, id: str) -> Component | Assembly:
-        """A component or assembly, validated.
+        """Return a component or assembly, validated.
 
         Raises
         ------
@@ -138,7 +138,7 @@ class Catalogue:
         return definition
 
     def all(self) -> dict[str, Component | Assembly]:
-        """Every component and assembly, validated.
+        """Return every component and assembly, validated.
 
         Raises
         ------
@@ -156,7 +156,7 @@ class Catalogue:
         return found
 
     def same_thing(self, id: str) -> list[str]:
-        """The ids that describe the thing an id does, the one to use first; the id alone if none.
+        """Return the ids of the same thing as an id, the one to use first; the id alone if none.
 
         Those are the id that it prefers and all that prefer the same.
         """
@@ -165,7 +165,7 @@ class Catalogue:
         return [first, *(each for each, other in preferred.items() if other == first)]
 
     def search(self, words: Iterable[str]) -> list[str]:
-        """The ids whose definition (or family) holds every one of the words."""
+        """Return the ids whose definition (or family) holds every one of the words."""
         wanted = [word.casefold() for word in words]
         return [
             id
@@ -179,7 +179,7 @@ def _shipped_files() -> list[Path]:
 
 
 def user_folder() -> Path:
-    """The folder of the user's own catalogue: `CALM_CATALOG_DIR`, or one in the home folder."""
+    """Return the user's own catalogue: `CALM_CATALOG_DIR`, or a folder in the home folder."""
     if folder := os.environ.get("CALM_CATALOG_DIR"):
         return Path(folder)
     configuration = os.environ.get("XDG_CONFIG_HOME") or os.path.expanduser("~/.config")
@@ -194,7 +194,7 @@ def define(
     also_allowed: Iterable[str] = (),
     context: Mapping[str, object] | None = None,
 ) -> Component | Assembly | None:
-    """The model of an entry, or of a section laid over it; None when it has mistakes.
+    """Return the model of an entry, or of a section laid over it; None when it has mistakes.
 
     `context` is None or, where it is to be used in air, `IN_AIR`.
     """
@@ -229,7 +229,7 @@ def _searchable(entry: CatalogueEntry) -> str:
 
 @dataclass(frozen=True)
 class CatalogueEntry:
-    """A definition as written, with the name of the family (the file) it belongs to."""
+    """Hold a definition as written, with the name of the family (the file) it belongs to."""
 
     id: str
     family: str | None
@@ -237,7 +237,7 @@ class CatalogueEntry:
 
     @property
     def place(self) -> str:
-        """Where the definition is, for people."""
+        """Return where the definition is, for people."""
         place = self.section.problem((), "")
         return f"{place.path}:{place.line}" if place.line else place.path
 
@@ -246,7 +246,7 @@ Level = Mapping[str, CatalogueEntry]
 
 
 class _Cut(NamedTuple):
-    """The text of one definition, and the lines of its file that are above it."""
+    """Hold the text of one definition, and the lines of its file that are above it."""
 
     path: Path
     above: int
@@ -254,7 +254,7 @@ class _Cut(NamedTuple):
 
 
 class UnreadLevel(Level):
-    """The entries of files whose mistakes need not be known before they matter.
+    """Hold the entries of files whose mistakes need not be known before they matter.
 
     Only the ids are looked for beforehand, by the lines that are not indented; an entry is read
     when it is asked for. Where such a line is anything else, or an entry turns out to be wrong,
@@ -307,7 +307,7 @@ class UnreadLevel(Level):
 
 
 def read_level(paths: Iterable[Path], problems: list[Problem]) -> Level:
-    """The entries of files, which together define an id once."""
+    """Read the entries of files, which together define an id once."""
     level: dict[str, CatalogueEntry] = {}
     for path in paths:
         try:
@@ -327,7 +327,7 @@ def read_level(paths: Iterable[Path], problems: list[Problem]) -> Level:
 def entries_of(
     definitions: SourceMapping, family: str | None, problems: list[Problem]
 ) -> list[CatalogueEntry]:
-    """The entries of a mapping of definitions by id."""
+    """Return the entries of a mapping of definitions by id."""
     entries = []
     for id, fields in definitions.data.items():
         if isinstance(fields, dict):
@@ -344,7 +344,7 @@ def _entries_of(document: Document, problems: list[Problem]) -> list[CatalogueEn
 
 
 def _cuts(path: Path) -> list[tuple[str | None, _Cut]]:
-    """The text of each definition by its id, or by None where it does not begin plainly."""
+    """Return the text of each definition by its id, or by None where it does not begin plainly."""
     text = read_text(path)
     heads = list(_HEAD.finditer(text))
     cuts, above = [], text.count("\n", 0, heads[0].start()) if heads else 0
@@ -356,13 +356,13 @@ def _cuts(path: Path) -> list[tuple[str | None, _Cut]]:
 
 
 class Unchanged(Generic[T]):
-    """The last of what was read from files, known by their names, times and sizes."""
+    """Keep the last of what was read from files, known by their names, times and sizes."""
 
     def __init__(self) -> None:
         self._last: tuple[Stamp, T] | None = None
 
     def of(self, paths: Sequence[Path], read: Callable[[], T]) -> T:
-        """What `read` returns for files; it is only called where they are others, or changed."""
+        """Return what `read` makes of files; it is called only where they are others or changed."""
         stamp = _stamp(paths)
         last = self._last
         if stamp is not None and last is not None and last[0] == stamp:
@@ -373,7 +373,7 @@ class Unchanged(Generic[T]):
 
 
 def _stamp(paths: Sequence[Path]) -> Stamp | None:
-    """None where it would not show a change."""
+    """Return the names, times and sizes of files; None where they would not show a change."""
     try:
         found = [(str(path), path.stat()) for path in paths]
     except (OSError, ValueError):

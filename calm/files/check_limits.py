@@ -31,7 +31,7 @@ THE_DESIGN = "the design"
 
 @dataclass(frozen=True)
 class Limit:
-    """Annotation of a key of `checks:`: who gives its default.
+    """Annotate a key of `checks:` with who gives its default.
 
     Attributes
     ----------
@@ -154,7 +154,7 @@ class Checks(Model):
 
 @dataclass(frozen=True)
 class LimitKey:
-    """A key of `checks:`, such as ``safety_factor.steel``.
+    """Represent a key of `checks:`, such as ``safety_factor.steel``.
 
     Attributes
     ----------
@@ -173,12 +173,12 @@ class LimitKey:
 
     @property
     def departs(self) -> bool:
-        """Whether the design has another limit than the default."""
+        """Return whether the design has another limit than the default."""
         return self.default is not None and self.value != self.default
 
 
 def limit_keys(checks: Checks) -> Iterator[LimitKey]:
-    """Every limit of `checks:`, those that are not given with their default."""
+    """Return every limit of `checks:`, those that are not given with their default."""
     yield from _limit_keys(checks, "")
 
 
@@ -195,7 +195,7 @@ def _limit_keys(model: Model, prefix: str) -> Iterator[LimitKey]:
 
 @cache
 def _defaults(model: type[Model]) -> tuple[tuple[str, LimitKey | None], ...]:
-    """Of each field the limit that it is unless given; None of one that is no limit."""
+    """Return for each field the limit that it is unless given; None of one that is no limit."""
     return tuple((name, _default(name, field)) for name, field in model.model_fields.items())
 
 
@@ -267,7 +267,7 @@ class AcceptKeys(Model):
 
 @dataclass(frozen=True)
 class Accept:
-    """What is accepted of a mooring.
+    """Hold what is accepted of a mooring.
 
     Attributes
     ----------
@@ -290,11 +290,11 @@ class Accept:
     line: int
 
     def covers(self, rule: str, component: str | None) -> bool:
-        """Whether it is of that rule and component."""
+        """Return whether it is of that rule and component."""
         return self.rule == rule and (self.labels is None or component in self.labels)
 
     def counts_on(self, day: calendar_date) -> bool:
-        """Whether it has not ended before that day, and is not dated after it."""
+        """Return whether it has not ended before that day, and is not dated after it."""
         begun = self.date is None or self.date <= day.isoformat()
         return begun and (self.until is None or day.isoformat() <= self.until)
 
@@ -305,7 +305,7 @@ def read_accepts(
     top: SourceMapping,
     problems: list[Problem],
 ) -> tuple[Accept, ...]:
-    """What a mooring file accepts, the most specific first; mistakes are added to `problems`.
+    """Return what a mooring file accepts, the most specific first.
 
     Parameters
     ----------
@@ -345,7 +345,7 @@ def _accept(
 
 
 def matching(component: str, labels: Iterable[str]) -> list[str]:
-    """The labels that a label or a pattern of labels stands for.
+    """Return the labels that a label or a pattern of labels stands for.
 
     A text that is a label is that label alone, whatever signs it has. Otherwise ``*`` stands for
     any signs, ``?`` for one, ``[ab]`` for a or b; capitals count.
@@ -365,5 +365,5 @@ def _nothing_called(component: str, labels: Sequence[str]) -> str:
 
 
 def _breadth(accept: Accept, labels: Sequence[str]) -> int:
-    """0 of a label, 1 of a pattern, 2 of every component."""
+    """Return 0 for a label, 1 for a pattern, 2 for every component."""
     return 2 if accept.component is None else int(accept.component not in labels)

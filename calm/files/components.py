@@ -70,7 +70,7 @@ class Anchor(Definition):
 
     @property
     def net_buoyancy(self) -> float:
-        """Net force in water, positive up: the weight negated [N]."""
+        """Return the net force in water, positive up: the weight negated [N]."""
         if self.weight is not None:
             return -self.weight
         assert self.mass is not None
@@ -79,17 +79,17 @@ class Anchor(Definition):
 
     @property
     def material_known(self) -> bool:
-        """Whether its weight in water is given, or follows from a known material."""
+        """Return whether its weight in water is given, or follows from a known material."""
         return self.weight is not None or self.material_density is not None
 
     @property
     def material_density(self) -> float | None:
-        """As given, or that of its material [kg/m³]; None of one that is not known."""
+        """Return the density given, or that of its material [kg/m³]; None if unknown."""
         return self.density or ANCHOR_DENSITIES.get((self.material or "").strip().casefold())
 
     @property
     def displaced_volume(self) -> float | None:
-        """Volume of water displaced [m³], None when only the weight is known."""
+        """Return the volume of water displaced [m³], None when only the weight is known."""
         return volume_from_weights(self.mass, self.net_buoyancy)
 
     @model_validator(mode="after")
@@ -124,7 +124,7 @@ _DRAG_KEYS = frozenset(key for form in DRAG_FORMS for key in form) | {"kt"}
 
 
 def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str]:
-    """The keys of a definition that an override of it makes void.
+    """Return the keys of a definition that an override of it makes void.
 
     Parameters
     ----------

@@ -174,12 +174,12 @@ class Definition(Model):
 
 
 def is_in_air(info: ValidationInfo) -> bool:
-    """Whether the definition that is being validated is read for use in air."""
+    """Return whether the definition that is being validated is read for use in air."""
     return info.context == IN_AIR
 
 
 def volume_from_weights(mass: float | None, net_buoyancy: float) -> float | None:
-    """Volume of water displaced [m³, per metre where they are], None where the mass is unknown."""
+    """Return the volume of water displaced [m³, or per metre], None where the mass is unknown."""
     if mass is None:
         return None
     return (mass + net_buoyancy / STANDARD_GRAVITY) / CATALOGUE_DENSITY

@@ -22,7 +22,7 @@ Value = float | str | None
 
 @dataclass(frozen=True)
 class ComparedValue:
-    """A value of a file [SI, degrees] or a text, and how people read it.
+    """Hold a value of a file [SI, degrees] or a text, and how people read it.
 
     `table` is what a text sums up, since two that differ may come to the same.
     """
@@ -41,7 +41,7 @@ def _text(text: str) -> ComparedValue:
 
 @dataclass(frozen=True)
 class Change:
-    """A value that differs: ``label.field`` or ``environment.depth``, before and after."""
+    """Hold a value that differs: ``label.field`` or ``environment.depth``, before and after."""
 
     where: str
     before: ComparedValue
@@ -50,7 +50,7 @@ class Change:
 
 @dataclass(frozen=True)
 class Differences:
-    """Two files compared.
+    """Hold what differs between two files.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ class Differences:
 
     @property
     def any(self) -> bool:
-        """Whether there are any."""
+        """Return whether there are any."""
         return bool(self.changed or self.moved or self.removed or self.added)
 
 
@@ -170,7 +170,7 @@ def _of_part(
 
 
 def _part_figures(part: Piece | Clamp, name: str) -> dict[str, ComparedValue]:
-    """What the line says of a part, its definition left out."""
+    """Return what the line says of a part, its definition left out."""
     found = {"use": _figure("use", part.use), "label": _figure("label", name)}
     if isinstance(part, Clamp):
         found["at"] = _figure("at", part.at)
@@ -184,7 +184,7 @@ def _part_figures(part: Piece | Clamp, name: str) -> dict[str, ComparedValue]:
 
 
 def _around(file: MooringFile) -> dict[str, ComparedValue]:
-    """All that is not the line."""
+    """Return all that is not the line."""
     parts: dict[str, Any] = {
         "position": file.position,
         "tow": file.tow,
@@ -209,7 +209,7 @@ def _around(file: MooringFile) -> dict[str, ComparedValue]:
 
 
 def _figures(part: Any, left_out: frozenset[str] = frozenset()) -> dict[str, ComparedValue]:
-    """The fields of a model, dotted where it holds others."""
+    """Return the fields of a model, dotted where it holds others."""
     found: dict[str, ComparedValue] = {}
     if isinstance(part, BaseModel):
         model = type(part).model_fields
@@ -256,7 +256,7 @@ def _of_current(table: CurrentTable) -> ComparedValue:
 
 
 def _said(value: Any) -> str:
-    """A value that is neither a number nor None, in words."""
+    """Return a value that is neither a number nor None, in words."""
     if isinstance(value, BaseModel):
         given = {name: one for name, one in value if one is not None and one != ()}
         return ", ".join(f"{name}: {_said(one)}" for name, one in given.items())

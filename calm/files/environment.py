@@ -49,7 +49,7 @@ class Position(Model):
 
 @dataclass(frozen=True)
 class Environment:
-    """What the line stands in, or is towed through.
+    """Hold what the line stands in, or is towed through.
 
     Attributes
     ----------
@@ -263,7 +263,7 @@ def read_environment(
     position: Position | None = None,
     open_files: bool = True,
 ) -> Environment | None:
-    """The environment of a section; its mistakes are added to `problems`, and None returned.
+    """Read the environment of a mapping; None, with its mistakes in `problems`, if it has any.
 
     A tow may be in air and need not give the water's depth. A current file is looked for beside
     the file that names it; `position` chooses a column of it. With `open_files` false it is not

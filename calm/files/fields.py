@@ -28,7 +28,7 @@ class Model(BaseModel):
 
 @dataclass(frozen=True)
 class QuantityField:
-    """Annotation of a field that holds a quantity: its dimension and limits (SI, degrees)."""
+    """Annotate a field that holds a quantity with its dimension and limits (SI, degrees)."""
 
     dimension: str
     usual_unit: str | None = None
@@ -37,7 +37,7 @@ class QuantityField:
     at_most: float = math.inf
 
     def read(self, text: object) -> float:
-        """The SI value of a text with a unit; QuantityError when it is none or out of limits."""
+        """Read the SI value of a text with a unit; QuantityError if it is none or out of limits."""
         if text is None:
             raise QuantityError("has no value")
         value = parse_quantity(text, self.dimension, usual_unit=self.usual_unit)
@@ -59,7 +59,7 @@ class QuantityField:
         return self.json_schema()
 
     def json_schema(self) -> dict[str, Any]:
-        """The JSON Schema of the text, without the limits."""
+        """Return the JSON Schema of the text, without the limits."""
         kind = DIMENSIONS[self.dimension]
         number = r"^\s*[-+]?[0-9.]+([eE][-+]?[0-9]+)?(\s*[0-9]*/[0-9]+)?"
         if not kind.unit:

@@ -99,7 +99,7 @@ class Cable(Flexible):
 
     @property
     def net_buoyancy(self) -> float:
-        """Net force in water of a metre, positive up; of a mass alone, that in air [N/m]."""
+        """Return the net force of a metre in water, positive up; of a mass alone, in air [N/m]."""
         if self.buoyancy is not None:
             return self.buoyancy
         if self.weight is not None:
@@ -110,7 +110,7 @@ class Cable(Flexible):
 
     @property
     def displaced_volume(self) -> float | None:
-        """Volume displaced by a metre [m³/m], None when the mass is unknown, or is all."""
+        """Return the volume displaced by a metre [m³/m], None if the mass is unknown, or is all."""
         if self._gives_no_force and self.density is None:
             return None
         return volume_from_weights(self.mass, self.net_buoyancy)
@@ -144,7 +144,7 @@ class Cable(Flexible):
 
 
 def strain_under(component: Flexible, load: float) -> float:
-    """Strain of a cable or chain under a load ≥ 0 [N], as the solver has it [-].
+    """Return the strain of a cable or chain under a load ≥ 0 [N], as the solver has it [-].
 
     By its `elongation`, else load / `stiffness`; 0 of one that gives neither.
     """
@@ -166,7 +166,7 @@ class Chain(Flexible):
 
     @property
     def net_buoyancy(self) -> float:
-        """Net force in water of a metre, positive up [N/m]."""
+        """Return the net force in water of a metre, positive up [N/m]."""
         if self.weight is not None:
             return -self.weight
         mass = 19.9e3 * self.diameter**2 if self.mass is None else self.mass
@@ -174,7 +174,7 @@ class Chain(Flexible):
 
     @property
     def displaced_volume(self) -> float | None:
-        """Volume of water displaced by a metre [m³/m], None when only its weight is known."""
+        """Return the volume displaced by a metre [m³/m], None when only its weight is known."""
         if self.mass is not None or self.weight is not None:
             return volume_from_weights(self.mass, self.net_buoyancy)
         return 19.9e3 * self.diameter**2 / (self.density or STEEL_DENSITY)

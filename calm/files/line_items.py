@@ -41,7 +41,7 @@ _LIMITS = {
 
 
 class LineReader:
-    """Expands line items; mistakes are added to `problems`, what is worth knowing to `notices`.
+    """Expand line items; mistakes go to `problems`, what is worth knowing to `notices`.
 
     `towed` and `in_air` show which keys and figures the line may have.
     """
@@ -75,7 +75,7 @@ class LineReader:
                     self._assembly(entry, entry.section)
 
     def read(self, section: SourceMapping, key: str) -> tuple[Piece, ...]:
-        """The pieces of the list of items under a key; those with mistakes are left out."""
+        """Read the items of the list under a key; those with mistakes are left out."""
         pieces: list[Piece] = []
         items = self._items(section, key)
         for number, item in enumerate(items, 1):
@@ -86,7 +86,7 @@ class LineReader:
         return tuple(pieces)
 
     def _items(self, section: SourceMapping, key: str) -> list[SourceMapping]:
-        """The items of a list, each a mapping."""
+        """Return the items of a list, each a mapping."""
         found = section.data[key]
         if not isinstance(found, (list, tuple)):
             self._refuse(section, (key,), f"`{key}` must be a list of items")
@@ -165,7 +165,7 @@ class LineReader:
         )
 
     def _measured(self, item: SourceMapping, component: Flexible) -> tuple[float, float]:
-        """The unstretched length of what is measured under a load [m], and that load [N]."""
+        """Return the unstretched length of what is measured under a load [m], and that load [N]."""
         if not isinstance(item.data["length_at"], dict):
             example = "{load: 2 kN, length: 480 m}"
             self._refuse(item, ("length_at",), f"`length_at` must be as `{example}`")
@@ -180,7 +180,7 @@ class LineReader:
         return measured.length / (1.0 + strain_under(component, measured.load)), measured.load
 
     def _fit_depth(self, item: SourceMapping, *, fits: bool) -> float | None:
-        """The depth a piece is cut to fit: of the line's top, in a tow of its own lower end."""
+        """Return the depth to cut a piece to: of the line's top, in a tow of its own lower end."""
         key, foreign, home = ("top_depth", "body_depth", "tows")
         if self._towed:
             key, foreign, home = ("body_depth", "top_depth", "moorings")
@@ -203,7 +203,7 @@ class LineReader:
                 self._notices.append(notice)
 
     def _clamps(self, item: SourceMapping, length: float | None) -> tuple[Clamp, ...]:
-        """The clamps of an item, none beyond its length where that is known."""
+        """Return the clamps of an item, none beyond its length where that is known."""
         clamps: list[Clamp] = []
         for clamp in self._items(item, "clamps") if "clamps" in item.data else ():
             entry = self._entry(clamp)
@@ -224,7 +224,7 @@ class LineReader:
         return tuple(clamps)
 
     def _assembly(self, entry: CatalogueEntry, item: SourceMapping) -> tuple[Piece, ...]:
-        """The pieces of an assembly, all at the place of the item that uses it."""
+        """Return the pieces of an assembly, all at the place of the item that uses it."""
         if entry.id in self._open:
             self._refuse(item, ("use",), f"assembly `{entry.id}` contains itself")
             return ()
@@ -240,7 +240,7 @@ class LineReader:
         )
 
     def _entry(self, item: SourceMapping) -> CatalogueEntry | None:
-        """The catalogue entry that an item uses."""
+        """Return the catalogue entry that an item uses."""
         use = item.data.get("use")
         if not isinstance(use, str):
             message = "`use` must be the id of a component" if "use" in item.data else None
@@ -263,7 +263,7 @@ class LineReader:
     def _definition(
         self, entry: CatalogueEntry, item: SourceMapping, item_keys: frozenset[str]
     ) -> Component | Assembly | None:
-        """What an item uses, the item's overrides applied."""
+        """Return what an item uses, the item's overrides applied."""
         if entry.id not in self._defined:
             self._defined[entry.id] = self._define(entry, entry.section)
         definition = self._defined[entry.id]

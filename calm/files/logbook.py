@@ -72,7 +72,7 @@ class DocumentKeys(Model):
     )
 
     def to_dict(self) -> dict[str, Any]:
-        """What is given, as JSON has it."""
+        """Return what is given, as JSON has it."""
         return self.model_dump(mode="json", exclude_none=True, exclude_defaults=True)
 
 
@@ -88,7 +88,7 @@ class ReleaseKeys(Model):
 
     @property
     def code_lines(self) -> tuple[str, ...]:
-        """The codes as a person reads them, one a line."""
+        """Return the codes as a person reads them, one a line."""
         if isinstance(self.codes, dict):
             return tuple(f"{name}: {code}" for name, code in self.codes.items())
         return (self.codes,) if isinstance(self.codes, str) else self.codes or ()
@@ -170,7 +170,7 @@ class Equipment(Model):
     )
 
     def of(self, repeat: int) -> Equipment:
-        """That of one of a count, from 0."""
+        """Return the equipment of one of a count, from 0."""
         if not isinstance(self.serial, tuple):
             return self
         return self.model_copy(update={"serial": self.serial[min(repeat, len(self.serial) - 1)]})
@@ -193,7 +193,7 @@ NO_EQUIPMENT = Equipment()
 
 
 def read_equipment(item: SourceMapping, problems: list[Problem]) -> Equipment:
-    """What an item or a clamp says of the individual thing; mistakes are added to `problems`."""
+    """Read what an item or a clamp says of the individual thing."""
     given = {key: item.data[key] for key in item.data.keys() & EQUIPMENT_KEYS}
     if not given:
         return NO_EQUIPMENT

@@ -25,7 +25,7 @@ def validate(
     also_allowed: Iterable[str] = (),
     context: Mapping[str, object] | None = None,
 ) -> M | None:
-    """The model of a mapping; its mistakes are added to `problems`, and None returned.
+    """Return the model of a mapping; its mistakes are added to `problems`, and None returned.
 
     `also_allowed` are keys that stand in the same mapping and belong to something else, `context`
     what the validators of the model may need to know.
@@ -57,20 +57,20 @@ def not_among(name: str, text: str, allowed: Iterable[str], offer: str | None = 
 
 
 def nearest(text: str, known: Iterable[str]) -> str | None:
-    """The name most like a text, None when none is like it."""
+    """Return the name most like a text, None when none is like it."""
     found = difflib.get_close_matches(text[:LONGEST_TEXT], list(known), 1)
     return found[0] if found else None
 
 
 def shown(value: object) -> str:
-    """An offending value as messages show it."""
+    """Return an offending value as messages show it."""
     text = value if isinstance(value, str) else "…" if isinstance(value, (dict, list)) else ""
     text = " ".join(text.split())
     return text if len(text) <= LONGEST_TEXT else text[: LONGEST_TEXT - 1] + "…"
 
 
 def about_quantity(name: str, value: object, error: QuantityError) -> str:
-    """The message of a quantity gone wrong, with the line corrected where that is known."""
+    """Return the message of a quantity gone wrong, with the line corrected where that is known."""
     text = f"`{name}: {shown(value)}`" if shown(value) else f"`{name}`"
     message = f"{text} {error.complaint}"
     if error.suggestion:
@@ -119,7 +119,7 @@ def _explain(
 
 
 def _existing(data: Any, loc: tuple[int | str, ...]) -> tuple[Location, Any]:
-    """The part of a pydantic location that exists in the data (tags of unions do not)."""
+    """Return the part of a pydantic location that exists in the data (tags of unions do not)."""
     location: list[str | int] = []
     for part in loc:
         if isinstance(data, dict):
@@ -172,12 +172,12 @@ _SHAPES: Mapping[str, str] = {
 
 
 def _keys(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
-    """The keys allowed at a pydantic location."""
+    """Return the keys allowed at a pydantic location."""
     return [name for one in _models_in(_form(model, loc)) for name in one.model_fields]
 
 
 def _form(model: type[BaseModel], loc: tuple[int | str, ...]) -> Any:
-    """The type of what belongs at a pydantic location, in which tags of unions may stand."""
+    """Return the type of what belongs at a pydantic location, in which tags of unions may stand."""
     form: Any = model
     for part in loc:
         models = _models_in(form)

@@ -93,30 +93,30 @@ class Place:
 
     @property
     def is_clamp(self) -> bool:
-        """Whether it is that of a clamp."""
+        """Return whether it is that of a clamp."""
         return self.clamp >= 0
 
     @property
     def row(self) -> Place:
-        """The row of the file that gives it: of what stands in an assembly, its item."""
+        """Return the row of the file that gives it: of what stands in an assembly, its item."""
         return Place(self.item) if self.part >= 0 else Place(self.item, clamp=self.clamp)
 
 
 class LinePart(Protocol):
-    """A piece or a clamp, or what was found for one."""
+    """Represent a piece or a clamp, or what was found for one."""
 
     @property
     def place(self) -> Place:
-        """Which it is."""
+        """Return which one it is."""
 
     @property
     def label(self) -> str:
-        """What people call it."""
+        """Return what people call it."""
 
 
 @dataclass(frozen=True)
 class Clamp:
-    """An instrument fixed to a piece, `at` metres (unstretched) from the piece's top."""
+    """Represent an instrument fixed to a piece, `at` metres (unstretched) from the piece's top."""
 
     use: str
     label: str
@@ -127,13 +127,13 @@ class Clamp:
 
     @property
     def serial(self) -> str | None:
-        """Serial number of this instrument, where the file gives it."""
+        """Return the serial number of this instrument, where the file gives it."""
         return _serial(self.equipment)
 
 
 @dataclass(frozen=True)
 class Piece:
-    """One piece of the expanded line.
+    """Represent one piece of the expanded line.
 
     Attributes
     ----------
@@ -175,7 +175,7 @@ class Piece:
 
     @property
     def serial(self) -> str | None:
-        """Serial number of this piece, where the file gives it."""
+        """Return the serial number of this piece, where the file gives it."""
         return _serial(self.equipment)
 
 
@@ -186,7 +186,7 @@ def _serial(equipment: Equipment) -> str | None:
 
 @dataclass(frozen=True)
 class MooringFile:
-    """A mooring file with everything in it resolved.
+    """Hold a mooring file with everything in it resolved.
 
     `pieces` lead from the top of a mooring to its anchor; in a tow, where `tow` is not None, from
     the ship to the towed body. `notices` say what a person may want to know: a catalogue entry
@@ -217,20 +217,20 @@ class MooringFile:
 
     @property
     def release(self) -> int | None:
-        """Index of the lowest release in line, None without one: what is above it comes up."""
+        """Return the index of the lowest release in line, or None: what is above it comes up."""
         releases = [piece.index for piece in self.pieces if piece.component.role == "release"]
         return releases[-1] if releases else None
 
     @property
     def anchor(self) -> Anchor:
-        """The last piece of a mooring's line."""
+        """Return the last piece of a mooring's line."""
         anchor = self.pieces[-1].component
         assert isinstance(anchor, Anchor)
         return anchor
 
 
 def placed(piece: Piece, place: Place) -> Piece:
-    """The piece, with its clamps and the serial numbers there, at another place of the line."""
+    """Put a piece, with its clamps and the serial numbers there, at a place of the line."""
     clamps = tuple(
         replace(
             clamp,
@@ -243,7 +243,7 @@ def placed(piece: Piece, place: Place) -> Piece:
 
 
 def numbered(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
-    """The pieces with their index, and labels that occur more than once numbered down the line."""
+    """Give the pieces their index, and number labels that occur more than once down the line."""
     pieces = tuple(pieces)
     labels = [[piece.label, *(clamp.label for clamp in piece.clamps)] for piece in pieces]
     total = Counter(label for group in labels for label in group)

@@ -194,7 +194,7 @@ def read_mooring(
 
 
 def _labels(pieces: Sequence[Piece]) -> list[str]:
-    """Of pieces and clamps, down the line."""
+    """Return the labels of pieces and clamps, down the line."""
     return [
         label
         for piece in pieces
@@ -205,7 +205,7 @@ def _labels(pieces: Sequence[Piece]) -> list[str]:
 def _unknown_releases(
     releases: Sequence[ReleaseKeys], pieces: Sequence[Piece], deployed: Deployed | None
 ) -> list[str]:
-    """Of releases whose serial number nothing in the line has, as designed or as deployed."""
+    """Note the releases whose serial number nothing in the line has, designed or deployed."""
     parts: list[Piece | Clamp] = []
     for piece in pieces:
         parts += (piece, *piece.clamps)
@@ -220,18 +220,18 @@ def _unknown_releases(
 
 
 def _stand_in(item: int) -> Piece:
-    """An anchor without height that holds anything, as an item below the last."""
+    """Return an anchor without height that holds anything, as an item below the last."""
     component = Anchor.model_validate({"kind": "anchor", "weight": "1e6 kN"})
     return Piece(0, STAND_IN, "anchor", component, 0.0, None, (), 0, 0, Place(item))
 
 
 def _child(section: SourceMapping, key: str) -> SourceMapping | None:
-    """The mapping under a key, None where there is none."""
+    """Return the mapping under a key, None where there is none."""
     return section.child(key) if isinstance(section.data.get(key), dict) else None
 
 
 def _in_order(problems: list[Problem], path: str) -> list[Problem]:
-    """Each problem once: those of the mooring file first, down the file."""
+    """Return each problem once: those of the mooring file first, down the file."""
     once = dict.fromkeys(problems)
     return sorted(once, key=lambda one: (one.path != path, one.path, one.line, one.column))
 

@@ -106,7 +106,7 @@ class Rigid(Definition):
 
     @property
     def net_buoyancy(self) -> float:
-        """Net force in water, positive up; of a mass alone, that in air [N]."""
+        """Return the net force in water, positive up; of a mass alone, that in air [N]."""
         if self.buoyancy is not None:
             return self.buoyancy
         assert self.mass is not None
@@ -114,7 +114,7 @@ class Rigid(Definition):
 
     @property
     def displaced_volume(self) -> float | None:
-        """Volume displaced [m³], None when it is not known, nor follows from the weights."""
+        """Return the volume displaced [m³], None if it is unknown, nor follows from the weights."""
         if self.volume is not None or self.buoyancy is None:
             return self.volume
         return volume_from_weights(self.mass, self.net_buoyancy)

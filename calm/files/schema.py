@@ -27,7 +27,7 @@ _NO_FORM = ("description", "examples", "default", "title")
 
 
 def mooring_schema() -> Schema:
-    """The JSON Schema (draft 2020-12) of a mooring file."""
+    """Return the JSON Schema (draft 2020-12) of a mooring file."""
     models: list[type[BaseModel]] = [MooringKeys, EnvironmentKeys, TowEnvironmentKeys, Assembly]
     models += [*KINDS.values(), Equipment, LengthAt]
     UniformCurrent.model_rebuild()  # a default is written by its model, which pydantic builds late

@@ -69,7 +69,7 @@ class TableKeys(Model):
 
 @dataclass(frozen=True)
 class CurrentTable:
-    """A current profile: east, north and upward speeds [m/s] at increasing depths [m]."""
+    """Hold a current: east, north and upward speeds [m/s] at increasing depths [m]."""
 
     depth: tuple[float, ...]
     u: tuple[float, ...]
@@ -79,7 +79,7 @@ class CurrentTable:
 
 @dataclass(frozen=True)
 class DepthTable:
-    """A quantity at increasing depths [m]; linear between them, constant beyond."""
+    """Hold a quantity at increasing depths [m]; linear between them, constant beyond."""
 
     depth: tuple[float, ...]
     value: tuple[float, ...]
@@ -87,7 +87,7 @@ class DepthTable:
 
 @dataclass(frozen=True)
 class SeaWater:
-    """Sea water by its temperature in situ [°C] and its practical salinity."""
+    """Hold the temperature in situ [°C] and the practical salinity of sea water."""
 
     temperature: DepthTable
     salinity: DepthTable
@@ -100,7 +100,7 @@ def read_current(
     problems: list[Problem],
     terms: Terms = Terms(),  # noqa: B008 (frozen)
 ) -> CurrentTable | None:
-    """A current from a table; None, with its mistakes added to `problems`, when it has any.
+    """Read a current from a table; None, with its mistakes in `problems`, if it has any.
 
     Parameters
     ----------
@@ -156,21 +156,21 @@ def read_current(
 
 
 def magnetic_columns(columns: Sequence[str]) -> tuple[list[str], set[str]]:
-    """The headings without the word for their north, and the names of those that count from it."""
+    """Return the headings without the word for their north, and the names that count from it."""
     plain = [_without_north(column) for column in columns]
     pairs = zip(columns, plain, strict=True)
     return plain, {heading(column)[0].lower() for column, other in pairs if column != other}
 
 
 def heading(column: str) -> tuple[str, str]:
-    """Name and unit of ``"depth m"``, ``"depth[m]"`` or ``"depth (m)"``; empty without a unit."""
+    """Part ``"depth m"``, ``"depth[m]"`` or ``"depth (m)"`` into name and unit (or "")."""
     name, unit = _HEADING.findall(column.strip())[0]
     bracketed = unit[:1] in ("[", "(") and unit[-1:] in ("]", ")")
     return name, unit[1:-1].strip() if bracketed else unit
 
 
 def turned_notices(columns: Sequence[str], terms: Terms) -> tuple[str, ...]:
-    """What is reported of a current whose columns counted from magnetic north."""
+    """Return what is reported of a current whose columns counted from magnetic north."""
     if terms.declination is None:
         return ()
     which = " and ".join(f"`{name}`" for name in sorted(magnetic_columns(columns)[1]))
@@ -180,7 +180,7 @@ def turned_notices(columns: Sequence[str], terms: Terms) -> tuple[str, ...]:
 def _from_magnetic_north(
     columns: Sequence[str], terms: Terms, report: Report, problems: list[Problem]
 ) -> tuple[list[str], float]:
-    """The columns without the word for their north, and by how much they are turned [degrees]."""
+    """Return the columns without the word for their north, and their turn [degrees]."""
     plain, magnetic = magnetic_columns(columns)
     if not magnetic:
         if terms.declination is not None:
@@ -209,7 +209,7 @@ def _from_magnetic_north(
 
 
 def _without_north(column: str) -> str:
-    """A heading without the word ``magnetic`` at the end of its unit."""
+    """Return a heading without the word ``magnetic`` at the end of its unit."""
     name, unit = heading(column)
     plain = _MAGNETIC.sub("", unit)
     return column if plain == unit else f"{name} {plain}".strip()
@@ -222,7 +222,7 @@ def read_water(
     problems: list[Problem],
     density: QuantityField = WATER_DENSITY,
 ) -> DepthTable | SeaWater | None:
-    """Densities [kg/m³], or sea water, from a table as that of `read_current`.
+    """Read densities [kg/m³], or sea water, from a table as that of `read_current`.
 
     Its columns are `depth`, and `density` or `temperature` and `salinity`; `density` is the
     plausible range of the fluid.
@@ -247,7 +247,7 @@ def read_profile(
     report: Report,
     problems: list[Problem],
 ) -> DepthTable | None:
-    """`temperature` [°C] or `salinity` from a table of it by depth, as that of `read_current`."""
+    """Read `temperature` [°C] or `salinity` by depth from a table as that of `read_current`."""
     before = len(problems)
     known = {"depth": _DEPTH, name: _WATER[name]}
     values = _read_columns(columns, rows, known, report, problems)
@@ -260,7 +260,7 @@ def read_profile(
 
 
 def table_of(value: object) -> TableKeys | None:
-    """The table that a value of a file is, None where it is none."""
+    """Return the table that a value of a file is, None where it is none."""
     try:
         return TableKeys.model_validate(value)
     except ValidationError:
@@ -268,24 +268,24 @@ def table_of(value: object) -> TableKeys | None:
 
 
 def report_at(section: SourceMapping, *place: str) -> Report:
-    """Tells problems at places below a key of a section, or below a key under that."""
+    """Return what makes problems at places below a key of a mapping, or below a key under that."""
     return lambda location, message: section.problem((*place, *location), message)
 
 
 def components(speed: float, toward: float) -> tuple[float, float]:
-    """East and north parts of a speed that flows toward a direction [deg from north]."""
+    """Return the east and north parts of a speed that flows toward a direction [deg from north]."""
     angle = math.radians(toward)
     return speed * math.sin(angle), speed * math.cos(angle)
 
 
 def turned_by(angle: float, u: float, v: float) -> tuple[float, float]:
-    """A flow u to the east, v to the north, turned clockwise by an angle [degrees]."""
+    """Return a flow u to the east, v to the north, turned clockwise by an angle [degrees]."""
     sine, cosine = math.sin(math.radians(angle)), math.cos(math.radians(angle))
     return u * cosine + v * sine, v * cosine - u * sine
 
 
 def speed_and_direction(u: float, v: float) -> tuple[float, float]:
-    """Speed and direction [deg from north, 0 to 360] of a flow by its east and north parts."""
+    """Return the speed and direction [deg from north, 0 to 360] of a flow by its parts."""
     return math.hypot(u, v), bearing_of(u, v)
 
 
@@ -296,7 +296,7 @@ def _read_columns(
     report: Report,
     problems: list[Problem],
 ) -> dict[str, list[float]]:
-    """The known columns by name, in SI, NaN where a value is wrong."""
+    """Return the known columns by name, in SI, NaN where a value is wrong."""
     units = _read_headings(columns, known, report, problems)
     if len(units) == len(columns) and "depth" not in units:
         problems.append(report(("columns",), "the table has no `depth` column"))
@@ -325,7 +325,7 @@ def _read_headings(
     report: Report,
     problems: list[Problem],
 ) -> dict[str, str]:
-    """The unit of each known column by its name, empty where the column gives none."""
+    """Return the unit of each known column by its name, empty where the column gives none."""
     units: dict[str, str] = {}
     for j, column in enumerate(columns):
         name, unit = heading(column)

@@ -19,7 +19,7 @@ _TOO_WIDE = "is too wide for a deviation, 25 % at most; give a pair, its 5 and 9
 
 @dataclass(frozen=True)
 class Spread:
-    """How far a figure may be off: of a share that of 1, of an angle in degrees.
+    """Say how far a figure may be off: of a share that of 1, of an angle in degrees.
 
     Attributes
     ----------
@@ -33,7 +33,7 @@ class Spread:
 
 @dataclass(frozen=True)
 class SpreadOf:
-    """Annotation of a key of `uncertainty:`.
+    """Annotate a key of `uncertainty:` with what may stand there.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class SpreadOf:
     end: QuantityField
 
     def read(self, value: object) -> Spread:
-        """Of one text with a unit, or of two in a list."""
+        """Read one text with a unit, or two in a list."""
         if not isinstance(value, list | tuple):
             return Spread(self._deviation(value))
         if len(value) != 2:

@@ -24,7 +24,7 @@ class EnvironmentFileKeys(Model):
 def choose_environment(
     top: SourceMapping, chosen: str | Path | None, problems: list[Problem], *, towed: bool
 ) -> tuple[SourceMapping, str | None] | None:
-    """The `environment` of a file, or the chosen one laid over it, and its name; yet to be read.
+    """Return the `environment` of a file, or the chosen one laid over it, and its name; unread.
 
     Variants that are not chosen, and the own environment where another one is, are checked here,
     so that mistakes are reported where they are. None where there is no environment.

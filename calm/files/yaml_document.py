@@ -24,7 +24,7 @@ Location = tuple[str | int, ...]
 
 @dataclass(frozen=True)
 class Document:
-    """A YAML file as plain data, with places counted from 1.
+    """Hold a YAML file as plain data, with places counted from 1.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class Document:
     def problem(
         self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""
     ) -> Problem:
-        """A problem at a value (or at its key), or at the nearest thing around it that exists."""
+        """Put a problem at a value (or its key), or at the nearest thing around it that exists."""
         location = tuple(location)
         places = self.keys if key else self.values
         while location and location not in places:
@@ -65,7 +65,7 @@ def read_document(path: Path) -> Document:
 
 
 def compose(name: str, text: str) -> Document:
-    """The document of a text, as that of a file or in place of one.
+    """Return the document of a text, as that of a file or in place of one.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def read_text(path: Path, *, largest: int = LARGEST_FILE) -> str:
 
 
 def read_content(path: Path, *, largest: int = LARGEST_FILE) -> bytes:
-    """The bytes of a small regular file, or raise InputError; nothing else is opened."""
+    """Return the bytes of a small regular file, or raise InputError; nothing else is opened."""
     try:
         if path.is_dir():
             raise _refused(path, "is a folder; a file is needed")
@@ -127,7 +127,7 @@ def read_content(path: Path, *, largest: int = LARGEST_FILE) -> bytes:
 
 
 def decoded(path: Path, content: bytes) -> str:
-    """The text of a file with its byte order mark, or raise InputError."""
+    """Return the text of a file with its byte order mark, or raise InputError."""
     if b"\0" in content:
         raise _refused(path, "is a binary file; text is needed")
     try:
@@ -143,7 +143,7 @@ def _refused(path: Path, message: str, line: int = 0) -> InputError:
 
 @dataclass(frozen=True)
 class SourceMapping:
-    """A mapping within a document, possibly laid over a mapping of another one.
+    """Represent a mapping within a document, possibly laid over a mapping of another one.
 
     Attributes
     ----------
@@ -163,21 +163,21 @@ class SourceMapping:
 
     @classmethod
     def of(cls, document: Document, location: Location, data: dict[str, Any]) -> SourceMapping:
-        """The mapping `data` that stands at `location` of a document."""
+        """Return the mapping `data` that stands at `location` of a document."""
         return cls(document, location, data, None, frozenset(data))
 
     def over(self, base: SourceMapping, *, dropping: frozenset[str] = frozenset()) -> SourceMapping:
-        """This mapping laid over another one, of which some keys are dropped."""
+        """Lay this mapping over another one, of which some keys are dropped."""
         kept = {key: value for key, value in base.data.items() if key not in dropping}
         return SourceMapping(self.document, self.location, {**kept, **self.data}, base, self.own)
 
     def child(self, key: str) -> SourceMapping:
-        """The mapping under a key."""
+        """Return the mapping under a key."""
         home = self.home(key)
         return SourceMapping.of(home.document, (*home.location, key), self.data[key])
 
     def home(self, key: str | int) -> SourceMapping:
-        """The layer that a key comes from."""
+        """Return the layer that a key comes from."""
         if self.base is None or key in self.own or key not in self.data:
             return self
         return self.base.home(key)
@@ -185,7 +185,7 @@ class SourceMapping:
     def problem(
         self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""
     ) -> Problem:
-        """A problem at a value below this mapping, or at its key."""
+        """Return a problem at a value below this mapping, or at its key."""
         home = self.home(location[0]) if location else self
         place = (*home.location, *location)
         return home.document.problem(place, message, key=key, lacks=lacks)

@@ -22,5 +22,5 @@ TEMPLATES: dict[Template, str] = {
 
 
 def template(kind: Template) -> str:
-    """The text of the file of a kind."""
+    """Return the text of the file of a kind."""
     return (files("calm.templates") / f"{kind}.yaml").read_text(encoding="utf-8")

@@ -27,11 +27,11 @@ NAMED = ("components", "environments")
 
 
 class EditError(CalmError):
-    """A change that cannot be made to the text as it stands."""
+    """Say that a change cannot be made to the text as it stands."""
 
 
 class Page:
-    """A text that ends in a line break, its nodes and its manner."""
+    """Hold a text that ends in a line break, its nodes and how it is written."""
 
     def __init__(self, text: str, root: Node, layout: WritingStyle) -> None:
         self.text = text
@@ -39,18 +39,18 @@ class Page:
         self.layout = layout
 
     def node(self, location: Location) -> Node | None:
-        """What stands at a location, None where nothing does."""
+        """Return what stands at a location, None where nothing does."""
         node: Node | None = self.root
         for step in location:
-            node = child_of(node, step) if node else None
+            node = _child_of(node, step) if node else None
         return node
 
     def put(self, location: Location, value: Value) -> list[Patch]:
-        """A value at a location, with the mappings that lead to it."""
+        """Put a value at a location, with the mappings that lead to it."""
         outer: Node | None = None
         node = self.root
         for depth, step in enumerate(location):
-            child = child_of(node, step)
+            child = _child_of(node, step)
             if child is None:
                 new = nested(location[depth:], value)
                 if node.kind == "mapping" and (node.keys or outer is None or not depth):
@@ -76,14 +76,14 @@ class Page:
         return [set_scalar(old, value, flow=outer.style == "flow")]
 
     def remove(self, location: Location) -> list[Patch]:
-        """A key taken out."""
+        """Take a key out."""
         outer = self.node(location[:-1])
         assert outer is not None
         at = [key.data for key in outer.keys].index(location[-1])
         return remove_entry(self.text, outer, at)
 
     def items(self, location: Location) -> Items:
-        """The items of the list at a location, which has some."""
+        """Return the items of the list at a location, which has some."""
         node = self.node(location)
         assert node is not None
         items = items_of(self.text, node)
@@ -93,7 +93,7 @@ class Page:
         return items
 
     def known(self, location: Location, indices: Iterable[int]) -> list[int]:
-        """Indices of items of a list in its order, each once."""
+        """Return the indices of items of a list in its order, each once."""
         node = self.node(location)
         count = len(node.children) if node is not None and node.kind == "sequence" else 0
         known = sorted(set(indices))
@@ -104,7 +104,7 @@ class Page:
         return known
 
     def copy(self, location: Location, indices: Iterable[int]) -> tuple[str, ...]:
-        """The text of items of a list by themselves, with their comments."""
+        """Return the text of items of a list by themselves, with their comments."""
         known = self.known(location, indices)
         node = self.node(location)
         if not known or node is None:
@@ -113,7 +113,7 @@ class Page:
         return tuple(snippet_of(items.slots[i], node.children[i], items) for i in known)
 
     def add(self, location: Location, index: int, values: Sequence[Value]) -> list[Patch]:
-        """New items in a list, which may not exist yet."""
+        """Put new items into a list, which may not exist yet."""
         node = self.node(location)
         if node is None or not node.children:
             return self.put(location, values)
@@ -128,7 +128,7 @@ class Page:
         return [items.patch()]
 
     def rows(self, location: Location, rows: Sequence[Sequence[str | None]]) -> list[Patch]:
-        """The rows of a table, those that are there already as they stand."""
+        """Put in the rows of a table; those that are there already stay as they stand."""
         node = self.node(location)
         if node is None or not node.children or not rows or node.kind != "sequence":
             return self.put(location, rows)
@@ -147,7 +147,7 @@ class Page:
 
 
 def _opens(location: Location, node: Node) -> bool:
-    """Whether definitions are written a key a line: where the others of their section are."""
+    """Return whether definitions are written a key a line, as the others of their section."""
     if location not in [(name,) for name in NAMED]:
         return False
     return not node.children or any(child.style == "block" for child in node.children)
@@ -157,8 +157,8 @@ def _shown(location: Location) -> str:
     return "`" + ".".join(map(str, location)) + "`"
 
 
-def child_of(node: Node, step: str | int) -> Node | None:
-    """What stands below a node under a key or number."""
+def _child_of(node: Node, step: str | int) -> Node | None:
+    """Return what stands below a node under a key or number."""
     if node.kind == "mapping":
         named = zip(node.keys, node.children, strict=True)
         return next((child for key, child in named if key.data == step), None)
@@ -168,7 +168,7 @@ def child_of(node: Node, step: str | int) -> Node | None:
 
 
 def nested(location: Location, value: Value) -> dict[str, Value]:
-    """Mappings that lead to a value."""
+    """Return the mappings that lead to a value."""
     for step in reversed(location):
         value = {str(step): value}
     assert isinstance(value, dict)
@@ -176,7 +176,7 @@ def nested(location: Location, value: Value) -> dict[str, Value]:
 
 
 def data_of(value: Value) -> Any:
-    """What is read again of a value."""
+    """Return what is read again of a value."""
     if value is None or isinstance(value, str):
         return value
     if isinstance(value, Mapping):
@@ -185,7 +185,7 @@ def data_of(value: Value) -> Any:
 
 
 def with_value(data: Any, location: Location, value: Value) -> Any:
-    """Data with another value at a location; mappings that lead to it are made."""
+    """Return the data with another value at a location; mappings that lead to it are made."""
     if not location:
         return data_of(value)
     step, below = location[0], location[1:]
@@ -196,7 +196,7 @@ def with_value(data: Any, location: Location, value: Value) -> Any:
 
 
 def without(data: Any, location: Location) -> Any:
-    """Data without a key."""
+    """Return the data without a key."""
     step, below = location[0], location[1:]
     if isinstance(data, list):
         return [without(one, below) if i == step else one for i, one in enumerate(data)]
@@ -206,7 +206,7 @@ def without(data: Any, location: Location) -> Any:
 
 
 def has_control(data: Any) -> bool:
-    """Whether a text of some data has signs that only control how the others are shown."""
+    """Return whether a text of some data has signs that only control how the others are shown."""
     if isinstance(data, str):
         return any(category(sign) in ("Cc", "Cf") for sign in data if sign not in "\t\n\r")
     parts = [*data, *data.values()] if isinstance(data, dict) else data or ()
@@ -216,7 +216,7 @@ def has_control(data: Any) -> bool:
 def cells_that_differ(
     old: Any, new: Sequence[Sequence[str | None]]
 ) -> list[tuple[int, int, str]] | None:
-    """Row, column and text of each value in which tables of the same shape differ.
+    """Return the row, column and text of each value in which tables of the same shape differ.
 
     None where they have not the same shape, or a value goes without another in its place.
     """
@@ -233,7 +233,7 @@ def cells_that_differ(
 
 
 def _shape(rows: Any) -> list[int]:
-    """How many values each row has, -1 where it is no row."""
+    """Return how many values each row has, -1 where it is no row."""
     if not isinstance(rows, list | tuple):
         return []
     return [len(row) if isinstance(row, list | tuple) else -1 for row in rows]

@@ -14,7 +14,7 @@ _LINE_BREAK = re.compile(r"\r\n|\n")
 
 @dataclass(frozen=True)
 class LineItem:
-    """An item of a line, or a clamp of one.
+    """Represent an item of a line, or a clamp of one.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class LineItem:
 
 
 def item_of(node: Node, text: str, *, lines: str = "") -> LineItem:
-    """The item that a node of a text is; `lines` where it takes more of the text than its own."""
+    """Return the item of a node of a text; `lines` where it takes more of the text than its own."""
     entries = list(zip(node.keys, node.children, strict=False))
     values = {key.data: child.data or "" for key, child in entries if child.kind == "scalar"}
     clamps = [child for key, child in entries if key.data == "clamps" and child.kind == "sequence"]
@@ -53,7 +53,7 @@ def item_of(node: Node, text: str, *, lines: str = "") -> LineItem:
 
 
 def new_slot(value: Value, items: Items, layout: WritingStyle, *, block: bool) -> Slot:
-    """A new item for a list, written after its form; `block`: a key a line where that can be."""
+    """Write a new item for a list, after its form; `block`: a key a line where that can be."""
     if items.form == "block":
         return Slot(layout.item(value, items.column, block=block))
     if items.form == "rows":
@@ -62,7 +62,7 @@ def new_slot(value: Value, items: Items, layout: WritingStyle, *, block: bool) -
 
 
 def worded_slot(wording: Wording, items: Items, layout: WritingStyle) -> Slot:
-    """An item for a list as it is worded; what stands in brackets in one line loses comments."""
+    """Place an item as it is worded; within brackets in one line it loses its comments."""
     if items.form == "block":
         return Slot(layout.moved(wording.lines, items.column))
     if items.form == "rows":
@@ -73,7 +73,7 @@ def worded_slot(wording: Wording, items: Items, layout: WritingStyle) -> Slot:
 
 
 def snippet_of(slot: Slot, node: Node, items: Items) -> str:
-    """The text of an item by itself, as an item of a block list that begins in column 1."""
+    """Return the text of an item by itself, as an item of a block list that begins in column 1."""
     if items.form == "inline":
         return _LINE_BREAK.sub("\n", f"- {slot.value}\n")
     text = slot.text
@@ -86,7 +86,7 @@ def snippet_of(slot: Slot, node: Node, items: Items) -> str:
 
 
 def read_snippet(snippet: str) -> Wording | None:
-    """The item that a text as that of `snippet_of` is; None where it is none."""
+    """Return the item that a text as that of `snippet_of` is; None where it is none."""
     composition = compose(snippet)
     root = composition.root
     if root is None or composition.refusals or (root.kind, root.style) != ("sequence", "block"):

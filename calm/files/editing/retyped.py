@@ -12,14 +12,14 @@ _ENDINGS = ("\r\n", "\n", "\r")
 
 
 class TextLine(NamedTuple):
-    """What a line says, and the line break after it: none after the last."""
+    """Hold what a line says, and the line break after it: none after the last."""
 
     text: str
     line_break: str
 
 
 def lines_of(text: str) -> list[TextLine]:
-    """The lines of a text as `str.splitlines` has them; an empty one after the last line break."""
+    """Split a text as `str.splitlines` does; an empty line follows the last line break."""
     lines = [TextLine(one.splitlines()[0], one) for one in text.splitlines(keepends=True)]
     found = [TextLine(text, whole[len(text) :]) for text, whole in lines]
     if not text or text.endswith(_ENDINGS):
@@ -28,7 +28,7 @@ def lines_of(text: str) -> list[TextLine]:
 
 
 def retyped(text: str, lines: Sequence[str]) -> str:
-    """A text after an editor has made these lines of it.
+    """Return a text after an editor has made these lines of it.
 
     Lines that are as they were keep their line breaks, and so does one that another one took the
     place of; those of new lines follow the manner of the file.
@@ -47,7 +47,7 @@ def retyped(text: str, lines: Sequence[str]) -> str:
 
 
 def _taken_from(old: Sequence[str], new: Sequence[str]) -> list[int | None]:
-    """For each new line the old one that it is, or that it took the place of."""
+    """Return for each new line the old one that it is, or that it took the place of."""
     # Comparing is slow, and most often only a line differs.
     head = _alike(old, new)
     tail = min(_alike(old[::-1], new[::-1]), len(old) - head, len(new) - head)
@@ -61,6 +61,6 @@ def _taken_from(old: Sequence[str], new: Sequence[str]) -> list[int | None]:
 
 
 def _alike(old: Sequence[str], new: Sequence[str]) -> int:
-    """With how many lines both begin."""
+    """Count the lines with which both begin."""
     pairs = enumerate(zip(old, new, strict=False))
     return next((i for i, (one, other) in pairs if one != other), min(len(old), len(new)))

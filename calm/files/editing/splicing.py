@@ -11,13 +11,13 @@ from typing import Literal, NamedTuple
 from calm.files.composition import Node
 from calm.files.editing.writing import SECTIONS, Value, WritingStyle, inline, place_of, written
 
-COMMENT = re.compile(r"[ \t]*#[^\n]*(?:\n|\Z)")
-BEHIND = re.compile(r"[ \t]*(?:#[^\n]*)?(?:\r?\n|\Z)")
+_COMMENT = re.compile(r"[ \t]*#[^\n]*(?:\n|\Z)")
+_BEHIND = re.compile(r"[ \t]*(?:#[^\n]*)?(?:\r?\n|\Z)")
 """What may follow a value on its line: a comment."""
 
 
 class Patch(NamedTuple):
-    """A part of a text, from start to end, and what comes in its place."""
+    """Hold a part of a text, from start to end, and what comes in its place."""
 
     start: int
     end: int
@@ -25,7 +25,7 @@ class Patch(NamedTuple):
 
 
 def patched(text: str, patches: Iterable[Patch]) -> str:
-    """A text with parts of it replaced; of two at one place the first comes first."""
+    """Return a text with parts of it replaced; of two at one place the first comes first."""
     pieces: list[str] = []
     done = 0
     for patch in sorted(patches, key=lambda one: one[:2]):
@@ -35,36 +35,36 @@ def patched(text: str, patches: Iterable[Patch]) -> str:
 
 
 def line_start(text: str, place: int) -> int:
-    """Where the line of a place begins."""
+    """Return where the line of a place begins."""
     return text.rfind("\n", 0, place) + 1 or int(text.startswith("\ufeff"))
 
 
 def line_end(text: str, place: int) -> int:
-    """Where the line after that of a place begins."""
+    """Return where the line after that of a place begins."""
     found = text.find("\n", place)
     return len(text) if found < 0 else found + 1
 
 
-def first_on_line(text: str, place: int) -> bool:
-    """Whether only spaces stand before a place on its line."""
+def _first_on_line(text: str, place: int) -> bool:
+    """Return whether only spaces stand before a place on its line."""
     return not text[line_start(text, place) : place].strip(" \t")
 
 
-def own_end(text: str, place: int, column: int) -> int:
-    """Where the lines of something end, of which `place` is the end of the value.
+def _own_end(text: str, place: int, column: int) -> int:
+    """Return where the lines of something end, of which `place` is the end of the value.
 
     Comments directly below that stand further right than its `column` (from 1) are its own.
     """
     end = line_end(text, place)
-    while (comment := COMMENT.match(text, end)) and end < len(text):
+    while (comment := _COMMENT.match(text, end)) and end < len(text):
         if _column(comment.group()) <= column:
             break
         end = comment.end()
     return end
 
 
-def own_start(text: str, place: int, least: int, column: int | None = None) -> int:
-    """Where the lines of something begin that starts at `place`, the first on its line.
+def _own_start(text: str, place: int, least: int, column: int | None = None) -> int:
+    """Return where the lines of something begin that starts at `place`, the first on its line.
 
     Comments directly above it are its own, but not above `least`, and not those further right
     than a `column`, which belong to what is above.
@@ -72,7 +72,7 @@ def own_start(text: str, place: int, least: int, column: int | None = None) -> i
     start = line_start(text, place)
     while start > least:
         above = line_start(text, start - 1)
-        comment = COMMENT.match(text, above)
+        comment = _COMMENT.match(text, above)
         if above < least or comment is None or comment.end() != start:
             break
         if column is not None and _column(comment.group()) > column:
@@ -89,7 +89,7 @@ _COMMA = re.compile(r"(?:\s|#[^\n]*\n)*,")
 
 
 class Slot(NamedTuple):
-    """The text of an item: up to the end of its value, and what follows it (no comma).
+    """Hold the text of an item up to the end of its value, and what follows it (no comma).
 
     Where items have lines of their own it is these lines, comments that belong to it included.
     """
@@ -99,13 +99,13 @@ class Slot(NamedTuple):
 
     @property
     def text(self) -> str:
-        """The whole of it."""
+        """Return the whole of it."""
         return self.value + self.behind
 
 
 @dataclass
 class Items:
-    """The items of a list, of which there is at least one, in a text.
+    """Hold the items of a list, of which there is at least one, in a text.
 
     Attributes
     ----------
@@ -157,7 +157,7 @@ class Items:
             self.gaps[0], self.gaps[1] = self.gaps[1], separator
 
     def patch(self) -> Patch:
-        """What comes in place of the list."""
+        """Return what comes in place of the list."""
         pieces: list[str] = []
         last = len(self.slots) - 1
         for i, (gap, slot) in enumerate(zip(self.gaps, self.slots, strict=True)):
@@ -167,12 +167,12 @@ class Items:
 
 
 def _comment(gap: str) -> str:
-    """What stays of a separator whose comma goes."""
+    """Return what stays of a separator whose comma goes."""
     return gap.replace(",", "", 1) if "#" in gap else ""
 
 
 def items_of(text: str, node: Node) -> Items | None:
-    """The items of a list in a text that ends in a line break; None where they are entangled."""
+    """Take apart a list in a text that ends in a line break; None where its items are entangled."""
     if node.style == "block":
         return _block(text, node)
     return _rows(text, node) or _inline(text, node)
@@ -180,37 +180,37 @@ def items_of(text: str, node: Node) -> Items | None:
 
 def _block(text: str, node: Node) -> Items | None:
     dash = re.compile(rf"^[ ]{{{node.column - 1}}}-(?=\s)", re.MULTILINE)
-    if not first_on_line(text, node.start):
+    if not _first_on_line(text, node.start):
         return None
-    starts, ends = [own_start(text, node.start, 0)], []
+    starts, ends = [_own_start(text, node.start, 0)], []
     for child, following in zip(node.children, (*node.children[1:], None), strict=True):
-        ends.append(own_end(text, child.end, node.column))
+        ends.append(_own_end(text, child.end, node.column))
         if following is not None:
             found = dash.search(text, line_end(text, child.end))
             if found is None:
                 return None
-            starts.append(own_start(text, found.start(), ends[-1], node.column))
+            starts.append(_own_start(text, found.start(), ends[-1], node.column))
     slots = [Slot(text[start:end]) for start, end in zip(starts, ends, strict=True)]
     gaps = ["", *(text[end:start] for end, start in zip(ends, starts[1:], strict=False))]
     return Items(starts[0], ends[-1], "block", node.column, slots, gaps)
 
 
 def _rows(text: str, node: Node) -> Items | None:
-    """A list in brackets, an item to a line or to several; None where it is no such list."""
+    """Take apart a list in brackets, items on lines of their own; None where it is no such list."""
     starts: list[int] = []
     ends: list[int] = []
     slots: list[Slot] = []
     gaps: list[str] = []
     comma = False
     for child in node.children:
-        if not first_on_line(text, child.start):
+        if not _first_on_line(text, child.start):
             return None
         least = ends[-1] if ends else line_end(text, node.start)
         if line_start(text, child.start) < least:
             return None
-        start = own_start(text, child.start, least)
+        start = _own_start(text, child.start, least)
         comma = text.startswith(",", child.end)
-        behind = BEHIND.match(text, child.end + comma)
+        behind = _BEHIND.match(text, child.end + comma)
         if behind is None:
             return None
         gaps.append(text[ends[-1] : start] if ends else "")
@@ -219,7 +219,7 @@ def _rows(text: str, node: Node) -> Items | None:
         ends.append(behind.end())
     if any(not text.startswith(",", child.end) for child in node.children[:-1]):
         return None
-    if not first_on_line(text, node.end - 1) or (not comma and _COMMA.match(text, ends[-1])):
+    if not _first_on_line(text, node.end - 1) or (not comma and _COMMA.match(text, ends[-1])):
         return None
     column = node.children[0].column
     return Items(starts[0], ends[-1], "rows", column, slots, gaps, "", comma)
@@ -240,7 +240,7 @@ _BLANK_LINE = re.compile(r"^[ \t]*\r?\n(?=(?:[ ]*#.*\n|[ \t]*\r?\n)*\S)", re.MUL
 def add_entry(
     text: str, mapping: Node, name: str, value: Value, layout: WritingStyle, *, open: bool = False
 ) -> list[Patch]:
-    """A key that a mapping does not have, and its value, where the format has it.
+    """Write a key that a mapping does not have, and its value, where the format has it.
 
     `open` writes a mapping below its key even where it is short.
     """
@@ -250,11 +250,11 @@ def add_entry(
     column = mapping.column
     lines = layout.entry(name, value, column, open=open)
     if at:
-        place = own_end(text, mapping.children[at - 1].end, column)
+        place = _own_end(text, mapping.children[at - 1].end, column)
         apart = column == 1 and name in SECTIONS and _BLANK_LINE.search(text)
         return [Patch(place, place, (layout.line_break if apart else "") + lines)]
     first = mapping.keys[0].start
-    if first_on_line(text, first):
+    if _first_on_line(text, first):
         place = _start(text, mapping, 0)
         return [Patch(place, place, lines)]
     indent = column - 1
@@ -262,13 +262,13 @@ def add_entry(
 
 
 def _start(text: str, mapping: Node, at: int) -> int:
-    """Where the lines of a key begin, the first on its line: with the comments directly above.
+    """Return where the lines of a key, the first on its line, and the comments above begin.
 
     Those that a file begins with are about the file.
     """
-    least = own_end(text, mapping.children[at - 1].end, mapping.column) if at else 0
+    least = _own_end(text, mapping.children[at - 1].end, mapping.column) if at else 0
     key = mapping.keys[at].start
-    start = own_start(text, key, least, mapping.column)
+    start = _own_start(text, key, least, mapping.column)
     is_head = mapping.column == 1 and start == line_start(text, 0)
     return line_start(text, key) if is_head else start
 
@@ -287,14 +287,14 @@ def _flow_entry(text: str, mapping: Node, at: int, entry: str) -> Patch:
 
 
 def remove_entry(text: str, mapping: Node, at: int) -> list[Patch]:
-    """A key and its value taken out, and the comments directly above it and further right below."""
+    """Take out a key, its value and the comments directly above it and further right below."""
     if len(mapping.keys) == 1:
         return [Patch(mapping.start, mapping.end, "{}")]
     if mapping.style == "flow":
         return _without_flow_entry(text, mapping, at)
     start = mapping.keys[at].start
-    end = own_end(text, mapping.children[at].end, mapping.column)
-    if first_on_line(text, start):
+    end = _own_end(text, mapping.children[at].end, mapping.column)
+    if _first_on_line(text, start):
         return [Patch(_start(text, mapping, at), end, "")]
     # On the line of a dash: what comes next moves up to it.
     end += len(text[end:]) - len(text[end:].lstrip(" "))
@@ -324,9 +324,9 @@ def _comma_first(between: str) -> bool:
 
 
 def _with_lines(text: str, start: int, end: int) -> tuple[int, int]:
-    """The whole of the lines of a part that has them for itself, but for a comment."""
-    comment = COMMENT.match(text, end)
-    if not first_on_line(text, start) or not (comment or text[end:].lstrip(" \t\r")[:1] == "\n"):
+    """Return the whole of the lines of a part that has them for itself, but for a comment."""
+    comment = _COMMENT.match(text, end)
+    if not _first_on_line(text, start) or not (comment or text[end:].lstrip(" \t\r")[:1] == "\n"):
         return start, end
     return line_start(text, start), line_end(text, end)
 
@@ -334,7 +334,7 @@ def _with_lines(text: str, start: int, end: int) -> tuple[int, int]:
 def set_value(
     text: str, mapping: Node, at: int, value: Value, layout: WritingStyle, *, open: bool = False
 ) -> list[Patch]:
-    """Another value for a key."""
+    """Give a key another value."""
     key, old = mapping.keys[at], mapping.children[at]
     if isinstance(value, str) and old.kind == "scalar" and old.data is not None:
         return [set_scalar(old, value, flow=mapping.style == "flow")]
@@ -348,7 +348,7 @@ def set_value(
     assert colon is not None
     if mapping.style == "block" and old.line > key.line:
         # Lines below the key: a comment behind the key stays.
-        start, end = line_end(text, colon), own_end(text, old.end, old.column - 1)
+        start, end = line_end(text, colon), _own_end(text, old.end, old.column - 1)
         return [Patch(colon, colon, head), Patch(start, end, below)]
     patches = [Patch(colon, old.end, head)]
     if below:
@@ -358,12 +358,12 @@ def set_value(
 
 
 def set_scalar(old: Node, value: str, *, flow: bool) -> Patch:
-    """Another text for a scalar, quoted as it was."""
+    """Write another text for a scalar, quoted as it was."""
     quote = old.style if old.style in "'\"" else ""
     return Patch(old.start, old.end, written(value, flow=flow, quote=quote))
 
 
 def _colon(text: str, place: int) -> int | None:
-    """The place after the colon of a key that ends at a place; None where it has none."""
+    """Return the place after the colon of a key that ends at a place; None where it has none."""
     found = re.compile(r"\s*:").match(text, place)
     return found.end() if found else None
