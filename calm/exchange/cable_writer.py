@@ -21,7 +21,7 @@ _APART = 0.5  # m between nodes, where that many suffice
 
 @dataclass
 class _Problem:
-    """The sections of the file, as they grow from the lower end up, for water of one density."""
+    """Gather the sections of the file from the lower end up, for water of one density."""
 
     density: float
     materials: dict[str, str] = field(default_factory=dict)
@@ -31,7 +31,7 @@ class _Problem:
     last: tuple[str, float] = ("", 0.0)
 
     def segment(self, name: str, length: float) -> None:
-        """A length of a material, after what acts at its lower end."""
+        """Add a length of a material, after what acts at its lower end."""
         if length <= 0.0:
             return
         if self.load is None and self.last[0] == name:
@@ -66,7 +66,7 @@ class _Problem:
 
 
 def cbl_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
-    """The content of the file, and what it cannot hold."""
+    """Return the content of the file, and what it cannot hold."""
     lost: list[str] = []
     density = design.mean_density
     problem = _Problem(density)
@@ -111,7 +111,7 @@ def cbl_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
 
 
 def _lay(problem: _Problem, part: ExportedPart, lost: list[str]) -> None:
-    """A part, from its lower end up."""
+    """Lay a part from its lower end up."""
     if part.flexible or (part.directional and part.length > 0.0):
         name = _material(problem, part)
         below = part.length
@@ -134,7 +134,7 @@ def _lay(problem: _Problem, part: ExportedPart, lost: list[str]) -> None:
 
 
 def _link(problem: _Problem) -> str:
-    """A stiff material without weight and drag, as long as a rigid piece is."""
+    """Return a stiff material without weight and drag, as long as a rigid piece is."""
     figures = (
         f"d = 0.001  m = {_LEAST_MASS}  wet = {_LEAST_WEIGHT}  Cdn = 0  Cdt = 0"
         f"  EA = {_RIGID:g}  EI = 1e-4  GJ = 1e-4"
@@ -143,7 +143,7 @@ def _link(problem: _Problem) -> str:
 
 
 def _material(problem: _Problem, part: ExportedPart) -> str:
-    """The material of a cable, a chain or a cylinder, per metre."""
+    """Return the material of a cable, a chain or a cylinder, per metre."""
     per = 1.0 if part.flexible else part.length
     wet, across = 0.0 - part.net / per, part.diameter or part.area() / per
     normal = part.area(problem.density) / per / across if across else 0.0
@@ -161,7 +161,7 @@ def _material(problem: _Problem, part: ExportedPart) -> str:
 
 
 def _word(text: str) -> str:
-    """A name as that program's words are: it begins with a letter."""
+    """Return a name as that program's words are: it begins with a letter."""
     word = "".join(sign if sign.isalnum() and sign.isascii() else "_" for sign in text)
     return word if word[:1].isalpha() else f"n_{word}"
 
@@ -280,7 +280,7 @@ def buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost:
 
 
 def _windage(part: ExportedPart, design: ExportedLine) -> str:
-    """The area of a float in the wind, where there is wind or the file gives it."""
+    """Return the area of a float in the wind, where there is wind or the file gives it."""
     component = part.component
     if not isinstance(component, Rigid):
         return ""

@@ -35,7 +35,7 @@ _FORCES = {"buoyancy", "weight"}
 
 @dataclass
 class Written:
-    """The text of a mooring file, and what was guessed in it."""
+    """Hold the text of a mooring file, and what was guessed in it."""
 
     text: str
     guessed: list[Remark]
@@ -43,7 +43,7 @@ class Written:
 
 @dataclass
 class _Page:
-    """The lines so far, and the guesses in their comments."""
+    """Hold the lines so far, and the guesses in their comments."""
 
     lines: list[str] = field(default_factory=list)
     guessed: list[Remark] = field(default_factory=list)
@@ -64,7 +64,7 @@ class _Page:
 def written(
     design: Design, source: str, environment: list[str] | None = None, version: str = ""
 ) -> Written:
-    """The mooring file of a design.
+    """Return the mooring file of a design.
 
     Parameters
     ----------
@@ -112,12 +112,12 @@ def written(
 
 
 def number(value: float) -> str:
-    """A number as people write it, with nine digits at most."""
+    """Return a number as people write it, with nine digits at most."""
     return f"{value:.9g}"
 
 
 def quoted(text: str) -> str:
-    """A text as YAML has it, plain where it can be."""
+    """Return a text as YAML has it, plain where it can be."""
     text = one_line(text)
     if _PLAIN.match(text) and text == text.strip() and text.lower() not in _WORDS_OF_YAML:
         return text
@@ -240,7 +240,15 @@ def _write_component(
 
 
 def figure_text(key: str, value: FigureOrWord, *, per_metre: bool, in_kilograms: bool) -> str:
-    """A figure of a component as the mooring file has it."""
+    """Return a figure of a component as the mooring file has it.
+
+    Parameters
+    ----------
+    key : field of the component
+    value : in SI
+    per_metre : whether forces and masses are those of a metre
+    in_kilograms : whether forces are shown in kilograms-force
+    """
     if isinstance(value, str):
         return quoted(value)
     if key in _FORCES:

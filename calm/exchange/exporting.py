@@ -19,7 +19,7 @@ from calm.files.mistakes import unknown
 
 @dataclass(frozen=True)
 class Exported:
-    """The content of a file for another program, what it cannot hold, and the files beside it."""
+    """Hold the content of a file for another program, what it cannot hold, and files beside it."""
 
     content: bytes
     lost: tuple[str, ...]
@@ -33,7 +33,7 @@ HEADER = (
 
 
 def csv_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
-    """The content of the file, and what it cannot hold."""
+    """Return the content of the file, and what it cannot hold."""
     lost = ["the water", "hulls and wind: floats drag in full at the surface"]
     if design.tow is not None:
         lost.append("the speed of the ship: a list is a mooring's")
@@ -68,7 +68,7 @@ def _row(part: ExportedPart, at: str) -> list[str]:
 
 
 def _cell(text: str) -> str:
-    """A text that no spreadsheet takes for a formula."""
+    """Return a text that no spreadsheet takes for a formula."""
     return f"'{text}" if text.startswith(("=", "+", "-", "@")) else text
 
 

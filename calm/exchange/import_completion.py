@@ -37,6 +37,12 @@ def hold(design: Design, environment: list[str] | None, output: Path) -> None:
 
     The shape of the line does not depend on it. The weight is what `calm check` asks for in this
     current. A line without an equilibrium is left to `calm run`, which says so.
+
+    Parameters
+    ----------
+    design : whose anchor is changed
+    environment : lines in place of the water of the design
+    output : path of the mooring file to come
     """
     anchor = design.items[-1].component if design.items and design.tow is None else None
     if anchor is None or anchor.kind != "anchor":
@@ -63,7 +69,7 @@ def hold(design: Design, environment: list[str] | None, output: Path) -> None:
 def _pull(
     design: Design, anchor: ImportedComponent, environment: list[str] | None, output: Path
 ) -> tuple[float | None, float]:
-    """The upward pull of the line, and the weight that holds it [N]."""
+    """Return the upward pull of the line, and the weight that holds it [N]."""
     figures = dict(anchor.figures)
     anchor.figures.pop("mass", None)
     anchor.figures["weight"] = _HOLDS
@@ -80,7 +86,7 @@ def _pull(
 
 @dataclass(frozen=True)
 class CatalogueMatch:
-    """A component, by its name in the file, and the catalogue entry used in its place."""
+    """Name a component, as the file has it, and the catalogue entry used in its place."""
 
     name: str
     entry: str
@@ -135,7 +141,7 @@ def _words(text: str) -> set[str]:
 
 
 def _weighs_alike(one: Component, other: Component) -> bool:
-    """Whether a component without a size in the file has the net force of an entry."""
+    """Return whether a component without a size in the file has the net force of an entry."""
     if not isinstance(other, Rigid):
         return False
     a, b = one.net_buoyancy, other.net_buoyancy
@@ -155,12 +161,12 @@ def _agree(one: Component, other: Component) -> bool:
 
 
 def _drag(component: Component) -> float:
-    """At 1 m/s across it [N], of a cable or chain per metre."""
+    """Return the drag at 1 m/s across it [N], of a cable or chain per metre."""
     return drag_of(component, getattr(component, "length", 1.0))[0]
 
 
 def environment_lines(path: Path, output: Path) -> list[str]:
-    """The `environment` of a file, its paths relative to the folder of the mooring file.
+    """Return the `environment` of a file, its paths relative to the folder of the mooring file.
 
     Raises
     ------

@@ -25,7 +25,7 @@ from calm.version import __version__
 
 @dataclass(frozen=True)
 class ImportOptions:
-    """The options of a command line.
+    """Hold the options of a command line.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class ImportOptions:
 
 @dataclass(frozen=True)
 class ImportFormat:
-    """A format of files that can be imported: its name, how it is recognised and read."""
+    """Describe a format that can be imported: its name, how it is recognised and read."""
 
     name: str
     program: str
@@ -79,7 +79,7 @@ FORMATS = (
 
 @dataclass(frozen=True)
 class Imported:
-    """A mooring file made of another program's file.
+    """Hold a mooring file made of another program's file.
 
     Attributes
     ----------
@@ -158,7 +158,7 @@ def import_file(
 
 
 def format_of(path: Path, name: str | None, *, listed: bool = False) -> ImportFormat:
-    """The format of a file: as named, or by its content.
+    """Return the format of a file: as named, or by its content.
 
     Parameters
     ----------
@@ -200,7 +200,7 @@ def _check(path: Path, output: Path, text: str) -> None:
 
 
 def _blamed(problem: Problem, text: str) -> str:
-    """A mistake of the mooring file, with the line it is in."""
+    """Return a mistake of the mooring file, with the line it is in."""
     lines: Sequence[str] = text.splitlines()
     if not 0 < problem.line <= len(lines):
         return problem.message
@@ -208,7 +208,7 @@ def _blamed(problem: Problem, text: str) -> str:
 
 
 def record_file(record: CurrentRecord, source: str) -> bytes:
-    """A record as a classic NetCDF file by the CF conventions."""
+    """Return a record as a classic NetCDF file by the CF conventions."""
     import xarray as xr
 
     speeds = {

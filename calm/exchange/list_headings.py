@@ -67,7 +67,7 @@ _MEASURES = {"length", "buoyancy", "weight", "mass"}
 
 @dataclass(frozen=True)
 class ListColumn:
-    """A column: where it stands, its heading, and what its numbers are multiplied by.
+    """Describe a column: where it stands, its heading, and what its numbers are multiplied by.
 
     `by_mass`: forces are counted in kilograms; `per_metre`: figures of lines are those of a metre;
     `known`: the heading gives a unit; `whole`: it says that its figures are those of a whole piece.
@@ -84,7 +84,7 @@ class ListColumn:
 
 @dataclass(frozen=True)
 class ListHeadings:
-    """The row of the headings, the columns that are understood, and the headings of the others."""
+    """Hold the row of the headings, the columns that are understood, and the other headings."""
 
     row: int
     columns: dict[str, ListColumn]
@@ -92,7 +92,7 @@ class ListHeadings:
 
 
 def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | None:
-    """The headings of a sheet; None where no row has a name and a length or a force.
+    """Return the headings of a sheet; None where no row has a name and a length or a force.
 
     Parameters
     ----------
@@ -120,6 +120,12 @@ def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | Non
 
 def check_given(sheets: Mapping[str, SheetRows], given: Mapping[str, str], path: Path) -> None:
     """Check that `--columns` names figures of a piece, and headings of the list.
+
+    Parameters
+    ----------
+    sheets : cells by the name of the sheet
+    given : headings by what they hold
+    path : of the list
 
     Raises
     ------
@@ -164,7 +170,7 @@ def _columns(row: list[str], given: Mapping[str, str]) -> dict[str, ListColumn]:
 
 
 def _settle(found: dict[str, ListColumn]) -> None:
-    """Where there is no length, a height is one; a weight beside a buoyancy is in air."""
+    """Take a height for a missing length, and a weight beside a buoyancy as that in air."""
     if "length" not in found and "height" in found and _plain(found["height"].heading) == "height":
         found["length"] = found.pop("height")
     plain_weight = re.match(r"(weight|poids)\b(?!.*(water|wet|eau))", _plain_of(found, "weight"))
@@ -177,7 +183,7 @@ def _plain_of(found: dict[str, ListColumn], what: str) -> str:
 
 
 def _with_units(rows: SheetRows, i: int) -> list[str]:
-    """A row of headings, with the units that stand below them."""
+    """Return a row of headings, with the units that stand below them."""
     row = rows[i]
     below = rows[i + 1] if i + 1 < len(rows) else []
     units = [cell for cell in below if cell]
@@ -188,14 +194,14 @@ def _with_units(rows: SheetRows, i: int) -> list[str]:
 
 
 def _is_unit(cell: str) -> bool:
-    """Whether a cell below a heading goes with it: `(kg)`, `m`, `off btm (m)`."""
+    """Return whether a cell below a heading goes with it: `(kg)`, `m`, `off btm (m)`."""
     inside = re.search(r"\(([^()]*)\)\s*$", cell)
     words = _plain(inside[1] if inside else cell, keep="²^/").split("/")[0].split()
     return bool(words) and words[0] in _UNITS
 
 
 def _unnamed(rows: SheetRows, i: int, found: dict[str, ListColumn]) -> int | None:
-    """The first column without a heading whose cells are words."""
+    """Return the first column without a heading whose cells are words."""
     taken = {column.index for column in found.values()}
     below = rows[i + 1 : i + 16]
     for index in range(min(3, max(map(len, below), default=0))):
@@ -228,7 +234,7 @@ def _column(what: str, index: int, heading: str) -> ListColumn:
 
 
 def _plain(text: str, keep: str = "") -> str:
-    """A heading without accents and capitals, signs as blanks but for those that matter."""
+    """Return a heading without accents and capitals, signs as blanks but for those that matter."""
     spaced = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)  # buoyancyPerMeter
     decomposed = unicodedata.normalize("NFD", spaced.lower())
     letters = "".join(sign for sign in decomposed if not unicodedata.combining(sign))
@@ -248,12 +254,12 @@ SheetRows = list[list[str]]
 
 
 def is_spreadsheet(content: bytes) -> bool:
-    """Whether a file is an Excel workbook, by its first bytes."""
+    """Return whether a file is an Excel workbook, by its first bytes."""
     return content.startswith(_SPREADSHEETS)
 
 
 def is_table(content: bytes) -> bool:
-    """Whether a file is a workbook, or text whose lines have the same separator."""
+    """Return whether a file is a workbook, or text whose lines have the same separator."""
     if is_spreadsheet(content):
         return True
     if content.startswith(_UTF_16):
@@ -264,7 +270,7 @@ def is_table(content: bytes) -> bool:
 
 
 def read_sheets(path: Path) -> dict[str, SheetRows]:
-    """The rows of every sheet by its name; lines that begin with # are comments.
+    """Return the rows of every sheet by its name; lines that begin with # are comments.
 
     A sheet without a cell is left out; text has one sheet, without a name.
 
@@ -306,7 +312,7 @@ def _csv(path: Path, content: bytes) -> SheetRows:
 
 
 def _text(path: Path, content: bytes) -> str:
-    """The text: UTF-8, UTF-16 with the mark of Excel, or the Western encoding of Windows."""
+    """Return the text: UTF-8, UTF-16 with the mark of Excel, or the Western encoding of Windows."""
     if content.startswith(_UTF_16):
         return content.decode("utf-16", "replace")
     if b"\0" in content:
@@ -345,7 +351,7 @@ _NOTHING = {
 
 
 def number(cell: str) -> tuple[float | None, str]:
-    """The number of a cell, None where there is none; and how it was interpreted.
+    """Return the number of a cell, None where there is none; and how it was interpreted.
 
     A comma is a decimal sign, or parts thousands where a point follows; a word or unit after the
     number, or `~` before it, is left out and reported.

@@ -28,7 +28,7 @@ _HEAD = 70_000  # bytes by which a compressed file is recognised
 
 
 def read_variables(path: Path, wanted: Collection[str]) -> dict[str, MatValue]:
-    """The wanted variables that a file has.
+    """Return the wanted variables that a file has.
 
     Raises
     ------
@@ -59,7 +59,7 @@ def read_variables(path: Path, wanted: Collection[str]) -> dict[str, MatValue]:
 
 
 def is_mat(content: bytes) -> bool:
-    """Whether a file looks like one of MATLAB or Octave, by its first bytes."""
+    """Return whether a file looks like one of MATLAB or Octave, by its first bytes."""
     content = _inflated(content, _HEAD)
     if is_octave_text(content) or content.startswith((b"MATLAB 5.0", _OCTAVE_BINARY)):
         return True
@@ -67,7 +67,7 @@ def is_mat(content: bytes) -> bool:
 
 
 def _inflated(content: bytes, most: int) -> bytes:
-    """The first bytes of what is compressed, as far as it is whole; other files as they are."""
+    """Return the first bytes of what is compressed, as far as it is whole; else all as it is."""
     if not content.startswith(_GZIP):
         return content
     try:
@@ -77,7 +77,7 @@ def _inflated(content: bytes, most: int) -> bytes:
 
 
 def _is_version_4(content: bytes) -> bool:
-    """By its first header: type, rows, columns, imaginary, length of a name that is a word."""
+    """Return whether its first header has a type, rows, columns and the length of a name."""
     for order in ("<", ">"):
         head = np.frombuffer(content[:20], f"{order}i4") if len(content) > 20 else np.zeros(0)
         if head.size == 5 and 0 <= head[0] < 5000 and 1 < head[4] < 64 and head[3] in (0, 1):
@@ -99,7 +99,7 @@ _CELL = "<cell-element>"
 
 
 def is_octave_text(content: bytes) -> bool:
-    """Whether a file begins as Octave writes its text files."""
+    """Return whether a file begins as Octave writes its text files."""
     start = content[:4096]
     return b"\0" not in start and start.lstrip().startswith(b"#") and b"# name:" in content[:65536]
 
@@ -188,7 +188,13 @@ def _value(name: str, kind: str, header: dict[str, str], rows: list[str]) -> Mat
 
 
 def spread(name: str, first: float, last: float, step: float) -> MatValue:
-    """The numbers of a range, the last included where a step ends at it.
+    """Return the numbers of a range, the last included where a step ends at it.
+
+    Parameters
+    ----------
+    name : of the variable
+    first, last : numbers of the range
+    step : between two numbers
 
     Raises
     ------
@@ -214,7 +220,7 @@ def _shaped(name: str, array: MatValue, shape: list[int], *, order: str) -> MatV
 
 
 def _texts(rows: list[str]) -> list[MatValue]:
-    """The rows of a character matrix: each line after its length."""
+    """Return the rows of a character matrix: each line after its length."""
     texts: list[MatValue] = []
     for i, row in enumerate(rows):
         if _header(row)[0] == "length":
@@ -229,12 +235,12 @@ _DEEPEST = 4  # cells in cells
 
 
 def is_hdf5(content: bytes) -> bool:
-    """Whether a file is HDF5, by its first bytes or those after MATLAB's header."""
+    """Return whether a file is HDF5, by its first bytes or those after MATLAB's header."""
     return _SIGNATURE in (content[:8], content[512:520])
 
 
 def read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
-    """The wanted variables that a file has; links to other files are not followed.
+    """Return the wanted variables that a file has; links to other files are not followed.
 
     Raises
     ------
@@ -252,7 +258,7 @@ def read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
 
 
 def _variable(file: Any, node: Any, depth: int) -> MatValue:
-    """A dataset, as MATLAB writes it, or one of Octave's, which are in groups."""
+    """Return a dataset, as MATLAB writes it, or one of Octave's, which are in groups."""
     import h5py
 
     if depth > _DEEPEST:
@@ -274,7 +280,7 @@ def _number(key: str) -> int:
 
 
 def _values(file: Any, node: Any, kind: str, depth: int) -> MatValue:
-    """The values of a dataset; HDF5 has the dimensions in reverse order."""
+    """Return the values of a dataset; HDF5 has the dimensions in reverse order."""
     import h5py
 
     if not isinstance(node, h5py.Dataset) or node.is_virtual or node.external:
@@ -297,7 +303,7 @@ def _values(file: Any, node: Any, kind: str, depth: int) -> MatValue:
 
 
 def _utf_8(row: np.ndarray[Any, np.dtype[Any]]) -> str:
-    """A text of Octave, which writes bytes."""
+    """Return a text of Octave, which writes bytes."""
     return row.astype(np.uint8).tobytes().decode("utf-8", "replace").rstrip()
 
 
@@ -315,7 +321,7 @@ RealArray = NDArray[np.float64]
 
 
 def numbers(value: MatValue | None) -> RealArray:
-    """A variable as numbers; an empty array where there is none.
+    """Return a variable as numbers; an empty array where there is none.
 
     Raises
     ------
@@ -332,7 +338,7 @@ def numbers(value: MatValue | None) -> RealArray:
 
 
 def fits(name: str, shape: tuple[int, ...]) -> bool:
-    """Whether a variable of a shape may be read at all.
+    """Return whether a variable of a shape may be read at all.
 
     Raises
     ------
@@ -345,7 +351,7 @@ def fits(name: str, shape: tuple[int, ...]) -> bool:
 
 
 def names(value: MatValue | None) -> list[str]:
-    """A variable as texts: a character matrix, a cell array, or codes of characters."""
+    """Return a variable as texts: a character matrix, a cell array, or codes of characters."""
     if value is None:
         return []
     if isinstance(value, str):

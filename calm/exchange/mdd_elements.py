@@ -22,12 +22,12 @@ _HARD = re.compile(r"\bwire|\bchain|\bsteel", re.I)
 
 
 def component_of(element: MddElement) -> ImportedComponent:
-    """The definition of an element that is not the anchor."""
+    """Return the definition of an element that is not the anchor."""
     return _flexible(element) if element.is_line else rigid(element)
 
 
 def rigid(element: MddElement) -> ImportedComponent:
-    """The definition of a rigid element, or of one clamped on.
+    """Return the definition of a rigid element, or of one clamped on.
 
     That program takes an element with a diameter for a sphere of that diameter, whatever its
     length, and one with a width alone for a cylinder, whose Cd is for flow across it, without end
@@ -81,7 +81,7 @@ def rides_by_buoyancy(component: ImportedComponent) -> None:
 
 
 def _is_too_small(element: MddElement) -> bool:
-    """Whether a float of this size cannot displace enough water for its buoyancy."""
+    """Return whether a float of this size cannot displace enough water for its buoyancy."""
     if element.diameter > 0.0:
         volume = math.pi * element.diameter**2 * max(element.diameter / 6.0, element.length / 4.0)
     else:
@@ -90,7 +90,7 @@ def _is_too_small(element: MddElement) -> bool:
 
 
 def _flexible(element: MddElement) -> ImportedComponent:
-    """The definition of a wire, rope or chain: its Cd is of its width, without drag along it."""
+    """Return the definition of a wire, rope or chain; its Cd is of its width."""
     chain = is_chain(element.name)
     figures: dict[str, FigureOrWord] = {"diameter": element.across, "cn": element.cd, "ct": 0.0}
     weight = 0.0 - element.lift * KILOGRAM_FORCE
@@ -114,7 +114,7 @@ def _flexible(element: MddElement) -> ImportedComponent:
 
 
 def anchor_of(element: MddElement) -> ImportedComponent:
-    """The definition of the lowest element; files give its weight with either sign."""
+    """Return the definition of the lowest element; files give its weight with either sign."""
     figures: dict[str, FigureOrWord] = {
         "weight": abs(element.lift) * KILOGRAM_FORCE,
         "length": element.length,
@@ -165,7 +165,7 @@ polyethylene, Kevlar, aluminium, Dyneema [Pa]."""
 def read_elements(
     variables: Mapping[str, MatValue], suffix: str
 ) -> tuple[list[MddElement], list[str]]:
-    """The elements of a line in the order of the file, and what is wrong with them.
+    """Return the elements of a line in the order of the file, and what is wrong with them.
 
     Parameters
     ----------
@@ -207,7 +207,7 @@ def read_elements(
 
 
 def mistakes_of(element: MddElement, where: str) -> list[str]:
-    """The figures of an element that no piece of a mooring can have."""
+    """Return the figures of an element that no piece of a mooring can have."""
     sizes = {
         "length": element.length, "width": element.width, "diameter": element.diameter,
         "drag coefficient": element.cd,
@@ -263,7 +263,7 @@ def _optional(variables: Mapping[str, MatValue], name: str) -> RealArray:
 
 
 def _names(variables: Mapping[str, MatValue], name: str, count: int) -> list[str]:
-    """A name for every element, also where the file has none."""
+    """Return a name for every element, also where the file has none."""
     value = variables.get(name)
     found = names(value) if value is not None else []
     if len(found) != count and isinstance(value, np.ndarray) and value.ndim == 2:
@@ -273,7 +273,7 @@ def _names(variables: Mapping[str, MatValue], name: str, count: int) -> list[str
 
 
 def _modulus(value: float) -> float | None:
-    """A modulus of elasticity [Pa]; small whole numbers stand for a material."""
+    """Return a modulus of elasticity [Pa]; small whole numbers stand for a material."""
     if math.isnan(value) or value <= 0.0:
         return None
     if value <= len(MODULI) and value == int(value):

@@ -26,34 +26,38 @@ _LINE = re.compile(
 
 
 def is_release(name: str) -> bool:
-    """Whether a piece is called a release."""
+    """Return whether a piece is called a release."""
     return bool(_RELEASE.search(name))
 
 
 def is_chain(name: str) -> bool:
-    """Whether a piece is called a chain."""
+    """Return whether a piece is called a chain."""
     return bool(_CHAIN.search(name))
 
 
 def is_connector(name: str) -> bool:
-    """Whether a piece is called a shackle, swivel, link or the like."""
+    """Return whether a piece is called a shackle, swivel, link or the like."""
     return bool(_CONNECTOR.search(name))
 
 
 def is_anchor(name: str) -> bool:
-    """Whether a piece is called an anchor or a dead weight."""
+    """Return whether a piece is called an anchor or a dead weight."""
     return bool(_ANCHOR.search(name))
 
 
 def is_line(name: str) -> bool:
-    """Whether a piece is called a wire, a rope or a chain."""
+    """Return whether a piece is called a wire, a rope or a chain."""
     return bool(_LINE.search(name)) or is_chain(name)
 
 
 def role_of(name: str, buoyancy: float, *, fastener: bool = False) -> str:
-    """The role of a rigid piece by its name and its net force in water [N, positive up].
+    """Return the role of a rigid piece by its name and its net force in water [N, positive up].
 
-    A `fastener` is marked so by its own program, which may mark instruments and floats too.
+    Parameters
+    ----------
+    name : as its program calls it
+    buoyancy : net force in water, positive up [N]
+    fastener : whether its program marks it so, which may mark instruments and floats too
     """
     if is_release(name):
         return "release"
@@ -70,7 +74,7 @@ _SIGNS = {'"': "in ", "″": "in ", "↑": " up ", "↓": " down ", "+": " ", "&
 
 
 def kebab(name: str) -> str:
-    """A name as an id: ``3/8" wire rope`` becomes ``3-8in-wire-rope``."""
+    """Return a name as an id: ``3/8" wire rope`` becomes ``3-8in-wire-rope``."""
     text = "".join(_SIGNS.get(sign, sign) for sign in name)
     text = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode().lower()
     text = re.sub(r"(?<=\d)\.(?=\d)", "p", text)
@@ -78,7 +82,7 @@ def kebab(name: str) -> str:
 
 
 def ids_of(components: Iterable[ImportedComponent], taken: Iterable[str] = ()) -> dict[int, str]:
-    """The id of every component, by its `id()`; those with the same figures share one.
+    """Return the id of every component, by its `id()`; those with the same figures share one.
 
     Parameters
     ----------
