@@ -129,9 +129,9 @@ class Picture(ScrollView, can_focus=True):
         return rows
 
     def _plan(self, result: Result | TowResult, size: Size) -> list[Text]:
-        from calm.report.sketch import plan
+        from calm.report.sketch import tension
 
-        return plan(result, size.width, size.height, self._beside)
+        return tension(result, size.width, size.height, self._beside)
 
     def _tension(self, result: Result | TowResult, size: Size) -> list[Text]:
         from calm.report.sketch import tension
@@ -139,7 +139,7 @@ class Picture(ScrollView, can_focus=True):
         return tension(result, size.width, size.height)
 
     def _schematic(self, result: Result | TowResult, size: Size) -> list[Text]:
-        from calm.report.schematic.text import schematic_text
+        from calm.report.schematic.in_terminal import schematic_text
 
         text = schematic_text(result.file, result, size.width)
         return [Text(line) for line in text.splitlines()]
