@@ -1,4 +1,4 @@
-"""Every piece and clamp of a solved mooring as the sheets of the deck have it."""
+"""Every piece and clamp of a mooring as the deck has it: where it hangs, when it goes over."""
 
 from __future__ import annotations
 
@@ -14,8 +14,13 @@ from calm.files import Flexible
 
 if TYPE_CHECKING:
     from calm.case import Result
+    from calm.case.columns import ClampRow, ComponentRow
     from calm.files import Clamp, Piece
     from calm.files.logbook import DeployedItem
+
+    pass
+    from calm.checks.recovery import Recovery
+    from calm.files import Place
 
 
 @dataclass(frozen=True)
@@ -115,14 +120,6 @@ def _hung(
     )
 
 
-if TYPE_CHECKING:
-    from calm.case import Result
-    from calm.case.columns import ClampRow, ComponentRow
-
-    pass
-    from calm.files import Place
-
-
 @dataclass(frozen=True)
 class Extreme:
     """A depth [m] and the environment in which it is."""
@@ -181,12 +178,6 @@ def posted(parts: Sequence[Hung], results: Sequence[tuple[str, Result]]) -> tupl
 def _rows(result: Result) -> dict[Place, ComponentRow | ClampRow]:
     every: list[ComponentRow | ClampRow] = [*result.components, *result.clamps]
     return {row.place: row for row in every}
-
-
-if TYPE_CHECKING:
-    from calm.checks.recovery import Recovery
-
-    pass
 
 
 class Order(StrEnum):

@@ -1,4 +1,4 @@
-"""What is shipped: how many of each component, their masses and the volumes they displace."""
+"""What is shipped, and what hangs on crane and winch at each stage."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The drawings of a batch: its responses through time, and how often each value is passed."""
+"""The drawings of a batch: responses in time, exceedances, the line in one profile."""
 
 from __future__ import annotations
 
@@ -27,7 +27,14 @@ from calm.report.graph import (
 )
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+    from xarray import Dataset
+
     from calm.batch.statistics.summary import Distribution, PartDistributions, Response, Summary
+
+    Floats = NDArray[np.float64]
+
 
 _WIDTH = 533.0  # points: an A4 page between its margins
 _SIZE = 7.0  # points, of the letters
@@ -148,13 +155,6 @@ def _limit_of(summary: Summary, response: Response) -> float | None:
             return (limit or 0.0) * QUANTITIES[QUANTITY[response.name]].scale
     return None
 
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-    from numpy.typing import NDArray
-    from xarray import Dataset
-
-    Floats = NDArray[np.float64]
 
 _HEIGHT = 6.5  # inches
 _CLAMP = {"linestyle": "none", "marker": "s", "color": "#cc3311", "markersize": 4.0}

@@ -1,13 +1,16 @@
-"""The statistics of a batch as a page."""
+"""The statistics of a batch as a page with its tables, and the files beside its result."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from calm.batch.result import stored_result
 from calm.batch.statistics.extremes import EXTRAPOLATION, METHODS, Fit, Level
-from calm.batch.statistics.summary import PERCENTILES, WORST
+from calm.batch.statistics.summary import PERCENTILES, WORST, Summary, summarize
+from calm.case import Mooring
 from calm.checks.finding import State
 from calm.quantities import QUANTITIES
 from calm.report.batch_figures import exceedance_figure, parts_figure, series_figure
@@ -21,6 +24,7 @@ from calm.report.batch_summary import (
     percent,
     refusals,
     standing,
+    summary_document,
     when,
 )
 from calm.report.blocks import (
@@ -35,10 +39,12 @@ from calm.report.blocks import (
     Section,
     Table,
 )
-from calm.report.check_report import limits_table as limits_used_table
+from calm.report.check_summary import limits_table as limits_used_table
 from calm.report.html import page
 from calm.report.provenance import UNSEEN, date, versions
+from calm.report.result_json import to_json
 from calm.report.sheet import figure_cell, quantity_column
+from calm.whole_file import put
 
 if TYPE_CHECKING:
     from calm.batch.statistics.limits import Exceedance, RuleShare
@@ -266,3 +272,38 @@ def _level(name: str, fit: Fit, level: Level) -> tuple[Cell, ...]:
 def _rules(fit: Fit) -> str:
     fitted = f"location {fit.location:.4g}, scale {fit.scale:.4g}, shape {fit.shape:.3f}"
     return f"{METHODS[fit.method]}: {fitted}; {fit.rules}"
+
+
+def write_summary(
+    result: Path, mooring: Mooring, check: Callable[[], None] = lambda: None
+) -> Summary:
+    """Gather what a finished result says, and write it beside it, as JSON and as a page.
+
+    The result is only read: this can be done, and done again, at any time after it is finished.
+
+    Parameters
+    ----------
+    result : the .nc file or .zarr folder; RESULT.nc has RESULT.summary.json, RESULT.summary.html,
+        which would be those of a RESULT.zarr beside it too: the later summary takes their place
+    mooring : that it was solved for
+    check : called now and then while the result is read; what it raises ends that
+
+    Raises
+    ------
+    OSError
+        A file cannot be written, or there is no room for a temporary one as large as the result
+        is without compression.
+    UsageError
+        The result cannot be read.
+    """
+    with stored_result(result) as stored:
+        summary = summarize(stored, mooring, result.parent, check, result)
+    document, page = summary_paths(result)
+    put(document, to_json([summary_document(summary)]).encode())
+    put(page, summary_html(summary).encode())
+    return summary
+
+
+def summary_paths(result: Path) -> tuple[Path, Path]:
+    """Where the summary of a result stands: its JSON and its page."""
+    return result.with_suffix(".summary.json"), result.with_suffix(".summary.html")

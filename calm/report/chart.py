@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Floats = NDArray[np.float64]
+    from matplotlib.text import Text
+    from matplotlib.transforms import Bbox
+
 
 CHART_FORMATS = (".svg", ".png", ".pdf")
 """The endings a chart's file name may have."""
@@ -220,14 +223,6 @@ def _write_frame(figure: Figure, axes: Axes, k: float, above: bool) -> None:
         fontsize=8,
     )
 
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.text import Text
-    from matplotlib.transforms import Bbox
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
 
 _MARGIN = 1.5  # points kept free around a label
 _SHORTEST = 40.0  # points of a locus that are worth a label

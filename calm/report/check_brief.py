@@ -22,13 +22,14 @@ from calm.report.blocks import (
     Span,
     Table,
 )
-from calm.report.check_report import SIGNS, verdict_of
 from calm.report.check_summary import (
+    SIGNS,
     abreast,
     margin_of,
     place_of,
     say_in_unit,
     unknown_count,
+    verdict_of,
     worst_by_part,
 )
 from calm.report.check_tables import likelihood_tables

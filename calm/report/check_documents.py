@@ -1,4 +1,4 @@
-"""The design check as JSON."""
+"""The design check as JSON, and its findings and pieces as CSV."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The tables of one mooring in a design check."""
+"""The tables of one mooring in a design check: findings, handling, parts, likelihood."""
 
 from __future__ import annotations
 

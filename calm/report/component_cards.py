@@ -1,4 +1,4 @@
-"""Components of the catalogue as a list, as cards and as JSON."""
+"""Components of the catalogue as a list, as cards and as JSON, and what they lack."""
 
 from __future__ import annotations
 
@@ -18,12 +18,11 @@ from calm.report.blocks import Cell, Column, Heading, Pairs, Part, Table
 if TYPE_CHECKING:
     from calm.checks.catalogue import CatalogueFinding
     from calm.checks.missing import MissingFigures
-
-if TYPE_CHECKING:
     from calm.files import Catalogue, Component
     from calm.files.catalogue import Assembly
 
     Definition = Component | Assembly
+
 
 _PER_METRE = ("mass", "weight", "buoyancy", "net_buoyancy")
 _FIRST = ("name", "kind", "role")

@@ -1,4 +1,4 @@
-"""The sheets as files that a spreadsheet opens."""
+"""The deck of one mooring: its pages, and its sheets as files that a spreadsheet opens."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The mooring diagram for the wall: the line drawn over as many pages as it needs."""
+"""The mooring diagram for the wall, over as many pages as it needs, each with its title block."""
 
 from __future__ import annotations
 
@@ -27,20 +27,16 @@ from calm.report.diagram_layout import (
     entries_of,
 )
 from calm.report.provenance import title_pairs
-from calm.report.schematic.pen import (
-    FAINT,
-    INK,
-    SOFT,
-    Pen,
+from calm.report.schematic.pen import FAINT, INK, SOFT, Pen, wrapped
+from calm.report.schematic.shown_parts import one_line
+from calm.report.schematic.sign import LINES, Sign, Symbol
+from calm.report.schematic.symbols import (
     draw_cable,
     draw_clamp,
     draw_seabed,
     draw_surface,
+    figure_of,
 )
-from calm.report.schematic.shown_parts import one_line
-from calm.report.schematic.sign import LINES, Sign, Symbol
-from calm.report.schematic.symbols import figure_of
-from calm.report.schematic.text_layout import wrapped
 
 if TYPE_CHECKING:
     from calm.deck import Deck
@@ -62,6 +58,49 @@ _WORDS = {
     Symbol.CHAIN: "chain", Symbol.WIRE: "wire", Symbol.ROPE: "rope",
     Symbol.WHEELS: "anchor, wheels", Symbol.BLOCK: "anchor", Symbol.BODY: "body",
 }  # fmt: skip
+
+
+@dataclass(frozen=True)
+class TitleBlock:
+    """Fields in rows of as many columns, each with its text in lines; what is not known is blank.
+
+    Attributes
+    ----------
+    rows : of name and lines of text
+    columns : how many stand side by side
+    height : of all [pt]
+    sheet : such as 2 of 5
+    """
+
+    rows: tuple[tuple[tuple[str, tuple[str, ...]], ...], ...]
+    columns: int
+    height: float
+    sheet: str = ""
+
+    def of_page(self, number: int, count: int) -> TitleBlock:
+        """The block of one of several pages."""
+        return replace(self, sheet=f"{number} of {count}")
+
+    def draw(self, page: Pen, left: float, top: float, width: float) -> None:
+        """In a frame, its upper left corner at a point."""
+        step = width / self.columns
+        y = top
+        for row in self.rows:
+            height = _height(row)
+            for number, (name, lines) in enumerate(one for one in row if one[0]):
+                x = left + number * step
+                page.draw(
+                    "rect", x=x, y=y, width=step, height=height, fill="none", stroke=INK,
+                    stroke_width=0.6,
+                )  # fmt: skip
+                page.letters(x + _PAD, y + 6.0, name, size=SMALL, colour=SOFT)
+                shown = (self.sheet,) if name == "sheet" else lines
+                for line, text in enumerate(shown):
+                    page.letters(x + _PAD, y + 6.0 + LEADING * (line + 1), text, size=FONT)
+            y += height
+
+
+_Page = tuple[str, Paper, TitleBlock, list[tuple[int, ColumnOf]], tuple[Sign, ...], bool]
 
 
 def diagram_pages(deck: Deck, paper: Paper) -> list[str]:
@@ -87,9 +126,6 @@ def diagram_svg(deck: Deck, paper: Paper) -> str:
     for number, page in enumerate(pages):
         _fill(picture.group(0.0, number * height), *page)
     return _written(picture)
-
-
-_Page = tuple[str, Paper, TitleBlock, list[tuple[int, ColumnOf]], tuple[Sign, ...], bool]
 
 
 def _drawn(deck: Deck, paper: Paper) -> list[_Page]:
@@ -267,46 +303,6 @@ _FIELDS = (
 )  # fmt: skip
 _COLUMNS = {Paper.A4: 4, Paper.LETTER: 4, Paper.A3: 7}
 _PAD = 4.0
-
-
-@dataclass(frozen=True)
-class TitleBlock:
-    """Fields in rows of as many columns, each with its text in lines; what is not known is blank.
-
-    Attributes
-    ----------
-    rows : of name and lines of text
-    columns : how many stand side by side
-    height : of all [pt]
-    sheet : such as 2 of 5
-    """
-
-    rows: tuple[tuple[tuple[str, tuple[str, ...]], ...], ...]
-    columns: int
-    height: float
-    sheet: str = ""
-
-    def of_page(self, number: int, count: int) -> TitleBlock:
-        """The block of one of several pages."""
-        return replace(self, sheet=f"{number} of {count}")
-
-    def draw(self, page: Pen, left: float, top: float, width: float) -> None:
-        """In a frame, its upper left corner at a point."""
-        step = width / self.columns
-        y = top
-        for row in self.rows:
-            height = _height(row)
-            for number, (name, lines) in enumerate(one for one in row if one[0]):
-                x = left + number * step
-                page.draw(
-                    "rect", x=x, y=y, width=step, height=height, fill="none", stroke=INK,
-                    stroke_width=0.6,
-                )  # fmt: skip
-                page.letters(x + _PAD, y + 6.0, name, size=SMALL, colour=SOFT)
-                shown = (self.sheet,) if name == "sheet" else lines
-                for line, text in enumerate(shown):
-                    page.letters(x + _PAD, y + 6.0 + LEADING * (line + 1), text, size=FONT)
-            y += height
 
 
 def title_block_of(deck: Deck, paper: Paper) -> TitleBlock:

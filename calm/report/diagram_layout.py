@@ -1,4 +1,4 @@
-"""What the mooring diagram shows from the top down: pieces, clamps, and junctions as one."""
+"""What the mooring diagram shows from the top down, and on which page each entry stands."""
 
 from __future__ import annotations
 
@@ -11,15 +11,18 @@ from typing import TYPE_CHECKING
 
 from calm.files.alignment import own_labels
 from calm.quantities import QUANTITIES
+from calm.report.schematic.pen import wrapped
 from calm.report.schematic.shown_parts import one_line
 from calm.report.schematic.sign import LINES, Sign, Symbol, sign_of
 from calm.report.schematic.symbols import figure_of
-from calm.report.schematic.text_layout import wrapped
 from calm.report.sheet import place_text
 
 if TYPE_CHECKING:
     from calm.deck import Deck
     from calm.deck.deck_items import Hung
+
+    pass
+
 
 _SIZED = re.compile(r"(shackle|ring|swivel|link)(?:-[a-z]+)?-(\d+)\b.*")
 
@@ -138,9 +141,6 @@ def _cells(one: Hung) -> tuple[str, str, str, str]:
                       (one.cut_length, one.stretched))  # fmt: skip
     return cut, stretched, depth, height
 
-
-if TYPE_CHECKING:
-    pass
 
 FONT = 7.5
 """Size of the texts [pt]; nothing on a diagram is smaller than 7 pt."""

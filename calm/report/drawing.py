@@ -1,4 +1,4 @@
-"""What the drawings of a mooring and of a tow have in common: views, markers and names."""
+"""What drawings of lines have in common: views, markers, names and where these stand."""
 
 from __future__ import annotations
 
@@ -12,15 +12,13 @@ from calm.case.columns import rows_down
 from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:
-    from calm.case import Result, TowResult
-
-if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
     from calm.case import Result, TowResult
 
     Floats = NDArray[np.float64]
+
 
 WIDTH = 11.0  # inches
 LINE_STYLE: dict[str, Any] = {"color": "#0b3c5d", "linewidth": 1.5}

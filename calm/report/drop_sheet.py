@@ -1,4 +1,4 @@
-"""The plan of an anchor drop as a sheet: what to do, what to expect, how it falls."""
+"""The plan of an anchor drop as a sheet: what to do, what to expect, and how it falls."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A folder of reports: all of its files appear, or none."""
+"""Files and folders of reports: looked at before anything is solved, and whole or not there."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was found of a mooring's motion as a report: a page and a PDF."""
+"""What was found of a mooring's motion as a page and a PDF, with its drawings."""
 
 from __future__ import annotations
 

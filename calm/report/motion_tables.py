@@ -1,4 +1,4 @@
-"""The motion of a mooring in tables."""
+"""What was found of a mooring's motion, in tables and as JSON."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A result drawn, as a file."""
+"""A result drawn as a file: a mooring or a tow, from the side and above; a tow at many speeds."""
 
 from __future__ import annotations
 
@@ -30,10 +30,14 @@ from calm.units import KNOT
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from numpy.typing import NDArray
 
     from calm.case import Result
     from calm.case.uncertain import Uncertain
     from calm.report.tabulation import Tabulation
+
+    Floats = NDArray[np.float64]
+    from calm.case import TowResult
 
 
 def picture(result: Result | TowResult, suffix: str, uncertain: Uncertain | None = None) -> bytes:
@@ -55,17 +59,6 @@ def draw(result: Result | TowResult, uncertain: Uncertain | None = None) -> Figu
     pass
 
     return draw_mooring(result, uncertain)
-
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-    from numpy.typing import NDArray
-
-    from calm.case import Result
-    from calm.case.uncertain import Uncertain
-
-    Floats = NDArray[np.float64]
 
 
 def draw_mooring(result: Result, uncertain: Uncertain | None = None) -> Figure:
@@ -142,15 +135,6 @@ def _draw_current(axes: Axes, result: Result, plane: Floats) -> None:
     draw_flow(axes, depth, u, v, plane)
     axes.set_xlabel(f"current {QUANTITIES['speed'].label}")
 
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-    from numpy.typing import NDArray
-
-    from calm.case import TowResult
-
-    Floats = NDArray[np.float64]
 
 # A line that leaves the plane of the tow by more than this share of its layback is drawn in plan.
 _PLANE_WITHIN = 0.01

@@ -1,4 +1,4 @@
-"""Where a report comes from: the versions that made it, its date, and a hash of its inputs."""
+"""Where a report comes from: title block, inputs, versions, date and a hash."""
 
 from __future__ import annotations
 

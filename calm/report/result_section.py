@@ -10,7 +10,7 @@ from calm.checks.criterion import limits_used
 from calm.checks.finding import State
 from calm.checks.posture import reaches_the_surface
 from calm.report.blocks import Figure, Part, Prose, Report, Section
-from calm.report.check_report import limits_table
+from calm.report.check_summary import limits_table
 from calm.report.picture import figure_svg
 from calm.report.plot import draw
 from calm.report.provenance import (

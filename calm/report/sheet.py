@@ -1,4 +1,4 @@
-"""What a result says: the table of its line, and the words around it."""
+"""What a result says: the table of its line, its marks, and the words around it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One tow solved many times, a row each: at several speeds, or with a coefficient changed."""
+"""One tow solved many times, a row each, and what the angle of a bare cable gives."""
 
 from __future__ import annotations
 

@@ -129,9 +129,9 @@ class Picture(ScrollView, can_focus=True):
         return rows
 
     def _plan(self, result: Result | TowResult, size: Size) -> list[Text]:
-        from calm.report.sketch import tension
+        from calm.report.sketch import plan
 
-        return tension(result, size.width, size.height, self._beside)
+        return plan(result, size.width, size.height, self._beside)
 
     def _tension(self, result: Result | TowResult, size: Size) -> list[Text]:
         from calm.report.sketch import tension

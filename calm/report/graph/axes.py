@@ -1,4 +1,4 @@
-"""Axes of a graph, and what is drawn between them."""
+"""Axes of a graph, what is drawn between them, and what its lines and signs mean."""
 
 from __future__ import annotations
 
@@ -13,8 +13,30 @@ from numpy.typing import ArrayLike
 from calm.physics.line import Floats
 from calm.report.graph.scale import Scale, Tick
 from calm.report.picture import within_xml
-from calm.report.schematic.pen import INK, Pen
-from calm.report.schematic.text_layout import text_width
+from calm.report.schematic.pen import INK, Pen, text_width
+
+
+class Stroke(NamedTuple):
+    """A line's colour and width [pt].
+
+    `dashes` are the lengths [pt] of dashes and gaps, of which an unbroken line has none; a `square`
+    one goes on by half its width at both ends, so that the shortest is seen.
+    """
+
+    colour: str
+    width: float = 1.2
+    dashes: tuple[float, ...] = ()
+    square: bool = False
+
+    def attributes(self) -> dict[str, float | str]:
+        """As a pen takes them."""
+        written: dict[str, float | str] = {"stroke": self.colour, "stroke_width": self.width}
+        if self.dashes:
+            written["stroke_dasharray"] = " ".join(f"{each:g}" for each in self.dashes)
+        if self.square:
+            written["stroke_linecap"] = "square"
+        return written
+
 
 _FONTS = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif"
 _FRAME = Stroke(INK, 0.7)
@@ -236,28 +258,6 @@ def write_legend(
             draw_mark(pen, x + _SAMPLE / 2, y, *entry.sign)
         room = across - _SAMPLE - 2 * _GAP
         pen.write(x + _SAMPLE + _GAP, y, " ".join(entry.text.split()), room, size=size)
-
-
-class Stroke(NamedTuple):
-    """A line's colour and width [pt].
-
-    `dashes` are the lengths [pt] of dashes and gaps, of which an unbroken line has none; a `square`
-    one goes on by half its width at both ends, so that the shortest is seen.
-    """
-
-    colour: str
-    width: float = 1.2
-    dashes: tuple[float, ...] = ()
-    square: bool = False
-
-    def attributes(self) -> dict[str, float | str]:
-        """As a pen takes them."""
-        written: dict[str, float | str] = {"stroke": self.colour, "stroke_width": self.width}
-        if self.dashes:
-            written["stroke_dasharray"] = " ".join(f"{each:g}" for each in self.dashes)
-        if self.square:
-            written["stroke_linecap"] = "square"
-        return written
 
 
 def draw_mark(pen: Pen, x: float, y: float, sign: str, size: float, colour: str) -> None:

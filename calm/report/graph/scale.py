@@ -1,4 +1,4 @@
-"""Where a value stands between the edges of a graph."""
+"""Where a value stands between the edges of a graph, and the round values along an axis."""
 
 from __future__ import annotations
 

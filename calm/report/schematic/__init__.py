@@ -6,11 +6,9 @@ from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 from calm.quantities import QUANTITIES
-from calm.report.schematic.pen import (
-    FAINT,
-    INK,
-    SOFT,
-    Pen,
+from calm.report.schematic.pen import FAINT, INK, SOFT, Pen
+from calm.report.schematic.shown_parts import HEADINGS, Clamped, Row, Schematic, schematic_of
+from calm.report.schematic.symbols import (
     draw_cable,
     draw_clamp,
     draw_helicopter,
@@ -19,9 +17,8 @@ from calm.report.schematic.pen import (
     draw_ship,
     draw_surface,
     draw_water,
+    figure_of,
 )
-from calm.report.schematic.shown_parts import HEADINGS, Clamped, Row, Schematic, schematic_of
-from calm.report.schematic.symbols import figure_of
 from calm.report.schematic.text_layout import (
     FONT,
     LINE,

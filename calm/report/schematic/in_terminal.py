@@ -11,9 +11,9 @@ from rich.cells import cell_len, set_cell_size
 from rich.text import Text
 
 from calm.quantities import QUANTITIES
+from calm.report.schematic.pen import ELLIPSIS
 from calm.report.schematic.shown_parts import HEADINGS, Row, Schematic, schematic_of
 from calm.report.schematic.sign import BALLS, LINES, Sign, Symbol
-from calm.report.schematic.text_layout import ELLIPSIS
 from calm.report.signs import encodable
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""What a schematic shows of a line: its parts from the top, and a row of text for each."""
+"""What a schematic shows of a line: its parts from the top, their rows of text, their lengths."""
 
 from __future__ import annotations
 

@@ -1,8 +1,4 @@
-"""A picture in the cells of a terminal: dots of braille, and signs over them.
-
-A cell has two by four dots, which makes a dot as wide as high. Styles are those of rich, with the
-eight colours of every terminal only; a picture says the same without them.
-"""
+"""A picture in the cells of a terminal, dots of braille and signs, with axes around it."""
 
 from __future__ import annotations
 

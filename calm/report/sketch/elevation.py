@@ -16,7 +16,7 @@ from calm.quantities import bearing_of, bearing_text, say
 from calm.report.drawing import Named, along, named_parts, names, spread
 from calm.report.graph.scale import number, round_numbers
 from calm.report.plot import levels_of, plane_of
-from calm.report.schematic.text_layout import ELLIPSIS
+from calm.report.schematic.pen import ELLIPSIS
 from calm.report.sketch.canvas import AXIS, COLUMNS_PER_TICK, Canvas, Frame, levels
 
 if TYPE_CHECKING:
@@ -26,6 +26,9 @@ if TYPE_CHECKING:
     from calm.case.columns import Shape
 
     Floats = NDArray[np.float64]
+    from calm.case import Result
+    from calm.report.drawing import Named
+
 
 LEAST_SPAN = 0.1
 """Share of the height that distances are drawn to at least: a line that stands looks as it does."""
@@ -197,14 +200,6 @@ def _least(found: list[tuple[str, Named]], wanted: list[float], crowded: int) ->
     middle = sum(around) / len(around)
     return min(around, key=lambda i: (-_NEED.index(found[i][1].role), abs(i - middle)))
 
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from calm.case import Result, TowResult
-    from calm.report.drawing import Named
-
-    Floats = NDArray[np.float64]
 
 LINE = "bold cyan"
 STILL = "white"

@@ -1,4 +1,4 @@
-"""Tension along a line, and what each piece may bear."""
+"""Sketches beside the elevation: tension, the current by depth, the line from above."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ from calm.report.sketch.elevation import (
 )
 
 if TYPE_CHECKING:
-    from calm.physics.line import Water
-
-if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from calm.case import TowResult
+    from calm.physics.line import Water
 
     Floats = NDArray[np.float64]
+    from calm.case.columns import Shape
+
 
 _FARTHEST = 2.5
 """Allowable loads are drawn up to this many times the greatest tension."""
@@ -160,14 +160,6 @@ def _direction(u: float, v: float, room: int) -> str:
     arrow = _ARROWS[round(np.degrees(np.arctan2(u, v)) / 45.0) % 8]
     return arrow if room == 2 else f"{bearing_text(bearing_of(u, v))}{arrow}"
 
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from calm.case import TowResult
-    from calm.case.columns import Shape
-
-    Floats = NDArray[np.float64]
 
 _LEAST_SPAN = 1.0
 _MARGIN = 0.06

@@ -15,8 +15,8 @@ from calm.batch.statistics.summary import RANKED, RESPONSES, summarize
 from calm.case import Mooring
 from calm.report import folder
 from calm.report.batch_brief import summary_part
-from calm.report.batch_page import summary_html
-from calm.report.batch_summary import percent, summary_document, summary_paths, write_summary
+from calm.report.batch_page import summary_html, summary_paths, write_summary
+from calm.report.batch_summary import percent, summary_document
 from calm.report.result_json import to_json
 from calm.report.terminal import shown
 from calm.shipped import shipped_folder

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from calm.report.sketch import current_profile, elevation, tension
+from calm.report.sketch import current_profile, elevation, plan, tension
 from calm.report.sketch.elevation import SIGNS
 
 ALL = (
@@ -19,7 +19,7 @@ ALL = (
     "taut-nylon-surface",
     "tidal-adcp",
 )
-PICTURES = {"elevation": elevation, "plan": tension, "tension": tension}
+PICTURES = {"elevation": elevation, "plan": plan, "tension": tension}
 ANSI = {"black", "red", "green", "yellow", "blue", "magenta", "cyan", "white"}
 
 
@@ -66,7 +66,7 @@ def test_elevation_of_s1000(solved):
 
 
 def test_plan_of_veering_current(solved):
-    assert rows(tension(solved("veering-current"), 24, 12)) == [
+    assert rows(plan(solved("veering-current"), 24, 12)) == [
         "top 52.4 m off to 175°  ",
         "  0┤N ⠄ ⠄ ⠄ ◆▼● ⠄ ⠄ ⠄ ⠄ ",
         "   │         ⣏          ",
@@ -83,7 +83,7 @@ def test_plan_of_veering_current(solved):
 
 
 def test_tension_of_veering_current(solved):
-    assert rows(tension(solved("veering-current"), 24, 12)) == [
+    assert rows(plan(solved("veering-current"), 24, 12)) == [
         "at most 3598 N; dotted: ",
         "  0┤⠉⠉⠉⠉⠉⠉⣉⠇          ⠅ ",
         "   │     ⢀⡇           ⠅ ",
@@ -170,7 +170,7 @@ def test_where_names_crowd_instruments_go_first(solved):
 
 
 def test_plan_has_one_scale(solved):
-    texts = tension(solved("deep-current-meters"), 46, 24)
+    texts = plan(solved("deep-current-meters"), 46, 24)
     marks = [match.start() for match in re.finditer("┴", texts[-2].plain)]
     labels = [int(text) for text in re.findall(r"-?\d+", texts[-1].plain)]
     per_column = (labels[-1] - labels[0]) / (marks[-1] - marks[0])
