@@ -20,6 +20,8 @@ _DYNAMICS = (
     "i", "j", "g", "nu",
 )  # fmt: skip
 _YIELDS = ("swl", "yield")
+_STEPS = 12  # rows of a table between two diameters
+_SLIGHT = 1e-9
 
 
 @dataclass
@@ -223,10 +225,6 @@ def varies(definition: CableDefinition) -> bool:
         and (bool(value.rows) or bool(value.formula and value.formula.names))
         for value in (definition.values.get("cdn"), definition.values.get("cdt"))
     )
-
-
-_STEPS = 12  # rows of a table between two diameters
-_SLIGHT = 1e-9
 
 
 def largest(definition: CableDefinition, shape: str) -> tuple[float, float, float]:

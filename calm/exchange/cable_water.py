@@ -25,6 +25,12 @@ _DIGITS = 9  # of a speed in m/s
 _WAVES = ("x-wave", "y-wave", "x-input", "y-input", "z-input", "wave-file")
 _DYNAMICS = ("forcing-method", "input-type", "velocity-file", "force-file")
 _SEABED = ("bottom-stiffness", "bottom-damping", "bottom-elevation")
+_Profile = tuple[Callable[[float], float], list[float]]
+"""A speed by depth, and the depths between which it is linear."""
+
+_LARGEST = 20_000_000  # bytes
+_MOST = 2_000_000  # speeds
+_AXES = ("time", "depth", "x", "y")
 
 
 def water_of(
@@ -95,10 +101,6 @@ def _current(
     return tuple(rows) if any(any(row[1:]) for row in rows) else ()
 
 
-_Profile = tuple[Callable[[float], float], list[float]]
-"""A speed by depth, and the depths between which it is linear."""
-
-
 def _profile(environment: KeyValues, axis: str, gridded: GriddedCurrent | None) -> _Profile | None:
     scale = environment.number(f"{axis}-current-scale", default=1.0)
     if scale == 1.0:
@@ -135,11 +137,6 @@ def _refined(at: Callable[[float], tuple[float, float, float]], levels: list[flo
             break
         levels = finer
     return levels
-
-
-_LARGEST = 20_000_000  # bytes
-_MOST = 2_000_000  # speeds
-_AXES = ("time", "depth", "x", "y")
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ _LEAST_MASS = 0.01  # kg per metre: what weighs and drags nothing still moves
 _LEAST_WEIGHT = 1e-6  # N per metre: a weight of 0 is worked out from the mass there
 _FINEST, _COARSEST = 3, 401  # nodes of a segment
 _APART = 0.5  # m between nodes, where that many suffice
+_LEAST = 1e-3  # m of diameter, kg of mass
 
 
 @dataclass
@@ -230,9 +231,6 @@ def _ends(design: ExportedLine, layout: list[str]) -> list[str]:
     speeds = f"x-speed = {design.tow.east:.9g}  y-speed = {design.tow.north:.9g}"
     ship = f"    terminal = {{ buoy = vessel  {speeds} }}"
     return ["    terminal = { buoy = towed }", *layout, ship]
-
-
-_LEAST = 1e-3  # m of diameter, kg of mass
 
 
 def buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost: list[str]) -> str:

@@ -16,6 +16,12 @@ from calm.exchange.mdd_writer import mdd_file
 from calm.exchange.moordyn_writer import CURRENTS, current_profile, moordyn_file
 from calm.files.mistakes import unknown
 
+HEADER = (
+    "name", "label", "kind", "role", "clamped at[m]", "length[m]", "diameter[m]", "whole mass[kg]",
+    "whole buoyancy[N]", "whole Cd x area[m^2]", "whole tangential Cd x area[m^2]", "EA[N]",
+)  # fmt: skip
+Writer = Callable[[ExportedLine], tuple[bytes, tuple[str, ...]]]
+
 
 @dataclass(frozen=True)
 class Exported:
@@ -24,12 +30,6 @@ class Exported:
     content: bytes
     lost: tuple[str, ...]
     beside: dict[str, bytes]
-
-
-HEADER = (
-    "name", "label", "kind", "role", "clamped at[m]", "length[m]", "diameter[m]", "whole mass[kg]",
-    "whole buoyancy[N]", "whole Cd x area[m^2]", "whole tangential Cd x area[m^2]", "EA[N]",
-)  # fmt: skip
 
 
 def csv_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
@@ -71,8 +71,6 @@ def _cell(text: str) -> str:
     """Return a text that no spreadsheet takes for a formula."""
     return f"'{text}" if text.startswith(("=", "+", "-", "@")) else text
 
-
-Writer = Callable[[ExportedLine], tuple[bytes, tuple[str, ...]]]
 
 WRITERS: dict[str, Writer] = {
     "mdd": mdd_file, "cbl": cbl_file, "csv": csv_file, "moordyn": moordyn_file,

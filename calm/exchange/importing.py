@@ -22,6 +22,8 @@ from calm.exchange.moordyn_reader import is_moordyn, read_moordyn
 from calm.files import read_mooring
 from calm.version import __version__
 
+_HEAD = 70_000  # bytes from which a format is recognised
+
 
 @dataclass(frozen=True)
 class ImportOptions:
@@ -98,9 +100,6 @@ class Imported:
     dropped: tuple[Remark, ...]
     matched: tuple[CatalogueMatch, ...]
     record: CurrentRecord | None
-
-
-_HEAD = 70_000  # bytes from which a format is recognised
 
 
 def import_file(

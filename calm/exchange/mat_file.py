@@ -1,7 +1,7 @@
 """The variables of a `.mat` file, whatever program and version wrote it.
 
 Nothing in such a file is executed or unpickled: MATLAB 4 and 5 are read by scipy, HDF5 (MATLAB 7.3
-and Octave) by h5py, Octave's text, compressed or not, by a reader of this folder.
+and Octave) by h5py, Octave's text, compressed or not, by the reader below.
 """
 
 from __future__ import annotations
@@ -25,6 +25,17 @@ LARGEST = 200_000_000
 _GZIP = b"\x1f\x8b"
 _OCTAVE_BINARY = b"Octave-1-"
 _HEAD = 70_000  # bytes by which a compressed file is recognised
+_CELL = "<cell-element>"
+_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+_TEXTS = ("char", "string", "sq_string")
+_DEEPEST = 4  # cells in cells
+MatValue: TypeAlias = "NDArray[Any] | str | list[MatValue]"
+"""A variable: numbers or characters, a text, or the elements of a cell array."""
+
+MOST = 20_000_000
+"""Most elements of a variable."""
+
+RealArray = NDArray[np.float64]
 
 
 def read_variables(path: Path, wanted: Collection[str]) -> dict[str, MatValue]:
@@ -93,9 +104,6 @@ def _matlab(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
     chosen = [name for name in names if name in wanted]
     found = loadmat(io.BytesIO(content), variable_names=chosen, struct_as_record=True)
     return {name: found[name] for name in chosen if name in found}
-
-
-_CELL = "<cell-element>"
 
 
 def is_octave_text(content: bytes) -> bool:
@@ -229,11 +237,6 @@ def _texts(rows: list[str]) -> list[MatValue]:
     return texts
 
 
-_SIGNATURE = b"\x89HDF\r\n\x1a\n"
-_TEXTS = ("char", "string", "sq_string")
-_DEEPEST = 4  # cells in cells
-
-
 def is_hdf5(content: bytes) -> bool:
     """Return whether a file is HDF5, by its first bytes or those after MATLAB's header."""
     return _SIGNATURE in (content[:8], content[512:520])
@@ -309,15 +312,6 @@ def _utf_8(row: np.ndarray[Any, np.dtype[Any]]) -> str:
 
 def _text_of(value: object) -> str:
     return value.decode("ascii", "replace") if isinstance(value, bytes) else str(value)
-
-
-MatValue: TypeAlias = "NDArray[Any] | str | list[MatValue]"
-"""A variable: numbers or characters, a text, or the elements of a cell array."""
-
-MOST = 20_000_000
-"""Most elements of a variable."""
-
-RealArray = NDArray[np.float64]
 
 
 def numbers(value: MatValue | None) -> RealArray:

@@ -29,6 +29,26 @@ _NEAR, _NEAR_AT_LEAST = 0.05, 2.0
 
 _NOTE = "cn and ct are its Cd and CdAx, defined alike. See `calm docs import-moordyn`."
 
+_SECTIONS = (
+    ("types", r"line (types|dictionary)"),
+    ("points", r"(node|connection|point) properties|^points?( list)?$|connections"),
+    ("lines", r"line properties|^lines?( list)?$"),
+    ("bodies", r"bod(y|ies)"),
+    ("rods", r"^rods?\b(?!.*types)"),
+    ("rod types", r"rod (types|dictionary)"),
+    ("options", r"options"),
+    ("outputs", r"outputs?"),
+)
+_COLUMNS = {
+    "typename": "name", "name": "name", "linetype": "type", "type": "attachment",
+    "attachment": "attachment", "diam": "diameter", "mass/m": "mass", "massden": "mass",
+    "massdeninair": "mass", "massperlength": "mass", "mass/length": "mass", "ea": "ea",
+    "cd": "cd", "cdn": "cd", "cdax": "cdt", "cdt": "cdt", "id": "id", "node": "id", "line": "id",
+    "x": "x", "y": "y", "z": "z", "m": "mass", "mass": "mass", "v": "volume", "volume": "volume",
+    "cda": "cda", "fx": "fx", "fy": "fy", "fz": "fz", "unstrlen": "length", "nodeanch": "a",
+    "nodefair": "b", "nodea": "a", "nodeb": "b", "attacha": "a", "attachb": "b",
+}  # fmt: skip
+
 
 def read_moordyn(path: Path) -> Design:
     """Read a file with one line, of one or several lengths, from an anchor up.
@@ -246,27 +266,6 @@ def _anchor(point: SectionRow, water: ImportedWater) -> ImportedComponent:
     assert water.depth is not None
     height = water.depth + point.number("z")
     return ImportedComponent("anchor", "anchor", {"length": height} if height > 1e-6 else {})
-
-
-_SECTIONS = (
-    ("types", r"line (types|dictionary)"),
-    ("points", r"(node|connection|point) properties|^points?( list)?$|connections"),
-    ("lines", r"line properties|^lines?( list)?$"),
-    ("bodies", r"bod(y|ies)"),
-    ("rods", r"^rods?\b(?!.*types)"),
-    ("rod types", r"rod (types|dictionary)"),
-    ("options", r"options"),
-    ("outputs", r"outputs?"),
-)
-_COLUMNS = {
-    "typename": "name", "name": "name", "linetype": "type", "type": "attachment",
-    "attachment": "attachment", "diam": "diameter", "mass/m": "mass", "massden": "mass",
-    "massdeninair": "mass", "massperlength": "mass", "mass/length": "mass", "ea": "ea",
-    "cd": "cd", "cdn": "cd", "cdax": "cdt", "cdt": "cdt", "id": "id", "node": "id", "line": "id",
-    "x": "x", "y": "y", "z": "z", "m": "mass", "mass": "mass", "v": "volume", "volume": "volume",
-    "cda": "cda", "fx": "fx", "fy": "fy", "fz": "fz", "unstrlen": "length", "nodeanch": "a",
-    "nodefair": "b", "nodea": "a", "nodeb": "b", "attacha": "a", "attachb": "b",
-}  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,9 @@ _LINE = re.compile(
     r"|\bline\b|c[âa]ble|cordage|jetstr|spectra|nilspin",
     re.I,
 )
+_LONGEST = 40
+_NO_IDS = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}  # other words in YAML
+_SIGNS = {'"': "in ", "″": "in ", "↑": " up ", "↓": " down ", "+": " ", "&": " and ", "µ": "u"}
 
 
 def is_release(name: str) -> bool:
@@ -66,11 +69,6 @@ def role_of(name: str, buoyancy: float, *, fastener: bool = False) -> str:
     if buoyancy > 0.0:
         return "float"
     return "connector" if fastener and buoyancy > -_HEAVY else "instrument"
-
-
-_LONGEST = 40
-_NO_IDS = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}  # other words in YAML
-_SIGNS = {'"': "in ", "″": "in ", "↑": " up ", "↓": " down ", "+": " ", "&": " and ", "µ": "u"}
 
 
 def kebab(name: str) -> str:
