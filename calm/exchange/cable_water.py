@@ -58,7 +58,7 @@ def water_of(
     gridded = None
     if "current-file" in environment:
         value = environment["current-file"]
-        gridded = gridded_current(value, folder, allow_include=allow_include)
+        gridded = _gridded_current(value, folder, allow_include=allow_include)
         if gridded is None:
             what = f"still water: its current-file `{value.text}` is missing"
             water.guesses["current"] = what
@@ -160,7 +160,9 @@ class GriddedCurrent:
         return lambda depth: float(np.interp(depth, self.depth, column))
 
 
-def gridded_current(value: KeyValue, folder: Path, *, allow_include: bool) -> GriddedCurrent | None:
+def _gridded_current(
+    value: KeyValue, folder: Path, *, allow_include: bool
+) -> GriddedCurrent | None:
     """Return the currents of a file beside the problem; None where there is no such file.
 
     It begins with step, start and count of time, depth, x and y; the speeds to x, y and z follow,

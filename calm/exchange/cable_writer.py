@@ -104,7 +104,7 @@ def cbl_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
         problem.segment(_link(problem), buoy.length)
     if problem.load is not None:
         problem.segment(_link(problem), 0.001)
-    text = _text(design, problem, buoy_figures(buoy, design, density, lost), density, floating)
+    text = _text(design, problem, _buoy_figures(buoy, design, density, lost), density, floating)
     losses = design.losses(lost)
     head = [f"{design.name}, by CALM; lost:", *(f"- {each}" for each in losses)]
     comment = "\n   ".join(line.replace("*/", "* /") for line in head)
@@ -233,7 +233,7 @@ def _ends(design: ExportedLine, layout: list[str]) -> list[str]:
     return ["    terminal = { buoy = towed }", *layout, ship]
 
 
-def buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost: list[str]) -> str:
+def _buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost: list[str]) -> str:
     """Its size, mass, buoyancy and drag, in the words of that program.
 
     Parameters

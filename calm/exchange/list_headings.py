@@ -255,14 +255,14 @@ def _plain(text: str, keep: str = "") -> str:
     )
 
 
-def is_spreadsheet(content: bytes) -> bool:
+def _is_spreadsheet(content: bytes) -> bool:
     """Return whether a file is an Excel workbook, by its first bytes."""
     return content.startswith(_SPREADSHEETS)
 
 
 def is_table(content: bytes) -> bool:
     """Return whether a file is a workbook, or text whose lines have the same separator."""
-    if is_spreadsheet(content):
+    if _is_spreadsheet(content):
         return True
     if content.startswith(_UTF_16):
         content = content[: len(content) // 2 * 2].decode("utf-16", "replace").encode()
@@ -282,7 +282,7 @@ def read_sheets(path: Path) -> dict[str, SheetRows]:
         It cannot be read.
     """
     content = read_content(path, largest=_LARGEST)
-    workbook = is_spreadsheet(content)
+    workbook = _is_spreadsheet(content)
     sheets = _workbook(path, content) if workbook else {"": _csv(path, content)}
     for rows in sheets.values():
         if len(rows) > _MOST_ROWS or any(len(row) > _MOST_COLUMNS for row in rows):

@@ -58,7 +58,7 @@ def read_moordyn(path: Path) -> Design:
     InputError
         It cannot be read, or holds a platform, a body, a rod or several lines.
     """
-    sections = read_sections(path)
+    sections = _read_sections(path)
     for name in ("bodies", "rods"):
         for row in sections.rows.get(name, []):
             raise row.refuse(
@@ -315,7 +315,7 @@ def is_moordyn(content: bytes) -> bool:
     return b"\0" not in content and {"types", "lines"} <= found
 
 
-def read_sections(path: Path) -> MoorDynSections:
+def _read_sections(path: Path) -> MoorDynSections:
     """Read a file.
 
     Raises
