@@ -196,7 +196,13 @@ def define(
 ) -> Component | Assembly | None:
     """Return the model of an entry, or of a section laid over it; None when it has mistakes.
 
-    `context` is None or, where it is to be used in air, `IN_AIR`.
+    Parameters
+    ----------
+    entry : CatalogueEntry
+    section : of the entry, or laid over it
+    problems : mistakes are added to it
+    also_allowed : keys that stand beside and belong to something else
+    context : None or, where it is to be used in air, `IN_AIR`
     """
     kind = section.data.get("kind")
     if kind is None:
@@ -327,7 +333,14 @@ def read_level(paths: Iterable[Path], problems: list[Problem]) -> Level:
 def entries_of(
     definitions: SourceMapping, family: str | None, problems: list[Problem]
 ) -> list[CatalogueEntry]:
-    """Return the entries of a mapping of definitions by id."""
+    """Return the entries of a mapping of definitions by id.
+
+    Parameters
+    ----------
+    definitions : mapping of definitions by id
+    family : the name of their file; None in a mooring file
+    problems : mistakes are added to it
+    """
     entries = []
     for id, fields in definitions.data.items():
         if isinstance(fields, dict):
