@@ -20,6 +20,8 @@ _DYNAMICS = (
     "i", "j", "g", "nu",
 )  # fmt: skip
 _YIELDS = ("swl", "yield")
+_STEPS = 12  # rows of a table between two diameters
+_SLIGHT = 1e-9
 
 
 @dataclass
@@ -151,7 +153,7 @@ class ComponentMaker:
             raise definition.token.refuse(
                 f"`{name}` is a {shape}: CALM has lines that end in a float or at a towing ship"
             )
-        volume, area, height = largest(definition, shape)
+        volume, area, height = _largest(definition, shape)
         mass = values.number("m", "mass")
         mass = mass or values.number("w") / self.gravity
         lift = values.number("buoyancy")
@@ -174,7 +176,7 @@ class ComponentMaker:
             figures["length"] = 0.0
             component.comment = "That program treats it as a point: the line ends at its depth."
         elif kind == "body":
-            component.hull = displacement(definition, shape)
+            component.hull = _displacement(definition, shape)
             whole = max(whole, component.hull[-1][1]) if not lift else whole
         figures |= {"mass": mass, "volume": whole}
         windage, wind_drag = values.number("sw"), values.number("cdw") or drag
@@ -225,18 +227,16 @@ def varies(definition: CableDefinition) -> bool:
     )
 
 
-_STEPS = 12  # rows of a table between two diameters
-_SLIGHT = 1e-9
-
-
-def largest(definition: CableDefinition, shape: str) -> tuple[float, float, float]:
+def _largest(definition: CableDefinition, shape: str) -> tuple[float, float, float]:
     """Volume [m³], area shown to the current [m²] and height [m] of the whole hull."""
-    rows = displacement(definition, shape)
+    rows = _displacement(definition, shape)
     draft, volume, area = rows[-1]
     return volume, area, draft
 
 
-def displacement(definition: CableDefinition, shape: str) -> tuple[tuple[float, float, float], ...]:
+def _displacement(
+    definition: CableDefinition, shape: str
+) -> tuple[tuple[float, float, float], ...]:
     """Rows of draft [m], displaced volume [m³] and immersed area [m²].
 
     Raises

@@ -19,6 +19,11 @@ _MOST_TEXT = 4_000_000  # characters that a file may become
 _MOST_EXPANSIONS = 20_000
 _DEEPEST = 20  # files within files, macros within macros, conditions within conditions
 _LONGEST = 100_000  # characters of one line once expanded
+_NUMBER = re.compile(r"(?:\d+\.\d*|\.\d+|\d+)(?:[eE][+-]?\d+)?")
+_KEY = re.compile(r"([A-Za-z_][\w.-]*)[ \t]*=(?!=)")
+_WORD = re.compile(r"[A-Za-z_][\w/.:]*")
+_QUOTED = re.compile(r"\"([^\"]*)\"|'([^']*)'")
+_SIGN = re.compile(r"&&|\|\||==|!=|<=|>=|<<|>>|[-+*/%<>!~?:|^&(){}\[\],]")
 
 
 @dataclass(frozen=True)
@@ -276,13 +281,6 @@ def _without_comments(text: str, path: str) -> list[str]:
             lines.append(line.removesuffix("\\"))
             joined = 1 if line.endswith("\\") else 0
     return lines
-
-
-_NUMBER = re.compile(r"(?:\d+\.\d*|\.\d+|\d+)(?:[eE][+-]?\d+)?")
-_KEY = re.compile(r"([A-Za-z_][\w.-]*)[ \t]*=(?!=)")
-_WORD = re.compile(r"[A-Za-z_][\w/.:]*")
-_QUOTED = re.compile(r"\"([^\"]*)\"|'([^']*)'")
-_SIGN = re.compile(r"&&|\|\||==|!=|<=|>=|<<|>>|[-+*/%<>!~?:|^&(){}\[\],]")
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ _LEAST_MASS = 0.01  # kg per metre: what weighs and drags nothing still moves
 _LEAST_WEIGHT = 1e-6  # N per metre: a weight of 0 is worked out from the mass there
 _FINEST, _COARSEST = 3, 401  # nodes of a segment
 _APART = 0.5  # m between nodes, where that many suffice
+_LEAST = 1e-3  # m of diameter, kg of mass
 
 
 @dataclass
@@ -103,7 +104,7 @@ def cbl_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
         problem.segment(_link(problem), buoy.length)
     if problem.load is not None:
         problem.segment(_link(problem), 0.001)
-    text = _text(design, problem, buoy_figures(buoy, design, density, lost), density, floating)
+    text = _text(design, problem, _buoy_figures(buoy, design, density, lost), density, floating)
     losses = design.losses(lost)
     head = [f"{design.name}, by CALM; lost:", *(f"- {each}" for each in losses)]
     comment = "\n   ".join(line.replace("*/", "* /") for line in head)
@@ -232,10 +233,7 @@ def _ends(design: ExportedLine, layout: list[str]) -> list[str]:
     return ["    terminal = { buoy = towed }", *layout, ship]
 
 
-_LEAST = 1e-3  # m of diameter, kg of mass
-
-
-def buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost: list[str]) -> str:
+def _buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost: list[str]) -> str:
     """Its size, mass, buoyancy and drag, in the words of that program.
 
     Parameters

@@ -22,7 +22,6 @@ _DIGITS = 9  # of a speed in m/s
 Coordinates = tuple[float, float, float]
 """East and north of the anchor, and depth [m]."""
 
-
 Levels = tuple[tuple[float, float, float, float, float], ...]
 """Rows of depth [m], current to the east, to the north and up [m/s], and density [kg/m³]."""
 

@@ -16,6 +16,12 @@ from calm.exchange.mdd_writer import mdd_file
 from calm.exchange.moordyn_writer import CURRENTS, current_profile, moordyn_file
 from calm.files.mistakes import unknown
 
+_HEADER = (
+    "name", "label", "kind", "role", "clamped at[m]", "length[m]", "diameter[m]", "whole mass[kg]",
+    "whole buoyancy[N]", "whole Cd x area[m^2]", "whole tangential Cd x area[m^2]", "EA[N]",
+)  # fmt: skip
+Writer = Callable[[ExportedLine], tuple[bytes, tuple[str, ...]]]
+
 
 @dataclass(frozen=True)
 class Exported:
@@ -26,13 +32,7 @@ class Exported:
     beside: dict[str, bytes]
 
 
-HEADER = (
-    "name", "label", "kind", "role", "clamped at[m]", "length[m]", "diameter[m]", "whole mass[kg]",
-    "whole buoyancy[N]", "whole Cd x area[m^2]", "whole tangential Cd x area[m^2]", "EA[N]",
-)  # fmt: skip
-
-
-def csv_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
+def _csv_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
     """Return the content of the file, and what it cannot hold."""
     lost = ["the water", "hulls and wind: floats drag in full at the surface"]
     if design.tow is not None:
@@ -42,7 +42,7 @@ def csv_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
     for line in (f"{design.name}, by CALM; lost:", *losses):
         text.write(f"# {' '.join(line.split())}\n")
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(HEADER)
+    writer.writerow(_HEADER)
     for part in design.parts:
         writer.writerow(_row(part, ""))
         for clamp, at in part.clamps:
@@ -72,10 +72,8 @@ def _cell(text: str) -> str:
     return f"'{text}" if text.startswith(("=", "+", "-", "@")) else text
 
 
-Writer = Callable[[ExportedLine], tuple[bytes, tuple[str, ...]]]
-
 WRITERS: dict[str, Writer] = {
-    "mdd": mdd_file, "cbl": cbl_file, "csv": csv_file, "moordyn": moordyn_file,
+    "mdd": mdd_file, "cbl": cbl_file, "csv": _csv_file, "moordyn": moordyn_file,
 }  # fmt: skip
 """What a mooring can be written for."""
 

@@ -21,7 +21,7 @@ from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY, STEEL_DEN
 from calm.files.yaml_document import read_document
 from calm.quantities import rounded
 
-TOLERANCE = 0.05
+_TOLERANCE = 0.05
 """Share by which size, net force and drag may differ from those of a catalogue entry."""
 
 _COMMON_WORDS = 0.5  # share of the words of a name that an entry must have, two at least
@@ -95,8 +95,8 @@ class CatalogueMatch:
 def match(design: Design) -> tuple[CatalogueMatch, ...]:
     """Use catalogue entries for the components whose name and figures agree with one.
 
-    A component is of the same kind, shares half the words of its name, and is within `TOLERANCE` in
-    diameter, length, net force, normal drag and stiffness, as far as both give them.
+    A component is of the same kind, shares half the words of its name, and is within `_TOLERANCE`
+    in diameter, length, net force, normal drag and stiffness, as far as both give them.
     """
     catalogue = Catalogue.load()
     entries = {
@@ -145,7 +145,7 @@ def _weighs_alike(one: Component, other: Component) -> bool:
     if not isinstance(other, Rigid):
         return False
     a, b = one.net_buoyancy, other.net_buoyancy
-    return abs(a - b) <= TOLERANCE * max(abs(a), abs(b))
+    return abs(a - b) <= _TOLERANCE * max(abs(a), abs(b))
 
 
 def _agree(one: Component, other: Component) -> bool:
@@ -157,7 +157,7 @@ def _agree(one: Component, other: Component) -> bool:
         if values[0] is not None and values[1] is not None:
             pairs.append((values[0], values[1]))
     pairs.append((_drag(one), _drag(other)))
-    return all(abs(a - b) <= TOLERANCE * max(abs(a), abs(b)) for a, b in pairs)
+    return all(abs(a - b) <= _TOLERANCE * max(abs(a), abs(b)) for a, b in pairs)
 
 
 def _drag(component: Component) -> float:

@@ -22,6 +22,8 @@ from calm.exchange.moordyn_reader import is_moordyn, read_moordyn
 from calm.files import read_mooring
 from calm.version import __version__
 
+_HEAD = 70_000  # bytes from which a format is recognised
+
 
 @dataclass(frozen=True)
 class ImportOptions:
@@ -47,31 +49,26 @@ class ImportFormat:
 
     name: str
     program: str
-    recognises: Callable[[Path, bytes], bool]
+    recognises: Callable[[bytes], bool]
     read: Callable[[Path, ImportOptions], Design]
 
 
 FORMATS = (
     ImportFormat(
-        "mdd", "Mooring Design & Dynamics", lambda path, content: is_mat(content),
-        lambda path, options: read_mdd(path),
+        "mdd", "Mooring Design & Dynamics", is_mat, lambda path, options: read_mdd(path)
     ),
     ImportFormat(
-        "cbl", "WHOI Cable", lambda path, content: is_cbl(content),
+        "cbl", "WHOI Cable", is_cbl,
         lambda path, options: read_cbl(
             path, options.defines, allow_include=options.allow_include
         ),
     ),
     ImportFormat(
-        "moordyn", "MoorDyn or MoorPy", lambda path, content: is_moordyn(content),
-        lambda path, options: read_moordyn(path),
+        "moordyn", "MoorDyn or MoorPy", is_moordyn, lambda path, options: read_moordyn(path)
     ),
+    ImportFormat("moords", "moords", is_moords, lambda path, options: read_moords(path)),
     ImportFormat(
-        "moords", "moords", lambda path, content: is_moords(content),
-        lambda path, options: read_moords(path),
-    ),
-    ImportFormat(
-        "table", "a list in CSV or a spreadsheet", lambda path, content: is_table(content),
+        "table", "a list in CSV or a spreadsheet", is_table,
         lambda path, options: read_table(path, options.columns, options.elements),
     ),
 )  # fmt: skip
@@ -100,9 +97,6 @@ class Imported:
     record: CurrentRecord | None
 
 
-_HEAD = 70_000  # bytes from which a format is recognised
-
-
 def import_file(
     path: Path,
     output: Path,
@@ -129,7 +123,7 @@ def import_file(
         There is no such format.
     """
     options = options or ImportOptions()
-    chosen = format_of(path, format, listed=options.elements is not None)
+    chosen = _format_of(path, format, listed=options.elements is not None)
     if options.elements is not None and chosen.name != "table":
         raise refused(path, f"is of {chosen.program}; --elements is for lists")
     design = chosen.read(path, options)
@@ -157,7 +151,7 @@ def import_file(
     )  # fmt: skip
 
 
-def format_of(path: Path, name: str | None, *, listed: bool = False) -> ImportFormat:
+def _format_of(path: Path, name: str | None, *, listed: bool = False) -> ImportFormat:
     """Return the format of a file: as named, or by its content.
 
     Parameters
@@ -183,7 +177,7 @@ def format_of(path: Path, name: str | None, *, listed: bool = False) -> ImportFo
     except OSError as error:
         raise refused(path, f"cannot be read: {error.strerror}") from None
     for each in FORMATS:
-        if each.recognises(path, content) or (listed and each is FORMATS[-1]):
+        if each.recognises(content) or (listed and each is FORMATS[-1]):
             return each
     programs = ", ".join(f"{each.name} ({each.program})" for each in FORMATS)
     raise refused(path, f"is not a file of a program that CALM reads: {programs}")

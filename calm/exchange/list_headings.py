@@ -63,6 +63,17 @@ _MASSES = {"kg", "g", "lb", "lbs", "t"}
 _FORCES = {"buoyancy", "weight", "stiffness", "breaking_load"}
 _SEARCHED = 60  # rows in which the headings stand
 _MEASURES = {"length", "buoyancy", "weight", "mass"}
+_SPREADSHEETS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1")  # xlsx, xls
+_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
+_LARGEST = 20_000_000
+_MOST_ROWS, _MOST_COLUMNS = 20_000, 500
+SheetRows = list[list[str]]
+"""Cells as text, up to the last that is not empty."""
+
+_NUMBER = re.compile(r"[-+−]?\s*(?:\d{1,3}(?:[ \u00a0]\d{3})+|\d+)?(?:[.,]\d+)?(?:[eE][-+]?\d+)?")
+_NOTHING = {
+    "", "-", "–", "—", "/", "*", "**", "n/a", "na", "nan", "none", "?", "nil", "x", "sans", "null",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -244,23 +255,14 @@ def _plain(text: str, keep: str = "") -> str:
     )
 
 
-_SPREADSHEETS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1")  # xlsx, xls
-_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
-_LARGEST = 20_000_000
-_MOST_ROWS, _MOST_COLUMNS = 20_000, 500
-
-SheetRows = list[list[str]]
-"""Cells as text, up to the last that is not empty."""
-
-
-def is_spreadsheet(content: bytes) -> bool:
+def _is_spreadsheet(content: bytes) -> bool:
     """Return whether a file is an Excel workbook, by its first bytes."""
     return content.startswith(_SPREADSHEETS)
 
 
 def is_table(content: bytes) -> bool:
     """Return whether a file is a workbook, or text whose lines have the same separator."""
-    if is_spreadsheet(content):
+    if _is_spreadsheet(content):
         return True
     if content.startswith(_UTF_16):
         content = content[: len(content) // 2 * 2].decode("utf-16", "replace").encode()
@@ -280,7 +282,7 @@ def read_sheets(path: Path) -> dict[str, SheetRows]:
         It cannot be read.
     """
     content = read_content(path, largest=_LARGEST)
-    workbook = is_spreadsheet(content)
+    workbook = _is_spreadsheet(content)
     sheets = _workbook(path, content) if workbook else {"": _csv(path, content)}
     for rows in sheets.values():
         if len(rows) > _MOST_ROWS or any(len(row) > _MOST_COLUMNS for row in rows):
@@ -342,12 +344,6 @@ def _workbook(path: Path, content: bytes) -> dict[str, SheetRows]:
 
 def _shown(cell: object) -> str:
     return f"{cell:.12g}" if isinstance(cell, float) else str(cell)
-
-
-_NUMBER = re.compile(r"[-+−]?\s*(?:\d{1,3}(?:[ \u00a0]\d{3})+|\d+)?(?:[.,]\d+)?(?:[eE][-+]?\d+)?")
-_NOTHING = {
-    "", "-", "–", "—", "/", "*", "**", "n/a", "na", "nan", "none", "?", "nil", "x", "sans", "null",
-}  # fmt: skip
 
 
 def number(cell: str) -> tuple[float | None, str]:

@@ -19,6 +19,10 @@ _SLIGHT = 1e-6  # by which a hull takes more than its net buoyancy
 _FLAT = 1e-3  # m: height of a float that the file gives none
 _SOFT = 1e10  # Pa: the modulus of a rope is below, of a wire above
 _HARD = re.compile(r"\bwire|\bchain|\bsteel", re.I)
+_LARGEST = 1e9  # m, kg: of no piece
+MODULI = (1.38e11, 3.45e8, 8.0e8, 3.45e8, 6.9e8, 6.9e10, 7.6e10, 1.0e11)
+"""Of the materials that the program numbers from 1: steel, nylon, Dacron, polypropylene,
+polyethylene, Kevlar, aluminium, Dyneema [Pa]."""
 
 
 def component_of(element: MddElement) -> ImportedComponent:
@@ -153,13 +157,6 @@ class MddElement:
     def across(self) -> float:
         """Width, or the diameter where there is none [m]."""
         return self.width or self.diameter
-
-
-_LARGEST = 1e9  # m, kg: of no piece
-
-MODULI = (1.38e11, 3.45e8, 8.0e8, 3.45e8, 6.9e8, 6.9e10, 7.6e10, 1.0e11)
-"""Of the materials that the program numbers from 1: steel, nylon, Dacron, polypropylene,
-polyethylene, Kevlar, aluminium, Dyneema [Pa]."""
 
 
 def read_elements(

@@ -40,6 +40,8 @@ _NOTE = (
     "cn and cx are its Cd. In that program drag along a line or cylinder is negligible, so ct is "
     "0. See `calm docs import-mdd`."
 )
+_MATLAB_EPOCH = 719529.0  # datenum of 1 January 1970
+_EARLIEST, _LATEST = 500_000.0, 1_000_000.0  # datenums that are dates of this age
 
 
 def read_mdd(path: Path) -> Design:
@@ -193,10 +195,6 @@ def _by_height(items: list[ImportedPiece], height: float, towed: bool) -> tuple[
 
 def _agree(one: tuple[int, float], other: tuple[int, float]) -> bool:
     return one[0] == other[0] and abs(one[1] - other[1]) <= _APART + _APART * abs(one[1])
-
-
-_MATLAB_EPOCH = 719529.0  # datenum of 1 January 1970
-_EARLIEST, _LATEST = 500_000.0, 1_000_000.0  # datenums that are dates of this age
 
 
 def read_water(

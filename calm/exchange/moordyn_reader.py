@@ -29,6 +29,26 @@ _NEAR, _NEAR_AT_LEAST = 0.05, 2.0
 
 _NOTE = "cn and ct are its Cd and CdAx, defined alike. See `calm docs import-moordyn`."
 
+_SECTIONS = (
+    ("types", r"line (types|dictionary)"),
+    ("points", r"(node|connection|point) properties|^points?( list)?$|connections"),
+    ("lines", r"line properties|^lines?( list)?$"),
+    ("bodies", r"bod(y|ies)"),
+    ("rods", r"^rods?\b(?!.*types)"),
+    ("rod types", r"rod (types|dictionary)"),
+    ("options", r"options"),
+    ("outputs", r"outputs?"),
+)
+_COLUMNS = {
+    "typename": "name", "name": "name", "linetype": "type", "type": "attachment",
+    "attachment": "attachment", "diam": "diameter", "mass/m": "mass", "massden": "mass",
+    "massdeninair": "mass", "massperlength": "mass", "mass/length": "mass", "ea": "ea",
+    "cd": "cd", "cdn": "cd", "cdax": "cdt", "cdt": "cdt", "id": "id", "node": "id", "line": "id",
+    "x": "x", "y": "y", "z": "z", "m": "mass", "mass": "mass", "v": "volume", "volume": "volume",
+    "cda": "cda", "fx": "fx", "fy": "fy", "fz": "fz", "unstrlen": "length", "nodeanch": "a",
+    "nodefair": "b", "nodea": "a", "nodeb": "b", "attacha": "a", "attachb": "b",
+}  # fmt: skip
+
 
 def read_moordyn(path: Path) -> Design:
     """Read a file with one line, of one or several lengths, from an anchor up.
@@ -38,7 +58,7 @@ def read_moordyn(path: Path) -> Design:
     InputError
         It cannot be read, or holds a platform, a body, a rod or several lines.
     """
-    sections = read_sections(path)
+    sections = _read_sections(path)
     for name in ("bodies", "rods"):
         for row in sections.rows.get(name, []):
             raise row.refuse(
@@ -248,27 +268,6 @@ def _anchor(point: SectionRow, water: ImportedWater) -> ImportedComponent:
     return ImportedComponent("anchor", "anchor", {"length": height} if height > 1e-6 else {})
 
 
-_SECTIONS = (
-    ("types", r"line (types|dictionary)"),
-    ("points", r"(node|connection|point) properties|^points?( list)?$|connections"),
-    ("lines", r"line properties|^lines?( list)?$"),
-    ("bodies", r"bod(y|ies)"),
-    ("rods", r"^rods?\b(?!.*types)"),
-    ("rod types", r"rod (types|dictionary)"),
-    ("options", r"options"),
-    ("outputs", r"outputs?"),
-)
-_COLUMNS = {
-    "typename": "name", "name": "name", "linetype": "type", "type": "attachment",
-    "attachment": "attachment", "diam": "diameter", "mass/m": "mass", "massden": "mass",
-    "massdeninair": "mass", "massperlength": "mass", "mass/length": "mass", "ea": "ea",
-    "cd": "cd", "cdn": "cd", "cdax": "cdt", "cdt": "cdt", "id": "id", "node": "id", "line": "id",
-    "x": "x", "y": "y", "z": "z", "m": "mass", "mass": "mass", "v": "volume", "volume": "volume",
-    "cda": "cda", "fx": "fx", "fy": "fy", "fz": "fz", "unstrlen": "length", "nodeanch": "a",
-    "nodefair": "b", "nodea": "a", "nodeb": "b", "attacha": "a", "attachb": "b",
-}  # fmt: skip
-
-
 @dataclass(frozen=True)
 class SectionRow:
     """Hold a row of a table: its words by heading, and its place in the file."""
@@ -316,7 +315,7 @@ def is_moordyn(content: bytes) -> bool:
     return b"\0" not in content and {"types", "lines"} <= found
 
 
-def read_sections(path: Path) -> MoorDynSections:
+def _read_sections(path: Path) -> MoorDynSections:
     """Read a file.
 
     Raises

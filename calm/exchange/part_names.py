@@ -23,6 +23,9 @@ _LINE = re.compile(
     r"|\bline\b|c[âa]ble|cordage|jetstr|spectra|nilspin",
     re.I,
 )
+_LONGEST = 40
+_NO_IDS = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}  # other words in YAML
+_SIGNS = {'"': "in ", "″": "in ", "↑": " up ", "↓": " down ", "+": " ", "&": " and ", "µ": "u"}
 
 
 def is_release(name: str) -> bool:
@@ -68,12 +71,7 @@ def role_of(name: str, buoyancy: float, *, fastener: bool = False) -> str:
     return "connector" if fastener and buoyancy > -_HEAVY else "instrument"
 
 
-_LONGEST = 40
-_NO_IDS = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}  # other words in YAML
-_SIGNS = {'"': "in ", "″": "in ", "↑": " up ", "↓": " down ", "+": " ", "&": " and ", "µ": "u"}
-
-
-def kebab(name: str) -> str:
+def _kebab(name: str) -> str:
     """Return a name as an id: ``3/8" wire rope`` becomes ``3-8in-wire-rope``."""
     text = "".join(_SIGNS.get(sign, sign) for sign in name)
     text = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode().lower()
@@ -98,7 +96,7 @@ def ids_of(components: Iterable[ImportedComponent], taken: Iterable[str] = ()) -
             continue
         says = component.says()
         if says not in said:
-            base = kebab(component.name)
+            base = _kebab(component.name)
             if base in _NO_IDS or not any(sign.isalpha() for sign in base):
                 base = f"{component.kind}-{base}".rstrip("-")
             chosen, number = base, 1
