@@ -1,7 +1,7 @@
 """The component catalogue: shipped, the user's own, files given with a command, and in-file ones.
 
 Definitions are kept as written and validated when they are asked for, so that a run pays only for
-the components it uses.
+the components it uses. A user's files are read again only where they changed.
 """
 
 from __future__ import annotations
@@ -368,7 +368,7 @@ def _cuts(path: Path) -> list[tuple[str | None, _Cut]]:
     return cuts
 
 
-class Unchanged(Generic[T]):
+class FileCache(Generic[T]):
     """Keep the last of what was read from files, known by their names, times and sizes."""
 
     def __init__(self) -> None:
@@ -397,4 +397,4 @@ def _stamp(paths: Sequence[Path]) -> Stamp | None:
     return tuple((name, each.st_mtime_ns, each.st_size, each.st_ino) for name, each in found)
 
 
-_LOADED: Unchanged[Catalogue] = Unchanged()
+_LOADED: FileCache[Catalogue] = FileCache()

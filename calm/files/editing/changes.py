@@ -1,4 +1,4 @@
-"""Changes to a text by location, each the patches that make it."""
+"""Changes to a text by location: the patches that make them, and what the text then says."""
 
 from __future__ import annotations
 

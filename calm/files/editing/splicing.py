@@ -1,4 +1,8 @@
-"""Which lines, comments included, belong to what in a text; pieces of text put in its place."""
+"""Values put into a text, and taken out of it, at the places where libyaml found them.
+
+A text is never written anew: what emitters of YAML keep of it (ruamel.yaml by round trip keeps most
+comments) is less than a person put there, such as figures in columns and line ends of Windows.
+"""
 
 from __future__ import annotations
 
@@ -14,6 +18,10 @@ from calm.files.editing.writing import SECTIONS, Value, WritingStyle, inline, pl
 _COMMENT = re.compile(r"[ \t]*#[^\n]*(?:\n|\Z)")
 _BEHIND = re.compile(r"[ \t]*(?:#[^\n]*)?(?:\r?\n|\Z)")
 """What may follow a value on its line: a comment."""
+
+_COMMA = re.compile(r"(?:\s|#[^\n]*\n)*,")
+_FILLING = re.compile(r"(?:[ \t\r\n]|#[^\n]*\n)*")
+_BLANK_LINE = re.compile(r"^[ \t]*\r?\n(?=(?:[ ]*#.*\n|[ \t]*\r?\n)*\S)", re.MULTILINE)
 
 
 class Patch(NamedTuple):
@@ -83,9 +91,6 @@ def _own_start(text: str, place: int, least: int, column: int | None = None) -> 
 
 def _column(line: str) -> int:
     return len(line) - len(line.lstrip(" \t")) + 1
-
-
-_COMMA = re.compile(r"(?:\s|#[^\n]*\n)*,")
 
 
 class Slot(NamedTuple):
@@ -231,10 +236,6 @@ def _inline(text: str, node: Node) -> Items:
     gaps = ["", *(text[one.end : other.start] for one, other in pairwise(children))]
     start, end = children[0].start, children[-1].end
     return Items(start, end, "inline", children[0].column, slots, gaps)
-
-
-_FILLING = re.compile(r"(?:[ \t\r\n]|#[^\n]*\n)*")
-_BLANK_LINE = re.compile(r"^[ \t]*\r?\n(?=(?:[ ]*#.*\n|[ \t]*\r?\n)*\S)", re.MULTILINE)
 
 
 def add_entry(
