@@ -14,7 +14,7 @@ from calm.exchange.cable_writer import cbl_file
 from calm.exchange.exported_parts import ExportedLine, ExportedPart, area, assembled, remarks
 from calm.exchange.mdd_writer import mdd_file
 from calm.exchange.moordyn_writer import CURRENTS, current_profile, moordyn_file
-from calm.files.explain import unknown
+from calm.suggestions import unknown
 
 
 @dataclass(frozen=True)

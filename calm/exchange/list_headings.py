@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from calm.exchange.design import refused
-from calm.files.document import read_content
-from calm.files.explain import unknown
+from calm.suggestions import unknown
 from calm.units import KILOGRAM_FORCE
+from calm.whole_file import read_content
 
 COLUMNS = (
     "name", "label", "kind", "role", "length", "diameter", "width", "mass", "buoyancy", "weight",

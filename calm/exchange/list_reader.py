@@ -39,9 +39,9 @@ from calm.exchange.mdd_elements import read_entries
 from calm.exchange.mdd_reader import read_water
 from calm.exchange.part_names import is_line
 from calm.files.components import FLEXIBLE_KINDS
-from calm.files.document import read_content
-from calm.files.explain import nearest
+from calm.suggestions import nearest
 from calm.units import KILOGRAM_FORCE
+from calm.whole_file import read_content
 
 _NOTE = "A list says nothing about the water, and little about drag. See `calm docs import-table`."
 _WATER = ("z", "U", "V", "W", "rho")  # headings of a sheet of Mooring Design & Dynamics

@@ -23,7 +23,7 @@ from calm.exchange.mdd_elements import (
     mistakes_of,
     rigid,
 )
-from calm.files.document import read_text
+from calm.whole_file import read_text
 
 _MARKS = {"name", "length", "buoyancy", "bool_line", "bool_clampon", "height_along_inline"}
 _SLIGHT = 1e-6  # m by which a clamp may stand off its piece

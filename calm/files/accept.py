@@ -11,10 +11,10 @@ from typing import Annotated
 from pydantic import AfterValidator, Field, WithJsonSchema, model_validator
 
 from calm.errors import Problem
-from calm.files.explain import shown, unknown
 from calm.files.fields import Model, Text
 from calm.files.rules import ACCEPTABLE
 from calm.files.section import Section
+from calm.suggestions import shown, unknown
 
 
 def _day(text: str) -> str:

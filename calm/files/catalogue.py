@@ -19,10 +19,11 @@ from calm.errors import InputError, Problem, UsageError
 from calm.files.components import KINDS, Component
 from calm.files.definition import Definition
 from calm.files.entries import FAMILY_ROLES, Entry, Level, UnreadLevel, entries_of, read_level
-from calm.files.explain import nearest, shown, unknown, validate
+from calm.files.explain import validate
 from calm.files.section import Section
 from calm.files.unchanged import Unchanged
 from calm.shipped import shipped_folder
+from calm.suggestions import nearest, shown, unknown
 
 
 class Assembly(Definition):

@@ -12,9 +12,9 @@ from pathlib import Path
 
 from calm.errors import InputError, Problem
 from calm.files.current_terms import Terms
-from calm.files.document import read_text
 from calm.files.tables import CurrentTable, heading, read_current, turned_notices
 from calm.files.times import ZONES_OF_UTC, TimeChoiceError, choose_time, parse_time
+from calm.whole_file import read_text
 
 LARGEST_CSV = 50_000_000
 """Largest file that is read for a single profile [bytes]."""

@@ -5,26 +5,24 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import Discriminator, Field, Tag, ValidationError
 
 from calm.errors import Problem
 from calm.files.definition import CATALOGUE_DENSITY, DENSITY
-from calm.files.explain import about_quantity
-from calm.files.fields import Model, Quantity
+from calm.files.fields import Model, Quantity, Text
 from calm.files.section import Section
 from calm.files.tables import (
     SALINITY,
     TEMPERATURE,
     WATER_DENSITY,
     DepthTable,
+    Report,
     SeaWater,
-    Table,
     read_profile,
     read_water,
-    report_at,
-    table_of,
 )
-from calm.units import QuantityError
+from calm.suggestions import about_quantity
+from calm.units import QuantityError, QuantityRange
 
 USUAL_DENSITY = {"water": CATALOGUE_DENSITY, "air": 1.225}
 """Where a file gives none [kg/m³]; that of air is the standard atmosphere's at sea level."""
@@ -40,35 +38,50 @@ def _table_or_constant(value: object) -> str:
     return "table" if isinstance(value, dict) else "constant"
 
 
+class ColumnsAndRows(Model):
+    """Columns, each a name and its unit, and rows of values."""
+
+    columns: tuple[Text, ...] = Field(
+        description="each a name and its unit: depth m, speed m/s, toward deg; or u m/s, v m/s, "
+        "w m/s",
+        examples=[["depth m", "speed m/s", "toward deg"]],
+    )
+    rows: tuple[tuple[Text | None, ...], ...] = Field(
+        description="values, top to bottom", examples=[[[0, 0.8, 90], [1100, 0.05, 60]]]
+    )
+
+
 class SeaWaterKeys(Model):
     """Temperature [°C] and practical salinity, each a constant or a table by depth."""
 
     temperature: Annotated[
-        Annotated[float, TEMPERATURE, Tag("constant")] | Annotated[Table, Tag("table")],
+        Annotated[float, Quantity(**vars(TEMPERATURE)), Tag("constant")]
+        | Annotated[ColumnsAndRows, Tag("table")],
         Discriminator(_table_or_constant),
     ] = Field(description="in situ, a constant or a table", examples=["10 degC"])
     salinity: Annotated[
-        Annotated[float, SALINITY, Tag("constant")] | Annotated[Table, Tag("table")],
+        Annotated[float, Quantity(**vars(SALINITY)), Tag("constant")]
+        | Annotated[ColumnsAndRows, Tag("table")],
         Discriminator(_table_or_constant),
     ] = Field(description="practical, a constant or a table", examples=[35])
 
 
 Density = Annotated[
     Annotated[float, DENSITY, Tag("constant")]
-    | Annotated[Table, Tag("table")]
+    | Annotated[ColumnsAndRows, Tag("table")]
     | Annotated[SeaWaterKeys, Tag("sea water")],
     Discriminator(_form),
 ]
 """The value of `density:` as a person writes it."""
 
 
-_RANGES: Mapping[str, Quantity] = {"water": WATER_DENSITY, "air": DENSITY}
+_RANGES: Mapping[str, QuantityRange] = {"water": WATER_DENSITY, "air": DENSITY}
 _FALL = 0.1
 """Water that gets lighter by more than this with depth turns over [kg/m³]."""
 
 
 def read_density(
-    given: float | Table | SeaWaterKeys,
+    given: float | ColumnsAndRows | SeaWaterKeys,
     fluid: str,
     section: Section,
     problems: list[Problem],
@@ -76,7 +89,7 @@ def read_density(
 ) -> float | DepthTable | SeaWater | None:
     """The density of a section's `density:`; None, with its mistakes reported, when it has any."""
     density = _RANGES[fluid]
-    if isinstance(given, Table):
+    if isinstance(given, ColumnsAndRows):
         report = report_at(section, "density")
         table = read_water(given.columns, given.rows, report, problems, density)
         if isinstance(table, DepthTable):
@@ -92,6 +105,19 @@ def read_density(
     temperature = _profile("temperature", given.temperature, section, problems)
     salinity = _profile("salinity", given.salinity, section, problems)
     return SeaWater(temperature, salinity) if temperature and salinity else None
+
+
+def table_of(value: object) -> ColumnsAndRows | None:
+    """The table that a value of a file is, None where it is none."""
+    try:
+        return ColumnsAndRows.model_validate(value)
+    except ValidationError:
+        return None
+
+
+def report_at(section: Section, *place: str) -> Report:
+    """Tells problems at places below a key of a section, or below a key under that."""
+    return lambda location, message: section.problem((*place, *location), message)
 
 
 def _falls(table: DepthTable) -> list[str]:
@@ -122,9 +148,9 @@ def check_density(section: Section, problems: list[Problem]) -> None:
 
 
 def _profile(
-    name: str, given: float | Table, section: Section, problems: list[Problem]
+    name: str, given: float | ColumnsAndRows, section: Section, problems: list[Problem]
 ) -> DepthTable | None:
-    if isinstance(given, Table):
+    if isinstance(given, ColumnsAndRows):
         report = report_at(section, "density", name)
         return read_profile(name, given.columns, given.rows, report, problems)
     return DepthTable((0.0,), (given,))

@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from calm.errors import InputError, Problem
-from calm.files.document import Document, compose, read_document, read_text
+from calm.files.document import Document, compose, read_document
 from calm.files.section import Section
+from calm.whole_file import read_text
 
 FAMILY_ROLES = {
     "floats": "float",

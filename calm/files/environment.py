@@ -13,8 +13,16 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 from calm.errors import InputError, Problem
 from calm.files.current_terms import DEEPEST, Terms, too_fast
 from calm.files.definition import DENSITY
-from calm.files.density import USUAL_DENSITY, Density, check_density, read_density
-from calm.files.explain import shown, validate
+from calm.files.density import (
+    USUAL_DENSITY,
+    ColumnsAndRows,
+    Density,
+    check_density,
+    read_density,
+    report_at,
+    table_of,
+)
+from calm.files.explain import validate
 from calm.files.fields import POSITIVE_LENGTH, Model, Quantity, Text
 from calm.files.section import Section
 from calm.files.tables import (
@@ -22,13 +30,11 @@ from calm.files.tables import (
     CurrentTable,
     DepthTable,
     SeaWater,
-    Table,
     components,
     read_current,
-    report_at,
-    table_of,
 )
 from calm.files.times import TimeChoiceError
+from calm.suggestions import shown
 from calm.units import QuantityError
 
 _SPEED = Quantity("speed", at_least=0)
@@ -211,7 +217,7 @@ class TowEnvironmentKeys(Model):
         default=None, description="acceleration", examples=["9.81 m/s^2"]
     )
     current: Annotated[
-        Annotated[Table, Tag("table")]
+        Annotated[ColumnsAndRows, Tag("table")]
         | Annotated[CurrentFile, Tag("file")]
         | Annotated[UniformCurrent, Tag("uniform")],
         Discriminator(_current_form),
@@ -340,7 +346,7 @@ def _current(
     current = keys.current
     report = report_at(section, "current")
     maximum_speed = getattr(keys, "maximum_speed", math.inf)
-    if isinstance(current, Table):
+    if isinstance(current, ColumnsAndRows):
         terms = Terms(maximum_speed=maximum_speed)
         return read_current(current.columns, current.rows, report, problems, terms)
     if isinstance(current, UniformCurrent):

@@ -12,7 +12,7 @@ from calm.files.checks import LimitKey
 from calm.files.components import Cable, Component
 from calm.files.definition import IN_AIR
 from calm.files.entries import Entry
-from calm.files.explain import about_quantity, shown, unknown, validate
+from calm.files.explain import validate
 from calm.files.fields import LENGTH, POSITIVE_LENGTH, Quantity
 from calm.files.flexible import Flexible, strain_under
 from calm.files.labels import placed
@@ -21,6 +21,7 @@ from calm.files.mooring import Clamp, Piece, Place
 from calm.files.overrides import contradicted
 from calm.files.rigid import Rigid
 from calm.files.section import Section
+from calm.suggestions import about_quantity, shown, unknown
 from calm.units import QuantityError
 
 MOST_PIECES = 10_000

@@ -10,10 +10,11 @@ from pydantic import AfterValidator, Field, WithJsonSchema
 from calm.errors import Problem
 from calm.files.accept import Day
 from calm.files.environment import Position
-from calm.files.explain import shown, unknown, validate
+from calm.files.explain import validate
 from calm.files.fields import POSITIVE_LENGTH, Model, Quantity, Text
 from calm.files.section import Section
 from calm.files.times import TimeChoiceError, parse_time
+from calm.suggestions import shown, unknown
 
 
 def _moment(text: str) -> str:

@@ -20,9 +20,9 @@ from typing import Annotated, Literal, cast, get_args
 
 from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag, ValidationInfo
 
-from calm.files.explain import nearest, not_among, shown
 from calm.files.fields import COEFFICIENT, Model, Quantity
 from calm.physics.strumming import BourgetMarichal
+from calm.suggestions import nearest, not_among, shown
 from calm.units import QuantityError
 
 _NUMBER = Quantity("number")

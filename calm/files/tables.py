@@ -7,16 +7,11 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from pydantic import Field, ValidationError
-
 from calm.errors import Problem
 from calm.files.current_terms import Terms, too_deep, too_fast
-from calm.files.definition import DENSITY
-from calm.files.explain import about_quantity, shown, unknown
-from calm.files.fields import Model, Quantity, Text
-from calm.files.section import Section
 from calm.quantities import bearing_of
-from calm.units import DIMENSIONS, QuantityError, unit_factor
+from calm.suggestions import about_quantity, shown, unknown
+from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
 
 Report = Callable[[Sequence[str | int], str], Problem]
 """Makes a problem of a message, at ``("columns", j)`` or ``("rows", i, j)``."""
@@ -24,17 +19,19 @@ Report = Callable[[Sequence[str | int], str], Problem]
 _HEADING = re.compile(r"^([^\s\[(]*)\s*(.*)$", re.DOTALL)
 _BARE_NUMBER = re.compile(r"[-+.,/\deE ]*")
 
-TEMPERATURE = Quantity("temperature", at_least=-6, at_most=40)
-SALINITY = Quantity("salinity", at_least=0, at_most=42)
+TEMPERATURE = QuantityRange("temperature", at_least=-6, at_most=40)
+SALINITY = QuantityRange("salinity", at_least=0, at_most=42)
 """Temperatures and salinities are limited to those that TEOS-10 is valid for."""
 
-WATER_DENSITY = Quantity("density", at_least=900, at_most=1350)
+WATER_DENSITY = QuantityRange("density", at_least=900, at_most=1350)
 """From fresh water under a glacier to the brines at the bottom of the Red Sea."""
 
-DIRECTION = Quantity("angle", at_least=-360, at_most=360)
+DENSITY = QuantityRange("density", above=0)
 
-_DEPTH = Quantity("length")
-_SPEED = Quantity("speed")
+DIRECTION = QuantityRange("angle", at_least=-360, at_most=360)
+
+_DEPTH = QuantityRange("length")
+_SPEED = QuantityRange("speed")
 _CURRENT = {
     "depth": _DEPTH,
     "u": _SPEED,
@@ -52,19 +49,6 @@ _WATER = {
     "temperature": TEMPERATURE,
     "salinity": SALINITY,
 }
-
-
-class Table(Model):
-    """Columns, each a name and its unit, and rows of values."""
-
-    columns: tuple[Text, ...] = Field(
-        description="each a name and its unit: depth m, speed m/s, toward deg; or u m/s, v m/s, "
-        "w m/s",
-        examples=[["depth m", "speed m/s", "toward deg"]],
-    )
-    rows: tuple[tuple[Text | None, ...], ...] = Field(
-        description="values, top to bottom", examples=[[[0, 0.8, 90], [1100, 0.05, 60]]]
-    )
 
 
 @dataclass(frozen=True)
@@ -220,7 +204,7 @@ def read_water(
     rows: Sequence[Sequence[str | None]],
     report: Report,
     problems: list[Problem],
-    density: Quantity = WATER_DENSITY,
+    density: QuantityRange = WATER_DENSITY,
 ) -> DepthTable | SeaWater | None:
     """Densities [kg/m³], or sea water, from a table as that of `read_current`.
 
@@ -259,19 +243,6 @@ def read_profile(
     return DepthTable(tuple(values["depth"]), tuple(values[name]))
 
 
-def table_of(value: object) -> Table | None:
-    """The table that a value of a file is, None where it is none."""
-    try:
-        return Table.model_validate(value)
-    except ValidationError:
-        return None
-
-
-def report_at(section: Section, *place: str) -> Report:
-    """Tells problems at places below a key of a section, or below a key under that."""
-    return lambda location, message: section.problem((*place, *location), message)
-
-
 def components(speed: float, toward: float) -> tuple[float, float]:
     """East and north parts of a speed that flows toward a direction [deg from north]."""
     angle = math.radians(toward)
@@ -292,7 +263,7 @@ def speed_and_direction(u: float, v: float) -> tuple[float, float]:
 def _read_columns(
     columns: Sequence[str],
     rows: Sequence[Sequence[str | None]],
-    known: Mapping[str, Quantity],
+    known: Mapping[str, QuantityRange],
     report: Report,
     problems: list[Problem],
 ) -> dict[str, list[float]]:
@@ -321,7 +292,7 @@ def _read_columns(
 
 def _read_headings(
     columns: Sequence[str],
-    known: Mapping[str, Quantity],
+    known: Mapping[str, QuantityRange],
     report: Report,
     problems: list[Problem],
 ) -> dict[str, str]:
@@ -354,7 +325,7 @@ def _read_headings(
     return units
 
 
-def _read_cell(text: str | None, unit: str, quantity: Quantity) -> float:
+def _read_cell(text: str | None, unit: str, quantity: QuantityRange) -> float:
     if text is not None and unit and _BARE_NUMBER.fullmatch(text):
         text = f"{text} {unit}"
     return quantity.read(text)

@@ -10,9 +10,10 @@ from typing import Any
 from calm.errors import InputError, Problem
 from calm.files.document import read_document
 from calm.files.environment import read_environment
-from calm.files.explain import unknown, validate
+from calm.files.explain import validate
 from calm.files.fields import Model, Text
 from calm.files.section import Section
+from calm.suggestions import unknown
 
 
 class EnvironmentFileKeys(Model):

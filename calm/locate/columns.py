@@ -10,10 +10,10 @@ from pathlib import Path
 
 from calm.errors import InputError, Problem
 from calm.files.current_csv import is_content
-from calm.files.document import read_text
-from calm.files.explain import shown, unknown
 from calm.files.tables import heading
+from calm.suggestions import shown, unknown
 from calm.units import DIMENSIONS, QuantityError, unit_factor
+from calm.whole_file import read_text
 
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 

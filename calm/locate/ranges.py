@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from calm.errors import InputError, Problem
-from calm.files.explain import shown
 from calm.locate.columns import NUMBER, Row, lacking, read_columns
 from calm.physics.ellipsoid import Frame
 from calm.physics.line import Floats
+from calm.suggestions import shown
 from calm.units import DIMENSIONS
 
 EXAMPLE = "latitude[deg],longitude[deg],range[m]"

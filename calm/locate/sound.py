@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from calm.errors import InputError, Problem
-from calm.files.explain import shown
 from calm.locate.columns import NUMBER, lacking, read_columns
 from calm.physics.line import Floats
+from calm.suggestions import shown
 from calm.units import DIMENSIONS
 
 SLOWEST, FASTEST = 1380.0, 1680.0

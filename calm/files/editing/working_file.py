@@ -10,10 +10,9 @@ from pathlib import Path
 from threading import RLock
 
 from calm.errors import CalmError, InputError
-from calm.files.document import decoded, read_content
 from calm.files.editing.kept_work import Kept, digest, kept_in, place_of, with_record
 from calm.files.unchanged import GRAIN
-from calm.whole_file import put, sweep
+from calm.whole_file import decoded, put, read_content, sweep
 
 _UNREADABLE = b"\0"
 """Stands for the content of what is there and cannot be read; no text has it."""

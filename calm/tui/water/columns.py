@@ -7,9 +7,9 @@ from dataclasses import replace
 from calm.files.fields import Quantity
 from calm.files.tables import DIRECTION, SALINITY, TEMPERATURE, WATER_DENSITY
 from calm.tui.checking import Check, Reading, number, quantity
-from calm.units import QuantityError, unit_factor
+from calm.units import QuantityError, QuantityRange, unit_factor
 
-_KINDS = {
+_KINDS: dict[str, QuantityRange] = {
     "depth": Quantity("length"),
     "speed": Quantity("speed", at_least=0),
     "u": Quantity("speed"),
