@@ -25,8 +25,8 @@ from calm.files.strumming import (
     Strumming,
     StrummingFactor,
 )
-from calm.files.tables import CurrentTable, DepthTable, SeaWater
 from calm.files.uncertainty import Spread, Uncertainty
+from calm.records.profile_tables import CurrentTable, DepthTable, SeaWater
 
 __all__ = [
     "Accept",

@@ -11,7 +11,7 @@ from calm.errors import Problem
 from calm.files.definition import CATALOGUE_DENSITY, DENSITY
 from calm.files.fields import Model, Quantity, Text
 from calm.files.section import Section
-from calm.files.tables import (
+from calm.records.profile_tables import (
     SALINITY,
     TEMPERATURE,
     WATER_DENSITY,

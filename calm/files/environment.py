@@ -11,7 +11,6 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from calm.errors import InputError, Problem
-from calm.files.current_terms import DEEPEST, Terms, too_fast
 from calm.files.definition import DENSITY
 from calm.files.density import (
     USUAL_DENSITY,
@@ -25,15 +24,18 @@ from calm.files.density import (
 from calm.files.explain import validate
 from calm.files.fields import POSITIVE_LENGTH, Model, Quantity, Text
 from calm.files.section import Section
-from calm.files.tables import (
+from calm.records.profile_tables import (
+    DEEPEST,
     DIRECTION,
     CurrentTable,
     DepthTable,
     SeaWater,
+    Terms,
     components,
     read_current,
+    too_fast,
 )
-from calm.files.times import TimeChoiceError
+from calm.records.times import TimeChoiceError
 from calm.suggestions import shown
 from calm.units import QuantityError
 
@@ -123,7 +125,7 @@ class Wind(Model):
     speed: Annotated[float, _SPEED] = Field(
         description="of the wind, at the height of the float", examples=["12 m/s"]
     )
-    toward: Annotated[float, DIRECTION] = Field(
+    toward: Annotated[float, Quantity(**vars(DIRECTION))] = Field(
         description="where it blows to, clockwise from north", examples=["90 deg"]
     )
     surface_drift: Annotated[float, Quantity("number", at_least=0, at_most=0.1)] = Field(
@@ -146,7 +148,7 @@ class UniformCurrent(Model):
     """The same current at all depths [m/s, degrees]."""
 
     speed: Annotated[float, _SPEED] = Field(description="of the water", examples=["0.5 m/s"])
-    toward: Annotated[float, DIRECTION] = Field(
+    toward: Annotated[float, Quantity(**vars(DIRECTION))] = Field(
         description="direction it flows or goes to, clockwise from north, e.g. 90 deg",
         examples=["90 deg"],
     )
@@ -368,7 +370,7 @@ def _current(
         maximum_speed=maximum_speed,
     )
     try:
-        from calm.files.current_file import read_current_file
+        from calm.records.current_file import read_current_file
 
         table, remarks = read_current_file(path, current.time, terms)
     except TimeChoiceError as error:

@@ -13,7 +13,7 @@ from calm.files.environment import Position
 from calm.files.explain import validate
 from calm.files.fields import POSITIVE_LENGTH, Model, Quantity, Text
 from calm.files.section import Section
-from calm.files.times import TimeChoiceError, parse_time
+from calm.records.times import TimeChoiceError, parse_time
 from calm.suggestions import shown, unknown
 
 

@@ -1,1 +1,1 @@
-"""Currents, pressures, ranges and other measurements out of files: one reader of columns and of datasets."""
+"""Currents, pressures, ranges and the like out of files: one reader of columns, one of datasets."""

@@ -10,7 +10,7 @@ from datetime import date
 from calm.files.editing import Value
 from calm.files.fields import LENGTH, POSITIVE_LENGTH, Quantity
 from calm.files.logbook import LOAD
-from calm.files.times import TimeChoiceError, parse_time
+from calm.records.times import TimeChoiceError, parse_time
 from calm.units import QuantityError, QuantityRange
 
 COUNT = Quantity("number", at_least=1, at_most=10_000)
@@ -88,7 +88,9 @@ def needed(what: str) -> Check:
     return check
 
 
-def quantity(kind: QuantityRange, *, optional: bool = False, usual_unit: str | None = None) -> Check:
+def quantity(
+    kind: QuantityRange, *, optional: bool = False, usual_unit: str | None = None
+) -> Check:
     """A number with a unit; a number alone is completed by `usual_unit`, the SI unit by default."""
 
     def check(text: str) -> Reading:
@@ -104,7 +106,9 @@ def quantity(kind: QuantityRange, *, optional: bool = False, usual_unit: str | N
     return check
 
 
-def _refused(text: str, error: QuantityError, kind: QuantityRange, usual_unit: str | None) -> Reading:
+def _refused(
+    text: str, error: QuantityError, kind: QuantityRange, usual_unit: str | None
+) -> Reading:
     offer = error.suggestion
     if offer and error.complaint == "needs a unit":
         if usual_unit:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from calm.files.current_text import NoTableError, copied_table
+from calm.records.delimited import NoTableError, copied_table
 from calm.tui.water.columns import check_of
 from calm.tui.water.pasted import NoRows, Rows, UnknownColumns, offered_headings, rows_in
 

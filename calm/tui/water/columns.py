@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from calm.files.fields import Quantity
-from calm.files.tables import DIRECTION, SALINITY, TEMPERATURE, WATER_DENSITY
+from calm.records.profile_tables import DIRECTION, SALINITY, TEMPERATURE, WATER_DENSITY
 from calm.tui.checking import Check, Reading, number, quantity
 from calm.units import QuantityError, QuantityRange, unit_factor
 

@@ -10,7 +10,7 @@ from calm.files.density import USUAL_DENSITY
 from calm.files.document import Location
 from calm.files.editing import Draft, Value
 from calm.files.fields import POSITIVE_LENGTH, Quantity
-from calm.files.tables import SALINITY, TEMPERATURE, speed_and_direction
+from calm.records.profile_tables import SALINITY, TEMPERATURE, speed_and_direction
 from calm.tui.water.columns import named
 from calm.units import QuantityError, QuantityRange
 

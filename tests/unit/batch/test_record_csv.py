@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from calm.batch.records import csv as record_csv
-from calm.batch.records.opening import open_record
 from calm.errors import InputError
-from calm.files.current_csv import MOST_PROBLEMS
+from calm.records import current_csv as record_csv
+from calm.records.current_csv import MOST_PROBLEMS
+from calm.records.current_file import open_record
 from tests.unit.batch.records import COUNT, SEABED, write
 
 HEAD = "time,depth[m],u[m/s],v[m/s]\n"

@@ -6,17 +6,21 @@ import math
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from math import hypot, inf, isinf
+from typing import TYPE_CHECKING
 
 from calm.errors import Problem
-from calm.files.current_terms import Terms, too_deep, too_fast
 from calm.quantities import bearing_of
+from calm.records.headings import heading, magnetic_columns
 from calm.suggestions import about_quantity, shown, unknown
 from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
+
+if TYPE_CHECKING:
+    from calm.records.water_column import Place
 
 Report = Callable[[Sequence[str | int], str], Problem]
 """Makes a problem of a message, at ``("columns", j)`` or ``("rows", i, j)``."""
 
-_HEADING = re.compile(r"^([^\s\[(]*)\s*(.*)$", re.DOTALL)
 _BARE_NUMBER = re.compile(r"[-+.,/\deE ]*")
 
 TEMPERATURE = QuantityRange("temperature", at_least=-6, at_most=40)
@@ -42,13 +46,41 @@ _CURRENT = {
     "from": DIRECTION,
 }
 _NO_WAY = ("direction", "dir", "heading", "bearing")
-_MAGNETIC = re.compile(r"(?i)\s*\bmag(netic)?$")
 _WATER = {
     "depth": _DEPTH,
     "density": DENSITY,
     "temperature": TEMPERATURE,
     "salinity": SALINITY,
 }
+
+
+DEEPEST = 11_000.0
+"""Depth that no sea exceeds [m]."""
+
+IMPOSSIBLE = (
+    "an infinite or negative speed, or a direction outside -360 to 360°: a fill value, or "
+    "another unit?"
+)
+"""What is said of a current whose speed is infinite in `too_fast`."""
+
+
+@dataclass(frozen=True)
+class Terms:
+    """How a person wants the currents of a file to be taken.
+
+    Attributes
+    ----------
+    water_depth : places heights above the seabed [m]; inf where it is not known
+    place : whose column is wanted, where a file holds several
+    declination : of magnetic north from true north, positive to the east [degrees]; turns what
+        the file says is magnetic
+    maximum_speed : a faster current is a mistake of the file [m/s]
+    """
+
+    water_depth: float = inf
+    place: Place | None = None
+    declination: float | None = None
+    maximum_speed: float = inf
 
 
 @dataclass(frozen=True)
@@ -82,7 +114,7 @@ def read_current(
     rows: Sequence[Sequence[str | None]],
     report: Report,
     problems: list[Problem],
-    terms: Terms = Terms(),  # noqa: B008 (frozen)
+    terms: Terms = Terms(),
 ) -> CurrentTable | None:
     """A current from a table; None, with its mistakes added to `problems`, when it has any.
 
@@ -139,20 +171,6 @@ def read_current(
     return CurrentTable(tuple(values["depth"]), tuple(u), tuple(v), tuple(w))
 
 
-def magnetic_columns(columns: Sequence[str]) -> tuple[list[str], set[str]]:
-    """The headings without the word for their north, and the names of those that count from it."""
-    plain = [_without_north(column) for column in columns]
-    pairs = zip(columns, plain, strict=True)
-    return plain, {heading(column)[0].lower() for column, other in pairs if column != other}
-
-
-def heading(column: str) -> tuple[str, str]:
-    """Name and unit of ``"depth m"``, ``"depth[m]"`` or ``"depth (m)"``; empty without a unit."""
-    name, unit = _HEADING.findall(column.strip())[0]
-    bracketed = unit[:1] in ("[", "(") and unit[-1:] in ("]", ")")
-    return name, unit[1:-1].strip() if bracketed else unit
-
-
 def turned_notices(columns: Sequence[str], terms: Terms) -> tuple[str, ...]:
     """What is reported of a current whose columns counted from magnetic north."""
     if terms.declination is None:
@@ -190,13 +208,6 @@ def _from_magnetic_north(
         )
         problems.append(report(("columns", first), message))
     return plain, terms.declination or 0.0
-
-
-def _without_north(column: str) -> str:
-    """A heading without the word ``magnetic`` at the end of its unit."""
-    name, unit = heading(column)
-    plain = _MAGNETIC.sub("", unit)
-    return column if plain == unit else f"{name} {plain}".strip()
 
 
 def read_water(
@@ -355,3 +366,28 @@ def _check_depths(
             message = f"depth {depth:g} m {word} {previous:g} m; depths must increase"
             problems.append(report(("rows", i, column), message))
         previous = depth
+
+
+def too_fast(u: float, v: float, w: float, maximum_speed: float) -> str | None:
+    """What is wrong with a current faster than the greatest that is plausible; None if it is not.
+
+    Parameters
+    ----------
+    u, v, w : [m/s]
+    """
+    speed = hypot(u, v, w)
+    if isinf(speed):
+        return IMPOSSIBLE
+    if not speed > maximum_speed:
+        return None
+    return (
+        f"{speed:.5g} m/s is faster than `maximum_speed`, {maximum_speed:g} m/s: a fill value, or "
+        "another unit? (`maximum_speed` of the environment allows it if it is true)"
+    )
+
+
+def too_deep(depth: float) -> str | None:
+    """What is wrong with a depth [m] below that of any sea; None if it is not."""
+    if not depth > DEEPEST:
+        return None
+    return f"depth {depth:g} m is deeper than any sea, {DEEPEST:g} m"
