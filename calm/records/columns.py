@@ -17,6 +17,8 @@ from calm.records.times import TimeChoiceError, parse_time
 from calm.suggestions import about_quantity, unknown
 from calm.units import DIMENSIONS, QuantityError, QuantityRange
 
+_INFINITE = ("inf", "infinity")
+
 
 @dataclass(frozen=True)
 class NamedRow:
@@ -184,7 +186,7 @@ class _LabelledColumn:
         """The number of a cell in SI, NaN of a gap; QuantityError where it is none."""
         if NUMBER.fullmatch(cell):
             return float(cell) * self.factor
-        if cell.lower() in GAPS:
+        if cell.lower() in GAPS or cell.lower().lstrip("+-") in _INFINITE:
             return float("nan")
         return QuantityRange(self.dimension, self.unit).read(cell)
 
