@@ -26,7 +26,7 @@ _TOGETHER = 32  # files handed to the disk at once: one by one each waits for a 
 
 @contextlib.contextmanager
 def beside(target: Path) -> Iterator[Path]:
-    """An empty file beside another, which takes its place once the block ends without an error.
+    """Open an empty file beside another; it takes its place once the block ends without an error.
 
     Raises
     ------
@@ -45,14 +45,14 @@ def beside(target: Path) -> Iterator[Path]:
 
 
 def put(
-    target: Path, content: bytes, *, like: os.stat_result | None = None, settled: bool = False
+    target: Path, content: bytes, *, like: os.stat_result | None = None, durable: bool = False
 ) -> None:
     """Write a file whole; a symbolic link is replaced, so that callers resolve it first.
 
     Parameters
     ----------
     like : whose owner, where that is allowed, and permissions it gets
-    settled : whether it is to outlast a loss of power
+    durable : whether it is to outlast a loss of power
 
     Raises
     ------
@@ -63,11 +63,11 @@ def put(
         part.write_bytes(content)
         if like is not None:
             _give(part, like)
-        if settled:
-            _settle(part)
-    if settled:
+        if durable:
+            _flush(part)
+    if durable:
         with contextlib.suppress(OSError):
-            _settle(target.parent)
+            _flush(target.parent)
 
 
 def sweep(folder: Path) -> None:
@@ -78,7 +78,7 @@ def sweep(folder: Path) -> None:
                 part.unlink()
 
 
-def settle(paths: Iterable[Path]) -> None:
+def flush_to_disk(paths: Iterable[Path]) -> None:
     """Wait until files, and the names in folders, are on the disk itself.
 
     Raises
@@ -87,11 +87,11 @@ def settle(paths: Iterable[Path]) -> None:
         The disk has not taken them.
     """
     with ThreadPoolExecutor(_TOGETHER) as pool:
-        for _ in pool.map(_settle, paths):
+        for _ in pool.map(_flush, paths):
             pass
 
 
-def _settle(path: Path) -> None:
+def _flush(path: Path) -> None:
     is_folder = path.is_dir()
     try:
         handle = os.open(path, os.O_RDONLY if is_folder else os.O_RDWR)

@@ -23,7 +23,12 @@ from calm.files import (
 )
 from calm.files.components import CylinderShape, FlexibleComponent, SphereShape
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
-from calm.files.strumming import AmplitudeModel, BourgetMarichalKeys, ConstantCn, StrummingFactor
+from calm.files.strumming_keys import (
+    AmplitudeModel,
+    BourgetMarichalKeys,
+    ConstantCn,
+    StrummingFactor,
+)
 from calm.physics import drag
 from calm.physics.friction import Friction
 from calm.physics.line import Line

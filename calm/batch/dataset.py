@@ -13,7 +13,7 @@ from calm.batch.profiles import Profiles
 from calm.batch.shape import ShapeNodes
 from calm.batch.statuses import STATUSES
 from calm.case import Mooring
-from calm.case.measure import clamps_down
+from calm.case.parts import clamps_down
 from calm.dataset.variables import (
     CLAMPS,
     OF_CLAMP,

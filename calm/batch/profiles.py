@@ -20,7 +20,8 @@ from calm.batch.kernel.stragglers import solve_one, water_of
 from calm.batch.statuses import STATUSES, implausible
 from calm.batch.threads import processors
 from calm.case import Mooring
-from calm.case.measure import clamps_down, clamps_of, components_of
+from calm.case.measure import clamps_of, components_of
+from calm.case.parts import clamps_down
 from calm.errors import NoEquilibrium
 from calm.physics.line import Floats
 from calm.solve import Status, expect_many

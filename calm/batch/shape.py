@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from calm.batch.profiles import Profiles
 from calm.case import Mooring
-from calm.case.measure import clamps_down
+from calm.case.parts import clamps_down
 from calm.files import Clamp
 from calm.files.rigid import Body
 from calm.physics.line import Floats

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from functools import cached_property
 from math import isfinite
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Protocol, Self, TypeVar
 
 import numpy as np
 
@@ -15,9 +15,6 @@ from calm.physics.line import Floats, Integers
 
 if TYPE_CHECKING:
     import pandas
-
-    from calm.case.result import Result
-    from calm.case.tow import TowResult
 
 Row = TypeVar("Row")
 
@@ -233,8 +230,20 @@ class Shape:
     tilt: Floats
 
 
-def rows_down(result: Result | TowResult) -> Iterator[tuple[ComponentRow, list[ClampRow]]]:
-    """The pieces of a result, each with what is clamped on it."""
+class WithClamps(Protocol):
+    """Describe a result as far as its pieces and clamps go."""
+
+    @property
+    def components(self) -> Components:
+        """Return the pieces."""
+
+    @property
+    def clamps(self) -> Clamps:
+        """Return what is clamped on them."""
+
+
+def rows_down(result: WithClamps) -> Iterator[tuple[ComponentRow, list[ClampRow]]]:
+    """Yield the pieces of a result, each with what is clamped on it."""
     on: dict[int, list[ClampRow]] = {}
     for clamp in result.clamps:
         on.setdefault(clamp.index, []).append(clamp)

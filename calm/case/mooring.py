@@ -10,9 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from calm.assemble import assemble_floating, assemble_line, assemble_water, net_buoyancy
+from calm.case.measure import result_of
 from calm.case.memory import Forgetful, Memory
 from calm.case.parts import naming_the_piece, parts_of
-from calm.case.result import Result, result_of
+from calm.case.result import Result
 from calm.case.tow import Tow
 from calm.errors import NoEquilibrium
 from calm.files import MooringFile, read_mooring

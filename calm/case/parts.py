@@ -22,6 +22,16 @@ def parts_of(pieces: Sequence[Piece]) -> list[Piece | Clamp]:
     return parts
 
 
+def clamps_in(pieces: Sequence[Piece]) -> list[Clamp]:
+    """List the clamps of a line in the order of the file, which is that of the solver."""
+    return [clamp for piece in pieces for clamp in piece.clamps]
+
+
+def clamps_down(pieces: Sequence[Piece]) -> list[Clamp]:
+    """List the clamps of a mooring's line from its top to its anchor, the order of its results."""
+    return [clamp for piece in pieces for clamp in sorted(piece.clamps, key=lambda clamp: clamp.at)]
+
+
 def one_part(pieces: Sequence[Piece], text: str) -> Piece | Clamp:
     """The part meant by a text.
 

@@ -18,7 +18,7 @@ from calm.case.strumming import Strumming, StrummingBand, strumming_of, tow_band
 from calm.case.warnings import tow_warnings_of
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import MooringFile, TowKeys
-from calm.files.strumming import BourgetMarichalKeys
+from calm.files.strumming_keys import BourgetMarichalKeys
 from calm.physics.line import Line, Water
 from calm.records.profile_tables import components
 from calm.solve import Settings, Solution, Status, Towing, fit_tow_length, solve_tow

@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from calm.case.draws import CAUSES, SAMPLES, Draw, checked_samples, drawn, draws_of, normals_of
-from calm.case.measure import measured
-from calm.case.result import anchor_load
+from calm.case.measure import anchor_load, measured
 from calm.errors import NoEquilibrium
 from calm.physics.line import Floats
 from calm.solve import expect_many

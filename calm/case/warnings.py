@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calm.case.measure import clamps_in
+from calm.case.parts import clamps_in
 from calm.files import Cable, Component
 from calm.physics.line import Floats
 from calm.physics.stretch import FIBRES, published_stiffnesses

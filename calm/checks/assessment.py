@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from calm.checks.launch import Launch
     from calm.checks.recovery import Recovery
     from calm.errors import NoEquilibrium
-    from calm.files.checks import LimitKey
+    from calm.files.check_limits import LimitKey
 
 
 @dataclass(frozen=True)

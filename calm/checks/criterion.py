@@ -12,7 +12,7 @@ from itertools import groupby
 from math import hypot, isnan, nan
 from typing import TYPE_CHECKING
 
-from calm.case.measure import clamps_down
+from calm.case.parts import clamps_down
 from calm.checks.finding import Rule, State, Verdict, rule, unknown, verdict_on
 
 if TYPE_CHECKING:

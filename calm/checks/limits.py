@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from calm.files.checks import LimitKey, limit_keys
+from calm.files.check_limits import LimitKey, limit_keys
 
 if TYPE_CHECKING:
     from calm.files import MooringFile

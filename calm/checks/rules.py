@@ -19,7 +19,7 @@ from calm.checks import (
     surface,
 )
 from calm.checks.finding import AS_GIVEN, Rule, State, Verdict, rule, verdict_on
-from calm.files.rules import RULES as TEXTS
+from calm.files.rule_texts import RULES as TEXTS
 
 if TYPE_CHECKING:
     from calm.errors import NoEquilibrium

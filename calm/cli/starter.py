@@ -11,7 +11,7 @@ from cyclopts import Parameter
 from calm.cli.exit_codes import ExitCode
 from calm.cli.streams import narrate, show
 from calm.errors import UsageError
-from calm.starts import Start, start
+from calm.templates import Template, template
 
 NEW_EXAMPLES = """Examples:
 
@@ -26,7 +26,7 @@ SCHEMA_EXAMPLES = """Examples:
 
 
 def new(
-    kind: Start = "shelf",
+    kind: Template = "shelf",
     /,
     *,
     record: bool = False,
@@ -48,7 +48,7 @@ def new(
     """
     if record:
         return _new_record(output, force)
-    text = start(kind)
+    text = template(kind)
     if output is None:
         show(text)
         return ExitCode.DONE

@@ -12,7 +12,7 @@ from calm.cli.streams import progress
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
-    from calm.verification import Outcome, Source
+    from calm.verification import CaseOutcome, Source
 
 VERIFY_EXAMPLES = """Examples:
 
@@ -78,7 +78,7 @@ def _chosen(words: Sequence[str]) -> list[Source]:
     return chosen
 
 
-def _checked(sources: Sequence[Source]) -> list[tuple[Source, list[Outcome]]]:
+def _checked(sources: Sequence[Source]) -> list[tuple[Source, list[CaseOutcome]]]:
     """The outcomes of every case, source by source."""
     cases = [case for source in sources for case in source.cases]
     outcomes = iter([case.check() for case in progress(cases, "figures")])

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from calm.case import Result
-from calm.case.measure import clamps_in
+from calm.case.parts import clamps_in
 from calm.drop.chain import Chain
 from calm.drop.fall import Course
 from calm.drop.motion import Mover, State

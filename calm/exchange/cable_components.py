@@ -50,14 +50,10 @@ class ComponentMaker:
             "cn": self._drag(values, "cdn", depth, speed),
             "ct": self._drag(values, "cdt", depth, speed),
         }
-        kind = "chain" if is_chain(name) else "cable"
         weight, mass = self._at_reference(wet, mass)
-        if weight < 0.0 and kind == "chain":
-            kind = "cable"
-        figures["buoyancy" if weight < 0.0 else "weight"] = abs(weight)
+        component = ImportedComponent.of_line(name, weight, figures, chain=is_chain(name))
         if mass:
-            figures["mass"] = mass
-        component = ImportedComponent(name, kind, figures)
+            component.figures["mass"] = mass
         if (
             mass
             and length > _ROPE

@@ -23,23 +23,30 @@ FUNCTIONS: dict[str, tuple[int, Callable[..., float]]] = {
     "hypot": (2, math.hypot), "floor": (1, lambda x: float(math.floor(x))),
     "ceil": (1, lambda x: float(math.ceil(x))), "fmod": (2, math.fmod), "fabs": (1, abs),
 }  # fmt: skip
-_BINARY: tuple[dict[str, Callable[[float, float], float]], ...] = (
-    {"|": lambda a, b: float(int(a) | int(b))},
-    {"^": lambda a, b: float(int(a) ^ int(b))},
-    {"&": lambda a, b: float(int(a) & int(b))},
-    {"==": lambda a, b: float(a == b), "!=": lambda a, b: float(a != b)},
-    {
-        "<": lambda a, b: float(a < b), ">": lambda a, b: float(a > b),
-        "<=": lambda a, b: float(a <= b), ">=": lambda a, b: float(a >= b),
-    },
-    {
-        "<<": lambda a, b: float(int(a) << min(int(b), 64)),
-        ">>": lambda a, b: float(int(a) >> int(b)),
-    },
-    {"+": lambda a, b: a + b, "-": lambda a, b: a - b},
-    {"*": lambda a, b: a * b, "/": lambda a, b: a / b, "%": lambda a, b: float(int(a) % int(b))},
-)  # fmt: skip
-"""Signs between two values: those of a row bind more loosely than those of the next."""
+_LOGICAL: dict[str, Callable[[Formula, Formula], Formula]] = {
+    "||": lambda left, right: lambda at: float(bool(left(at)) or bool(right(at))),
+    "&&": lambda left, right: lambda at: float(bool(left(at)) and bool(right(at))),
+}
+"""Signs whose right side is not computed where the left side decides."""
+
+_BINARY: dict[str, Callable[[float, float], float]] = {
+    "|": lambda a, b: float(int(a) | int(b)),
+    "^": lambda a, b: float(int(a) ^ int(b)),
+    "&": lambda a, b: float(int(a) & int(b)),
+    "==": lambda a, b: float(a == b), "!=": lambda a, b: float(a != b),
+    "<": lambda a, b: float(a < b), ">": lambda a, b: float(a > b),
+    "<=": lambda a, b: float(a <= b), ">=": lambda a, b: float(a >= b),
+    "<<": lambda a, b: float(int(a) << min(int(b), 64)),
+    ">>": lambda a, b: float(int(a) >> int(b)),
+    "+": lambda a, b: a + b, "-": lambda a, b: a - b,
+    "*": lambda a, b: a * b, "/": lambda a, b: a / b, "%": lambda a, b: float(int(a) % int(b)),
+}  # fmt: skip
+_LEVELS = ("||", "&&", "|", "^", "&", "== !=", "< > <= >=", "<< >>", "+ -", "* / %")
+"""Signs between two values: those of a level bind more loosely than those of the next."""
+
+_UNARY: dict[str, Callable[[float], float]] = {
+    "-": lambda a: -a, "+": lambda a: a, "!": lambda a: float(not a), "~": lambda a: float(~int(a)),
+}  # fmt: skip
 
 
 class TokenStream:
@@ -162,7 +169,7 @@ class _Reader:
         """``a ? b : c``."""
         if depth > _DEEPEST:
             raise self._words.next.refuse("parentheses are nested too deeply")
-        condition = self._either(depth)
+        condition = self._binary(0, depth)
         if not self._words.comes("?"):
             return condition
         yes = self.choice(depth + 1)
@@ -170,48 +177,27 @@ class _Reader:
         no = self.choice(depth + 1)
         return lambda at: yes(at) if condition(at) else no(at)
 
-    def _either(self, depth: int) -> Formula:
-        left = self._both(depth)
-        while self._words.comes("||"):
-            left = _either(left, self._both(depth))
-        return left
-
-    def _both(self, depth: int) -> Formula:
-        left = self._binary(0, depth)
-        while self._words.comes("&&"):
-            left = _both(left, self._binary(0, depth))
-        return left
-
     def _binary(self, level: int, depth: int) -> Formula:
-        if level == len(_BINARY):
+        if level == len(_LEVELS):
             return self._unary(depth)
         left = self._binary(level + 1, depth)
-        while self._words.next.kind == "sign" and self._words.next.text in _BINARY[level]:
-            if self._words.next.text == "+" and self._ends_a_cycle():
+        signs = _LEVELS[level].split()
+        while self._words.next.kind == "sign" and self._words.next.text in signs:
+            # a `+` before a key or the end closes a table that repeats: nothing is added
+            if self._words.next.text == "+" and self._words.ahead(1).kind in ("key", "end"):
                 break
-            operation = _BINARY[level][self._words.take().text]
-            left = _joined(operation, left, self._binary(level + 1, depth))
+            left = _joined(self._words.take().text, left, self._binary(level + 1, depth))
         return left
-
-    def _ends_a_cycle(self) -> bool:
-        """Whether a `+` stands at the end of a value rather than between two."""
-        return self._words.ahead(1).kind in ("key", "end")
 
     def _unary(self, depth: int) -> Formula:
         if depth > _DEEPEST:
             raise self._words.next.refuse("signs are nested too deeply")
-        if self._words.comes("-"):
-            of = self._unary(depth + 1)
-            return lambda at: -of(at)
-        if self._words.comes("+"):
-            return self._unary(depth + 1)
-        if self._words.comes("!"):
-            of = self._unary(depth + 1)
-            return lambda at: float(not of(at))
-        if self._words.comes("~"):
-            of = self._unary(depth + 1)
-            return lambda at: float(~int(of(at)))
-        return self._value(depth)
+        sign = self._words.next
+        if sign.kind != "sign" or sign.text not in _UNARY:
+            return self._value(depth)
+        operation = _UNARY[self._words.take().text]
+        of = self._unary(depth + 1)
+        return lambda at: operation(of(at))
 
     def _value(self, depth: int) -> Formula:
         token = self._words.take()
@@ -252,13 +238,8 @@ class _Reader:
         return lambda at: function(*(each(at) for each in arguments))
 
 
-def _joined(operation: Callable[[float, float], float], left: Formula, right: Formula) -> Formula:
+def _joined(sign: str, left: Formula, right: Formula) -> Formula:
+    if sign in _LOGICAL:
+        return _LOGICAL[sign](left, right)
+    operation = _BINARY[sign]
     return lambda at: operation(left(at), right(at))
-
-
-def _either(left: Formula, right: Formula) -> Formula:
-    return lambda at: float(bool(left(at)) or bool(right(at)))
-
-
-def _both(left: Formula, right: Formula) -> Formula:
-    return lambda at: float(bool(left(at)) and bool(right(at)))

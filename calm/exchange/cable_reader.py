@@ -22,7 +22,6 @@ from calm.exchange.cable_source import Token
 from calm.exchange.cable_water import USUAL_GRAVITY, number, value_at, water_of
 from calm.exchange.design import (
     Design,
-    ImportedClamp,
     ImportedComponent,
     ImportedPiece,
     ImportedTow,
@@ -301,8 +300,7 @@ def _pieces(
         last = component is made[-1][1]
         for height, hung in clamps:
             if start <= height < end or (last and height >= end):
-                item.clamps.append(ImportedClamp(hung, min(max(end - height, 0.0), part_length)))
-        item.clamps.sort(key=lambda clamp: clamp.at)
+                item.clamp(hung, min(max(end - height, 0.0), part_length))
         items.append(item)
         start = end
     for key in ("cdn", "cdt"):

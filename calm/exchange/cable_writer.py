@@ -4,16 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import pairwise
-from math import cos, pi, radians, sin, sqrt
+from math import pi, sqrt
 
-from calm.exchange.exported_parts import (
-    ExportedLine,
-    ExportedPart,
-    area,
-    as_point,
-    mass_of,
-    remarks,
-)
+from calm.exchange.exported_parts import ExportedLine, ExportedPart, PartLoad, kept
 from calm.exchange.part_names import is_chain
 from calm.files import Chain, Cylinder, Rigid, Sphere
 from calm.files.rigid import Displacement
@@ -27,23 +20,6 @@ _APART = 0.5  # m between nodes, where that many suffice
 
 
 @dataclass
-class _Load:
-    """What acts at a point: names, net force [N], mass [kg], drag area [m²]."""
-
-    names: list[str] = field(default_factory=list)
-    net: float = 0.0
-    mass: float = 0.0
-    area: float = 0.0
-
-    def add(self, part: ExportedPart, density: float) -> None:
-        """Add what a part does at this point, in water of a density [kg/m³]."""
-        self.names.append(part.use)
-        self.net += part.net
-        self.mass += mass_of(part)
-        self.area += area(part, density)
-
-
-@dataclass
 class _Problem:
     """The sections of the file, as they grow from the lower end up, for water of one density."""
 
@@ -51,7 +27,7 @@ class _Problem:
     materials: dict[str, str] = field(default_factory=dict)
     connectors: dict[str, str] = field(default_factory=dict)
     layout: list[str] = field(default_factory=list)
-    load: _Load | None = None
+    load: PartLoad | None = None
     last: tuple[str, float] = ("", 0.0)
 
     def segment(self, name: str, length: float) -> None:
@@ -71,8 +47,8 @@ class _Problem:
     def at_a_point(self, part: ExportedPart) -> None:
         """Add a load at the point that the line has reached."""
         if self.load is None:
-            self.load = _Load()
-        self.load.add(part, self.density)
+            self.load = PartLoad(self.density)
+        self.load.add(part)
 
     def _join(self) -> None:
         """Write the connector of the load at this point; none where nothing acts."""
@@ -85,14 +61,14 @@ class _Problem:
             f"d = {max(across, 1e-6):.9g}  wet = {-load.net:.9g}  m = {load.mass:.9g}"
             f"  Cdn = {1.0 if across else 0.0:g}"
         )
-        name = _keep(self.connectors, f"p_{_word(base)}", figures)
+        name = kept(self.connectors, f"p_{_word(base)}", figures)
         self.layout.append(f"    connector = {name}")
 
 
 def cbl_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
     """The content of the file, and what it cannot hold."""
     lost: list[str] = []
-    density = sum(row[4] for row in design.levels) / len(design.levels)
+    density = design.mean_density
     problem = _Problem(density)
     if max(row[4] for row in design.levels) - min(row[4] for row in design.levels) > 1e-9:
         lost.append(
@@ -109,10 +85,10 @@ def cbl_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
         lost.append("clamps on the float: they act at the end of the line")
         for clamp, _ in buoy.clamps:
             problem.at_a_point(clamp)
-    floating, has_draft = design.afloat
-    if floating and not has_draft:
+    floating = design.afloat
+    if floating and not design.has_draft:
         lost.append("a float that has no draft, or full drag: there it floats at its draft")
-    if design.tow is not None and design.tow[2]:
+    if design.tow is not None and design.tow.height:
         lost.append("the height of the sheave: there the line begins at the surface")
     if floating:
         lost.append("how its drag grows with draft: its Cdn gives the drag at the present draft")
@@ -128,7 +104,7 @@ def cbl_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
     if problem.load is not None:
         problem.segment(_link(problem), 0.001)
     text = _text(design, problem, buoy_figures(buoy, design, density, lost), density, floating)
-    losses = remarks(design, lost)
+    losses = design.losses(lost)
     head = [f"{design.name}, by CALM; lost:", *(f"- {each}" for each in losses)]
     comment = "\n   ".join(line.replace("*/", "* /") for line in head)
     return f"/* {comment} */\n{text}".encode(), losses
@@ -163,17 +139,17 @@ def _link(problem: _Problem) -> str:
         f"d = 0.001  m = {_LEAST_MASS}  wet = {_LEAST_WEIGHT}  Cdn = 0  Cdt = 0"
         f"  EA = {_RIGID:g}  EI = 1e-4  GJ = 1e-4"
     )
-    return _keep(problem.materials, "link", figures)
+    return kept(problem.materials, "link", figures)
 
 
 def _material(problem: _Problem, part: ExportedPart) -> str:
     """The material of a cable, a chain or a cylinder, per metre."""
     per = 1.0 if part.flexible else part.length
-    wet, across = 0.0 - part.net / per, part.diameter or area(part) / per
-    normal = area(part, problem.density) / per / across if across else 0.0
-    along = area(part, problem.density, along=True) / per / (pi * across) if across else 0.0
+    wet, across = 0.0 - part.net / per, part.diameter or part.area() / per
+    normal = part.area(problem.density) / per / across if across else 0.0
+    along = part.area(problem.density, along=True) / per / (pi * across) if across else 0.0
     figures = (
-        f"d = {across:.9g}  m = {max(mass_of(part) / per, _LEAST_MASS):.9g}"
+        f"d = {across:.9g}  m = {max(part.likely_mass / per, _LEAST_MASS):.9g}"
         f"  wet = {wet if abs(wet) > _LEAST_WEIGHT else _LEAST_WEIGHT:.9g}"
         f"  Cdn = {normal:.9g}  Cdt = {along:.9g}  EA = {part.stiffness or _RIGID:.9g}"
         "  EI = 1e-4  GJ = 1e-4"
@@ -181,16 +157,7 @@ def _material(problem: _Problem, part: ExportedPart) -> str:
     name = _word(part.use)
     if isinstance(part.component, Chain) and not is_chain(name):
         name = f"chain_{name}"
-    return _keep(problem.materials, name, figures)
-
-
-def _keep(known: dict[str, str], name: str, figures: str) -> str:
-    """The name under which figures are kept; another name where it is taken by other figures."""
-    chosen, number = name, 1
-    while known.setdefault(chosen, figures) != figures:
-        number += 1
-        chosen = f"{name}_{number}"
-    return chosen
+    return kept(problem.materials, name, figures)
 
 
 def _word(text: str) -> str:
@@ -246,11 +213,8 @@ def _text(
 
 
 def _wind(design: ExportedLine) -> list[str]:
-    speed, toward = design.wind
-    if not speed:
-        return []
-    east, north = speed * sin(radians(toward)), speed * cos(radians(toward))
-    return [f"    x-wind = {east:.9g}   y-wind = {north:.9g}"]
+    east, north = design.wind
+    return [f"    x-wind = {east:.9g}   y-wind = {north:.9g}"] if east or north else []
 
 
 def _ends(design: ExportedLine, layout: list[str]) -> list[str]:
@@ -263,9 +227,8 @@ def _ends(design: ExportedLine, layout: list[str]) -> list[str]:
             *layout,
             "    terminal = { buoy = upper_end }",
         ]
-    speed, toward, _ = design.tow
-    east, north = speed * sin(radians(toward)), speed * cos(radians(toward))
-    ship = f"    terminal = {{ buoy = vessel  x-speed = {east:.9g}  y-speed = {north:.9g} }}"
+    speeds = f"x-speed = {design.tow.east:.9g}  y-speed = {design.tow.north:.9g}"
+    ship = f"    terminal = {{ buoy = vessel  {speeds} }}"
     return ["    terminal = { buoy = towed }", *layout, ship]
 
 
@@ -282,11 +245,11 @@ def buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost:
     """
     if part.flexible:
         return "type = sphere  d = 0.001  m = 0.001  buoyancy = 0.01  Cdn = 0"
-    floating, gravity = design.afloat[0], design.gravity
-    net, seen = part.net, area(part, density)
+    floating, gravity = design.afloat, design.gravity
+    net, seen = part.net, part.area(density)
     if not floating and design.tow is None:
-        net, seen = as_point(design, density)
-    mass = max(mass_of(part), _LEAST)
+        net, seen = design.float_as_point(density)
+    mass = max(part.likely_mass, _LEAST)
     lift = net + mass * gravity
     if lift <= 0.0:
         mass, lift = -net / gravity * 1.2, 0.2 * -net
@@ -322,7 +285,7 @@ def _windage(part: ExportedPart, design: ExportedLine) -> str:
     if not isinstance(component, Rigid):
         return ""
     seen, coefficient = component.wind_area, component.wind_cd
-    if design.wind[0] and design.afloat[0]:
+    if any(design.wind) and design.afloat:
         seen, coefficient = design.windage
     shown = f"  Sw = {seen:.9g}" if seen else ""
     return shown + (f"  Cdw = {coefficient:.9g}" if coefficient else "")

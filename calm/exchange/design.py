@@ -59,8 +59,28 @@ class ImportedComponent:
     hull: tuple[tuple[float, float, float], ...] = ()
     entry: str = ""
 
+    @classmethod
+    def of_line(
+        cls, name: str, weight: float, figures: dict[str, FigureOrWord], *, chain: bool
+    ) -> ImportedComponent:
+        """Make a cable, or a chain where it is called one and sinks.
+
+        Parameters
+        ----------
+        name : as that file calls it
+        weight : of a metre in water, negative for what floats [N]
+        figures : its diameter and drag, to which the weight is added
+        chain : whether it is called a chain
+        """
+        figures["buoyancy" if weight < 0.0 else "weight"] = abs(weight)
+        return cls(name, "chain" if chain and weight >= 0.0 else "cable", figures)
+
+    def number(self, field: str) -> float:
+        """Return a figure; 0 where it has none."""
+        return float(self.figures.get(field, 0.0))
+
     def says(self) -> tuple[object, ...]:
-        """All its figures: components with the same figures are one definition."""
+        """Return all its figures: components with the same figures are one definition."""
         figures = tuple(sorted(self.figures.items(), key=lambda pair: pair[0]))
         return self.name, self.kind, figures, self.hull
 
@@ -84,6 +104,23 @@ class ImportedPiece:
     guess: str = ""
     label: str = ""
     count: int = 1
+
+    @property
+    def extent(self) -> float:
+        """The length of a line, or that of its component [m]."""
+        return self.component.number("length") if self.length is None else self.length
+
+    def clamp(self, component: ImportedComponent, at: float, guess: str = "") -> None:
+        """Clamp a component on it, after those that sit above.
+
+        Parameters
+        ----------
+        component : that is clamped on
+        at : distance from its upper end [m]
+        guess : why the place is not from the file
+        """
+        self.clamps.append(ImportedClamp(component, at, guess))
+        self.clamps.sort(key=lambda clamp: clamp.at)
 
 
 @dataclass(eq=False)

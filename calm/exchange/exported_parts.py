@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import cos, pi, radians, sin
 
 import numpy as np
@@ -17,14 +17,19 @@ from calm.physics.line import Line, Water
 from calm.physics.reference import REFERENCE_DENSITY
 
 _LEAST_MASS = 0.1  # of what its net force weighs
+_DIGITS = 9  # of a speed in m/s
 
 Coordinates = tuple[float, float, float]
 """East and north of the anchor, and depth [m]."""
 
 
+Levels = tuple[tuple[float, float, float, float, float], ...]
+"""Rows of depth [m], current to the east, to the north and up [m/s], and density [kg/m³]."""
+
+
 @dataclass(frozen=True)
 class ExportedPart:
-    """A piece, or what is clamped on one.
+    """Describe a piece, or what is clamped on one.
 
     Attributes
     ----------
@@ -57,28 +62,135 @@ class ExportedPart:
 
     @property
     def diameter(self) -> float:
-        """As its definition has it; 0 for a body [m]."""
+        """The diameter of its definition; 0 for a body [m]."""
         return float(getattr(self.component, "diameter", 0.0))
 
     @property
     def mass(self) -> float | None:
-        """In air, where it is known [kg or kg/m]."""
+        """The mass in air, where it is known [kg or kg/m]."""
         return getattr(self.component, "mass", None)
+
+    @property
+    def likely_mass(self) -> float:
+        """The mass in air [kg, kg/m]: as given, or from weight and size."""
+        if self.mass is not None:
+            return self.mass
+        hull = getattr(self.component, "hull", None)
+        volume = self.component.displaced_volume
+        if isinstance(hull, Displacement):
+            volume = hull.displacement[-1][1]
+        if not volume:
+            across = self.diameter
+            round_ = pi / 6.0 * across**3 if isinstance(self.component, Sphere) else 0.0
+            volume = round_ or pi / 4.0 * across**2 * (1.0 if self.flexible else self.length)
+        weighed = self.net / STANDARD_GRAVITY
+        return max(REFERENCE_DENSITY * volume - weighed, _LEAST_MASS * abs(weighed))
+
+    def area(self, density: float | None = None, *, along: bool = False) -> float:
+        """Return drag coefficient times area [m²], of a cable per metre.
+
+        Parameters
+        ----------
+        density : of a program that has a single one [kg/m³]: the area that drags there as the part
+            does in its own water
+        along : whether it is that along the line, not across it
+        """
+        own = (self.kt if along else self.kn) / (0.5 * REFERENCE_DENSITY)
+        return own if density is None else own * self.density / density
+
+
+@dataclass
+class PartLoad:
+    """Add up what parts do at one point, or in one stiff length.
+
+    Attributes
+    ----------
+    density : of the water, the same everywhere [kg/m³]
+    names : of the parts
+    net, mass : net force [N] and mass [kg]
+    area, along : drag areas across and along the line [m²]
+    """
+
+    density: float
+    names: list[str] = field(default_factory=list)
+    net: float = 0.0
+    mass: float = 0.0
+    area: float = 0.0
+    along: float = 0.0
+
+    def add(self, part: ExportedPart, share: float = 1.0) -> None:
+        """Add a part without its clamps; `share` is of its drag."""
+        self.names.append(part.use)
+        self.net += part.net
+        self.mass += part.likely_mass
+        self.area += share * part.area(self.density)
+        self.along += share * part.area(self.density, along=True)
+
+    def add_whole(self, part: ExportedPart, share: float = 1.0) -> None:
+        """Add a part with what is clamped on it; `share` is of its own drag."""
+        self.add(part, share)
+        for clamp, _ in part.clamps:
+            self.add(clamp)
+
+    def per_metre(self, length: float) -> PartLoad:
+        """Return the same load, spread over a length [m]."""
+        figures = (self.net, self.mass, self.area, self.along)
+        return PartLoad(self.density, self.names, *(each / length for each in figures))
+
+
+def kept(known: dict[str, str], name: str, figures: str) -> str:
+    """Keep figures under a name, and return it: another where it is taken by other figures.
+
+    Parameters
+    ----------
+    known : figures by name, to which these are added
+    name : that they are to have
+    figures : as the file has them
+    """
+    chosen, number = name, 1
+    while known.setdefault(chosen, figures) != figures:
+        number += 1
+        chosen = f"{name}_{number}"
+    return chosen
+
+
+@dataclass(frozen=True)
+class PartPath:
+    """Hold where a part lies in equilibrium: (n, 3) `Coordinates` of nodes from its upper end."""
+
+    nodes: np.ndarray[tuple[int, int], np.dtype[np.float64]]
+
+    def at(self, share: float) -> Coordinates:
+        """Return the place at a share of its length from its upper end."""
+        steps = np.linalg.norm(np.diff(self.nodes, axis=0), axis=1)
+        along = np.concatenate([[0.0], np.cumsum(steps)])
+        place = [float(np.interp(share * along[-1], along, column)) for column in self.nodes.T]
+        return place[0], place[1], place[2]
+
+
+@dataclass(frozen=True)
+class ExportedTow:
+    """Hold the speed of the ship east and north [m/s], and the height of the sheave [m]."""
+
+    east: float
+    north: float
+    height: float
 
 
 @dataclass(frozen=True)
 class ExportedLine:
-    """The parts of a line from its first piece to its last, the anchor apart.
+    """Hold the parts of a line from its first piece to its last, the anchor apart.
 
     Attributes
     ----------
-    name, description : of the file
+    name : of the file
     parts : of a mooring from the top, of a tow from the ship
     anchor : the anchor, and its weight with what is clamped on it [N]; None for a tow
-    depth, levels, u, v, w, density : of the water [m, m/s, kg/m³], first at the surface
+    depth, levels : of the water [m], the first level at the surface
     gravity : [m/s²]
-    tow : speed [m/s], direction [degrees] and height of the sheave [m]
-    afloat : whether the line reaches the surface, and whether its float has a draft there
+    wind : to the east and to the north [m/s]
+    tow : None for a mooring
+    afloat, has_draft : whether the line reaches the surface, and whether its float has a draft
     riding : share of its buoyancy that the float uses here, and of its drag that acts on it; 1, 1
         below the surface
     windage : of the float: its area in the air here [m²], and its drag coefficient there
@@ -87,22 +199,31 @@ class ExportedLine:
     """
 
     name: str
-    description: str
     parts: tuple[ExportedPart, ...]
     anchor: tuple[Anchor, float] | None
     depth: float
-    levels: tuple[tuple[float, float, float, float, float], ...]
+    levels: Levels
     gravity: float
     wind: tuple[float, float]
-    tow: tuple[float, float, float] | None
-    afloat: tuple[bool, bool]
+    tow: ExportedTow | None
+    afloat: bool
+    has_draft: bool
     riding: tuple[float, float]
     windage: tuple[float, float]
     unsaid: tuple[str, ...]
     solve: Callable[[], Result | TowResult]
 
+    @property
+    def mean_density(self) -> float:
+        """The density for programs that have a single one [kg/m³]."""
+        return sum(row[4] for row in self.levels) / len(self.levels)
+
+    def losses(self, more: Sequence[str]) -> tuple[str, ...]:
+        """Return what another program cannot hold, each remark once, `more` first."""
+        return tuple(dict.fromkeys((*more, *self.unsaid)))
+
     def paths(self) -> list[PartPath]:
-        """The equilibrium: where each part lies, from the top down.
+        """Return where each part lies in equilibrium, from the top down.
 
         Raises
         ------
@@ -122,85 +243,34 @@ class ExportedLine:
             start = end
         return paths
 
+    def float_as_point(self, density: float) -> tuple[float, float]:
+        """Return net force [N] and drag area [m²] of a float below the surface as a point.
 
-@dataclass(frozen=True)
-class PartPath:
-    """Hold where a part lies in equilibrium: (n, 3) `Coordinates` of nodes from its upper end."""
+        It is for programs in which a float is a point at the line's end: its drag is in the flow
+        there, not at its middle, and has no axis. Force and area are such that it pulls as it does
+        here; without an equilibrium they are its own.
 
-    nodes: np.ndarray[tuple[int, int], np.dtype[np.float64]]
-
-    def at(self, share: float) -> Coordinates:
-        """The place at a share of its length from its upper end."""
-        steps = np.linalg.norm(np.diff(self.nodes, axis=0), axis=1)
-        along = np.concatenate([[0.0], np.cumsum(steps)])
-        place = [float(np.interp(share * along[-1], along, column)) for column in self.nodes.T]
-        return place[0], place[1], place[2]
-
-
-def area(part: ExportedPart, density: float | None = None, *, along: bool = False) -> float:
-    """Drag coefficient times area [m²], across the line or along it, of a cable per metre.
-
-    Parameters
-    ----------
-    density : of a program that has a single one [kg/m³]: the area that drags there as the part does
-    in its own water
-    """
-    own = (part.kt if along else part.kn) / (0.5 * REFERENCE_DENSITY)
-    return own if density is None else own * part.density / density
-
-
-def as_point(design: ExportedLine, density: float) -> tuple[float, float]:
-    """Net force [N] and drag area [m²] of a float below the surface as a point at the line's end.
-
-    For programs in which a float is a point: its drag is in the flow at the end, not at its middle,
-    and has no axis. Force and area are such that it pulls as it does here; without an equilibrium
-    they are its own.
-
-    Parameters
-    ----------
-    density : of the water there [kg/m³]
-    """
-    part = design.parts[0]
-    own = part.net, area(part, density)
-    try:
-        row = design.solve().components[0]
-    except NoEquilibrium:
-        return own
-    depths, *parts = np.array(design.levels)[:, :4].T
-    middle, end = (
-        sum(float(np.interp(depth, depths, part)) ** 2 for part in parts)
-        for depth in ((row.depth_top + row.depth_bottom) / 2.0, row.depth_top)
-    )
-    if end == 0.0:
-        return own
-    if not part.directional or part.clamps:
-        return part.net, own[1] * middle / end
-    tilt = radians(row.tilt)
-    return row.tension_bottom * cos(tilt), row.tension_bottom * sin(tilt) / (0.5 * density * end)
-
-
-def remarks(design: ExportedLine, more: Sequence[str]) -> tuple[str, ...]:
-    """What other programs cannot hold, each remark once."""
-    return tuple(dict.fromkeys((*more, *design.unsaid)))
-
-
-def mass_of(part: ExportedPart) -> float:
-    """Mass in air [kg, kg/m]: as given, or from weight and size."""
-    if part.mass is not None:
-        return part.mass
-    hull = getattr(part.component, "hull", None)
-    volume = part.component.displaced_volume
-    if isinstance(hull, Displacement):
-        volume = hull.displacement[-1][1]
-    if not volume:
-        across = part.diameter
-        round_ = pi / 6.0 * across**3 if isinstance(part.component, Sphere) else 0.0
-        volume = round_ or pi / 4.0 * across**2 * (1.0 if part.flexible else part.length)
-    weighed = part.net / STANDARD_GRAVITY
-    return max(REFERENCE_DENSITY * volume - weighed, _LEAST_MASS * abs(weighed))
-
-
-_DIGITS = 9  # of a speed in m/s
+        Parameters
+        ----------
+        density : of the water there [kg/m³]
+        """
+        part = self.parts[0]
+        own = part.net, part.area(density)
+        try:
+            row = self.solve().components[0]
+        except NoEquilibrium:
+            return own
+        depths, *speeds = np.array(self.levels)[:, :4].T
+        middle, end = (
+            sum(float(np.interp(depth, depths, speed)) ** 2 for speed in speeds)
+            for depth in ((row.depth_top + row.depth_bottom) / 2.0, row.depth_top)
+        )
+        if end == 0.0:
+            return own
+        if not part.directional or part.clamps:
+            return part.net, own[1] * middle / end
+        tilt, pull = radians(row.tilt), row.tension_bottom
+        return pull * cos(tilt), pull * sin(tilt) / (0.5 * density * end)
 
 
 def assembled(mooring: Mooring | Tow) -> ExportedLine:
@@ -246,31 +316,34 @@ def assembled(mooring: Mooring | Tow) -> ExportedLine:
                 bool(line.directional[i]), stiffness, clamps,
             )
         )  # fmt: skip
-    wind = file.environment.wind
-    riding, windage = _riding(mooring)
-    anchor = None
-    tow = None
+    wind, anchor, tow = file.environment.wind, None, None
     if isinstance(mooring, Tow):
         keys = mooring.keys
-        tow = keys.speed, keys.toward, keys.height
+        tow = ExportedTow(*_east_and_north(keys.speed, keys.toward), keys.height)
     else:
         anchor = file.anchor, mooring.anchor_weight
+    riding, windage = _riding(mooring)
     return ExportedLine(
         name=file.name,
-        description=file.description,
         parts=tuple(parts),
         anchor=anchor,
         depth=float(water.depth),
         levels=_levels(water, 2.0 * float(line.length.sum()) if tow else float(water.depth)),
         gravity=float(water.gravity),
-        wind=(0.0, 0.0) if wind is None else (wind.speed, wind.toward),
+        wind=(0.0, 0.0) if wind is None else _east_and_north(wind.speed, wind.toward),
         tow=tow,
-        afloat=(_reaches(mooring), line.floating is not None and line.floating.hull is not None),
+        afloat=_reaches(mooring),
+        has_draft=line.floating is not None and line.floating.hull is not None,
         riding=riding,
         windage=windage,
         unsaid=_unsaid(mooring),
         solve=mooring.solve,
     )
+
+
+def _east_and_north(speed: float, toward: float) -> tuple[float, float]:
+    """Return the parts of a speed [m/s] towards a bearing [degrees]."""
+    return speed * sin(radians(toward)), speed * cos(radians(toward))
 
 
 def _reaches(mooring: Mooring | Tow) -> bool:
@@ -326,7 +399,7 @@ def _depths(line: Line, water: Water, towed: bool) -> list[float]:
     return [max(float(depth), 0.0) for depth in below]
 
 
-def _levels(water: Water, deepest: float) -> tuple[tuple[float, float, float, float, float], ...]:
+def _levels(water: Water, deepest: float) -> Levels:
     """Rows of depth, u, v, w and density, from the surface to the seabed."""
     inside = [float(depth) for depth in water.level if 0.0 < depth < deepest]
     rows = []

@@ -18,7 +18,7 @@ from calm.exchange.design_writer import figure_text, quoted, written
 from calm.files import Anchor, Assembly, Catalogue, Rigid
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Component
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY, STEEL_DENSITY
-from calm.files.document import read_document
+from calm.files.yaml_document import read_document
 from calm.quantities import rounded
 
 TOLERANCE = 0.05

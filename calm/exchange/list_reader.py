@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +17,7 @@ from calm.exchange.design import (
     Remark,
     refused,
 )
+from calm.exchange.element_library import Library, complete, is_library, key_of, read_library
 from calm.exchange.list_headings import (
     ListHeadings,
     SheetRows,
@@ -34,14 +34,8 @@ from calm.exchange.list_rows import (
     rows_of,
     weights_as_buoyancy,
 )
-from calm.exchange.mat_file import is_mat
-from calm.exchange.mdd_elements import read_entries
 from calm.exchange.mdd_reader import read_water
-from calm.exchange.part_names import is_line
 from calm.files.components import FLEXIBLE_KINDS
-from calm.suggestions import nearest
-from calm.units import KILOGRAM_FORCE
-from calm.whole_file import read_content
 
 _NOTE = "A list says nothing about the water, and little about drag. See `calm docs import-table`."
 _WATER = ("z", "U", "V", "W", "rho")  # headings of a sheet of Mooring Design & Dynamics
@@ -207,109 +201,3 @@ def _items(rows: list[ListRow], problems: list[str]) -> list[ImportedPiece]:
         elif items:
             items[-1].clamps.append(ImportedClamp(component, at))
     return items
-
-
-_NOT_THEIRS = ("at", "count", "height")  # of an element, whatever the heading says
-_A_METRE = 1e-6  # m by which the length of a line's figures may miss a metre
-_SHEETS = 3  # with headings of their own make a library
-
-
-@dataclass(frozen=True)
-class LibraryElement:
-    """An element of a library: its figures in SI, those of a line per metre."""
-
-    name: str
-    is_line: bool
-    figures: dict[str, float]
-
-
-Library = Mapping[str, LibraryElement]
-"""Elements by their name without capitals and blanks."""
-
-
-def read_library(path: Path) -> Library:
-    """The elements of Mooring Design & Dynamics' `mdcodes.mat`, or of a table or workbook.
-
-    Of several elements of one name the first holds.
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, or holds no elements.
-    """
-    content = read_content(path, largest=200_000_000)
-    elements = _of_matrices(path) if is_mat(content) else _of_sheets(path)
-    library: dict[str, LibraryElement] = {}
-    for element in elements:
-        library.setdefault(key_of(element.name), element)
-    return library
-
-
-def is_library(sheets: Mapping[str, SheetRows]) -> bool:
-    """Whether sheets are a library: several with headings, or the table of moords."""
-    headed = [found for rows in sheets.values() if (found := headings_of(rows, {})) is not None]
-    moords = {"buoyancy_kg", "length_m", "width_m", "diameter_m"}
-    return len(headed) >= _SHEETS or any(
-        moords <= {column.heading for column in found.columns.values()} for found in headed
-    )
-
-
-def key_of(name: str) -> str:
-    """A name without capitals and blanks, as libraries are searched."""
-    return "".join(name.lower().split())
-
-
-def complete(rows: Iterable[ListRow], library: Library, source: str) -> None:
-    """Give rows the figures that they lack, from the element of their name."""
-    for row in rows:
-        element = library.get(key_of(row.name))
-        if element is None:
-            near = nearest(row.name.lower(), [each.name.lower() for each in library.values()])
-            if "buoyancy" not in row.figures and near is not None:
-                row.hint = f"; {source} has `{near}`"
-            elif "buoyancy" not in row.figures:
-                row.hint = f"; {source} has no element of that name"
-            continue
-        row.line = element.is_line
-        for what, value in element.figures.items():
-            if what in row.figures or (element.is_line and what == "length"):
-                continue
-            row.figures[what] = value
-            if element.is_line:
-                row.metre.add(what)
-
-
-def _of_matrices(path: Path) -> Iterable[LibraryElement]:
-    for entry in read_entries(path):
-        figures = {
-            "buoyancy": entry.lift * KILOGRAM_FORCE, "length": entry.length, "width": entry.width,
-            "diameter": entry.diameter, "cd": entry.cd, "material": entry.material,
-        }  # fmt: skip
-        yield LibraryElement(entry.name, entry.is_line, figures)
-
-
-def _of_sheets(path: Path) -> Iterable[LibraryElement]:
-    found = False
-    for title, cells in read_sheets(path).items():
-        headings = headings_of(cells, {})
-        if headings is None:
-            continue
-        rows = rows_of(cells, headings, [], [])
-        weights_as_buoyancy(rows, [])
-        for row in rows:
-            found = True
-            yield LibraryElement(row.name, _is_line(row, title), _figures(row))
-    if not found:
-        raise refused(path, "holds no elements: no sheet has headings that CALM knows")
-
-
-def _is_line(row: ListRow, title: str) -> bool:
-    """Whether an element is a line, with figures per metre."""
-    floats = row.figures.get("buoyancy", 0.0) > 0.0 and row.figures.get("diameter", 0.0) > 0.0
-    if abs(row.figures.get("length", 1.0) - 1.0) > _A_METRE or (floats and "width" in row.figures):
-        return False
-    return bool(row.metre) or row.is_line or is_line(title)
-
-
-def _figures(row: ListRow) -> dict[str, float]:
-    return {what: value for what, value in row.figures.items() if what not in _NOT_THEIRS}

@@ -6,12 +6,11 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
-from calm.exchange.design import MOST_PIECES, FigureOrWord, ImportedComponent, refused
-from calm.exchange.mat_file import MatValue, RealArray, names, numbers, read_variables
+from calm.exchange.design import MOST_PIECES, FigureOrWord, ImportedComponent
+from calm.exchange.mat_file import MatValue, RealArray, names, numbers
 from calm.exchange.part_names import is_chain, role_of
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.units import KILOGRAM_FORCE
@@ -66,14 +65,14 @@ def rides_by_buoyancy(component: ImportedComponent) -> None:
     Its hull displaces, in proportion to the draft, no more than its net buoyancy needs.
     """
     figures = component.figures
-    lift, height = float(figures.get("buoyancy", 0.0)), float(figures.get("length", 0.0))
+    lift, height = component.number("buoyancy"), component.number("length")
     if component.kind not in ("sphere", "cylinder", "body") or lift <= 0.0:
         return
-    across = float(figures.get("diameter", 0.0))
+    across = component.number("diameter")
     shown = {
         "sphere": math.pi / 4.0 * across**2,
         "cylinder": across * height,
-        "body": float(figures.get("drag_area", 0.0)),
+        "body": component.number("drag_area"),
     }
     figures.pop("mass", None)
     volume = (1.0 + _SLIGHT) * lift / (CATALOGUE_DENSITY * KILOGRAM_FORCE)
@@ -95,14 +94,10 @@ def _flexible(element: MddElement) -> ImportedComponent:
     chain = is_chain(element.name)
     figures: dict[str, FigureOrWord] = {"diameter": element.across, "cn": element.cd, "ct": 0.0}
     weight = 0.0 - element.lift * KILOGRAM_FORCE
-    component = ImportedComponent(element.name, "chain" if chain else "cable", figures)
-    if weight < 0.0 and not chain:
-        figures["buoyancy"] = -weight
-    else:
-        figures["weight"] = weight
+    component = ImportedComponent.of_line(element.name, weight, figures, chain=chain)
     modulus = element.modulus
     if modulus is not None and math.isfinite(modulus):
-        figures["stiffness"] = modulus * math.pi / 4.0 * element.across**2
+        component.figures["stiffness"] = modulus * math.pi / 4.0 * element.across**2
         if _HARD.search(element.name) and modulus < _SOFT:
             component.guesses["stiffness"] = (
                 f"the file's modulus of {modulus / 1e9:g} GPa is that of a rope; is it a remnant "
@@ -284,78 +279,3 @@ def _modulus(value: float) -> float | None:
     if value <= len(MODULI) and value == int(value):
         return MODULI[int(value) - 1]
     return value
-
-
-GROUPS = ("floats", "wires", "chains", "acrels", "cms", "anchors", "miscs")
-"""The variables that hold elements."""
-
-_LINES = ("wires", "chains")
-_NAME = 16  # bytes of a name, where the file does not say
-_FIGURES = (6, 7)  # behind it: buoyancy, mass in air of late, length, width, diameter, Cd, material
-_CENTIMETRE = 0.01
-_METRE = 100.0  # cm: the length of a line whose figures are those of a metre
-
-
-@dataclass(frozen=True)
-class MddEntry:
-    """An element: net buoyancy [kg, of a line per metre], sizes [m], Cd and number of material."""
-
-    name: str
-    is_line: bool
-    lift: float
-    length: float
-    width: float
-    diameter: float
-    cd: float
-    material: float
-
-
-def read_entries(path: Path) -> list[MddEntry]:
-    """The elements of a file such as `mdcodes.mat`.
-
-    Raises
-    ------
-    InputError
-        It holds none.
-    """
-    variables = read_variables(path, [*GROUPS, "format"])
-    entries = [
-        entry
-        for group in GROUPS
-        for text in names(variables.get(group))
-        if (entry := _entry(text, group, _width(variables))) is not None
-    ]
-    if not entries:
-        raise refused(path, "holds no element library of that program (`floats`, `wires` …)")
-    return entries
-
-
-def _width(variables: Mapping[str, MatValue]) -> int:
-    """Bytes of a name: `format` has the columns of the name and of each figure."""
-    try:
-        columns = numbers(variables.get("format"))
-    except ValueError:
-        return _NAME
-    return int(columns[0, -1]) if columns.ndim == 2 and 0 < columns.size <= 100 else _NAME
-
-
-def _entry(text: str, group: str, end: int) -> MddEntry | None:
-    """An element of a row; None for a row that cannot be read."""
-    content = text.encode()
-    try:
-        figures = [float(word) for word in content[end:].split()]
-    except ValueError:
-        return None
-    if len(figures) not in _FIGURES:
-        return None
-    length, width, diameter, cd, material = figures[-5:]
-    return MddEntry(
-        name=content[:end].decode("utf-8", "replace").strip(),
-        is_line=group in _LINES and length == _METRE,
-        lift=figures[0],
-        length=length * _CENTIMETRE,
-        width=width * _CENTIMETRE,
-        diameter=diameter * _CENTIMETRE,
-        cd=cd,
-        material=material,
-    )

@@ -11,16 +11,15 @@ import numpy as np
 from calm.exchange.design import (
     CurrentRecord,
     Design,
-    ImportedClamp,
     ImportedPiece,
     ImportedTow,
     ImportedWater,
     Remark,
     refused,
 )
+from calm.exchange.element_library import GROUPS
 from calm.exchange.mat_file import MatValue, RealArray, numbers, read_variables
 from calm.exchange.mdd_elements import (
-    GROUPS,
     MddElement,
     anchor_of,
     component_of,
@@ -104,7 +103,7 @@ def _lay_mooring(
     design.items = [_item(element) for element in elements[:-1]]
     design.items.append(ImportedPiece(anchor_of(last)))
     depth = design.water.depth if design.water is not None else None
-    if depth is None or _STRETCHED * sum(_length(item) for item in design.items) >= depth:
+    if depth is None or _STRETCHED * sum(item.extent for item in design.items) >= depth:
         rides_by_buoyancy(design.items[0].component)
 
 
@@ -164,16 +163,7 @@ def _clamp(
             guess = f"`ZCO` has it at {height[i]:g} m, elsewhere than `Jobj` and `Pobj`"
         elif not by_share:
             guess = "from its height alone"
-        design.items[number].clamps.append(ImportedClamp(rigid(element), at, guess))
-    for item in design.items:
-        item.clamps.sort(key=lambda clamp: clamp.at)
-
-
-def _length(item: ImportedPiece) -> float:
-    if item.length is not None:
-        return item.length
-    length = item.component.figures.get("length", 0.0)
-    return float(length)
+        design.items[number].clamp(rigid(element), at, guess)
 
 
 def _by_share(
@@ -186,7 +176,7 @@ def _by_share(
     if not (0 <= number < len(items)) or not -1e-6 <= share <= 1.0 + 1e-6:
         return None
     # in a tow the program counts from the body up: from the lower end, too
-    length = _length(items[number])
+    length = items[number].extent
     return number, min(max((1.0 - share) * length, 0.0), length)
 
 
@@ -194,7 +184,7 @@ def _by_height(items: list[ImportedPiece], height: float, towed: bool) -> tuple[
     """The piece at a height above the seabed (in a tow above the lower end of the body)."""
     below = 0.0
     for number in range(len(items) - 1, -1, -1):
-        length = _length(items[number])
+        length = items[number].extent
         if below <= height <= below + length and length > 0.0:
             return number, length - (height - below)
         below += length

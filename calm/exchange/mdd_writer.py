@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import io
-from math import cos, pi, radians, sin, sqrt
+from math import pi, sqrt
 
 import numpy as np
 
-from calm.exchange.exported_parts import ExportedLine, ExportedPart, area, remarks
+from calm.exchange.exported_parts import ExportedLine, ExportedPart
 from calm.files import Chain, Cylinder, Sphere
 from calm.physics.reference import REFERENCE_DENSITY
 from calm.units import KILOGRAM_FORCE
@@ -24,20 +24,18 @@ def mdd_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
     lost: list[str] = []
     parts = list(design.parts)
     rows = [_element(part, lost) for part in parts]
-    if design.afloat[0]:
+    if design.afloat:
         used, seen = design.riding
         rows[0] = (*rows[0][:5], rows[0][5] * seen / max(used, _LEAST_USED), *rows[0][6:])
     names = [_name(part) for part in parts]
     variables: dict[str, object] = {}
     suffix = ""
     if design.tow is not None:
-        speed, toward, height = design.tow
         suffix = "t"
         rows = [*rows[::-1], (0.0, 0.0, 0.0, 0.0, 0.01, 0.01, np.inf, 0.0)]
         names = [*names[::-1], "Top of Tow Rope"]
-        east, north = speed * sin(radians(toward)), speed * cos(radians(toward))
-        variables |= {"Usp": east, "Vsp": north, "afh": height}
-        if height:
+        variables |= {"Usp": design.tow.east, "Vsp": design.tow.north, "afh": design.tow.height}
+        if design.tow.height:
             lost.append("the height of the sheave: there the wire counts from the water")
     else:
         assert design.anchor is not None
@@ -57,14 +55,14 @@ def mdd_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
         variables["Wt"] = columns[7:8]
     variables |= _water(design)
     variables |= _clamps(design, lost)
-    if design.wind[0]:
+    if any(design.wind):
         lost.append("wind")
-    if design.afloat[0]:
+    if design.afloat:
         lost.append(
             "the hull of the float: there it sinks, and drags, in proportion to the buoyancy it "
             "uses; its Cd is such that it drags as here in this current"
         )
-    losses = remarks(design, lost)
+    losses = design.losses(lost)
     variables["lost"] = _texts([f"by CALM from {design.name}; lost:", *losses])
     content = io.BytesIO()
     savemat(content, variables, format="5", oned_as="row")
@@ -100,10 +98,10 @@ def _size(part: ExportedPart, lost: list[str]) -> tuple[float, float, float]:
         if isinstance(component, Cylinder):
             across = component.diameter
             return across, 0.0, part.kn / (_HALF_DENSITY * across * part.length)
-        return area(part) / part.length, 0.0, 1.0
+        return part.area() / part.length, 0.0, 1.0
     if not isinstance(component, Cylinder):
         lost.append("bodies: each is a sphere, or a cylinder, of its drag with Cd 1")
-    return 0.0, sqrt(4.0 * area(part) / pi), 1.0
+    return 0.0, sqrt(4.0 * part.area() / pi), 1.0
 
 
 def _water(design: ExportedLine) -> dict[str, object]:

@@ -7,14 +7,7 @@ import io
 import math
 from pathlib import Path
 
-from calm.exchange.design import (
-    MOST_PIECES,
-    Design,
-    ImportedClamp,
-    ImportedComponent,
-    ImportedPiece,
-    refused,
-)
+from calm.exchange.design import MOST_PIECES, Design, ImportedComponent, ImportedPiece, refused
 from calm.exchange.mdd_elements import (
     MODULI,
     MddElement,
@@ -65,8 +58,6 @@ def read_moords(path: Path) -> Design:
             items.append(
                 ImportedPiece(component_of(element), element.length if element.is_line else None)
             )
-    for item in items:
-        item.clamps.sort(key=lambda clamp: clamp.at)
     name = rows[0].get("mooring") or path.stem
     return Design("moords", name, items[::-1], None, notes=[_NOTE], in_kilograms=True)
 
@@ -80,10 +71,10 @@ def _anchor(element: MddElement) -> ImportedComponent:
 
 def _hang(host: ImportedPiece, element: MddElement, height: float) -> None:
     """Clamp an element on a piece, at a height above its lower end [m]."""
-    length = host.length or float(host.component.figures.get("length", 0.0))
+    length = host.extent
     at = length - height
     guess = "" if -_SLIGHT <= at <= length + _SLIGHT else "its place was off the piece"
-    host.clamps.append(ImportedClamp(rigid(element), min(max(at, 0.0), length), guess))
+    host.clamp(rigid(element), min(max(at, 0.0), length), guess)
 
 
 def _element(row: dict[str, str], place: int, problems: list[str]) -> MddElement:

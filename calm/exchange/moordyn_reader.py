@@ -172,13 +172,12 @@ def _cable(kind: SectionRow, gravity: float) -> ImportedComponent:
         "diameter": across, "cn": kind.number("cd", 0.0), "ct": kind.number("cdt", 0.0),
     }  # fmt: skip
     name = kind.words["name"]
-    heavy = wet >= 0.0
-    figures["weight" if heavy else "buoyancy"] = abs(wet)
-    figures["mass"] = mass
+    component = ImportedComponent.of_line(name, wet, figures, chain=is_chain(name))
+    component.figures["mass"] = mass
     stiffness = kind.number("ea", 0.0)
     if stiffness > 0.0:
-        figures["stiffness"] = stiffness
-    return ImportedComponent(name, "chain" if heavy and is_chain(name) else "cable", figures)
+        component.figures["stiffness"] = stiffness
+    return component
 
 
 def _point(point: SectionRow, design: Design) -> ImportedPiece | None:
@@ -237,11 +236,10 @@ def _upper_end(top: SectionRow, items: list[ImportedPiece], design: Design) -> I
 
 def _weight(item: ImportedPiece, gravity: float) -> float:
     """Weight in water [N] under a gravity [m/s²]; 0 of what floats."""
-    figures = item.component.figures
-    mass, volume = float(figures.get("mass", 0.0)), float(figures.get("volume", 0.0))
+    figure = item.component.number
     if item.length is None:
-        return max((mass - CATALOGUE_DENSITY * volume) * gravity, 0.0)
-    return float(figures.get("weight", 0.0)) * item.length
+        return max((figure("mass") - CATALOGUE_DENSITY * figure("volume")) * gravity, 0.0)
+    return figure("weight") * item.length
 
 
 def _anchor(point: SectionRow, water: ImportedWater) -> ImportedComponent:

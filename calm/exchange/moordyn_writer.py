@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import groupby
 from math import pi, sqrt
 
@@ -11,11 +11,9 @@ from calm.exchange.exported_parts import (
     Coordinates,
     ExportedLine,
     ExportedPart,
+    PartLoad,
     PartPath,
-    area,
-    as_point,
-    mass_of,
-    remarks,
+    kept,
 )
 
 CURRENTS = "current_profile.txt"
@@ -31,34 +29,6 @@ _LEAST = 1e-3  # kg of mass and of displaced water per metre, for what has none
 
 
 @dataclass
-class _Load:
-    """Parts at one point, or in one stiff length, in water of a density [kg/m³].
-
-    Net force [N], mass [kg], and drag areas across and along the line [m²] together.
-    """
-
-    density: float
-    net: float = 0.0
-    mass: float = 0.0
-    area: float = 0.0
-    along: float = 0.0
-
-    def add(self, part: ExportedPart, share: float = 1.0) -> None:
-        """Add a part with what is clamped on it; `share` is of its drag."""
-        for each in (part, *(clamp for clamp, _ in part.clamps)):
-            self.net += each.net
-            self.mass += mass_of(each)
-            own = share if each is part else 1.0
-            self.area += own * area(each, self.density)
-            self.along += own * area(each, self.density, along=True)
-
-    def per_metre(self, length: float) -> _Load:
-        """The same, spread over a length [m]."""
-        figures = (self.net, self.mass, self.area, self.along)
-        return _Load(self.density, *(each / length for each in figures))
-
-
-@dataclass
 class _System:
     """Types, points and lines of the file, as they grow from the anchor up."""
 
@@ -68,10 +38,10 @@ class _System:
     types: dict[str, str] = field(default_factory=dict)
     points: list[str] = field(default_factory=list)
     lines: list[str] = field(default_factory=list)
-    load: _Load = field(init=False)
+    load: PartLoad = field(init=False)
 
     def __post_init__(self) -> None:
-        self.load = _Load(self.density)
+        self.load = PartLoad(self.density)
 
     def end_point(self, kind: str) -> int:
         """The number of the point that the line has reached, written with what acts there."""
@@ -85,17 +55,14 @@ class _System:
     def line(self, name: str, figures: str, length: float, to: Coordinates) -> None:
         """A length of a type, from the point that the line has reached."""
         below = self.end_point("Free" if self.points else "Fixed")
-        chosen, number = name, 1
-        while self.types.setdefault(chosen, figures) != figures:
-            number += 1
-            chosen = f"{name}_{number}"
+        chosen = kept(self.types, name, figures)
         segments = _SEGMENTS if length > 1.0 else 1
         self.lines.append(
             f"{len(self.lines) + 1}  {chosen}  {below}  {below + 1}  {length:.9g}  {segments}  -"
         )
-        self.place, self.load = to, _Load(self.density)
+        self.place, self.load = to, PartLoad(self.density)
 
-    def figures(self, load: _Load, stiffness: float) -> str:
+    def figures(self, load: PartLoad, stiffness: float) -> str:
         """The line type for what acts on a metre."""
         mass = max(load.mass, _LEAST - load.net / self.gravity)
         volume = (mass + load.net / self.gravity) / self.density
@@ -119,8 +86,7 @@ def moordyn_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
     if design.tow is not None:
         raise UsageError("a tow has no anchor; MoorDyn is given moorings alone")
     paths = design.paths()
-    density = sum(row[4] for row in design.levels) / len(design.levels)
-    system = _System(density, design.gravity, paths[-1].at(1.0))
+    system = _System(design.mean_density, design.gravity, paths[-1].at(1.0))
     lost = ["rigid pieces in a row: each row is one stiff length"]
     numbered = list(enumerate(design.parts))[::-1]
     for flexible, group in groupby(numbered, key=lambda pair: pair[1].flexible):
@@ -136,10 +102,9 @@ def moordyn_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
             _lay_rigid(system, [part for _, part in members], paths[members[-1][0]].at(0.0))
         if upper == 0:
             _lay_float(system, design, paths[0])
-    if design.wind[0]:
+    if any(design.wind):
         lost.append("wind")
-    afloat, _ = design.afloat
-    if afloat:
+    if design.afloat:
         lost.append(
             "the hull of the float: the upper end is held where it is; its point keeps the float's "
             "mass, volume and drag as it floats here"
@@ -149,9 +114,9 @@ def moordyn_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
             "that the drag of the float acts at its middle and by its axis: its point has the "
             "pull found here"
         )
-    system.end_point("Fixed" if afloat else "Free")
-    losses = remarks(design, lost)
-    return _text(design, system, density, losses).encode(), losses
+    system.end_point("Fixed" if design.afloat else "Free")
+    losses = design.losses(lost)
+    return _text(design, system, losses).encode(), losses
 
 
 def _lay(system: _System, part: ExportedPart, path: PartPath) -> None:
@@ -160,8 +125,8 @@ def _lay(system: _System, part: ExportedPart, path: PartPath) -> None:
     It is cut into short lengths too, since that program starts with each as it hangs in still
     water.
     """
-    load = _Load(system.density)
-    load.add(replace(part, clamps=()))
+    load = PartLoad(system.density)
+    load.add(part)
     figures = system.figures(load, part.stiffness)
     count = min(max(round(part.length / _LENGTH), 1), _MOST)
     cuts: dict[float, list[ExportedPart]] = {part.length * k / count: [] for k in range(count)}
@@ -180,12 +145,12 @@ def _lay(system: _System, part: ExportedPart, path: PartPath) -> None:
 
 def _lay_rigid(system: _System, parts: list[ExportedPart], top: Coordinates) -> None:
     """Rigid pieces in a row, from the lowest up."""
-    load, length = _Load(system.density), sum(part.length for part in parts)
-    for part in parts:
-        load.add(part)
+    load, length = PartLoad(system.density), sum(part.length for part in parts)
     if length <= 0.0:
-        for part in parts:
-            system.load.add(part)
+        load = system.load
+    for part in parts:
+        load.add_whole(part)
+    if length <= 0.0:
         return
     name = _word("_and_".join(dict.fromkeys(part.use for part in parts[:2])))
     system.line(name, system.figures(load.per_metre(length), _stiff(length)), length, top)
@@ -197,20 +162,20 @@ def _lay_float(system: _System, design: ExportedLine, path: PartPath) -> None:
     That length takes a share of its mass, neutral in water: that program steps too finely where a
     length is light.
     """
-    part, afloat = design.parts[0], design.afloat[0]
+    part = design.parts[0]
     top, bottom = path.at(0.0), path.at(1.0)
     below = bottom[2] / (bottom[2] - top[2]) if top[2] < 0.0 else 1.0
     length = part.length * below
     if length > 0.0:
-        own = _Load(system.density, mass=_OWN * mass_of(part)).per_metre(length)
+        own = PartLoad(system.density, mass=_OWN * part.likely_mass).per_metre(length)
         figures = system.figures(own, _stiff(length))
         system.line("float", figures, length, path.at(1.0 - below))
         system.load.mass -= own.mass * length
-    system.load.add(part, design.riding[1])
-    if not afloat:
-        net, shown = as_point(design, system.density)
+    system.load.add_whole(part, design.riding[1])
+    if not design.afloat:
+        net, shown = design.float_as_point(system.density)
         system.load.net += net - part.net
-        system.load.area += shown - area(part, system.density)
+        system.load.area += shown - part.area(system.density)
 
 
 def _stiff(length: float) -> float:
@@ -222,11 +187,11 @@ def _word(text: str) -> str:
     return "".join(sign if sign.isalnum() and sign.isascii() else "_" for sign in text)
 
 
-def _text(design: ExportedLine, system: _System, density: float, lost: tuple[str, ...]) -> str:
+def _text(design: ExportedLine, system: _System, lost: tuple[str, ...]) -> str:
     title = f"{design.name}, by CALM; the current stands in {CURRENTS}; lost:"
     options = (
         ("0", "writeLog"), ("0.1", "CFL"), ("RK2", "tScheme"), ("3.0e5", "kBot"),
-        ("3.0e4", "cBot"), (f"{density:.9g}", "rho"), (f"{design.gravity:.9g}", "g"),
+        ("3.0e4", "cBot"), (f"{system.density:.9g}", "rho"), (f"{design.gravity:.9g}", "g"),
         (f"{design.depth:.9g}", "WtrDpth"), ("1.0", "dtIC"), ("0.0", "TmaxIC"),
         ("4.0", "CdScaleIC"), ("0.0005", "threshIC"), ("0", "WaveKin"), ("1", "Currents"),
         ("1", "disableOutput"), ("1", "disableOutTime"),

@@ -7,23 +7,44 @@ the components it uses.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+import re
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import islice
+from itertools import islice, zip_longest
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Generic, Literal, NamedTuple, TypeVar
 
 from pydantic import Field
 
 from calm.errors import InputError, Problem, UsageError
 from calm.files.components import KINDS, Component
 from calm.files.definition import Definition
-from calm.files.entries import FAMILY_ROLES, Entry, Level, UnreadLevel, entries_of, read_level
-from calm.files.explain import validate
-from calm.files.section import Section
-from calm.files.unchanged import Unchanged
+from calm.files.mistakes import validate
+from calm.files.yaml_document import Document, SourceMapping, compose, read_document
 from calm.shipped import shipped_folder
 from calm.suggestions import nearest, shown, unknown
+from calm.whole_file import read_text
+
+GRAIN = 2.0
+"""A file written this lately may be written again without its time telling [s]."""
+
+T = TypeVar("T")
+Stamp = tuple[tuple[str, int, int, int], ...]
+
+FAMILY_ROLES = {
+    "floats": "float",
+    "instruments": "instrument",
+    "releases": "release",
+    "ropes": "line",
+    "chains": "line",
+    "connectors": "connector",
+    "anchors": "anchor",
+}
+"""The families of the catalogue, one file each, and what their components are for."""
+
+_HEAD = re.compile(r"^(?=[^ \n#])(?:([\w.-]+): *(?:#.*)?$)?", re.MULTILINE | re.ASCII)
+"""A line that is not indented; its group is the id where it is one and nothing else."""
 
 
 class Assembly(Definition):
@@ -38,13 +59,13 @@ class Assembly(Definition):
 
 @dataclass(frozen=True)
 class Catalogue:
-    """Component definitions in levels, the nearest first: it hides those of the same id below."""
+    """Hold definitions in levels, the nearest first: it hides those of the same id below."""
 
     levels: tuple[Level, ...]
 
     @classmethod
     def load(cls, files: Sequence[str | Path] = ()) -> Catalogue:
-        """The shipped catalogue, under the user's own, under the files given (the last on top).
+        """Load the shipped catalogue, the user's own above it, and the files given on top.
 
         Raises
         ------
@@ -68,39 +89,39 @@ class Catalogue:
 
     @classmethod
     def shipped(cls) -> Catalogue:
-        """The catalogue that comes with CALM."""
+        """Return the catalogue that comes with CALM."""
         return cls((UnreadLevel(_shipped_files()),))
 
-    def under(self, definitions: Section, problems: list[Problem]) -> Catalogue:
-        """This catalogue under the `components:` of a mooring file."""
+    def under(self, definitions: SourceMapping, problems: list[Problem]) -> Catalogue:
+        """Lay this catalogue under the `components:` of a mooring file."""
         entries = entries_of(definitions, None, problems)
         return Catalogue(({entry.id: entry for entry in entries}, *self.levels))
 
     def ids(self) -> list[str]:
-        """Every id, in the order of the files."""
+        """Return every id, in the order of the files."""
         return list(dict.fromkeys(id for level in reversed(self.levels) for id in level))
 
-    def entry(self, id: str) -> Entry | None:
-        """The definition of an id as written; None when there is none."""
+    def entry(self, id: str) -> CatalogueEntry | None:
+        """Return the definition of an id as written; None when there is none."""
         return next(self._of(id), None)
 
-    def hidden(self, id: str) -> Entry | None:
-        """The definition that a nearer one of the same id hides."""
+    def hidden(self, id: str) -> CatalogueEntry | None:
+        """Return the definition that a nearer one of the same id hides."""
         return next(islice(self._of(id), 1, None), None)
 
-    def _of(self, id: str) -> Iterator[Entry]:
-        """The definitions of an id, the nearest first."""
+    def _of(self, id: str) -> Iterator[CatalogueEntry]:
+        """Return the definitions of an id, the nearest first."""
         return (level[id] for level in self.levels if id in level)
 
-    def _all(self) -> dict[str, Entry]:
+    def _all(self) -> dict[str, CatalogueEntry]:
         return {id: next(self._of(id)) for id in self.ids()}
 
     def nearest(self, id: str) -> str | None:
-        """The id most like a text."""
+        """Return the id most like a text."""
         return nearest(id, self.ids())
 
     def get(self, id: str) -> Component | Assembly:
-        """A component or assembly, validated.
+        """Return a component or assembly, validated.
 
         Raises
         ------
@@ -119,7 +140,7 @@ class Catalogue:
         return definition
 
     def all(self) -> dict[str, Component | Assembly]:
-        """Every component and assembly, validated.
+        """Return every component and assembly, validated.
 
         Raises
         ------
@@ -137,7 +158,7 @@ class Catalogue:
         return found
 
     def same_thing(self, id: str) -> list[str]:
-        """The ids that describe the thing an id does, the one to use first; the id alone if none.
+        """Return the ids of the same thing as an id, the one to use first; the id alone if none.
 
         Those are the id that it prefers and all that prefer the same.
         """
@@ -146,7 +167,7 @@ class Catalogue:
         return [first, *(each for each, other in preferred.items() if other == first)]
 
     def search(self, words: Iterable[str]) -> list[str]:
-        """The ids whose definition (or family) holds every one of the words."""
+        """Return the ids whose definition (or family) holds every one of the words."""
         wanted = [word.casefold() for word in words]
         return [
             id
@@ -155,15 +176,12 @@ class Catalogue:
         ]
 
 
-_LOADED: Unchanged[Catalogue] = Unchanged()
-
-
 def _shipped_files() -> list[Path]:
     return sorted(shipped_folder("catalog").glob("*.yaml"))
 
 
 def user_folder() -> Path:
-    """The folder of the user's own catalogue: `CALM_CATALOG_DIR`, or one in the home folder."""
+    """Return the user's own catalogue: `CALM_CATALOG_DIR`, or a folder in the home folder."""
     if folder := os.environ.get("CALM_CATALOG_DIR"):
         return Path(folder)
     configuration = os.environ.get("XDG_CONFIG_HOME") or os.path.expanduser("~/.config")
@@ -171,14 +189,14 @@ def user_folder() -> Path:
 
 
 def define(
-    entry: Entry,
-    section: Section,
+    entry: CatalogueEntry,
+    section: SourceMapping,
     problems: list[Problem],
     *,
     also_allowed: Iterable[str] = (),
     context: Mapping[str, object] | None = None,
 ) -> Component | Assembly | None:
-    """The model of an entry, or of a section laid over it; None when it has mistakes.
+    """Return the model of an entry, or of a section laid over it; None when it has mistakes.
 
     `context` is None or, where it is to be used in air, `IN_AIR`.
     """
@@ -195,7 +213,7 @@ def define(
         return None
     role = FAMILY_ROLES.get(entry.family or "")
     if role and "role" not in section.data:
-        family_default = Section.of(section.document, section.location, {"role": role})
+        family_default = SourceMapping.of(section.document, section.location, {"role": role})
         section = section.over(family_default)
     if kind == "assembly":
         return validate(Assembly, section, problems)
@@ -206,6 +224,166 @@ def _kinds() -> str:
     return ", ".join([*KINDS, "assembly"])
 
 
-def _searchable(entry: Entry) -> str:
+def _searchable(entry: CatalogueEntry) -> str:
     texts = [value for value in entry.section.data.values() if isinstance(value, str)]
     return " ".join([entry.id, entry.family or "", *texts]).casefold()
+
+
+@dataclass(frozen=True)
+class CatalogueEntry:
+    """Hold a definition as written, with the name of the family (the file) it belongs to."""
+
+    id: str
+    family: str | None
+    section: SourceMapping
+
+    @property
+    def place(self) -> str:
+        """Return where the definition is, for people."""
+        place = self.section.problem((), "")
+        return f"{place.path}:{place.line}" if place.line else place.path
+
+
+Level = Mapping[str, CatalogueEntry]
+
+
+class _Cut(NamedTuple):
+    """Hold the text of one definition, and the lines of its file that are above it."""
+
+    path: Path
+    above: int
+    text: str
+
+
+class UnreadLevel(Level):
+    """Hold the entries of files whose mistakes need not be known before they matter.
+
+    Only the ids are looked for beforehand, by the lines that are not indented; an entry is read
+    when it is asked for. Where such a line is anything else, or an entry turns out to be wrong,
+    all files are read whole. An id alone in a line within a text in quotes would be taken for one.
+
+    Parameters
+    ----------
+    paths : of the files
+
+    Raises
+    ------
+    InputError
+        A file cannot be read; or, as soon as that is seen, with the mistakes of all.
+    """
+
+    def __init__(self, paths: Sequence[Path]) -> None:
+        self._paths = paths
+        self._read: dict[str, CatalogueEntry] = {}
+        cuts = [cut for path in paths for cut in _cuts(path)]
+        self._cuts = {id: cut for id, cut in cuts if id}
+        if len(self._cuts) < len(cuts):
+            self._read_whole()
+
+    def __getitem__(self, id: str) -> CatalogueEntry:
+        if id not in self._read:
+            path, above, text = self._cuts[id]
+            problems: list[Problem] = []
+            try:
+                document = compose(str(path), "\n" * above + text)
+                for entry in _entries_of(document, problems):
+                    self._read.setdefault(id, entry)
+            except InputError as error:
+                problems += error.problems
+            if problems:
+                self._read_whole()
+        return self._read[id]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._cuts or self._read)
+
+    def __len__(self) -> int:
+        return len(self._cuts or self._read)
+
+    def _read_whole(self) -> None:
+        problems: list[Problem] = []
+        self._cuts = {}
+        self._read = dict(read_level(self._paths, problems))
+        if problems:
+            raise InputError(problems)
+
+
+def read_level(paths: Iterable[Path], problems: list[Problem]) -> Level:
+    """Read the entries of files, which together define an id once."""
+    level: dict[str, CatalogueEntry] = {}
+    for path in paths:
+        try:
+            document = read_document(path)
+        except InputError as error:
+            problems.extend(error.problems)
+            continue
+        for entry in _entries_of(document, problems):
+            if entry.id in level:
+                message = f"`{entry.id}` is defined already, in {level[entry.id].place}"
+                problems.append(document.problem((entry.id,), message, key=True))
+            else:
+                level[entry.id] = entry
+    return level
+
+
+def entries_of(
+    definitions: SourceMapping, family: str | None, problems: list[Problem]
+) -> list[CatalogueEntry]:
+    """Return the entries of a mapping of definitions by id."""
+    entries = []
+    for id, fields in definitions.data.items():
+        if isinstance(fields, dict):
+            entries.append(CatalogueEntry(id, family, definitions.child(id)))
+        else:
+            problems.append(definitions.problem((id,), f"`{id}` must hold `key: value` entries"))
+    return entries
+
+
+def _entries_of(document: Document, problems: list[Problem]) -> list[CatalogueEntry]:
+    stem = Path(document.path).stem
+    family = stem if stem in FAMILY_ROLES else None
+    return entries_of(SourceMapping.of(document, (), document.data), family, problems)
+
+
+def _cuts(path: Path) -> list[tuple[str | None, _Cut]]:
+    """Return the text of each definition by its id, or by None where it does not begin plainly."""
+    text = read_text(path)
+    heads = list(_HEAD.finditer(text))
+    cuts, above = [], text.count("\n", 0, heads[0].start()) if heads else 0
+    for head, following in zip_longest(heads, heads[1:]):
+        part = text[head.start() : following.start() if following else None]
+        cuts.append((head[1], _Cut(path, above, part)))
+        above += part.count("\n")
+    return cuts
+
+
+class Unchanged(Generic[T]):
+    """Keep the last of what was read from files, known by their names, times and sizes."""
+
+    def __init__(self) -> None:
+        self._last: tuple[Stamp, T] | None = None
+
+    def of(self, paths: Sequence[Path], read: Callable[[], T]) -> T:
+        """Return what `read` makes of files; it is called only where they are others or changed."""
+        stamp = _stamp(paths)
+        last = self._last
+        if stamp is not None and last is not None and last[0] == stamp:
+            return last[1]
+        value = read()
+        self._last = None if stamp is None else (stamp, value)
+        return value
+
+
+def _stamp(paths: Sequence[Path]) -> Stamp | None:
+    """Return the names, times and sizes of files; None where they would not show a change."""
+    try:
+        found = [(str(path), path.stat()) for path in paths]
+    except (OSError, ValueError):
+        return None
+    newest = max((status.st_mtime for _, status in found), default=0.0)
+    if time.time() - newest < GRAIN:
+        return None
+    return tuple((name, each.st_mtime_ns, each.st_size, each.st_ino) for name, each in found)
+
+
+_LOADED: Unchanged[Catalogue] = Unchanged()

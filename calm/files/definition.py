@@ -20,7 +20,7 @@ from calm.files.fields import (
     POSITIVE_LENGTH,
     TILT,
     Model,
-    Quantity,
+    QuantityField,
     Role,
     Text,
 )
@@ -41,8 +41,8 @@ DISAGREEMENT = 0.01
 IN_AIR: Mapping[str, object] = {"fluid": "air"}
 """Context of a definition that is read for use in air, where its mass is all that is needed."""
 
-MASS = Quantity("mass", at_least=0)
-DENSITY = Quantity("density", above=0)
+MASS = QuantityField("mass", at_least=0)
+DENSITY = QuantityField("density", above=0)
 
 
 Length = Annotated[
@@ -174,12 +174,12 @@ class Definition(Model):
 
 
 def is_in_air(info: ValidationInfo) -> bool:
-    """Whether the definition that is being validated is read for use in air."""
+    """Return whether the definition that is being validated is read for use in air."""
     return info.context == IN_AIR
 
 
 def volume_from_weights(mass: float | None, net_buoyancy: float) -> float | None:
-    """Volume of water displaced [m³, per metre where they are], None where the mass is unknown."""
+    """Return the volume of water displaced [m³, or per metre], None where the mass is unknown."""
     if mass is None:
         return None
     return (mass + net_buoyancy / STANDARD_GRAVITY) / CATALOGUE_DENSITY

@@ -9,8 +9,8 @@ from pydantic import Discriminator, Field, Tag, ValidationError
 
 from calm.errors import Problem
 from calm.files.definition import CATALOGUE_DENSITY, DENSITY
-from calm.files.fields import Model, Quantity, Text
-from calm.files.section import Section
+from calm.files.fields import Model, QuantityField, Text
+from calm.files.yaml_document import SourceMapping
 from calm.records.profile_tables import (
     SALINITY,
     TEMPERATURE,
@@ -38,7 +38,7 @@ def _table_or_constant(value: object) -> str:
     return "table" if isinstance(value, dict) else "constant"
 
 
-class ColumnsAndRows(Model):
+class TableKeys(Model):
     """Columns, each a name and its unit, and rows of values."""
 
     columns: tuple[Text, ...] = Field(
@@ -55,20 +55,20 @@ class SeaWaterKeys(Model):
     """Temperature [°C] and practical salinity, each a constant or a table by depth."""
 
     temperature: Annotated[
-        Annotated[float, Quantity(**vars(TEMPERATURE)), Tag("constant")]
-        | Annotated[ColumnsAndRows, Tag("table")],
+        Annotated[float, QuantityField(**vars(TEMPERATURE)), Tag("constant")]
+        | Annotated[TableKeys, Tag("table")],
         Discriminator(_table_or_constant),
     ] = Field(description="in situ, a constant or a table", examples=["10 degC"])
     salinity: Annotated[
-        Annotated[float, Quantity(**vars(SALINITY)), Tag("constant")]
-        | Annotated[ColumnsAndRows, Tag("table")],
+        Annotated[float, QuantityField(**vars(SALINITY)), Tag("constant")]
+        | Annotated[TableKeys, Tag("table")],
         Discriminator(_table_or_constant),
     ] = Field(description="practical, a constant or a table", examples=[35])
 
 
 Density = Annotated[
     Annotated[float, DENSITY, Tag("constant")]
-    | Annotated[ColumnsAndRows, Tag("table")]
+    | Annotated[TableKeys, Tag("table")]
     | Annotated[SeaWaterKeys, Tag("sea water")],
     Discriminator(_form),
 ]
@@ -81,15 +81,15 @@ _FALL = 0.1
 
 
 def read_density(
-    given: float | ColumnsAndRows | SeaWaterKeys,
+    given: float | TableKeys | SeaWaterKeys,
     fluid: str,
-    section: Section,
+    section: SourceMapping,
     problems: list[Problem],
     notices: list[str],
 ) -> float | DepthTable | SeaWater | None:
     """The density of a section's `density:`; None, with its mistakes reported, when it has any."""
     density = _RANGES[fluid]
-    if isinstance(given, ColumnsAndRows):
+    if isinstance(given, TableKeys):
         report = report_at(section, "density")
         table = read_water(given.columns, given.rows, report, problems, density)
         if isinstance(table, DepthTable):
@@ -107,15 +107,15 @@ def read_density(
     return SeaWater(temperature, salinity) if temperature and salinity else None
 
 
-def table_of(value: object) -> ColumnsAndRows | None:
+def table_of(value: object) -> TableKeys | None:
     """The table that a value of a file is, None where it is none."""
     try:
-        return ColumnsAndRows.model_validate(value)
+        return TableKeys.model_validate(value)
     except ValidationError:
         return None
 
 
-def report_at(section: Section, *place: str) -> Report:
+def report_at(section: SourceMapping, *place: str) -> Report:
     """Tells problems at places below a key of a section, or below a key under that."""
     return lambda location, message: section.problem((*place, *location), message)
 
@@ -134,7 +134,7 @@ def _falls(table: DepthTable) -> list[str]:
     return []
 
 
-def check_density(section: Section, problems: list[Problem]) -> None:
+def check_density(section: SourceMapping, problems: list[Problem]) -> None:
     """Report the mistakes in the tables below `density:`, whatever else is wrong with it."""
     given = section.data.get("density")
     density = _RANGES["air" if section.data.get("fluid") == "air" else "water"]
@@ -148,9 +148,9 @@ def check_density(section: Section, problems: list[Problem]) -> None:
 
 
 def _profile(
-    name: str, given: float | ColumnsAndRows, section: Section, problems: list[Problem]
+    name: str, given: float | TableKeys, section: SourceMapping, problems: list[Problem]
 ) -> DepthTable | None:
-    if isinstance(given, ColumnsAndRows):
+    if isinstance(given, TableKeys):
         report = report_at(section, "density", name)
         return read_profile(name, given.columns, given.rows, report, problems)
     return DepthTable((0.0,), (given,))

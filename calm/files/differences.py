@@ -10,9 +10,9 @@ from typing import Any
 from pydantic import BaseModel
 
 from calm.files.alignment import Alignment, Known, align, own_labels
-from calm.files.fields import Quantity
+from calm.files.fields import QuantityField
 from calm.files.flexible import Flexible
-from calm.files.mooring import Clamp, MooringFile, Piece
+from calm.files.mooring_file import Clamp, MooringFile, Piece
 from calm.quantities import bearing_of
 from calm.records.profile_tables import CurrentTable, DepthTable
 from calm.units import DIMENSIONS, with_unit
@@ -21,8 +21,8 @@ Value = float | str | None
 
 
 @dataclass(frozen=True)
-class Figure:
-    """A value of a file [SI, degrees] or a text, and how people read it.
+class ComparedValue:
+    """Hold a value of a file [SI, degrees] or a text, and how people read it.
 
     `table` is what a text sums up, since two that differ may come to the same.
     """
@@ -32,25 +32,25 @@ class Figure:
     table: CurrentTable | DepthTable | None = None
 
 
-NOTHING = Figure(None, "-")
+NOTHING = ComparedValue(None, "-")
 
 
-def _text(text: str) -> Figure:
-    return Figure(text, text)
+def _text(text: str) -> ComparedValue:
+    return ComparedValue(text, text)
 
 
 @dataclass(frozen=True)
 class Change:
-    """A value that differs: ``label.field`` or ``environment.depth``, before and after."""
+    """Hold a value that differs: ``label.field`` or ``environment.depth``, before and after."""
 
     where: str
-    before: Figure
-    after: Figure
+    before: ComparedValue
+    after: ComparedValue
 
 
 @dataclass(frozen=True)
 class Differences:
-    """Two files compared.
+    """Hold what differs between two files.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ class Differences:
 
     @property
     def any(self) -> bool:
-        """Whether there are any."""
+        """Return whether there are any."""
         return bool(self.changed or self.moved or self.removed or self.added)
 
 
@@ -169,8 +169,8 @@ def _of_part(
     yield from _changes(f"{label}.", first, second)
 
 
-def _part_figures(part: Piece | Clamp, name: str) -> dict[str, Figure]:
-    """What the line says of a part, its definition left out."""
+def _part_figures(part: Piece | Clamp, name: str) -> dict[str, ComparedValue]:
+    """Return what the line says of a part, its definition left out."""
     found = {"use": _figure("use", part.use), "label": _figure("label", name)}
     if isinstance(part, Clamp):
         found["at"] = _figure("at", part.at)
@@ -183,8 +183,8 @@ def _part_figures(part: Piece | Clamp, name: str) -> dict[str, Figure]:
     return found | _figures(part.equipment)
 
 
-def _around(file: MooringFile) -> dict[str, Figure]:
-    """All that is not the line."""
+def _around(file: MooringFile) -> dict[str, ComparedValue]:
+    """Return all that is not the line."""
     parts: dict[str, Any] = {
         "position": file.position,
         "tow": file.tow,
@@ -208,9 +208,9 @@ def _around(file: MooringFile) -> dict[str, Figure]:
     return found
 
 
-def _figures(part: Any, left_out: frozenset[str] = frozenset()) -> dict[str, Figure]:
-    """The fields of a model, dotted where it holds others."""
-    found: dict[str, Figure] = {}
+def _figures(part: Any, left_out: frozenset[str] = frozenset()) -> dict[str, ComparedValue]:
+    """Return the fields of a model, dotted where it holds others."""
+    found: dict[str, ComparedValue] = {}
     if isinstance(part, BaseModel):
         model = type(part).model_fields
         given = {name: (getattr(part, name), model[name].metadata) for name in model}
@@ -222,29 +222,29 @@ def _figures(part: Any, left_out: frozenset[str] = frozenset()) -> dict[str, Fig
         if isinstance(value, BaseModel):
             found |= {f"{name}.{key}": one for key, one in _figures(value).items()}
             continue
-        quantity = next((one for one in metadata if isinstance(one, Quantity)), None)
+        quantity = next((one for one in metadata if isinstance(one, QuantityField)), None)
         dimension = quantity.dimension if quantity else _DIMENSIONS.get(name)
         found[name] = _figure(name, value, dimension)
     return found
 
 
-def _figure(name: str, value: Any, dimension: str | None = None) -> Figure:
+def _figure(name: str, value: Any, dimension: str | None = None) -> ComparedValue:
     if value is None or value == ():
         return NOTHING
     if isinstance(value, CurrentTable):
         return _of_current(value)
     if isinstance(value, DepthTable):
         text = f"{min(value.value):g} to {max(value.value):g}, {len(value.depth)} levels"
-        return Figure(text, text, value)
+        return ComparedValue(text, text, value)
     if isinstance(value, int | float) and not isinstance(value, bool):
         number = math.degrees(value) if name == "angle_step" else float(value)
         dimension = dimension or _DIMENSIONS.get(name)
         unit = "" if dimension is None else DIMENSIONS[dimension].unit
-        return Figure(number if math.isfinite(number) else None, with_unit(number, unit))
+        return ComparedValue(number if math.isfinite(number) else None, with_unit(number, unit))
     return _text(_said(value))
 
 
-def _of_current(table: CurrentTable) -> Figure:
+def _of_current(table: CurrentTable) -> ComparedValue:
     speeds = [math.hypot(u, v) for u, v in zip(table.u, table.v, strict=True)]
     fastest = max(range(len(speeds)), key=speeds.__getitem__)
     toward = bearing_of(table.u[fastest], table.v[fastest])
@@ -252,11 +252,11 @@ def _of_current(table: CurrentTable) -> Figure:
     if speeds[fastest] > 0.0:
         text += f" toward {toward:.0f}°"
     text += f", {len(speeds)} level{'s' * (len(speeds) != 1)}"
-    return Figure(text, text, table)
+    return ComparedValue(text, text, table)
 
 
 def _said(value: Any) -> str:
-    """A value that is neither a number nor None, in words."""
+    """Return a value that is neither a number nor None, in words."""
     if isinstance(value, BaseModel):
         given = {name: one for name, one in value if one is not None and one != ()}
         return ", ".join(f"{name}: {_said(one)}" for name, one in given.items())
@@ -271,12 +271,12 @@ def _said(value: Any) -> str:
 
 
 def _changes(
-    prefix: str, before: Mapping[str, Figure], after: Mapping[str, Figure]
+    prefix: str, before: Mapping[str, ComparedValue], after: Mapping[str, ComparedValue]
 ) -> Iterator[Change]:
     for name in dict.fromkeys((*before, *after)):
         pair = before.get(name, NOTHING), after.get(name, NOTHING)
         if pair[0] != pair[1]:
             if pair[0].text == pair[1].text:
                 text = f"{pair[1].text}, other figures"
-                pair = pair[0], Figure(text, text, pair[1].table)
+                pair = pair[0], ComparedValue(text, text, pair[1].table)
             yield Change(prefix + name, *pair)

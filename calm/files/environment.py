@@ -14,16 +14,16 @@ from calm.errors import InputError, Problem
 from calm.files.definition import DENSITY
 from calm.files.density import (
     USUAL_DENSITY,
-    ColumnsAndRows,
     Density,
+    TableKeys,
     check_density,
     read_density,
     report_at,
     table_of,
 )
-from calm.files.explain import validate
-from calm.files.fields import POSITIVE_LENGTH, Model, Quantity, Text
-from calm.files.section import Section
+from calm.files.fields import POSITIVE_LENGTH, Model, QuantityField, Text
+from calm.files.mistakes import validate
+from calm.files.yaml_document import SourceMapping
 from calm.records.profile_tables import (
     DEEPEST,
     DIRECTION,
@@ -39,25 +39,25 @@ from calm.records.times import TimeChoiceError
 from calm.suggestions import shown
 from calm.units import QuantityError
 
-_SPEED = Quantity("speed", at_least=0)
-_WATER_DEPTH = Quantity("length", above=0, at_most=DEEPEST)
+_SPEED = QuantityField("speed", at_least=0)
+_WATER_DEPTH = QuantityField("length", above=0, at_most=DEEPEST)
 _MAXIMUM_SPEED = 5.0
 
 
 class Position(Model):
     """Where the mooring stands [degrees]."""
 
-    latitude: Annotated[float, Quantity("angle", at_least=-90, at_most=90)] = Field(
+    latitude: Annotated[float, QuantityField("angle", at_least=-90, at_most=90)] = Field(
         description="north positive", examples=["48.3 deg"]
     )
-    longitude: Annotated[float, Quantity("angle", at_least=-360, at_most=360)] = Field(
+    longitude: Annotated[float, QuantityField("angle", at_least=-360, at_most=360)] = Field(
         description="east positive", examples=["-5.2 deg"]
     )
 
 
 @dataclass(frozen=True)
 class Environment:
-    """What the line stands in, or is towed through.
+    """Hold what the line stands in, or is towed through.
 
     Attributes
     ----------
@@ -105,7 +105,7 @@ class Fouling(Model):
     depth: Annotated[float, POSITIVE_LENGTH] = Field(
         description="how far down it grows", examples=["50 m"]
     )
-    thickness: Annotated[float, Quantity("length", usual_unit="mm", above=0)] = Field(
+    thickness: Annotated[float, QuantityField("length", usual_unit="mm", above=0)] = Field(
         description="of the growth all around, e.g. 20 mm", examples=["20 mm"]
     )
     density: Annotated[float | None, DENSITY] = Field(
@@ -125,10 +125,10 @@ class Wind(Model):
     speed: Annotated[float, _SPEED] = Field(
         description="of the wind, at the height of the float", examples=["12 m/s"]
     )
-    toward: Annotated[float, Quantity(**vars(DIRECTION))] = Field(
+    toward: Annotated[float, QuantityField(**vars(DIRECTION))] = Field(
         description="where it blows to, clockwise from north", examples=["90 deg"]
     )
-    surface_drift: Annotated[float, Quantity("number", at_least=0, at_most=0.1)] = Field(
+    surface_drift: Annotated[float, QuantityField("number", at_least=0, at_most=0.1)] = Field(
         default=0.0,
         description="share of the wind's speed that the surface water drifts at",
         examples=["2 %"],
@@ -148,11 +148,11 @@ class UniformCurrent(Model):
     """The same current at all depths [m/s, degrees]."""
 
     speed: Annotated[float, _SPEED] = Field(description="of the water", examples=["0.5 m/s"])
-    toward: Annotated[float, Quantity(**vars(DIRECTION))] = Field(
+    toward: Annotated[float, QuantityField(**vars(DIRECTION))] = Field(
         description="direction it flows or goes to, clockwise from north, e.g. 90 deg",
         examples=["90 deg"],
     )
-    w: Annotated[float, Quantity("speed")] = Field(
+    w: Annotated[float, QuantityField("speed")] = Field(
         default=0.0, description="vertical speed, positive up", examples=["0.01 m/s"]
     )
 
@@ -171,10 +171,12 @@ class CurrentFile(Model):
         description="of the profile wanted, e.g. 2026-03-01T06:00",
         examples=["2026-03-01T06:00"],
     )
-    declination: Annotated[float | None, Quantity("angle", at_least=-180, at_most=180)] = Field(
-        default=None,
-        description="turns directions that a file gives from magnetic north; east positive",
-        examples=["12.5 deg"],
+    declination: Annotated[float | None, QuantityField("angle", at_least=-180, at_most=180)] = (
+        Field(
+            default=None,
+            description="turns directions that a file gives from magnetic north; east positive",
+            examples=["12.5 deg"],
+        )
     )
 
 
@@ -215,11 +217,11 @@ class TowEnvironmentKeys(Model):
         description="of the water: one, a table, or by temperature and salinity",
         examples=["1025 kg/m^3"],
     )
-    gravity: Annotated[float | None, Quantity("acceleration", above=0)] = Field(
+    gravity: Annotated[float | None, QuantityField("acceleration", above=0)] = Field(
         default=None, description="acceleration", examples=["9.81 m/s^2"]
     )
     current: Annotated[
-        Annotated[ColumnsAndRows, Tag("table")]
+        Annotated[TableKeys, Tag("table")]
         | Annotated[CurrentFile, Tag("file")]
         | Annotated[UniformCurrent, Tag("uniform")],
         Discriminator(_current_form),
@@ -244,7 +246,7 @@ class EnvironmentKeys(TowEnvironmentKeys):
     depth: Annotated[float, _WATER_DEPTH] = Field(
         description="of the water, e.g. 1100 m", examples=["1100 m"]
     )
-    maximum_speed: Annotated[float, Quantity("speed", above=0)] = Field(
+    maximum_speed: Annotated[float, QuantityField("speed", above=0)] = Field(
         default=_MAXIMUM_SPEED, description="a faster current is an error", examples=["3 m/s"]
     )
     depth_range: Annotated[_Levels | None, BeforeValidator(_two_depths)] = Field(
@@ -260,7 +262,7 @@ class EnvironmentKeys(TowEnvironmentKeys):
 
 
 def read_environment(
-    section: Section,
+    section: SourceMapping,
     name: str | None,
     problems: list[Problem],
     notices: list[str],
@@ -269,7 +271,7 @@ def read_environment(
     position: Position | None = None,
     open_files: bool = True,
 ) -> Environment | None:
-    """The environment of a section; its mistakes are added to `problems`, and None returned.
+    """Read the environment of a mapping; None, with its mistakes in `problems`, if it has any.
 
     A tow may be in air and need not give the water's depth. A current file is looked for beside
     the file that names it; `position` chooses a column of it. With `open_files` false it is not
@@ -311,7 +313,9 @@ def read_environment(
     )
 
 
-def _check_depth_range(keys: TowEnvironmentKeys, section: Section, problems: list[Problem]) -> None:
+def _check_depth_range(
+    keys: TowEnvironmentKeys, section: SourceMapping, problems: list[Problem]
+) -> None:
     """Low water, then high water, and the depth between them."""
     depth, levels = keys.depth, getattr(keys, "depth_range", None)
     if levels is None or depth is None:
@@ -325,7 +329,7 @@ def _check_depth_range(keys: TowEnvironmentKeys, section: Section, problems: lis
         problems.append(section.problem(("depth_range",), message, key=True))
 
 
-def _check_wind(keys: TowEnvironmentKeys, section: Section, problems: list[Problem]) -> None:
+def _check_wind(keys: TowEnvironmentKeys, section: SourceMapping, problems: list[Problem]) -> None:
     """Wind blows over water, and drives it down to a known depth."""
     if keys.wind is None:
         return
@@ -339,7 +343,7 @@ def _check_wind(keys: TowEnvironmentKeys, section: Section, problems: list[Probl
 
 def _current(
     keys: TowEnvironmentKeys,
-    section: Section,
+    section: SourceMapping,
     problems: list[Problem],
     notices: list[str],
     open_files: bool,
@@ -348,7 +352,7 @@ def _current(
     current = keys.current
     report = report_at(section, "current")
     maximum_speed = getattr(keys, "maximum_speed", math.inf)
-    if isinstance(current, ColumnsAndRows):
+    if isinstance(current, TableKeys):
         terms = Terms(maximum_speed=maximum_speed)
         return read_current(current.columns, current.rows, report, problems, terms)
     if isinstance(current, UniformCurrent):
@@ -383,7 +387,7 @@ def _current(
     return None
 
 
-def _check_tables(section: Section, problems: list[Problem]) -> None:
+def _check_tables(section: SourceMapping, problems: list[Problem]) -> None:
     """Look into the tables although other keys are wrong, to report all mistakes at once."""
     check_density(section, problems)
     table = table_of(section.data.get("current"))

@@ -26,7 +26,7 @@ class Model(BaseModel):
 
 
 @dataclass(frozen=True)
-class Quantity(QuantityRange):
+class QuantityField(QuantityRange):
     """Annotate a field that holds a quantity within limits."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
@@ -38,7 +38,7 @@ class Quantity(QuantityRange):
         return self.json_schema()
 
     def json_schema(self) -> dict[str, Any]:
-        """The JSON Schema of the text, without the limits."""
+        """Return the JSON Schema of the text, without the limits."""
         kind = DIMENSIONS[self.dimension]
         number = r"^\s*[-+]?[0-9.]+([eE][-+]?[0-9]+)?(\s*[0-9]*/[0-9]+)?"
         if not kind.unit:
@@ -58,13 +58,13 @@ def _as_text(value: object) -> object:
 Text = Annotated[str, BeforeValidator(_as_text), WithJsonSchema({"type": ["string", "number"]})]
 """Text; a bare number is taken as the person wrote it."""
 
-POSITIVE_LENGTH = Quantity("length", above=0)
-DIAMETER = Quantity("length", usual_unit="mm", above=0)
-LENGTH = Quantity("length", at_least=0)
-POSITIVE_FORCE = Quantity("force", usual_unit="kN", above=0)
-COEFFICIENT = Quantity("number", at_least=0)
-DRAG = Quantity("drag", at_least=0)
-TILT = Quantity("angle", above=0, at_most=180)
+POSITIVE_LENGTH = QuantityField("length", above=0)
+DIAMETER = QuantityField("length", usual_unit="mm", above=0)
+LENGTH = QuantityField("length", at_least=0)
+POSITIVE_FORCE = QuantityField("force", usual_unit="kN", above=0)
+COEFFICIENT = QuantityField("number", at_least=0)
+DRAG = QuantityField("drag", at_least=0)
+TILT = QuantityField("angle", above=0, at_most=180)
 
 Role = Annotated[
     Literal["float", "instrument", "release", "connector", "line", "anchor"],
@@ -72,6 +72,6 @@ Role = Annotated[
 ]
 
 
-def quantity_of(field: FieldInfo) -> Quantity | None:
+def quantity_of(field: FieldInfo) -> QuantityField | None:
     """Return the quantity that a field of a model holds, None where it holds none."""
-    return next((one for one in field.metadata if isinstance(one, Quantity)), None)
+    return next((one for one in field.metadata if isinstance(one, QuantityField)), None)

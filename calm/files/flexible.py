@@ -19,11 +19,11 @@ from calm.files.definition import (
     refuse_weight_above_mass,
     volume_from_weights,
 )
-from calm.files.fields import POSITIVE_FORCE, Quantity, Role
+from calm.files.fields import POSITIVE_FORCE, QuantityField, Role
 from calm.physics.stretch import ElongationCurve
 
-_LOAD = Quantity("number", at_least=0, at_most=1)
-_STRAIN = Quantity("number", at_least=0)
+_LOAD = QuantityField("number", at_least=0, at_most=1)
+_STRAIN = QuantityField("number", at_least=0)
 
 Points = tuple[tuple[float, float], ...]
 
@@ -45,12 +45,12 @@ Elongation = Annotated[
 
 WeightPerMetre = Annotated[
     float | None,
-    Quantity("force per length"),
+    QuantityField("force per length"),
     Field(description="in sea water of 1025 kg/m^3 (per metre of a cable or chain)"),
 ]
 MassPerMetre = Annotated[
     float | None,
-    Quantity("mass per length", at_least=0),
+    QuantityField("mass per length", at_least=0),
     Field(description="in air (per metre of a cable or chain)"),
 ]
 
@@ -76,7 +76,7 @@ class Cable(Flexible):
     """A rope, wire or electrical cable."""
 
     kind: Literal["cable"] = Field(description="which kind of component it is")
-    buoyancy: Annotated[float | None, Quantity("force per length")] = Field(
+    buoyancy: Annotated[float | None, QuantityField("force per length")] = Field(
         default=None,
         description="net force in sea water of 1025 kg/m^3, positive up (per metre of a cable)",
         examples=["0.1 N/m"],
@@ -89,17 +89,17 @@ class Cable(Flexible):
         description="rows of load over breaking load and strain, e.g. [[0.1, 0.03], [0.3, 0.08]]",
         examples=[[[0.05, 0.05], [0.1, 0.08], [0.2, 0.12]]],
     )
-    permanent_elongation: Annotated[float | None, Quantity("number", at_least=0, at_most=1)] = (
-        Field(
-            default=None,
-            description="of a rope that has been loaded, at every tension, e.g. 4 %",
-            examples=["4 %"],
-        )
+    permanent_elongation: Annotated[
+        float | None, QuantityField("number", at_least=0, at_most=1)
+    ] = Field(
+        default=None,
+        description="of a rope that has been loaded, at every tension, e.g. 4 %",
+        examples=["4 %"],
     )
 
     @property
     def net_buoyancy(self) -> float:
-        """Net force in water of a metre, positive up; of a mass alone, that in air [N/m]."""
+        """Return the net force of a metre in water, positive up; of a mass alone, in air [N/m]."""
         if self.buoyancy is not None:
             return self.buoyancy
         if self.weight is not None:
@@ -110,7 +110,7 @@ class Cable(Flexible):
 
     @property
     def displaced_volume(self) -> float | None:
-        """Volume displaced by a metre [m³/m], None when the mass is unknown, or is all."""
+        """Return the volume displaced by a metre [m³/m], None if the mass is unknown, or is all."""
         if self._gives_no_force and self.density is None:
             return None
         return volume_from_weights(self.mass, self.net_buoyancy)
@@ -144,7 +144,7 @@ class Cable(Flexible):
 
 
 def strain_under(component: Flexible, load: float) -> float:
-    """Strain of a cable or chain under a load ≥ 0 [N], as the solver has it [-].
+    """Return the strain of a cable or chain under a load ≥ 0 [N], as the solver has it [-].
 
     By its `elongation`, else load / `stiffness`; 0 of one that gives neither.
     """
@@ -166,7 +166,7 @@ class Chain(Flexible):
 
     @property
     def net_buoyancy(self) -> float:
-        """Net force in water of a metre, positive up [N/m]."""
+        """Return the net force in water of a metre, positive up [N/m]."""
         if self.weight is not None:
             return -self.weight
         mass = 19.9e3 * self.diameter**2 if self.mass is None else self.mass
@@ -174,7 +174,7 @@ class Chain(Flexible):
 
     @property
     def displaced_volume(self) -> float | None:
-        """Volume of water displaced by a metre [m³/m], None when only its weight is known."""
+        """Return the volume displaced by a metre [m³/m], None when only its weight is known."""
         if self.mass is not None or self.weight is not None:
             return volume_from_weights(self.mass, self.net_buoyancy)
         return 19.9e3 * self.diameter**2 / (self.density or STEEL_DENSITY)

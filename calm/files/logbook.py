@@ -8,11 +8,11 @@ from typing import Annotated, Any, TypeGuard
 from pydantic import AfterValidator, Field, WithJsonSchema
 
 from calm.errors import Problem
-from calm.files.accept import Day
+from calm.files.check_limits import Day
 from calm.files.environment import Position
-from calm.files.explain import validate
-from calm.files.fields import POSITIVE_LENGTH, Model, Quantity, Text
-from calm.files.section import Section
+from calm.files.fields import POSITIVE_LENGTH, Model, QuantityField, Text
+from calm.files.mistakes import validate
+from calm.files.yaml_document import SourceMapping
 from calm.records.times import TimeChoiceError, parse_time
 from calm.suggestions import shown, unknown
 
@@ -73,7 +73,7 @@ class DocumentKeys(Model):
     )
 
     def to_dict(self) -> dict[str, Any]:
-        """What is given, as JSON has it."""
+        """Return what is given, as JSON has it."""
         return self.model_dump(mode="json", exclude_none=True, exclude_defaults=True)
 
 
@@ -89,7 +89,7 @@ class ReleaseKeys(Model):
 
     @property
     def code_lines(self) -> tuple[str, ...]:
-        """The codes as a person reads them, one a line."""
+        """Return the codes as a person reads them, one a line."""
         if isinstance(self.codes, dict):
             return tuple(f"{name}: {code}" for name, code in self.codes.items())
         return (self.codes,) if isinstance(self.codes, str) else self.codes or ()
@@ -127,7 +127,7 @@ class Deployed(Model):
         description="where it stands",
         examples=[{"latitude": "48.3 deg", "longitude": "-5.2 deg"}],
     )
-    depth: Annotated[float | None, Quantity("length", above=0)] = Field(
+    depth: Annotated[float | None, QuantityField("length", above=0)] = Field(
         default=None, description="of the water there", examples=["1100 m"]
     )
     items: tuple[DeployedItem, ...] = Field(
@@ -171,13 +171,13 @@ class Equipment(Model):
     )
 
     def of(self, repeat: int) -> Equipment:
-        """That of one of a count, from 0."""
+        """Return the equipment of one of a count, from 0."""
         if not isinstance(self.serial, tuple):
             return self
         return self.model_copy(update={"serial": self.serial[min(repeat, len(self.serial) - 1)]})
 
 
-LOAD = Quantity("force", usual_unit="kN", at_least=0)
+LOAD = QuantityField("force", usual_unit="kN", at_least=0)
 
 
 class LengthAt(Model):
@@ -193,16 +193,16 @@ EQUIPMENT_KEYS = frozenset(Equipment.model_fields)
 NO_EQUIPMENT = Equipment()
 
 
-def read_equipment(item: Section, problems: list[Problem]) -> Equipment:
-    """What an item or a clamp says of the individual thing; mistakes are added to `problems`."""
+def read_equipment(item: SourceMapping, problems: list[Problem]) -> Equipment:
+    """Read what an item or a clamp says of the individual thing."""
     given = {key: item.data[key] for key in item.data.keys() & EQUIPMENT_KEYS}
     if not given:
         return NO_EQUIPMENT
-    section = Section.of(item.document, item.location, given)
+    section = SourceMapping.of(item.document, item.location, given)
     return validate(Equipment, section, problems) or NO_EQUIPMENT
 
 
-def check_serials(item: Section, count: int, problems: list[Problem]) -> None:
+def check_serials(item: SourceMapping, count: int, problems: list[Problem]) -> None:
     """Of an item and of its clamps: a list of serial numbers has one for each of the count."""
     clamps: Any = item.data.get("clamps")
     below = [(("clamps", i), one) for i, one in enumerate(clamps if _is_list(clamps) else ())]
@@ -221,7 +221,7 @@ def check_deployed(
     deployed: Deployed,
     labels: Sequence[str],
     cables: Sequence[str],
-    top: Section,
+    top: SourceMapping,
     problems: list[Problem],
 ) -> None:
     """What was deployed is of the line, each piece or clamp once, and only cables are cut.

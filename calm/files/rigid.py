@@ -21,10 +21,10 @@ from calm.files.definition import (
     refuse_weight_above_mass,
     volume_from_weights,
 )
-from calm.files.fields import COEFFICIENT, DRAG, LENGTH, Model, Quantity
+from calm.files.fields import COEFFICIENT, DRAG, LENGTH, Model, QuantityField
 from calm.physics.hull import tabulated_hull
 
-_AREA = Quantity("area", at_least=0)
+_AREA = QuantityField("area", at_least=0)
 
 Inclination = Annotated[
     Literal["follows", "insensitive"] | None,
@@ -50,7 +50,7 @@ class Displacement(Model):
     displacement: tuple[
         tuple[
             Annotated[float, LENGTH],
-            Annotated[float, Quantity("volume", at_least=0)],
+            Annotated[float, QuantityField("volume", at_least=0)],
             Annotated[float, _AREA],
         ],
         ...,
@@ -79,12 +79,12 @@ class Rigid(Definition):
     """A piece of fixed length, or one clamped on a line."""
 
     mass: Mass = None
-    buoyancy: Annotated[float | None, Quantity("force")] = Field(
+    buoyancy: Annotated[float | None, QuantityField("force")] = Field(
         default=None,
         description="net force in sea water of 1025 kg/m^3, positive up (per metre of a cable)",
         examples=["7000 N"],
     )
-    volume: Annotated[float | None, Quantity("volume", at_least=0)] = Field(
+    volume: Annotated[float | None, QuantityField("volume", at_least=0)] = Field(
         default=None, description="of water displaced, e.g. 0.9 m^3", examples=["0.9 m^3"]
     )
     hull: Hull | None = Field(
@@ -106,7 +106,7 @@ class Rigid(Definition):
 
     @property
     def net_buoyancy(self) -> float:
-        """Net force in water, positive up; of a mass alone, that in air [N]."""
+        """Return the net force in water, positive up; of a mass alone, that in air [N]."""
         if self.buoyancy is not None:
             return self.buoyancy
         assert self.mass is not None
@@ -114,7 +114,7 @@ class Rigid(Definition):
 
     @property
     def displaced_volume(self) -> float | None:
-        """Volume displaced [m³], None when it is not known, nor follows from the weights."""
+        """Return the volume displaced [m³], None if it is unknown, nor follows from the weights."""
         if self.volume is not None or self.buoyancy is None:
             return self.volume
         return volume_from_weights(self.mass, self.net_buoyancy)
@@ -170,10 +170,10 @@ class Cylinder(Rigid):
 class DragMeasurement(Model):
     """A drag measured at a speed [m/s, N]."""
 
-    speed: Annotated[float, Quantity("speed", above=0)] = Field(
+    speed: Annotated[float, QuantityField("speed", above=0)] = Field(
         description="of the water past it", examples=["0.5 m/s"]
     )
-    force: Annotated[float, Quantity("force", at_least=0)] = Field(
+    force: Annotated[float, QuantityField("force", at_least=0)] = Field(
         description="measured", examples=["48 N"]
     )
 
@@ -236,7 +236,7 @@ class Body(Rigid):
         examples=[[{"kind": "cylinder", "diameter": "80 mm", "length": "1 m"}]],
     )
     inclination: Inclination = None
-    lift: Annotated[float | None, Quantity("drag")] = Field(
+    lift: Annotated[float | None, QuantityField("drag")] = Field(
         default=None,
         description="of a towed body at 1 m/s, positive up",
         examples=["-30 N/(m/s)^2"],

@@ -16,7 +16,7 @@ from calm.files.catalogue import Assembly
 from calm.files.components import KINDS, Component
 from calm.files.environment import EnvironmentKeys, TowEnvironmentKeys, UniformCurrent
 from calm.files.fields import LENGTH, quantity_of
-from calm.files.line import MOST_PIECES
+from calm.files.line_items import MOST_PIECES
 from calm.files.logbook import Equipment, LengthAt
 from calm.files.reader import MooringKeys
 
@@ -27,7 +27,7 @@ _NO_FORM = ("description", "examples", "default", "title")
 
 
 def mooring_schema() -> Schema:
-    """The JSON Schema (draft 2020-12) of a mooring file."""
+    """Return the JSON Schema (draft 2020-12) of a mooring file."""
     models: list[type[BaseModel]] = [MooringKeys, EnvironmentKeys, TowEnvironmentKeys, Assembly]
     models += [*KINDS.values(), Equipment, LengthAt]
     UniformCurrent.model_rebuild()  # a default is written by its model, which pydantic builds late

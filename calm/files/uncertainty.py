@@ -8,18 +8,18 @@ from typing import Annotated, Any
 from pydantic import Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
-from calm.files.fields import Model, Quantity
+from calm.files.fields import Model, QuantityField
 from calm.units import QuantityError
 
 MOST_DEVIATION = 0.25
 """Of a share: a normal distribution wider than this would often pass below nothing."""
-_SHARE = Quantity("number", at_least=0.0)
+_SHARE = QuantityField("number", at_least=0.0)
 _TOO_WIDE = "is too wide for a deviation, 25 % at most; give a pair, its 5 and 95 %"
 
 
 @dataclass(frozen=True)
 class Spread:
-    """How far a figure may be off: of a share that of 1, of an angle in degrees.
+    """Say how far a figure may be off: of a share that of 1, of an angle in degrees.
 
     Attributes
     ----------
@@ -33,7 +33,7 @@ class Spread:
 
 @dataclass(frozen=True)
 class SpreadOf:
-    """Annotation of a key of `uncertainty:`.
+    """Annotate a key of `uncertainty:` with what may stand there.
 
     Attributes
     ----------
@@ -41,11 +41,11 @@ class SpreadOf:
     end : what the 5 and the 95 % may be
     """
 
-    one: Quantity
-    end: Quantity
+    one: QuantityField
+    end: QuantityField
 
     def read(self, value: object) -> Spread:
-        """Of one text with a unit, or of two in a list."""
+        """Read one text with a unit, or two in a list."""
         if not isinstance(value, list | tuple):
             return Spread(self._deviation(value))
         if len(value) != 2:
@@ -79,10 +79,10 @@ class SpreadOf:
         return {"anyOf": [self.one.json_schema(), pair]}
 
 
-_SHARES = (_SHARE, Quantity("number", above=-1.0, at_most=10.0))
+_SHARES = (_SHARE, QuantityField("number", above=-1.0, at_most=10.0))
 _ANGLES = (
-    Quantity("angle", at_least=0.0, at_most=180.0),
-    Quantity("angle", at_least=-180.0, at_most=180.0),
+    QuantityField("angle", at_least=0.0, at_most=180.0),
+    QuantityField("angle", at_least=-180.0, at_most=180.0),
 )
 
 

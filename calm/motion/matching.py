@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from calm.case import Mooring
-from calm.case.measure import clamps_down
+from calm.case.parts import clamps_down
 from calm.errors import UsageError
 from calm.motion.sensors import Sensor
 from calm.physics.line import Floats

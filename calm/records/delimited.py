@@ -7,6 +7,7 @@ in quotation marks. Empty lines and lines after ``#`` are left out.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain, islice
@@ -247,8 +248,15 @@ def copied_table(text: str) -> CopiedTable:
     return CopiedTable(headings, tuple(row for _, row in rows))
 
 
-def dialect_of(lines: Sequence[str]) -> Dialect:
-    """Return how a table is written, by the sign that parts most of its lines like the first.
+def cells_in(text: str) -> list[list[str]]:
+    """Return the cells of a text that need not begin with its headings, decimals as they stand."""
+    lines = [line for _, line in _content(enumerate(text.splitlines(), 1))]
+    dialect = Dialect(dialect_of(lines[:_SAMPLE], words=True).separator)
+    return [dialect.cells(line) for line in lines]
+
+
+def dialect_of(lines: Sequence[str], *, words: bool = False) -> Dialect:
+    """Return how a table is written, by the sign that parts most of its lines into as many cells.
 
     Numbers have decimal commas where some have a comma that is none of thousands, and none has a
     point.
@@ -256,12 +264,13 @@ def dialect_of(lines: Sequence[str]) -> Dialect:
     Parameters
     ----------
     lines : without empty ones and comments
+    words : whether cells are of several words, so that no blank parts them
     """
     best, most = ",", 0
     for separator in _SEPARATORS:
-        counts = [len(Dialect(separator).cells(line)) for line in lines]
-        alike = counts.count(counts[0]) if counts and counts[0] > 1 else 0
-        if alike > most and not (separator == " " and most):
+        counts = Counter(len(Dialect(separator).cells(line)) for line in lines)
+        alike = max((times for count, times in counts.items() if count > 1), default=0)
+        if alike > most and not (separator == " " and (most or words)):
             best, most = separator, alike
     plain = Dialect(best)
     cells = [cell for line in lines for cell in plain.cells(line)]

@@ -85,7 +85,7 @@ class Terms:
 
 @dataclass(frozen=True)
 class CurrentTable:
-    """A current profile: east, north and upward speeds [m/s] at increasing depths [m]."""
+    """Hold a current: east, north and upward speeds [m/s] at increasing depths [m]."""
 
     depth: tuple[float, ...]
     u: tuple[float, ...]
@@ -95,7 +95,7 @@ class CurrentTable:
 
 @dataclass(frozen=True)
 class DepthTable:
-    """A quantity at increasing depths [m]; linear between them, constant beyond."""
+    """Hold a quantity at increasing depths [m]; linear between them, constant beyond."""
 
     depth: tuple[float, ...]
     value: tuple[float, ...]
@@ -103,7 +103,7 @@ class DepthTable:
 
 @dataclass(frozen=True)
 class SeaWater:
-    """Sea water by its temperature in situ [°C] and its practical salinity."""
+    """Hold the temperature in situ [°C] and the practical salinity of sea water."""
 
     temperature: DepthTable
     salinity: DepthTable
@@ -116,7 +116,7 @@ def read_current(
     problems: list[Problem],
     terms: Terms = Terms(),
 ) -> CurrentTable | None:
-    """A current from a table; None, with its mistakes added to `problems`, when it has any.
+    """Read a current from a table; None, with its mistakes in `problems`, if it has any.
 
     Parameters
     ----------
@@ -172,7 +172,7 @@ def read_current(
 
 
 def turned_notices(columns: Sequence[str], terms: Terms) -> tuple[str, ...]:
-    """What is reported of a current whose columns counted from magnetic north."""
+    """Return what is reported of a current whose columns counted from magnetic north."""
     if terms.declination is None:
         return ()
     which = " and ".join(f"`{name}`" for name in sorted(magnetic_columns(columns)[1]))
@@ -182,7 +182,7 @@ def turned_notices(columns: Sequence[str], terms: Terms) -> tuple[str, ...]:
 def _from_magnetic_north(
     columns: Sequence[str], terms: Terms, report: Report, problems: list[Problem]
 ) -> tuple[list[str], float]:
-    """The columns without the word for their north, and by how much they are turned [degrees]."""
+    """Return the columns without the word for their north, and their turn [degrees]."""
     plain, magnetic = magnetic_columns(columns)
     if not magnetic:
         if terms.declination is not None:
@@ -217,7 +217,7 @@ def read_water(
     problems: list[Problem],
     density: QuantityRange = WATER_DENSITY,
 ) -> DepthTable | SeaWater | None:
-    """Densities [kg/m³], or sea water, from a table as that of `read_current`.
+    """Read densities [kg/m³], or sea water, from a table as that of `read_current`.
 
     Its columns are `depth`, and `density` or `temperature` and `salinity`; `density` is the
     plausible range of the fluid.
@@ -242,7 +242,7 @@ def read_profile(
     report: Report,
     problems: list[Problem],
 ) -> DepthTable | None:
-    """`temperature` [°C] or `salinity` from a table of it by depth, as that of `read_current`."""
+    """Read `temperature` [°C] or `salinity` by depth from a table as that of `read_current`."""
     before = len(problems)
     known = {"depth": _DEPTH, name: _WATER[name]}
     values = _read_columns(columns, rows, known, report, problems)
@@ -255,19 +255,19 @@ def read_profile(
 
 
 def components(speed: float, toward: float) -> tuple[float, float]:
-    """East and north parts of a speed that flows toward a direction [deg from north]."""
+    """Return the east and north parts of a speed that flows toward a direction [deg from north]."""
     angle = math.radians(toward)
     return speed * math.sin(angle), speed * math.cos(angle)
 
 
 def turned_by(angle: float, u: float, v: float) -> tuple[float, float]:
-    """A flow u to the east, v to the north, turned clockwise by an angle [degrees]."""
+    """Return a flow u to the east, v to the north, turned clockwise by an angle [degrees]."""
     sine, cosine = math.sin(math.radians(angle)), math.cos(math.radians(angle))
     return u * cosine + v * sine, v * cosine - u * sine
 
 
 def speed_and_direction(u: float, v: float) -> tuple[float, float]:
-    """Speed and direction [deg from north, 0 to 360] of a flow by its east and north parts."""
+    """Return the speed and direction [deg from north, 0 to 360] of a flow by its parts."""
     return math.hypot(u, v), bearing_of(u, v)
 
 
@@ -278,7 +278,7 @@ def _read_columns(
     report: Report,
     problems: list[Problem],
 ) -> dict[str, list[float]]:
-    """The known columns by name, in SI, NaN where a value is wrong."""
+    """Return the known columns by name, in SI, NaN where a value is wrong."""
     units = _read_headings(columns, known, report, problems)
     if len(units) == len(columns) and "depth" not in units:
         problems.append(report(("columns",), "the table has no `depth` column"))
@@ -307,7 +307,7 @@ def _read_headings(
     report: Report,
     problems: list[Problem],
 ) -> dict[str, str]:
-    """The unit of each known column by its name, empty where the column gives none."""
+    """Return the unit of each known column by its name, empty where the column gives none."""
     units: dict[str, str] = {}
     for j, column in enumerate(columns):
         name, unit = heading(column)

@@ -28,7 +28,7 @@ _LONGITUDES = ("lon", "longitude", "LONGITUDE", "nav_lon", "Longitude", "LON")
 
 
 @dataclass(frozen=True)
-class WaterColumn:
+class GridColumn:
     """A column of water in a dataset.
 
     Attributes
@@ -55,7 +55,7 @@ def is_regular(dataset: xr.Dataset) -> bool:
 
 def choose_column(
     dataset: xr.Dataset, velocity: tuple[str, str], time: str | None, wanted: Place | None
-) -> WaterColumn:
+) -> GridColumn:
     """The column of a place; the only one where there is but one.
 
     Parameters
@@ -72,7 +72,7 @@ def choose_column(
     dims = dataset[velocity[0]].dims
     pair = _positions(dataset, set(dims) - {time})
     if pair is None:
-        return WaterColumn({}, None, _drift(dataset, time, wanted))
+        return GridColumn({}, None, _drift(dataset, time, wanted))
     latitude, longitude = pair
     horizontal = [str(dim) for dim in dims if dim in latitude.dims or dim in longitude.dims]
     if not all(set(horizontal) <= set(dataset[name].dims) for name in velocity):
@@ -81,7 +81,7 @@ def choose_column(
     count = int(np.prod([dataset.sizes[dim] for dim in horizontal]))
     if count == 1:
         place = latitude.values.item(), _signed(longitude.values.item())
-        return WaterColumn({dim: 0 for dim in horizontal}, place, _far(place, wanted))
+        return GridColumn({dim: 0 for dim in horizontal}, place, _far(place, wanted))
     if wanted is None:
         raise UnreadableError(
             f"it has {count} columns, {_span(latitude.values, longitude.values)}: say which by "
@@ -114,7 +114,7 @@ def choose_column(
         f"the column nearest to {written(wanted)}{dry} is that at {written(place)}, "
         f"{distance[chosen]:.1f} km away"
     )
-    return WaterColumn(index, place, (note,))
+    return GridColumn(index, place, (note,))
 
 
 def written(place: Place) -> str:

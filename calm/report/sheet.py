@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from calm.case import TowResult
 from calm.checks.finding import State
-from calm.files.strumming import BourgetMarichalKeys
+from calm.files.strumming_keys import BourgetMarichalKeys
 from calm.quantities import say
 from calm.report.blocks import Line, Note, Part, Prose, Span, Table
 from calm.report.line import Mark, line_table

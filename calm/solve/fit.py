@@ -12,6 +12,7 @@ from calm.physics.profile import Profile
 from calm.physics.state import MarchError
 from calm.physics.track import Track
 from calm.solve.closing import COARSE_STEP, REACH
+from calm.solve.mooring import solve_mooring
 from calm.solve.root import root_near
 from calm.solve.solution import Settings
 from calm.solve.standing import refuse_unsupported, standing_lift, too_heavy
@@ -36,7 +37,52 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
     """
     still_water = water.still()
     refuse_unsupported(line, still_water, standing_lift(line, still_water))
-    still, goal = Profile(still_water), line.anchor_height - water.depth
+    upright = _upright_length(line, still_water, piece, top_depth, settings)
+    shortest = float(line.clamp_at[line.clamp_piece == piece].max(initial=0.0))
+    # a plumb line is exact with long segments
+    coarse = replace(settings, angle_step=max(settings.angle_step, COARSE_STEP))
+
+    def excess(length: float) -> float:
+        """Depth of the free end of the line as it is solved, below what is asked."""
+        try:
+            solution = solve_mooring(line.with_length(piece, length), still_water, coarse)
+        except NoEquilibrium as refusal:
+            if refusal.status not in (Status.SLACK.label, Status.ABOVE_SURFACE.label):
+                raise
+            return -top_depth
+        return -float(solution.position[0, 2]) - top_depth
+
+    near = settings.tolerance * water.depth
+    if upright is not None and abs(excess(upright)) <= near:
+        return upright
+    # part of the line lies on the seabed, which lengthens what stands by nothing
+    room = water.depth - line.anchor_height - top_depth
+    others = float(line.length.sum()) - float(line.length[piece])
+    start = max(room - others, shortest) if upright is None else upright
+    found = root_near(
+        excess, start, -1.0, (shortest, water.depth), small=near, narrow=1e-9 * water.depth
+    )
+    if found is not None and abs(found[1]) <= near:
+        return found[0]
+    lift = standing_lift(line, water)
+    if float(lift[:piece].sum()) <= 0.0:
+        raise too_heavy(lift)
+    clamped = f" and its own {shortest:.2f} m down to the lowest clamp" if shortest else ""
+    raise Status.NO_EQUILIBRIUM.because(
+        f"No length of {{piece}} puts the top of the line at {top_depth:g} m: the "
+        f"other pieces, {others:.2f} m uncut{clamped}, have {room:.2f} m of water to stand in.",
+        piece,
+    )
+
+
+def _upright_length(
+    line: Line, water: Water, piece: int, top_depth: float, settings: Settings
+) -> float | None:
+    """Return the length of a piece with which the line stands upright from its anchor [m].
+
+    None where there is none; `water` is still.
+    """
+    still, goal = Profile(water), line.anchor_height - water.depth
     room = water.depth - line.anchor_height - top_depth
 
     def miss(length: float) -> float:
@@ -66,15 +112,7 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
     except MarchError as error:
         raise Status.NOT_CONVERGED.because(f"The march stopped: {error}.", piece) from error
     if found is None or abs(found[1]) > settings.tolerance * water.depth:
-        lift = standing_lift(line, water)
-        if float(lift.sum()) <= 0.0:
-            raise too_heavy(lift)
-        clamped = f" and its own {shortest:.2f} m down to the lowest clamp" if shortest else ""
-        raise Status.NO_EQUILIBRIUM.because(
-            f"No length of {{piece}} puts the top of the line at {top_depth:g} m: the "
-            f"other pieces, {others:.2f} m uncut{clamped}, have {room:.2f} m of water to stand in.",
-            piece,
-        )
+        return None
     return found[0]
 
 

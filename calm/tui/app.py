@@ -16,7 +16,7 @@ from textual.screen import Screen
 from textual.timer import Timer
 
 from calm.errors import CalmError
-from calm.files.editing import Kept, WorkingFile
+from calm.files.editing import KeptWork, WorkingFile
 from calm.tui import recovery
 from calm.tui.judging import Judging
 from calm.tui.line.builder import BuilderScreen
@@ -65,7 +65,7 @@ class BuildApp(InTurn):
         self,
         session: Session,
         *,
-        kept: Kept | None = None,
+        kept: KeptWork | None = None,
         environ: Mapping[str, str] = os.environ,
     ) -> None:
         super().__init__()
@@ -294,7 +294,7 @@ class BuildApp(InTurn):
             self.keep()  # which removes a copy that is out of date
         self.exit(0)
 
-    def _offer(self, kept: Kept) -> None:
+    def _offer(self, kept: KeptWork) -> None:
         def take(answer: str | None) -> None:
             if answer == "recover":
                 self.session.recover(kept)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 
-from calm.files.editing import Kept
+from calm.files.editing import KeptWork
 from calm.tui.dialogs import Answer, Question
 from calm.tui.session import Session
 
@@ -14,7 +14,7 @@ def moment(seconds: float) -> str:
     return time.strftime("%Y-%m-%d at %H:%M", time.localtime(seconds))
 
 
-def offer(session: Session, kept: Kept) -> Question:
+def offer(session: Session, kept: KeptWork) -> Question:
     """Whether it is to be recovered; it says when it was kept and whether the file is newer."""
     whose = "" if kept.keeper.is_here else f" on {kept.keeper.host}, where it may still be open"
     sentences = [f"An earlier run ended before {session.name} was saved. It kept its work"]
@@ -35,7 +35,7 @@ def offer(session: Session, kept: Kept) -> Question:
     return Question("Work that was not saved", " ".join(sentences), answers, must=True)
 
 
-def confirmation(kept: Kept) -> Question:
+def confirmation(kept: KeptWork) -> Question:
     """Whether it is really to be thrown away: nothing brings it back."""
     answers = [Answer("y", "yes, throw it away for good", "discard")]
     return Question("Throw the work away?", f"It was kept {moment(kept.at)}.", answers)

@@ -1,4 +1,4 @@
-"""Anchor drops: a dynamic program's run of one, and closed forms of the fall."""
+"""Compare anchor drops with a dynamic program's run of one, and closed forms of the fall."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from calm.physics.hull import Floating, spherical_hull
 from calm.physics.line import Line, Water
 from calm.physics.reference import REFERENCE_DENSITY
 from calm.solve import FallingAnchor, solve_fall
-from calm.verification.case import Case, Kind, Source
-from calm.verification.pieces import GRAVITY, Piece, cable, line_of, sphere_drag
+from calm.verification.case_lines import GRAVITY, LinePiece, cable, line_of, sphere_drag
+from calm.verification.published_case import Case, Kind, Source
 
 _FINE = Fineness(bars=100, steps=100)
 _DENSITY, _DEPTH = 1027.0, 1000.0
@@ -35,7 +35,7 @@ _INERTIA = (
 
 
 def _wire_below_a_sphere() -> Line:
-    ball = Piece(
+    ball = LinePiece(
         1.5, False, 1025.0 * GRAVITY * _VOLUME - _DRY, sphere_drag(1.5, 0.3), directional=False,
         volume=_VOLUME,
     )  # fmt: skip
@@ -84,7 +84,7 @@ def _deep_fall() -> tuple[float, float]:
 def _alone() -> float:
     """Speed of a heavy sphere below a thread of nothing and a cork [m/s]."""
     line = line_of(
-        Piece(0.05, False, 1.0, 1e-3, directional=False), cable(300.0, 1e-6, 1e-6, 1.3, 0.0)
+        LinePiece(0.05, False, 1.0, 1e-3, directional=False), cable(300.0, 1e-6, 1e-6, 1.3, 0.0)
     )
     anchor = Anchor(weight=10_000.0, drag=100.0)
     fineness = Fineness(bars=50, steps=50)
@@ -95,7 +95,7 @@ def _alone() -> float:
 _ALONE = sqrt(10_000.0 / (100.0 * _DENSITY / REFERENCE_DENSITY))
 _THREAD = "Drag of the thread and the cork, and the last of the line's straightening."
 
-SOURCE = Source(
+ANCHOR_DROP = Source(
     "Anchor drop",
     """The example of a deployment that comes with WHOI Cable (J. Gobat & M. Grosenbaugh): 1050 m
 of wire between a sphere of 1.5 m at the surface and an anchor of 8896 N in water, let go at 2 knots

@@ -16,7 +16,7 @@ from calm.checks.criterion import AT_SURFACE, Criterion, Judged
 from calm.checks.finding import Rule, State
 from calm.checks.posture import reaches_the_surface
 from calm.checks.rules import RULES, equilibrium
-from calm.files.rules import RULES as TEXTS
+from calm.files.rule_texts import RULES as TEXTS
 
 NOT_JUDGED = {
     name: TEXTS[name].unseen

@@ -26,7 +26,7 @@ from calm.batch.statuses import Ending, endings
 from calm.case import Mooring
 from calm.checks.limits import limits_used
 from calm.checks.posture import reaches_the_surface
-from calm.files.checks import LimitKey
+from calm.files.check_limits import LimitKey
 
 WORST = 20
 """Profiles listed as the worst of a response."""

@@ -13,7 +13,7 @@ from calm.batch.result import attributes_of
 from calm.batch.store.store import IDENTITY, WORK, Store, refuse_another
 from calm.dataset.netcdf import write_netcdf
 from calm.errors import UsageError
-from calm.whole_file import settle
+from calm.whole_file import flush_to_disk
 
 ENDINGS = (".nc", ".zarr")
 """Of the results that can be written."""
@@ -90,13 +90,13 @@ def finish(store: Store, output: Path, check: Callable[[], None]) -> list[int]:
         return damaged
     if output.suffix == ".zarr":
         ready = store.folder
-        settle(path for path in store.folder.rglob("*") if WORK not in path.parts)
+        flush_to_disk(path for path in store.folder.rglob("*") if WORK not in path.parts)
     else:
         ready = store.work / output.name
         write_netcdf(store.layout, store.block, store.chunks(), ready, check)
-    settle([ready])
+    flush_to_disk([ready])
     os.replace(ready, output)
-    settle([output.parent])
+    flush_to_disk([output.parent])
     return []
 
 

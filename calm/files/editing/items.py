@@ -5,18 +5,16 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from calm.files.composition import compose
-from calm.files.editing.layout import Layout, Value, Wording, inline
-from calm.files.editing.lists import Items, Slot
-from calm.files.editing.spans import line_start
-from calm.files.nodes import Node
+from calm.files.composition import Node, compose
+from calm.files.editing.splicing import Items, Slot, line_start
+from calm.files.editing.writing import Value, Wording, WritingStyle, inline
 
 _LINE_BREAK = re.compile(r"\r\n|\n")
 
 
 @dataclass(frozen=True)
-class Item:
-    """An item of a line, or a clamp of one.
+class LineItem:
+    """Represent an item of a line, or a clamp of one.
 
     Attributes
     ----------
@@ -33,19 +31,19 @@ class Item:
     line: int
     column: int
     values: dict[str, str]
-    clamps: tuple[Item, ...]
+    clamps: tuple[LineItem, ...]
     text: str
 
 
-def item_of(node: Node, text: str, *, lines: str = "") -> Item:
-    """The item that a node of a text is; `lines` where it takes more of the text than its own."""
+def item_of(node: Node, text: str, *, lines: str = "") -> LineItem:
+    """Return the item of a node of a text; `lines` where it takes more of the text than its own."""
     entries = list(zip(node.keys, node.children, strict=False))
     values = {key.data: child.data or "" for key, child in entries if child.kind == "scalar"}
     clamps = [child for key, child in entries if key.data == "clamps" and child.kind == "sequence"]
     measured = next((child.data for key, child in entries if key.data == "length_at"), None)
     if isinstance(measured, dict):
         values["length_at"] = f"{measured.get('length', '?')} at {measured.get('load', '?')}"
-    return Item(
+    return LineItem(
         line=node.line,
         column=node.column,
         values=values,
@@ -54,8 +52,8 @@ def item_of(node: Node, text: str, *, lines: str = "") -> Item:
     )
 
 
-def new_slot(value: Value, items: Items, layout: Layout, *, block: bool) -> Slot:
-    """A new item for a list, written after its form; `block`: a key a line where that can be."""
+def new_slot(value: Value, items: Items, layout: WritingStyle, *, block: bool) -> Slot:
+    """Write a new item for a list, after its form; `block`: a key a line where that can be."""
     if items.form == "block":
         return Slot(layout.item(value, items.column, block=block))
     if items.form == "rows":
@@ -63,8 +61,8 @@ def new_slot(value: Value, items: Items, layout: Layout, *, block: bool) -> Slot
     return Slot(inline(value))
 
 
-def worded_slot(wording: Wording, items: Items, layout: Layout) -> Slot:
-    """An item for a list as it is worded; what stands in brackets in one line loses comments."""
+def worded_slot(wording: Wording, items: Items, layout: WritingStyle) -> Slot:
+    """Place an item as it is worded; within brackets in one line it loses its comments."""
     if items.form == "block":
         return Slot(layout.moved(wording.lines, items.column))
     if items.form == "rows":
@@ -75,7 +73,7 @@ def worded_slot(wording: Wording, items: Items, layout: Layout) -> Slot:
 
 
 def snippet_of(slot: Slot, node: Node, items: Items) -> str:
-    """The text of an item by itself, as an item of a block list that begins in column 1."""
+    """Return the text of an item by itself, as an item of a block list that begins in column 1."""
     if items.form == "inline":
         return _LINE_BREAK.sub("\n", f"- {slot.value}\n")
     text = slot.text
@@ -88,7 +86,7 @@ def snippet_of(slot: Slot, node: Node, items: Items) -> str:
 
 
 def read_snippet(snippet: str) -> Wording | None:
-    """The item that a text as that of `snippet_of` is; None where it is none."""
+    """Return the item that a text as that of `snippet_of` is; None where it is none."""
     composition = compose(snippet)
     root = composition.root
     if root is None or composition.refusals or (root.kind, root.style) != ("sequence", "block"):

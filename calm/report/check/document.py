@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from calm.checks.assessment import Assessment, Situation
     from calm.checks.backup import Loss
     from calm.checks.finding import Finding
-    from calm.files.checks import LimitKey
+    from calm.files.check_limits import LimitKey
 
 
 def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from calm.report.check.summary import place_of, say_in_unit, worst_by_part
 
 if TYPE_CHECKING:
     from calm.checks.finding import Finding
-    from calm.files.checks import LimitKey
+    from calm.files.check_limits import LimitKey
 
 SIGNS = {
     State.FAIL: "!",

@@ -9,12 +9,10 @@ from types import UnionType
 from typing import Any, Literal, Union, get_args, get_origin
 
 from calm.errors import Problem
-from calm.files.catalogue import define
+from calm.files.catalogue import CatalogueEntry, define
 from calm.files.components import KINDS, Component
-from calm.files.document import Document
-from calm.files.entries import Entry
-from calm.files.fields import Quantity
-from calm.files.section import Section
+from calm.files.fields import QuantityField
+from calm.files.yaml_document import Document, SourceMapping
 from calm.tui.checking import Check, Reading, anything, quantity
 from calm.units import DIMENSIONS
 
@@ -50,7 +48,7 @@ def form_fields(kind: str) -> Iterator[FormField]:
 def _form_field(
     name: str, annotation: Any, metadata: list[Any], *, needed: bool
 ) -> FormField | None:
-    found = next((each for each in metadata if isinstance(each, Quantity)), None)
+    found = next((each for each in metadata if isinstance(each, QuantityField)), None)
     if found is not None:
         units = list(DIMENSIONS[found.dimension].units)[:5]
         takes = DIMENSIONS[found.dimension].noun.removeprefix("a ").removeprefix("an ")
@@ -112,9 +110,9 @@ def id_check(own: Collection[str]) -> Check:
 
 def defined(id: str, values: Mapping[str, Any]) -> tuple[Component | None, tuple[Problem, ...]]:
     """The component that values define, and what is wrong with them."""
-    section = Section.of(Document(_PATH, {id: dict(values)}), (id,), dict(values))
+    section = SourceMapping.of(Document(_PATH, {id: dict(values)}), (id,), dict(values))
     problems: list[Problem] = []
-    definition = define(Entry(id, None, section), section, problems)
+    definition = define(CatalogueEntry(id, None, section), section, problems)
     if definition is None or definition.kind == "assembly":
         return None, tuple(problems)
     return definition, tuple(problems)

@@ -9,10 +9,8 @@ from functools import cached_property
 from math import inf
 
 from calm.errors import InputError
-from calm.files.catalogue import Catalogue
-from calm.files.document import compose
-from calm.files.entries import FAMILY_ROLES, Entry
-from calm.files.section import Section
+from calm.files.catalogue import FAMILY_ROLES, Catalogue, CatalogueEntry
+from calm.files.yaml_document import SourceMapping, compose
 from calm.tui.catalogue.figures import Figures, figures_of, wanted
 from calm.tui.catalogue.synonyms import with_synonyms
 
@@ -60,7 +58,7 @@ class Index:
         except InputError:
             return cls(catalogue)
         if isinstance(document.data.get("components"), dict):
-            definitions = Section.of(document, (), document.data).child("components")
+            definitions = SourceMapping.of(document, (), document.data).child("components")
             catalogue = catalogue.under(definitions, [])
         return cls(catalogue)
 
@@ -136,7 +134,7 @@ def _rank(each: Listed, words: Sequence[str]) -> int:
     return _ELSEWHERE
 
 
-def _listed(entry: Entry, shipped: object) -> Listed:
+def _listed(entry: CatalogueEntry, shipped: object) -> Listed:
     fields = entry.section.data
 
     def text(key: str) -> str:

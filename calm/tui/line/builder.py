@@ -169,7 +169,7 @@ class BuilderScreen(DraftScreen):
 
     def action_begin(self) -> None:
         """Begin an empty line with a mooring."""
-        from calm.starts import STARTS, start
+        from calm.templates import TEMPLATES, template
         from calm.tui.line.questions import beginning
 
         session = self.workspace.session
@@ -179,8 +179,8 @@ class BuilderScreen(DraftScreen):
 
         def take(answer: str | None) -> None:
             if answer is not None:
-                kind = list(STARTS)[int(answer) - 1]
-                self.body.line.attempt(lambda: session.write(start(kind), f"begin with {kind}"))
+                kind = list(TEMPLATES)[int(answer) - 1]
+                self.body.line.attempt(lambda: session.write(template(kind), f"begin with {kind}"))
 
         self.app.push_screen(beginning(), take)
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from calm.case.parts import parts_of
 from calm.files import Flexible, MooringFile, Piece, Place
-from calm.files.document import Location
 from calm.files.editing import Draft, EditError
-from calm.files.fields import POSITIVE_LENGTH, Quantity
+from calm.files.fields import POSITIVE_LENGTH, QuantityField
+from calm.files.yaml_document import Location
 from calm.tui.checking import anything, moment, quantity
 from calm.tui.dialogs import Asked, Sheet
 from calm.tui.line.entries import entered, said
@@ -28,7 +28,7 @@ _WHOLE = (
     Asked(
         "depth",
         "Depth there",
-        check=quantity(Quantity("length", above=0), optional=True),
+        check=quantity(QuantityField("length", above=0), optional=True),
         placeholder="e.g. 1187 m",
     ),
 )

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from calm.files.document import Location
 from calm.files.editing import Draft
+from calm.files.yaml_document import Location
 
 
 def said(draft: Draft, rows: Location, called: tuple[str, str], key: str) -> str:

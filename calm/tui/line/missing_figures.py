@@ -9,7 +9,7 @@ from calm.case.parts import parts_of
 from calm.checks.finding import State
 from calm.files import Place
 from calm.files.editing import Draft, clamps_of
-from calm.files.rules import RULES
+from calm.files.rule_texts import RULES
 from calm.tui.catalogue.component_form import FormField, form_fields
 from calm.tui.live import View
 from calm.tui.session import Location

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from calm.files.document import Location
 from calm.files.editing import Draft, EditError
-from calm.files.fields import LENGTH, Quantity
+from calm.files.fields import LENGTH, QuantityField
+from calm.files.yaml_document import Location
 from calm.tui.checking import anything, day, quantity
 from calm.tui.dialogs import Asked, Sheet
 from calm.tui.line.entries import entered, said
@@ -38,8 +38,8 @@ _PLACES: dict[str, Location] = {
 
 _HISTORY: Location = ("document", "history")
 
-LATITUDE = quantity(Quantity("angle", at_least=-90, at_most=90), optional=True)
-LONGITUDE = quantity(Quantity("angle", at_least=-360, at_most=360), optional=True)
+LATITUDE = quantity(QuantityField("angle", at_least=-90, at_most=90), optional=True)
+LONGITUDE = quantity(QuantityField("angle", at_least=-360, at_most=360), optional=True)
 _NAME_AND_PLACE = (
     Asked("name", "Name", check=anything),
     Asked("description", "Description", check=anything),
@@ -48,10 +48,16 @@ _NAME_AND_PLACE = (
 )
 _TOW = (
     Asked(
-        "speed", "Tow speed", check=quantity(Quantity("speed", above=0)), placeholder="e.g. 4 knot"
+        "speed",
+        "Tow speed",
+        check=quantity(QuantityField("speed", above=0)),
+        placeholder="e.g. 4 knot",
     ),
     Asked(
-        "toward", "Towards", check=quantity(Quantity("angle")), placeholder="e.g. 90 deg for east"
+        "toward",
+        "Towards",
+        check=quantity(QuantityField("angle")),
+        placeholder="e.g. 90 deg for east",
     ),
     Asked("height", "Sheave height", check=quantity(LENGTH, optional=True), placeholder="e.g. 3 m"),
 )

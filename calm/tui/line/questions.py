@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from calm.starts import STARTS
+from calm.templates import TEMPLATES
 from calm.tui.dialogs import Answer, Asked, Question, Sheet
 from calm.tui.session import Session
 
@@ -10,10 +10,10 @@ _MOST_STEPS = 9
 
 
 def beginning() -> Question:
-    """Which mooring an empty line begins with; it answers with its number in `STARTS`, from 1."""
+    """Ask with which of the `TEMPLATES` an empty line begins; the answer is its number, from 1."""
     answers = [
         Answer(str(number), f"{kind}: {meaning}", str(number))
-        for number, (kind, meaning) in enumerate(STARTS.items(), 1)
+        for number, (kind, meaning) in enumerate(TEMPLATES.items(), 1)
     ]
     text = "Each stands as given: change depth, current and pieces to yours."
     return Question("Begin with", text, answers)

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from calm.files.fields import Quantity
+from calm.files.fields import QuantityField
 from calm.records.profile_tables import DIRECTION, SALINITY, TEMPERATURE, WATER_DENSITY
 from calm.tui.checking import Check, Reading, number, quantity
 from calm.units import QuantityError, QuantityRange, unit_factor
 
 _KINDS: dict[str, QuantityRange] = {
-    "depth": Quantity("length"),
-    "speed": Quantity("speed", at_least=0),
-    "u": Quantity("speed"),
-    "v": Quantity("speed"),
-    "w": Quantity("speed"),
+    "depth": QuantityField("length"),
+    "speed": QuantityField("speed", at_least=0),
+    "u": QuantityField("speed"),
+    "v": QuantityField("speed"),
+    "w": QuantityField("speed"),
     "toward": DIRECTION,
     "density": WATER_DENSITY,
     "temperature": TEMPERATURE,

@@ -7,9 +7,9 @@ from typing import Any
 
 from calm.files.definition import DENSITY
 from calm.files.density import USUAL_DENSITY
-from calm.files.document import Location
 from calm.files.editing import Draft, Value
-from calm.files.fields import POSITIVE_LENGTH, Quantity
+from calm.files.fields import POSITIVE_LENGTH, QuantityField
+from calm.files.yaml_document import Location
 from calm.records.profile_tables import SALINITY, TEMPERATURE, speed_and_direction
 from calm.tui.water.columns import named
 from calm.units import QuantityError, QuantityRange
@@ -176,9 +176,9 @@ class Water:
             name, unit = named(column)
             place[name] = f"{text} {unit}".strip()
         speed, u, v = (
-            _read(Quantity("speed"), place.get(name, "")) for name in ("speed", "u", "v")
+            _read(QuantityField("speed"), place.get(name, "")) for name in ("speed", "u", "v")
         )
-        toward = _read(Quantity("angle"), place["toward"])
+        toward = _read(QuantityField("angle"), place["toward"])
         if u is not None and v is not None:
             speed, toward = speed_and_direction(u, v)
         return _CURRENT if speed is None or toward is None else (f"{speed:g}", f"{toward:g}")

@@ -15,7 +15,7 @@ from textual.widget import Widget
 from textual.widgets import Static
 
 from calm.files.editing import Draft, Value
-from calm.files.fields import POSITIVE_LENGTH, Quantity
+from calm.files.fields import POSITIVE_LENGTH, QuantityField
 from calm.records.profile_tables import DIRECTION, SALINITY, TEMPERATURE, WATER_DENSITY
 from calm.tui.checking import needed, quantity
 from calm.tui.field import Field
@@ -40,8 +40,8 @@ if TYPE_CHECKING:
 
 _DEPTH = quantity(POSITIVE_LENGTH, optional=True)
 _DENSITY = quantity(WATER_DENSITY, optional=True)
-_SPEED = quantity(Quantity("speed", at_least=0))
-_WIND = quantity(Quantity("speed", at_least=0), optional=True)
+_SPEED = quantity(QuantityField("speed", at_least=0))
+_WIND = quantity(QuantityField("speed", at_least=0), optional=True)
 _ANGLE = quantity(DIRECTION)
 _TOWARD = quantity(DIRECTION, optional=True)
 _ELSEWHERE = (

@@ -13,7 +13,7 @@ from calm.case import Mooring
 from calm.checks.finding import State
 from calm.checks.posture import reaches_the_surface
 from calm.checks.rules import RULES, STANDING
-from calm.files.checks import Checks, MinimumTensions
+from calm.files.check_limits import Checks, MinimumTensions
 from calm.shipped import shipped_folder
 from tests.unit.batch.made_result import make_result, one_profile
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from calm.errors import InputError
-from calm.records import csv_record as record_csv
-from calm.records.current_csv import MOST_PROBLEMS
+from calm.records import record_csv
 from calm.records.current_file import open_record
+from calm.records.delimited import MOST_PROBLEMS
 from tests.unit.batch.records import COUNT, SEABED, write
 
 HEAD = "time,depth[m],u[m/s],v[m/s]\n"

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from calm.errors import InputError
-from calm.files.entries import UnreadLevel, read_level
+from calm.files.catalogue import UnreadLevel, read_level
 from calm.shipped import shipped_folder
 
 BALL = "# balls\n\nball:\n  kind: sphere\n  diameter: 1 m\n"

@@ -1,7 +1,7 @@
 import os
 from pathlib import Path
 
-from calm.files.unchanged import Unchanged
+from calm.files.catalogue import Unchanged
 
 
 def aged(path: Path, text: str, seconds: float = 100.0) -> Path:

@@ -8,7 +8,7 @@ import pytest
 from calm.case import TowResult
 from calm.case.strumming import StrummingBand
 from calm.files import Place
-from calm.files.strumming import BourgetMarichalKeys
+from calm.files.strumming_keys import BourgetMarichalKeys
 
 NAN = float("nan")
 

@@ -5,7 +5,7 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
-from calm.files.editing.scalars import written
+from calm.files.editing.writing import written
 
 PLAIN = ["5 m", "-5.2 deg", "1/2 in", "12:30", "été", "a#b", "it's", 'a"b', "1e3", "50 %"]
 BROKEN_BY_BRACKETS = ["a, b", "[x]", "x}", "what?", "a[0]"]

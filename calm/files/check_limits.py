@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from datetime import date as calendar_date
+from fnmatch import fnmatchcase
 from functools import cache
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import AfterValidator, Field, WithJsonSchema, model_validator
 from pydantic.fields import FieldInfo
 
-from calm.files.accept import AcceptKeys
-from calm.files.fields import LENGTH, POSITIVE_LENGTH, Model, Quantity, quantity_of
+from calm.errors import Problem
+from calm.files.fields import LENGTH, POSITIVE_LENGTH, Model, QuantityField, Text, quantity_of
+from calm.files.rule_texts import ACCEPTABLE
+from calm.files.yaml_document import SourceMapping
+from calm.suggestions import shown, unknown
 
-_FACTOR = Quantity("number", above=0)
-_SAFETY = Quantity("number", at_least=1)
+_FACTOR = QuantityField("number", above=0)
+_SAFETY = QuantityField("number", at_least=1)
 """At least 1: a smaller factor would pass what breaks, or an anchor that is lifted."""
-_SHARE = Quantity("number", at_least=0, at_most=1)
-_SPEED = Quantity("speed", at_least=0)
-_LEAST_TENSION = Quantity("force", at_least=0)
+_SHARE = QuantityField("number", at_least=0, at_most=1)
+_SPEED = QuantityField("speed", at_least=0)
+_LEAST_TENSION = QuantityField("force", at_least=0)
 
 THIS_PROGRAM = "a default of this program"
 THE_DESIGN = "the design"
@@ -26,7 +31,7 @@ THE_DESIGN = "the design"
 
 @dataclass(frozen=True)
 class Limit:
-    """Annotation of a key of `checks:`: who gives its default.
+    """Annotate a key of `checks:` with who gives its default.
 
     Attributes
     ----------
@@ -128,7 +133,7 @@ class Checks(Model):
     )
     maximum_tilt: Annotated[
         float | None,
-        Quantity("angle", above=0, at_most=90),
+        QuantityField("angle", above=0, at_most=90),
         Limit(THE_DESIGN),
     ] = Field(default=None, description="most that a piece may lean", examples=["30 deg"])
     minimum_top_depth: Annotated[
@@ -149,7 +154,7 @@ class Checks(Model):
 
 @dataclass(frozen=True)
 class LimitKey:
-    """A key of `checks:`, such as ``safety_factor.steel``.
+    """Represent a key of `checks:`, such as ``safety_factor.steel``.
 
     Attributes
     ----------
@@ -168,12 +173,12 @@ class LimitKey:
 
     @property
     def departs(self) -> bool:
-        """Whether the design has another limit than the default."""
+        """Return whether the design has another limit than the default."""
         return self.default is not None and self.value != self.default
 
 
 def limit_keys(checks: Checks) -> Iterator[LimitKey]:
-    """Every limit of `checks:`, those that are not given with their default."""
+    """Return every limit of `checks:`, those that are not given with their default."""
     yield from _limit_keys(checks, "")
 
 
@@ -190,7 +195,7 @@ def _limit_keys(model: Model, prefix: str) -> Iterator[LimitKey]:
 
 @cache
 def _defaults(model: type[Model]) -> tuple[tuple[str, LimitKey | None], ...]:
-    """Of each field the limit that it is unless given; None of one that is no limit."""
+    """Return for each field the limit that it is unless given; None of one that is no limit."""
     return tuple((name, _default(name, field)) for name, field in model.model_fields.items())
 
 
@@ -201,3 +206,164 @@ def _default(name: str, field: FieldInfo) -> LimitKey | None:
         return None
     default = limit.default if field.default is None else field.default
     return LimitKey(name, quantity.dimension, default, default, limit.source)
+
+
+def _day(text: str) -> str:
+    try:
+        if calendar_date.fromisoformat(text).isoformat() == text:
+            return text
+    except ValueError:
+        pass
+    raise ValueError(f"`{shown(text)}` is not a day of the calendar; write it as 2027-06-30")
+
+
+def _said(text: str) -> str:
+    if not text.strip():
+        raise ValueError("`reason` is blank")
+    if not any(sign.isalnum() for sign in text):
+        raise ValueError(f"`reason: {shown(text)}` gives no reason; say it in words")
+    return text.strip()
+
+
+Day = Annotated[
+    Text,
+    AfterValidator(_day),
+    WithJsonSchema({"type": "string", "pattern": r"^\d{4}-\d{2}-\d{2}$"}),
+]
+"""A day such as 2027-06-30; such texts sort by date."""
+
+Reason = Annotated[Text, AfterValidator(_said)]
+
+
+class AcceptKeys(Model):
+    """An item of `checks: accept:`."""
+
+    rule: Annotated[Text, WithJsonSchema({"enum": list(ACCEPTABLE)})] = Field(
+        description="of the design check", examples=["knockdown"]
+    )
+    reason: Reason = Field(
+        description="why the finding is accepted",
+        examples=["the maker gives no load; hung on chain"],
+    )
+    component: Text | None = Field(
+        default=None,
+        description="label of the line, or a pattern of labels; all when absent",
+        examples=["glass *"],
+    )
+    by: Text | None = Field(default=None, description="who accepts it", examples=["A. Martin"])
+    date: Day | None = Field(
+        default=None, description="day, e.g. 2026-11-20", examples=["2026-11-22"]
+    )
+    until: Day | None = Field(
+        default=None, description="last day on which it counts", examples=["2027-12-31"]
+    )
+
+    @model_validator(mode="after")
+    def _ends_after_it_begins(self) -> AcceptKeys:
+        if self.date is not None and self.until is not None and self.until < self.date:
+            raise ValueError(f"the `accept` ends on {self.until}, before its `date`, {self.date}")
+        return self
+
+
+@dataclass(frozen=True)
+class Accept:
+    """Hold what is accepted of a mooring.
+
+    Attributes
+    ----------
+    rule : its id
+    component : as written, a label or a pattern of labels; None for every finding of the rule
+    labels : of the pieces and clamps that it stands for; None as above
+    reason : why
+    by, date : who accepted it, and when; None where it is not said
+    until : the last day on which it counts; None where it does not end
+    line : of the mooring file
+    """
+
+    rule: str
+    component: str | None
+    labels: tuple[str, ...] | None
+    reason: str
+    by: str | None
+    date: str | None
+    until: str | None
+    line: int
+
+    def covers(self, rule: str, component: str | None) -> bool:
+        """Return whether it is of that rule and component."""
+        return self.rule == rule and (self.labels is None or component in self.labels)
+
+    def counts_on(self, day: calendar_date) -> bool:
+        """Return whether it has not ended before that day, and is not dated after it."""
+        begun = self.date is None or self.date <= day.isoformat()
+        return begun and (self.until is None or day.isoformat() <= self.until)
+
+
+def read_accepts(
+    keys: Sequence[AcceptKeys],
+    labels: Sequence[str] | None,
+    top: SourceMapping,
+    problems: list[Problem],
+) -> tuple[Accept, ...]:
+    """Return what a mooring file accepts, the most specific first.
+
+    Parameters
+    ----------
+    labels : of the line; None where the line has mistakes of its own
+    top : the mooring file
+    """
+    found = [
+        accept
+        for number, one in enumerate(keys)
+        if (accept := _accept(one, number, labels, top, problems)) is not None
+    ]
+    return tuple(sorted(found, key=lambda one: _breadth(one, labels or ())))
+
+
+def _accept(
+    keys: AcceptKeys,
+    number: int,
+    labels: Sequence[str] | None,
+    top: SourceMapping,
+    problems: list[Problem],
+) -> Accept | None:
+    def wrong(key: str, message: str) -> None:
+        problems.append(top.problem(("checks", "accept", number, key), message))
+
+    if keys.rule not in ACCEPTABLE:
+        rule = shown(keys.rule)
+        wrong("rule", unknown(f"no rule that can be accepted is called `{rule}`", rule, ACCEPTABLE))
+    covered = None
+    if keys.component is not None and labels is not None:
+        covered = tuple(matching(keys.component, labels))
+        if not covered:
+            wrong("component", _nothing_called(keys.component, labels))
+    line = top.problem(("checks", "accept", number), "").line
+    return Accept(
+        keys.rule, keys.component, covered, keys.reason, keys.by, keys.date, keys.until, line
+    )
+
+
+def matching(component: str, labels: Iterable[str]) -> list[str]:
+    """Return the labels that a label or a pattern of labels stands for.
+
+    A text that is a label is that label alone, whatever signs it has. Otherwise ``*`` stands for
+    any signs, ``?`` for one, ``[ab]`` for a or b; capitals count.
+    """
+    labels = list(labels)
+    if component in labels:
+        return [component]
+    return [label for label in labels if fnmatchcase(label, component)]
+
+
+def _nothing_called(component: str, labels: Sequence[str]) -> str:
+    text = shown(component)
+    message = f"no piece or clamp is called `{text}`"
+    if any(label.startswith(f"{component} ") for label in labels):
+        return f"{message}; did you mean `{text} *`?"
+    return unknown(message, component, labels)
+
+
+def _breadth(accept: Accept, labels: Sequence[str]) -> int:
+    """Return 0 for a label, 1 for a pattern, 2 for every component."""
+    return 2 if accept.component is None else int(accept.component not in labels)

@@ -1,15 +1,16 @@
-"""Lines and waters of published cases, put together without a mooring file."""
+"""Put together lines and waters of published cases without a mooring file, and take their ends."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import cos, inf, pi, sin
+from math import atan2, cos, degrees, hypot, inf, pi, radians, sin
 
 import numpy as np
 
 from calm.physics.line import Floats, Line, Water
 from calm.physics.reference import REFERENCE_DENSITY
+from calm.solve import Settings, Solution, Towing, solve_mooring, solve_tow
 
 GRAVITY = 9.81
 """[m/s²] of every case that does not name another."""
@@ -18,7 +19,7 @@ HALF_DENSITY = REFERENCE_DENSITY / 2.0
 
 
 @dataclass(frozen=True)
-class Piece:
+class LinePiece:
     """One piece of a line; the names and units are those of `calm.physics.line.Line`.
 
     `clamps` holds (distance from the piece's top, buoyancy, volume, drag) of each.
@@ -36,9 +37,9 @@ class Piece:
     clamps: tuple[tuple[float, float, float, float], ...] = ()
 
 
-def point(buoyancy: float, drag: float) -> Piece:
+def point(buoyancy: float, drag: float) -> LinePiece:
     """A piece without length: buoyancy [N], drag at 1 m/s [N/(m/s)²]."""
-    return Piece(0.0, False, buoyancy, drag, drag, directional=False)
+    return LinePiece(0.0, False, buoyancy, drag, drag, directional=False)
 
 
 def sphere_drag(diameter: float, cx: float) -> float:
@@ -48,15 +49,15 @@ def sphere_drag(diameter: float, cx: float) -> float:
 
 def cable(
     length: float, diameter: float, weight: float, cn: float, ct: float, compliance: float = 0.0
-) -> Piece:
+) -> LinePiece:
     """Rope or wire: weight in water [N/m], Cn on its diameter, Ct on its surface π D."""
     normal, tangential = HALF_DENSITY * diameter * cn, HALF_DENSITY * pi * diameter * ct
-    return Piece(
+    return LinePiece(
         length, True, -weight, normal, tangential, compliance=compliance, thinning=0.5
     )  # fmt: skip
 
 
-def line_of(*pieces: Piece, anchor_height: float = 0.0) -> Line:
+def line_of(*pieces: LinePiece, anchor_height: float = 0.0) -> Line:
     """The arrays of a list of pieces, free end first."""
     held = [(owner, *clamp) for owner, piece in enumerate(pieces) for clamp in piece.clamps]
     clamps = np.array(held, dtype=np.float64).reshape(len(held), 5)
@@ -110,3 +111,72 @@ def deep_water(density: float = REFERENCE_DENSITY) -> Water:
     return Water(
         depth=inf, level=zero, u=zero, v=zero, w=zero, density=zero + density, gravity=GRAVITY
     )
+
+
+FINE = Settings(radians(0.1), tolerance=1e-9)
+"""For figures of seven digits: the march errs by some 4e-8 of the length at this angle step."""
+
+
+@dataclass(frozen=True)
+class Ends:
+    """Free end and lower end of a line in an eastward current.
+
+    Attributes
+    ----------
+    x, z : the free end downstream of the lower end and above it [m]
+    horizontal, vertical : the pull at the lower end, downstream and up [N]
+    """
+
+    x: float
+    z: float
+    horizontal: float
+    vertical: float
+
+    @property
+    def tension(self) -> float:
+        """At the lower end [N]."""
+        return hypot(self.horizontal, self.vertical)
+
+    @property
+    def lean(self) -> float:
+        """Angle of the pull at the lower end from the vertical [degrees]."""
+        return degrees(atan2(self.horizontal, self.vertical))
+
+
+def ends_of(solution: Solution) -> Ends:
+    """The ends of a solved line."""
+    x, _, z = (solution.position[0] - solution.position[-1]).tolist()
+    horizontal, _, vertical = solution.force[-1].tolist()
+    return Ends(x, z, horizontal, vertical)
+
+
+def finely(line: Line, water: Water) -> Ends:
+    """The ends of a line, solved at `FINE`."""
+    return ends_of(solve_mooring(line, water, FINE))
+
+
+@dataclass(frozen=True)
+class Wake:
+    """A line towed to the east through still water.
+
+    Attributes
+    ----------
+    aft, depth : of the free end behind and below the tow point [m]
+    tension : at the tow point [N]
+    angle : of the line at the tow point from the horizontal [degrees]
+    frequency : of the cables that strum [Hz]
+    """
+
+    aft: float
+    depth: float
+    tension: float
+    angle: float
+    frequency: float
+
+
+def towed(line: Line, water: Water, speed: float, settings: Settings = FINE) -> Wake:
+    """The wake of a line, listed from the ship, towed at a speed [m/s]; at `FINE` by default."""
+    solution = solve_tow(line, water, Towing(speed, 0.0), settings)
+    x, _, z = solution.position[0].tolist()
+    back, _, down = solution.force[-1].tolist()
+    return Wake(-x, -z, hypot(back, down), degrees(atan2(-down, -back)), solution.frequency)

@@ -8,9 +8,9 @@ from __future__ import annotations
 from importlib.resources import files
 from typing import Literal
 
-Start = Literal["shelf", "deep", "adcp-frame", "taut-surface", "slack-surface", "tow"]
+Template = Literal["shelf", "deep", "adcp-frame", "taut-surface", "slack-surface", "tow"]
 
-STARTS: dict[Start, str] = {
+TEMPLATES: dict[Template, str] = {
     "shelf": "current meter and temperatures along a wire, 300 m",
     "deep": "current meters on wire and rope, glass between, 4000 m",
     "adcp-frame": "ADCP that looks up from near the seabed, 90 m",
@@ -21,6 +21,6 @@ STARTS: dict[Start, str] = {
 """What each is."""
 
 
-def start(kind: Start) -> str:
-    """The text of the file of a kind."""
-    return (files("calm.starts") / f"{kind}.yaml").read_text(encoding="utf-8")
+def template(kind: Template) -> str:
+    """Return the text of the file of a kind."""
+    return (files("calm.templates") / f"{kind}.yaml").read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""A figure to reproduce, how CALM comes to it, and what a check of it finds."""
+"""Define a figure to reproduce, how CALM comes to it, and what a check of it finds."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from enum import StrEnum
 from math import nan
 from typing import Generic, TypeVar
 
-Answer = TypeVar("Answer")
+Solved = TypeVar("Solved")
 
 PRINTED = "Half a unit of the last digit printed, and a tenth."
 """The reason for a tolerance where CALM is exact beside the figure as printed."""
@@ -69,16 +69,16 @@ class Case:
     got: Callable[[], float]
     kind: Kind
 
-    def check(self) -> Outcome:
+    def check(self) -> CaseOutcome:
         """Compute the figure; never raises, but for what stops the whole program."""
         try:
-            return Outcome(self, float(self.got()))
+            return CaseOutcome(self, float(self.got()))
         except Exception as error:
-            return Outcome(self, nan, f"{type(error).__name__}: {error}")
+            return CaseOutcome(self, nan, f"{type(error).__name__}: {error}")
 
 
 @dataclass(frozen=True)
-class Outcome:
+class CaseOutcome:
     """What became of a case: CALM's figure, or NaN and the reason why there is none."""
 
     case: Case
@@ -126,7 +126,7 @@ class Source:
 
 
 @dataclass(frozen=True)
-class Figure(Generic[Answer]):
+class CaseColumn(Generic[Solved]):
     """A column of a published table.
 
     Attributes
@@ -139,11 +139,11 @@ class Figure(Generic[Answer]):
     name: str
     unit: str
     tolerance: float
-    of: Callable[[Answer], float]
+    of: Callable[[Solved], float]
     relative: bool = False
 
     def case(
-        self, row: str, expected: float, why: str, solve: Callable[[], Answer], kind: Kind
+        self, row: str, expected: float, why: str, solve: Callable[[], Solved], kind: Kind
     ) -> Case:
         """The case of one cell of the table."""
         share = abs(expected) if self.relative else 1.0
@@ -154,8 +154,8 @@ class Figure(Generic[Answer]):
 
 
 def table(
-    figures: Sequence[Figure[Answer]],
-    rows: Iterable[tuple[str, Callable[[], Answer], Sequence[float]]],
+    figures: Sequence[CaseColumn[Solved]],
+    rows: Iterable[tuple[str, Callable[[], Solved], Sequence[float]]],
     why: str,
     kind: Kind,
 ) -> tuple[Case, ...]:

@@ -13,7 +13,7 @@ from typing import Any
 
 from calm.errors import InputError, Problem
 from calm.files import composition
-from calm.files.nodes import Node
+from calm.files.composition import Node
 from calm.whole_file import read_text
 
 Place = tuple[int, int]
@@ -22,7 +22,7 @@ Location = tuple[str | int, ...]
 
 @dataclass(frozen=True)
 class Document:
-    """A YAML file as plain data, with places counted from 1.
+    """Hold a YAML file as plain data, with places counted from 1.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class Document:
     def problem(
         self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""
     ) -> Problem:
-        """A problem at a value (or at its key), or at the nearest thing around it that exists."""
+        """Put a problem at a value (or its key), or at the nearest thing around it that exists."""
         location = tuple(location)
         places = self.keys if key else self.values
         while location and location not in places:
@@ -63,7 +63,7 @@ def read_document(path: Path) -> Document:
 
 
 def compose(name: str, text: str) -> Document:
-    """The document of a text, as that of a file or in place of one.
+    """Return the document of a text, as that of a file or in place of one.
 
     Parameters
     ----------
@@ -100,3 +100,53 @@ def _note_places(document: Document, node: Node, location: Location) -> None:
         _note_places(document, child, below)
         if child.data is None:
             document.values[below] = key.line, key.column
+
+
+@dataclass(frozen=True)
+class SourceMapping:
+    """Represent a mapping within a document, possibly laid over a mapping of another one.
+
+    Attributes
+    ----------
+    document, location
+        Where the mapping (the upper one) stands; problems without a key are put there.
+    data : dict
+        The mapping, its own keys over those it overlays.
+    base : Section or None
+        What lies below.
+    """
+
+    document: Document
+    location: Location
+    data: dict[str, Any]
+    base: SourceMapping | None = None
+    own: frozenset[str] = field(default_factory=frozenset)
+
+    @classmethod
+    def of(cls, document: Document, location: Location, data: dict[str, Any]) -> SourceMapping:
+        """Return the mapping `data` that stands at `location` of a document."""
+        return cls(document, location, data, None, frozenset(data))
+
+    def over(self, base: SourceMapping, *, dropping: frozenset[str] = frozenset()) -> SourceMapping:
+        """Lay this mapping over another one, of which some keys are dropped."""
+        kept = {key: value for key, value in base.data.items() if key not in dropping}
+        return SourceMapping(self.document, self.location, {**kept, **self.data}, base, self.own)
+
+    def child(self, key: str) -> SourceMapping:
+        """Return the mapping under a key."""
+        home = self.home(key)
+        return SourceMapping.of(home.document, (*home.location, key), self.data[key])
+
+    def home(self, key: str | int) -> SourceMapping:
+        """Return the layer that a key comes from."""
+        if self.base is None or key in self.own or key not in self.data:
+            return self
+        return self.base.home(key)
+
+    def problem(
+        self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""
+    ) -> Problem:
+        """Return a problem at a value below this mapping, or at its key."""
+        home = self.home(location[0]) if location else self
+        place = (*home.location, *location)
+        return home.document.problem(place, message, key=key, lacks=lacks)

@@ -7,27 +7,24 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from calm.errors import Problem
-from calm.files.catalogue import Assembly, Catalogue, define
-from calm.files.checks import LimitKey
-from calm.files.components import Cable, Component
+from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, define
+from calm.files.check_limits import LimitKey
+from calm.files.components import Cable, Component, contradicted
 from calm.files.definition import IN_AIR
-from calm.files.entries import Entry
-from calm.files.explain import validate
-from calm.files.fields import LENGTH, POSITIVE_LENGTH, Quantity
+from calm.files.fields import LENGTH, POSITIVE_LENGTH, QuantityField
 from calm.files.flexible import Flexible, strain_under
-from calm.files.labels import placed
 from calm.files.logbook import EQUIPMENT_KEYS, LengthAt, check_serials, read_equipment
-from calm.files.mooring import Clamp, Piece, Place
-from calm.files.overrides import contradicted
+from calm.files.mistakes import validate
+from calm.files.mooring_file import Clamp, Piece, Place, placed
 from calm.files.rigid import Rigid
-from calm.files.section import Section
+from calm.files.yaml_document import SourceMapping
 from calm.suggestions import about_quantity, shown, unknown
 from calm.units import QuantityError
 
 MOST_PIECES = 10_000
 """Pieces a line may have, after assemblies and counts are expanded."""
 
-_COUNT = Quantity("number", at_least=1, at_most=MOST_PIECES)
+_COUNT = QuantityField("number", at_least=1, at_most=MOST_PIECES)
 _ITEM_KEYS = EQUIPMENT_KEYS | {
     *("use", "label", "count", "length", "length_at", "top_depth", "body_depth", "clamps")
 }
@@ -45,7 +42,7 @@ _LIMITS = {
 
 
 class LineReader:
-    """Expands line items; mistakes are added to `problems`, what is worth knowing to `notices`.
+    """Expand line items; mistakes go to `problems`, what is worth knowing to `notices`.
 
     `towed` and `in_air` show which keys and figures the line may have.
     """
@@ -78,8 +75,8 @@ class LineReader:
                 if isinstance(definition, Assembly):
                     self._assembly(entry, entry.section)
 
-    def read(self, section: Section, key: str) -> tuple[Piece, ...]:
-        """The pieces of the list of items under a key; those with mistakes are left out."""
+    def read(self, section: SourceMapping, key: str) -> tuple[Piece, ...]:
+        """Read the items of the list under a key; those with mistakes are left out."""
         pieces: list[Piece] = []
         items = self._items(section, key)
         for number, item in enumerate(items, 1):
@@ -89,8 +86,8 @@ class LineReader:
                 return ()
         return tuple(pieces)
 
-    def _items(self, section: Section, key: str) -> list[Section]:
-        """The items of a list, each a mapping."""
+    def _items(self, section: SourceMapping, key: str) -> list[SourceMapping]:
+        """Return the items of a list, each a mapping."""
         found = section.data[key]
         if not isinstance(found, (list, tuple)):
             self._refuse(section, (key,), f"`{key}` must be a list of items")
@@ -98,13 +95,13 @@ class LineReader:
         items = []
         for i, item in enumerate(found[: MOST_PIECES + 1]):
             if isinstance(item, dict):
-                items.append(Section.of(section.document, (*section.location, key, i), item))
+                items.append(SourceMapping.of(section.document, (*section.location, key, i), item))
             else:
                 message = f"`{shown(item)}` is not an item; write `{{use: {shown(item) or '…'}}}`"
                 self._refuse(section, (key, i), message)
         return items
 
-    def _item(self, item: Section) -> tuple[Piece, ...]:
+    def _item(self, item: SourceMapping) -> tuple[Piece, ...]:
         count = self._count(item)
         check_serials(item, count, self._problems)
         entry = self._entry(item)
@@ -129,7 +126,7 @@ class LineReader:
             for part, piece in enumerate(once, first)
         )
 
-    def _piece(self, component: Component, item: Section) -> Piece:
+    def _piece(self, component: Component, item: SourceMapping) -> Piece:
         length: float | None
         load = 0.0
         if not isinstance(component, Flexible):
@@ -168,8 +165,8 @@ class LineReader:
             measured_load=load,
         )
 
-    def _measured(self, item: Section, component: Flexible) -> tuple[float, float]:
-        """The unstretched length of what is measured under a load [m], and that load [N]."""
+    def _measured(self, item: SourceMapping, component: Flexible) -> tuple[float, float]:
+        """Return the unstretched length of what is measured under a load [m], and that load [N]."""
         if not isinstance(item.data["length_at"], dict):
             example = "{load: 2 kN, length: 480 m}"
             self._refuse(item, ("length_at",), f"`length_at` must be as `{example}`")
@@ -183,8 +180,8 @@ class LineReader:
             self._refuse(item, ("length_at", "load"), message)
         return measured.length / (1.0 + strain_under(component, measured.load)), measured.load
 
-    def _fit_depth(self, item: Section, *, fits: bool) -> float | None:
-        """The depth a piece is cut to fit: of the line's top, in a tow of its own lower end."""
+    def _fit_depth(self, item: SourceMapping, *, fits: bool) -> float | None:
+        """Return the depth to cut a piece to: of the line's top, in a tow of its own lower end."""
         key, foreign, home = ("top_depth", "body_depth", "tows")
         if self._towed:
             key, foreign, home = ("body_depth", "top_depth", "moorings")
@@ -193,7 +190,7 @@ class LineReader:
             self._refuse(item, (foreign,), message, key=True)
         if fits and (key in item.data or foreign not in item.data):
             # depths are counted from the water, above which a tow in air may end
-            kind = Quantity("length") if self._in_air else LENGTH
+            kind = QuantityField("length") if self._in_air else LENGTH
             return self._quantity(item, key, kind, "`length: fit` needs it")
         if key in item.data:
             self._refuse(item, (key,), f"`{key}` goes with `length: fit`", key=True)
@@ -206,8 +203,8 @@ class LineReader:
             if notice not in self._notices:
                 self._notices.append(notice)
 
-    def _clamps(self, item: Section, length: float | None) -> tuple[Clamp, ...]:
-        """The clamps of an item, none beyond its length where that is known."""
+    def _clamps(self, item: SourceMapping, length: float | None) -> tuple[Clamp, ...]:
+        """Return the clamps of an item, none beyond its length where that is known."""
         clamps: list[Clamp] = []
         for clamp in self._items(item, "clamps") if "clamps" in item.data else ():
             entry = self._entry(clamp)
@@ -227,8 +224,8 @@ class LineReader:
                 self._refuse(clamp, ("use",), message)
         return tuple(clamps)
 
-    def _assembly(self, entry: Entry, item: Section) -> tuple[Piece, ...]:
-        """The pieces of an assembly, all at the place of the item that uses it."""
+    def _assembly(self, entry: CatalogueEntry, item: SourceMapping) -> tuple[Piece, ...]:
+        """Return the pieces of an assembly, all at the place of the item that uses it."""
         if entry.id in self._open:
             self._refuse(item, ("use",), f"assembly `{entry.id}` contains itself")
             return ()
@@ -243,8 +240,8 @@ class LineReader:
             for piece in self._assemblies[entry.id]
         )
 
-    def _entry(self, item: Section) -> Entry | None:
-        """The catalogue entry that an item uses."""
+    def _entry(self, item: SourceMapping) -> CatalogueEntry | None:
+        """Return the catalogue entry that an item uses."""
         use = item.data.get("use")
         if not isinstance(use, str):
             message = "`use` must be the id of a component" if "use" in item.data else None
@@ -265,9 +262,9 @@ class LineReader:
         return entry
 
     def _definition(
-        self, entry: Entry, item: Section, item_keys: frozenset[str]
+        self, entry: CatalogueEntry, item: SourceMapping, item_keys: frozenset[str]
     ) -> Component | Assembly | None:
-        """What an item uses, the item's overrides applied."""
+        """Return what an item uses, the item's overrides applied."""
         if entry.id not in self._defined:
             self._defined[entry.id] = self._define(entry, entry.section)
         definition = self._defined[entry.id]
@@ -287,7 +284,7 @@ class LineReader:
             self._refuse(item, ("kind",), message, key=True)
             return None
         void = contradicted(definition.kind, entry.section.data.keys(), overriding.keys())
-        override = Section.of(item.document, item.location, overriding)
+        override = SourceMapping.of(item.document, item.location, overriding)
         section = override.over(entry.section, dropping=void)
         hinted = item_keys if isinstance(definition, Cable) else item_keys - {"termination"}
         component = self._define(entry, section, also_allowed=hinted)
@@ -303,7 +300,11 @@ class LineReader:
         return component
 
     def _keep_looser_limits(
-        self, entry: Entry, item: Section, definition: Component, component: Component
+        self,
+        entry: CatalogueEntry,
+        item: SourceMapping,
+        definition: Component,
+        component: Component,
     ) -> None:
         """Keep what the line lets a component bear beyond its own definition."""
         for key, dimension in _LIMITS.items():
@@ -313,12 +314,12 @@ class LineReader:
                 self.looser.append(LimitKey(name, dimension, after, before, source))
 
     def _define(
-        self, entry: Entry, section: Section, *, also_allowed: Iterable[str] = ()
+        self, entry: CatalogueEntry, section: SourceMapping, *, also_allowed: Iterable[str] = ()
     ) -> Component | Assembly | None:
         context = IN_AIR if self._in_air else None
         return define(entry, section, self._problems, also_allowed=also_allowed, context=context)
 
-    def _count(self, item: Section) -> int:
+    def _count(self, item: SourceMapping) -> int:
         text = item.data.get("count", "1")
         try:
             count = _COUNT.read(text)
@@ -329,7 +330,9 @@ class LineReader:
             return 1
         return int(count)
 
-    def _quantity(self, item: Section, key: str, kind: Quantity, need: str) -> float | None:
+    def _quantity(
+        self, item: SourceMapping, key: str, kind: QuantityField, need: str
+    ) -> float | None:
         if item.data.get(key) is None:
             there = key in item.data
             message = f"`{key}` has no value" if there else f"`{key}` is missing: {need}"
@@ -343,7 +346,7 @@ class LineReader:
             self._refuse(item, (key,), about_quantity(key, item.data[key], error))
             return None
 
-    def _label(self, item: Section) -> str:
+    def _label(self, item: SourceMapping) -> str:
         label = item.data.get("label", item.data["use"])
         if not isinstance(label, str):
             self._refuse(item, ("label",), "`label` must be plain text")
@@ -351,7 +354,7 @@ class LineReader:
 
     def _refuse(
         self,
-        section: Section,
+        section: SourceMapping,
         location: tuple[str | int, ...],
         message: str,
         *,

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class RuleText:
-    """A rule in words.
+    """Hold a rule in words.
 
     Attributes
     ----------

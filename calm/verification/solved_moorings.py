@@ -1,21 +1,110 @@
-"""C16: CDMS-1, a mooring of Berteaux's CDMS manual that two other programs have solved."""
+"""Compare two moorings that others have solved: S1000, and CDMS-1 of Berteaux's manual (C16).
+
+S1000 is 1000 m of stretchy cable in a sheared current; two other programs have solved CDMS-1.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cache, partial
-from math import atan2, degrees, pi
+from math import atan2, degrees, log2, pi, radians
 
 import numpy as np
 
 from calm.physics.line import Floats, Integers, Line, Water
-from calm.solve import solve_mooring
-from calm.verification.case import Case, Figure, Kind, Source, table
-from calm.verification.pieces import GRAVITY, HALF_DENSITY, Piece, cable, line_of, sphere_drag
+from calm.solve import Settings, Solution, solve_mooring
+from calm.verification.case_lines import (
+    GRAVITY,
+    HALF_DENSITY,
+    LinePiece,
+    cable,
+    line_of,
+    point,
+    profile,
+    sphere_drag,
+)
+from calm.verification.published_case import Case, CaseColumn, Kind, Source, table
+
+S1000_SEA = profile(1100.0, [(0.0, 1.0), (200.0, 0.6), (500.0, 0.2), (1100.0, 0.05)])
+
+DEPTH, OFFSET, TENSION, KNOCKDOWN = 131.4256, 237.3218, 2068.154, 32.1756
+"""Of the float [m], of the float [m], at the anchor [N], of the float [m]."""
+
+_FINEST = 0.02
+
+
+def s1000_mooring(parts: int = 1) -> Line:
+    """The line, its cable in equal parts."""
+    part = cable(1000.0 / parts, 0.01, 2.0, 1.3, 0.01, 1.0 / 4e6)
+    return line_of(point(4000.0, HALF_DENSITY * 0.6), *[part] * parts)
+
+
+@cache
+def solved_s1000(degrees: float) -> Solution:
+    """The mooring at an angle step [degrees]."""
+    return solve_mooring(s1000_mooring(), S1000_SEA, Settings(radians(degrees), tolerance=1e-9))
+
+
+@cache
+def _still() -> Solution:
+    return solve_mooring(s1000_mooring(), S1000_SEA.still(), Settings(tolerance=1e-9))
+
+
+def float_depth(solution: Solution) -> float:
+    """Of the float [m]."""
+    return -float(solution.position[0, 2])
+
+
+def _figures(place: float, tension: float) -> tuple[CaseColumn[Solution], ...]:
+    return (
+        CaseColumn("depth of the float", "m", place, float_depth),
+        CaseColumn("offset of the float", "m", place, lambda s: float(s.position[0, 0])),
+        CaseColumn("tension at the anchor", "N", tension, lambda s: float(s.tension[-1])),
+        CaseColumn("knockdown", "m", place, lambda s: float_depth(s) - float_depth(_still())),
+    )
+
+
+def _order(coarse: float, fine: float) -> float:
+    """Order at which the depth of the float comes to the known one."""
+    errors = [abs(float_depth(solved_s1000(degrees)) - DEPTH) for degrees in (coarse, fine)]
+    return log2(errors[0] / errors[1]) / log2(coarse / fine)
+
+
+_EXPECTED = DEPTH, OFFSET, TENSION, KNOCKDOWN
+
+S1000 = Source(
+    "S1000",
+    """The reference case of accuracy and speed, `lines/s1000.yaml`: a float of 4000 N and 0.6 m² of
+drag area on 1000 m of cable, 10 mm, 2 N/m, Cn 1.3, Ct 0.01, EA 4 MN, in 1100 m of water that flows
+at 1.0, 0.6, 0.2 and 0.05 m/s at 0, 200, 500 and 1100 m. Its figures come from an initial-value
+integration of the differential equations with bracketing; the tests hold a second independent
+integration against them.""",
+    (
+        *table(
+            _figures(5e-5 * 1100.0, 2e-4 * TENSION),
+            [("S1000 at 1°", lambda: solved_s1000(1.0), _EXPECTED)],
+            "What CALM promises at its default angle step: 5e-5 of the water depth, 2e-4 of the "
+            "tension.",
+            Kind.INDEPENDENT,
+        ),
+        *table(
+            _figures(1e-4, 1e-3),
+            [("S1000 at 0.02°", lambda: solved_s1000(_FINEST), _EXPECTED)],
+            "One unit of the last digit printed: half for its rounding, half for the march.",
+            Kind.INDEPENDENT,
+        ),
+        Case("S1000 order of convergence, 2° to 0.5°", 2.0, "", 0.25,
+             "Second order, stirred by cuts at the levels of the profile, which shift the "
+             "segments.",
+             lambda: _order(2.0, 0.5), Kind.PROPERTY),
+    ),
+    picture="verification-s1000",
+)  # fmt: skip
+
 
 _SEABED = 525.0
 _STILL = np.zeros(3)
-SEA = Water(
+CDMS_1_SEA = Water(
     depth=_SEABED, level=np.array([0.0, 200.0, _SEABED]), u=np.array([1.5, 0.6, 0.1]), v=_STILL,
     w=_STILL, density=np.array([1024.0, 1025.0, 1026.0]), gravity=GRAVITY,
 )  # fmt: skip
@@ -23,7 +112,7 @@ _FIRST_KEVLAR, _THIRD_METER, _FIRST_GLASS = 3, 6, 8
 
 
 @dataclass(frozen=True)
-class Answer:
+class SolvedCdms1:
     """The mooring as CALM finds it; forces in kilograms-force of the case's gravity.
 
     Attributes
@@ -56,19 +145,19 @@ class Answer:
         return degrees(atan2(self.horizontal, self.vertical))
 
 
-def _sphere(diameter: float, lift: float, cx: float) -> Piece:
+def _sphere(diameter: float, lift: float, cx: float) -> LinePiece:
     drag = sphere_drag(diameter, cx)
-    return Piece(diameter, False, lift * GRAVITY, drag, directional=False)
+    return LinePiece(diameter, False, lift * GRAVITY, drag, directional=False)
 
 
-def _rope(length: float, diameter: float, weight: float, modulus: float, ct: float) -> Piece:
+def _rope(length: float, diameter: float, weight: float, modulus: float, ct: float) -> LinePiece:
     compliance = 1.0 / (modulus * pi / 4.0 * diameter**2) if modulus else 0.0
     return cable(length, diameter, weight * GRAVITY, 1.3, ct, compliance)
 
 
-def mooring(ct: float = 0.0) -> Line:
+def cdms_1_mooring(ct: float = 0.0) -> Line:
     """The line, its cables with a Ct on their surface."""
-    meter = Piece(2.0, False, -20.0 * GRAVITY, HALF_DENSITY * 1.2 * 0.2 * 2.0)
+    meter = LinePiece(2.0, False, -20.0 * GRAVITY, HALF_DENSITY * 1.2 * 0.2 * 2.0)
     kevlar = [_rope(length, 0.007, 0.009, 6.9e10, ct) for length in (98.0, 98.0, 212.9)]
     return line_of(
         _sphere(1.2, 682.0, 0.5),
@@ -82,15 +171,15 @@ def mooring(ct: float = 0.0) -> Line:
 
 
 @cache
-def solved() -> Answer:
+def solved_cdms_1() -> SolvedCdms1:
     """CALM's answer at its default settings."""
-    solution = solve_mooring(mooring(), SEA)
+    solution = solve_mooring(cdms_1_mooring(), CDMS_1_SEA)
     offset, height = solution.position[:, 0], _SEABED + solution.position[:, 2]
     first, last = solution.piece_nodes.T
     place = np.column_stack([offset, height])
     segment = np.linalg.norm(np.diff(solution.position, axis=0), axis=1)
     horizontal, _, vertical = (solution.force[-1] / GRAVITY).tolist()
-    return Answer(
+    return SolvedCdms1(
         offset=offset,
         height=height,
         tension=solution.tension / GRAVITY,
@@ -102,18 +191,18 @@ def solved() -> Answer:
     )
 
 
-_HEIGHT = Figure[Answer]("height of the sphere", "m", 1.0, lambda a: float(a.centre[0, 1]))
-_OFFSET = Figure[Answer]("offset of the sphere", "m", 0.2, lambda a: float(a.centre[0, 0]))
+_HEIGHT = CaseColumn[SolvedCdms1]("height of the sphere", "m", 1.0, lambda a: float(a.centre[0, 1]))
+_OFFSET = CaseColumn[SolvedCdms1]("offset of the sphere", "m", 0.2, lambda a: float(a.centre[0, 0]))
 _PLACES = ("below the sphere", "below the third meter", "at the anchor")
 
 
-def _tension(number: int, answer: Answer) -> float:
+def _tension(number: int, answer: SolvedCdms1) -> float:
     return float(answer.tension[answer.nodes_of_tensions[number]])
 
 
-def _tensions(share: float) -> list[Figure[Answer]]:
+def _tensions(share: float) -> list[CaseColumn[SolvedCdms1]]:
     return [
-        Figure(f"tension {place}", "kgf", share, partial(_tension, number), True)
+        CaseColumn(f"tension {place}", "kgf", share, partial(_tension, number), True)
         for number, place in enumerate(_PLACES)
     ]
 
@@ -132,7 +221,7 @@ _PROGRAM = (
 )
 _RANGE = "The programs' range, with half a unit of their last digit."
 
-SOURCE = Source(
+CDMS_1 = Source(
     "CDMS-1",
     """An intermediate mooring of the user manual of Berteaux's CDMS package (C16), with the answers
 of Berteaux's SSMOOR and of R. Dewey's *Mooring Design & Dynamics* (MD&D), both printed in the MD&D
@@ -156,19 +245,19 @@ drag and no tangential drag here; it agrees with the independent solution to 0.1
             for name in ("SSMOOR", "MD&D")
             for case in table(
                 [_HEIGHT, *_tensions(0.02)],
-                [(f"C16 {name}", solved, (PROGRAMS[name][0], *PROGRAMS[name][2:]))],
+                [(f"C16 {name}", solved_cdms_1, (PROGRAMS[name][0], *PROGRAMS[name][2:]))],
                 _PROGRAM,
                 Kind.PUBLISHED,
             )
         ),
         Case("C16 both programs: offset of the sphere", 74.0, "m", 3.0,
              "71.0 m to 77.0 m: from SSMOOR's 71.0 past MD&D's 75.5 to the independent 76.8.",
-             lambda: _OFFSET.of(solved()), Kind.PUBLISHED),
+             lambda: _OFFSET.of(solved_cdms_1()), Kind.PUBLISHED),
         Case("C16 both programs: angle at the anchor", 9.3, "°", 0.25, f"9.1° to 9.5°. {_RANGE}",
-             lambda: solved().lean, Kind.PUBLISHED),
+             lambda: solved_cdms_1().lean, Kind.PUBLISHED),
         *table(
             [replace(_HEIGHT, tolerance=0.1), _OFFSET, *_tensions(0.002)],
-            [("C16 independent solution", solved, PROGRAMS["independent"])],
+            [("C16 independent solution", solved_cdms_1, PROGRAMS["independent"])],
             "Heights 0.1 m, offset 0.2 m, tensions 0.2 %: the figures printed for the mooring fix "
             "it no better.",
             Kind.INDEPENDENT,
@@ -178,16 +267,16 @@ drag and no tangential drag here; it agrees with the independent solution to 0.1
                  "0.2 %: the figures printed for the mooring fix it no better.", got,
                  Kind.INDEPENDENT)
             for name, kgf, got in (
-                ("anchor, horizontal", 131.6, lambda: solved().horizontal),
-                ("anchor, vertical", 804.4, lambda: solved().vertical),
+                ("anchor, horizontal", 131.6, lambda: solved_cdms_1().horizontal),
+                ("anchor, vertical", 804.4, lambda: solved_cdms_1().vertical),
             )
         ),
         Case("C16 printed: height of the first glass ball", 12.03, "m", 0.01,
              "The centimetre it is printed to; the line below it hardly leans.",
-             lambda: float(solved().centre[_FIRST_GLASS, 1]), Kind.PUBLISHED),
+             lambda: float(solved_cdms_1().centre[_FIRST_GLASS, 1]), Kind.PUBLISHED),
         Case("C16 printed: 98 m of Kevlar under load", 98.24, "m", 0.011,
              "The centimetre it is printed to, and 2 % of the stretch for its tension.",
-             lambda: float(solved().stretched[_FIRST_KEVLAR]), Kind.PUBLISHED),
+             lambda: float(solved_cdms_1().stretched[_FIRST_KEVLAR]), Kind.PUBLISHED),
     ),
     picture="verification-cdms-1",
 )  # fmt: skip

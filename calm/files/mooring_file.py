@@ -3,29 +3,29 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Annotated, Any, Literal, Protocol
 
 from pydantic import AfterValidator, Field
 
-from calm.files.accept import Accept
-from calm.files.checks import Checks, LimitKey
+from calm.files.check_limits import Accept, Checks, LimitKey
 from calm.files.components import Anchor, Component
 from calm.files.environment import Environment, Position
-from calm.files.fields import LENGTH, Model, Quantity
+from calm.files.fields import LENGTH, Model, QuantityField
 from calm.files.logbook import NO_EQUIPMENT, Deployed, DocumentKeys, Equipment, ReleaseKeys
-from calm.files.strumming import Strumming
+from calm.files.strumming_keys import Strumming
 from calm.files.uncertainty import Uncertainty
 
 
 class TowKeys(Model):
     """What tows the line: speed over ground [m/s], where to [degrees], height above water [m]."""
 
-    speed: Annotated[float, Quantity("speed", above=0)] = Field(
+    speed: Annotated[float, QuantityField("speed", above=0)] = Field(
         description="of the ship over the ground", examples=["0.5 m/s"]
     )
-    toward: Annotated[float, Quantity("angle")] = Field(
+    toward: Annotated[float, QuantityField("angle")] = Field(
         description="course, clockwise from north", examples=["90 deg"]
     )
     height: Annotated[float, LENGTH] = Field(
@@ -37,13 +37,13 @@ class Solver(Model):
     """How the line is solved; `angle_step` in radians, `tolerance` as a share of the depth."""
 
     angle_step: Annotated[
-        float, Quantity("angle", above=0, at_most=10), AfterValidator(math.radians)
+        float, QuantityField("angle", above=0, at_most=10), AfterValidator(math.radians)
     ] = Field(
         default=math.radians(1),
         description="how much a cable may turn from one segment to the next, e.g. 1 deg",
         examples=["1 deg"],
     )
-    tolerance: Annotated[float, Quantity("number", above=0, at_most=2e-4)] = Field(
+    tolerance: Annotated[float, QuantityField("number", above=0, at_most=2e-4)] = Field(
         default=1e-7,
         description="of the depth of the anchor, as a share of the water depth",
         examples=[1e-07],
@@ -66,7 +66,7 @@ class Solver(Model):
         description="of a float at the surface: at its draft, or fully immersed",
         examples=["immersed"],
     )
-    seabed_friction: Annotated[float, Quantity("number", at_least=0)] = Field(
+    seabed_friction: Annotated[float, QuantityField("number", at_least=0)] = Field(
         default=0.0, description="of line that lies on the seabed", examples=[0.3]
     )
 
@@ -93,30 +93,30 @@ class Place:
 
     @property
     def is_clamp(self) -> bool:
-        """Whether it is that of a clamp."""
+        """Return whether it is that of a clamp."""
         return self.clamp >= 0
 
     @property
     def row(self) -> Place:
-        """The row of the file that gives it: of what stands in an assembly, its item."""
+        """Return the row of the file that gives it: of what stands in an assembly, its item."""
         return Place(self.item) if self.part >= 0 else Place(self.item, clamp=self.clamp)
 
 
-class Part(Protocol):
-    """A piece or a clamp, or what was found for one."""
+class LinePart(Protocol):
+    """Represent a piece or a clamp, or what was found for one."""
 
     @property
     def place(self) -> Place:
-        """Which it is."""
+        """Return which one it is."""
 
     @property
     def label(self) -> str:
-        """What people call it."""
+        """Return what people call it."""
 
 
 @dataclass(frozen=True)
 class Clamp:
-    """An instrument fixed to a piece, `at` metres (unstretched) from the piece's top."""
+    """Represent an instrument fixed to a piece, `at` metres (unstretched) from the piece's top."""
 
     use: str
     label: str
@@ -127,13 +127,13 @@ class Clamp:
 
     @property
     def serial(self) -> str | None:
-        """Serial number of this instrument, where the file gives it."""
+        """Return the serial number of this instrument, where the file gives it."""
         return _serial(self.equipment)
 
 
 @dataclass(frozen=True)
 class Piece:
-    """One piece of the expanded line.
+    """Represent one piece of the expanded line.
 
     Attributes
     ----------
@@ -175,7 +175,7 @@ class Piece:
 
     @property
     def serial(self) -> str | None:
-        """Serial number of this piece, where the file gives it."""
+        """Return the serial number of this piece, where the file gives it."""
         return _serial(self.equipment)
 
 
@@ -186,7 +186,7 @@ def _serial(equipment: Equipment) -> str | None:
 
 @dataclass(frozen=True)
 class MooringFile:
-    """A mooring file with everything in it resolved.
+    """Hold a mooring file with everything in it resolved.
 
     `pieces` lead from the top of a mooring to its anchor; in a tow, where `tow` is not None, from
     the ship to the towed body. `notices` say what a person may want to know: a catalogue entry
@@ -217,13 +217,54 @@ class MooringFile:
 
     @property
     def release(self) -> int | None:
-        """Index of the lowest release in line, None without one: what is above it comes up."""
+        """Return the index of the lowest release in line, or None: what is above it comes up."""
         releases = [piece.index for piece in self.pieces if piece.component.role == "release"]
         return releases[-1] if releases else None
 
     @property
     def anchor(self) -> Anchor:
-        """The last piece of a mooring's line."""
+        """Return the last piece of a mooring's line."""
         anchor = self.pieces[-1].component
         assert isinstance(anchor, Anchor)
         return anchor
+
+
+def placed(piece: Piece, place: Place) -> Piece:
+    """Put a piece, with its clamps and the serial numbers there, at a place of the line."""
+    clamps = tuple(
+        replace(
+            clamp,
+            place=replace(place, clamp=number),
+            equipment=clamp.equipment.of(place.repeat),
+        )
+        for number, clamp in enumerate(piece.clamps)
+    )
+    return replace(piece, place=place, clamps=clamps, equipment=piece.equipment.of(place.repeat))
+
+
+def numbered(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
+    """Give the pieces their index, and number labels that occur more than once down the line."""
+    pieces = tuple(pieces)
+    labels = [[piece.label, *(clamp.label for clamp in piece.clamps)] for piece in pieces]
+    total = Counter(label for group in labels for label in group)
+    seen: Counter[str] = Counter()
+
+    def numbered_label(text: str) -> str:
+        if total[text] == 1:
+            return text
+        seen[text] += 1
+        while f"{text} {seen[text]}" in total:
+            seen[text] += 1
+        return f"{text} {seen[text]}"
+
+    return tuple(
+        replace(
+            piece,
+            index=index,
+            label=numbered_label(piece.label),
+            clamps=tuple(
+                replace(clamp, label=numbered_label(clamp.label)) for clamp in piece.clamps
+            ),
+        )
+        for index, piece in enumerate(pieces)
+    )

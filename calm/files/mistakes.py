@@ -8,8 +8,7 @@ from typing import Any, Literal, TypeVar, get_args, get_origin
 from pydantic import BaseModel, ValidationError
 
 from calm.errors import Problem
-from calm.files.document import Location
-from calm.files.section import Section
+from calm.files.yaml_document import Location, SourceMapping
 from calm.suggestions import about_quantity, nearest, not_among, shown, unknown
 from calm.units import QuantityError
 
@@ -18,13 +17,13 @@ M = TypeVar("M", bound=BaseModel)
 
 def validate(
     model: type[M],
-    section: Section,
+    section: SourceMapping,
     problems: list[Problem],
     *,
     also_allowed: Iterable[str] = (),
     context: Mapping[str, object] | None = None,
 ) -> M | None:
-    """The model of a mapping; its mistakes are added to `problems`, and None returned.
+    """Return the model of a mapping; its mistakes are added to `problems`, and None returned.
 
     `also_allowed` are keys that stand in the same mapping and belong to something else, `context`
     what the validators of the model may need to know.
@@ -37,7 +36,10 @@ def validate(
 
 
 def _explain(
-    error: ValidationError, model: type[BaseModel], section: Section, also_allowed: Iterable[str]
+    error: ValidationError,
+    model: type[BaseModel],
+    section: SourceMapping,
+    also_allowed: Iterable[str],
 ) -> list[Problem]:
     found: list[Problem] = []
     missing: list[tuple[Location, str]] = []
@@ -74,7 +76,7 @@ def _explain(
 
 
 def _existing(data: Any, loc: tuple[int | str, ...]) -> tuple[Location, Any]:
-    """The part of a pydantic location that exists in the data (tags of unions do not)."""
+    """Return the part of a pydantic location that exists in the data (tags of unions do not)."""
     location: list[str | int] = []
     for part in loc:
         if isinstance(data, dict):
@@ -127,12 +129,12 @@ _SHAPES: Mapping[str, str] = {
 
 
 def _keys(model: type[BaseModel], loc: tuple[int | str, ...]) -> list[str]:
-    """The keys allowed at a pydantic location."""
+    """Return the keys allowed at a pydantic location."""
     return [name for one in _models_in(_form(model, loc)) for name in one.model_fields]
 
 
 def _form(model: type[BaseModel], loc: tuple[int | str, ...]) -> Any:
-    """The type of what belongs at a pydantic location, in which tags of unions may stand."""
+    """Return the type of what belongs at a pydantic location, in which tags of unions may stand."""
     form: Any = model
     for part in loc:
         models = _models_in(form)

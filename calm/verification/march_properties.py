@@ -1,32 +1,35 @@
-"""C20: what must hold for every line; no reference is needed."""
+"""Check what must hold for every line (C20), and how the error falls with the angle step."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
-from math import cos, pi, radians, sin
+from functools import cache, partial
+from math import atan2, cos, hypot, log2, pi, radians, sin
 
 import numpy as np
 
+from calm.analytic.uniform import heavy_line
 from calm.physics.friction import Friction
 from calm.physics.line import Floats, Water
 from calm.physics.reference import REFERENCE_DENSITY
 from calm.solve import Settings, Solution, solve_mooring
-from calm.verification import s1000
-from calm.verification.case import Case, Kind, Source
-from calm.verification.ends import FINE, towed
-from calm.verification.pieces import (
+from calm.verification import solved_moorings
+from calm.verification.case_lines import (
+    FINE,
     GRAVITY,
     HALF_DENSITY,
-    Piece,
+    LinePiece,
     cable,
     deep_water,
     line_of,
     point,
     profile,
     sphere_drag,
+    stream,
+    towed,
 )
+from calm.verification.published_case import Case, Kind, Source
 
 _TIGHT = Settings(tolerance=1e-9)
 _DRAG = sphere_drag(1.25, 0.6)
@@ -34,16 +37,16 @@ _DRAG = sphere_drag(1.25, 0.6)
 # A line with something of everything: floats, wire, rope that stretches, instruments that follow
 # the line or not, clamps, chain; it hangs below the surface in a current that veers.
 _PIECES = (
-    Piece(1.25, False, 7000.0, _DRAG, _DRAG, False, volume=1.02),
+    LinePiece(1.25, False, 7000.0, _DRAG, _DRAG, False, volume=1.02),
     replace(
         cable(300.0, 0.008, 1.6, 1.3, 0.009, 1.0 / 3e6),
         clamps=((20.0, -80.0, 0.004, 9.0), (150.0, -40.0, 0.002, 4.0)),
     ),
-    Piece(1.8, False, -180.0, 55.0, 3.0, volume=0.05),
+    LinePiece(1.8, False, -180.0, 55.0, 3.0, volume=0.05),
     cable(400.0, 0.016, 0.35, 1.3, 0.013, 1.0 / 2e5),
-    *[Piece(0.43, False, 225.0, 72.0, 72.0, False, volume=0.042)] * 4,
-    Piece(0.8, False, -240.0, 60.0, 60.0, False, volume=0.02),
-    Piece(15.0, True, -31.0, HALF_DENSITY * 0.013 * 2.75, HALF_DENSITY * pi * 0.013 * 0.46),
+    *[LinePiece(0.43, False, 225.0, 72.0, 72.0, False, volume=0.042)] * 4,
+    LinePiece(0.8, False, -240.0, 60.0, 60.0, False, volume=0.02),
+    LinePiece(15.0, True, -31.0, HALF_DENSITY * 0.013 * 2.75, HALF_DENSITY * pi * 0.013 * 0.46),
 )
 _LINE = line_of(*_PIECES, anchor_height=0.7)
 _SEA = Water(
@@ -119,8 +122,11 @@ def _similar(length: float, force: float, speed: float) -> float:
 def _split() -> float:
     """S1000 with its cable in ten pieces, against the cable in one."""
     finest = Settings(radians(0.01), tolerance=1e-10)
-    whole, split = (solve_mooring(s1000.mooring(parts), s1000.SEA, finest) for parts in (1, 10))
-    place = np.abs(whole.position[0] - split.position[0]).max() / s1000.SEA.depth
+    whole, split = (
+        solve_mooring(solved_moorings.s1000_mooring(parts), solved_moorings.S1000_SEA, finest)
+        for parts in (1, 10)
+    )
+    place = np.abs(whole.position[0] - split.position[0]).max() / solved_moorings.S1000_SEA.depth
     force = np.abs(whole.force[-1] - split.force[-1]).max() / whole.tension.max()
     return float(max(place, force))
 
@@ -183,7 +189,7 @@ def _tension_by_height() -> float:
 def _tension_by_height_and_friction() -> float:
     """|T_ship − T_body − w Δz − F s| of a tow whose friction is constant, over T_ship."""
     weight, friction, length, pull = 2.5, 0.3, 300.0, 2000.0
-    line = line_of(Piece(length, True, -weight, 8.0, friction), point(-pull, 0.0))
+    line = line_of(LinePiece(length, True, -weight, 8.0, friction), point(-pull, 0.0))
     wake = towed(replace(line, friction=Friction.CONSTANT), deep_water(), 1.0)
     return abs(wake.tension - pull - weight * wake.depth - friction * length) / wake.tension
 
@@ -201,7 +207,7 @@ def _plumb() -> float:
 @cache
 def _undercurrent() -> Solution:
     """A float of 500 N on 100 m of thread, and a current that sets in below it."""
-    line = line_of(point(500.0, 100.0), Piece(100.0, True, 0.0))
+    line = line_of(point(500.0, 100.0), LinePiece(100.0, True, 0.0))
     return solve_mooring(line, profile(110.0, [(0.0, 0.2), (12.0, 0.2), (30.0, 3.0)]), _TIGHT)
 
 
@@ -212,7 +218,7 @@ def _nothing(name: str, tolerance: float, why: str, got: Callable[[], float]) ->
 _SAME = "The same segments: rounding, and 1e-9 of the depth where each search for the root stops."
 _RODS = "The rods keep it to 1 − cos of half an angle step, 4e-7 at 0.1°."
 
-SOURCE = Source(
+INVARIANTS = Source(
     "Invariants",
     """What needs no reference (C20). A line with something of everything (a float, 300 m of wire
 with two clamps, an instrument that follows the line, 400 m of rope that stretches, four glass
@@ -253,4 +259,54 @@ gives the highest and reports the lowest; the one between them does not stand.""
             )
         ),
     ),
+)  # fmt: skip
+
+
+ANGLE_STEPS = (4.0, 2.0, 1.0, 0.5, 0.25, 0.125)
+"""[degrees]"""
+
+LENGTH = 1000.0
+_BUOYANCY, _WEIGHT = 4905.0, 2.0
+
+
+@cache
+def heavy_line_error(degrees: float) -> float:
+    """Miss of the free end of a heavy line, against its closed form [m].
+
+    Parameters
+    ----------
+    degrees : angle step [degrees]
+    """
+    drag, rope = sphere_drag(1.0, 0.65), cable(LENGTH, 0.0127, _WEIGHT, 1.3, 0.01)
+    line = line_of(point(_BUOYANCY, drag), rope)
+    solution = solve_mooring(line, stream(1010.0, 1.0), Settings(radians(degrees), 1e-9))
+    exact = heavy_line(
+        -LENGTH, hypot(_BUOYANCY, drag), atan2(_BUOYANCY, -drag), _WEIGHT,
+        rope.normal_drag, rope.tangential_drag,
+    )  # fmt: skip
+    x, _, z = (solution.position[-1] - solution.position[0]).tolist()
+    return hypot(-x - float(exact.x), z - float(exact.z))
+
+
+def _order(coarse: float, fine: float) -> float:
+    return log2(heavy_line_error(coarse) / heavy_line_error(fine)) / log2(coarse / fine)
+
+
+CONVERGENCE = Source(
+    "Order of convergence",
+    """The heavy line of C5 at 1 m/s, a current without shear, marched at angle steps from 4° to
+0.125°, against the closed form of `calm.analytic.uniform`, which shares nothing with the march. The
+march is of second order: half the step, a quarter of the error.""",
+    (
+        *(
+            Case(f"C20 order, {coarse:g}° to {fine:g}°", 2.0, "", 0.05,
+                 "Terms of fourth order and the rest piece at the end stir it.",
+                 partial(_order, coarse, fine), Kind.PROPERTY)
+            for coarse, fine in ((2.0, 1.0), (1.0, 0.5), (0.5, 0.25))
+        ),
+        Case("C20 miss of the free end at 1°", 0.0, "m", 5e-5 * LENGTH,
+             "What CALM promises at its default angle step: 5e-5 of the depth.",
+             partial(heavy_line_error, 1.0), Kind.CLOSED_FORM),
+    ),
+    picture="verification-convergence",
 )  # fmt: skip

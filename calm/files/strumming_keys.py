@@ -20,14 +20,14 @@ from typing import Annotated, Literal, cast, get_args
 
 from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag, ValidationInfo
 
-from calm.files.fields import COEFFICIENT, Model, Quantity
+from calm.files.fields import COEFFICIENT, Model, QuantityField
 from calm.physics.strumming import BourgetMarichal
 from calm.suggestions import nearest, not_among, shown
 from calm.units import QuantityError
 
-_NUMBER = Quantity("number")
-_FACTOR = Quantity("number", above=0)
-_RESTING_CN = Quantity("number", above=0, at_most=BourgetMarichal.ceiling)
+_NUMBER = QuantityField("number")
+_FACTOR = QuantityField("number", above=0)
+_RESTING_CN = QuantityField("number", above=0, at_most=BourgetMarichal.ceiling)
 
 AmplitudeName = Literal["vandiver", "blevins", "skop-griffin"]
 _Name = Literal["none", "bourget-marichal", AmplitudeName]
@@ -99,7 +99,7 @@ _FORMS: Mapping[str, type[Model]] = {
 
 
 def _forms_in(value: dict[str, object]) -> list[str]:
-    """The keys of `_FORMS` that a mapping has, misspelt or not."""
+    """Return the keys of `_FORMS` that a mapping has, misspelt or not."""
     exact = [form for form in _FORMS if form in value]
     return exact or [form for key in value if (form := nearest(key, _FORMS))]
 
@@ -144,7 +144,7 @@ def _one_form(value: dict[str, object]) -> dict[str, object]:
 
 
 def _form(value: object) -> str:
-    """The name of the class that a value is to be read as; `explain` finds its keys by that."""
+    """Return the name of the class to read a value as; messages find its keys by that."""
     if isinstance(value, dict):
         return _FORMS[_forms_in(value)[0]].__name__
     return type(value).__name__

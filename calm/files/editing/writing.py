@@ -1,4 +1,7 @@
-"""How new values are laid out, after the manner of the file they go into."""
+"""How values are written into a file: after its manner, in the order of the keys in the models.
+
+A text is plain where that reads back, and in quotes where it would not.
+"""
 
 from __future__ import annotations
 
@@ -7,15 +10,29 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from calm.files.editing.scalars import written
-from calm.files.nodes import Node
+from calm.files.composition import Node
+from calm.files.density import TableKeys
+from calm.files.environment import Position
+from calm.files.logbook import DocumentKeys
+from calm.files.mooring_file import Solver
+from calm.files.reader import MooringKeys
+
+# Read otherwise by YAML, or by other programs that read it.
+_WORD = re.compile(r"(?:~|=|<<|null|true|false|yes|no|on|off)?", re.IGNORECASE)
+
+# What may stand without quotes: no sign of YAML at its beginning, no `: ` nor ` #` within.
+_BEGINNING = r"(?:[^\s\-?:,\[\]{}#&*!|>'\"%@`]|-(?=[^\s,\[\]{}]))"
+_PLAIN = re.compile(_BEGINNING + r"(?:[^\S\r\n\t](?=[^\s#])|:(?=\S)|[^\s:])*")
+_NOT_IN_FLOW = re.compile(r"[,\[\]{}?]|:(?=[,\[\]{}]|$)")
+_ESCAPED = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r", "\t": "\\t"}
+
 
 Value = str | None | Mapping[str, "Value"] | Sequence["Value"]
 """What a file can hold: text, nothing, or a mapping or list of what it can hold."""
 
 
 class Wording(NamedTuple):
-    """An item of a list as it is written.
+    """Hold an item of a list as it is written.
 
     Attributes
     ----------
@@ -34,47 +51,36 @@ class Wording(NamedTuple):
 
 
 class Worded(list[Value]):
-    """Items of a list that keep their wording."""
+    """Hold items of a list that keep their wording."""
 
     def __init__(self, wordings: Iterable[Wording]) -> None:
         self.wordings = tuple(wordings)
         super().__init__(one.value for one in self.wordings)
 
 
-SECTIONS = frozenset(
-    {
-        *("document", "environment", "line", "components", "environments", "solver", "checks"),
-        *("uncertainty", "releases", "deployed"),
-    }
-)
+SECTIONS = frozenset(MooringKeys.model_fields) - {"name", "description", "position", "tow"}
 """Keys whose values are written below them, a line each."""
 
 _ORDERS: tuple[tuple[str, ...], ...] = (
-    (
-        *("name", "description", "document", "position", "tow", "environment", "line"),
-        *("components", "environments", "solver", "checks", "uncertainty", "releases", "deployed"),
-    ),
+    tuple(MooringKeys.model_fields),
     ("fluid", "depth", "depth_range", "density", "gravity", "current", "wind", "fouling"),
     (
         *("use", "at", "label", "count", "length", "top_depth", "body_depth", "length_at"),
         *("termination", "serial", "calibrated", "sampling", "battery_until"),
     ),
-    (
-        *("id", "revision", "date", "author", "checked", "approved", "project", "ship", "cruise"),
-        "history",
-    ),
-    ("columns", "rows"),
+    tuple(DocumentKeys.model_fields),
+    tuple(TableKeys.model_fields),
     ("speed", "toward", "w", "height", "surface_drift", "drift_depth"),
     ("file", "time"),
-    ("latitude", "longitude"),
-    ("angle_step", "tolerance", "drag", "friction", "strumming", "buoy_drag", "seabed_friction"),
+    tuple(Position.model_fields),
+    tuple(Solver.model_fields),
 )
 _LAST = "clamps"
 
 
 @dataclass(frozen=True)
-class Layout:
-    """The manner of a file.
+class WritingStyle:
+    """Hold how a file is written: its line breaks and indentation.
 
     Attributes
     ----------
@@ -90,8 +96,8 @@ class Layout:
     dash: int = 2
 
     @classmethod
-    def of(cls, text: str, root: Node | None) -> Layout:
-        """The manner of a text, as its first places show it."""
+    def of(cls, text: str, root: Node | None) -> WritingStyle:
+        """Return the manner of a text, as its first places show it."""
         ending = text.find("\n")
         line_break = "\r\n" if ending > 0 and text[ending - 1] == "\r" else "\n"
         step = dash = None
@@ -106,7 +112,7 @@ class Layout:
         return cls(line_break, step, step if dash is None else dash)
 
     def entry(self, name: str, value: Value, column: int, *, open: bool = False) -> str:
-        """The lines of an entry of a block mapping whose keys stand in a column (from 1).
+        """Write the lines of an entry of a block mapping whose keys stand in a column (from 1).
 
         `open` writes a mapping below its key even where it is short.
         """
@@ -115,7 +121,7 @@ class Layout:
         return key + head + self.line_break + below
 
     def parts(self, name: str, value: Value, column: int, *, open: bool = False) -> tuple[str, str]:
-        """What follows the colon of a key, and the lines below it."""
+        """Write what follows the colon of a key, and the lines below it."""
         if value is None:
             return "", ""
         if isinstance(value, str):
@@ -134,12 +140,12 @@ class Layout:
         return "", "".join(self.item(one, column + self.dash) for one in value)
 
     def moved(self, lines: str, column: int) -> str:
-        """Lines that begin in column 1, in another one."""
+        """Move lines that begin in column 1 to another one."""
         indented = re.sub(r"^(?=[^\n])", " " * (column - 1), lines, flags=re.MULTILINE)
         return indented.replace("\n", self.line_break)
 
     def item(self, value: Value, column: int, *, block: bool = False) -> str:
-        """The lines of an item whose dash stands in a column.
+        """Write the lines of an item whose dash stands in a column.
 
         An item that has items of its own is written a key a line, and so is any with `block`.
         """
@@ -151,7 +157,7 @@ class Layout:
 
 
 def inline(value: Value) -> str:
-    """A value on one line, as it stands within brackets."""
+    """Write a value on one line, as it stands within brackets."""
     if value is None:
         return "null"
     if isinstance(value, str):
@@ -165,7 +171,7 @@ def inline(value: Value) -> str:
 
 
 def place_of(name: str, names: Sequence[str]) -> int:
-    """Where a new key goes among the keys of a mapping: the order of the format, else the end."""
+    """Return where a new key goes among others: in the order of the format, else at the end."""
     order = next((one for one in _ORDERS if name in one), ())
     if name in order:
         before = order[: order.index(name)]
@@ -178,7 +184,7 @@ def place_of(name: str, names: Sequence[str]) -> int:
 
 
 def _is_deep(value: Mapping[str, Value]) -> bool:
-    """Whether a mapping holds more than texts and short lists of texts."""
+    """Return whether a mapping holds more than texts and short lists of texts."""
     return any(
         isinstance(one, Mapping)
         or (one is not None and not isinstance(one, str) and any(map(_is_long, one)))
@@ -191,9 +197,38 @@ def _is_long(value: Value) -> bool:
 
 
 def _below_keys(node: Node) -> Iterator[tuple[Node, Node]]:
-    """Block collections that stand below a key: with the mapping of the key."""
+    """Return the block collections that stand below a key: with the mapping of the key."""
     for child in node.children:
         if child.style == "block":
             if node.kind == "mapping":
                 yield node, child
             yield from _below_keys(child)
+
+
+def written(text: str, *, flow: bool, quote: str = "") -> str:
+    """Write a text as a scalar of YAML.
+
+    Parameters
+    ----------
+    text : str
+    flow : bool
+        It is to stand within brackets, where commas and brackets end a plain text.
+    quote : str
+        The sign it was quoted with so far, which is kept.
+    """
+    if quote == "'" and text.isprintable():
+        return "'" + text.replace("'", "''") + "'"
+    if quote != '"' and _stands_plain(text, flow):
+        return text
+    escaped = "".join(_ESCAPED.get(sign) or _escaped(sign) for sign in text)
+    return f'"{escaped}"'
+
+
+def _stands_plain(text: str, flow: bool) -> bool:
+    if _WORD.fullmatch(text) or text.startswith(("---", "...")) or not text.isprintable():
+        return False
+    return bool(_PLAIN.fullmatch(text)) and not (flow and _NOT_IN_FLOW.search(text))
+
+
+def _escaped(sign: str) -> str:
+    return sign if sign.isprintable() else f"\\U{ord(sign):08x}"

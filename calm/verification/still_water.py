@@ -1,7 +1,11 @@
-"""C12 to C14: lines in still water, hanging free or lying on the seabed."""
+"""Compare lines in still water: catenaries (C12 to C14), a stretched rope, a slack mooring.
+
+The rope (C15) hangs from its load and its own weight; the slack mooring (C22) has a watch circle.
+"""
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from math import inf
 
@@ -9,11 +13,20 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from calm.analytic.catenary import Catenary, between
+from calm.errors import NoEquilibrium
 from calm.physics.line import Line
 from calm.solve import Solution, solve_mooring
-from calm.verification.case import PRINTED, Case, Figure, Kind, Source, table
-from calm.verification.ends import FINE, ends_of
-from calm.verification.pieces import Piece, line_of, point, stream
+from calm.verification.case_lines import (
+    FINE,
+    Ends,
+    LinePiece,
+    cable,
+    ends_of,
+    line_of,
+    point,
+    stream,
+)
+from calm.verification.published_case import PRINTED, Case, CaseColumn, Kind, Source, table
 
 _MARCH = (
     "1e-6 of the line's length or of the pull; the float pulls with the printed forces, and the "
@@ -61,7 +74,7 @@ def _pulled(pull: tuple[float, float], length: float, weight: float, stiffness: 
     """A float that pulls sideways and up in a current of 1 m/s, above a line without drag."""
     horizontal, vertical = pull
     return line_of(
-        point(vertical, horizontal), Piece(length, True, -weight, compliance=1.0 / stiffness)
+        point(vertical, horizontal), LinePiece(length, True, -weight, compliance=1.0 / stiffness)
     )
 
 
@@ -76,34 +89,38 @@ def _march_to_the_seabed() -> Solution:
     return solve_mooring(line, stream(_DEPTH, 1.0), FINE)
 
 
-def _pulls(force: float) -> tuple[Figure[Catenary], ...]:
+def _pulls(force: float) -> tuple[CaseColumn[Catenary], ...]:
     return (
-        Figure("horizontal pull", "N", force, lambda line: _number(line.horizontal)),
-        Figure("vertical pull at the top", "N", force, lambda line: _number(line.vertical)),
-        Figure("tension at the top", "N", force, lambda line: float(line.tension_top)),
+        CaseColumn("horizontal pull", "N", force, lambda line: _number(line.horizontal)),
+        CaseColumn("vertical pull at the top", "N", force, lambda line: _number(line.vertical)),
+        CaseColumn("tension at the top", "N", force, lambda line: float(line.tension_top)),
     )
 
 
-_LOWER_END = Figure[Catenary](
+_LOWER_END = CaseColumn[Catenary](
     "vertical pull at the lower end", "N", 5.5e-4, lambda line: float(line.vertical_bottom)
 )
-_GROUNDED = Figure[Catenary]("length on the seabed", "m", 5.5e-7, lambda line: float(line.grounded))
+_GROUNDED = CaseColumn[Catenary](
+    "length on the seabed", "m", 5.5e-7, lambda line: float(line.grounded)
+)
 _SPAN = (
-    Figure[Solution]("distance of the ends, march", "m", 5e-4, lambda line: ends_of(line).x),
-    Figure[Solution]("height of the ends, march", "m", 5e-4, lambda line: ends_of(line).z),
+    CaseColumn[Solution]("distance of the ends, march", "m", 5e-4, lambda line: ends_of(line).x),
+    CaseColumn[Solution]("height of the ends, march", "m", 5e-4, lambda line: ends_of(line).z),
 )
 _LANDED = (
-    Figure[Solution]("distance of the ends, march", "m", 7e-6, lambda line: ends_of(line).x),
-    Figure[Solution](
+    CaseColumn[Solution]("distance of the ends, march", "m", 7e-6, lambda line: ends_of(line).x),
+    CaseColumn[Solution](
         "vertical pull, march", "N", 3.4e-6, lambda line: line.buoyancy_used * _BUOYANCY
     ),
-    Figure[Solution]("length on the seabed, march", "m", 7e-6, lambda line: line.grounded_length),
-    Figure[Solution](
+    CaseColumn[Solution](
+        "length on the seabed, march", "m", 7e-6, lambda line: line.grounded_length
+    ),
+    CaseColumn[Solution](
         "tension at the anchor, march", "N", 8e-7, lambda line: float(line.tension[-1])
     ),
 )
 
-SOURCE = Source(
+CATENARIES = Source(
     "Catenaries",
     """The elastic catenary of M. Irvine, *Cable Structures* (1981), on four sets of figures (C12 to
 C14): ends 400 m apart and 300 m above each other, 50 N/m, EA 5 MN, once 520 m long and once
@@ -154,5 +171,67 @@ the line can be moored, against the march.""",
             _MARCH,
             Kind.CLOSED_FORM,
         ),
+    ),
+)  # fmt: skip
+
+
+_LENGTH, _WEIGHT, _LOAD, _STIFFNESS = 1000.0, 0.3, 2000.0, 97_817.4
+
+_WHY = (
+    "Half a unit of the last digit printed, and a tenth. Tension falls linearly along a hanging "
+    "rope, so the stretch of a segment at its mean tension is exact whatever the angle step."
+)
+
+
+HANGING_ROPE = line_of(
+    point(_LOAD + _WEIGHT * _LENGTH, 0.0),
+    LinePiece(_LENGTH, True, -_WEIGHT, compliance=1.0 / _STIFFNESS),
+)
+HANGING_SEA = stream(1100.0, 0.0)
+
+
+@cache
+def _hanging() -> Ends:
+    return ends_of(solve_mooring(HANGING_ROPE, HANGING_SEA))
+
+
+ELASTIC_HANG = Source(
+    "Elastic hang",
+    """A 19 mm nylon rope of 1000 m in still water (C15), 0.3 N/m, 2000 N at its lower end,
+EA 97 817.4 N (3.45e8 Pa on its section, the modulus of R. Dewey's *Mooring Design & Dynamics*):
+its elongation is (2000 L + 0.3 L²/2)/EA.""",
+    (
+        Case("C15 elongation", 21.97973, "m", 5.5e-6, _WHY, lambda: _hanging().z - _LENGTH,
+             Kind.CLOSED_FORM),
+        Case("C15 tension at the lower end", _LOAD, "N", 1e-6, "Rounding.",
+             lambda: _hanging().tension, Kind.CLOSED_FORM),
+    ),
+)  # fmt: skip
+
+
+_SLACK_DEPTH, _SCOPE = 540.0, 2.0
+
+
+def _radius() -> float:
+    """The radius reported with the refusal of a line that has no unique shape [m]."""
+    rope = cable(_SCOPE * _SLACK_DEPTH, 0.02, 1.0, 1.3, 0.0)
+    try:
+        solve_mooring(line_of(point(20_000.0, 100.0), rope), stream(_SLACK_DEPTH, 0.0))
+    except NoEquilibrium as refusal:
+        radius = re.search(r"radius of (\d+) m", refusal.message)
+        if refusal.status == "slack" and radius:
+            return float(radius[1])
+        raise
+    raise AssertionError("a slack line in still water was given a shape")
+
+
+WATCH_CIRCLE = Source(
+    "Watch circle",
+    """A surface mooring of scope 2 in 540 m of water without current (C22) is slack and has no
+unique shape: CALM refuses it with the status `slack` and reports the radius of its watch circle, at
+most depth · √(scope² − 1). PacIOOS publishes 934 m, 1.73 times the depth, for that mooring.""",
+    (
+        Case("C22 radius", 934.0, "m", 0.002 * 934.0,
+             "0.2 %: 1.73 is √3 to three digits.", _radius, Kind.PUBLISHED),
     ),
 )  # fmt: skip
