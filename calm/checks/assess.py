@@ -9,14 +9,13 @@ from datetime import date
 import numpy as np
 
 from calm.case import Mooring, Result
-from calm.checks.acceptance import Acceptance
-from calm.checks.assessment import Assessment, Situation, Stand
+from calm.checks.assessment import Acceptance, Assessment, Situation, Stand
 from calm.checks.backup import breaks_of, losses_of
+from calm.checks.criterion import limits_used
 from calm.checks.finding import AS_GIVEN, OWN, Finding, State
 from calm.checks.handling import Handling
 from calm.checks.inventory import inventory_of
 from calm.checks.launch import Launch, launch_of
-from calm.checks.limits import limits_used
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Recovery, recovery_of
 from calm.checks.rules import ONCE, STANDING, STILL_ONLY, equilibrium

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from math import isnan
 from typing import TYPE_CHECKING
 
+from calm.checks.criterion import Citing
 from calm.checks.finding import (
     State,
     Verdict,
@@ -18,7 +19,6 @@ from calm.checks.finding import (
     verdict_on,
 )
 from calm.checks.launch import Launch
-from calm.checks.limits import Citing
 from calm.checks.recovery import Recovery
 from calm.checks.strength import lesser_load
 from calm.errors import NoEquilibrium

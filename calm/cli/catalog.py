@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 from cyclopts import App
 
-from calm.cli.exit_codes import ExitCode
-from calm.cli.streams import narrate, show, show_parts
+from calm.cli.streams import ExitCode, narrate, show, show_parts
 from calm.errors import UsageError
 
 if TYPE_CHECKING:

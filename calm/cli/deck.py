@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from calm.cli.check_files import Design, read_designs
-from calm.cli.exit_codes import ExitCode
+from calm.cli.check_files import DesignFile, read_designs
 from calm.cli.options import quantities
-from calm.cli.streams import narrate
+from calm.cli.streams import ExitCode, narrate
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
@@ -170,7 +169,7 @@ def _texts(deck: Deck) -> Iterator[tuple[str, str]]:
         yield " ".join(filter(None, texts)), f"`{one.label}`"
 
 
-def _folders(designs: Sequence[Design], output: Path) -> list[Path]:
+def _folders(designs: Sequence[DesignFile], output: Path) -> list[Path]:
     """Where each mooring's sheets go.
 
     Raises

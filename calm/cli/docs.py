@@ -7,8 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from calm.cli.exit_codes import ExitCode
-from calm.cli.streams import show
+from calm.cli.streams import ExitCode, show
 from calm.errors import UsageError
 
 DOCS_EXAMPLES = """Examples:

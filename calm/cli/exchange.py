@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from calm.cli.exit_codes import ExitCode
 from calm.cli.outputs import STDOUT, OutputPath
-from calm.cli.streams import narrate, show
+from calm.cli.streams import ExitCode, narrate, show
 from calm.errors import InputError, Problem, UsageError
 
 if TYPE_CHECKING:

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from calm.cli.exit_codes import ExitCode
 from calm.cli.options import quantities
 from calm.cli.outputs import OutputPath, Outputs
-from calm.cli.streams import narrate
+from calm.cli.streams import ExitCode, narrate
 from calm.errors import UsageError
 
 if TYPE_CHECKING:

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Protocol
 
 from cyclopts import Parameter
 
-from calm.cli.exit_codes import ExitCode
-from calm.cli.streams import narrate, show, show_parts
+from calm.cli.streams import ExitCode, narrate, show, show_parts
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
@@ -53,7 +52,7 @@ class Shown(Protocol):
 
 
 @dataclass(frozen=True)
-class Outcome:
+class FileOutcome:
     """The outcome of one file: a result, or the reason why there is none."""
 
     file: Path

@@ -8,8 +8,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from calm.cli.exit_codes import ExitCode
-from calm.cli.streams import narrate, show
+from calm.cli.streams import ExitCode, narrate, show
 from calm.errors import UsageError
 from calm.templates import Template, template
 

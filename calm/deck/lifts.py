@@ -10,7 +10,7 @@ from calm.deck.order import Order
 from calm.files.components import FLEXIBLE_KINDS
 
 if TYPE_CHECKING:
-    from calm.checks.inventory import Item
+    from calm.checks.inventory import InventoryItem
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class Lifts:
         return max(known, key=lambda lift: lift.mass or 0.0, default=None)
 
 
-def lifts_of(inventory: Sequence[Item], released: int, order: Order) -> Lifts:
+def lifts_of(inventory: Sequence[InventoryItem], released: int, order: Order) -> Lifts:
     """The stages of a mooring.
 
     Parameters
@@ -72,7 +72,7 @@ def lifts_of(inventory: Sequence[Item], released: int, order: Order) -> Lifts:
     return Lifts(tuple(_stages(down, weights)), rising, unknown)
 
 
-def _weights(inventory: Sequence[Item]) -> dict[int, float | None]:
+def _weights(inventory: Sequence[InventoryItem]) -> dict[int, float | None]:
     """In water, of each piece with its clamps."""
     weights: dict[int, float | None] = {}
     for one in inventory:
@@ -81,7 +81,7 @@ def _weights(inventory: Sequence[Item]) -> dict[int, float | None]:
     return weights
 
 
-def _stages(pieces: Sequence[Item], weights: dict[int, float | None]) -> Iterator[Lift]:
+def _stages(pieces: Sequence[InventoryItem], weights: dict[int, float | None]) -> Iterator[Lift]:
     hanging: float | None = 0.0
     for one in pieces:
         weight = weights[one.index]
@@ -90,5 +90,5 @@ def _stages(pieces: Sequence[Item], weights: dict[int, float | None]) -> Iterato
         yield Lift(one.index, one.label, mass, weight, hanging)
 
 
-def _is_lifted(one: Item) -> bool:
+def _is_lifted(one: InventoryItem) -> bool:
     return one.kind not in FLEXIBLE_KINDS

@@ -11,7 +11,7 @@ from calm.files import Cable, Chain, Cylinder, Sphere
 from calm.files.components import FLEXIBLE_KINDS
 
 if TYPE_CHECKING:
-    from calm.checks.inventory import Item
+    from calm.checks.inventory import InventoryItem
     from calm.files import Component, MooringFile
 
 
@@ -38,10 +38,10 @@ class Freight:
     missing_volumes: int
 
 
-def freight_of(file: MooringFile, inventory: Sequence[Item]) -> tuple[Freight, ...]:
+def freight_of(file: MooringFile, inventory: Sequence[InventoryItem]) -> tuple[Freight, ...]:
     """A row for each component, in the order of the line."""
     components = _components(file)
-    groups: dict[str, list[Item]] = {}
+    groups: dict[str, list[InventoryItem]] = {}
     for item in inventory:
         groups.setdefault(item.use, []).append(item)
     return tuple(_freight(use, group, components) for use, group in groups.items())
@@ -87,7 +87,7 @@ def _components(file: MooringFile) -> dict[tuple[int, str], Component]:
 
 
 def _freight(
-    use: str, group: Sequence[Item], components: dict[tuple[int, str], Component]
+    use: str, group: Sequence[InventoryItem], components: dict[tuple[int, str], Component]
 ) -> Freight:
     volumes = [volume_of(components[one.index, one.label], one.cut_length) for one in group]
     masses = [one.dry_mass for one in group]

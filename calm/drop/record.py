@@ -9,9 +9,9 @@ import numpy as np
 
 from calm.case import Result
 from calm.case.parts import clamps_in
-from calm.drop.chain import Chain
-from calm.drop.fall import Course
-from calm.drop.motion import Mover, State
+from calm.drop.chain import BarChain
+from calm.drop.fall import Motion
+from calm.drop.motion import ChainState, Mover
 from calm.files import Clamp, Piece
 from calm.physics.line import Floats, Integers
 
@@ -61,7 +61,7 @@ class Pull:
 
 
 @dataclass(frozen=True)
-class Moment:
+class ShapeInTime:
     """The shape of the line at a time [s]: distance towards the float and depth of nodes [m]."""
 
     time: float
@@ -71,7 +71,7 @@ class Moment:
 
 
 @dataclass(frozen=True)
-class Path:
+class FallPath:
     """What happens over time, from the moment the anchor is let go to its touchdown; (t,) each.
 
     Attributes
@@ -93,14 +93,14 @@ class Path:
     anchor_tension: Floats
 
 
-def place_of(chain: Chain, state: State, bar: Integers, place: Floats) -> Floats:
+def place_of(chain: BarChain, state: ChainState, bar: Integers, place: Floats) -> Floats:
     """(m, 3) of points at places of bars [m]."""
     share = place[:, np.newaxis]
     found: Floats = (1.0 - share) * state.node[bar] + share * state.node[bar + 1]
     return found
 
 
-def piece_ends(chain: Chain, state: State) -> tuple[Floats, Floats]:
+def piece_ends(chain: BarChain, state: ChainState) -> tuple[Floats, Floats]:
     """(p, 3) of the upper and of the lower end of every piece [m]."""
     first, end = chain.bars.T
     last = np.maximum(end - 1, first)
@@ -110,12 +110,12 @@ def piece_ends(chain: Chain, state: State) -> tuple[Floats, Floats]:
     )
 
 
-def clamp_places(chain: Chain, state: State) -> Floats:
+def clamp_places(chain: BarChain, state: ChainState) -> Floats:
     """(m, 3) of the clamps [m]."""
     return place_of(chain, state, chain.clamp_bar, chain.clamp_place)
 
 
-def end_tensions(mover: Mover, state: State) -> Floats:
+def end_tensions(mover: Mover, state: ChainState) -> Floats:
     """(n, 2) in every bar at its upper and at its lower end [N]; 0 in one that is pushed.
 
     In the first moment the anchor pushes what is beside it, where a real line goes slack.
@@ -132,7 +132,7 @@ def end_tensions(mover: Mover, state: State) -> Floats:
     return np.where(state.tension[:, np.newaxis] > 0.0, ends, 0.0)
 
 
-def path_of(drop: Course, toward: Floats, anchor_height: float) -> Path:
+def path_of(drop: Motion, toward: Floats, anchor_height: float) -> FallPath:
     """The fall over time.
 
     Parameters
@@ -142,7 +142,7 @@ def path_of(drop: Course, toward: Floats, anchor_height: float) -> Path:
     """
     states = drop.states
     foot, top = (np.array([state.node[i] for state in states]) for i in (-1, 0))
-    return Path(
+    return FallPath(
         time=np.array([state.time for state in states]),
         anchor_depth=anchor_height - foot[:, 2],
         anchor_speed=np.array([-state.velocity[-1, 2] for state in states]),
@@ -153,7 +153,7 @@ def path_of(drop: Course, toward: Floats, anchor_height: float) -> Path:
     )
 
 
-def moments_of(drop: Course, rest: Course | None, toward: Floats) -> tuple[Moment, ...]:
+def moments_of(drop: Motion, rest: Motion | None, toward: Floats) -> tuple[ShapeInTime, ...]:
     """Shapes at equal intervals from letting go to the touchdown, and at rest where known."""
     times = np.array([state.time for state in drop.states])
     chosen = [int(np.argmin(np.abs(times - t))) for t in np.linspace(0.0, times[-1], MOMENTS)]
@@ -163,12 +163,12 @@ def moments_of(drop: Course, rest: Course | None, toward: Floats) -> tuple[Momen
         shown.append(rest.states[-1])
         names.append("at rest")
     return tuple(
-        Moment(state.time, name, state.node[:, :2] @ toward, -state.node[:, 2])
+        ShapeInTime(state.time, name, state.node[:, :2] @ toward, -state.node[:, 2])
         for state, name in zip(shown, names, strict=True)
     )
 
 
-def depths_of(pieces: Sequence[Piece], drop: Course, rest: Course) -> tuple[DepthReached, ...]:
+def depths_of(pieces: Sequence[Piece], drop: Motion, rest: Motion) -> tuple[DepthReached, ...]:
     """How deep floats, instruments and releases come, from letting go to rest."""
     parts: list[Piece | Clamp] = [*pieces[:-1], *clamps_in(pieces[:-1])]
     chain, states = drop.mover.chain, (*drop.states, *rest.states[1:])
@@ -187,14 +187,14 @@ def depths_of(pieces: Sequence[Piece], drop: Course, rest: Course) -> tuple[Dept
     )
 
 
-def _depths(chain: Chain, state: State) -> Floats:
+def _depths(chain: BarChain, state: ChainState) -> Floats:
     """Of the deeper end of every piece, and of every clamp [m]."""
     upper, lower = piece_ends(chain, state)
     clamps = clamp_places(chain, state)
     return -np.append(np.minimum(upper[:, 2], lower[:, 2]), clamps[:, 2])
 
 
-def pulls_of(pieces: Sequence[Piece], drop: Course) -> tuple[Pull, ...]:
+def pulls_of(pieces: Sequence[Piece], drop: Motion) -> tuple[Pull, ...]:
     """The greatest tension in every piece from letting go to the touchdown."""
     chain = drop.mover.chain
     tension = np.array([end_tensions(drop.mover, state).max(axis=1) for state in drop.states])
@@ -206,7 +206,7 @@ def pulls_of(pieces: Sequence[Piece], drop: Course) -> tuple[Pull, ...]:
     return tuple(pulls)
 
 
-def rest_difference(result: Result, rest: Course) -> float:
+def rest_difference(result: Result, rest: Motion) -> float:
     """Farthest that an end of a piece comes to rest from its place in the equilibrium [m].
 
     Of a line that comes down on the seabed before its anchor, pieces that lie there are left out:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from calm.exchange.cable_grammar import CableDefinition, KeyValue, KeyValues
-from calm.exchange.cable_water import number, value_at
 from calm.exchange.design import FigureOrWord, ImportedComponent, Remark, refused
 from calm.exchange.part_names import is_chain, role_of
 from calm.files.definition import CATALOGUE_DENSITY
@@ -21,6 +20,8 @@ _DYNAMICS = (
     "i", "j", "g", "nu",
 )  # fmt: skip
 _YIELDS = ("swl", "yield")
+_STEPS = 12  # rows of a table between two diameters
+_SLIGHT = 1e-9
 
 
 @dataclass
@@ -34,16 +35,24 @@ class ComponentMaker:
     def material(
         self, definition: CableDefinition, length: float, depth: float, speed: float
     ) -> ImportedComponent:
-        """A cable of a length [m], with its drag at a depth [m] and a speed [m/s]."""
+        """Return a cable of a length [m], with its drag at a depth [m] and a speed [m/s].
+
+        Parameters
+        ----------
+        definition : of the material
+        length : of the segment [m]
+        depth : for which a drag by depth is taken [m]
+        speed : for which a drag by speed is taken [m/s]
+        """
         values, name = definition.values, definition.name
-        across, inside = number(values, "d") or number(values, "diam"), number(values, "id")
+        across, inside = values.number("d", "diam"), values.number("id")
         if across <= 0.0:
             raise definition.token.refuse(f"material `{name}` has no diameter")
         area, bore = math.pi / 4.0 * across**2, math.pi / 4.0 * inside**2
-        mass = number(values, "m") or number(values, "mass")
-        dry = number(values, "w") or mass * self.gravity
-        wet = number(values, "wet") or dry - area * self.density * self.gravity
-        if not mass and not dry and not number(values, "wet"):
+        mass = values.number("m", "mass")
+        dry = values.number("w") or mass * self.gravity
+        wet = values.number("wet") or dry - area * self.density * self.gravity
+        if not mass and not dry and not values.number("wet"):
             raise definition.token.refuse(f"material `{name}` has neither `m` nor `wet`")
         figures: dict[str, FigureOrWord] = {
             "diameter": across,
@@ -71,30 +80,28 @@ class ComponentMaker:
         self, component: ImportedComponent, definition: CableDefinition, section: float
     ) -> None:
         values = definition.values
-        stiffness = number(values, "ea") or number(values, "e") * section
+        stiffness = values.number("ea") or values.number("e") * section
         tension = values.get("t")
         if not stiffness and tension is not None:
-            stiffness = value_at(tension, 0.01) / 0.01
+            stiffness = tension.at(0.01) / 0.01
             component.guesses["stiffness"] = "its tension at a strain of 0.01; the file has a curve"
         if stiffness > 0.0:
             component.figures["stiffness"] = stiffness
-        limit = {key: number(values, key) for key in _YIELDS}
+        limit = {key: values.number(key) for key in _YIELDS}
         if limit["yield"] > 0.0:
             component.figures["breaking_load"] = limit["yield"]
         if limit["swl"] > 0.0 and (not limit["yield"] or limit["swl"] <= limit["yield"]):
             component.figures["working_load"] = limit["swl"]
 
     def connector(self, definition: CableDefinition) -> ImportedComponent:
-        """A point in the line: a sphere of its drag, of the length that the file gives."""
+        """Return a point in the line: a sphere of its drag, as long as the file says."""
         values, name = definition.values, definition.name
-        wet, mass = self._at_reference(
-            number(values, "wet"), number(values, "m") or number(values, "mass")
-        )
+        wet, mass = self._at_reference(values.number("wet"), values.number("m", "mass"))
         figures: dict[str, FigureOrWord] = {
-            "length": number(values, "length"),
+            "length": values.number("length"),
             "buoyancy": 0.0 - wet,
         }
-        across, drag = number(values, "d") or number(values, "diam"), number(values, "cdn")
+        across, drag = values.number("d", "diam"), values.number("cdn")
         if across > 0.0:
             kind = "sphere"
             figures = {"diameter": across, **figures, "cx": drag}
@@ -110,17 +117,24 @@ class ComponentMaker:
     def anchor(
         self, definition: CableDefinition | None, name: str, friction: float
     ) -> ImportedComponent:
-        """The lower end; without a weight where the file gives none."""
-        values: KeyValues = definition.values if definition else {}
+        """Return the lower end; without a weight where the file gives none.
+
+        Parameters
+        ----------
+        definition : None where the file defines none
+        name : as the layout calls it
+        friction : of the layout; 0 where it gives none
+        """
+        values = definition.values if definition else KeyValues()
         figures: dict[str, FigureOrWord] = {}
-        wet, mass = number(values, "wet"), number(values, "m") or number(values, "mass")
+        wet, mass = values.number("wet"), values.number("m", "mass")
         if wet > 0.0:
             figures["weight"], known = self._at_reference(wet, mass)
             if known:
                 figures["mass"] = known
         elif mass > 0.0:
             figures["mass"] = mass
-        mu = number(values, "mu") or friction
+        mu = values.number("mu") or friction
         if mu > 0.0:
             figures["friction"] = mu
         component = ImportedComponent(name, "anchor", figures)
@@ -129,7 +143,7 @@ class ComponentMaker:
         return component
 
     def buoy(self, definition: CableDefinition, *, afloat: bool) -> ImportedComponent:
-        """The upper end, or what is towed.
+        """Return the upper end, or what is towed.
 
         Its hull is that of the file. Where it does not float, it is a point, as in that program.
         """
@@ -139,15 +153,15 @@ class ComponentMaker:
             raise definition.token.refuse(
                 f"`{name}` is a {shape}: CALM has lines that end in a float or at a towing ship"
             )
-        volume, area, height = largest(definition, shape)
-        mass = number(values, "m") or number(values, "mass")
-        mass = mass or number(values, "w") / self.gravity
-        lift = number(values, "buoyancy")
+        volume, area, height = _largest(definition, shape)
+        mass = values.number("m", "mass")
+        mass = mass or values.number("w") / self.gravity
+        lift = values.number("buoyancy")
         whole = lift / (self.density * self.gravity) if lift else volume
         if not whole:
             raise refused(definition.token.path, f"buoy `{name}` has no size and no buoyancy")
-        drag = number(values, "cdn")
-        across = number(values, "d") or number(values, "diam")
+        drag = values.number("cdn")
+        across = values.number("d", "diam")
         figures: dict[str, FigureOrWord]
         if shape == "sphere":
             kind, figures = "sphere", {"diameter": across, "length": height, "cx": drag}
@@ -162,10 +176,10 @@ class ComponentMaker:
             figures["length"] = 0.0
             component.comment = "That program treats it as a point: the line ends at its depth."
         elif kind == "body":
-            component.hull = displacement(definition, shape)
+            component.hull = _displacement(definition, shape)
             whole = max(whole, component.hull[-1][1]) if not lift else whole
         figures |= {"mass": mass, "volume": whole}
-        windage, wind_drag = number(values, "sw"), number(values, "cdw") or drag
+        windage, wind_drag = values.number("sw"), values.number("cdw") or drag
         if afloat and (windage or wind_drag):
             figures |= {"wind_area": windage} if windage else {}
             figures["wind_cd"] = wind_drag
@@ -175,7 +189,7 @@ class ComponentMaker:
         return component
 
     def _at_reference(self, wet: float, mass: float) -> tuple[float, float]:
-        """A weight in CALM's water, and the mass; 0 for an impossible mass.
+        """Return a weight in CALM's water, and the mass; 0 for an impossible mass.
 
         What is displaced follows from both, so that the weight in the file's own water comes out.
         """
@@ -188,7 +202,7 @@ class ComponentMaker:
         value = values.get(key)
         if value is None:
             return 0.0
-        return value_at(value, depth if counts_on_depth(value) else speed)
+        return value.at(depth if counts_on_depth(value) else speed)
 
     def _drop(self, definition: CableDefinition) -> None:
         found = [key for key in _DYNAMICS if key in definition.values]
@@ -199,12 +213,12 @@ class ComponentMaker:
 
 
 def counts_on_depth(value: KeyValue) -> bool:
-    """Whether a drag is a function of depth; a table up to speeds that occur is one of speed."""
+    """Return whether a drag counts on depth; a table up to speeds that occur is one of speed."""
     return not value.rows or value.rows[-1][0].at() > _FASTEST
 
 
 def varies(definition: CableDefinition) -> bool:
-    """Whether a drag of a material is a function of depth."""
+    """Return whether a drag of a material is a function of depth."""
     return any(
         value is not None
         and counts_on_depth(value)
@@ -213,18 +227,16 @@ def varies(definition: CableDefinition) -> bool:
     )
 
 
-_STEPS = 12  # rows of a table between two diameters
-_SLIGHT = 1e-9
-
-
-def largest(definition: CableDefinition, shape: str) -> tuple[float, float, float]:
+def _largest(definition: CableDefinition, shape: str) -> tuple[float, float, float]:
     """Volume [m³], area shown to the current [m²] and height [m] of the whole hull."""
-    rows = displacement(definition, shape)
+    rows = _displacement(definition, shape)
     draft, volume, area = rows[-1]
     return volume, area, draft
 
 
-def displacement(definition: CableDefinition, shape: str) -> tuple[tuple[float, float, float], ...]:
+def _displacement(
+    definition: CableDefinition, shape: str
+) -> tuple[tuple[float, float, float], ...]:
     """Rows of draft [m], displaced volume [m³] and immersed area [m²].
 
     Raises
@@ -233,8 +245,8 @@ def displacement(definition: CableDefinition, shape: str) -> tuple[tuple[float, 
         The hull has no size, or a shape that is not known.
     """
     values = definition.values
-    across = number(values, "d") or number(values, "diam")
-    height = number(values, "h") or number(values, "height")
+    across = values.number("d", "diam")
+    height = values.number("h", "height")
     if shape == "axisymmetric":
         return _turned(definition)
     if across <= 0.0:
@@ -261,7 +273,7 @@ def displacement(definition: CableDefinition, shape: str) -> tuple[tuple[float, 
 
 
 def _turned(definition: CableDefinition) -> tuple[tuple[float, float, float], ...]:
-    """Of a hull given by its diameters at levels above its keel."""
+    """Return the rows of a hull given by its diameters at levels above its keel."""
     value = definition.values.get("diameters")
     if value is None or len(value.rows) < 2 or any(len(row) != 2 for row in value.rows):
         raise definition.token.refuse(f"buoy `{definition.name}` needs `diameters` at two levels")

@@ -15,7 +15,7 @@ Formula: TypeAlias = Callable[[Mapping[str, float]], float]
 """A value, computed from the values of the names it depends on."""
 
 _DEEPEST = 40  # parentheses within each other
-FUNCTIONS: dict[str, tuple[int, Callable[..., float]]] = {
+_FUNCTIONS: dict[str, tuple[int, Callable[..., float]]] = {
     "sin": (1, math.sin), "cos": (1, math.cos), "tan": (1, math.tan), "asin": (1, math.asin),
     "acos": (1, math.acos), "atan2": (2, math.atan2), "sinh": (1, math.sinh),
     "cosh": (1, math.cosh), "tanh": (1, math.tanh), "exp": (1, math.exp), "log": (1, math.log),
@@ -62,17 +62,17 @@ class TokenStream:
         return self._tokens[self._at]
 
     def ahead(self, count: int) -> Token:
-        """A word further on, which is not taken."""
+        """Return a word further on, which is not taken."""
         return self._tokens[min(self._at + count, len(self._tokens) - 1)]
 
     def take(self) -> Token:
-        """The next word."""
+        """Return the next word."""
         token = self.next
         self._at = min(self._at + 1, len(self._tokens) - 1)
         return token
 
     def mark(self) -> int:
-        """The place of the next word, for `back`."""
+        """Return the place of the next word, for `back`."""
         return self._at
 
     def back(self, mark: int) -> None:
@@ -84,7 +84,7 @@ class TokenStream:
         self._tokens[self._at : self._at] = tokens
 
     def comes(self, text: str) -> bool:
-        """Whether the next word is a sign; if so, it is taken."""
+        """Return whether the next word is a sign; if so, it is taken."""
         if self.next.kind == "sign" and self.next.text == text:
             self.take()
             return True
@@ -108,7 +108,7 @@ class UnknownNameError(InputError):
 
 @dataclass
 class Expression:
-    """A formula, the names it depends on, and the word it begins with."""
+    """Represent a formula, the names it depends on, and the word it begins with."""
 
     formula: Formula
     names: frozenset[str]
@@ -137,7 +137,7 @@ class Expression:
 
 
 def constant(text: str) -> float:
-    """The value of a formula without names."""
+    """Return the value of a formula without names."""
     words = TokenStream(list(tokens_of([SourceLine(text, "", 1)])))
     value = read_expression(words).at()
     if words.next.kind != "end":
@@ -211,7 +211,7 @@ class _Reader:
             raise token.refuse(f"a number is missing before `{token.text}`")
         if "/" in token.text:  # a sign that names may hold: here it divides
             token = self._cut(token)
-        if token.text.lower() in FUNCTIONS:
+        if token.text.lower() in _FUNCTIONS:
             return self._call(token, depth)
         if token.text.lower() == "pi":
             return lambda at: math.pi
@@ -220,14 +220,14 @@ class _Reader:
         return lambda at: at[name]
 
     def _cut(self, token: Token) -> Token:
-        """The name before the first stroke; what follows comes next."""
+        """Return the name before the first stroke; what follows comes next."""
         head, _, rest = token.text.partition("/")
         line = SourceLine(f"/{rest}", token.path, token.line)
         self._words.put([each for each in tokens_of([line]) if each.kind != "end"])
         return replace(token, text=head)
 
     def _call(self, token: Token, depth: int) -> Formula:
-        count, function = FUNCTIONS[token.text.lower()]
+        count, function = _FUNCTIONS[token.text.lower()]
         self._words.expect("(")
         arguments = [self.choice(depth + 1)]
         while self._words.comes(","):

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 
 from calm.exchange.cable_formulas import Expression, TokenStream, read_expression
@@ -22,10 +24,159 @@ _SECTIONS = frozenset(
 )
 _LONG_SECTIONS = {"problem": "description", "analysis": "parameters"}
 _MOST_NODES = 1_000_000
+_LAYOUT = frozenset(["terminal", "segment", "branch"])
+
+
+@dataclass
+class KeyValue:
+    """Hold the value of a key: a word, a formula, or rows in parentheses."""
+
+    token: Token
+    text: str = ""
+    formula: Expression | None = None
+    rows: list[tuple[Expression, ...]] = field(default_factory=list)
+    repeats: bool = False
+
+    def number(self, **values: float) -> float:
+        """Return a formula's value; `values` are those of the names it may hold."""
+        if self.formula is None:
+            raise self.token.refuse(f"a number is missing after `{self.token.text} =`")
+        return self.formula.at(**values)
+
+    def at(self, depth: float) -> float:
+        """Return a formula or a table at a depth, or whatever it counts on.
+
+        The lines of a table are prolonged at both ends.
+        """
+        if not self.rows:
+            return self.number(H=depth, h=depth, t=0.0)
+        if any(len(row) != 2 for row in self.rows):
+            raise self.token.refuse(f"the rows of `{self.token.text}` must be pairs")
+        pairs = [(row[0].at(), row[1].at()) for row in self.rows]
+        if any(b[0] < a[0] for a, b in pairwise(pairs)):
+            raise self.token.refuse(f"the rows of `{self.token.text}` must go on growing")
+        if len(pairs) == 1:
+            return pairs[0][1]
+        if self.repeats and pairs[-1][0] > 0.0:
+            depth = math.fmod(depth, pairs[-1][0])
+        above = next((i for i, pair in enumerate(pairs) if depth <= pair[0]), len(pairs) - 1)
+        (x1, y1), (x2, y2) = pairs[max(above - 1, 0)], pairs[max(above, 1)]
+        return y2 if x1 == x2 else y1 + (y2 - y1) * (depth - x1) / (x2 - x1)
+
+
+class KeyValues(dict[str, KeyValue]):
+    """Hold the values of a section, of a definition or of a block, by their keys."""
+
+    def number(self, *keys: str, default: float = 0.0) -> float:
+        """Return the number of the first key that has one other than 0, at the time 0.
+
+        Parameters
+        ----------
+        keys : that mean the same
+        default : where the file has none of them
+        """
+        found = default
+        for key in keys:
+            if key in self:
+                found = self[key].number(t=0.0)
+                if found:
+                    break
+        return found
+
+
+@dataclass
+class CableDefinition:
+    """Represent a buoy, an anchor, a connector or a material."""
+
+    token: Token
+    values: KeyValues
+
+    @property
+    def name(self) -> str:
+        """The name by which the layout calls it."""
+        return self.token.text
+
+
+@dataclass
+class CableAttachment:
+    """Represent a connector hung on nodes of a segment."""
+
+    token: Token
+    nodes: list[int]
+
+
+@dataclass
+class CableSegment:
+    """Represent a length of one material, and what joins it to the next one up."""
+
+    token: Token
+    values: KeyValues
+    attachments: list[CableAttachment] = field(default_factory=list)
+    connector: Token | None = None
+    joint: KeyValues = field(default_factory=KeyValues)
+
+
+@dataclass
+class CableTerminal:
+    """Represent an end of the line."""
+
+    token: Token
+    values: KeyValues
+
+
+@dataclass
+class CableProblem:
+    """Hold the content of a problem file.
+
+    Attributes
+    ----------
+    description, environment : key and value
+    buoys, anchors, connectors, materials : by name
+    layout : terminals and segments in the order of the file
+    branch : the first word of a branch, where there is one
+    """
+
+    path: Path
+    description: KeyValues = field(default_factory=KeyValues)
+    environment: KeyValues = field(default_factory=KeyValues)
+    analysis: KeyValues = field(default_factory=KeyValues)
+    buoys: dict[str, CableDefinition] = field(default_factory=dict)
+    anchors: dict[str, CableDefinition] = field(default_factory=dict)
+    connectors: dict[str, CableDefinition] = field(default_factory=dict)
+    materials: dict[str, CableDefinition] = field(default_factory=dict)
+    layout: list[CableTerminal | CableSegment] = field(default_factory=list)
+    branch: Token | None = None
+
+    @property
+    def kind(self) -> str:
+        """The type of the problem."""
+        given = self.description.get("type")
+        return given.text.lower() if given else "general"
+
+    @property
+    def terminals(self) -> list[CableTerminal]:
+        """The ends of the line."""
+        return [each for each in self.layout if isinstance(each, CableTerminal)]
+
+    @property
+    def segments(self) -> list[CableSegment]:
+        """The segments of the line, from the first end to the last."""
+        return [each for each in self.layout if isinstance(each, CableSegment)]
+
+    @property
+    def length(self) -> float:
+        """The length of all segments [m]."""
+        return sum(segment.values.number("length") for segment in self.segments)
 
 
 def read_problem(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> CableProblem:
     """Read a file.
+
+    Parameters
+    ----------
+    path : of the problem
+    defines : macros from outside, by name
+    allow_include : whether files outside its folder may be included
 
     Raises
     ------
@@ -60,7 +211,7 @@ def _section(words: TokenStream, problem: CableProblem) -> None:
 
 
 def _section_name(words: TokenStream) -> str | None:
-    """The section that begins here, if one does."""
+    """Return the section that begins here, if one does."""
     token = words.next
     if token.kind != "name":
         return None
@@ -83,7 +234,7 @@ def _definitions(words: TokenStream, found: dict[str, CableDefinition]) -> None:
 
 def _values(words: TokenStream) -> KeyValues:
     """Keys and their values, as far as they go; the last of a key holds."""
-    values: KeyValues = {}
+    values = KeyValues()
     while words.next.kind == "key" and words.next.text not in _LAYOUT:
         key = words.take()
         values[key.text] = _value(words, key)
@@ -135,9 +286,6 @@ def _rows(words: TokenStream) -> list[tuple[Expression, ...]]:
         rows.append(tuple(row))
 
 
-_LAYOUT = frozenset(["terminal", "segment", "branch"])
-
-
 def _layout(words: TokenStream, problem: CableProblem) -> None:
     """Terminals, segments and what joins them, from the anchor up."""
     while words.next.kind == "key":
@@ -173,7 +321,7 @@ def _skip_block(words: TokenStream, key: Token) -> None:
 
 
 def _segment(words: TokenStream, key: Token) -> CableSegment:
-    segment = CableSegment(key, {})
+    segment = CableSegment(key, KeyValues())
     words.expect("{")
     while words.next.kind == "key":
         name = words.take()
@@ -229,87 +377,3 @@ def _nodes(words: TokenStream, token: Token) -> list[int]:
     if len(numbers) != 3 or numbers[1] < 1 or numbers[2] > _MOST_NODES:
         raise token.refuse("nodes are given as [first, step, last]")
     return list(range(numbers[0], numbers[2] + 1, numbers[1]))
-
-
-@dataclass
-class KeyValue:
-    """The value of a key: a word, a formula, or rows in parentheses."""
-
-    token: Token
-    text: str = ""
-    formula: Expression | None = None
-    rows: list[tuple[Expression, ...]] = field(default_factory=list)
-    repeats: bool = False
-
-    def number(self, **values: float) -> float:
-        """A formula's value; `values` are those of the names it may hold."""
-        if self.formula is None:
-            raise self.token.refuse(f"a number is missing after `{self.token.text} =`")
-        return self.formula.at(**values)
-
-
-KeyValues = dict[str, KeyValue]
-
-
-@dataclass
-class CableDefinition:
-    """A buoy, an anchor, a connector or a material."""
-
-    token: Token
-    values: KeyValues
-
-    @property
-    def name(self) -> str:
-        """As the layout calls it."""
-        return self.token.text
-
-
-@dataclass
-class CableAttachment:
-    """A connector hung on nodes of a segment."""
-
-    token: Token
-    nodes: list[int]
-
-
-@dataclass
-class CableSegment:
-    """A length of one material, and what joins it to the next one up."""
-
-    token: Token
-    values: KeyValues
-    attachments: list[CableAttachment] = field(default_factory=list)
-    connector: Token | None = None
-    joint: KeyValues = field(default_factory=dict)
-
-
-@dataclass
-class CableTerminal:
-    """An end of the line."""
-
-    token: Token
-    values: KeyValues
-
-
-@dataclass
-class CableProblem:
-    """The content of a problem file.
-
-    Attributes
-    ----------
-    description, environment : key and value
-    buoys, anchors, connectors, materials : by name
-    layout : terminals and segments in the order of the file
-    branch : the first word of a branch, where there is one
-    """
-
-    path: Path
-    description: KeyValues = field(default_factory=dict)
-    environment: KeyValues = field(default_factory=dict)
-    analysis: KeyValues = field(default_factory=dict)
-    buoys: dict[str, CableDefinition] = field(default_factory=dict)
-    anchors: dict[str, CableDefinition] = field(default_factory=dict)
-    connectors: dict[str, CableDefinition] = field(default_factory=dict)
-    materials: dict[str, CableDefinition] = field(default_factory=dict)
-    layout: list[CableTerminal | CableSegment] = field(default_factory=list)
-    branch: Token | None = None

@@ -19,7 +19,7 @@ from calm.exchange.cable_grammar import (
     read_problem,
 )
 from calm.exchange.cable_source import Token
-from calm.exchange.cable_water import USUAL_GRAVITY, number, value_at, water_of
+from calm.exchange.cable_water import USUAL_GRAVITY, water_of
 from calm.exchange.design import (
     Design,
     ImportedComponent,
@@ -43,6 +43,9 @@ _REFUSED = {
     "tensioned": "a line under a given tension",
 }
 _MOORED = ("general", "surface", "subsurface")
+_REACHES = 0.97  # of the depth: a line as long reaches the surface
+_PARTS = 12  # lengths of a segment whose drag changes with depth
+_CHANGE = 0.02  # of a drag that is worth two lengths
 _HEADS = re.compile(
     r"^\s*(problem\s+description|analysis\s+parameters|environment|layout|materials)\b(?!\s*[=:])",
     re.MULTILINE,
@@ -55,13 +58,19 @@ _NOTE = (
 
 
 def is_cbl(content: bytes) -> bool:
-    """Whether a file looks like a problem: it names two of the sections that each must have."""
+    """Return whether a file looks like a problem: it names two sections that each must have."""
     text = content.decode("latin-1").lower()
     return b"\0" not in content and len(set(_HEADS.findall(text))) >= 2
 
 
 def read_cbl(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> Design:
     """Read a mooring or a tow.
+
+    Parameters
+    ----------
+    path : of the problem
+    defines : macros from outside, by name
+    allow_include : whether files outside its folder may be read
 
     Raises
     ------
@@ -91,43 +100,34 @@ def read_cbl(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> 
 
 def _read(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> Design:
     problem = read_problem(path, defines, allow_include=allow_include)
-    kind = _kind(problem)
-    ends = [each for each in problem.layout if isinstance(each, CableTerminal)]
-    segments = [each for each in problem.layout if isinstance(each, CableSegment)]
-    _refuse_other_shapes(problem, kind, ends, segments)
-    length = sum(number(segment.values, "length") for segment in segments)
-    title = problem.description.get("title")
+    _refuse_other_shapes(problem)
+    title, environment = problem.description.get("title"), problem.environment
     design = Design("WHOI Cable", title.text if title and title.text else path.stem, [], None)
     design.notes.append(_NOTE)
     design.water = water_of(
-        problem.environment, length, design.dropped, folder=path.parent, allow_include=allow_include
+        environment, problem.length, design.dropped, folder=path.parent, allow_include=allow_include
     )
     if problem.analysis:
         design.dropped.append(Remark("analysis parameters", "how that program is to solve it"))
-    density = number(problem.environment, "rho") or number(problem.environment, "density")
-    gravity = number(problem.environment, "gravity", USUAL_GRAVITY)
+    density = environment.number("rho", "density")
+    gravity = environment.number("gravity", default=USUAL_GRAVITY)
     for key, value in (("density", density), ("gravity", gravity)):
         if value < 0.0 or (key == "gravity" and value == 0.0):
             raise refused(path, f"its {key} is {value:g}")
     makers = ComponentMaker(density or CATALOGUE_DENSITY, gravity, design.dropped)
-    items = laid(problem, segments, makers, design)
-    if kind == "towing":
-        _lay_tow(problem, ends, items, makers, design)
-    else:
-        _lay_mooring(problem, kind, ends, items, makers, design)
+    items = _laid(problem, makers, design)
+    (_lay_tow if problem.kind == "towing" else _lay_mooring)(problem, items, makers, design)
+    known = {"buoy", "platform", "anchor", "mu", "x-speed", "y-speed", "x", "y", "z", *_FORCES}
+    for end in problem.terminals:
+        found = [key for key in end.values if key not in known]
+        if found:
+            design.dropped.append(Remark("terminal", ", ".join(found)))
     return design
 
 
-def _kind(problem: CableProblem) -> str:
-    given = problem.description.get("type")
-    return given.text.lower() if given else "general"
-
-
-def _refuse_other_shapes(
-    problem: CableProblem, kind: str, ends: list[CableTerminal], segments: list[CableSegment]
-) -> None:
+def _refuse_other_shapes(problem: CableProblem) -> None:
     """Refuse all but a single line from an anchor to a float, or from a ship to a body."""
-    path = problem.path
+    kind, layout, ends = problem.kind, problem.layout, problem.terminals
     if kind in _REFUSED:
         raise problem.description["type"].token.refuse(
             f"`type = {kind}` is {_REFUSED[kind]}; CALM has single moorings and tows"
@@ -136,12 +136,12 @@ def _refuse_other_shapes(
         raise problem.description["type"].token.refuse(f"`type = {kind}` is not known")
     if problem.branch is not None:
         raise problem.branch.refuse("a branch: a mooring of several legs is not a single line")
+    segments = problem.segments
     if len(ends) != 2 or not segments:
-        raise refused(path, f"the layout has {len(ends)} terminals and {len(segments)} segments")
-    if not isinstance(problem.layout[0], CableTerminal) or not isinstance(
-        problem.layout[-1], CableTerminal
-    ):
-        raise refused(path, "the layout must lead from one terminal to the other")
+        counts = f"{len(ends)} terminals and {len(segments)} segments"
+        raise refused(problem.path, f"the layout has {counts}")
+    if not all(isinstance(layout[end], CableTerminal) for end in (0, -1)):
+        raise refused(problem.path, "the layout must lead from one terminal to the other")
     anchored = ["anchor" in end.values for end in ends]
     if any("node" in end.values for end in ends):
         raise ends[1].token.refuse("a loop: its end is tied to a node of the line")
@@ -151,68 +151,47 @@ def _refuse_other_shapes(
         raise ends[0].token.refuse("no end is an anchor: a drifting line")
     for values in (*(end.values for end in ends), *(segment.joint for segment in segments)):
         for key in _FORCES:
-            if key in values and value_at(values[key], 0.0) != 0.0:
+            if key in values and values[key].at(0.0) != 0.0:
                 raise values[key].token.refuse(f"`{key}` pulls at the line from outside")
 
 
 def _lay_mooring(
-    problem: CableProblem,
-    kind: str,
-    ends: list[CableTerminal],
-    items: list[ImportedPiece],
-    makers: ComponentMaker,
-    design: Design,
+    problem: CableProblem, items: list[ImportedPiece], makers: ComponentMaker, design: Design
 ) -> None:
-    if "anchor" in ends[1].values:
-        raise ends[1].token.refuse("the layout must lead from the anchor up")
+    """Lay the line from the buoy down to the anchor."""
+    lower, upper = problem.terminals
+    if "anchor" in upper.values:
+        raise upper.token.refuse("the layout must lead from the anchor up")
     if design.water is None or design.water.depth is None:
         raise refused(problem.path, "the environment has no `depth`")
-    lower, upper = ends
     name = lower.values["anchor"]
-    anchor = makers.anchor(problem.anchors.get(name.text), name.text, number(lower.values, "mu"))
-    if number(lower.values, "z") > 0.0:
-        anchor.figures["length"] = number(lower.values, "z")
+    anchor = makers.anchor(problem.anchors.get(name.text), name.text, lower.values.number("mu"))
+    if lower.values.number("z") > 0.0:
+        anchor.figures["length"] = lower.values.number("z")
     top = upper.values.get("buoy") or upper.values.get("platform")
     if top is None:
         raise upper.token.refuse("the upper end is not a buoy")
-    buoy = defined(problem.buoys, top, upper.token)
-    afloat = kind == "surface" or (
-        kind == "general"
-        and sum(
-            number(each.values, "length")
-            for each in problem.layout
-            if isinstance(each, CableSegment)
-        )
-        >= 0.97 * design.water.depth
-    )
-    design.items = [
-        ImportedPiece(makers.buoy(buoy, afloat=afloat)),
-        *reversed(items),
-        ImportedPiece(anchor),
-    ]
-    friction = number(problem.environment, "bottom-friction")
+    reaches = problem.length >= _REACHES * design.water.depth
+    afloat = problem.kind == "surface" or (problem.kind == "general" and reaches)
+    buoy = makers.buoy(_defined(problem.buoys, top, upper.token), afloat=afloat)
+    design.items = [ImportedPiece(buoy), *reversed(items), ImportedPiece(anchor)]
+    friction = problem.environment.number("bottom-friction")
     if friction > 0.0:
         design.solver["seabed_friction"] = friction, "its bottom-friction"
-    _drop_dynamics(ends, design)
 
 
 def _lay_tow(
-    problem: CableProblem,
-    ends: list[CableTerminal],
-    items: list[ImportedPiece],
-    makers: ComponentMaker,
-    design: Design,
+    problem: CableProblem, items: list[ImportedPiece], makers: ComponentMaker, design: Design
 ) -> None:
-    """The line from the ship down; a ship at rest in a current is one that moves against it."""
-    body, ship = ends
+    """Lay the line from the ship down; a ship at rest in a current moves against it."""
+    body, ship = problem.terminals
     towed = body.values.get("buoy") or body.values.get("platform")
     if towed is None or "anchor" in ship.values:
         raise body.token.refuse("a tow leads from a towed body up to a ship")
     water = design.water
     assert water is not None
     east, north = (
-        value_at(ship.values[key], 0.0) if key in ship.values else 0.0
-        for key in ("x-speed", "y-speed")
+        ship.values[key].at(0.0) if key in ship.values else 0.0 for key in ("x-speed", "y-speed")
     )
     if not east and not north and water.current:
         _, drift_east, drift_north, _ = water.current[0]
@@ -224,47 +203,30 @@ def _lay_tow(
     if speed == 0.0:
         raise ship.token.refuse("the ship of this tow does not move")
     design.tow = ImportedTow(speed, bearing_of(east, north))
-    buoy = defined(problem.buoys, towed, body.token)
-    design.items = [*items[::-1], ImportedPiece(makers.buoy(buoy, afloat=False))]
-    _drop_dynamics(ends, design)
+    buoy = makers.buoy(_defined(problem.buoys, towed, body.token), afloat=False)
+    design.items = [*items[::-1], ImportedPiece(buoy)]
 
 
-def _drop_dynamics(ends: list[CableTerminal], design: Design) -> None:
-    known = {"buoy", "platform", "anchor", "mu", "x-speed", "y-speed", "x", "y", "z", *_FORCES}
-    for end in ends:
-        found = [key for key in end.values if key not in known]
-        if found:
-            design.dropped.append(Remark("terminal", ", ".join(found)))
-
-
-_PARTS = 12  # lengths of a segment whose drag changes with depth
-_CHANGE = 0.02  # of a drag that is worth two lengths
-
-
-def laid(
-    problem: CableProblem, segments: list[CableSegment], makers: ComponentMaker, design: Design
-) -> list[ImportedPiece]:
-    """The pieces between the ends, from the lower one up."""
+def _laid(problem: CableProblem, makers: ComponentMaker, design: Design) -> list[ImportedPiece]:
+    """Return the pieces between the ends, from the lower one up."""
     assert design.water is not None
     items: list[ImportedPiece] = []
     below = 0.0
-    seabed = design.water.depth or sum(number(each.values, "length") for each in segments)
-    for segment in segments:
-        length = number(segment.values, "length")
+    seabed = design.water.depth or problem.length
+    for segment in problem.segments:
+        length = segment.values.number("length")
         if length <= 0.0:
             raise segment.token.refuse("a segment has no length")
-        material = defined(problem.materials, segment.values.get("material"), segment.token)
+        material = _defined(problem.materials, segment.values.get("material"), segment.token)
         clamps = _clamps(problem, segment, length, makers)
         items += _pieces(material, length, seabed - below, clamps, makers, design.water)
         below += length
         for key in ("top-spool-length", "bottom-spool-length"):
-            if number(segment.values, key) > 0.0:
+            if segment.values.number(key) > 0.0:
                 design.dropped.append(Remark(f"segment of {material.name}", f"{key}: on a winch"))
         joint = segment.connector
         if joint is not None and joint.text.lower() not in ("pinned", "spliced"):
-            items.append(
-                ImportedPiece(makers.connector(_named(problem.connectors, joint, "connector")))
-            )
+            items.append(ImportedPiece(makers.connector(_connector(problem, joint))))
     return items
 
 
@@ -276,7 +238,7 @@ def _pieces(
     makers: ComponentMaker,
     water: ImportedWater,
 ) -> list[ImportedPiece]:
-    """A segment as one piece, or as several where its drag changes with depth; lower end first.
+    """Return a segment as one piece, or as several where its drag changes with depth, from below.
 
     Parameters
     ----------
@@ -314,14 +276,14 @@ def _pieces(
 
 def _alike(one: ImportedComponent, other: ImportedComponent) -> bool:
     for key in ("cn", "ct"):
-        a, b = float(one.figures[key]), float(other.figures[key])
+        a, b = one.number(key), other.number(key)
         if abs(a - b) > _CHANGE * max(abs(a), abs(b)):
             return False
     return True
 
 
 def _speed(water: ImportedWater, depth: float) -> float:
-    """Of the current at the level next to a depth [m/s]."""
+    """Return the speed of the current at the level next to a depth [m/s]."""
     if not water.current:
         return 0.0
     row = min(water.current, key=lambda each: abs(each[0] - depth))
@@ -331,13 +293,13 @@ def _speed(water: ImportedWater, depth: float) -> float:
 def _clamps(
     problem: CableProblem, segment: CableSegment, length: float, makers: ComponentMaker
 ) -> list[tuple[float, ImportedComponent]]:
-    """What hangs on the nodes of a segment, with the height above its lower end."""
+    """Return what hangs on the nodes of a segment, with the height above its lower end."""
     if not segment.attachments:
         return []
     heights = _heights(segment, length)
     found = []
     for attachment in segment.attachments:
-        component = makers.connector(_named(problem.connectors, attachment.token, "connector"))
+        component = makers.connector(_connector(problem, attachment.token))
         for node in attachment.nodes:
             if not 1 <= node <= len(heights):
                 raise attachment.token.refuse(
@@ -348,7 +310,7 @@ def _clamps(
 
 
 def _heights(segment: CableSegment, length: float) -> list[float]:
-    """Of the nodes of a segment above its lower end [m]."""
+    """Return the heights of the nodes of a segment above its lower end [m]."""
     nodes = segment.values.get("nodes")
     if nodes is None or not nodes.rows or any(len(row) != 2 for row in nodes.rows):
         raise segment.token.refuse("attachments need `nodes = (count, share)`")
@@ -364,10 +326,10 @@ def _heights(segment: CableSegment, length: float) -> list[float]:
     return heights
 
 
-def defined(
+def _defined(
     definitions: dict[str, CableDefinition], value: KeyValue | None, token: Token
 ) -> CableDefinition:
-    """The definition that a value names, else a problem at the value, or at `token` without one."""
+    """Return the definition that a value names; a problem stands at the value, or at `token`."""
     if value is None or not value.text:
         raise token.refuse("a name is missing: a material, or a buoy")
     found = definitions.get(value.text)
@@ -376,8 +338,8 @@ def defined(
     return found
 
 
-def _named(definitions: dict[str, CableDefinition], token: Token, what: str) -> CableDefinition:
-    found = definitions.get(token.text)
+def _connector(problem: CableProblem, token: Token) -> CableDefinition:
+    found = problem.connectors.get(token.text)
     if found is None:
-        raise token.refuse(f"the {what} `{token.text}` is defined nowhere")
+        raise token.refuse(f"the connector `{token.text}` is defined nowhere")
     return found

@@ -19,11 +19,16 @@ _MOST_TEXT = 4_000_000  # characters that a file may become
 _MOST_EXPANSIONS = 20_000
 _DEEPEST = 20  # files within files, macros within macros, conditions within conditions
 _LONGEST = 100_000  # characters of one line once expanded
+_NUMBER = re.compile(r"(?:\d+\.\d*|\.\d+|\d+)(?:[eE][+-]?\d+)?")
+_KEY = re.compile(r"([A-Za-z_][\w.-]*)[ \t]*=(?!=)")
+_WORD = re.compile(r"[A-Za-z_][\w/.:]*")
+_QUOTED = re.compile(r"\"([^\"]*)\"|'([^']*)'")
+_SIGN = re.compile(r"&&|\|\||==|!=|<=|>=|<<|>>|[-+*/%<>!~?:|^&(){}\[\],]")
 
 
 @dataclass(frozen=True)
 class SourceLine:
-    """A line of text and where it stands."""
+    """Hold a line of text and where it stands."""
 
     text: str
     path: str
@@ -54,7 +59,7 @@ class Preprocessor:
     _expansions: int = 0
 
     def read(self, path: Path) -> list[SourceLine]:
-        """The lines of a file, and of those it includes.
+        """Return the lines of a file, and of those it includes.
 
         Raises
         ------
@@ -183,7 +188,7 @@ class Preprocessor:
         self._lines.append(SourceLine(expanded, path, number))
 
     def _expanded(self, text: str, hidden: frozenset[str] = frozenset()) -> str:
-        """A text with its macros replaced; quoted texts stay as they are."""
+        """Return a text with its macros replaced; quoted texts stay as they are."""
         pieces: list[str] = []
         size, at = 0, 0
         while at < len(text):
@@ -208,7 +213,7 @@ class Preprocessor:
     def _replaced(
         self, macro: _Macro, name: re.Match[str], text: str, hidden: frozenset[str]
     ) -> tuple[str, int]:
-        """What stands in place of a macro, and where the text goes on."""
+        """Return what stands in place of a macro, and where the text goes on."""
         self._expansions += 1
         if self._expansions > _MOST_EXPANSIONS or len(hidden) > _DEEPEST:
             raise ValueError(f"the macro `{name[0]}` grows without limit")
@@ -226,7 +231,7 @@ class Preprocessor:
 
 
 def _arguments(text: str, at: int) -> tuple[list[str], int]:
-    """The arguments in the parentheses that follow, and where the text goes on after them."""
+    """Return the arguments in the parentheses that follow, and where the text goes on."""
     opening = re.compile(r"\s*\(").match(text, at)
     if opening is None:
         return [], at
@@ -245,7 +250,7 @@ def _arguments(text: str, at: int) -> tuple[list[str], int]:
 
 
 def _without_comments(text: str, path: str) -> list[str]:
-    """The lines without comments, lines joined by a backslash as one; as many lines as before."""
+    """Return as many lines without comments, those that a backslash joins in the first of them."""
     pieces: list[str] = []
     at = 0
     sign = re.compile(r"/\*|//|\"[^\"\n]*\"|'[^'\n]*'")
@@ -278,16 +283,9 @@ def _without_comments(text: str, path: str) -> list[str]:
     return lines
 
 
-_NUMBER = re.compile(r"(?:\d+\.\d*|\.\d+|\d+)(?:[eE][+-]?\d+)?")
-_KEY = re.compile(r"([A-Za-z_][\w.-]*)[ \t]*=(?!=)")
-_WORD = re.compile(r"[A-Za-z_][\w/.:]*")
-_QUOTED = re.compile(r"\"([^\"]*)\"|'([^']*)'")
-_SIGN = re.compile(r"&&|\|\||==|!=|<=|>=|<<|>>|[-+*/%<>!~?:|^&(){}\[\],]")
-
-
 @dataclass(frozen=True)
 class Token:
-    """A word and where it stands.
+    """Hold a word and where it stands.
 
     `kind` is ``key`` (a name with its `=`), ``name``, ``text`` (in quotes), ``number``, ``sign`` or
     ``end``.
@@ -301,12 +299,12 @@ class Token:
     number: float = 0.0
 
     def refuse(self, message: str) -> Exception:
-        """A problem at this word."""
+        """Return a problem at this word."""
         return refused_at(self.path, self.line, self.column, message)
 
 
 def tokens_of(lines: Iterable[SourceLine]) -> Iterator[Token]:
-    """The words of the lines, and an ``end``.
+    """Return the words of the lines, and an ``end``.
 
     Raises
     ------

@@ -25,12 +25,12 @@ _DIGITS = 9  # of a speed in m/s
 _WAVES = ("x-wave", "y-wave", "x-input", "y-input", "z-input", "wave-file")
 _DYNAMICS = ("forcing-method", "input-type", "velocity-file", "force-file")
 _SEABED = ("bottom-stiffness", "bottom-damping", "bottom-elevation")
+_Profile = tuple[Callable[[float], float], list[float]]
+"""A speed by depth, and the depths between which it is linear."""
 
-
-def number(values: KeyValues, key: str, default: float = 0.0) -> float:
-    """A number of a section; it may depend on the time, which is 0."""
-    value = values.get(key)
-    return default if value is None else value.number(t=0.0)
+_LARGEST = 20_000_000  # bytes
+_MOST = 2_000_000  # speeds
+_AXES = ("time", "depth", "x", "y")
 
 
 def water_of(
@@ -49,23 +49,23 @@ def water_of(
     folder : of the problem, in which files of currents stand
     allow_include : whether they may stand elsewhere
     """
-    depth = number(environment, "depth")
+    depth = environment.number("depth")
     water = ImportedWater(depth if depth > 0.0 else None)
-    water.density = number(environment, "rho") or number(environment, "density") or None
-    water.gravity = number(environment, "gravity", USUAL_GRAVITY)
+    water.density = environment.number("rho", "density") or None
+    water.gravity = environment.number("gravity", default=USUAL_GRAVITY)
     if "gravity" not in environment:
         water.guesses["gravity"] = "the file gives none; the usual one of such files"
     gridded = None
     if "current-file" in environment:
         value = environment["current-file"]
-        gridded = gridded_current(value, folder, allow_include=allow_include)
+        gridded = _gridded_current(value, folder, allow_include=allow_include)
         if gridded is None:
             what = f"still water: its current-file `{value.text}` is missing"
             water.guesses["current"] = what
         else:
             dropped += [Remark("current-file", each) for each in gridded.others]
     water.current = _current(environment, gridded, depth if depth > 0.0 else deepest)
-    east, north = (number(environment, f"{axis}-wind") for axis in "xy")
+    east, north = (environment.number(f"{axis}-wind") for axis in "xy")
     if east or north:
         water.wind = math.hypot(east, north), bearing_of(east, north)
     for what, keys in (("waves", _WAVES), ("how waves act", _DYNAMICS), ("the seabed", _SEABED)):
@@ -82,7 +82,7 @@ def _current(
     axes = [_profile(environment, axis, gridded) for axis in "xyz"]
     if not any(axes):
         return ()
-    angle = 0.0 if gridded else number(environment, "current-rotation")
+    angle = 0.0 if gridded else environment.number("current-rotation")
 
     def at(depth: float) -> tuple[float, float, float]:
         x, y, z = (0.0 if axis is None else axis[0](depth) for axis in axes)
@@ -101,14 +101,10 @@ def _current(
     return tuple(rows) if any(any(row[1:]) for row in rows) else ()
 
 
-_Profile = tuple[Callable[[float], float], list[float]]
-"""A speed by depth, and the depths between which it is linear."""
-
-
 def _profile(environment: KeyValues, axis: str, gridded: GriddedCurrent | None) -> _Profile | None:
-    scale = number(environment, f"{axis}-current-scale", 1.0)
+    scale = environment.number(f"{axis}-current-scale", default=1.0)
     if scale == 1.0:
-        scale = number(environment, "current-scale", 1.0)
+        scale = environment.number("current-scale", default=1.0)
     if gridded is not None:  # it is scaled there, but neither modulated nor turned
         speed = gridded.axis("xyz".index(axis))
         return (lambda depth: scale * speed(depth)), gridded.depth.tolist()
@@ -117,29 +113,11 @@ def _profile(environment: KeyValues, axis: str, gridded: GriddedCurrent | None) 
         return None
     modulation = environment.get(f"{axis}-current-modulation")
     if modulation is not None:
-        scale *= value_at(modulation, 0.0)
+        scale *= modulation.at(0.0)
     knots = [row[0].at() for row in value.rows]
     if not knots and value.formula is not None and not value.formula.names:
         knots = [0.0]  # one speed at all depths
-    return (lambda depth: scale * value_at(value, depth)), knots
-
-
-def value_at(value: KeyValue, depth: float) -> float:
-    """A formula or a table at a depth (or whatever it counts on), lines prolonged at both ends."""
-    if not value.rows:
-        return value.number(H=depth, h=depth, t=0.0)
-    if any(len(row) != 2 for row in value.rows):
-        raise value.token.refuse(f"the rows of `{value.token.text}` must be pairs")
-    pairs = [(row[0].at(), row[1].at()) for row in value.rows]
-    if any(b[0] < a[0] for a, b in pairwise(pairs)):
-        raise value.token.refuse(f"the rows of `{value.token.text}` must go on growing")
-    if len(pairs) == 1:
-        return pairs[0][1]
-    if value.repeats and pairs[-1][0] > 0.0:
-        depth = math.fmod(depth, pairs[-1][0])
-    above = next((i for i, pair in enumerate(pairs) if depth <= pair[0]), len(pairs) - 1)
-    (x1, y1), (x2, y2) = pairs[max(above - 1, 0)], pairs[max(above, 1)]
-    return y2 if x1 == x2 else y1 + (y2 - y1) * (depth - x1) / (x2 - x1)
+    return (lambda depth: scale * value.at(depth)), knots
 
 
 def _refined(at: Callable[[float], tuple[float, float, float]], levels: list[float]) -> list[float]:
@@ -161,14 +139,9 @@ def _refined(at: Callable[[float], tuple[float, float, float]], levels: list[flo
     return levels
 
 
-_LARGEST = 20_000_000  # bytes
-_MOST = 2_000_000  # speeds
-_AXES = ("time", "depth", "x", "y")
-
-
 @dataclass(frozen=True)
 class GriddedCurrent:
-    """The profile at the anchor at the time 0.
+    """Hold the profile at the anchor at the time 0.
 
     Attributes
     ----------
@@ -182,16 +155,24 @@ class GriddedCurrent:
     others: tuple[str, ...]
 
     def axis(self, number: int) -> Callable[[float], float]:
-        """A speed by depth, constant beyond the first and the last level, as in that program."""
+        """Return a speed by depth, constant beyond the first and the last level, as there."""
         column = self.speeds[:, number]
         return lambda depth: float(np.interp(depth, self.depth, column))
 
 
-def gridded_current(value: KeyValue, folder: Path, *, allow_include: bool) -> GriddedCurrent | None:
-    """The currents of a file beside the problem; None where there is no such file.
+def _gridded_current(
+    value: KeyValue, folder: Path, *, allow_include: bool
+) -> GriddedCurrent | None:
+    """Return the currents of a file beside the problem; None where there is no such file.
 
     It begins with step, start and count of time, depth, x and y; the speeds to x, y and z follow,
     the depth running fastest, then x, then y, then the time.
+
+    Parameters
+    ----------
+    value : that names the file
+    folder : of the problem
+    allow_include : whether the file may lie elsewhere
 
     Raises
     ------
@@ -240,7 +221,7 @@ def _numbers(path: Path) -> NDArray[np.float64]:
 
 
 def _at_zero(grid: NDArray[np.float64], axis: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The grid at 0 of its first axis, or at that end of it which is nearer."""
+    """Return the grid at 0 of its first axis, or at that end of it which is nearer."""
     order = np.argsort(axis)
     axis, grid = axis[order], grid[order]
     place = min(max(0.0, axis[0]), axis[-1])

@@ -17,11 +17,12 @@ _LEAST_MASS = 0.01  # kg per metre: what weighs and drags nothing still moves
 _LEAST_WEIGHT = 1e-6  # N per metre: a weight of 0 is worked out from the mass there
 _FINEST, _COARSEST = 3, 401  # nodes of a segment
 _APART = 0.5  # m between nodes, where that many suffice
+_LEAST = 1e-3  # m of diameter, kg of mass
 
 
 @dataclass
 class _Problem:
-    """The sections of the file, as they grow from the lower end up, for water of one density."""
+    """Gather the sections of the file from the lower end up, for water of one density."""
 
     density: float
     materials: dict[str, str] = field(default_factory=dict)
@@ -31,7 +32,7 @@ class _Problem:
     last: tuple[str, float] = ("", 0.0)
 
     def segment(self, name: str, length: float) -> None:
-        """A length of a material, after what acts at its lower end."""
+        """Add a length of a material, after what acts at its lower end."""
         if length <= 0.0:
             return
         if self.load is None and self.last[0] == name:
@@ -66,7 +67,7 @@ class _Problem:
 
 
 def cbl_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
-    """The content of the file, and what it cannot hold."""
+    """Return the content of the file, and what it cannot hold."""
     lost: list[str] = []
     density = design.mean_density
     problem = _Problem(density)
@@ -103,7 +104,7 @@ def cbl_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
         problem.segment(_link(problem), buoy.length)
     if problem.load is not None:
         problem.segment(_link(problem), 0.001)
-    text = _text(design, problem, buoy_figures(buoy, design, density, lost), density, floating)
+    text = _text(design, problem, _buoy_figures(buoy, design, density, lost), density, floating)
     losses = design.losses(lost)
     head = [f"{design.name}, by CALM; lost:", *(f"- {each}" for each in losses)]
     comment = "\n   ".join(line.replace("*/", "* /") for line in head)
@@ -111,7 +112,7 @@ def cbl_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
 
 
 def _lay(problem: _Problem, part: ExportedPart, lost: list[str]) -> None:
-    """A part, from its lower end up."""
+    """Lay a part from its lower end up."""
     if part.flexible or (part.directional and part.length > 0.0):
         name = _material(problem, part)
         below = part.length
@@ -134,7 +135,7 @@ def _lay(problem: _Problem, part: ExportedPart, lost: list[str]) -> None:
 
 
 def _link(problem: _Problem) -> str:
-    """A stiff material without weight and drag, as long as a rigid piece is."""
+    """Return a stiff material without weight and drag, as long as a rigid piece is."""
     figures = (
         f"d = 0.001  m = {_LEAST_MASS}  wet = {_LEAST_WEIGHT}  Cdn = 0  Cdt = 0"
         f"  EA = {_RIGID:g}  EI = 1e-4  GJ = 1e-4"
@@ -143,7 +144,7 @@ def _link(problem: _Problem) -> str:
 
 
 def _material(problem: _Problem, part: ExportedPart) -> str:
-    """The material of a cable, a chain or a cylinder, per metre."""
+    """Return the material of a cable, a chain or a cylinder, per metre."""
     per = 1.0 if part.flexible else part.length
     wet, across = 0.0 - part.net / per, part.diameter or part.area() / per
     normal = part.area(problem.density) / per / across if across else 0.0
@@ -161,7 +162,7 @@ def _material(problem: _Problem, part: ExportedPart) -> str:
 
 
 def _word(text: str) -> str:
-    """A name as that program's words are: it begins with a letter."""
+    """Return a name as that program's words are: it begins with a letter."""
     word = "".join(sign if sign.isalnum() and sign.isascii() else "_" for sign in text)
     return word if word[:1].isalpha() else f"n_{word}"
 
@@ -232,10 +233,7 @@ def _ends(design: ExportedLine, layout: list[str]) -> list[str]:
     return ["    terminal = { buoy = towed }", *layout, ship]
 
 
-_LEAST = 1e-3  # m of diameter, kg of mass
-
-
-def buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost: list[str]) -> str:
+def _buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost: list[str]) -> str:
     """Its size, mass, buoyancy and drag, in the words of that program.
 
     Parameters
@@ -280,7 +278,7 @@ def buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost:
 
 
 def _windage(part: ExportedPart, design: ExportedLine) -> str:
-    """The area of a float in the wind, where there is wind or the file gives it."""
+    """Return the area of a float in the wind, where there is wind or the file gives it."""
     component = part.component
     if not isinstance(component, Rigid):
         return ""

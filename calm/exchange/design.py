@@ -21,13 +21,13 @@ FigureOrWord = float | str
 
 
 def one_line(text: str) -> str:
-    """A text in one line, without control signs."""
+    """Return a text in one line, without control signs."""
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())
 
 
 @dataclass(frozen=True)
 class Remark:
-    """Something guessed, or left out: where it stands, and what."""
+    """Say that something was guessed, or left out: where it stands, and what."""
 
     where: str
     what: str
@@ -38,7 +38,7 @@ class Remark:
 
 @dataclass(eq=False)
 class ImportedComponent:
-    """A definition, with the figures of the file it comes from.
+    """Hold a definition, with the figures of the file it comes from.
 
     Attributes
     ----------
@@ -87,7 +87,7 @@ class ImportedComponent:
 
 @dataclass(eq=False)
 class ImportedClamp:
-    """A component clamped on a piece, `at` metres from the piece's upper end."""
+    """Represent a component clamped on a piece, `at` metres from the piece's upper end."""
 
     component: ImportedComponent
     at: float
@@ -96,7 +96,7 @@ class ImportedClamp:
 
 @dataclass(eq=False)
 class ImportedPiece:
-    """A piece of the line; `length` [m] is that of a cable or chain."""
+    """Represent a piece of the line; `length` [m] is that of a cable or chain."""
 
     component: ImportedComponent
     length: float | None = None
@@ -125,7 +125,7 @@ class ImportedPiece:
 
 @dataclass(eq=False)
 class CurrentRecord:
-    """Currents at several times: `u`, `v`, `w` [m/s] by time and level, `depth` [m] of the levels.
+    """Hold currents at several times: `u`, `v`, `w` [m/s] by time and level, `depth` [m].
 
     `days` count from `epoch`, a date.
     """
@@ -140,7 +140,7 @@ class CurrentRecord:
 
 @dataclass(eq=False)
 class ImportedWater:
-    """The environment of the line.
+    """Hold the environment of the line.
 
     Attributes
     ----------
@@ -162,7 +162,7 @@ class ImportedWater:
 
 @dataclass(eq=False)
 class ImportedTow:
-    """Speed [m/s], course [degrees], height of the sheave above the water [m]."""
+    """Hold speed [m/s], course [degrees], height of the sheave above the water [m]."""
 
     speed: float
     toward: float
@@ -171,7 +171,7 @@ class ImportedTow:
 
 @dataclass(eq=False)
 class Design:
-    """A mooring or a tow as another program's file gives it.
+    """Hold a mooring or a tow as another program's file gives it.
 
     Attributes
     ----------
@@ -207,10 +207,17 @@ class Design:
 
 
 def refused(path: object, *messages: str) -> InputError:
-    """Why a file cannot be read, or what in it CALM cannot represent."""
+    """Return why a file cannot be read, or what in it CALM cannot represent."""
     return InputError([Problem(str(path), 0, 0, one_line(message)) for message in messages])
 
 
 def refused_at(path: object, line: int, column: int, message: str) -> InputError:
-    """The same, with the place in a text."""
+    """Return why a file cannot be read, with the place in its text.
+
+    Parameters
+    ----------
+    path : of the file
+    line, column : from 1
+    message : what is wrong there
+    """
     return InputError([Problem(str(path), line, column, one_line(message))])

@@ -35,7 +35,7 @@ _METRE = 100.0  # cm: the length of a line whose figures are those of a metre
 
 @dataclass(frozen=True)
 class LibraryElement:
-    """An element of a library: its figures in SI, those of a line per metre."""
+    """Hold an element of a library: its figures in SI, those of a line per metre."""
 
     name: str
     is_line: bool
@@ -47,7 +47,7 @@ Library = Mapping[str, LibraryElement]
 
 
 def read_library(path: Path) -> Library:
-    """The elements of Mooring Design & Dynamics' `mdcodes.mat`, or of a table or workbook.
+    """Return the elements of Mooring Design & Dynamics' `mdcodes.mat`, or of a table or workbook.
 
     Of several elements of one name the first holds.
 
@@ -65,7 +65,7 @@ def read_library(path: Path) -> Library:
 
 
 def is_library(sheets: Mapping[str, SheetRows]) -> bool:
-    """Whether sheets are a library: several with headings, or the table of moords."""
+    """Return whether sheets are a library: several with headings, or the table of moords."""
     headed = [found for rows in sheets.values() if (found := headings_of(rows, {})) is not None]
     moords = {"buoyancy_kg", "length_m", "width_m", "diameter_m"}
     return len(headed) >= _SHEETS or any(
@@ -74,12 +74,19 @@ def is_library(sheets: Mapping[str, SheetRows]) -> bool:
 
 
 def key_of(name: str) -> str:
-    """A name without capitals and blanks, as libraries are searched."""
+    """Return a name without capitals and blanks, as libraries are searched."""
     return "".join(name.lower().split())
 
 
 def complete(rows: Iterable[ListRow], library: Library, source: str) -> None:
-    """Give rows the figures that they lack, from the element of their name."""
+    """Give rows the figures that they lack, from the element of their name.
+
+    Parameters
+    ----------
+    rows : of the list, changed in place
+    library : in which they are looked up
+    source : name of the library in hints
+    """
     for row in rows:
         element = library.get(key_of(row.name))
         if element is None:
@@ -122,7 +129,7 @@ def _width(variables: Mapping[str, MatValue]) -> int:
 
 
 def _entry(text: str, group: str, end: int) -> LibraryElement | None:
-    """An element of a row; None for a row that cannot be read."""
+    """Return an element of a row; None for a row that cannot be read."""
     content = text.encode()
     try:
         figures = [float(word) for word in content[end:].split()]
@@ -160,7 +167,7 @@ def _of_sheets(path: Path) -> Iterable[LibraryElement]:
 
 
 def _is_line(row: ListRow, title: str) -> bool:
-    """Whether an element is a line, with figures per metre."""
+    """Return whether an element is a line, with figures per metre."""
     floats = row.figures.get("buoyancy", 0.0) > 0.0 and row.figures.get("diameter", 0.0) > 0.0
     if abs(row.figures.get("length", 1.0) - 1.0) > _A_METRE or (floats and "width" in row.figures):
         return False

@@ -22,7 +22,6 @@ _DIGITS = 9  # of a speed in m/s
 Coordinates = tuple[float, float, float]
 """East and north of the anchor, and depth [m]."""
 
-
 Levels = tuple[tuple[float, float, float, float, float], ...]
 """Rows of depth [m], current to the east, to the north and up [m/s], and density [kg/m³]."""
 
@@ -274,7 +273,7 @@ class ExportedLine:
 
 
 def assembled(mooring: Mooring | Tow) -> ExportedLine:
-    """The parts of a mooring or a tow.
+    """Return the parts of a mooring or a tow.
 
     Raises
     ------
@@ -347,7 +346,7 @@ def _east_and_north(speed: float, toward: float) -> tuple[float, float]:
 
 
 def _reaches(mooring: Mooring | Tow) -> bool:
-    """Whether a mooring floats at the surface; by its length where it has no equilibrium."""
+    """Return whether a mooring floats at the surface; by its length where it has no equilibrium."""
     if isinstance(mooring, Tow):
         return False
     try:
@@ -358,7 +357,7 @@ def _reaches(mooring: Mooring | Tow) -> bool:
 
 
 def _riding(mooring: Mooring | Tow) -> tuple[tuple[float, float], tuple[float, float]]:
-    """How the float stands at the surface here: `riding` and `windage` of `ExportedLine`."""
+    """Return how the float stands at the surface: `riding` and `windage` of `ExportedLine`."""
     floating = mooring.line.floating
     if not _reaches(mooring):
         return (1.0, 1.0), (0.0, 1.0)
@@ -413,7 +412,7 @@ def _levels(water: Water, deepest: float) -> Levels:
 
 
 def _unsaid(mooring: Mooring | Tow) -> tuple[str, ...]:
-    """What a mooring file says that other programs do not know."""
+    """Return what a mooring file says that other programs do not know."""
     file = mooring.file
     unsaid = [
         "limits of the design check, strengths, ratings and tilts of components",

@@ -2,37 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-
 from calm.case import load
 from calm.errors import UsageError
 from calm.exchange.cable_writer import cbl_file
-from calm.exchange.exported_parts import ExportedLine, ExportedPart, assembled
+from calm.exchange.exported_parts import ExportedLine
+from calm.exchange.exported_parts import ExportedPart
+from calm.exchange.exported_parts import assembled
 from calm.exchange.mdd_writer import mdd_file
-from calm.exchange.moordyn_writer import CURRENTS, current_profile, moordyn_file
+from calm.exchange.moordyn_writer import CURRENTS
+from calm.exchange.moordyn_writer import current_profile
+from calm.exchange.moordyn_writer import moordyn_file
 from calm.records.csv_writer import table_csv
 from calm.suggestions import unknown
+
+_HEADER = (
+    "name", "label", "kind", "role", "clamped at[m]", "length[m]", "diameter[m]", "whole mass[kg]",
+    "whole buoyancy[N]", "whole Cd x area[m^2]", "whole tangential Cd x area[m^2]", "EA[N]",
+)  # fmt: skip
+Writer = Callable[[ExportedLine], tuple[bytes, tuple[str, ...]]]
 
 
 @dataclass(frozen=True)
 class Exported:
-    """The content of a file for another program, what it cannot hold, and the files beside it."""
+    """Hold the content of a file for another program, what it cannot hold, and files beside it."""
 
     content: bytes
     lost: tuple[str, ...]
     beside: dict[str, bytes]
 
 
-HEADER = (
-    "name", "label", "kind", "role", "clamped at[m]", "length[m]", "diameter[m]", "whole mass[kg]",
-    "whole buoyancy[N]", "whole Cd x area[m^2]", "whole tangential Cd x area[m^2]", "EA[N]",
-)  # fmt: skip
-
-
-def csv_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
-    """The content of the file, and what it cannot hold."""
+def _csv_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
+    """Return the content of the file, and what it cannot hold."""
     lost = ["the water", "hulls and wind: floats drag in full at the surface"]
     if design.tow is not None:
         lost.append("the speed of the ship: a list is a mooring's")
@@ -48,7 +52,7 @@ def csv_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
         rows.append([*["anchor"] * 4, *figures])
     comments = (f"{design.name}, by CALM; lost:", *losses)
     above = "".join(f"# {' '.join(line.split())}\n" for line in comments)
-    return (above + table_csv(HEADER, rows)).encode(), losses
+    return (above + table_csv(_HEADER, rows)).encode(), losses
 
 
 def _row(part: ExportedPart, at: float | None) -> list[str | float | None]:
@@ -69,10 +73,8 @@ def _row(part: ExportedPart, at: float | None) -> list[str | float | None]:
     ]
 
 
-Writer = Callable[[ExportedLine], tuple[bytes, tuple[str, ...]]]
-
 WRITERS: dict[str, Writer] = {
-    "mdd": mdd_file, "cbl": cbl_file, "csv": csv_file, "moordyn": moordyn_file,
+    "mdd": mdd_file, "cbl": cbl_file, "csv": _csv_file, "moordyn": moordyn_file,
 }  # fmt: skip
 """What a mooring can be written for."""
 

@@ -21,7 +21,7 @@ from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY, STEEL_DEN
 from calm.files.yaml_document import read_document
 from calm.quantities import rounded
 
-TOLERANCE = 0.05
+_TOLERANCE = 0.05
 """Share by which size, net force and drag may differ from those of a catalogue entry."""
 
 _COMMON_WORDS = 0.5  # share of the words of a name that an entry must have, two at least
@@ -37,6 +37,12 @@ def hold(design: Design, environment: list[str] | None, output: Path) -> None:
 
     The shape of the line does not depend on it. The weight is what `calm check` asks for in this
     current. A line without an equilibrium is left to `calm run`, which says so.
+
+    Parameters
+    ----------
+    design : whose anchor is changed
+    environment : lines in place of the water of the design
+    output : path of the mooring file to come
     """
     anchor = design.items[-1].component if design.items and design.tow is None else None
     if anchor is None or anchor.kind != "anchor":
@@ -63,7 +69,7 @@ def hold(design: Design, environment: list[str] | None, output: Path) -> None:
 def _pull(
     design: Design, anchor: ImportedComponent, environment: list[str] | None, output: Path
 ) -> tuple[float | None, float]:
-    """The upward pull of the line, and the weight that holds it [N]."""
+    """Return the upward pull of the line, and the weight that holds it [N]."""
     figures = dict(anchor.figures)
     anchor.figures.pop("mass", None)
     anchor.figures["weight"] = _HOLDS
@@ -80,7 +86,7 @@ def _pull(
 
 @dataclass(frozen=True)
 class CatalogueMatch:
-    """A component, by its name in the file, and the catalogue entry used in its place."""
+    """Name a component, as the file has it, and the catalogue entry used in its place."""
 
     name: str
     entry: str
@@ -89,8 +95,8 @@ class CatalogueMatch:
 def match(design: Design) -> tuple[CatalogueMatch, ...]:
     """Use catalogue entries for the components whose name and figures agree with one.
 
-    A component is of the same kind, shares half the words of its name, and is within `TOLERANCE` in
-    diameter, length, net force, normal drag and stiffness, as far as both give them.
+    A component is of the same kind, shares half the words of its name, and is within `_TOLERANCE`
+    in diameter, length, net force, normal drag and stiffness, as far as both give them.
     """
     catalogue = Catalogue.load()
     entries = {
@@ -135,11 +141,11 @@ def _words(text: str) -> set[str]:
 
 
 def _weighs_alike(one: Component, other: Component) -> bool:
-    """Whether a component without a size in the file has the net force of an entry."""
+    """Return whether a component without a size in the file has the net force of an entry."""
     if not isinstance(other, Rigid):
         return False
     a, b = one.net_buoyancy, other.net_buoyancy
-    return abs(a - b) <= TOLERANCE * max(abs(a), abs(b))
+    return abs(a - b) <= _TOLERANCE * max(abs(a), abs(b))
 
 
 def _agree(one: Component, other: Component) -> bool:
@@ -151,16 +157,16 @@ def _agree(one: Component, other: Component) -> bool:
         if values[0] is not None and values[1] is not None:
             pairs.append((values[0], values[1]))
     pairs.append((_drag(one), _drag(other)))
-    return all(abs(a - b) <= TOLERANCE * max(abs(a), abs(b)) for a, b in pairs)
+    return all(abs(a - b) <= _TOLERANCE * max(abs(a), abs(b)) for a, b in pairs)
 
 
 def _drag(component: Component) -> float:
-    """At 1 m/s across it [N], of a cable or chain per metre."""
+    """Return the drag at 1 m/s across it [N], of a cable or chain per metre."""
     return drag_of(component, getattr(component, "length", 1.0))[0]
 
 
 def environment_lines(path: Path, output: Path) -> list[str]:
-    """The `environment` of a file, its paths relative to the folder of the mooring file.
+    """Return the `environment` of a file, its paths relative to the folder of the mooring file.
 
     Raises
     ------

@@ -22,10 +22,12 @@ from calm.exchange.moordyn_reader import is_moordyn, read_moordyn
 from calm.files import read_mooring
 from calm.version import __version__
 
+_HEAD = 70_000  # bytes from which a format is recognised
+
 
 @dataclass(frozen=True)
 class ImportOptions:
-    """The options of a command line.
+    """Hold the options of a command line.
 
     Attributes
     ----------
@@ -43,35 +45,30 @@ class ImportOptions:
 
 @dataclass(frozen=True)
 class ImportFormat:
-    """A format of files that can be imported: its name, how it is recognised and read."""
+    """Describe a format that can be imported: its name, how it is recognised and read."""
 
     name: str
     program: str
-    recognises: Callable[[Path, bytes], bool]
+    recognises: Callable[[bytes], bool]
     read: Callable[[Path, ImportOptions], Design]
 
 
 FORMATS = (
     ImportFormat(
-        "mdd", "Mooring Design & Dynamics", lambda path, content: is_mat(content),
-        lambda path, options: read_mdd(path),
+        "mdd", "Mooring Design & Dynamics", is_mat, lambda path, options: read_mdd(path)
     ),
     ImportFormat(
-        "cbl", "WHOI Cable", lambda path, content: is_cbl(content),
+        "cbl", "WHOI Cable", is_cbl,
         lambda path, options: read_cbl(
             path, options.defines, allow_include=options.allow_include
         ),
     ),
     ImportFormat(
-        "moordyn", "MoorDyn or MoorPy", lambda path, content: is_moordyn(content),
-        lambda path, options: read_moordyn(path),
+        "moordyn", "MoorDyn or MoorPy", is_moordyn, lambda path, options: read_moordyn(path)
     ),
+    ImportFormat("moords", "moords", is_moords, lambda path, options: read_moords(path)),
     ImportFormat(
-        "moords", "moords", lambda path, content: is_moords(content),
-        lambda path, options: read_moords(path),
-    ),
-    ImportFormat(
-        "table", "a list in CSV or a spreadsheet", lambda path, content: is_table(content),
+        "table", "a list in CSV or a spreadsheet", is_table,
         lambda path, options: read_table(path, options.columns, options.elements),
     ),
 )  # fmt: skip
@@ -79,7 +76,7 @@ FORMATS = (
 
 @dataclass(frozen=True)
 class Imported:
-    """A mooring file made of another program's file.
+    """Hold a mooring file made of another program's file.
 
     Attributes
     ----------
@@ -98,9 +95,6 @@ class Imported:
     dropped: tuple[Remark, ...]
     matched: tuple[CatalogueMatch, ...]
     record: CurrentRecord | None
-
-
-_HEAD = 70_000  # bytes from which a format is recognised
 
 
 def import_file(
@@ -129,7 +123,7 @@ def import_file(
         There is no such format.
     """
     options = options or ImportOptions()
-    chosen = format_of(path, format, listed=options.elements is not None)
+    chosen = _format_of(path, format, listed=options.elements is not None)
     if options.elements is not None and chosen.name != "table":
         raise refused(path, f"is of {chosen.program}; --elements is for lists")
     design = chosen.read(path, options)
@@ -157,8 +151,8 @@ def import_file(
     )  # fmt: skip
 
 
-def format_of(path: Path, name: str | None, *, listed: bool = False) -> ImportFormat:
-    """The format of a file: as named, or by its content.
+def _format_of(path: Path, name: str | None, *, listed: bool = False) -> ImportFormat:
+    """Return the format of a file: as named, or by its content.
 
     Parameters
     ----------
@@ -183,7 +177,7 @@ def format_of(path: Path, name: str | None, *, listed: bool = False) -> ImportFo
     except OSError as error:
         raise refused(path, f"cannot be read: {error.strerror}") from None
     for each in FORMATS:
-        if each.recognises(path, content) or (listed and each is FORMATS[-1]):
+        if each.recognises(content) or (listed and each is FORMATS[-1]):
             return each
     programs = ", ".join(f"{each.name} ({each.program})" for each in FORMATS)
     raise refused(path, f"is not a file of a program that CALM reads: {programs}")
@@ -200,7 +194,7 @@ def _check(path: Path, output: Path, text: str) -> None:
 
 
 def _blamed(problem: Problem, text: str) -> str:
-    """A mistake of the mooring file, with the line it is in."""
+    """Return a mistake of the mooring file, with the line it is in."""
     lines: Sequence[str] = text.splitlines()
     if not 0 < problem.line <= len(lines):
         return problem.message
@@ -208,7 +202,7 @@ def _blamed(problem: Problem, text: str) -> str:
 
 
 def record_file(record: CurrentRecord, source: str) -> bytes:
-    """A record as a classic NetCDF file by the CF conventions."""
+    """Return a record as a classic NetCDF file by the CF conventions."""
     import xarray as xr
 
     speeds = {

@@ -8,7 +8,6 @@ import unicodedata
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-
 from calm.exchange.design import refused
 from calm.records.delimited import cells_in
 from calm.suggestions import unknown
@@ -63,11 +62,22 @@ _MASSES = {"kg", "g", "lb", "lbs", "t"}
 _FORCES = {"buoyancy", "weight", "stiffness", "breaking_load"}
 _SEARCHED = 60  # rows in which the headings stand
 _MEASURES = {"length", "buoyancy", "weight", "mass"}
+_SPREADSHEETS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1")  # xlsx, xls
+_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
+_LARGEST = 20_000_000
+_MOST_ROWS, _MOST_COLUMNS = 20_000, 500
+SheetRows = list[list[str]]
+"""Cells as text, up to the last that is not empty."""
+
+_NUMBER = re.compile(r"[-+−]?\s*(?:\d{1,3}(?:[ \u00a0]\d{3})+|\d+)?(?:[.,]\d+)?(?:[eE][-+]?\d+)?")
+_NOTHING = {
+    "", "-", "–", "—", "/", "*", "**", "n/a", "na", "nan", "none", "?", "nil", "x", "sans", "null",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
 class ListColumn:
-    """A column: where it stands, its heading, and what its numbers are multiplied by.
+    """Describe a column: where it stands, its heading, and what its numbers are multiplied by.
 
     `by_mass`: forces are counted in kilograms; `per_metre`: figures of lines are those of a metre;
     `known`: the heading gives a unit; `whole`: it says that its figures are those of a whole piece.
@@ -84,7 +94,7 @@ class ListColumn:
 
 @dataclass(frozen=True)
 class ListHeadings:
-    """The row of the headings, the columns that are understood, and the headings of the others."""
+    """Hold the row of the headings, the columns that are understood, and the other headings."""
 
     row: int
     columns: dict[str, ListColumn]
@@ -92,7 +102,7 @@ class ListHeadings:
 
 
 def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | None:
-    """The headings of a sheet; None where no row has a name and a length or a force.
+    """Return the headings of a sheet; None where no row has a name and a length or a force.
 
     Parameters
     ----------
@@ -120,6 +130,12 @@ def headings_of(rows: SheetRows, given: Mapping[str, str]) -> ListHeadings | Non
 
 def check_given(sheets: Mapping[str, SheetRows], given: Mapping[str, str], path: Path) -> None:
     """Check that `--columns` names figures of a piece, and headings of the list.
+
+    Parameters
+    ----------
+    sheets : cells by the name of the sheet
+    given : headings by what they hold
+    path : of the list
 
     Raises
     ------
@@ -164,7 +180,7 @@ def _columns(row: list[str], given: Mapping[str, str]) -> dict[str, ListColumn]:
 
 
 def _settle(found: dict[str, ListColumn]) -> None:
-    """Where there is no length, a height is one; a weight beside a buoyancy is in air."""
+    """Take a height for a missing length, and a weight beside a buoyancy as that in air."""
     if "length" not in found and "height" in found and _plain(found["height"].heading) == "height":
         found["length"] = found.pop("height")
     plain_weight = re.match(r"(weight|poids)\b(?!.*(water|wet|eau))", _plain_of(found, "weight"))
@@ -177,7 +193,7 @@ def _plain_of(found: dict[str, ListColumn], what: str) -> str:
 
 
 def _with_units(rows: SheetRows, i: int) -> list[str]:
-    """A row of headings, with the units that stand below them."""
+    """Return a row of headings, with the units that stand below them."""
     row = rows[i]
     below = rows[i + 1] if i + 1 < len(rows) else []
     units = [cell for cell in below if cell]
@@ -188,14 +204,14 @@ def _with_units(rows: SheetRows, i: int) -> list[str]:
 
 
 def _is_unit(cell: str) -> bool:
-    """Whether a cell below a heading goes with it: `(kg)`, `m`, `off btm (m)`."""
+    """Return whether a cell below a heading goes with it: `(kg)`, `m`, `off btm (m)`."""
     inside = re.search(r"\(([^()]*)\)\s*$", cell)
     words = _plain(inside[1] if inside else cell, keep="²^/").split("/")[0].split()
     return bool(words) and words[0] in _UNITS
 
 
 def _unnamed(rows: SheetRows, i: int, found: dict[str, ListColumn]) -> int | None:
-    """The first column without a heading whose cells are words."""
+    """Return the first column without a heading whose cells are words."""
     taken = {column.index for column in found.values()}
     below = rows[i + 1 : i + 16]
     for index in range(min(3, max(map(len, below), default=0))):
@@ -228,7 +244,7 @@ def _column(what: str, index: int, heading: str) -> ListColumn:
 
 
 def _plain(text: str, keep: str = "") -> str:
-    """A heading without accents and capitals, signs as blanks but for those that matter."""
+    """Return a heading without accents and capitals, signs as blanks but for those that matter."""
     spaced = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)  # buoyancyPerMeter
     decomposed = unicodedata.normalize("NFD", spaced.lower())
     letters = "".join(sign for sign in decomposed if not unicodedata.combining(sign))
@@ -238,23 +254,14 @@ def _plain(text: str, keep: str = "") -> str:
     )
 
 
-_SPREADSHEETS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1")  # xlsx, xls
-_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
-_LARGEST = 20_000_000
-_MOST_ROWS, _MOST_COLUMNS = 20_000, 500
-
-SheetRows = list[list[str]]
-"""Cells as text, up to the last that is not empty."""
-
-
-def is_spreadsheet(content: bytes) -> bool:
-    """Whether a file is an Excel workbook, by its first bytes."""
+def _is_spreadsheet(content: bytes) -> bool:
+    """Return whether a file is an Excel workbook, by its first bytes."""
     return content.startswith(_SPREADSHEETS)
 
 
 def is_table(content: bytes) -> bool:
-    """Whether a file is a workbook, or text whose lines have the same separator."""
-    if is_spreadsheet(content):
+    """Return whether a file is a workbook, or text whose lines have the same separator."""
+    if _is_spreadsheet(content):
         return True
     if content.startswith(_UTF_16):
         content = content[: len(content) // 2 * 2].decode("utf-16", "replace").encode()
@@ -264,7 +271,7 @@ def is_table(content: bytes) -> bool:
 
 
 def read_sheets(path: Path) -> dict[str, SheetRows]:
-    """The rows of every sheet by its name; lines that begin with # are comments.
+    """Return the rows of every sheet by its name; lines that begin with # are comments.
 
     A sheet without a cell is left out; text has one sheet, without a name.
 
@@ -274,7 +281,7 @@ def read_sheets(path: Path) -> dict[str, SheetRows]:
         It cannot be read.
     """
     content = read_content(path, largest=_LARGEST)
-    workbook = is_spreadsheet(content)
+    workbook = _is_spreadsheet(content)
     sheets = _workbook(path, content) if workbook else {"": cells_in(_text(path, content))}
     for rows in sheets.values():
         if len(rows) > _MOST_ROWS or any(len(row) > _MOST_COLUMNS for row in rows):
@@ -295,7 +302,7 @@ def _cleaned(rows: SheetRows) -> SheetRows:
 
 
 def _text(path: Path, content: bytes) -> str:
-    """The text: UTF-8, UTF-16 with the mark of Excel, or the Western encoding of Windows."""
+    """Return the text: UTF-8, UTF-16 with the mark of Excel, or the Western encoding of Windows."""
     if content.startswith(_UTF_16):
         return content.decode("utf-16", "replace")
     if b"\0" in content:
@@ -327,14 +334,8 @@ def _shown(cell: object) -> str:
     return f"{cell:.12g}" if isinstance(cell, float) else str(cell)
 
 
-_NUMBER = re.compile(r"[-+−]?\s*(?:\d{1,3}(?:[ \u00a0]\d{3})+|\d+)?(?:[.,]\d+)?(?:[eE][-+]?\d+)?")
-_NOTHING = {
-    "", "-", "–", "—", "/", "*", "**", "n/a", "na", "nan", "none", "?", "nil", "x", "sans", "null",
-}  # fmt: skip
-
-
 def number(cell: str) -> tuple[float | None, str]:
-    """The number of a cell, None where there is none; and how it was interpreted.
+    """Return the number of a cell, None where there is none; and how it was interpreted.
 
     A comma is a decimal sign, or parts thousands where a point follows; a word or unit after the
     number, or `~` before it, is left out and reported.

@@ -98,7 +98,7 @@ def read_table(path: Path, columns: Mapping[str, str], elements: Path | None = N
 def _sheet(
     sheets: Mapping[str, SheetRows], columns: Mapping[str, str]
 ) -> tuple[SheetRows, ListHeadings] | None:
-    """The longest sheet that has headings, and those."""
+    """Return the longest sheet that has headings, and those."""
     found = [
         (rows, headings)
         for rows in sorted(sheets.values(), key=len, reverse=True)
@@ -110,7 +110,7 @@ def _sheet(
 def _names(
     sheets: Mapping[str, SheetRows], design: Design, path: Path, library: Library
 ) -> list[ListRow]:
-    """The rows of a list that holds names alone, in the longest sheet.
+    """Return the rows of a list that holds names alone, in the longest sheet.
 
     The first is the name of the mooring where the library has no such element.
     """
@@ -135,7 +135,7 @@ def _names(
 
 
 def _water(sheets: Mapping[str, SheetRows], design: Design, path: Path) -> ImportedWater | None:
-    """The environment in a sheet of heights, `z`, as in workbooks of Mooring Design & Dynamics."""
+    """Return the environment in a sheet of heights, `z`, of Mooring Design & Dynamics."""
     for rows in sheets.values():
         headings = [cell.lower() for cell in rows[0]]
         if not {"z", "u"} <= set(headings):
@@ -154,7 +154,7 @@ def _water(sheets: Mapping[str, SheetRows], design: Design, path: Path) -> Impor
 
 
 def _from_the_top(rows: list[ListRow], path: Path, design: Design) -> list[ListRow]:
-    """The rows from the top down; lists run either way, clamps follow their piece."""
+    """Return the rows from the top down; lists run either way, clamps follow their piece."""
     pieces = [row for row in rows if "at" not in row.figures]
     if len(pieces) < 2:
         raise refused(path, f"has {len(pieces)} pieces")

@@ -21,11 +21,16 @@ _ENOUGH = {"length", "buoyancy", "weight"}  # one of them makes a piece
 _MOST = 1000  # of one row's count
 _FULL = 5.0  # times its diameter: a metre of line shows no larger area
 _SPREAD = ("buoyancy", "mass", "area", "drag_area", "tangential_area")  # along a line
+_USUAL = {"cable": 1.3, "chain": 2.75, "sphere": 0.5, "cylinder": 1.2}
+_COEFFICIENT = {"cable": "cn", "chain": "cn", "sphere": "cx", "cylinder": "cn"}
+_ROLES = ("float", "instrument", "release", "connector")
+_ROUND = 1.5  # times its diameter: a float no longer is a sphere
+_HALF_DENSITY = 0.5 * REFERENCE_DENSITY
 
 
 @dataclass(eq=False)
 class ListRow:
-    """A row: its name, its figures, what was guessed in it, and its count.
+    """Hold a row: its name, its figures, what was guessed in it, and its count.
 
     `metre` names the figures of a line that are per metre; `line` says whether it is a cable or
     chain, and `hint` where a library says that its figures might be.
@@ -45,17 +50,17 @@ class ListRow:
 
     @property
     def where(self) -> str:
-        """As problems call it."""
+        """The name by which problems call it."""
         return f"row {self.place}, {self.name}"
 
     @property
     def is_anchor(self) -> bool:
-        """Whether it is the anchor."""
+        """Tell whether it is the anchor."""
         return bool(_ANCHOR_KINDS.search(f"{self.kind} {self.role}")) or is_anchor(self.name)
 
     @property
     def is_line(self) -> bool:
-        """Whether it is a cable or a chain."""
+        """Tell whether it is a cable or a chain."""
         if self.line is not None:
             return self.line
         if self.kind:
@@ -71,7 +76,7 @@ def rows_of(
     *,
     bare: Callable[[str], bool] = lambda name: False,
 ) -> list[ListRow]:
-    """The rows below the headings; sums and rows without figures go to `dropped`.
+    """Return the rows below the headings; sums and rows without figures go to `dropped`.
 
     Parameters
     ----------
@@ -97,7 +102,7 @@ def rows_of(
 
 
 def names_in(cells: SheetRows) -> list[ListRow]:
-    """The rows of a sheet that holds names alone: the words of the column that has most."""
+    """Return the rows of a sheet that holds names alone: the words of the column that has most."""
     counts: dict[int, int] = {}
     for row in cells:
         for index, cell in enumerate(row):
@@ -200,12 +205,12 @@ def count_lines(rows: Iterable[ListRow], known: dict[str, ListColumn]) -> None:
 
 
 def _within_a_metre(lines: list[ListRow], what: str) -> bool:
-    """Whether the figures of every line could be those of a metre."""
+    """Return whether the figures of every line could be those of a metre."""
     return all(row.figures[what] <= _FULL * row.figures.get("diameter", 0.0) for row in lines)
 
 
 def _same_for_all(lines: list[ListRow], what: str) -> bool:
-    """Whether lines of one name and different lengths have one weight, which is per metre then."""
+    """Return whether lines of one name have one weight, per metre then, at different lengths."""
     seen: dict[str, tuple[float, float]] = {}
     for row in lines:
         length, value = seen.setdefault(row.name, (row.figures["length"], row.figures[what]))
@@ -214,15 +219,15 @@ def _same_for_all(lines: list[ListRow], what: str) -> bool:
     return False
 
 
-_USUAL = {"cable": 1.3, "chain": 2.75, "sphere": 0.5, "cylinder": 1.2}
-_COEFFICIENT = {"cable": "cn", "chain": "cn", "sphere": "cx", "cylinder": "cn"}
-_ROLES = ("float", "instrument", "release", "connector")
-_ROUND = 1.5  # times its diameter: a float no longer is a sphere
-_HALF_DENSITY = 0.5 * REFERENCE_DENSITY
-
-
 def component_of(row: ListRow, problems: list[str], *, anchor: bool) -> ImportedComponent:
-    """The definition of a row; what it lacks is added to `problems`."""
+    """Return the definition of a row; what it lacks is added to `problems`.
+
+    Parameters
+    ----------
+    row : in SI
+    problems : of the list, to which those of the row are added
+    anchor : whether it is the anchor
+    """
     for what in ("length", "diameter", "width", "cd", "area", "drag_area", "mass", "stiffness"):
         if row.figures.get(what, 0.0) < 0.0:
             problems.append(f"{row.where}: its {what.replace('_', ' ')} is negative")
@@ -275,7 +280,7 @@ def _rigid(row: ListRow, problems: list[str]) -> ImportedComponent:
 
 
 def _shape(row: ListRow) -> tuple[str, float]:
-    """The kind of a rigid piece by its size, and its diameter [m].
+    """Return the kind of a rigid piece by its size, and its diameter [m].
 
     Where a list has widths and diameters, a diameter is that of a sphere. Elsewhere a float that is
     hardly longer than wide is a sphere.
@@ -334,7 +339,7 @@ def _line(row: ListRow, problems: list[str]) -> ImportedComponent:
 
 
 def _coefficient(row: ListRow, kind: str, guesses: dict[str, str]) -> dict[str, FigureOrWord]:
-    """The drag coefficient of the list, or the usual one of the kind as a guess."""
+    """Return the drag coefficient of the list, or the usual one of the kind as a guess."""
     key = _COEFFICIENT[kind]
     guesses[key] = row.guesses.get("cd", "")
     if "cd" not in row.figures:
@@ -353,12 +358,12 @@ def _keep(row: ListRow, kept: dict[str, FigureOrWord], lift: float, names: tuple
 
 
 def _of(guesses: dict[str, str], kept: dict[str, FigureOrWord]) -> dict[str, str]:
-    """The guesses for the figures that are kept."""
+    """Return the guesses for the figures that are kept."""
     return {key: text for key, text in guesses.items() if key in kept and text}
 
 
 def _size_in(name: str) -> float:
-    """A diameter in a name such as `8 mm wire` or `3/8" chain` [m]; 0 without one."""
+    """Return a diameter in a name such as `8 mm wire` or `3/8" chain` [m]; 0 without one."""
     found = re.search(r"(\d+(?:[.,]\d+)?)\s*mm\b", name, re.I)
     if found:
         return float(found[1].replace(",", ".")) / 1000.0

@@ -1,7 +1,7 @@
 """The variables of a `.mat` file, whatever program and version wrote it.
 
 Nothing in such a file is executed or unpickled: MATLAB 4 and 5 are read by scipy, HDF5 (MATLAB 7.3
-and Octave) by h5py, Octave's text, compressed or not, by a reader of this folder.
+and Octave) by h5py, Octave's text, compressed or not, by the reader below.
 """
 
 from __future__ import annotations
@@ -25,10 +25,21 @@ LARGEST = 200_000_000
 _GZIP = b"\x1f\x8b"
 _OCTAVE_BINARY = b"Octave-1-"
 _HEAD = 70_000  # bytes by which a compressed file is recognised
+_CELL = "<cell-element>"
+_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+_TEXTS = ("char", "string", "sq_string")
+_DEEPEST = 4  # cells in cells
+MatValue: TypeAlias = "NDArray[Any] | str | list[MatValue]"
+"""A variable: numbers or characters, a text, or the elements of a cell array."""
+
+_MOST = 20_000_000
+"""Most elements of a variable."""
+
+RealArray = NDArray[np.float64]
 
 
 def read_variables(path: Path, wanted: Collection[str]) -> dict[str, MatValue]:
-    """The wanted variables that a file has.
+    """Return the wanted variables that a file has.
 
     Raises
     ------
@@ -41,11 +52,11 @@ def read_variables(path: Path, wanted: Collection[str]) -> dict[str, MatValue]:
     if content.startswith(_OCTAVE_BINARY):
         raise refused(path, "is in Octave's binary format; save it there with -v7, -hdf5 or -text")
     try:
-        if is_octave_text(content):
+        if _is_octave_text(content):
             text = content.decode("utf-8", "replace")
             found = read_octave_text(text)
-        elif is_hdf5(content):
-            found = read_hdf5(content, wanted)
+        elif _is_hdf5(content):
+            found = _read_hdf5(content, wanted)
         else:
             found = _matlab(content, wanted)
     except MemoryError:
@@ -59,15 +70,15 @@ def read_variables(path: Path, wanted: Collection[str]) -> dict[str, MatValue]:
 
 
 def is_mat(content: bytes) -> bool:
-    """Whether a file looks like one of MATLAB or Octave, by its first bytes."""
+    """Return whether a file looks like one of MATLAB or Octave, by its first bytes."""
     content = _inflated(content, _HEAD)
-    if is_octave_text(content) or content.startswith((b"MATLAB 5.0", _OCTAVE_BINARY)):
+    if _is_octave_text(content) or content.startswith((b"MATLAB 5.0", _OCTAVE_BINARY)):
         return True
-    return is_hdf5(content) or _is_version_4(content)
+    return _is_hdf5(content) or _is_version_4(content)
 
 
 def _inflated(content: bytes, most: int) -> bytes:
-    """The first bytes of what is compressed, as far as it is whole; other files as they are."""
+    """Return the first bytes of what is compressed, as far as it is whole; else all as it is."""
     if not content.startswith(_GZIP):
         return content
     try:
@@ -77,7 +88,7 @@ def _inflated(content: bytes, most: int) -> bytes:
 
 
 def _is_version_4(content: bytes) -> bool:
-    """By its first header: type, rows, columns, imaginary, length of a name that is a word."""
+    """Return whether its first header has a type, rows, columns and the length of a name."""
     for order in ("<", ">"):
         head = np.frombuffer(content[:20], f"{order}i4") if len(content) > 20 else np.zeros(0)
         if head.size == 5 and 0 <= head[0] < 5000 and 1 < head[4] < 64 and head[3] in (0, 1):
@@ -89,17 +100,14 @@ def _is_version_4(content: bytes) -> bool:
 def _matlab(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
     from scipy.io import loadmat, whosmat
 
-    names = [name for name, shape, _ in whosmat(io.BytesIO(content)) if fits(name, shape)]
+    names = [name for name, shape, _ in whosmat(io.BytesIO(content)) if _fits(name, shape)]
     chosen = [name for name in names if name in wanted]
     found = loadmat(io.BytesIO(content), variable_names=chosen, struct_as_record=True)
     return {name: found[name] for name in chosen if name in found}
 
 
-_CELL = "<cell-element>"
-
-
-def is_octave_text(content: bytes) -> bool:
-    """Whether a file begins as Octave writes its text files."""
+def _is_octave_text(content: bytes) -> bool:
+    """Return whether a file begins as Octave writes its text files."""
     start = content[:4096]
     return b"\0" not in start and start.lstrip().startswith(b"#") and b"# name:" in content[:65536]
 
@@ -168,7 +176,7 @@ def _value(name: str, kind: str, header: dict[str, str], rows: list[str]) -> Mat
     except ValueError:
         return None  # a structure, or complex numbers: none of those that matter here
     if kind.endswith("range") and len(numbers) == 3:
-        return spread(name, *numbers)
+        return _spread(name, *numbers)
     if "scalar" in kind or kind == "bool":
         return np.array(numbers[:1]).reshape(1, -1)
     if "ndims" in header:
@@ -187,8 +195,14 @@ def _value(name: str, kind: str, header: dict[str, str], rows: list[str]) -> Mat
     return _shaped(name, array, [size or 0 for size in stated], order="C")
 
 
-def spread(name: str, first: float, last: float, step: float) -> MatValue:
-    """The numbers of a range, the last included where a step ends at it.
+def _spread(name: str, first: float, last: float, step: float) -> MatValue:
+    """Return the numbers of a range, the last included where a step ends at it.
+
+    Parameters
+    ----------
+    name : of the variable
+    first, last : numbers of the range
+    step : between two numbers
 
     Raises
     ------
@@ -196,7 +210,7 @@ def spread(name: str, first: float, last: float, step: float) -> MatValue:
         The range does not end.
     """
     count = (last - first) / step * (1 + 1e-12) + 1 if step else 0.0
-    if not 0.0 <= count <= MOST:
+    if not 0.0 <= count <= _MOST:
         raise ValueError(f"the range `{name}` has {count:g} numbers")
     return first + step * np.arange(int(count))
 
@@ -214,7 +228,7 @@ def _shaped(name: str, array: MatValue, shape: list[int], *, order: str) -> MatV
 
 
 def _texts(rows: list[str]) -> list[MatValue]:
-    """The rows of a character matrix: each line after its length."""
+    """Return the rows of a character matrix: each line after its length."""
     texts: list[MatValue] = []
     for i, row in enumerate(rows):
         if _header(row)[0] == "length":
@@ -223,18 +237,13 @@ def _texts(rows: list[str]) -> list[MatValue]:
     return texts
 
 
-_SIGNATURE = b"\x89HDF\r\n\x1a\n"
-_TEXTS = ("char", "string", "sq_string")
-_DEEPEST = 4  # cells in cells
-
-
-def is_hdf5(content: bytes) -> bool:
-    """Whether a file is HDF5, by its first bytes or those after MATLAB's header."""
+def _is_hdf5(content: bytes) -> bool:
+    """Return whether a file is HDF5, by its first bytes or those after MATLAB's header."""
     return _SIGNATURE in (content[:8], content[512:520])
 
 
-def read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
-    """The wanted variables that a file has; links to other files are not followed.
+def _read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
+    """Return the wanted variables that a file has; links to other files are not followed.
 
     Raises
     ------
@@ -252,7 +261,7 @@ def read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
 
 
 def _variable(file: Any, node: Any, depth: int) -> MatValue:
-    """A dataset, as MATLAB writes it, or one of Octave's, which are in groups."""
+    """Return a dataset, as MATLAB writes it, or one of Octave's, which are in groups."""
     import h5py
 
     if depth > _DEEPEST:
@@ -274,19 +283,19 @@ def _number(key: str) -> int:
 
 
 def _values(file: Any, node: Any, kind: str, depth: int) -> MatValue:
-    """The values of a dataset; HDF5 has the dimensions in reverse order."""
+    """Return the values of a dataset; HDF5 has the dimensions in reverse order."""
     import h5py
 
     if not isinstance(node, h5py.Dataset) or node.is_virtual or node.external:
         raise ValueError("a variable refers to another file")
     if node.attrs.get("MATLAB_empty", 0) or node.attrs.get("OCTAVE_EMPTY_MATRIX", 0):
         return np.zeros((0, 0))
-    fits(node.name, node.shape)
+    _fits(node.name, node.shape)
     value = node[()]
     if node.dtype == h5py.ref_dtype:
         return [_variable(file, file[each], depth + 1) for each in np.asarray(value).ravel()]
     if node.dtype.names == ("base", "limit", "increment"):
-        return spread(node.name, *(float(value[name]) for name in node.dtype.names))
+        return _spread(node.name, *(float(value[name]) for name in node.dtype.names))
     array = np.asarray(value).T
     if kind in _TEXTS:
         rows = np.atleast_2d(array)
@@ -297,7 +306,7 @@ def _values(file: Any, node: Any, kind: str, depth: int) -> MatValue:
 
 
 def _utf_8(row: np.ndarray[Any, np.dtype[Any]]) -> str:
-    """A text of Octave, which writes bytes."""
+    """Return a text of Octave, which writes bytes."""
     return row.astype(np.uint8).tobytes().decode("utf-8", "replace").rstrip()
 
 
@@ -305,17 +314,8 @@ def _text_of(value: object) -> str:
     return value.decode("ascii", "replace") if isinstance(value, bytes) else str(value)
 
 
-MatValue: TypeAlias = "NDArray[Any] | str | list[MatValue]"
-"""A variable: numbers or characters, a text, or the elements of a cell array."""
-
-MOST = 20_000_000
-"""Most elements of a variable."""
-
-RealArray = NDArray[np.float64]
-
-
 def numbers(value: MatValue | None) -> RealArray:
-    """A variable as numbers; an empty array where there is none.
+    """Return a variable as numbers; an empty array where there is none.
 
     Raises
     ------
@@ -331,21 +331,21 @@ def numbers(value: MatValue | None) -> RealArray:
     raise ValueError("holds no real numbers")
 
 
-def fits(name: str, shape: tuple[int, ...]) -> bool:
-    """Whether a variable of a shape may be read at all.
+def _fits(name: str, shape: tuple[int, ...]) -> bool:
+    """Return whether a variable of a shape may be read at all.
 
     Raises
     ------
     ValueError
         It may not.
     """
-    if math.prod(shape) > MOST:
+    if math.prod(shape) > _MOST:
         raise ValueError(f"`{name}` has {math.prod(shape)} elements")
     return True
 
 
 def names(value: MatValue | None) -> list[str]:
-    """A variable as texts: a character matrix, a cell array, or codes of characters."""
+    """Return a variable as texts: a character matrix, a cell array, or codes of characters."""
     if value is None:
         return []
     if isinstance(value, str):

@@ -19,15 +19,19 @@ _SLIGHT = 1e-6  # by which a hull takes more than its net buoyancy
 _FLAT = 1e-3  # m: height of a float that the file gives none
 _SOFT = 1e10  # Pa: the modulus of a rope is below, of a wire above
 _HARD = re.compile(r"\bwire|\bchain|\bsteel", re.I)
+_LARGEST = 1e9  # m, kg: of no piece
+MODULI = (1.38e11, 3.45e8, 8.0e8, 3.45e8, 6.9e8, 6.9e10, 7.6e10, 1.0e11)
+"""Of the materials that the program numbers from 1: steel, nylon, Dacron, polypropylene,
+polyethylene, Kevlar, aluminium, Dyneema [Pa]."""
 
 
 def component_of(element: MddElement) -> ImportedComponent:
-    """The definition of an element that is not the anchor."""
+    """Return the definition of an element that is not the anchor."""
     return _flexible(element) if element.is_line else rigid(element)
 
 
 def rigid(element: MddElement) -> ImportedComponent:
-    """The definition of a rigid element, or of one clamped on.
+    """Return the definition of a rigid element, or of one clamped on.
 
     That program takes an element with a diameter for a sphere of that diameter, whatever its
     length, and one with a width alone for a cylinder, whose Cd is for flow across it, without end
@@ -81,7 +85,7 @@ def rides_by_buoyancy(component: ImportedComponent) -> None:
 
 
 def _is_too_small(element: MddElement) -> bool:
-    """Whether a float of this size cannot displace enough water for its buoyancy."""
+    """Return whether a float of this size cannot displace enough water for its buoyancy."""
     if element.diameter > 0.0:
         volume = math.pi * element.diameter**2 * max(element.diameter / 6.0, element.length / 4.0)
     else:
@@ -90,7 +94,7 @@ def _is_too_small(element: MddElement) -> bool:
 
 
 def _flexible(element: MddElement) -> ImportedComponent:
-    """The definition of a wire, rope or chain: its Cd is of its width, without drag along it."""
+    """Return the definition of a wire, rope or chain; its Cd is of its width."""
     chain = is_chain(element.name)
     figures: dict[str, FigureOrWord] = {"diameter": element.across, "cn": element.cd, "ct": 0.0}
     weight = 0.0 - element.lift * KILOGRAM_FORCE
@@ -114,7 +118,7 @@ def _flexible(element: MddElement) -> ImportedComponent:
 
 
 def anchor_of(element: MddElement) -> ImportedComponent:
-    """The definition of the lowest element; files give its weight with either sign."""
+    """Return the definition of the lowest element; files give its weight with either sign."""
     figures: dict[str, FigureOrWord] = {
         "weight": abs(element.lift) * KILOGRAM_FORCE,
         "length": element.length,
@@ -155,17 +159,10 @@ class MddElement:
         return self.width or self.diameter
 
 
-_LARGEST = 1e9  # m, kg: of no piece
-
-MODULI = (1.38e11, 3.45e8, 8.0e8, 3.45e8, 6.9e8, 6.9e10, 7.6e10, 1.0e11)
-"""Of the materials that the program numbers from 1: steel, nylon, Dacron, polypropylene,
-polyethylene, Kevlar, aluminium, Dyneema [Pa]."""
-
-
 def read_elements(
     variables: Mapping[str, MatValue], suffix: str
 ) -> tuple[list[MddElement], list[str]]:
-    """The elements of a line in the order of the file, and what is wrong with them.
+    """Return the elements of a line in the order of the file, and what is wrong with them.
 
     Parameters
     ----------
@@ -207,7 +204,7 @@ def read_elements(
 
 
 def mistakes_of(element: MddElement, where: str) -> list[str]:
-    """The figures of an element that no piece of a mooring can have."""
+    """Return the figures of an element that no piece of a mooring can have."""
     sizes = {
         "length": element.length, "width": element.width, "diameter": element.diameter,
         "drag coefficient": element.cd,
@@ -263,7 +260,7 @@ def _optional(variables: Mapping[str, MatValue], name: str) -> RealArray:
 
 
 def _names(variables: Mapping[str, MatValue], name: str, count: int) -> list[str]:
-    """A name for every element, also where the file has none."""
+    """Return a name for every element, also where the file has none."""
     value = variables.get(name)
     found = names(value) if value is not None else []
     if len(found) != count and isinstance(value, np.ndarray) and value.ndim == 2:
@@ -273,7 +270,7 @@ def _names(variables: Mapping[str, MatValue], name: str, count: int) -> list[str
 
 
 def _modulus(value: float) -> float | None:
-    """A modulus of elasticity [Pa]; small whole numbers stand for a material."""
+    """Return a modulus of elasticity [Pa]; small whole numbers stand for a material."""
     if math.isnan(value) or value <= 0.0:
         return None
     if value <= len(MODULI) and value == int(value):

@@ -40,6 +40,8 @@ _NOTE = (
     "cn and cx are its Cd. In that program drag along a line or cylinder is negligible, so ct is "
     "0. See `calm docs import-mdd`."
 )
+_MATLAB_EPOCH = 719529.0  # datenum of 1 January 1970
+_EARLIEST, _LATEST = 500_000.0, 1_000_000.0  # datenums that are dates of this age
 
 
 def read_mdd(path: Path) -> Design:
@@ -169,7 +171,7 @@ def _clamp(
 def _by_share(
     items: list[ImportedPiece], host: float, share: float, towed: bool
 ) -> tuple[int, float] | None:
-    """The piece that an element became, and how far below its upper end a share of it is."""
+    """Return the piece that an element became, and how far below its upper end a share of it is."""
     number = round(host) - 1
     if towed:
         number = len(items) - 1 - number
@@ -181,7 +183,7 @@ def _by_share(
 
 
 def _by_height(items: list[ImportedPiece], height: float, towed: bool) -> tuple[int, float] | None:
-    """The piece at a height above the seabed (in a tow above the lower end of the body)."""
+    """Return the piece at a height above the seabed (in a tow above the lower end of the body)."""
     below = 0.0
     for number in range(len(items) - 1, -1, -1):
         length = items[number].extent
@@ -195,17 +197,19 @@ def _agree(one: tuple[int, float], other: tuple[int, float]) -> bool:
     return one[0] == other[0] and abs(one[1] - other[1]) <= _APART + _APART * abs(one[1])
 
 
-_MATLAB_EPOCH = 719529.0  # datenum of 1 January 1970
-_EARLIEST, _LATEST = 500_000.0, 1_000_000.0  # datenums that are dates of this age
-
-
 def read_water(
     variables: Mapping[str, MatValue], towed: bool, guessed: list[Remark]
 ) -> tuple[ImportedWater | None, CurrentRecord | None]:
-    """The environment of a file, None where it has none; the record, where it has several profiles.
+    """Return the environment of a file, and the record where it has several profiles.
 
     In a mooring `z` is the height above the seabed and its greatest the depth of the water, in a
     tow it is the depth. The current is the first profile of the record.
+
+    Parameters
+    ----------
+    variables : of the file
+    towed : whether it is a tow
+    guessed : to which what is guessed about the times is added
 
     Raises
     ------

@@ -18,7 +18,7 @@ _LEAST_USED = 1e-3  # share of the buoyancy, for a float that hardly any is used
 
 
 def mdd_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
-    """The content of the file, MATLAB 5, and what it cannot hold."""
+    """Return the content of the file, MATLAB 5, and what it cannot hold."""
     from scipy.io import savemat
 
     lost: list[str] = []
@@ -113,7 +113,7 @@ def _water(design: ExportedLine) -> dict[str, object]:
 
 
 def _clamps(design: ExportedLine, lost: list[str]) -> dict[str, object]:
-    """What is clamped on, from the top down: element, share of its length from its lower end."""
+    """Return what is clamped on, from the top down, by element and share from its lower end."""
     rows, names, places = [], [], []
     count = len(design.parts)
     top = 0.0 if design.anchor is None else design.anchor[0].length

@@ -26,7 +26,7 @@ _NOTE = (
 
 
 def is_moords(content: bytes) -> bool:
-    """Whether a file is such a design, by its headings."""
+    """Return whether a file is such a design, by its headings."""
     head = content.split(b"\n", 1)[0].decode("utf-8", "replace")
     return set(head.strip().split(",")) >= _MARKS
 

@@ -29,6 +29,26 @@ _NEAR, _NEAR_AT_LEAST = 0.05, 2.0
 
 _NOTE = "cn and ct are its Cd and CdAx, defined alike. See `calm docs import-moordyn`."
 
+_SECTIONS = (
+    ("types", r"line (types|dictionary)"),
+    ("points", r"(node|connection|point) properties|^points?( list)?$|connections"),
+    ("lines", r"line properties|^lines?( list)?$"),
+    ("bodies", r"bod(y|ies)"),
+    ("rods", r"^rods?\b(?!.*types)"),
+    ("rod types", r"rod (types|dictionary)"),
+    ("options", r"options"),
+    ("outputs", r"outputs?"),
+)
+_COLUMNS = {
+    "typename": "name", "name": "name", "linetype": "type", "type": "attachment",
+    "attachment": "attachment", "diam": "diameter", "mass/m": "mass", "massden": "mass",
+    "massdeninair": "mass", "massperlength": "mass", "mass/length": "mass", "ea": "ea",
+    "cd": "cd", "cdn": "cd", "cdax": "cdt", "cdt": "cdt", "id": "id", "node": "id", "line": "id",
+    "x": "x", "y": "y", "z": "z", "m": "mass", "mass": "mass", "v": "volume", "volume": "volume",
+    "cda": "cda", "fx": "fx", "fy": "fy", "fz": "fz", "unstrlen": "length", "nodeanch": "a",
+    "nodefair": "b", "nodea": "a", "nodeb": "b", "attacha": "a", "attachb": "b",
+}  # fmt: skip
+
 
 def read_moordyn(path: Path) -> Design:
     """Read a file with one line, of one or several lengths, from an anchor up.
@@ -38,7 +58,7 @@ def read_moordyn(path: Path) -> Design:
     InputError
         It cannot be read, or holds a platform, a body, a rod or several lines.
     """
-    sections = read_sections(path)
+    sections = _read_sections(path)
     for name in ("bodies", "rods"):
         for row in sections.rows.get(name, []):
             raise row.refuse(
@@ -77,7 +97,7 @@ def read_moordyn(path: Path) -> Design:
 def _way(
     points: dict[str, SectionRow], lines: list[SectionRow], path: Path
 ) -> list[tuple[SectionRow, SectionRow]]:
-    """The lines in order from the anchor up, each with the point at its lower end."""
+    """Return the lines in order from the anchor up, each with the point at its lower end."""
     at: dict[str, list[SectionRow]] = {}
     for line in lines:
         for end in ("a", "b"):
@@ -161,7 +181,7 @@ def _currents(path: Path) -> tuple[tuple[float, float, float, float], ...]:
 
 
 def _cable(kind: SectionRow, gravity: float) -> ImportedComponent:
-    """A line type; its weight in water follows from its mass and the water it displaces."""
+    """Return a line type; its weight in water follows from its mass and the water it displaces."""
     across = kind.number("diameter")
     if across <= 0.0:
         raise kind.refuse("a line type has no diameter")
@@ -181,7 +201,7 @@ def _cable(kind: SectionRow, gravity: float) -> ImportedComponent:
 
 
 def _point(point: SectionRow, design: Design) -> ImportedPiece | None:
-    """What is at the joint of two lengths; None where it has neither weight nor drag."""
+    """Return what is at the joint of two lengths; None where it has neither weight nor drag."""
     if not _is(point, _FREE):
         raise point.refuse("a joint between two lengths is held: CALM has lines that hang free")
     figures = _figures(point)
@@ -203,7 +223,7 @@ def _figures(point: SectionRow) -> dict[str, FigureOrWord]:
 
 
 def _upper_end(top: SectionRow, items: list[ImportedPiece], design: Design) -> ImportedPiece:
-    """A free point is the float; one that is held at the surface gets a float that is guessed."""
+    """Return the float: a free point, or a guess for one that is held at the surface."""
     assert design.water is not None and design.water.depth is not None
     if _is(top, _FREE):
         figures = _figures(top)
@@ -248,37 +268,16 @@ def _anchor(point: SectionRow, water: ImportedWater) -> ImportedComponent:
     return ImportedComponent("anchor", "anchor", {"length": height} if height > 1e-6 else {})
 
 
-_SECTIONS = (
-    ("types", r"line (types|dictionary)"),
-    ("points", r"(node|connection|point) properties|^points?( list)?$|connections"),
-    ("lines", r"line properties|^lines?( list)?$"),
-    ("bodies", r"bod(y|ies)"),
-    ("rods", r"^rods?\b(?!.*types)"),
-    ("rod types", r"rod (types|dictionary)"),
-    ("options", r"options"),
-    ("outputs", r"outputs?"),
-)
-_COLUMNS = {
-    "typename": "name", "name": "name", "linetype": "type", "type": "attachment",
-    "attachment": "attachment", "diam": "diameter", "mass/m": "mass", "massden": "mass",
-    "massdeninair": "mass", "massperlength": "mass", "mass/length": "mass", "ea": "ea",
-    "cd": "cd", "cdn": "cd", "cdax": "cdt", "cdt": "cdt", "id": "id", "node": "id", "line": "id",
-    "x": "x", "y": "y", "z": "z", "m": "mass", "mass": "mass", "v": "volume", "volume": "volume",
-    "cda": "cda", "fx": "fx", "fy": "fy", "fz": "fz", "unstrlen": "length", "nodeanch": "a",
-    "nodefair": "b", "nodea": "a", "nodeb": "b", "attacha": "a", "attachb": "b",
-}  # fmt: skip
-
-
 @dataclass(frozen=True)
 class SectionRow:
-    """A row of a table: its words by heading, and its place in the file."""
+    """Hold a row of a table: its words by heading, and its place in the file."""
 
     path: str
     line: int
     words: dict[str, str]
 
     def number(self, key: str, default: float | None = None) -> float:
-        """A word as a number.
+        """Return a word as a number.
 
         Raises
         ------
@@ -297,26 +296,26 @@ class SectionRow:
         return value
 
     def refuse(self, message: str) -> Exception:
-        """A problem in this row."""
+        """Return a problem in this row."""
         return refused_at(self.path, self.line, 1, message)
 
 
 @dataclass
 class MoorDynSections:
-    """The tables of a file, and its options."""
+    """Hold the tables of a file, and its options."""
 
     rows: dict[str, list[SectionRow]] = field(default_factory=dict)
     options: dict[str, str] = field(default_factory=dict)
 
 
 def is_moordyn(content: bytes) -> bool:
-    """Whether a file has the sections that each such file must have."""
+    """Return whether a file has the sections that each such file must have."""
     text = content.decode("latin-1").lower()
     found = {_section(line) for line in text.splitlines() if line.strip().startswith("---")}
     return b"\0" not in content and {"types", "lines"} <= found
 
 
-def read_sections(path: Path) -> MoorDynSections:
+def _read_sections(path: Path) -> MoorDynSections:
     """Read a file.
 
     Raises

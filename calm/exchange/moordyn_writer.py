@@ -44,7 +44,7 @@ class _System:
         self.load = PartLoad(self.density)
 
     def end_point(self, kind: str) -> int:
-        """The number of the point that the line has reached, written with what acts there."""
+        """Write the point that the line has reached with what acts there; return its number."""
         volume = (self.load.mass + self.load.net / self.gravity) / self.density
         figures = f"{self.load.mass:.9g}  {volume:.9g}  {self.load.area:.9g}  0"
         x, y, depth = self.place
@@ -53,7 +53,14 @@ class _System:
         return number
 
     def line(self, name: str, figures: str, length: float, to: Coordinates) -> None:
-        """A length of a type, from the point that the line has reached."""
+        """Add a length of a type, from the point that the line has reached.
+
+        Parameters
+        ----------
+        name, figures : of its type
+        length : unstretched [m]
+        to : where its upper end stands
+        """
         below = self.end_point("Free" if self.points else "Fixed")
         chosen = kept(self.types, name, figures)
         segments = _SEGMENTS if length > 1.0 else 1
@@ -63,7 +70,7 @@ class _System:
         self.place, self.load = to, PartLoad(self.density)
 
     def figures(self, load: PartLoad, stiffness: float) -> str:
-        """The line type for what acts on a metre."""
+        """Return the line type for what acts on a metre."""
         mass = max(load.mass, _LEAST - load.net / self.gravity)
         volume = (mass + load.net / self.gravity) / self.density
         across = sqrt(4.0 * volume / pi)
@@ -74,7 +81,7 @@ class _System:
 
 
 def moordyn_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
-    """The content of the file, and what it cannot hold.
+    """Return the content of the file, and what it cannot hold.
 
     Raises
     ------
@@ -120,7 +127,7 @@ def moordyn_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
 
 
 def _lay(system: _System, part: ExportedPart, path: PartPath) -> None:
-    """A cable or chain from its lower end up, cut where something is clamped on.
+    """Lay a cable or chain from its lower end up, cut where something is clamped on.
 
     It is cut into short lengths too, since that program starts with each as it hangs in still
     water.
@@ -157,7 +164,7 @@ def _lay_rigid(system: _System, parts: list[ExportedPart], top: Coordinates) -> 
 
 
 def _lay_float(system: _System, design: ExportedLine, path: PartPath) -> None:
-    """The uppermost piece: a point, on a stiff length as long as its draft.
+    """Lay the uppermost piece: a point, on a stiff length as long as its draft.
 
     That length takes a share of its mass, neutral in water: that program steps too finely where a
     length is light.
@@ -220,7 +227,7 @@ def _text(design: ExportedLine, system: _System, lost: tuple[str, ...]) -> str:
 
 
 def current_profile(design: ExportedLine) -> bytes:
-    """The current for that program: heights from below the seabed to above the water."""
+    """Return the current for that program: heights from below the seabed to above the water."""
     rows = [[0.0 - row[0], *row[1:4]] for row in reversed(design.levels)]
     rows = [[rows[0][0] - 10.0, *rows[0][1:]], *rows, [10.0, *rows[-1][1:]]]
     lines = [

@@ -23,37 +23,44 @@ _LINE = re.compile(
     r"|\bline\b|c[âa]ble|cordage|jetstr|spectra|nilspin",
     re.I,
 )
+_LONGEST = 40
+_NO_IDS = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}  # other words in YAML
+_SIGNS = {'"': "in ", "″": "in ", "↑": " up ", "↓": " down ", "+": " ", "&": " and ", "µ": "u"}
 
 
 def is_release(name: str) -> bool:
-    """Whether a piece is called a release."""
+    """Return whether a piece is called a release."""
     return bool(_RELEASE.search(name))
 
 
 def is_chain(name: str) -> bool:
-    """Whether a piece is called a chain."""
+    """Return whether a piece is called a chain."""
     return bool(_CHAIN.search(name))
 
 
 def is_connector(name: str) -> bool:
-    """Whether a piece is called a shackle, swivel, link or the like."""
+    """Return whether a piece is called a shackle, swivel, link or the like."""
     return bool(_CONNECTOR.search(name))
 
 
 def is_anchor(name: str) -> bool:
-    """Whether a piece is called an anchor or a dead weight."""
+    """Return whether a piece is called an anchor or a dead weight."""
     return bool(_ANCHOR.search(name))
 
 
 def is_line(name: str) -> bool:
-    """Whether a piece is called a wire, a rope or a chain."""
+    """Return whether a piece is called a wire, a rope or a chain."""
     return bool(_LINE.search(name)) or is_chain(name)
 
 
 def role_of(name: str, buoyancy: float, *, fastener: bool = False) -> str:
-    """The role of a rigid piece by its name and its net force in water [N, positive up].
+    """Return the role of a rigid piece by its name and its net force in water [N, positive up].
 
-    A `fastener` is marked so by its own program, which may mark instruments and floats too.
+    Parameters
+    ----------
+    name : as its program calls it
+    buoyancy : net force in water, positive up [N]
+    fastener : whether its program marks it so, which may mark instruments and floats too
     """
     if is_release(name):
         return "release"
@@ -64,13 +71,8 @@ def role_of(name: str, buoyancy: float, *, fastener: bool = False) -> str:
     return "connector" if fastener and buoyancy > -_HEAVY else "instrument"
 
 
-_LONGEST = 40
-_NO_IDS = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}  # other words in YAML
-_SIGNS = {'"': "in ", "″": "in ", "↑": " up ", "↓": " down ", "+": " ", "&": " and ", "µ": "u"}
-
-
-def kebab(name: str) -> str:
-    """A name as an id: ``3/8" wire rope`` becomes ``3-8in-wire-rope``."""
+def _kebab(name: str) -> str:
+    """Return a name as an id: ``3/8" wire rope`` becomes ``3-8in-wire-rope``."""
     text = "".join(_SIGNS.get(sign, sign) for sign in name)
     text = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode().lower()
     text = re.sub(r"(?<=\d)\.(?=\d)", "p", text)
@@ -78,7 +80,7 @@ def kebab(name: str) -> str:
 
 
 def ids_of(components: Iterable[ImportedComponent], taken: Iterable[str] = ()) -> dict[int, str]:
-    """The id of every component, by its `id()`; those with the same figures share one.
+    """Return the id of every component, by its `id()`; those with the same figures share one.
 
     Parameters
     ----------
@@ -94,7 +96,7 @@ def ids_of(components: Iterable[ImportedComponent], taken: Iterable[str] = ()) -
             continue
         says = component.says()
         if says not in said:
-            base = kebab(component.name)
+            base = _kebab(component.name)
             if base in _NO_IDS or not any(sign.isalpha() for sign in base):
                 base = f"{component.kind}-{base}".rstrip("-")
             chosen, number = base, 1

@@ -1,7 +1,7 @@
 """The component catalogue: shipped, the user's own, files given with a command, and in-file ones.
 
 Definitions are kept as written and validated when they are asked for, so that a run pays only for
-the components it uses.
+the components it uses. A user's files are read again only where they changed.
 """
 
 from __future__ import annotations
@@ -198,7 +198,13 @@ def define(
 ) -> Component | Assembly | None:
     """Return the model of an entry, or of a section laid over it; None when it has mistakes.
 
-    `context` is None or, where it is to be used in air, `IN_AIR`.
+    Parameters
+    ----------
+    entry : CatalogueEntry
+    section : of the entry, or laid over it
+    problems : mistakes are added to it
+    also_allowed : keys that stand beside and belong to something else
+    context : None or, where it is to be used in air, `IN_AIR`
     """
     kind = section.data.get("kind")
     if kind is None:
@@ -329,7 +335,14 @@ def read_level(paths: Iterable[Path], problems: list[Problem]) -> Level:
 def entries_of(
     definitions: SourceMapping, family: str | None, problems: list[Problem]
 ) -> list[CatalogueEntry]:
-    """Return the entries of a mapping of definitions by id."""
+    """Return the entries of a mapping of definitions by id.
+
+    Parameters
+    ----------
+    definitions : mapping of definitions by id
+    family : the name of their file; None in a mooring file
+    problems : mistakes are added to it
+    """
     entries = []
     for id, fields in definitions.data.items():
         if isinstance(fields, dict):
@@ -357,7 +370,7 @@ def _cuts(path: Path) -> list[tuple[str | None, _Cut]]:
     return cuts
 
 
-class Unchanged(Generic[T]):
+class FileCache(Generic[T]):
     """Keep the last of what was read from files, known by their names, times and sizes."""
 
     def __init__(self) -> None:
@@ -386,4 +399,4 @@ def _stamp(paths: Sequence[Path]) -> Stamp | None:
     return tuple((name, each.st_mtime_ns, each.st_size, each.st_ino) for name, each in found)
 
 
-_LOADED: Unchanged[Catalogue] = Unchanged()
+_LOADED: FileCache[Catalogue] = FileCache()

@@ -1,4 +1,7 @@
-"""`checks:` of a mooring file: the limits of the design check, each with its default and source."""
+"""`checks:` of a mooring file: the limits of the design check, and the findings that it accepts.
+
+Each limit has its default and the source of that; each finding accepted has a reason.
+"""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from calm.report.check.verdict import SIGNS
 
 if TYPE_CHECKING:
     from calm.checks.comparison import Compared, Comparison
-    from calm.files.differences import Change
+    from calm.files.file_differences import Change
 
 
 def comparison_part(comparison: Comparison) -> Part:

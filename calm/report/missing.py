@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:
-    from calm.checks.catalogue import Finding
-    from calm.checks.missing import Missing
+    from calm.checks.catalogue import CatalogueFinding
+    from calm.checks.missing import MissingFigures
 
 
-def in_words(missing: Missing) -> str:
+def in_words(missing: MissingFigures) -> str:
     """What a component lacks, what was searched for in vain last."""
     sought = [_heading(name) for name in missing.figures if name in missing.searched]
     open_yet = [_heading(name) for name in missing.figures if name not in missing.searched]
@@ -22,14 +22,16 @@ def in_words(missing: Missing) -> str:
     return "; ".join(parts)
 
 
-def summarised(missing: Sequence[Missing]) -> str:
+def summarised(missing: Sequence[MissingFigures]) -> str:
     """How many components lack which figure."""
     counts = Counter(name for each in missing for name in each.figures)
     figures = ", ".join(f"{_heading(name)} {count}" for name, count in counts.most_common())
     return f"{len(missing)} of them lack figures: {figures}"
 
 
-def to_objects(findings: Sequence[Finding], missing: Sequence[Missing]) -> list[dict[str, Any]]:
+def to_objects(
+    findings: Sequence[CatalogueFinding], missing: Sequence[MissingFigures]
+) -> list[dict[str, Any]]:
     """Findings, then what is missing: `id`, `finding`, `message`, `missing` and `searched`."""
     wrong = [
         {"id": each.id, "finding": True, "message": each.message, "missing": [], "searched": []}

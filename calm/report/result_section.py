@@ -6,8 +6,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from calm.case import TowResult
+from calm.checks.criterion import limits_used
 from calm.checks.finding import State
-from calm.checks.limits import limits_used
 from calm.checks.posture import reaches_the_surface
 from calm.report.blocks import Figure, Part, Prose, Report, Section
 from calm.report.check.verdict import limits_table

@@ -164,8 +164,7 @@ def _figures(
 def _mooring(result: Result, findings: Sequence[Finding], pending: bool) -> Iterator[Saying]:
     """What the line does as given; what is judged shows the worst of its findings."""
     from calm.checks.anchor import anchor_weight
-    from calm.checks.posture import knockdown
-    from calm.checks.surface import reserve
+    from calm.checks.posture import knockdown, reserve
 
     anchor, top = result.anchor, result.top
     pull = f"{_say('tension', anchor.tension)}, {_say('angle', anchor.angle)} off the vertical"

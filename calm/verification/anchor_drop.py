@@ -8,8 +8,8 @@ from math import pi, sqrt
 
 import numpy as np
 
-from calm.drop.fall import Course, Fineness, Ship, fall, towed
-from calm.drop.motion import Anchor, State
+from calm.drop.fall import Fineness, Motion, Ship, fall, towed
+from calm.drop.motion import ChainState
 from calm.drop.record import end_tensions
 from calm.physics.hull import Floating, spherical_hull
 from calm.physics.line import Line, Water
@@ -26,7 +26,7 @@ _SEA = Water(
     depth=_DEPTH, level=np.zeros(1), u=np.zeros(1), v=np.zeros(1), w=np.zeros(1),
     density=np.array([_DENSITY]), gravity=GRAVITY,
 )  # fmt: skip
-_DROPPED = Anchor(weight=8896.0, drag=sphere_drag(0.81, 1.0))
+_DROPPED = FallingAnchor(weight=8896.0, drag=sphere_drag(0.81, 1.0))
 
 _INERTIA = (
     "3 % of a time or a tension, 8 % of the fall-back: what leaving out inertia may cost. The "
@@ -45,12 +45,12 @@ def _wire_below_a_sphere() -> Line:
 
 
 @cache
-def _start() -> State:
+def _start() -> ChainState:
     return towed(_wire_below_a_sphere(), _SEA, _DROPPED, Ship(0.0, 1.028), _FINE)
 
 
 @cache
-def _fall() -> Course:
+def _fall() -> Motion:
     return fall(_wire_below_a_sphere(), _SEA, _DROPPED, _start(), _FINE)
 
 
@@ -72,11 +72,11 @@ def _pull(bar: int, end: int) -> float:
 def _deep_fall() -> tuple[float, float]:
     """Speed of a plumb line far down [m/s]: that of the chain, and the terminal speed."""
     water = replace(_SEA, depth=3000.0)
-    anchor = Anchor(weight=8896.0, drag=400.0)
+    anchor = FallingAnchor(weight=8896.0, drag=400.0)
     line = replace(_wire_below_a_sphere().with_length(1, 150.0), floating=None)
     start = towed(line, water, anchor, Ship(0.0, 1.0), _FINE)
     last = fall(line, water, anchor, start, _FINE).states[-1]
-    motion = solve_fall(line, water, FallingAnchor(anchor.weight, anchor.drag))
+    motion = solve_fall(line, water, anchor)
     return -float(last.velocity[-1, 2]), -float(motion.velocity[2])
 
 
@@ -86,7 +86,7 @@ def _alone() -> float:
     line = line_of(
         LinePiece(0.05, False, 1.0, 1e-3, directional=False), cable(300.0, 1e-6, 1e-6, 1.3, 0.0)
     )
-    anchor = Anchor(weight=10_000.0, drag=100.0)
+    anchor = FallingAnchor(weight=10_000.0, drag=100.0)
     fineness = Fineness(bars=50, steps=50)
     start = towed(line, _SEA, anchor, Ship(0.0, 1.0), fineness)
     return -float(fall(line, _SEA, anchor, start, fineness).states[-1].velocity[-1, 2])

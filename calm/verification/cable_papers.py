@@ -47,7 +47,7 @@ BUOY_LIFT = _BUOY_TENSION * sin(_BUOY_ANGLE)
 
 
 def _only(k: float, weight: float, **given: float) -> ChartSolution:
-    """The cable that three givens fix; the first where several fit (it does not dip below A)."""
+    """Return the cable that three givens fix; the first of several does not dip below A."""
     answer = chart_solve(k, weight, **given)
     if not answer.solutions:
         raise ArithmeticError(answer.message)
@@ -80,7 +80,7 @@ def _point() -> CurvePoints:
 
 
 def buoy(buoyancy: float, depth: float) -> tuple[Line, Water]:
-    """The buoy with a buoyancy [N] in water of a depth [m]: K w = 12 N/m of drag at 1 m/s."""
+    """Return the buoy with a buoyancy [N] at a depth [m]: K w = 12 N/m of drag at 1 m/s."""
     cable = LinePiece(28.467, True, -_BUOY_WEIGHT, normal_drag=_K * _BUOY_WEIGHT)
     return line_of(point(buoyancy, _BUOY_TENSION * cos(_BUOY_ANGLE)), cable), stream(depth, 1.0)
 
@@ -97,7 +97,7 @@ def _afloat() -> Solution:
 
 @cache
 def _towed() -> Wake:
-    """The tow by the march: a body that pulls its cable as the printed T_A at φ_A does."""
+    """Return the tow by the march: a body that pulls its cable as the printed T_A at φ_A does."""
     pull, angle = 63.401, radians(116.373)
     body = point(-pull * sin(angle), -pull * cos(angle))
     cable = LinePiece(100.0, True, -_TOW_WEIGHT, normal_drag=_K * _TOW_WEIGHT)
@@ -236,7 +236,7 @@ _LAW = BourgetMarichal()
 
 
 def _line(length: float, *others: LinePiece, strums: bool = True) -> Line:
-    """A length of the cable, and what it tows."""
+    """Return a length of the cable, and what it tows."""
     cable = LinePiece(length, True, -_WEIGHT, HALF_DENSITY * _DIAMETER * _LAW.rest)
     diameter = np.array([_DIAMETER] + [0.0] * len(others))
     return replace(

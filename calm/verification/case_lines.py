@@ -38,7 +38,7 @@ class LinePiece:
 
 
 def point(buoyancy: float, drag: float) -> LinePiece:
-    """A piece without length: buoyancy [N], drag at 1 m/s [N/(m/s)²]."""
+    """Return a piece without length: buoyancy [N], drag at 1 m/s [N/(m/s)²]."""
     return LinePiece(0.0, False, buoyancy, drag, drag, directional=False)
 
 
@@ -50,7 +50,15 @@ def sphere_drag(diameter: float, cx: float) -> float:
 def cable(
     length: float, diameter: float, weight: float, cn: float, ct: float, compliance: float = 0.0
 ) -> LinePiece:
-    """Rope or wire: weight in water [N/m], Cn on its diameter, Ct on its surface π D."""
+    """Return a piece of rope or wire.
+
+    Parameters
+    ----------
+    length, diameter : unstretched [m]
+    weight : in water [N/m]
+    cn, ct : drag coefficients on its diameter and on its surface π D
+    compliance : strain of a newton [1/N]
+    """
     normal, tangential = HALF_DENSITY * diameter * cn, HALF_DENSITY * pi * diameter * ct
     return LinePiece(
         length, True, -weight, normal, tangential, compliance=compliance, thinning=0.5
@@ -58,7 +66,7 @@ def cable(
 
 
 def line_of(*pieces: LinePiece, anchor_height: float = 0.0) -> Line:
-    """The arrays of a list of pieces, free end first."""
+    """Return the arrays of a list of pieces, free end first."""
     held = [(owner, *clamp) for owner, piece in enumerate(pieces) for clamp in piece.clamps]
     clamps = np.array(held, dtype=np.float64).reshape(len(held), 5)
 
@@ -87,7 +95,15 @@ def line_of(*pieces: LinePiece, anchor_height: float = 0.0) -> Line:
 def stream(
     depth: float, speed: float, density: float = REFERENCE_DENSITY, toward: float = 0.0
 ) -> Water:
-    """Water with the same current everywhere, towards an angle counted from east [rad]."""
+    """Water with the same current everywhere, towards an angle counted from east [rad].
+
+    Parameters
+    ----------
+    depth : of the water [m]
+    speed : of the current [m/s]
+    density : of the water [kg/m³]
+    toward : angle of the current from east [rad]
+    """
     u, v = speed * cos(toward), speed * sin(toward)
     return Water(
         depth=depth, level=np.array([0.0]), u=np.array([u]), v=np.array([v]), w=np.array([0.0]),
@@ -134,7 +150,7 @@ class Ends:
 
     @property
     def tension(self) -> float:
-        """At the lower end [N]."""
+        """The tension at the lower end [N]."""
         return hypot(self.horizontal, self.vertical)
 
     @property
@@ -144,20 +160,20 @@ class Ends:
 
 
 def ends_of(solution: Solution) -> Ends:
-    """The ends of a solved line."""
+    """Return the ends of a solved line."""
     x, _, z = (solution.position[0] - solution.position[-1]).tolist()
     horizontal, _, vertical = solution.force[-1].tolist()
     return Ends(x, z, horizontal, vertical)
 
 
 def finely(line: Line, water: Water) -> Ends:
-    """The ends of a line, solved at `FINE`."""
+    """Return the ends of a line, solved at `FINE`."""
     return ends_of(solve_mooring(line, water, FINE))
 
 
 @dataclass(frozen=True)
 class Wake:
-    """A line towed to the east through still water.
+    """Represent a line towed to the east through still water.
 
     Attributes
     ----------
@@ -175,7 +191,15 @@ class Wake:
 
 
 def towed(line: Line, water: Water, speed: float, settings: Settings = FINE) -> Wake:
-    """The wake of a line, listed from the ship, towed at a speed [m/s]; at `FINE` by default."""
+    """Return the wake of a line that is towed.
+
+    Parameters
+    ----------
+    line : listed from the ship
+    water : in which it is towed
+    speed : of the ship [m/s]
+    settings : of the march
+    """
     solution = solve_tow(line, water, Towing(speed, 0.0), settings)
     x, _, z = solution.position[0].tolist()
     back, _, down = solution.force[-1].tolist()

@@ -66,8 +66,10 @@ def _solved() -> Solution:
 
 
 def _apart(one: Solution, other: Solution) -> float:
-    """The worst difference at the ends of pieces: of a position as a share of the depth, of a
-    tension as a share of the greatest."""
+    """Return the worst difference at the ends of pieces.
+
+    A position counts as a share of the depth, a tension as a share of the greatest.
+    """
     here, there = one.piece_nodes.ravel(), other.piece_nodes.ravel()
     place = np.abs(one.position[here] - other.position[there]).max() / one.water.depth
     tension = np.abs(one.tension[here] - other.tension[there]).max() / one.tension.max()
@@ -90,7 +92,7 @@ def _mirrored(east: float, north: float) -> float:
 
 
 def _deeper() -> float:
-    """The seabed and the current moved down by 100 m: the axes are moved up."""
+    """Return the seabed and the current moved down by 100 m: the axes are moved up."""
     down = 100.0
     water = replace(_SEA, depth=_SEA.depth + down, level=_SEA.level + down)
     here, there = solve_mooring(_LINE, _SEA, FINE), solve_mooring(_LINE, water, FINE)
@@ -206,7 +208,7 @@ def _plumb() -> float:
 
 @cache
 def _undercurrent() -> Solution:
-    """A float of 500 N on 100 m of thread, and a current that sets in below it."""
+    """Return a float of 500 N on 100 m of thread, and a current that sets in below it."""
     line = line_of(point(500.0, 100.0), LinePiece(100.0, True, 0.0))
     return solve_mooring(line, profile(110.0, [(0.0, 0.2), (12.0, 0.2), (30.0, 3.0)]), _TIGHT)
 

@@ -15,7 +15,7 @@ PRINTED = "Half a unit of the last digit printed, and a tenth."
 
 
 class Kind(StrEnum):
-    """Where an expected figure comes from, and so how much its agreement proves."""
+    """Tell where an expected figure comes from, and so how much its agreement proves."""
 
     PUBLISHED = "published"
     CLOSED_FORM = "closed form"
@@ -30,7 +30,7 @@ class Kind(StrEnum):
 
     @property
     def verifies(self) -> bool:
-        """Whether agreement is evidence that CALM is right."""
+        """Tell whether agreement is evidence that CALM is right."""
         return self is not Kind.BY_CONSTRUCTION
 
 
@@ -79,7 +79,7 @@ class Case:
 
 @dataclass(frozen=True)
 class CaseOutcome:
-    """What became of a case: CALM's figure, or NaN and the reason why there is none."""
+    """Hold what became of a case: CALM's figure, or NaN and the reason why there is none."""
 
     case: Case
     got: float
@@ -92,13 +92,13 @@ class CaseOutcome:
 
     @property
     def within(self) -> bool:
-        """Whether the figure is met."""
+        """Tell whether the figure is met."""
         return abs(self.difference) <= self.case.tolerance
 
 
 @dataclass(frozen=True)
 class Source:
-    """The figures that come from one place.
+    """Hold the figures that come from one place.
 
     Attributes
     ----------
@@ -115,7 +115,7 @@ class Source:
     picture: str = ""
 
     def having(self, words: Iterable[str]) -> Source:
-        """The same source with the cases whose name, or its title, has every word (or part)."""
+        """Return the source with the cases whose name, or its title, has every word (or part)."""
         wanted = [word.casefold() for word in words]
         chosen = tuple(
             case
@@ -127,7 +127,7 @@ class Source:
 
 @dataclass(frozen=True)
 class CaseColumn(Generic[Solved]):
-    """A column of a published table.
+    """Describe a column of a published table.
 
     Attributes
     ----------
@@ -145,7 +145,16 @@ class CaseColumn(Generic[Solved]):
     def case(
         self, row: str, expected: float, why: str, solve: Callable[[], Solved], kind: Kind
     ) -> Case:
-        """The case of one cell of the table."""
+        """Return the case of one cell of the table.
+
+        Parameters
+        ----------
+        row : name of the row
+        expected : the printed figure [unit]
+        why : the reason for the tolerance
+        solve : finds CALM's answer
+        kind : where the figure comes from
+        """
         share = abs(expected) if self.relative else 1.0
         return Case(
             f"{row}: {self.name}", expected, self.unit, self.tolerance * share, why,
@@ -159,7 +168,7 @@ def table(
     why: str,
     kind: Kind,
 ) -> tuple[Case, ...]:
-    """The cases of a published table, row by row.
+    """Return the cases of a published table, row by row.
 
     Parameters
     ----------

@@ -34,14 +34,14 @@ _FINEST = 0.02
 
 
 def s1000_mooring(parts: int = 1) -> Line:
-    """The line, its cable in equal parts."""
+    """Return the line, its cable in equal parts."""
     part = cable(1000.0 / parts, 0.01, 2.0, 1.3, 0.01, 1.0 / 4e6)
     return line_of(point(4000.0, HALF_DENSITY * 0.6), *[part] * parts)
 
 
 @cache
 def solved_s1000(degrees: float) -> Solution:
-    """The mooring at an angle step [degrees]."""
+    """Return the mooring at an angle step [degrees]."""
     return solve_mooring(s1000_mooring(), S1000_SEA, Settings(radians(degrees), tolerance=1e-9))
 
 
@@ -51,7 +51,7 @@ def _still() -> Solution:
 
 
 def float_depth(solution: Solution) -> float:
-    """Of the float [m]."""
+    """Return the depth of the float [m]."""
     return -float(solution.position[0, 2])
 
 
@@ -113,7 +113,7 @@ _FIRST_KEVLAR, _THIRD_METER, _FIRST_GLASS = 3, 6, 8
 
 @dataclass(frozen=True)
 class SolvedCdms1:
-    """The mooring as CALM finds it; forces in kilograms-force of the case's gravity.
+    """Hold the mooring as CALM finds it; forces are in kilograms-force of the case's gravity.
 
     Attributes
     ----------
@@ -136,7 +136,7 @@ class SolvedCdms1:
 
     @property
     def nodes_of_tensions(self) -> tuple[int, int, int]:
-        """Where tensions are printed: below the sphere, below the third meter, at the anchor."""
+        """The nodes of printed tensions: below the sphere and the third meter, at the anchor."""
         return int(self.last[0]), int(self.last[_THIRD_METER]), int(self.last[-1])
 
     @property
@@ -156,7 +156,7 @@ def _rope(length: float, diameter: float, weight: float, modulus: float, ct: flo
 
 
 def cdms_1_mooring(ct: float = 0.0) -> Line:
-    """The line, its cables with a Ct on their surface."""
+    """Return the line, its cables with a Ct on their surface."""
     meter = LinePiece(2.0, False, -20.0 * GRAVITY, HALF_DENSITY * 1.2 * 0.2 * 2.0)
     kevlar = [_rope(length, 0.007, 0.009, 6.9e10, ct) for length in (98.0, 98.0, 212.9)]
     return line_of(

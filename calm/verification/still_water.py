@@ -71,7 +71,7 @@ def _sag() -> float:
 
 
 def _pulled(pull: tuple[float, float], length: float, weight: float, stiffness: float) -> Line:
-    """A float that pulls sideways and up in a current of 1 m/s, above a line without drag."""
+    """Return a line without drag below a float that pulls sideways and up at 1 m/s."""
     horizontal, vertical = pull
     return line_of(
         point(vertical, horizontal), LinePiece(length, True, -weight, compliance=1.0 / stiffness)
@@ -213,7 +213,7 @@ _SLACK_DEPTH, _SCOPE = 540.0, 2.0
 
 
 def _radius() -> float:
-    """The radius reported with the refusal of a line that has no unique shape [m]."""
+    """Return the radius reported with the refusal of a line that has no unique shape [m]."""
     rope = cable(_SCOPE * _SLACK_DEPTH, 0.02, 1.0, 1.3, 0.0)
     try:
         solve_mooring(line_of(point(20_000.0, 100.0), rope), stream(_SLACK_DEPTH, 0.0))

@@ -54,7 +54,14 @@ def ball_on_a_thread() -> tuple[Line, Water]:
 
 
 def float_on_a_rope(weight: float, ct: float, speed: float) -> tuple[Line, Water]:
-    """C3 to C5, of a weight [N/m] and a Ct, at a speed [m/s]."""
+    """C3 to C5, of a weight [N/m] and a Ct, at a speed [m/s].
+
+    Parameters
+    ----------
+    weight : of the rope in water [N/m]
+    ct : on the surface of the rope
+    speed : of the current [m/s]
+    """
     return line_of(_FLOAT, cable(_LENGTH, 0.0127, weight, 1.3, ct)), stream(1010.0, speed)
 
 
@@ -92,7 +99,7 @@ def _identity(speed: float) -> Case:
 
 
 def _thread(length: float, force: float, place: float, angle: float) -> list[CaseColumn[Ends]]:
-    """The figures printed of a float on a thread, with their tolerances."""
+    """Return the figures printed of a float on a thread, with their tolerances."""
     return [
         CaseColumn("drag", "N", force, lambda ends: ends.horizontal),
         CaseColumn("tension", "N", force, lambda ends: ends.tension),
@@ -289,7 +296,7 @@ def _functions(critical: float, friction: float, angle: float) -> CableFunctions
 
 @cache
 def _march(critical: float, friction: float, arc: float) -> Wake:
-    """A body of 100 N without drag on a cable whose normal drag is 1 N/m at 1 m/s."""
+    """Return a body of 100 N without drag on a cable whose normal drag is 1 N/m at 1 m/s."""
     weight = float(critical_weight_ratio(radians(critical)))
     cable = LinePiece(_PULL * arc, True, -weight, 1.0, friction)
     line = replace(line_of(cable, point(-_PULL, 0.0)), friction=Friction.CONSTANT)
@@ -301,7 +308,7 @@ def _name(critical: float, friction: float, angle: float) -> str:
 
 
 def _identity_missed() -> float:
-    """The worst |τ − 1 − p η − f σ| of the table."""
+    """Return the worst |τ − 1 − p η − f σ| of the table."""
     misses = []
     for critical, friction, angle, *_ in _TABLE:
         tau, sigma, _, eta = _functions(critical, friction, angle)

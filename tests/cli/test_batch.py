@@ -20,7 +20,7 @@ from calm.batch import work as batch_work
 from calm.batch.statuses import Ending
 from calm.batch.work import Progress
 from calm.cli import main
-from calm.cli.batch_progress import Teller, bar, duration, state
+from calm.cli.batch import ProgressTeller, bar, duration, state
 
 ROOT = Path(__file__).parents[2]
 HEADER = "time,depth[m],u[m/s],v[m/s]\n"
@@ -410,10 +410,10 @@ def test_progress_has_rate_remaining_time_and_failures():
 
 def test_a_terminal_has_a_bar_and_others_a_line_now_and_then(monkeypatch, capsys):
     clock = [0.0]
-    monkeypatch.setattr("calm.cli.batch_progress.monotonic", lambda: clock[0])
+    monkeypatch.setattr("calm.cli.batch.monotonic", lambda: clock[0])
     for terminal in (True, False):
         monkeypatch.setattr(sys.stderr, "isatty", lambda terminal=terminal: terminal)
-        teller = Teller()
+        teller = ProgressTeller()
         for second in range(100):
             clock[0] = float(second)
             teller(Progress(second, 100, 0, ended(), 0))

@@ -8,7 +8,7 @@ import pytest
 
 import calm as package
 from calm import version
-from calm.cli.exit_codes import ExitCode, gravest
+from calm.cli.streams import ExitCode, gravest
 from calm.errors import UsageError
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from calm.batch.statistics.series import Column, ResultColumns, Seat
 from calm.batch.statuses import Ending
 from calm.case import Mooring
-from calm.checks.criterion import AT_SURFACE, Criterion, Judged
+from calm.checks.criterion import AT_SURFACE, Criterion, JudgedPart
 from calm.checks.finding import Rule, State
 from calm.checks.posture import reaches_the_surface
 from calm.checks.rules import RULES, equilibrium
@@ -104,18 +104,18 @@ def top_knockdown(series: ResultColumns) -> Column:
     return series.column("knockdown", 0)
 
 
-def _seat(part: Judged) -> Seat:
+def _seat(part: JudgedPart) -> Seat:
     return Seat(part.index) if part.clamp is None else Seat(part.clamp, True)
 
 
-def _greatest_tension(series: ResultColumns, part: Judged, mooring: Mooring) -> Column:
+def _greatest_tension(series: ResultColumns, part: JudgedPart, mooring: Mooring) -> Column:
     pieces = mooring.file.pieces
     first = sum(len(piece.clamps) for piece in pieces[: part.index])
     clamps = range(first, first + len(pieces[part.index].clamps))
     return series.greatest_tension([_seat(part), *(Seat(clamp, True) for clamp in clamps)])
 
 
-def _least_tension(series: ResultColumns, part: Judged, mooring: Mooring) -> Column:
+def _least_tension(series: ResultColumns, part: JudgedPart, mooring: Mooring) -> Column:
     """Return the least at the ends of a piece; NaN where all of it lies on the seabed."""
     lies = series.depth(_seat(part)) >= mooring.water.depth * (1.0 - _LYING)
     least = series.least_tension(_seat(part))
@@ -123,7 +123,7 @@ def _least_tension(series: ResultColumns, part: Judged, mooring: Mooring) -> Col
     return least
 
 
-def _greatest_depth(series: ResultColumns, part: Judged, mooring: Mooring) -> Column:
+def _greatest_depth(series: ResultColumns, part: JudgedPart, mooring: Mooring) -> Column:
     """Return the depth of the deeper end of a piece, whose lower end is the top of the next one."""
     depth = series.depth(_seat(part))
     floats = depth <= (AT_SURFACE if reaches_the_surface(mooring) else -np.inf)
@@ -133,7 +133,7 @@ def _greatest_depth(series: ResultColumns, part: Judged, mooring: Mooring) -> Co
     return depth
 
 
-def _required_weight(series: ResultColumns, _: Judged, mooring: Mooring) -> Column:
+def _required_weight(series: ResultColumns, _: JudgedPart, mooring: Mooring) -> Column:
     """Factor (V + H / friction): see `calm.physics.anchor.required_weight`."""
     factor, friction = mooring.file.checks.anchor_factor, _friction(mooring)
     needed = series.ends("anchor_horizontal")
@@ -143,7 +143,7 @@ def _required_weight(series: ResultColumns, _: Judged, mooring: Mooring) -> Colu
     return needed
 
 
-def _slide(series: ResultColumns, _: Judged, mooring: Mooring) -> Column:
+def _slide(series: ResultColumns, _: JudgedPart, mooring: Mooring) -> Column:
     slide = series.ends("anchor_vertical")
     slide *= _friction(mooring)
     slide += series.ends("anchor_horizontal")
@@ -155,13 +155,13 @@ def _friction(mooring: Mooring) -> float:
     return mooring.file.checks.anchor_friction if own is None else own
 
 
-def _reserve_left(series: ResultColumns, _: Judged, __: Mooring) -> Column:
+def _reserve_left(series: ResultColumns, _: JudgedPart, __: Mooring) -> Column:
     left = series.ends("used_buoyancy")
     np.subtract(1.0, left, out=left)
     return left
 
 
-_VALUES: dict[str, Callable[[ResultColumns, Judged, Mooring], Column]] = {
+_VALUES: dict[str, Callable[[ResultColumns, JudgedPart, Mooring], Column]] = {
     "tension": _greatest_tension,
     "tension_bottom": lambda series, part, _: series.column("tension_bottom", part.index),
     "least_tension": _least_tension,

@@ -24,7 +24,7 @@ from calm.batch.statistics.limits import (
 from calm.batch.statistics.series import Column, ResultColumns, Times
 from calm.batch.statuses import Ending, endings
 from calm.case import Mooring
-from calm.checks.limits import limits_used
+from calm.checks.criterion import limits_used
 from calm.checks.posture import reaches_the_surface
 from calm.files.check_limits import LimitKey
 

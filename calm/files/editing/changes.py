@@ -1,4 +1,4 @@
-"""Changes to a text by location, each the patches that make it."""
+"""Changes to a text by location: the patches that make them, and what the text then says."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ class EditError(CalmError):
 class Page:
     """Hold a text that ends in a line break, its nodes and how it is written."""
 
-    def __init__(self, text: str, root: Node, layout: WritingStyle) -> None:
+    def __init__(self, text: str, root: Node, style: WritingStyle) -> None:
         self.text = text
         self.root = root
-        self.layout = layout
+        self.style = style
 
     def node(self, location: Location) -> Node | None:
         """Return what stands at a location, None where nothing does."""
@@ -56,7 +56,7 @@ class Page:
                 if node.kind == "mapping" and (node.keys or outer is None or not depth):
                     name, new_value = next(iter(new.items()))
                     opened = _opens(location[:depth], node)
-                    return add_entry(self.text, node, name, new_value, self.layout, open=opened)
+                    return add_entry(self.text, node, name, new_value, self.style, open=opened)
                 if outer is None or node.kind == "sequence":
                     raise EditError(f"{_shown(location)} cannot be set: there is a list above it")
                 return self._set(outer, location[depth - 1], new)
@@ -69,7 +69,7 @@ class Page:
     ) -> list[Patch]:
         if outer.kind == "mapping":
             at = [key.data for key in outer.keys].index(step)
-            return set_value(self.text, outer, at, value, self.layout, open=open)
+            return set_value(self.text, outer, at, value, self.style, open=open)
         old = outer.children[int(step)]
         if old.kind != "scalar" or not isinstance(value, str):
             raise EditError(f"line {old.line}: only a plain value can be changed here")
@@ -113,16 +113,23 @@ class Page:
         return tuple(snippet_of(items.slots[i], node.children[i], items) for i in known)
 
     def add(self, location: Location, index: int, values: Sequence[Value]) -> list[Patch]:
-        """Put new items into a list, which may not exist yet."""
+        """Put new items into a list, which may not exist yet.
+
+        Parameters
+        ----------
+        location : of the list
+        index : of the first new item
+        values : the items; `Worded` keep their wording
+        """
         node = self.node(location)
         if node is None or not node.children:
             return self.put(location, values)
         items = self.items(location)
         if isinstance(values, Worded):
-            slots = [worded_slot(one, items, self.layout) for one in values.wordings]
+            slots = [worded_slot(one, items, self.style) for one in values.wordings]
         else:
             block = all(child.style == "block" for child in node.children)
-            slots = [new_slot(value, items, self.layout, block=block) for value in values]
+            slots = [new_slot(value, items, self.style, block=block) for value in values]
         for slot in reversed(slots):
             items.insert(index, slot)
         return [items.patch()]
@@ -140,7 +147,7 @@ class Page:
             if tag == "equal":
                 continue
             for row in reversed(rows[new_start:new_end]):
-                items.insert(end, new_slot(row, items, self.layout, block=False))
+                items.insert(end, new_slot(row, items, self.style, block=False))
             for index in reversed(range(start, end)):
                 items.remove(index)
         return [items.patch()]
@@ -185,7 +192,14 @@ def data_of(value: Value) -> Any:
 
 
 def with_value(data: Any, location: Location, value: Value) -> Any:
-    """Return the data with another value at a location; mappings that lead to it are made."""
+    """Return the data with another value at a location; mappings that lead to it are made.
+
+    Parameters
+    ----------
+    data : as `Node.data`
+    location : keys and indices that lead to the value
+    value : Value
+    """
     if not location:
         return data_of(value)
     step, below = location[0], location[1:]

@@ -127,8 +127,11 @@ class Draft:
     def insert(self, index: int, values: Mapping[str, Value], rows: Location = LINE) -> Draft:
         """Put a new item above that of an index, or below the last.
 
-        `rows`, here and below, is the list meant: the line, `clamps_of` one of its items, or
-        another list of the file.
+        Parameters
+        ----------
+        index : of the new item
+        values : by key
+        rows : the list meant, here and below: the line, `clamps_of` an item, or another list
         """
         self._stands(rows)
         return self._add(rows, index, [values])
@@ -150,7 +153,14 @@ class Draft:
         return self._changed([items.patch()], with_value(self._data, rows, data))
 
     def move(self, index: int, to: int, rows: Location = LINE) -> Draft:
-        """Take an item to another place, `to` being its index then."""
+        """Take an item to another place.
+
+        Parameters
+        ----------
+        index : of the item
+        to : its index then
+        rows : the list
+        """
         self._page.known(rows, [index, to])
         if index == to:
             return self
@@ -165,7 +175,14 @@ class Draft:
         return self._page.copy(rows, indices)
 
     def paste(self, index: int, snippets: Iterable[str], rows: Location = LINE) -> Draft:
-        """Put items as `copy` gives them above that of an index, or below the last."""
+        """Put items as `copy` gives them above that of an index, or below the last.
+
+        Parameters
+        ----------
+        index : of the first new item
+        snippets : items as `copy` gives them
+        rows : the list
+        """
         self._stands(rows)
         worded = _worded(snippets)
         return self._add(rows, index, worded) if worded else self
@@ -176,7 +193,15 @@ class Draft:
         return self.paste(known[-1] + 1, self.copy(known)) if known else self
 
     def put(self, index: int, key: str, value: Value | None, rows: Location = LINE) -> Draft:
-        """Give a value to a key of an item; None takes the key out."""
+        """Give a value to a key of an item.
+
+        Parameters
+        ----------
+        index : of the item
+        key : of the item
+        value : None takes the key out
+        rows : the list
+        """
         self._page.known(rows, [index])
         return self.put_at((*rows, index, key), value)
 
@@ -205,7 +230,11 @@ class Draft:
     ) -> Draft:
         """Put a table in; the rows that it has already stay as they are written.
 
-        In a table of as many values as before, each stays that does not change.
+        Parameters
+        ----------
+        location : of the table
+        columns : names with units
+        rows : of values; in a table of as many as before, each stays that does not change
         """
         old = self.value(location)
         if not isinstance(old, dict) or set(old) != {"columns", "rows"}:
@@ -255,7 +284,7 @@ class Draft:
     def _changed(self, patches: Iterable[Patch], data: Any) -> Draft:
         """Return the draft with its text patched, which then says `data` and nothing else."""
         text = patched(self._padded, patches)
-        line_break = self._page.layout.line_break
+        line_break = self._page.style.line_break
         if self._padded != self.text:
             text = text.removesuffix(line_break)
         draft = Draft(text)

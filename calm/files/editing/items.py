@@ -36,7 +36,14 @@ class LineItem:
 
 
 def item_of(node: Node, text: str, *, lines: str = "") -> LineItem:
-    """Return the item of a node of a text; `lines` where it takes more of the text than its own."""
+    """Return the item that a node of a text is.
+
+    Parameters
+    ----------
+    node : of the item
+    text : it stands in
+    lines : its text, where it takes more than the node
+    """
     entries = list(zip(node.keys, node.children, strict=False))
     values = {key.data: child.data or "" for key, child in entries if child.kind == "scalar"}
     clamps = [child for key, child in entries if key.data == "clamps" and child.kind == "sequence"]
@@ -52,28 +59,50 @@ def item_of(node: Node, text: str, *, lines: str = "") -> LineItem:
     )
 
 
-def new_slot(value: Value, items: Items, layout: WritingStyle, *, block: bool) -> Slot:
-    """Write a new item for a list, after its form; `block`: a key a line where that can be."""
+def new_slot(value: Value, items: Items, style: WritingStyle, *, block: bool) -> Slot:
+    """Write a new item for a list, after its form.
+
+    Parameters
+    ----------
+    value : of the item
+    items : those of the list
+    style : of the file
+    block : write a key a line where that can be
+    """
     if items.form == "block":
-        return Slot(layout.item(value, items.column, block=block))
+        return Slot(style.item(value, items.column, block=block))
     if items.form == "rows":
-        return Slot(" " * (items.column - 1) + inline(value), layout.line_break)
+        return Slot(" " * (items.column - 1) + inline(value), style.line_break)
     return Slot(inline(value))
 
 
-def worded_slot(wording: Wording, items: Items, layout: WritingStyle) -> Slot:
-    """Place an item as it is worded; within brackets in one line it loses its comments."""
+def worded_slot(wording: Wording, items: Items, style: WritingStyle) -> Slot:
+    """Place an item as it is worded; within brackets in one line it loses its comments.
+
+    Parameters
+    ----------
+    wording : of the item
+    items : those of the list
+    style : of the file
+    """
     if items.form == "block":
-        return Slot(layout.moved(wording.lines, items.column))
+        return Slot(style.moved(wording.lines, items.column))
     if items.form == "rows":
-        above = layout.moved(wording.above, items.column)
-        behind = wording.behind.replace("\n", layout.line_break)
+        above = style.moved(wording.above, items.column)
+        behind = wording.behind.replace("\n", style.line_break)
         return Slot(above + " " * (items.column - 1) + wording.inline, behind)
     return Slot(wording.inline)
 
 
 def snippet_of(slot: Slot, node: Node, items: Items) -> str:
-    """Return the text of an item by itself, as an item of a block list that begins in column 1."""
+    """Return the text of an item by itself, as an item of a block list that begins in column 1.
+
+    Parameters
+    ----------
+    slot : of the item
+    node : of the item
+    items : those of its list
+    """
     if items.form == "inline":
         return _LINE_BREAK.sub("\n", f"- {slot.value}\n")
     text = slot.text

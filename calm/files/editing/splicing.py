@@ -1,4 +1,8 @@
-"""Which lines, comments included, belong to what in a text; pieces of text put in its place."""
+"""Values put into a text, and taken out of it, at the places where libyaml found them.
+
+A text is never written anew: what emitters of YAML keep of it (ruamel.yaml by round trip keeps most
+comments) is less than a person put there, such as figures in columns and line ends of Windows.
+"""
 
 from __future__ import annotations
 
@@ -14,6 +18,10 @@ from calm.files.editing.writing import SECTIONS, Value, WritingStyle, inline, pl
 _COMMENT = re.compile(r"[ \t]*#[^\n]*(?:\n|\Z)")
 _BEHIND = re.compile(r"[ \t]*(?:#[^\n]*)?(?:\r?\n|\Z)")
 """What may follow a value on its line: a comment."""
+
+_COMMA = re.compile(r"(?:\s|#[^\n]*\n)*,")
+_FILLING = re.compile(r"(?:[ \t\r\n]|#[^\n]*\n)*")
+_BLANK_LINE = re.compile(r"^[ \t]*\r?\n(?=(?:[ ]*#.*\n|[ \t]*\r?\n)*\S)", re.MULTILINE)
 
 
 class Patch(NamedTuple):
@@ -83,9 +91,6 @@ def _own_start(text: str, place: int, least: int, column: int | None = None) -> 
 
 def _column(line: str) -> int:
     return len(line) - len(line.lstrip(" \t")) + 1
-
-
-_COMMA = re.compile(r"(?:\s|#[^\n]*\n)*,")
 
 
 class Slot(NamedTuple):
@@ -233,26 +238,29 @@ def _inline(text: str, node: Node) -> Items:
     return Items(start, end, "inline", children[0].column, slots, gaps)
 
 
-_FILLING = re.compile(r"(?:[ \t\r\n]|#[^\n]*\n)*")
-_BLANK_LINE = re.compile(r"^[ \t]*\r?\n(?=(?:[ ]*#.*\n|[ \t]*\r?\n)*\S)", re.MULTILINE)
-
-
 def add_entry(
-    text: str, mapping: Node, name: str, value: Value, layout: WritingStyle, *, open: bool = False
+    text: str, mapping: Node, name: str, value: Value, style: WritingStyle, *, open: bool = False
 ) -> list[Patch]:
     """Write a key that a mapping does not have, and its value, where the format has it.
 
-    `open` writes a mapping below its key even where it is short.
+    Parameters
+    ----------
+    text : it ends in a line break
+    mapping : in it
+    name : the new key
+    value : Value
+    style : of the file
+    open : write a mapping below its key even where it is short
     """
     at = place_of(name, [key.data for key in mapping.keys])
     if mapping.style == "flow" or not mapping.keys:
         return [_flow_entry(text, mapping, at, f"{written(name, flow=True)}: {inline(value)}")]
     column = mapping.column
-    lines = layout.entry(name, value, column, open=open)
+    lines = style.entry(name, value, column, open=open)
     if at:
         place = _own_end(text, mapping.children[at - 1].end, column)
         apart = column == 1 and name in SECTIONS and _BLANK_LINE.search(text)
-        return [Patch(place, place, (layout.line_break if apart else "") + lines)]
+        return [Patch(place, place, (style.line_break if apart else "") + lines)]
     first = mapping.keys[0].start
     if _first_on_line(text, first):
         place = _start(text, mapping, 0)
@@ -287,7 +295,14 @@ def _flow_entry(text: str, mapping: Node, at: int, entry: str) -> Patch:
 
 
 def remove_entry(text: str, mapping: Node, at: int) -> list[Patch]:
-    """Take out a key, its value and the comments directly above it and further right below."""
+    """Take out a key, its value and the comments directly above it and further right below.
+
+    Parameters
+    ----------
+    text : it ends in a line break
+    mapping : in it
+    at : number of the entry, from 0
+    """
     if len(mapping.keys) == 1:
         return [Patch(mapping.start, mapping.end, "{}")]
     if mapping.style == "flow":
@@ -332,9 +347,19 @@ def _with_lines(text: str, start: int, end: int) -> tuple[int, int]:
 
 
 def set_value(
-    text: str, mapping: Node, at: int, value: Value, layout: WritingStyle, *, open: bool = False
+    text: str, mapping: Node, at: int, value: Value, style: WritingStyle, *, open: bool = False
 ) -> list[Patch]:
-    """Give a key another value."""
+    """Give a key another value.
+
+    Parameters
+    ----------
+    text : it ends in a line break
+    mapping : in it
+    at : number of the entry, from 0
+    value : Value
+    style : of the file
+    open : as for `add_entry`
+    """
     key, old = mapping.keys[at], mapping.children[at]
     if isinstance(value, str) and old.kind == "scalar" and old.data is not None:
         return [set_scalar(old, value, flow=mapping.style == "flow")]
@@ -344,7 +369,7 @@ def set_value(
         if colon is None:
             return [Patch(key.end, key.end, ":" + head)]
     else:
-        head, below = layout.parts(key.data, value, mapping.column, open=open)
+        head, below = style.parts(key.data, value, mapping.column, open=open)
     assert colon is not None
     if mapping.style == "block" and old.line > key.line:
         # Lines below the key: a comment behind the key stays.
@@ -358,7 +383,14 @@ def set_value(
 
 
 def set_scalar(old: Node, value: str, *, flow: bool) -> Patch:
-    """Write another text for a scalar, quoted as it was."""
+    """Write another text for a scalar, quoted as it was.
+
+    Parameters
+    ----------
+    old : the scalar
+    value : the new text
+    flow : it stands within brackets
+    """
     quote = old.style if old.style in "'\"" else ""
     return Patch(old.start, old.end, written(value, flow=flow, quote=quote))
 

@@ -114,14 +114,27 @@ class WritingStyle:
     def entry(self, name: str, value: Value, column: int, *, open: bool = False) -> str:
         """Write the lines of an entry of a block mapping whose keys stand in a column (from 1).
 
-        `open` writes a mapping below its key even where it is short.
+        Parameters
+        ----------
+        name : the key
+        value : Value
+        column : of the key, from 1
+        open : write a mapping below its key even where it is short
         """
         key = " " * (column - 1) + written(name, flow=False) + ":"
         head, below = self.parts(name, value, column, open=open)
         return key + head + self.line_break + below
 
     def parts(self, name: str, value: Value, column: int, *, open: bool = False) -> tuple[str, str]:
-        """Write what follows the colon of a key, and the lines below it."""
+        """Write what follows the colon of a key, and the lines below it.
+
+        Parameters
+        ----------
+        name : the key
+        value : Value
+        column : of the key, from 1
+        open : as for `entry`
+        """
         if value is None:
             return "", ""
         if isinstance(value, str):
@@ -147,7 +160,11 @@ class WritingStyle:
     def item(self, value: Value, column: int, *, block: bool = False) -> str:
         """Write the lines of an item whose dash stands in a column.
 
-        An item that has items of its own is written a key a line, and so is any with `block`.
+        Parameters
+        ----------
+        value : Value
+        column : of the dash, from 1
+        block : write a key a line, as is done of an item that has items of its own
         """
         indent = " " * (column - 1)
         if isinstance(value, Mapping) and value and (block or _is_deep(value)):

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
+from calm.checks.criterion import said
 from calm.checks.finding import AS_GIVEN, OWN, Finding, State
-from calm.checks.limits import said
 from calm.checks.rules import RULES
 from calm.report.blocks import (
     ON_THE_WAY,

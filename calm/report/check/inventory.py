@@ -11,10 +11,10 @@ from calm.report.blocks import Cell, Column, Table
 from calm.report.line import figure_cell, place_text, quantity_column
 
 if TYPE_CHECKING:
-    from calm.checks.inventory import Item
+    from calm.checks.inventory import InventoryItem
 
 
-def deck_table(items: Sequence[Item]) -> Table:
+def deck_table(items: Sequence[InventoryItem]) -> Table:
     """Pieces in the order in which they come to the deck, with their weights and lifts."""
     rows = tuple(
         (
@@ -46,9 +46,9 @@ def deck_table(items: Sequence[Item]) -> Table:
     return Table("Pieces for the deck", columns, rows, note)
 
 
-def inventory_table(items: Sequence[Item]) -> Table:
+def inventory_table(items: Sequence[InventoryItem]) -> Table:
     """How many and how much of each component is needed, with room for the spares."""
-    groups: dict[str, list[Item]] = {}
+    groups: dict[str, list[InventoryItem]] = {}
     for item in items:
         groups.setdefault(item.use, []).append(item)
     rows = [_stock(group[0].name or use, use, group) for use, group in groups.items()]
@@ -68,7 +68,7 @@ def inventory_table(items: Sequence[Item]) -> Table:
     return Table("Inventory", columns, tuple(rows), note, totals=1)
 
 
-def _stock(name: str, use: str, items: Sequence[Item]) -> tuple[Cell, ...]:
+def _stock(name: str, use: str, items: Sequence[InventoryItem]) -> tuple[Cell, ...]:
     lines = [item for item in items if item.kind in FLEXIBLE_KINDS]
     return (
         Cell(name),

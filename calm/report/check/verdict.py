@@ -6,8 +6,8 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
+from calm.checks.criterion import said
 from calm.checks.finding import State, worst_state
-from calm.checks.limits import said
 from calm.checks.rules import RULES
 from calm.report.blocks import Cell, Column, Prose, Table
 from calm.report.check.summary import place_of, say_in_unit, worst_by_part

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from calm.checks.finding import State
-from calm.drop.planning import DRAG_BAND
+from calm.drop.plan import DRAG_BAND
 from calm.quantities import QUANTITIES, bearing_text, say
 from calm.report.blocks import Block, Cell, Column, Figure, Note, Pairs, Part, Prose, Table
 from calm.report.drop.figures import drop_figure

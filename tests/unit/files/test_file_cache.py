@@ -1,7 +1,7 @@
 import os
 from pathlib import Path
 
-from calm.files.catalogue import Unchanged
+from calm.files.catalogue import FileCache
 
 
 def aged(path: Path, text: str, seconds: float = 100.0) -> Path:
@@ -15,7 +15,7 @@ def aged(path: Path, text: str, seconds: float = 100.0) -> Path:
 def test_files_are_read_again_only_where_they_changed(tmp_path: Path) -> None:
     read = []
     path = aged(tmp_path / "a", "1")
-    last: Unchanged[int] = Unchanged()
+    last: FileCache[int] = FileCache()
 
     def of(*paths: Path) -> int:
         return last.of(paths, lambda: read.append(1) or len(read))
@@ -32,7 +32,7 @@ def test_files_are_read_again_only_where_they_changed(tmp_path: Path) -> None:
 def test_a_file_just_written_may_be_written_again(tmp_path: Path) -> None:
     path, read = tmp_path / "a", []
     path.write_text("1")
-    last: Unchanged[None] = Unchanged()
+    last: FileCache[None] = FileCache()
     for _ in range(2):
         last.of([path], lambda: read.append(1))
     assert len(read) == 2
@@ -40,7 +40,7 @@ def test_a_file_just_written_may_be_written_again(tmp_path: Path) -> None:
 
 def test_files_that_are_not_there_are_asked_for_each_time(tmp_path: Path) -> None:
     read: list[int] = []
-    last: Unchanged[None] = Unchanged()
+    last: FileCache[None] = FileCache()
     for _ in range(2):
         last.of([tmp_path / "none"], lambda: read.append(1))
     assert len(read) == 2
