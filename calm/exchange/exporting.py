@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+
 from calm.case import load
 from calm.errors import UsageError
 from calm.exchange.cable_writer import cbl_file
-from calm.exchange.exported_parts import ExportedLine
-from calm.exchange.exported_parts import ExportedPart
-from calm.exchange.exported_parts import assembled
+from calm.exchange.exported_parts import ExportedLine, ExportedPart, assembled
 from calm.exchange.mdd_writer import mdd_file
-from calm.exchange.moordyn_writer import CURRENTS
-from calm.exchange.moordyn_writer import current_profile
-from calm.exchange.moordyn_writer import moordyn_file
+from calm.exchange.moordyn_writer import CURRENTS, current_profile, moordyn_file
 from calm.records.csv_writer import table_csv
 from calm.suggestions import unknown
 

@@ -8,6 +8,7 @@ import unicodedata
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+
 from calm.exchange.design import refused
 from calm.records.delimited import cells_in
 from calm.suggestions import unknown
