@@ -78,7 +78,7 @@ def key_of(name: str) -> str:
     return "".join(name.lower().split())
 
 
-def complete(rows: Iterable[ListRow], library: Library, source: str) -> None:
+def complete_rows(rows: Iterable[ListRow], library: Library, source: str) -> None:
     """Give rows the figures that they lack, from the element of their name.
 
     Parameters

@@ -9,7 +9,7 @@ from pathlib import Path
 from calm.case import load
 from calm.errors import UsageError
 from calm.exchange.cable_writer import cbl_file
-from calm.exchange.exported_parts import ExportedLine, ExportedPart, assembled
+from calm.exchange.exported_parts import ExportedLine, ExportedPart, exported_line
 from calm.exchange.mdd_writer import mdd_file
 from calm.exchange.moordyn_writer import CURRENTS, current_profile, moordyn_file
 from calm.records.csv_writer import table_csv
@@ -100,7 +100,7 @@ def export_file(
         raise UsageError(
             unknown(f"--to: `{to}` is not a program that CALM writes for", to, WRITERS)
         )
-    design = assembled(load(path, environment, list(catalogs)))
+    design = exported_line(load(path, environment, list(catalogs)))
     content, lost = WRITERS[to](design)
     beside = {CURRENTS: current_profile(design)} if to == "moordyn" else {}
     return Exported(content, lost, beside)

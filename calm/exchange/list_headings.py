@@ -176,11 +176,11 @@ def _columns(row: list[str], given: Mapping[str, str]) -> dict[str, ListColumn]:
             if re.search(pattern, cell):
                 taken.add(i)
                 found[what] = _column(what, i, row[i])
-    _settle(found)
+    _resolve(found)
     return found
 
 
-def _settle(found: dict[str, ListColumn]) -> None:
+def _resolve(found: dict[str, ListColumn]) -> None:
     """Take a height for a missing length, and a weight beside a buoyancy as that in air."""
     if "length" not in found and "height" in found and _plain(found["height"].heading) == "height":
         found["length"] = found.pop("height")
