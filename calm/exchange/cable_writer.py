@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from math import pi, sqrt
 
-from calm.exchange.exported_parts import ExportedLine, ExportedPart, PartLoad, kept
+from calm.exchange.exported_parts import ExportedLine, ExportedPart, PartLoad, unique_name
 from calm.exchange.part_names import is_chain
 from calm.files import Chain, Cylinder, Rigid, Sphere
 from calm.files.rigid import Displacement
@@ -62,7 +62,7 @@ class _Problem:
             f"d = {max(across, 1e-6):.9g}  wet = {-load.net:.9g}  m = {load.mass:.9g}"
             f"  Cdn = {1.0 if across else 0.0:g}"
         )
-        name = kept(self.connectors, f"p_{_word(base)}", figures)
+        name = unique_name(self.connectors, f"p_{_word(base)}", figures)
         self.layout.append(f"    connector = {name}")
 
 
@@ -140,7 +140,7 @@ def _link(problem: _Problem) -> str:
         f"d = 0.001  m = {_LEAST_MASS}  wet = {_LEAST_WEIGHT}  Cdn = 0  Cdt = 0"
         f"  EA = {_RIGID:g}  EI = 1e-4  GJ = 1e-4"
     )
-    return kept(problem.materials, "link", figures)
+    return unique_name(problem.materials, "link", figures)
 
 
 def _material(problem: _Problem, part: ExportedPart) -> str:
@@ -158,7 +158,7 @@ def _material(problem: _Problem, part: ExportedPart) -> str:
     name = _word(part.use)
     if isinstance(part.component, Chain) and not is_chain(name):
         name = f"chain_{name}"
-    return kept(problem.materials, name, figures)
+    return unique_name(problem.materials, name, figures)
 
 
 def _word(text: str) -> str:

@@ -61,7 +61,7 @@ class _Page:
         self.lines += [f"{indent}# {line}" for line in wrap(text, _WIDTH - len(indent) - 2)]
 
 
-def written(
+def mooring_text(
     design: Design, source: str, environment: list[str] | None = None, version: str = ""
 ) -> Written:
     """Return the mooring file of a design.
@@ -178,7 +178,7 @@ def _bare(item: ImportedPiece) -> bool:
 
 
 def _same(one: ImportedPiece, other: ImportedPiece) -> bool:
-    alike = one.component.says() == other.component.says()
+    alike = one.component.identity() == other.component.identity()
     return alike and one.length == other.length and one.component.entry == other.component.entry
 
 
@@ -200,9 +200,9 @@ def _write_item(page: _Page, item: ImportedPiece, ids: dict[int, str]) -> None:
         page.add(f"    {pair}")
     page.add("    clamps:")
     for clamp in item.clamps:
-        hung = ids[id(clamp.component)]
-        line = f"      - {{use: {hung}, at: {_number(clamp.at)} m}}"
-        page.add(line, clamp.guess, f"{where}.clamps.{hung}")
+        clamped = ids[id(clamp.component)]
+        line = f"      - {{use: {clamped}, at: {_number(clamp.at)} m}}"
+        page.add(line, clamp.guess, f"{where}.clamps.{clamped}")
 
 
 def _write_solver(page: _Page, design: Design) -> None:

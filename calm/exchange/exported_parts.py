@@ -137,7 +137,7 @@ class PartLoad:
         return PartLoad(self.density, self.names, *(each / length for each in figures))
 
 
-def kept(known: dict[str, str], name: str, figures: str) -> str:
+def unique_name(known: dict[str, str], name: str, figures: str) -> str:
     """Keep figures under a name, and return it: another where it is taken by other figures.
 
     Parameters
@@ -193,7 +193,7 @@ class ExportedLine:
     riding : share of its buoyancy that the float uses here, and of its drag that acts on it; 1, 1
         below the surface
     windage : of the float: its area in the air here [m²], and its drag coefficient there
-    unsaid : what other programs cannot hold
+    omitted : what other programs cannot hold
     solve : finds the equilibrium
     """
 
@@ -209,7 +209,7 @@ class ExportedLine:
     has_draft: bool
     riding: tuple[float, float]
     windage: tuple[float, float]
-    unsaid: tuple[str, ...]
+    omitted: tuple[str, ...]
     solve: Callable[[], Result | TowResult]
 
     @property
@@ -219,7 +219,7 @@ class ExportedLine:
 
     def losses(self, more: Sequence[str]) -> tuple[str, ...]:
         """Return what another program cannot hold, each remark once, `more` first."""
-        return tuple(dict.fromkeys((*more, *self.unsaid)))
+        return tuple(dict.fromkeys((*more, *self.omitted)))
 
     def paths(self) -> list[PartPath]:
         """Return where each part lies in equilibrium, from the top down.
@@ -272,7 +272,7 @@ class ExportedLine:
         return pull * cos(tilt), pull * sin(tilt) / (0.5 * density * end)
 
 
-def assembled(mooring: Mooring | Tow) -> ExportedLine:
+def exported_line(mooring: Mooring | Tow) -> ExportedLine:
     """Return the parts of a mooring or a tow.
 
     Raises
@@ -335,7 +335,7 @@ def assembled(mooring: Mooring | Tow) -> ExportedLine:
         has_draft=line.floating is not None and line.floating.hull is not None,
         riding=riding,
         windage=windage,
-        unsaid=_unsaid(mooring),
+        omitted=_omitted(mooring),
         solve=mooring.solve,
     )
 
@@ -411,20 +411,20 @@ def _levels(water: Water, deepest: float) -> Levels:
     return tuple(rows)
 
 
-def _unsaid(mooring: Mooring | Tow) -> tuple[str, ...]:
+def _omitted(mooring: Mooring | Tow) -> tuple[str, ...]:
     """Return what a mooring file says that other programs do not know."""
     file = mooring.file
-    unsaid = [
+    omitted = [
         "limits of the design check, strengths, ratings and tilts of components",
     ]
     if file.solver.strumming is not None:
-        unsaid.append("strumming: the drag of cables is that at rest")
+        omitted.append("strumming: the drag of cables is that at rest")
     if file.solver.drag == "reynolds":
-        unsaid.append("`drag: reynolds`: drags are those of the constant coefficients")
+        omitted.append("`drag: reynolds`: drags are those of the constant coefficients")
     if file.solver.friction != "berteaux":
-        unsaid.append(f"`friction: {file.solver.friction}`")
+        omitted.append(f"`friction: {file.solver.friction}`")
     if any(mooring.line.elongation):
-        unsaid.append("elongation tables: stiffness is that at the tension found here")
+        omitted.append("elongation tables: stiffness is that at the tension found here")
     if any(mooring.line.lift) or any(mooring.line.clamp_lift):
-        unsaid.append("lift of towed bodies")
-    return tuple(unsaid)
+        omitted.append("lift of towed bodies")
+    return tuple(omitted)

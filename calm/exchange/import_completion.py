@@ -14,7 +14,7 @@ from calm.assemble.line import drag_of
 from calm.case import Mooring, load
 from calm.errors import CalmError
 from calm.exchange.design import Design, ImportedComponent, one_line, refused
-from calm.exchange.design_writer import figure_text, quoted, written
+from calm.exchange.design_writer import figure_text, mooring_text, quoted
 from calm.files import Anchor, Assembly, Catalogue, Rigid
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Component
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY, STEEL_DENSITY
@@ -32,7 +32,7 @@ _DIGITS = 2  # that a guessed weight keeps
 _LEAST = 100.0  # N of a guessed weight
 
 
-def hold(design: Design, environment: list[str] | None, output: Path) -> None:
+def secure_anchor(design: Design, environment: list[str] | None, output: Path) -> None:
     """Give the anchor a weight where the file gives none, or one that the line would lift.
 
     The shape of the line does not depend on it. The weight is what `calm check` asks for in this
@@ -74,7 +74,7 @@ def _pull(
     anchor.figures.pop("mass", None)
     anchor.figures["weight"] = _HOLDS
     try:
-        mooring = load(output, text=written(design, "", environment).text)
+        mooring = load(output, text=mooring_text(design, "", environment).text)
         assert isinstance(mooring, Mooring)
         anchored = mooring.solve().anchor
     except CalmError:
@@ -92,7 +92,7 @@ class CatalogueMatch:
     entry: str
 
 
-def match(design: Design) -> tuple[CatalogueMatch, ...]:
+def match_catalogue_entries(design: Design) -> tuple[CatalogueMatch, ...]:
     """Use catalogue entries for the components whose name and figures agree with one.
 
     A component is of the same kind, shares half the words of its name, and is within `_TOLERANCE`

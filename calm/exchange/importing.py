@@ -11,8 +11,13 @@ import numpy as np
 from calm.errors import InputError, Problem, UsageError
 from calm.exchange.cable_reader import is_cbl, read_cbl
 from calm.exchange.design import MOST_PIECES, CurrentRecord, Design, Remark, refused
-from calm.exchange.design_writer import written
-from calm.exchange.import_completion import CatalogueMatch, environment_lines, hold, match
+from calm.exchange.design_writer import mooring_text
+from calm.exchange.import_completion import (
+    CatalogueMatch,
+    environment_lines,
+    match_catalogue_entries,
+    secure_anchor,
+)
 from calm.exchange.list_headings import is_table
 from calm.exchange.list_reader import read_table
 from calm.exchange.mat_file import is_mat
@@ -141,9 +146,9 @@ def import_file(
     elif design.water is None and design.tow is None:
         message = "has no environment; give one: --environment FILE (depth, current, density)"
         raise refused(path, message)
-    matched = match(design) if match_catalogue else ()
-    hold(design, lines, output)
-    page = written(design, path.name, lines, __version__)
+    matched = match_catalogue_entries(design) if match_catalogue else ()
+    secure_anchor(design, lines, output)
+    page = mooring_text(design, path.name, lines, __version__)
     _check(path, output, page.text)
     return Imported(
         path, chosen.name, page.text, tuple(page.guessed + design.guessed),

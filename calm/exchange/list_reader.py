@@ -17,7 +17,7 @@ from calm.exchange.design import (
     Remark,
     refused,
 )
-from calm.exchange.element_library import Library, complete, is_library, key_of, read_library
+from calm.exchange.element_library import Library, complete_rows, is_library, key_of, read_library
 from calm.exchange.list_headings import (
     ListHeadings,
     SheetRows,
@@ -81,7 +81,7 @@ def read_table(path: Path, columns: Mapping[str, str], elements: Path | None = N
     else:
         rows = _names(sheets, design, path, library)
     if elements is not None:
-        complete(rows, library, elements.name)
+        complete_rows(rows, library, elements.name)
     count_lines(rows, headings.columns if headings else {})
     if sum(row.count for row in rows) > MOST_PIECES:
         raise refused(path, f"has more than {MOST_PIECES} pieces")

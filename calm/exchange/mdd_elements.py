@@ -219,14 +219,19 @@ def mistakes_of(element: MddElement, where: str) -> list[str]:
     return wrong
 
 
-def _matrix(variables: Mapping[str, MatValue], name: str, problems: list[str]) -> RealArray:
-    """``H``: four rows, one column an element; the flag is 0 where a row is missing."""
+def _reals(variables: Mapping[str, MatValue], name: str, problems: list[str]) -> RealArray | None:
+    """Return a variable as numbers; None, and a problem, where it holds something else."""
     try:
-        size = numbers(variables.get(name))
+        return numbers(variables.get(name))
     except ValueError as error:
         problems.append(f"`{name}` {error}")
-        return np.zeros((4, 0))
-    if size.size == 0:
+        return None
+
+
+def _matrix(variables: Mapping[str, MatValue], name: str, problems: list[str]) -> RealArray:
+    """Return ``H``: four rows, one column an element; the flag is 0 where a row is missing."""
+    size = _reals(variables, name, problems)
+    if size is None or size.size == 0:
         return np.zeros((4, 0))
     size = np.atleast_2d(size)
     if size.ndim == 2 and size.shape[0] not in (3, 4) and size.shape[1] in (3, 4):
@@ -241,22 +246,17 @@ def _matrix(variables: Mapping[str, MatValue], name: str, problems: list[str]) -
 def _row(
     variables: Mapping[str, MatValue], name: str, count: int, problems: list[str]
 ) -> RealArray:
-    try:
-        row = numbers(variables.get(name)).ravel()
-    except ValueError as error:
-        problems.append(f"`{name}` {error}")
-        return np.zeros(count)
-    if row.size != count:
+    row = _reals(variables, name, problems)
+    if row is not None and row.size == count:
+        return row.ravel()
+    if row is not None:
         problems.append(f"`{name}` has {row.size} values for {count} elements")
-        return np.zeros(count)
-    return row
+    return np.zeros(count)
 
 
 def _optional(variables: Mapping[str, MatValue], name: str) -> RealArray:
-    try:
-        return numbers(variables.get(name)).ravel()
-    except ValueError:
-        return np.zeros(0)
+    row = _reals(variables, name, [])
+    return np.zeros(0) if row is None else row.ravel()
 
 
 def _names(variables: Mapping[str, MatValue], name: str, count: int) -> list[str]:

@@ -88,14 +88,14 @@ def ids_of(components: Iterable[ImportedComponent], taken: Iterable[str] = ()) -
     """
     components = list(components)
     ids: dict[int, str] = {}
-    said: dict[tuple[object, ...], str] = {}
+    known_ids: dict[tuple[object, ...], str] = {}
     known = {*taken, *(component.entry for component in components)}
     for component in components:
         if component.entry:
             ids[id(component)] = component.entry
             continue
-        says = component.says()
-        if says not in said:
+        identity = component.identity()
+        if identity not in known_ids:
             base = _kebab(component.name)
             if base in _NO_IDS or not any(sign.isalpha() for sign in base):
                 base = f"{component.kind}-{base}".rstrip("-")
@@ -104,6 +104,6 @@ def ids_of(components: Iterable[ImportedComponent], taken: Iterable[str] = ()) -
                 number += 1
                 chosen = f"{base}-v{number}"
             known.add(chosen)
-            said[says] = chosen
-        ids[id(component)] = said[says]
+            known_ids[identity] = chosen
+        ids[id(component)] = known_ids[identity]
     return ids
