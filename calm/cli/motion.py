@@ -204,8 +204,8 @@ def fitted(text: str | None) -> tuple[str, ...]:
     UsageError
         What is asked for cannot be estimated.
     """
-    from calm.files.mistakes import unknown
     from calm.motion.forward import FACTORS
+    from calm.suggestions import unknown
 
     asked = [] if text is None else [name.strip() for name in text.split(",")]
     for name in asked:
@@ -248,7 +248,6 @@ def read_measured(
     """What was measured, on common times; what is said of it, and its source."""
     import numpy as np
 
-    from calm.files.mistakes import not_among
     from calm.motion.currents import read_currents
     from calm.motion.flags import parse_flags
     from calm.motion.forward import Forward
@@ -263,6 +262,7 @@ def read_measured(
     from calm.motion.sensors import read_sensors
     from calm.motion.task import without
     from calm.motion.usable import plausible, unusable
+    from calm.suggestions import not_among
 
     if match not in _MATCHES:
         raise UsageError(not_among("--match", match, _MATCHES))

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from calm.errors import InputError, UsageError
 from calm.exchange.design import refused_at
-from calm.files.yaml_document import decoded, read_content
+from calm.whole_file import decoded, read_content
 
 _NAME = re.compile(r"[A-Za-z_]\w*")
 _TEXT = re.compile(r"\"[^\"\n]*\"|'[^'\n]*'")

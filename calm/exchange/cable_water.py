@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from calm.exchange.cable_grammar import KeyValue, KeyValues
 from calm.exchange.design import ImportedWater, Remark, refused
-from calm.files.yaml_document import read_text
 from calm.quantities import bearing_of
+from calm.whole_file import read_text
 
 USUAL_GRAVITY = 9.81
 """Gravity in the problems that come with that program, which has no default [m/s²]."""

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import cos, radians, sin
 from pathlib import Path
 
 import numpy as np
+from calm.records.csv_writer import table_csv
+from calm.suggestions import unknown
 
 from calm.case import Mooring, Tow, load
 from calm.errors import NoEquilibrium, UsageError
@@ -17,7 +17,6 @@ from calm.exchange.cable_writer import cbl_file
 from calm.exchange.exported_parts import ExportedLine, ExportedPart, ExportedTow, Levels
 from calm.exchange.mdd_writer import mdd_file
 from calm.exchange.moordyn_writer import CURRENTS, current_profile, moordyn_file
-from calm.files.mistakes import unknown
 from calm.physics.line import Line, Water
 from calm.physics.reference import REFERENCE_DENSITY
 
@@ -232,38 +231,36 @@ def _csv_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
     if design.tow is not None:
         lost.append("the speed of the ship: a list is a mooring's")
     losses = design.losses(lost)
-    text = io.StringIO()
-    for line in (f"{design.name}, by CALM; lost:", *losses):
-        text.write(f"# {' '.join(line.split())}\n")
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(_HEADER)
-    for part in design.parts:
-        writer.writerow(_row(part, ""))
-        for clamp, at in part.clamps:
-            writer.writerow(_row(clamp, f"{at:.9g}"))
+    rows = [
+        row
+        for part in design.parts
+        for row in (_row(part, None), *(_row(clamp, at) for clamp, at in part.clamps))
+    ]
     if design.anchor is not None:
         anchor, weight = design.anchor
-        mass = "" if anchor.mass is None else f"{anchor.mass:.9g}"
-        shown = ["anchor", "anchor", "anchor", "anchor", "", f"{anchor.length:.9g}", "", mass]
-        writer.writerow([*shown, f"{-weight:.9g}", "", "", ""])
-    return text.getvalue().encode(), losses
+        figures = [None, anchor.length, None, anchor.mass, -weight, None, None, None]
+        rows.append([*["anchor"] * 4, *figures])
+    comments = (f"{design.name}, by CALM; lost:", *losses)
+    above = "".join(f"# {' '.join(line.split())}\n" for line in comments)
+    return (above + table_csv(_HEADER, rows)).encode(), losses
 
 
-def _row(part: ExportedPart, at: str) -> list[str]:
+def _row(part: ExportedPart, at: float | None) -> list[str | float | None]:
     whole = part.length if part.flexible else 1.0
-    mass = "" if part.mass is None else f"{part.mass * whole:.9g}"
-    stiffness = f"{part.stiffness:.9g}" if part.stiffness else ""
-    diameter = f"{part.diameter:.9g}" if part.diameter else ""
-    along = f"{part.area(along=True) * whole:.9g}" if part.directional else ""
-    figures = [diameter, mass, f"{part.buoyancy * whole:.9g}", f"{part.area() * whole:.9g}"]
-    figures += [along, stiffness]
-    words = [part.use, part.label, part.component.kind, part.role]
-    return [_cell(word) for word in words] + [at, f"{part.length:.9g}", *figures]
-
-
-def _cell(text: str) -> str:
-    """Return a text that no spreadsheet takes for a formula."""
-    return f"'{text}" if text.startswith(("=", "+", "-", "@")) else text
+    return [
+        part.use,
+        part.label,
+        part.component.kind,
+        part.role,
+        at,
+        part.length,
+        part.diameter or None,
+        None if part.mass is None else part.mass * whole,
+        part.buoyancy * whole,
+        part.area() * whole,
+        part.area(along=True) * whole if part.directional else None,
+        part.stiffness or None,
+    ]
 
 
 WRITERS: dict[str, Callable[[ExportedLine], tuple[bytes, tuple[str, ...]]]] = {

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import io
 import re
 import unicodedata
@@ -11,9 +10,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from calm.exchange.design import refused
-from calm.files.mistakes import unknown
-from calm.files.yaml_document import read_content
+from calm.records.delimited import cells_in
+from calm.suggestions import unknown
 from calm.units import KILOGRAM_FORCE
+from calm.whole_file import read_content
 
 COLUMNS = (
     "name", "label", "kind", "role", "length", "diameter", "width", "mass", "buoyancy", "weight",
@@ -283,7 +283,7 @@ def read_sheets(path: Path) -> dict[str, SheetRows]:
     """
     content = read_content(path, largest=_LARGEST)
     workbook = _is_spreadsheet(content)
-    sheets = _workbook(path, content) if workbook else {"": _csv(path, content)}
+    sheets = _workbook(path, content) if workbook else {"": cells_in(_text(path, content))}
     for rows in sheets.values():
         if len(rows) > _MOST_ROWS or any(len(row) > _MOST_COLUMNS for row in rows):
             raise refused(path, f"has more than {_MOST_ROWS} rows or {_MOST_COLUMNS} columns")
@@ -300,17 +300,6 @@ def _cleaned(rows: SheetRows) -> SheetRows:
         if cells and not cells[0].startswith("#"):
             cleaned.append(cells)
     return cleaned
-
-
-def _csv(path: Path, content: bytes) -> SheetRows:
-    lines = [line for line in _text(path, content).splitlines() if line.strip()]
-    plain = [line for line in lines if not line.startswith("#")]
-    # the sign that most lines have; commas may be decimal ones beside the others
-    delimiter = max("\t;,", key=lambda sign: sum(sign in line for line in plain[:200]))
-    try:
-        return list(csv.reader(io.StringIO("\n".join(plain)), delimiter=delimiter))
-    except csv.Error as error:
-        raise refused(path, f"is not a table: {error}") from None
 
 
 def _text(path: Path, content: bytes) -> str:

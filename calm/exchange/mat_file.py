@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.exchange.design import refused
-from calm.files.yaml_document import read_content
+from calm.whole_file import read_content
 
 LARGEST = 200_000_000
 """Bytes of a file."""

@@ -20,7 +20,7 @@ from calm.exchange.design import (
 )
 from calm.exchange.part_names import is_chain
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
-from calm.files.yaml_document import read_text
+from calm.whole_file import read_text
 
 _FIXED, _FREE = ("fix", "anchor"), ("free", "connect", "point")
 _CURRENTS = "current_profile.txt"
@@ -167,7 +167,7 @@ def _option(options: dict[str, str], *names: str, default: float) -> float:
 
 
 def _currents(path: Path) -> tuple[tuple[float, float, float, float], ...]:
-    from calm.files.yaml_document import read_text
+    from calm.whole_file import read_text
 
     rows = []
     for line in read_text(path).splitlines():

@@ -20,9 +20,11 @@ from pydantic import Field
 from calm.errors import InputError, Problem, UsageError
 from calm.files.components import KINDS, Component
 from calm.files.definition import Definition
-from calm.files.mistakes import nearest, shown, unknown, validate
-from calm.files.yaml_document import Document, SourceMapping, compose, read_document, read_text
+from calm.files.mistakes import validate
+from calm.files.yaml_document import Document, SourceMapping, compose, read_document
 from calm.shipped import shipped_folder
+from calm.suggestions import nearest, shown, unknown
+from calm.whole_file import read_text
 
 GRAIN = 2.0
 """A file written this lately may be written again without its time telling [s]."""

@@ -14,10 +14,11 @@ from calm.files.definition import IN_AIR
 from calm.files.fields import LENGTH, POSITIVE_LENGTH, QuantityField, quantity_of
 from calm.files.flexible import Flexible, strain_under
 from calm.files.logbook import EQUIPMENT_KEYS, LengthAt, check_serials, read_equipment
-from calm.files.mistakes import about_quantity, shown, unknown, validate
+from calm.files.mistakes import validate
 from calm.files.mooring_file import Clamp, Piece, Place, placed
 from calm.files.rigid import Rigid
 from calm.files.yaml_document import SourceMapping
+from calm.suggestions import about_quantity, shown, unknown
 from calm.units import QuantityError
 
 MOST_PIECES = 10_000

@@ -10,20 +10,25 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.records.choice import choose_profiles
-from calm.batch.records.opening import open_record
 from calm.batch.statuses import implausible
 from calm.errors import InputError, Problem
-from calm.files.current_file import holds_arrays
-from calm.files.current_netcdf import open_current, reading
-from calm.files.current_place import is_regular
-from calm.files.current_times import find_times, read_times
-from calm.files.current_values import known_values
-from calm.files.current_variables import UnreadableError, factor_of, find_velocity
-from calm.files.current_vectors import with_components
-from calm.files.quality_flags import flag_variable, flags_of
-from calm.motion.labelled import labels_along
 from calm.physics.line import Floats
+from calm.records.cf_files import (
+    UnreadableError,
+    factor_of,
+    find_times,
+    flag_variable,
+    flags_of,
+    known_values,
+    labels_along,
+    open_current,
+    read_times,
+    reading,
+)
+from calm.records.current_file import holds_arrays, open_record
+from calm.records.record import choose_profiles
+from calm.records.velocity import find_velocity, with_components
+from calm.records.water_column import is_regular
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -69,7 +74,7 @@ def read_currents(
     ----------
     seabed : depth of the water [m]
     place : latitude and longitude of the mooring [degrees], where it is known
-    declination : see `calm.batch.records.opening.open_record`
+    declination : see `calm.records.record.open_record`
     maximum_speed : what is faster is left out, and said [m/s]
 
     Raises

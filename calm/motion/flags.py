@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from calm.errors import UsageError
-from calm.files.quality_flags import MISSING
+from calm.records.cf_files import MISSING
 
 GOOD = frozenset({1, 2})
 """Good and probably good: what is taken unless something else is asked for."""

@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import UsageError
-from calm.files.mistakes import unknown
-from calm.files.quality_flags import MISSING
 from calm.motion.currents import Currents
 from calm.motion.measured import FREE, Measured
 from calm.motion.sensors import Sensor
 from calm.physics.line import Floats
+from calm.records.cf_files import MISSING
+from calm.suggestions import unknown
 
 Times = NDArray[np.datetime64]
 

@@ -11,12 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import InputError, Problem, UsageError
-from calm.files.current_netcdf import is_netcdf, open_current, reading
-from calm.files.current_times import read_times
-from calm.files.current_variables import UnreadableError, holdings
 from calm.motion.joined import interpolated
-from calm.motion.labelled import labels_along
 from calm.motion.series import depths_at
+from calm.records.cf_files import (
+    UnreadableError,
+    holdings,
+    is_netcdf,
+    labels_along,
+    open_current,
+    read_times,
+    reading,
+)
 from calm.whole_file import beside
 
 if TYPE_CHECKING:

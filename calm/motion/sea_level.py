@@ -8,13 +8,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import InputError, Problem
-from calm.files.current_file import holds_arrays
-from calm.files.current_netcdf import open_current, reading
-from calm.files.current_times import find_times, read_times
-from calm.files.current_values import known_values
-from calm.files.current_variables import UnreadableError, factor_of, holdings
-from calm.motion.tables import read_table
 from calm.physics.line import Floats
+from calm.records.cf_files import (
+    UnreadableError,
+    factor_of,
+    find_times,
+    holdings,
+    known_values,
+    open_current,
+    read_times,
+    reading,
+)
+from calm.records.columns import read_time_columns
+from calm.records.current_file import holds_arrays
 
 FURTHEST = 20.0
 """A height of the sea surface is this far from the others at most [m]: no tide has half of it."""
@@ -39,12 +45,12 @@ def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
     if not path.exists():
         raise InputError([Problem(str(path), 0, 0, "no such file")])
     if not holds_arrays(path):
-        time, columns, values = read_table(path, ("length",), "level[m]")
-        if len(columns) != 1:
+        table = read_time_columns(path, ("length",), "level[m]")
+        if len(table.names) != 1:
             message = "has several columns; the sea level is one: `time,level[m]`"
             raise InputError([Problem(str(path), 1, 1, message)])
-        _refuse_far(path, time, values[:, 0])
-        return time, values[:, 0]
+        _refuse_far(path, table.time, table.values[:, 0])
+        return table.time, table.values[:, 0]
     with reading(path), open_current(path) as dataset:
         for standard in _STANDARD:
             for name in map(str, dataset.cf.standard_names.get(standard, [])):

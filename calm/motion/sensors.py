@@ -12,17 +12,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import InputError, Problem, UsageError
-from calm.files.current_file import holds_arrays
-from calm.files.current_netcdf import open_current, reading
-from calm.files.current_times import find_times, read_times
-from calm.files.current_values import known_values
-from calm.files.current_variables import UnreadableError, factor_of, holdings, refuse_ragged
-from calm.files.current_words import words_of
-from calm.files.quality_flags import flag_variable, flags_of
 from calm.motion.flags import INTERPOLATED
-from calm.motion.labelled import labels_along, places_along
-from calm.motion.tables import read_table
 from calm.physics.line import Floats
+from calm.records.attributes import words_of
+from calm.records.cf_files import (
+    UnreadableError,
+    factor_of,
+    find_times,
+    flag_variable,
+    flags_of,
+    holdings,
+    known_values,
+    labels_along,
+    open_current,
+    places_along,
+    read_times,
+    reading,
+)
+from calm.records.columns import read_time_columns
+from calm.records.current_file import holds_arrays
+from calm.records.velocity import refuse_ragged
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -216,7 +225,8 @@ def _find(dataset: xr.Dataset) -> tuple[str, bool]:
 
 def _from_csv(path: Path, latitude: float) -> list[Sensor]:
     """A table ``time,LABEL[dbar],…``; a label may come with a unit of length instead."""
-    time, columns, values = read_table(path, ("pressure", "length"), "LABEL[dbar]")
+    table = read_time_columns(path, ("pressure", "length"), "LABEL[dbar]")
+    time, values = table.time, table.values
     return [
         Sensor(
             label,
@@ -226,5 +236,5 @@ def _from_csv(path: Path, latitude: float) -> list[Sensor]:
             else values[:, j],
             path.name,
         )
-        for j, (label, dimension) in enumerate(columns)
+        for j, (label, dimension) in enumerate(zip(table.names, table.dimensions, strict=True))
     ]

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from calm.case import Mooring
 from calm.errors import UsageError
-from calm.files.mistakes import unknown
 from calm.motion.doubts import doubts, false_currents, said_of_currents, said_of_datum
 from calm.motion.forward import Forward
 from calm.motion.judge import (
@@ -31,6 +30,7 @@ from calm.motion.series import depths_at
 from calm.motion.task import Task, without
 from calm.motion.whole_record import estimate_common
 from calm.physics.line import Floats
+from calm.suggestions import unknown
 
 if TYPE_CHECKING:
     from xarray import Dataset

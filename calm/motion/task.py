@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.profiles import Profiles
-from calm.batch.records.record import Levels, Record
 from calm.batch.statuses import STATUSES
 from calm.case import Mooring
 from calm.motion.estimate import estimated
@@ -21,6 +20,7 @@ from calm.motion.moment import Moments
 from calm.motion.unknowns import Common
 from calm.motion.whole_record import forwards_of
 from calm.physics.line import Floats
+from calm.records.record import Levels, Record
 
 BLOCK = 512
 """Times that are estimated, and kept, together."""

@@ -16,7 +16,7 @@ from pydantic import BaseModel
 
 from calm.errors import InputError, UsageError
 from calm.files import MooringFile
-from calm.files.yaml_document import read_text
+from calm.whole_file import read_text
 
 _LIBRARIES = ("numpy", "pydantic", "matplotlib", "jinja2", "typst")
 

@@ -21,8 +21,7 @@ from threading import RLock
 
 from calm.errors import CalmError, InputError
 from calm.files.catalogue import GRAIN
-from calm.files.yaml_document import decoded, read_content
-from calm.whole_file import put, sweep
+from calm.whole_file import decoded, put, read_content, sweep
 
 _UNREADABLE = b"\0"
 """Stands for the content of what is there and cannot be read; no text has it."""

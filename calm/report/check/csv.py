@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from calm.checks.finding import Finding
 from calm.checks.rules import RULES
 from calm.quantities import QUANTITIES
-from calm.report.csv import table_csv
+from calm.records.csv_writer import table_csv
 
 if TYPE_CHECKING:
     from calm.checks.assessment import Assessment

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from calm.report.csv import table_csv
+from calm.records.csv_writer import table_csv
 
 if TYPE_CHECKING:
     from calm.deck import Deck

@@ -6,35 +6,36 @@ import math
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-
-from pydantic import Field, ValidationError
+from math import hypot, inf, isinf
+from typing import TYPE_CHECKING
 
 from calm.errors import Problem
-from calm.files.current_terms import Terms, too_deep, too_fast
-from calm.files.definition import DENSITY
-from calm.files.fields import Model, QuantityField, Text
-from calm.files.mistakes import about_quantity, shown, unknown
-from calm.files.yaml_document import SourceMapping
 from calm.quantities import bearing_of
-from calm.units import DIMENSIONS, QuantityError, unit_factor
+from calm.records.headings import heading, magnetic_columns
+from calm.suggestions import about_quantity, shown, unknown
+from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
+
+if TYPE_CHECKING:
+    from calm.records.water_column import Place
 
 Report = Callable[[Sequence[str | int], str], Problem]
 """Makes a problem of a message, at ``("columns", j)`` or ``("rows", i, j)``."""
 
-_HEADING = re.compile(r"^([^\s\[(]*)\s*(.*)$", re.DOTALL)
 _BARE_NUMBER = re.compile(r"[-+.,/\deE ]*")
 
-TEMPERATURE = QuantityField("temperature", at_least=-6, at_most=40)
-SALINITY = QuantityField("salinity", at_least=0, at_most=42)
+TEMPERATURE = QuantityRange("temperature", at_least=-6, at_most=40)
+SALINITY = QuantityRange("salinity", at_least=0, at_most=42)
 """Temperatures and salinities are limited to those that TEOS-10 is valid for."""
 
-WATER_DENSITY = QuantityField("density", at_least=900, at_most=1350)
+WATER_DENSITY = QuantityRange("density", at_least=900, at_most=1350)
 """From fresh water under a glacier to the brines at the bottom of the Red Sea."""
 
-DIRECTION = QuantityField("angle", at_least=-360, at_most=360)
+DENSITY = QuantityRange("density", above=0)
 
-_DEPTH = QuantityField("length")
-_SPEED = QuantityField("speed")
+DIRECTION = QuantityRange("angle", at_least=-360, at_most=360)
+
+_DEPTH = QuantityRange("length")
+_SPEED = QuantityRange("speed")
 _CURRENT = {
     "depth": _DEPTH,
     "u": _SPEED,
@@ -45,7 +46,6 @@ _CURRENT = {
     "from": DIRECTION,
 }
 _NO_WAY = ("direction", "dir", "heading", "bearing")
-_MAGNETIC = re.compile(r"(?i)\s*\bmag(netic)?$")
 _WATER = {
     "depth": _DEPTH,
     "density": DENSITY,
@@ -54,17 +54,33 @@ _WATER = {
 }
 
 
-class TableKeys(Model):
-    """Columns, each a name and its unit, and rows of values."""
+DEEPEST = 11_000.0
+"""Depth that no sea exceeds [m]."""
 
-    columns: tuple[Text, ...] = Field(
-        description="each a name and its unit: depth m, speed m/s, toward deg; or u m/s, v m/s, "
-        "w m/s",
-        examples=[["depth m", "speed m/s", "toward deg"]],
-    )
-    rows: tuple[tuple[Text | None, ...], ...] = Field(
-        description="values, top to bottom", examples=[[[0, 0.8, 90], [1100, 0.05, 60]]]
-    )
+IMPOSSIBLE = (
+    "an infinite or negative speed, or a direction outside -360 to 360°: a fill value, or "
+    "another unit?"
+)
+"""What is said of a current whose speed is infinite in `too_fast`."""
+
+
+@dataclass(frozen=True)
+class Terms:
+    """How a person wants the currents of a file to be taken.
+
+    Attributes
+    ----------
+    water_depth : places heights above the seabed [m]; inf where it is not known
+    place : whose column is wanted, where a file holds several
+    declination : of magnetic north from true north, positive to the east [degrees]; turns what
+        the file says is magnetic
+    maximum_speed : a faster current is a mistake of the file [m/s]
+    """
+
+    water_depth: float = inf
+    place: Place | None = None
+    declination: float | None = None
+    maximum_speed: float = inf
 
 
 @dataclass(frozen=True)
@@ -98,7 +114,7 @@ def read_current(
     rows: Sequence[Sequence[str | None]],
     report: Report,
     problems: list[Problem],
-    terms: Terms = Terms(),  # noqa: B008 (frozen)
+    terms: Terms = Terms(),
 ) -> CurrentTable | None:
     """Read a current from a table; None, with its mistakes in `problems`, if it has any.
 
@@ -155,20 +171,6 @@ def read_current(
     return CurrentTable(tuple(values["depth"]), tuple(u), tuple(v), tuple(w))
 
 
-def magnetic_columns(columns: Sequence[str]) -> tuple[list[str], set[str]]:
-    """Return the headings without the word for their north, and the names that count from it."""
-    plain = [_without_north(column) for column in columns]
-    pairs = zip(columns, plain, strict=True)
-    return plain, {heading(column)[0].lower() for column, other in pairs if column != other}
-
-
-def heading(column: str) -> tuple[str, str]:
-    """Part ``"depth m"``, ``"depth[m]"`` or ``"depth (m)"`` into name and unit (or "")."""
-    name, unit = _HEADING.findall(column.strip())[0]
-    bracketed = unit[:1] in ("[", "(") and unit[-1:] in ("]", ")")
-    return name, unit[1:-1].strip() if bracketed else unit
-
-
 def turned_notices(columns: Sequence[str], terms: Terms) -> tuple[str, ...]:
     """Return what is reported of a current whose columns counted from magnetic north."""
     if terms.declination is None:
@@ -208,19 +210,12 @@ def _from_magnetic_north(
     return plain, terms.declination or 0.0
 
 
-def _without_north(column: str) -> str:
-    """Return a heading without the word ``magnetic`` at the end of its unit."""
-    name, unit = heading(column)
-    plain = _MAGNETIC.sub("", unit)
-    return column if plain == unit else f"{name} {plain}".strip()
-
-
 def read_water(
     columns: Sequence[str],
     rows: Sequence[Sequence[str | None]],
     report: Report,
     problems: list[Problem],
-    density: QuantityField = WATER_DENSITY,
+    density: QuantityRange = WATER_DENSITY,
 ) -> DepthTable | SeaWater | None:
     """Read densities [kg/m³], or sea water, from a table as that of `read_current`.
 
@@ -259,19 +254,6 @@ def read_profile(
     return DepthTable(tuple(values["depth"]), tuple(values[name]))
 
 
-def table_of(value: object) -> TableKeys | None:
-    """Return the table that a value of a file is, None where it is none."""
-    try:
-        return TableKeys.model_validate(value)
-    except ValidationError:
-        return None
-
-
-def report_at(section: SourceMapping, *place: str) -> Report:
-    """Return what makes problems at places below a key of a mapping, or below a key under that."""
-    return lambda location, message: section.problem((*place, *location), message)
-
-
 def components(speed: float, toward: float) -> tuple[float, float]:
     """Return the east and north parts of a speed that flows toward a direction [deg from north]."""
     angle = math.radians(toward)
@@ -292,7 +274,7 @@ def speed_and_direction(u: float, v: float) -> tuple[float, float]:
 def _read_columns(
     columns: Sequence[str],
     rows: Sequence[Sequence[str | None]],
-    known: Mapping[str, QuantityField],
+    known: Mapping[str, QuantityRange],
     report: Report,
     problems: list[Problem],
 ) -> dict[str, list[float]]:
@@ -321,7 +303,7 @@ def _read_columns(
 
 def _read_headings(
     columns: Sequence[str],
-    known: Mapping[str, QuantityField],
+    known: Mapping[str, QuantityRange],
     report: Report,
     problems: list[Problem],
 ) -> dict[str, str]:
@@ -354,7 +336,7 @@ def _read_headings(
     return units
 
 
-def _read_cell(text: str | None, unit: str, quantity: QuantityField) -> float:
+def _read_cell(text: str | None, unit: str, quantity: QuantityRange) -> float:
     if text is not None and unit and _BARE_NUMBER.fullmatch(text):
         text = f"{text} {unit}"
     return quantity.read(text)
@@ -384,3 +366,28 @@ def _check_depths(
             message = f"depth {depth:g} m {word} {previous:g} m; depths must increase"
             problems.append(report(("rows", i, column), message))
         previous = depth
+
+
+def too_fast(u: float, v: float, w: float, maximum_speed: float) -> str | None:
+    """What is wrong with a current faster than the greatest that is plausible; None if it is not.
+
+    Parameters
+    ----------
+    u, v, w : [m/s]
+    """
+    speed = hypot(u, v, w)
+    if isinf(speed):
+        return IMPOSSIBLE
+    if not speed > maximum_speed:
+        return None
+    return (
+        f"{speed:.5g} m/s is faster than `maximum_speed`, {maximum_speed:g} m/s: a fill value, or "
+        "another unit? (`maximum_speed` of the environment allows it if it is true)"
+    )
+
+
+def too_deep(depth: float) -> str | None:
+    """What is wrong with a depth [m] below that of any sea; None if it is not."""
+    if not depth > DEEPEST:
+        return None
+    return f"depth {depth:g} m is deeper than any sea, {DEEPEST:g} m"

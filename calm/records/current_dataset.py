@@ -3,28 +3,37 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from calm.files.current_levels import Levels, find_levels
-from calm.files.current_place import choose_column, is_regular
-from calm.files.current_terms import Terms
-from calm.files.current_times import find_times, read_times, zone_notices
-from calm.files.current_values import known_values
-from calm.files.current_variables import (
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.errors import InputError, Problem
+from calm.records.cf_files import (
     UnreadableError,
-    Velocity,
     factor_of,
-    find_velocity,
+    find_times,
+    flag_variable,
+    flags_of,
     holdings,
-    refuse_ragged,
+    known_values,
+    open_current,
+    read_times,
+    reading,
+    zone_notices,
 )
-from calm.files.current_vectors import with_components
-from calm.files.quality_flags import flag_variable, flags_of
+from calm.records.level_depths import LevelDepths, find_levels
+from calm.records.profile_tables import Terms
+from calm.records.record import RULES, Levels, Period, Record, choose_profiles, part
+from calm.records.velocity import Velocity, find_velocity, refuse_ragged, with_components
+from calm.records.water_column import choose_column, is_regular
 
 if TYPE_CHECKING:
-    import numpy as np
     import xarray as xr
-    from numpy.typing import NDArray
+
+AHEAD = 16_000_000
+"""Bytes that are read together where a file has compressed them together."""
 
 FLAGS = "the quality flags of the current are ignored"
 
@@ -69,7 +78,7 @@ class CurrentDataset:
     _flags: tuple[xr.DataArray, ...]
     _turn: float | None
     _declination: float
-    _levels: Levels
+    _levels: LevelDepths
     _time: str | None
 
     @property
@@ -93,8 +102,6 @@ class CurrentDataset:
 
     def read(self, index: slice | NDArray[np.intp]) -> CurrentArrays:
         """The profiles of some times, by their index; all profiles where there is no time."""
-        import numpy as np
-
         first, second, *up = (
             self._values(variable, index) * factor for variable, factor in self._parts
         )
@@ -115,8 +122,6 @@ class CurrentDataset:
 
     def flags(self, index: slice | NDArray[np.intp]) -> NDArray[np.int8] | None:
         """(n, k) the worse quality flags of both components at some times; None without flags."""
-        import numpy as np
-
         if self._time is None or not self._flags:
             return None
         first = self._parts[0][0].isel({self._time: index}).transpose(self._time, ...)
@@ -251,3 +256,74 @@ def _parts(dataset: xr.Dataset, velocity: Velocity) -> list[tuple[xr.DataArray, 
 
 def _spread(variable: xr.DataArray) -> str:
     return ", ".join(f"{name} ({size})" for name, size in variable.sizes.items())
+
+
+class ArrayRecord(Record):
+    """A record whose profiles are found as `calm run` finds that of one time.
+
+    Parameters and errors are those of `open_record`.
+    """
+
+    def __init__(self, path: Path, terms: Terms, period: Period | None, every: int) -> None:
+        self._path = path
+        with reading(path):
+            self._dataset = open_current(path)
+        try:
+            with reading(path):
+                self._current = understand(self._dataset, terms)
+            times = self._current.times
+            if times is None:
+                message = "has no times: it is one profile, for `calm run`"
+                raise InputError([Problem(str(path), 0, 0, message)])
+            self._index, chosen = choose_profiles(times, period, every, path)
+        except BaseException:
+            self._dataset.close()
+            raise
+        self.time = times[self._index]
+        self.notes = (
+            *chosen,
+            *self._current.notices,
+            *self._current.turned,
+            *self._current.rules,
+            *RULES,
+        )
+        self.source = {"file": path.name, **self._current.source}
+        self._ahead: tuple[int, int, CurrentArrays] | None = None
+
+    def profiles(self, start: int, stop: int) -> Levels:
+        """See `Record`."""
+        first, _, arrays = self._window(start, stop)
+        mine = slice(start - first, stop - first)
+        depth = arrays.depth[mine] if self._current.moves else arrays.depth
+        w = None if arrays.w is None else arrays.w[mine]
+        return depth, arrays.u[mine], arrays.v[mine], w
+
+    def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
+        """See `Record`."""
+        with reading(self._path):
+            return self._current.flags(part(self._index, start, stop))
+
+    def _window(self, start: int, stop: int) -> tuple[int, int, CurrentArrays]:
+        """The profiles around those wanted that are decompressed with them, and which they are."""
+        if self._ahead is not None and self._ahead[0] <= start and stop <= self._ahead[1]:
+            return self._ahead
+        self._ahead = None
+        end = min(max(stop, self._end_of_chunk(start)), self.count)
+        with reading(self._path):
+            arrays = self._current.read(part(self._index, start, end))
+        window = start, end, arrays
+        if end > stop:
+            self._ahead = window
+        return window
+
+    def _end_of_chunk(self, start: int) -> int:
+        """The profile after those that a file has compressed together with one."""
+        chunk = self._current.chunk
+        if isinstance(self._index, slice):
+            position = self._index.start + start * self._index.step
+            chunk = -(-(chunk - position % chunk) // int(self._index.step))
+        return start + min(chunk, AHEAD // max(self._current.size, 1))
+
+    def close(self) -> None:
+        """See `Record`."""
+        self._dataset.close()

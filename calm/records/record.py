@@ -1,17 +1,22 @@
-"""Which profiles of a record are taken: a period, every so many, in the order of time."""
+"""Records of currents in NetCDF, zarr or CSV: many profiles, read as they are needed."""
 
 from __future__ import annotations
 
+import hashlib
 import re
+from abc import ABC, abstractmethod
+from collections.abc import Callable
 from pathlib import Path
+from types import TracebackType
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import InputError, Problem, UsageError
-from calm.files.current_place import Place
-from calm.files.times import TimeChoiceError, parse_time
+from calm.physics.line import Floats
+from calm.records.times import TimeChoiceError, parse_time
+from calm.records.water_column import Place
 
 Times = NDArray[np.datetime64]
 Index = slice | NDArray[np.intp]
@@ -23,6 +28,91 @@ REACH = "1678-01-01", "2261-12-31T23:59:59.999999"
 """The times that a record can have."""
 
 _PART_OF_A_DATE = re.compile(r"\d{4}(-\d\d(-\d\d)?)?")
+
+Levels = tuple[Floats, Floats, Floats, Floats | None]
+"""Depth, u, v and w of some profiles, as `solve_profiles` takes them."""
+
+RULES = (
+    "levels where the current or their depth has no value are left out of their profile",
+    "levels above the surface are left out",
+    "levels below the seabed are used where they have a value: the current at the seabed lies "
+    "between",
+    "between levels the current is linear in depth, beyond the first and the last it is constant",
+)
+"""What holds in every record."""
+
+DIGEST_BLOCK = 8192
+"""Profiles that are read at a time for a digest, which depends on it."""
+
+
+class Record(ABC):
+    """The profiles of a record that were asked for, in the order of time.
+
+    Reading is for one thread at a time. A record is closed by `close`, or by a `with` statement.
+
+    Attributes
+    ----------
+    time : (n,) to the nanosecond, rising
+    notes : the rules by which it was read, and what to know before trusting it
+    source : its file, its variables and its place, by name
+    """
+
+    time: NDArray[np.datetime64]
+    notes: tuple[str, ...]
+    source: dict[str, str]
+
+    @property
+    def count(self) -> int:
+        """Number of profiles."""
+        return len(self.time)
+
+    @abstractmethod
+    def profiles(self, start: int, stop: int) -> Levels:
+        """Depth (k,) or (m, k) [m], and u, v, w (m, k) [m/s] of some profiles, NaN in gaps.
+
+        The depths are positive down, in any order; `w` is None where the record has none.
+
+        Raises
+        ------
+        InputError
+            The file is damaged there.
+        """
+
+    def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
+        """(m, k) quality flags of the currents of some profiles; None where it has none."""
+        return None
+
+    @abstractmethod
+    def close(self) -> None:
+        """Leave the file."""
+
+    def digest(self, check: Callable[[], None] = lambda: None) -> str:
+        """SHA-256 of the times, depths and currents as they are read; the name does not count.
+
+        Parameters
+        ----------
+        check : called before each part is read
+        """
+        digest = hashlib.sha256()
+        digest.update(np.ascontiguousarray(self.time, "<M8[ns]").view("<i8").data)
+        for start in range(0, self.count, DIGEST_BLOCK):
+            check()
+            for values in self.profiles(start, min(start + DIGEST_BLOCK, self.count)):
+                if values is not None:
+                    digest.update(str(values.shape).encode())
+                    digest.update(np.ascontiguousarray(values, "<f8").data)
+        return digest.hexdigest()
+
+    def __enter__(self) -> Record:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
 
 
 def parse_period(text: str) -> Period:
@@ -92,8 +182,8 @@ def choose_profiles(
         last = last if stop is None else int(np.searchsorted(times, stop, "right"))
         if first >= last:
             raise UsageError(
-                f"{path} has no profile in this period: it is from {shown(times[0])} to "
-                f"{shown(times[-1])}"
+                f"{path} has no profile in this period: it is from {time_text(times[0])} to "
+                f"{time_text(times[-1])}"
             )
         if last - first < len(times):
             notes.append(f"{last - first} of the {len(times)} profiles are in the period asked for")
@@ -110,7 +200,7 @@ def part(index: Index, start: int, stop: int) -> Index:
     return slice(index.start + start * index.step, index.start + stop * index.step, index.step)
 
 
-def shown(time: np.datetime64) -> str:
+def time_text(time: np.datetime64) -> str:
     """A time as a person reads it."""
     text: str = np.datetime_as_string(time.astype("datetime64[s]"))
     return text.removesuffix(":00")
@@ -149,5 +239,5 @@ def _refuse_repeats(times: Times, path: Path) -> None:
     again = np.flatnonzero(times[1:] == times[:-1])
     if len(again):
         more = f", and {len(again) - 1} more times" if len(again) > 1 else ""
-        message = f"has two profiles of {shown(times[again[0]])}{more}; leave one of them out"
+        message = f"has two profiles of {time_text(times[again[0]])}{more}; leave one of them out"
         raise InputError([Problem(str(path), 0, 0, message)])

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from calm.files.current_parts import part_in_texts
-from calm.files.current_words import another_way, is_magnetic, not_a_current, other_frame, way_of
-from calm.units import QuantityError, unit_factor
+from calm.records.attributes import (
+    another_way,
+    is_magnetic,
+    not_a_current,
+    other_frame,
+    part_in_texts,
+    way_of,
+)
+from calm.records.cf_files import UnreadableError
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -49,14 +54,6 @@ _ALONG_THE_GRID = {"sea_water_x_velocity": _EAST, "sea_water_y_velocity": _NORTH
 _AMBIGUOUS = (
     "direction", "DIR", "dir", "CDIR", "current_direction", "cdir", "CDIR_MAG", "HCDT_MAG",
 )  # fmt: skip
-_NORTH_NAMED = re.compile(
-    r"(?i)[ _](true|t|magnetic)$|\s*\(?clockwise from ((true|magnetic) )?north\)?$"
-)
-_MOST_LISTED = 24
-
-
-class UnreadableError(Exception):
-    """The file does not hold a current that can be understood; the text says why."""
 
 
 @dataclass(frozen=True)
@@ -143,48 +140,6 @@ def _direction(
     return _believed(dataset, unclear, _TOWARD), way_of(dataset[unclear])
 
 
-def holdings(dataset: xr.Dataset) -> str:
-    """The variables of a dataset with their dimensions, units and standard names, as text."""
-    listed = []
-    for name, variable in dataset.variables.items():
-        sizes = ", ".join(f"{dim} {size}" for dim, size in variable.sizes.items())
-        words = [f"{name} ({sizes})" if sizes else str(name)]
-        if "units" in variable.attrs:
-            words.append(f"[{variable.attrs['units']}]")
-        if "standard_name" in variable.attrs:
-            words.append(str(variable.attrs["standard_name"]))
-        listed.append(" ".join(words)[:120])
-    hidden = len(listed) - _MOST_LISTED
-    more = [f"and {hidden} more"] if hidden > 0 else []
-    return "; ".join([*listed[:_MOST_LISTED], *more]) or "nothing"
-
-
-def factor_of(variable: xr.DataArray, dimension: str) -> float:
-    """What turns a variable into SI (angles: degrees).
-
-    Raises
-    ------
-    UnreadableError
-        It has no unit, or that of something else.
-    """
-    unit = str(variable.attrs.get("units", ""))
-    plain = _NORTH_NAMED.sub("", unit.strip())
-    if not plain:
-        raise UnreadableError(f"`{variable.name}` has no `units`")
-    if plain.istitle() and len(plain) > 1:  # `Meter`
-        plain = plain.lower()
-    try:
-        return unit_factor(plain, dimension)
-    except QuantityError as error:
-        message = f"`{variable.name}`: its unit, `{unit}`, {error.complaint}"
-        raise UnreadableError(message) from None
-
-
-def first_present(dataset: xr.Dataset, names: Iterable[str]) -> list[str]:
-    """Those of the names that the dataset has, each once."""
-    return [name for name in dict.fromkeys(names) if name in dataset.variables]
-
-
 def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str]) -> str | None:
     """The variable of a standard name, else of a usual name; one to true north before another.
 
@@ -246,3 +201,55 @@ def refuse_ragged(dataset: xr.Dataset, name: str) -> None:
                     f"`{name}` has {many} instruments one after the other (`{index}` says whose a "
                     "reading is): give the file of each instrument"
                 )
+
+
+_WAYS = {"east": ("E", "EAST"), "north": ("N", "NORTH"), "up": ("U", "UP", "U1")}
+_NAMES = ("vel", "velocity", "vel_avg")
+_DIRECTIONS = "dir"
+
+
+def with_components(dataset: xr.Dataset) -> xr.Dataset:
+    """The dataset with the velocity `vel (dir, ...)` taken apart into its components.
+
+    The components are called ``vel[E]`` and so on, with the standard names of velocities to the
+    east, north and up. A dataset without such a variable is returned as it is.
+
+    Raises
+    ------
+    UnreadableError
+        Its directions are those of the beams or of the instrument.
+    """
+    name = next(
+        (
+            name
+            for name in _NAMES
+            if name in dataset.data_vars and _DIRECTIONS in dataset[name].dims
+        ),
+        None,
+    )
+    if name is None:
+        return dataset
+    vector = dataset[name]
+    for attributes in (dataset.attrs, vector.attrs):
+        if (reason := other_frame(attributes)) is not None:
+            raise UnreadableError(f"`{name}` {reason}")
+    if (reason := not_a_current(vector)) is not None:
+        raise UnreadableError(f"`{name}` {reason}")
+    labels = [str(label).strip().upper() for label in vector[_DIRECTIONS].values.tolist()]
+    places = {
+        way: next((labels.index(label) for label in wanted if label in labels), None)
+        for way, wanted in _WAYS.items()
+    }
+    if places["east"] is None or places["north"] is None:
+        raise UnreadableError(
+            f"`{name}` has the directions {', '.join(labels)}, not E and N: rotate it to the "
+            "earth's coordinates first"
+        )
+    parts = {}
+    for way, place in places.items():
+        if place is not None:
+            part = vector.isel({_DIRECTIONS: place}, drop=True)
+            units = vector.attrs.get("units", "")
+            part.attrs = {"units": units, "standard_name": f"{way}ward_sea_water_velocity"}
+            parts[f"{name}[{labels[place]}]"] = part
+    return dataset.assign(parts)

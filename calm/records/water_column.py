@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from calm.files.current_variables import UnreadableError, first_present
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.records.cf_files import UnreadableError, first_present
 
 if TYPE_CHECKING:
     import xarray as xr
-    from numpy.typing import NDArray
 
 Place = tuple[float, float]
 """Latitude and longitude [degrees north, degrees east]."""
@@ -26,7 +28,7 @@ _LONGITUDES = ("lon", "longitude", "LONGITUDE", "nav_lon", "Longitude", "LON")
 
 
 @dataclass(frozen=True)
-class Column:
+class GridColumn:
     """A column of water in a dataset.
 
     Attributes
@@ -53,7 +55,7 @@ def is_regular(dataset: xr.Dataset) -> bool:
 
 def choose_column(
     dataset: xr.Dataset, velocity: tuple[str, str], time: str | None, wanted: Place | None
-) -> Column:
+) -> GridColumn:
     """The column of a place; the only one where there is but one.
 
     Parameters
@@ -67,12 +69,10 @@ def choose_column(
         There are several and no place is given, the place is outside the grid, or no column near
         it has water.
     """
-    import numpy as np
-
     dims = dataset[velocity[0]].dims
     pair = _positions(dataset, set(dims) - {time})
     if pair is None:
-        return Column({}, None, _drift(dataset, time, wanted))
+        return GridColumn({}, None, _drift(dataset, time, wanted))
     latitude, longitude = pair
     horizontal = [str(dim) for dim in dims if dim in latitude.dims or dim in longitude.dims]
     if not all(set(horizontal) <= set(dataset[name].dims) for name in velocity):
@@ -81,7 +81,7 @@ def choose_column(
     count = int(np.prod([dataset.sizes[dim] for dim in horizontal]))
     if count == 1:
         place = latitude.values.item(), _signed(longitude.values.item())
-        return Column({dim: 0 for dim in horizontal}, place, _far(place, wanted))
+        return GridColumn({dim: 0 for dim in horizontal}, place, _far(place, wanted))
     if wanted is None:
         raise UnreadableError(
             f"it has {count} columns, {_span(latitude.values, longitude.values)}: say which by "
@@ -114,7 +114,7 @@ def choose_column(
         f"the column nearest to {written(wanted)}{dry} is that at {written(place)}, "
         f"{distance[chosen]:.1f} km away"
     )
-    return Column(index, place, (note,))
+    return GridColumn(index, place, (note,))
 
 
 def written(place: Place) -> str:
@@ -151,8 +151,6 @@ def _box(
     latitude: xr.DataArray, longitude: xr.DataArray, horizontal: list[str], wanted: Place
 ) -> dict[str, NDArray[Any]]:
     """The part of the grid around the place: indices by dimension."""
-    import numpy as np
-
     if len(horizontal) == 1:  # a list of places, in any order
         return {horizontal[0]: np.arange(latitude.sizes[horizontal[0]])}
     north = np.abs(latitude.values - wanted[0])
@@ -176,8 +174,6 @@ def _box(
 
 def _goes_round(longitude: xr.DataArray) -> bool:
     """Whether an axis of longitudes, in even steps, goes all round the earth."""
-    import numpy as np
-
     if longitude.ndim != 1 or longitude.size <= 2 * REACH:
         return False
     steps = np.diff(longitude.values.astype(np.float64))
@@ -199,8 +195,6 @@ def _wet(
 
     The first time, the middle and the last are asked: one may be a gap.
     """
-    import numpy as np
-
     if time in near.dims:
         count = near.sizes[time]
         near = near.isel({time: sorted({0, count // 2, count - 1})})
@@ -213,8 +207,6 @@ def _wet(
 
 def _distance(latitude: NDArray[Any], longitude: NDArray[Any], place: Place) -> NDArray[Any]:
     """Along great circles [km]."""
-    import numpy as np
-
     first, second = np.radians(latitude), np.radians(place[0])
     east = np.radians(longitude - place[1])
     chord = (
@@ -225,8 +217,6 @@ def _distance(latitude: NDArray[Any], longitude: NDArray[Any], place: Place) -> 
 
 def _spacing(latitude: NDArray[Any], longitude: NDArray[Any], at: tuple[Any, ...]) -> float:
     """Distance from a column to the farthest of those next to it [km]."""
-    import numpy as np
-
     around = tuple(slice(max(i - 1, 0), i + 2) for i in at)
     place = float(latitude[at]), float(longitude[at])
     return float(np.nanmax(_distance(latitude[around], longitude[around], place)))
@@ -234,8 +224,6 @@ def _spacing(latitude: NDArray[Any], longitude: NDArray[Any], at: tuple[Any, ...
 
 def _drift(dataset: xr.Dataset, time: str | None, wanted: Place | None) -> tuple[str, ...]:
     """What to report about a record whose place changes with time, such as that of a drifter."""
-    import numpy as np
-
     found = []
     for which in (("latitude", _LATITUDES), ("longitude", _LONGITUDES)):
         moving = [name for name in _named(dataset, *which) if dataset[name].dims == (time,)]
@@ -257,8 +245,6 @@ def _drift(dataset: xr.Dataset, time: str | None, wanted: Place | None) -> tuple
 
 
 def _far(place: Place, wanted: Place | None) -> tuple[str, ...]:
-    import numpy as np
-
     if wanted is None:
         return ()
     distance = float(_distance(np.array(place[0]), np.array(place[1]), wanted))
@@ -268,8 +254,6 @@ def _far(place: Place, wanted: Place | None) -> tuple[str, ...]:
 
 
 def _span(latitude: NDArray[Any], longitude: NDArray[Any]) -> str:
-    import numpy as np
-
     south, north = float(np.nanmin(latitude)), float(np.nanmax(latitude))
     west, east = float(np.nanmin(longitude)), float(np.nanmax(longitude))
     return f"{written((south, west))} to {written((north, east))}"

@@ -6,13 +6,14 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from calm.files.current_values import known_values
-from calm.files.current_variables import UnreadableError, factor_of, first_present
-from calm.files.current_words import words_of
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.records.attributes import words_of
+from calm.records.cf_files import UnreadableError, factor_of, first_present, known_values
 
 if TYPE_CHECKING:
     import xarray as xr
-    from numpy.typing import NDArray
 
 _NAMES = (
     "depth", "DEPTH", "Depth", "depthu", "deptht", "lev", "z", "z_rho", "height", "HEIGHT",
@@ -37,7 +38,7 @@ _STANDARD_DEPTH = "depth"
 
 
 @dataclass(frozen=True)
-class Levels:
+class LevelDepths:
     """Levels at ``start + sign * values``, positive down, `values` in metres.
 
     Attributes
@@ -62,7 +63,6 @@ class Levels:
 
     def depths(self, time: str | None, index: Any) -> NDArray[Any]:
         """The depths [m] at some times: times by levels, or levels only where they never move."""
-        import numpy as np
 
         def values(variable: xr.DataArray) -> NDArray[Any]:
             chosen = variable.isel({time: index}) if time in variable.dims else variable
@@ -80,7 +80,7 @@ class Levels:
 
 def find_levels(
     dataset: xr.Dataset, level: str | None, time: str | None, water_depth: float
-) -> Levels:
+) -> LevelDepths:
     """The levels of a velocity that spreads over `level` and `time`, either of them None.
 
     Those that move with time come before those that do not; `water_depth` [m] places heights
@@ -125,7 +125,7 @@ def _candidates(dataset: xr.Dataset, level: str | None, time: str | None) -> lis
 
 def _placed(
     dataset: xr.Dataset, levels: xr.DataArray, factor: float, time: str | None, water_depth: float
-) -> Levels:
+) -> LevelDepths:
     if _MODEL_COORDINATE.fullmatch(str(levels.attrs.get("standard_name", ""))):
         raise UnreadableError(
             f"`{levels.name}` is {levels.attrs['standard_name']}, a share of the water depth, "
@@ -160,12 +160,12 @@ def _placed(
             f"`{levels.name}` is positive {positive}, and no level of it is below the surface: "
             "its sign or its `positive` is wrong"
         )
-    return Levels(levels, factor, 0.0, None, ())
+    return LevelDepths(levels, factor, 0.0, None, ())
 
 
-def _above_seabed(levels: xr.DataArray, factor: float, water_depth: float) -> Levels:
+def _above_seabed(levels: xr.DataArray, factor: float, water_depth: float) -> LevelDepths:
     note = f"`{levels.name}` is the height above the seabed, at {water_depth:g} m"
-    return Levels(levels, -factor, water_depth, None, (note,))
+    return LevelDepths(levels, -factor, water_depth, None, (note,))
 
 
 def _sign(levels: xr.DataArray, time: str | None) -> int:
@@ -185,7 +185,7 @@ def _from_instrument(
     way: str,
     time: str | None,
     water_depth: float,
-) -> Levels:
+) -> LevelDepths:
     """Levels counted from an instrument that looks up or down.
 
     MHKiT adds the height of the instrument above the seabed to `range` where a person gives it, or
@@ -201,12 +201,12 @@ def _from_instrument(
     offset = str(levels.name).startswith("range") and _offset_by_hand(dataset)
     if offset and way == "down":
         note = f"`{levels.name}` is measured from the surface, as its offset is added already"
-        return Levels(levels, factor, 0.0, None, (note,))
+        return LevelDepths(levels, factor, 0.0, None, (note,))
     if offset and instrument is None:
         if water is None:
             return _above_seabed(levels, factor, water_depth)
         note = f"`{levels.name}` is measured from the seabed, whose depth is `{water[0].name}`"
-        return Levels(levels, -factor, 0.0, water, (note,))
+        return LevelDepths(levels, -factor, 0.0, water, (note,))
     if instrument is None:
         but = f"; `{water[0].name}` is that of the water" if water is not None else ""
         raise UnreadableError(
@@ -214,7 +214,7 @@ def _from_instrument(
         )
     note = f"`{levels.name}` is measured from the instrument, whose depth is `{instrument[0].name}`"
     signed = factor if way == "down" else -factor
-    return Levels(levels, signed, 0.0, instrument, (note,))
+    return LevelDepths(levels, signed, 0.0, instrument, (note,))
 
 
 def _offset_by_hand(dataset: xr.Dataset) -> bool:
