@@ -8,8 +8,6 @@ from math import cos, radians, sin
 from pathlib import Path
 
 import numpy as np
-from calm.records.csv_writer import table_csv
-from calm.suggestions import unknown
 
 from calm.case import Mooring, Tow, load
 from calm.errors import NoEquilibrium, UsageError
@@ -19,6 +17,8 @@ from calm.exchange.mdd_writer import mdd_file
 from calm.exchange.moordyn_writer import CURRENTS, current_profile, moordyn_file
 from calm.physics.line import Line, Water
 from calm.physics.reference import REFERENCE_DENSITY
+from calm.records.csv_writer import table_csv
+from calm.suggestions import unknown
 
 _HEADER = (
     "name", "label", "kind", "role", "clamped at[m]", "length[m]", "diameter[m]", "whole mass[kg]",
