@@ -7,7 +7,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from calm.motion.judge import Agreement
+    from calm.motion.agreement import Agreement
     from calm.motion.study import HeldOut, Study
 
 

@@ -24,8 +24,7 @@ if TYPE_CHECKING:
     from numpy import datetime64
     from numpy.typing import NDArray
 
-    from calm.motion.series import Series
-    from calm.motion.study import Study
+    from calm.motion.study import SensorSeries, Study
     from calm.physics.line import Floats
 
 _DEPTHS = "Depths over time"
@@ -39,7 +38,7 @@ _NOTHING = "Nothing in the residuals is clearly a drift, a slipped clamp or a wr
 
 def motion_files(
     study: Study,
-    series: Sequence[Series],
+    series: Sequence[SensorSeries],
     time: NDArray[datetime64],
     factor: Floats,
     name: str,
@@ -59,7 +58,7 @@ def motion_files(
 
 def motion_report(
     study: Study,
-    series: Sequence[Series],
+    series: Sequence[SensorSeries],
     time: NDArray[datetime64],
     factor: Floats,
     name: str,

@@ -9,7 +9,8 @@ import xarray
 
 import calm.motion.study as module
 from calm.errors import UsageError
-from calm.motion.measured import Measured
+from calm.motion.common_unknowns import Common
+from calm.motion.measurements import MooringMeasurements
 from calm.motion.study import (
     cross_validated,
     intervals,
@@ -20,7 +21,6 @@ from calm.motion.study import (
     several,
 )
 from calm.motion.task import Task, without
-from calm.motion.unknowns import Common
 
 TIMES = 40
 STILL = np.array([60.0, 150.0, 250.0])  # three clamps with a sensor each
@@ -34,7 +34,7 @@ OFFSET = np.array([0.5, 0.3, -0.4])
 
 def measured():
     u = np.full((TIMES, 1), 0.3)
-    return Measured(
+    return MooringMeasurements(
         np.datetime64("2026-03-01", "ns") + np.arange(TIMES) * np.timedelta64(1, "h"),
         ("a", "b", "c"), np.arange(3), READ, np.full((TIMES, 1), 20.0), np.array([-1]),
         np.array([-1]), u, 0.0 * u, np.ones(u.shape, np.int8),
