@@ -1,4 +1,4 @@
-"""Ranges as they should be from a place, the place that most of them agree on, and those that do not.
+"""Ranges as they should be from a place, the place that most agree on, and those that do not.
 
 A fit that outliers hardly move comes first; then each doubtful range is judged by the others
 (Student's test, all of them together at 1 %).

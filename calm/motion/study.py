@@ -66,7 +66,7 @@ class Study:
     factors : of each name its value and the ends of its interval of 95 %
     fit, plain : agreement of each used sensor, of what is estimated and of the currents alone
     held_out : of the hidden ones
-    doubts : what to doubt, in sentences
+    remarks : what to doubt, in sentences
     false : times at which the current of a level looks false, by its name
     """
 
@@ -75,7 +75,7 @@ class Study:
     fit: Mapping[str, Agreement]
     plain: Mapping[str, Agreement]
     held_out: tuple[HeldOut, ...]
-    sensor_remarks: tuple[str, ...]
+    remarks: tuple[str, ...]
     false: Mapping[str, NDArray[np.datetime64]]
 
 

@@ -36,7 +36,7 @@ def motion_document(study: Study, name: str) -> dict[str, Any]:
             )
         ],
         "held_out": held_out_document(study.held_out),
-        "doubts": list(study.doubts),
+        "doubts": list(study.remarks),
     }
 
 

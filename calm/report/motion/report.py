@@ -67,7 +67,7 @@ def motion_report(
     """Factors, agreement, what to doubt, depths, scatter and residuals."""
     shown = sorted(series, key=lambda one: not one.hidden)[:MOST_PANELS]
     shown = [one for one in series if any(one is each for each in shown)]
-    doubts = Prose(study.doubts, State.WARN) if study.doubts else Prose((_NOTHING,))
+    doubts = Prose(study.remarks, State.WARN) if study.remarks else Prose((_NOTHING,))
     marks = (Figure(_FALSE, false_figure(time, study.false)),) if study.false else ()
     held: tuple[Block, ...] = (held_out_table(study.held_out),) if study.held_out else ()
     factors = factors_table(study.factors, study.task.common.datum)

@@ -134,9 +134,9 @@ def test_used_sensors_are_judged_without_their_offsets_and_hidden_ones_too(line)
     expected = judge_hidden(measured(), used, "b", estimated[:, 1], np.full(TIMES, 0.4), STILL)
     assert study.held_out == (expected,)
     assert study.false == {"20.0 m": used.time[[3]]}
-    assert len(study.doubts) == 1 and "20.0 m" in study.doubts[0]
+    assert len(study.remarks) == 1 and "20.0 m" in study.remarks[0]
     far = replace(task, common=replace(task.common, datum=10.0))
-    assert "all sensors: +10.0 m off alike" in judged(far, measured(), result).doubts[-1]
+    assert "all sensors: +10.0 m off alike" in judged(far, measured(), result).remarks[-1]
 
 
 def test_each_sensor_is_hidden_in_turn_beside_those_that_are_anyway(line, monkeypatch):
