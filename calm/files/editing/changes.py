@@ -9,16 +9,8 @@ from unicodedata import category
 
 from calm.errors import CalmError
 from calm.files.composition import Node
-from calm.files.editing.items import new_slot, snippet_of, worded_slot
-from calm.files.editing.splicing import (
-    Items,
-    Patch,
-    add_entry,
-    items_of,
-    remove_entry,
-    set_scalar,
-    set_value,
-)
+from calm.files.editing.items import Items, items_of, new_slot, snippet_of, worded_slot
+from calm.files.editing.splicing import Patch, add_entry, remove_entry, set_scalar, set_value
 from calm.files.editing.writing import Value, Worded, WritingStyle
 from calm.files.yaml_document import Location
 
