@@ -16,7 +16,7 @@ from calm.files import composition
 from calm.files.composition import Node
 from calm.whole_file import read_text
 
-Place = tuple[int, int]
+LineAndColumn = tuple[int, int]
 Location = tuple[str | int, ...]
 
 
@@ -36,8 +36,8 @@ class Document:
 
     path: str
     data: dict[str, Any]
-    values: dict[Location, Place] = field(default_factory=dict, repr=False)
-    keys: dict[Location, Place] = field(default_factory=dict, repr=False)
+    values: dict[Location, LineAndColumn] = field(default_factory=dict, repr=False)
+    keys: dict[Location, LineAndColumn] = field(default_factory=dict, repr=False)
 
     def problem(
         self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Currents:
+class CurrentMeasurements:
     """What one file says of the current.
 
     Attributes
@@ -67,7 +67,7 @@ def read_currents(
     place: tuple[float, float] | None,
     declination: float | None,
     maximum_speed: float,
-) -> list[Currents]:
+) -> list[CurrentMeasurements]:
     """The currents of some files.
 
     Parameters
@@ -94,12 +94,12 @@ def read_currents(
                 marks = record.flags(0, record.count)
                 flag = np.zeros(u.shape, np.int8) if marks is None else marks
                 time = np.asarray(record.time)
-            mine = Currents(time, depth, ("",) * u.shape[1], u, v, flag, path.name)
+            mine = CurrentMeasurements(time, depth, ("",) * u.shape[1], u, v, flag, path.name)
         found.append(_plausible(mine, maximum_speed))
     return found
 
 
-def _plausible(one: Currents, maximum_speed: float) -> Currents:
+def _plausible(one: CurrentMeasurements, maximum_speed: float) -> CurrentMeasurements:
     """Without the levels whose current cannot be."""
     depth = np.where([bool(label) for label in one.label], 0.0, one.depth)
     false = implausible(depth, one.u, one.v, None, maximum_speed)
@@ -118,7 +118,7 @@ def _plausible(one: Currents, maximum_speed: float) -> Currents:
     )
 
 
-def _labelled(path: Path, declination: float | None) -> Currents | None:
+def _labelled(path: Path, declination: float | None) -> CurrentMeasurements | None:
     """The currents of a file whose levels are parts of the line; None of any other."""
     with reading(path), open_current(path) as dataset:
         dataset = with_components(dataset)
@@ -159,7 +159,7 @@ def _labelled(path: Path, declination: float | None) -> Currents | None:
         times = read_times(dataset, clock)
         index, notes = choose_profiles(times, None, 1, path)
         nowhere = np.full(u.shape, np.nan)
-        return Currents(
+        return CurrentMeasurements(
             times[index], nowhere, labels, u[index], v[index],
             np.broadcast_to(flag, u.shape)[index], path.name, notes,
         )  # fmt: skip

@@ -163,8 +163,8 @@ def read_table(path: Path, example: str) -> TextTable:
     InputError
         It cannot be read, is empty, or has no header.
     """
-    lines = enumerate(read_text(path, largest=LARGEST_CSV).splitlines(), 1)
-    header, lines = table_lines(path, lines, example)
+    text = read_text(path, largest=LARGEST_CSV)
+    header, lines = table_lines(path, enumerate(text.splitlines(), 1), example)
     return TextTable(path, header, [row_below(header, *line) for line in lines])
 
 

@@ -36,8 +36,8 @@ def motion_part(study: Study, name: str) -> Part:
     ]
     if study.held_out:
         blocks.append(held_out_table(study.held_out))
-    if study.doubts:
-        blocks.append(Prose(study.doubts, State.WARN))
+    if study.remarks:
+        blocks.append(Prose(study.remarks, State.WARN))
     return Part("", tuple(blocks))
 
 

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from calm.motion.judge import Agreement
+    from calm.motion.agreement import Agreement
     from calm.motion.study import HeldOut, Study
 
 
@@ -36,7 +36,7 @@ def motion_document(study: Study, name: str) -> dict[str, Any]:
             )
         ],
         "held_out": held_out_document(study.held_out),
-        "doubts": list(study.doubts),
+        "doubts": list(study.remarks),
     }
 
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from calm.motion.series import Series
+    from calm.motion.study import SensorSeries
 
 _WIDTH = 7.4  # inches: an A4 page between its margins
 _FONT_SIZE = 7.0  # points
@@ -24,7 +24,7 @@ MOST_PANELS = 12
 """Sensors that are drawn; of more, those that are hidden come first."""
 
 
-def depth_figure(series: Sequence[Series]) -> str:
+def depth_figure(series: Sequence[SensorSeries]) -> str:
     """Depths of each sensor over time: measured, estimated with its band, by the currents alone."""
     figure, panels = _panels(series)
     for axes, one in zip(panels, series, strict=True):
@@ -40,7 +40,7 @@ def depth_figure(series: Sequence[Series]) -> str:
     return figure_svg(figure)
 
 
-def residual_figure(series: Sequence[Series]) -> str:
+def residual_figure(series: Sequence[SensorSeries]) -> str:
     """Measured less estimated depths of each sensor over time."""
     figure, panels = _panels(series)
     for axes, one in zip(panels, series, strict=True):
@@ -50,7 +50,7 @@ def residual_figure(series: Sequence[Series]) -> str:
     return figure_svg(figure)
 
 
-def scatter_figure(series: Sequence[Series]) -> str:
+def scatter_figure(series: Sequence[SensorSeries]) -> str:
     """Estimated against measured depths, a panel for each sensor."""
     from matplotlib.figure import Figure
 
@@ -102,7 +102,7 @@ def false_figure(time: Any, false: Mapping[str, Any]) -> str:
     return figure_svg(figure)
 
 
-def _panels(series: Sequence[Series]) -> tuple[Any, Any]:
+def _panels(series: Sequence[SensorSeries]) -> tuple[Any, Any]:
     from matplotlib.figure import Figure
 
     count = len(series)
@@ -111,7 +111,7 @@ def _panels(series: Sequence[Series]) -> tuple[Any, Any]:
     return figure, figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
 
 
-def _name(axes: Axes, one: Series, quantity: str) -> None:
+def _name(axes: Axes, one: SensorSeries, quantity: str) -> None:
     text = axes.set_title(
         f"{one.label}{', hidden' if one.hidden else ''}", fontsize=_FONT_SIZE, loc="left", pad=2
     )

@@ -24,8 +24,7 @@ if TYPE_CHECKING:
     from numpy import datetime64
     from numpy.typing import NDArray
 
-    from calm.motion.series import Series
-    from calm.motion.study import Study
+    from calm.motion.study import SensorSeries, Study
     from calm.physics.line import Floats
 
 _DEPTHS = "Depths over time"
@@ -39,7 +38,7 @@ _NOTHING = "Nothing in the residuals is clearly a drift, a slipped clamp or a wr
 
 def motion_files(
     study: Study,
-    series: Sequence[Series],
+    series: Sequence[SensorSeries],
     time: NDArray[datetime64],
     factor: Floats,
     name: str,
@@ -59,7 +58,7 @@ def motion_files(
 
 def motion_report(
     study: Study,
-    series: Sequence[Series],
+    series: Sequence[SensorSeries],
     time: NDArray[datetime64],
     factor: Floats,
     name: str,
@@ -68,7 +67,7 @@ def motion_report(
     """Factors, agreement, what to doubt, depths, scatter and residuals."""
     shown = sorted(series, key=lambda one: not one.hidden)[:MOST_PANELS]
     shown = [one for one in series if any(one is each for each in shown)]
-    doubts = Prose(study.doubts, State.WARN) if study.doubts else Prose((_NOTHING,))
+    doubts = Prose(study.remarks, State.WARN) if study.remarks else Prose((_NOTHING,))
     marks = (Figure(_FALSE, false_figure(time, study.false)),) if study.false else ()
     held: tuple[Block, ...] = (held_out_table(study.held_out),) if study.held_out else ()
     factors = factors_table(study.factors, study.task.common.datum)

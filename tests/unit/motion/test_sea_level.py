@@ -5,7 +5,7 @@ import pytest
 import xarray
 
 from calm.errors import InputError
-from calm.motion.sea_level import read_sea_level
+from calm.motion.sensors import read_sea_level
 
 TIME = np.array(["2026-03-01T00", "2026-03-01T01", "2026-03-01T02"], "M8[ns]")
 

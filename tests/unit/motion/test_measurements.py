@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from calm.errors import UsageError
-from calm.motion.currents import Currents
-from calm.motion.joined import common_times, interpolated, joined
+from calm.motion.currents import CurrentMeasurements
+from calm.motion.measurements import common_times, interpolated, joined
 from calm.motion.sensors import Sensor
 
 START = np.datetime64("2026-03-01", "ns")
@@ -21,7 +21,7 @@ def currents(time, u, depth=(10.0,), **more):
     u = np.atleast_2d(np.asarray(u, float).T).T
     level = np.broadcast_to(np.asarray(depth, float), u.shape)
     told = {"label": ("",) * u.shape[1], "source": "c", **more}
-    return Currents(time, level, u=u, v=0.0 * u, flag=np.ones(u.shape, np.int8), **told)
+    return CurrentMeasurements(time, level, u=u, v=0.0 * u, flag=np.ones(u.shape, np.int8), **told)
 
 
 def sensor(label, time, depth):

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import InputError, Problem, UsageError
-from calm.motion.joined import interpolated
-from calm.motion.series import depths_at
+from calm.motion.measurements import interpolated
+from calm.motion.study import depths_at
 from calm.records.cf_files import (
     UnreadableError,
     holdings,
@@ -104,7 +104,7 @@ def read_instruments(path: Path, labels: Sequence[str], *, replace: bool) -> Ins
     return Instruments(path, clock, dimension, along, time, label)
 
 
-def write_onto(
+def write_depths(
     instruments: Instruments,
     result: Dataset,
     labels: Sequence[str],

@@ -1,31 +1,105 @@
-"""Currents and pressures brought to common times."""
+"""What was measured, on common times: currents at levels, depths of sensors.
+
+The times are those of the currents; sensors are interpolated to them over gaps that are not long.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import UsageError
-from calm.motion.currents import Currents
-from calm.motion.measured import FREE, Measured
+from calm.motion.currents import CurrentMeasurements
 from calm.motion.sensors import Sensor
-from calm.physics.line import Floats
+from calm.physics.line import Floats, Integers
 from calm.records.cf_files import MISSING
 from calm.suggestions import unknown
+
+MOST_GROUPS = 8
+"""So many levels have errors of their own; of more, neighbours share theirs."""
+
+FREE = -1
+"""In place of a point or a sensor, where a level has none."""
+
+
+@dataclass(frozen=True)
+class MooringMeasurements:
+    """n times, s sensors, k levels.
+
+    Attributes
+    ----------
+    time : (n,) to the nanosecond, rising
+    label : (s,) of the used sensors
+    point : (s,) where they are, see `calm.motion.line_response`
+    depth : (n, s) below the surface by their pressures [m]; NaN where not measured, or flagged
+    level_depth : (n, k) [m]; NaN for levels that hang on the line
+    level_point, level_sensor : (k,) the point that a level hangs at, and the used sensor there;
+        `FREE` without
+    u, v : (n, k) current [m/s], NaN where not measured
+    flag : (n, k) quality flags of the current; 0 where it has none
+    tide : (n,) height of the sea surface above its mean [m]; None where not known
+    false : (n,) whether a current that cannot be was left out; None where none was
+    """
+
+    time: NDArray[np.datetime64]
+    label: tuple[str, ...]
+    point: Integers
+    depth: Floats
+    level_depth: Floats
+    level_point: Integers
+    level_sensor: Integers
+    u: Floats
+    v: Floats
+    flag: NDArray[np.int8]
+    tide: Floats | None = None
+    false: NDArray[np.bool_] | None = None
+
+    @property
+    def group(self) -> Integers:
+        """(k,) which levels share their error: each has its own where they are few."""
+        count = len(self.level_point)
+        return np.arange(count) * min(count, MOST_GROUPS) // max(count, 1)
+
+    def at(self, times: slice | Integers) -> MooringMeasurements:
+        """What was measured at some of the times."""
+        return replace(
+            self,
+            time=self.time[times],
+            depth=self.depth[times],
+            level_depth=self.level_depth[times],
+            u=self.u[times],
+            v=self.v[times],
+            flag=self.flag[times],
+            tide=None if self.tide is None else self.tide[times],
+            false=None if self.false is None else self.false[times],
+        )
+
+
+def level_names(measured: MooringMeasurements, labels: Sequence[str]) -> tuple[str, ...]:
+    """What each level of the currents is called: its part of the line, or its mean depth."""
+    names = []
+    for k, point in enumerate(measured.level_point.tolist()):
+        depth = measured.level_depth[:, k]
+        known = depth[np.isfinite(depth)]
+        at = f"{known.mean():.1f} m" if known.size else f"level {k + 1}"
+        names.append(at if point == FREE else labels[point])
+    return tuple(names)
+
 
 Times = NDArray[np.datetime64]
 
 
-def common_times(currents: Sequence[Currents], sensors: Sequence[Sensor]) -> Times:
+def common_times(currents: Sequence[CurrentMeasurements], sensors: Sequence[Sensor]) -> Times:
     """Those of the first current; of the others, and then of the sensors, what is far from these.
 
     Far is more than half of the median step of what is there already; of readings less than a
     quarter apart, as those of a burst, the first is taken.
     """
     times = currents[0].time
-    others: list[Currents | Sensor] = [*currents[1:], *sensors]
+    others: list[CurrentMeasurements | Sensor] = [*currents[1:], *sensors]
     for other in others:
         step = np.median(np.diff(times)) if len(times) > 1 else np.timedelta64(1, "h")
         after = np.clip(np.searchsorted(times, other.time), 0, len(times) - 1)
@@ -70,14 +144,14 @@ def measured_at(one: Sensor, wanted: Times, gap: np.timedelta64) -> Floats:
 
 
 def joined(
-    currents: Sequence[Currents],
+    currents: Sequence[CurrentMeasurements],
     sensors: Sequence[Sensor],
     points: Sequence[int],
     labels: Sequence[str],
     still: Floats,
     gap: np.timedelta64,
     sea_level: tuple[Times, Floats] | None = None,
-) -> Measured:
+) -> MooringMeasurements:
     """All that was measured, on common times; levels and sensors from the top down.
 
     Parameters
@@ -119,7 +193,7 @@ def joined(
         if not np.isfinite(tide).any():
             raise UsageError("--sea-level: it covers no time of the currents")
         tide = np.nan_to_num(tide - np.nanmean(tide))
-    measured = Measured(
+    measured = MooringMeasurements(
         time,
         tuple(one.label or labels[where] for one, where in zip(sensors, used, strict=True)),
         point,
@@ -137,7 +211,7 @@ def joined(
     return measured
 
 
-def _false(currents: Sequence[Currents], time: Times) -> NDArray[np.bool_] | None:
+def _false(currents: Sequence[CurrentMeasurements], time: Times) -> NDArray[np.bool_] | None:
     when = [one.time[one.false] for one in currents if one.false is not None]
     return np.isin(time, np.concatenate(when)) if when else None
 
@@ -147,7 +221,7 @@ def _mean(depth: Floats) -> float:
     return float(known.mean()) if known.size else float("inf")
 
 
-def _nearest(one: Currents, k: int, time: Times) -> NDArray[np.int8]:
+def _nearest(one: CurrentMeasurements, k: int, time: Times) -> NDArray[np.int8]:
     """The worse of the flags on either side of each time; 9 outside of the record."""
     after = np.searchsorted(one.time, time)
     upper, lower = np.minimum(after, len(one.time) - 1), np.maximum(after - 1, 0)
@@ -158,7 +232,7 @@ def _nearest(one: Currents, k: int, time: Times) -> NDArray[np.int8]:
     return np.where(outside, MISSING, flags).astype(np.int8)
 
 
-def _refuse_apart(measured: Measured) -> None:
+def _refuse_apart(measured: MooringMeasurements) -> None:
     known = np.isfinite(measured.u) & np.isfinite(measured.v)
     if not (known.any(axis=1) & np.isfinite(measured.depth).any(axis=1)).any():
         raise UsageError(

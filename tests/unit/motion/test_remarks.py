@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from calm.motion.doubts import doubts, false_currents, said_of_currents, said_of_datum
-from calm.motion.unknowns import Common
+from calm.motion.common_unknowns import Common
+from calm.motion.remarks import current_remarks, datum_remarks, false_current_times, sensor_remarks
 
 TIMES = 100
 TIME = np.datetime64("2026-03-01", "ns") + np.arange(TIMES) * np.timedelta64(1, "h")
@@ -16,7 +16,7 @@ LABELS = ("upper", "middle", "lower")
 
 def named(residual, offset=(0.0, 0.0, 0.0), down=None):
     down = np.zeros(TIMES) if down is None else down
-    return doubts(LABELS, TIME, residual, down, common(offset))
+    return sensor_remarks(LABELS, TIME, residual, down, common(offset))
 
 
 def common(offset, elsewhere=None, moved=None, since=None):
@@ -58,7 +58,7 @@ def test_a_step_is_named_that_is_large_and_clear_and_explains_most(count, noise,
     residual = noise * (-1.0) ** np.arange(count) + 3.0
     residual[count // 2 :] += size
     columns = np.column_stack([residual, np.zeros(count), np.zeros(count)])
-    said = doubts(LABELS, TIME[:count], columns, np.zeros(count), common((0.0, 0.0, 0.0)))
+    said = sensor_remarks(LABELS, TIME[:count], columns, np.zeros(count), common((0.0, 0.0, 0.0)))
     assert [one.split(" m ")[0] for one in said] == [f"upper: steps by {size:+.1f}"] * is_named
     assert not said or said[0].endswith("a clamp that slipped")  # of the others nothing is known
 
@@ -77,7 +77,7 @@ def test_a_drift_is_named_with_all_of_it():
     (said,) = named(residual)
     assert said == "lower: drifts by -6.1 m over the record"
     known = common(np.zeros(3), (0.0, 0.0, 0.97), (0.0, 0.0, -5.0), TIME[[0, 0, 40]])
-    (said,) = doubts(LABELS, TIME, residual, np.zeros(TIMES), known)
+    (said,) = sensor_remarks(LABELS, TIME, residual, np.zeros(TIMES), known)
     slipped = "or its clamp slipped by -5.0 m about 2026-03-02T16:00"
     assert said == f"lower: drifts by -6.1 m over the record, {slipped}"
 
@@ -93,7 +93,7 @@ def test_two_sensors_cannot_tell_which_of_them_it_is():
     residual[60:, 1] += 4.0
     for elsewhere, also in (((0.0, 0.0), True), ((0.4, 0.6), True), ((0.0, 0.99), False)):
         known = common(np.zeros(2), elsewhere)
-        (said,) = doubts(LABELS[:2], TIME, residual, np.zeros(TIMES), known)
+        (said,) = sensor_remarks(LABELS[:2], TIME, residual, np.zeros(TIMES), known)
         assert said.startswith("middle: steps by +4")
         assert ("or upper the other way: they cannot tell" in said) == also
 
@@ -106,7 +106,7 @@ def test_an_offset_that_is_too_large_is_named():
 def test_a_sensor_that_hangs_elsewhere_is_named_where_only_strong_currents_show_it():
     moved, since = (12.0, -9.0, 5.0), TIME[[0, 40, 40]]
     known = common((0.5, 0.0, 0.0), (0.9, 0.6, 0.3), moved, since)
-    said = doubts(LABELS, TIME, NOISE, np.zeros(TIMES), known)
+    said = sensor_remarks(LABELS, TIME, NOISE, np.zeros(TIMES), known)
     assert said[0].startswith("upper: +12.5 m off throughout")
     assert "or middle, lower the other way: they cannot tell" in said[0]
     assert said[1].startswith("middle: hangs 9.0 m above its place from 2026-03-02T16:00 on")
@@ -117,9 +117,9 @@ def test_currents_that_look_false_are_listed_with_their_times():
     doubt = np.zeros((TIMES, 2))
     doubt[[7, 9], 1] = 0.6, 0.51
     doubt[8] = 0.5
-    false = false_currents(("a", "b"), TIME, doubt)
+    false = false_current_times(("a", "b"), TIME, doubt)
     assert list(false) == ["b"] and false["b"].tolist() == TIME[[7, 9]].tolist()
-    (said,) = said_of_currents(false, TIMES)
+    (said,) = current_remarks(false, TIMES)
     assert "current at b" in said and "2 of 100 times, first at 2026-03-01T07:00" in said
 
 
@@ -142,7 +142,7 @@ def test_all_sensors_off_alike_are_named_and_the_weight_of_the_air_is_known(
 ):
     known = replace(common((offset, offset)), factors={"cable_drag": 1.0}, datum=datum)
     covariance = np.diag([0.1, spread, 1.0, 1.0, 0.0, 0.0]) ** 2
-    found = said_of_datum(replace(known, covariance=covariance), 300.0)
+    found = datum_remarks(replace(known, covariance=covariance), 300.0)
     assert len(found) == (said is not None)
     for one in found:
         assert said in one and one.startswith(f"all sensors: {datum:+.1f} m off alike")

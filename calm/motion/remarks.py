@@ -1,4 +1,4 @@
-"""What to doubt: found from how measured depths depart from the estimated ones."""
+"""Remarks on sensors and currents that measured depths show to be doubtful."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.motion import prior
-from calm.motion.unknowns import Common
+from calm.motion.common_unknowns import Common
 from calm.physics.line import Floats
 
 Times = NDArray[np.datetime64]
@@ -31,7 +31,7 @@ AIR = 10.1
 """What the weight of the air adds to depths by pressure [m]: 1013 hPa."""
 
 
-def doubts(
+def sensor_remarks(
     labels: Sequence[str],
     time: Times,
     residual: Floats,
@@ -136,7 +136,7 @@ def _change(time: Times, residual: Floats) -> tuple[float, str, np.datetime64] |
     return size, "step" if step else "drift", time[at[best] - 1]
 
 
-def false_currents(names: Sequence[str], time: Times, doubt: Floats) -> dict[str, Times]:
+def false_current_times(names: Sequence[str], time: Times, doubt: Floats) -> dict[str, Times]:
     """The times at which the current of a level is more likely false than not, by its name.
 
     Parameters
@@ -148,7 +148,7 @@ def false_currents(names: Sequence[str], time: Times, doubt: Floats) -> dict[str
     return {name: time[hit[:, k]] for k, name in enumerate(names) if hit[:, k].any()}
 
 
-def said_of_currents(false: Mapping[str, Times], count: int) -> list[str]:
+def current_remarks(false: Mapping[str, Times], count: int) -> list[str]:
     """A sentence on each level whose current looks false at some of so many times."""
     return [
         f"current at {name}: its direction or speed looks false at {len(when)} of {count} times, "
@@ -157,7 +157,7 @@ def said_of_currents(false: Mapping[str, Times], count: int) -> list[str]:
     ]
 
 
-def said_of_datum(common: Common, seabed: float) -> list[str]:
+def datum_remarks(common: Common, seabed: float) -> list[str]:
     """A sentence where all sensors are off alike: by the weight of the air, or by much.
 
     Parameters

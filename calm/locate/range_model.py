@@ -1,4 +1,4 @@
-"""The place that most ranges agree on, and which of them do not belong.
+"""Ranges as they should be from a place, the place that most agree on, and those that do not.
 
 A fit that outliers hardly move comes first; then each doubtful range is judged by the others
 (Student's test, all of them together at 1 %).
@@ -6,12 +6,66 @@ A fit that outliers hardly move comes first; then each doubtful range is judged 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import sqrt
 
 import numpy as np
 
-from calm.locate.model import Model
+from calm.locate.ranges import Survey
+from calm.locate.sound import Sound
+from calm.physics.ellipsoid import Frame
 from calm.physics.line import Booleans, Floats
+
+
+@dataclass(frozen=True)
+class RangeModel:
+    """Ranges from a place: the unknowns are east, north and, where it is not given, the depth."""
+
+    survey: Survey
+    sound: Sound
+    frame: Frame
+    ships: Floats
+    depth: float | None
+
+    @property
+    def unknowns(self) -> int:
+        return 2 if self.depth is not None else 3
+
+    def place(self, x: Floats) -> Floats:
+        """(3,) of the unknowns; a given depth is one below the curved surface."""
+        if self.depth is None:
+            return x
+        # the surface is that much below the plane of the frame
+        sagging = self.frame.position(np.array([x[0], x[1], 0.0]))[2]
+        return np.array([x[0], x[1], sagging - self.depth])
+
+    def mean_speed(self, x: Floats) -> float:
+        below = self.frame.position(self.place(x))[2]
+        return self.sound.mean(self.survey.transducer, max(below, self.survey.transducer))
+
+    def measured(self, x: Floats) -> Floats:
+        """(n,) ranges [m], of times by the speed of sound on the way to the place."""
+        if not self.survey.timed:
+            return self.survey.measured
+        ranges: Floats = 0.5 * self.survey.measured * self.mean_speed(x)
+        return ranges
+
+    def residuals(self, x: Floats) -> Floats:
+        computed: Floats = np.linalg.norm(self.ships - self.place(x), axis=1)
+        found: Floats = self.measured(x) - computed
+        return found
+
+    def jacobian(self, x: Floats) -> Floats:
+        """(n, unknowns) of the residuals."""
+        step = 0.01
+        columns = []
+        for i in range(self.unknowns):
+            ahead, behind = x.copy(), x.copy()
+            ahead[i] += step
+            behind[i] -= step
+            columns.append((self.residuals(ahead) - self.residuals(behind)) / (2.0 * step))
+        return np.stack(columns, axis=1)
+
 
 BY_CHANCE = 0.01
 """Of a survey without an outlier: how often one is called so."""
@@ -19,7 +73,7 @@ FLOOR = 0.02
 """Scatter that no range is better than, to tell what does not belong [m]."""
 
 
-def fitted(model: Model) -> tuple[Floats, Booleans]:
+def fitted(model: RangeModel) -> tuple[Floats, Booleans]:
     """The unknowns, and which ranges belong."""
     x = _sturdy(model)
     residuals = np.abs(model.residuals(x))
@@ -35,7 +89,7 @@ def fitted(model: Model) -> tuple[Floats, Booleans]:
     return x, used
 
 
-def _sturdy(model: Model) -> Floats:
+def _sturdy(model: RangeModel) -> Floats:
     """The unknowns by a fit that outliers hardly move, from several sides."""
     from scipy.optimize import least_squares
 
@@ -53,7 +107,7 @@ def _sturdy(model: Model) -> Floats:
     return min(found, key=lambda each: each[0])[1]
 
 
-def _starts(model: Model) -> list[Floats]:
+def _starts(model: RangeModel) -> list[Floats]:
     middle = model.ships.mean(axis=0)
     _, _, axes = np.linalg.svd((model.ships - middle)[:, :2], full_matrices=True)
     reach = float(np.median(model.measured(np.array([0.0, 0.0, -1000.0])[: model.unknowns])))
@@ -64,7 +118,7 @@ def _starts(model: Model) -> list[Floats]:
     return starts
 
 
-def _below(model: Model, x: Floats) -> Floats:
+def _below(model: RangeModel, x: Floats) -> Floats:
     """The same place below the ship, where a fit has found its mirror image above."""
     if model.depth is None:
         level = float(model.ships[:, 2].mean())
@@ -79,7 +133,7 @@ def scatter(residuals: Floats, unknowns: int) -> float:
     return max(1.4826 * float(np.median(residuals)) * sqrt(count / freedom), FLOOR)
 
 
-def least_squares_of(model: Model, x: Floats, used: Booleans) -> Floats:
+def least_squares_of(model: RangeModel, x: Floats, used: Booleans) -> Floats:
     """The unknowns that fit the ranges in use best, from a guess."""
     from scipy.optimize import least_squares
 
@@ -90,7 +144,7 @@ def least_squares_of(model: Model, x: Floats, used: Booleans) -> Floats:
     return _below(model, fit.x)
 
 
-def _judged(model: Model, x: Floats, used: Booleans) -> Booleans:
+def _judged(model: RangeModel, x: Floats, used: Booleans) -> Booleans:
     """The ranges that belong: the worst of them out, or what fits the others in.
 
     A range is judged by its residual over its standard error as the others give it.

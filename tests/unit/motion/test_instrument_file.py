@@ -6,7 +6,7 @@ import pytest
 import xarray
 
 from calm.errors import InputError, UsageError
-from calm.motion.onto import read_instruments, write_onto
+from calm.motion.instrument_file import read_instruments, write_depths
 
 LABELS = ("upper", "middle", "float")  # two clamps, then a component
 HOUR = np.timedelta64(1, "h")
@@ -52,7 +52,7 @@ def test_the_copy_has_all_that_was_there_and_the_depths_at_its_own_times(tmp_pat
     path = own(tmp_path / "own.nc", engine=engine, there=there)
     read = read_instruments(path, LABELS, replace=bool(there))
     assert (read.clock, read.dimension, read.along) == ("TIME", "TIME", "INSTRUMENT")
-    lost = write_onto(read, result(), LABELS, GAP, tmp_path / "copy.nc")
+    lost = write_depths(read, result(), LABELS, GAP, tmp_path / "copy.nc")
     assert lost == ["elsewhere"]
     with xarray.open_dataset(tmp_path / "copy.nc", engine="h5netcdf") as copy:
         nan = [np.nan] * 4
@@ -67,7 +67,7 @@ def test_the_copy_has_all_that_was_there_and_the_depths_at_its_own_times(tmp_pat
         assert copy["TEMP"].encoding["dtype"] == np.int16
         assert copy["TIME"].values.tolist() == read.time.tolist()
         assert copy.attrs["title"] == "mine"
-    wide = write_onto(read, result(), LABELS, 3 * HOUR, tmp_path / "wide.nc")
+    wide = write_depths(read, result(), LABELS, 3 * HOUR, tmp_path / "wide.nc")
     assert wide == lost
     with xarray.open_dataset(tmp_path / "wide.nc", engine="h5netcdf") as copy:
         assert copy["depth"].values[:, 0] == pytest.approx([51.5, 50.0, 53.0 + 2.0 / 3.0, np.nan],

@@ -1,4 +1,4 @@
-"""Sensors that do not hang where the file says: from the beginning, or from some time on.
+"""What is common to a whole record: factors on the line, the datum, and where its sensors hang.
 
 The normal prior of an offset, a metre, cannot believe in a clamp that sits ten metres lower: it
 would bend the factors and the datum instead. So every way the sensors may hang is a normal prior of
@@ -10,7 +10,7 @@ covariance is as wide as that.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import chain, combinations
 
@@ -19,6 +19,73 @@ from numpy.typing import NDArray
 
 from calm.motion import prior
 from calm.physics.line import Floats, Integers
+
+REACH = 5.0
+"""Between a sensor and the points by which the slope of the line at it is known, at least [m]."""
+
+
+@dataclass(frozen=True)
+class Common:
+    """What is common to the whole record, as far as it is known.
+
+    The q columns of the covariance are the logarithms of the factors, the datum [m], the offsets
+    of the sensors [m], and how far down the line they have moved [m].
+
+    Attributes
+    ----------
+    factors : names of the estimated factors and their values
+    datum : what is added to the depths of the line [m]
+    offset : (s,) of the sensors [m]
+    moved : (s,) how far below its place in the file a sensor hangs, along the line at rest [m]
+    since : (s,) the first time at which it does; NaT where it never does
+    elsewhere : (s,) probability that it does
+    covariance : (q, q)
+    scale : of the errors of the currents, on those of `calm.motion.prior`
+    gap : (g, g) error of the logarithm of the factor on a group of levels whose currents are taken
+        from the others, another group left out besides; see `calm.motion.line_response.gap_errors`
+    """
+
+    factors: Mapping[str, float]
+    datum: float
+    offset: Floats
+    moved: Floats
+    since: NDArray[np.datetime64]
+    elsewhere: Floats
+    covariance: Floats
+    scale: float
+    gap: Floats
+
+    @property
+    def value(self) -> Floats:
+        """(q,) as the columns of the covariance stand."""
+        logs = np.log(list(self.factors.values()))
+        return np.concatenate([logs, [self.datum], self.offset, self.moved])
+
+    def fall(
+        self, time: NDArray[np.datetime64], depth: Floats, still: Floats, point: Integers
+    ) -> Floats:
+        """(n, s) change of the depth of each sensor with how far it has moved; 0 before it has.
+
+        Parameters
+        ----------
+        time : (n,)
+        depth, still : (n, p), (p,) of the points, at these times and in still water [m]
+        point : (s,) where the sensors are by the file
+        """
+        result = np.zeros((len(time), len(point)))
+        for j, (one, since) in enumerate(zip(point.tolist(), self.since, strict=True)):
+            if np.isnat(since):
+                continue
+            below = still - still[one]
+            upper = int(np.where(below <= -REACH, below, -np.inf).argmax())
+            lower = int(np.where(below >= REACH, below, np.inf).argmin())
+            upper = upper if below[upper] <= -REACH else one
+            lower = lower if below[lower] >= REACH else one
+            apart = still[lower] - still[upper]
+            share = (depth[:, lower] - depth[:, upper]) / apart if apart > 0.0 else 1.0
+            result[:, j] = np.where(time >= since, share, 0.0)
+        return result
+
 
 FEWEST = 4
 """Readings of a sensor before and after its clamp slips, at least."""
@@ -126,13 +193,13 @@ def fits(
 
 
 @dataclass(frozen=True)
-class Placed:
+class HangingSensors:
     """The common unknowns over all ways the sensors may hang.
 
     Attributes
     ----------
     mean, covariance : (q,), (q, q), moves included
-    elsewhere : (s,) see `calm.motion.unknowns.Common`
+    elsewhere : (s,) see `calm.motion.common_unknowns.Common`
     """
 
     mean: Floats
@@ -140,10 +207,10 @@ class Placed:
     elsewhere: Floats
 
 
-def placed(
+def hanging_sensors(
     normal: Floats, pull: Floats, mean: Floats, covariance: Floats, first: Integers,
     times: int, alike: float,
-) -> Placed:  # fmt: skip
+) -> HangingSensors:  # fmt: skip
     """The mixture over all ways the sensors may hang.
 
     Parameters
@@ -187,7 +254,7 @@ def placed(
         off = found - centre
         spread += weight * (whole + np.outer(off, off))
         elsewhere[list(way)] += weight
-    return Placed(centre, spread, elsewhere)
+    return HangingSensors(centre, spread, elsewhere)
 
 
 def _ways(sensors: Integers) -> Iterator[tuple[int, ...]]:
