@@ -23,9 +23,9 @@ from machine import describe
 
 import calm
 from calm.batch.profiles import Batch, Profiles
-from calm.batch.records.opening import open_record
 from calm.batch.run import BLOCK, run_batch
 from calm.batch.statuses import Ending
+from calm.records.current_file import open_record
 
 COUNTS = (100_000, 262_980)
 SMOKE = 2000

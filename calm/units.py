@@ -218,6 +218,37 @@ def _parsed(text: str, dimension: str, usual_unit: str | None) -> float:
     return value
 
 
+@dataclass(frozen=True)
+class QuantityRange:
+    """Hold the dimension of a quantity and its limits (SI, degrees)."""
+
+    dimension: str
+    usual_unit: str | None = None
+    above: float = -math.inf
+    at_least: float = -math.inf
+    at_most: float = math.inf
+
+    def read(self, text: object) -> float:
+        """Return the SI value of a text with a unit.
+
+        Raises
+        ------
+        QuantityError
+            The text is no such quantity, or beyond the limits.
+        """
+        if text is None:
+            raise QuantityError("has no value")
+        value = parse_quantity(text, self.dimension, usual_unit=self.usual_unit)
+        unit = DIMENSIONS[self.dimension].unit
+        if value <= self.above:
+            raise QuantityError(f"must be more than {self.above:g} {unit}".rstrip())
+        if value < self.at_least:
+            raise QuantityError(f"must be at least {self.at_least:g} {unit}".rstrip())
+        if value > self.at_most:
+            raise QuantityError(f"must be at most {self.at_most:g} {unit}".rstrip())
+        return value
+
+
 def with_unit(value: float, unit: str) -> str:
     """Return a value in six digits with its unit, as a person reads it."""
     return f"{value:.6g} {unit}".rstrip()

@@ -12,9 +12,9 @@ from calm.files import Cylinder, Environment, Piece, Rigid, Sphere
 from calm.files.components import RigidComponent
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.files.rigid import Displacement
-from calm.files.tables import components
 from calm.physics.hull import Floating, Hull, cylindrical_hull, spherical_hull, tabulated_hull
 from calm.physics.line import Water
+from calm.records.profile_tables import components
 
 
 def _first_float(pieces: Sequence[Piece]) -> Piece | None:

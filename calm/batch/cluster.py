@@ -16,7 +16,7 @@ from calm.errors import UsageError
 from calm.version import __version__
 
 if TYPE_CHECKING:
-    from calm.batch.records.record import Levels
+    from calm.records.record import Levels
 
 AHEAD = 2
 """Blocks that are under way for each thread of the workers."""

@@ -31,7 +31,7 @@ from calm.dataset.variables import (
 )
 
 if TYPE_CHECKING:
-    from calm.batch.records.record import Record
+    from calm.records.record import Record
 
 _ALONG = {"component": OF_COMPONENT, "clamp": OF_CLAMP, "node": OF_NODE}
 _LABELLED = {"component": "component_label", "clamp": "clamp_label", "node": "node_distance"}

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import UsageError
-from calm.files.mistakes import unknown
+from calm.suggestions import unknown
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -33,7 +33,7 @@ from calm.case import Mooring
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
-    from calm.batch.records.record import Record
+    from calm.records.record import Record
 
 BLOCK = 8192
 """Profiles to a block: what is written at once, and lost where a process is stopped."""

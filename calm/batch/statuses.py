@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.files.current_terms import DEEPEST, IMPOSSIBLE
 from calm.physics.line import Floats
+from calm.records.profile_tables import DEEPEST, IMPOSSIBLE
 from calm.solve import Status
 
 if TYPE_CHECKING:
-    from calm.batch.records.record import Record
+    from calm.records.record import Record
 
 
 class Ending(Enum):

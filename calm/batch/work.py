@@ -20,7 +20,7 @@ from calm.batch.store.store import Arrays, Store
 from calm.batch.threads import in_threads
 
 if TYPE_CHECKING:
-    from calm.batch.records.record import Levels, Record
+    from calm.records.record import Levels, Record
 
 FIRST, FEWEST = 256, 8
 """Profiles solved before progress is reported or a stop heeded: at first, and at least, where

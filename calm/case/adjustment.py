@@ -17,8 +17,8 @@ from calm.case.targets import pointed
 from calm.errors import UsageError
 from calm.files import Anchor, Cable, Chain, Clamp, Component, Flexible, MooringFile, Piece, Place
 from calm.files.definition import STANDARD_GRAVITY
-from calm.files.mistakes import unknown
 from calm.files.mooring_file import numbered, placed
+from calm.suggestions import unknown
 from calm.units import DIMENSIONS, QuantityError, parse_quantity, with_unit
 
 MOST_BUOYANCY = 100.0

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 from calm.errors import NoEquilibrium
 from calm.files import Clamp, Piece
-from calm.files.mistakes import unknown
+from calm.suggestions import unknown
 
 TOP = "top"
 """The free end of the line, whatever its label."""

@@ -12,7 +12,7 @@ from calm.case.columns import ClampRow, ComponentRow
 from calm.case.parts import TOP, one_part, parts_of
 from calm.errors import UsageError
 from calm.files import Piece, Place
-from calm.files.mistakes import unknown
+from calm.suggestions import unknown
 from calm.units import DIMENSIONS, QuantityError, parse_quantity
 
 if TYPE_CHECKING:

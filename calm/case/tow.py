@@ -19,8 +19,8 @@ from calm.case.warnings import tow_warnings_of
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import MooringFile, TowKeys
 from calm.files.strumming_keys import BourgetMarichalKeys
-from calm.files.tables import components
 from calm.physics.line import Line, Water
+from calm.records.profile_tables import components
 from calm.solve import Settings, Solution, Status, Towing, fit_tow_length, solve_tow
 
 

@@ -19,10 +19,10 @@ from calm.cli.streams import ExitCode, narrate, show_parts
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
-    from calm.batch.records.record import Record
     from calm.batch.run import BatchOutcome
     from calm.batch.work import Progress
     from calm.case import Mooring
+    from calm.records.record import Record
 
 BATCH_EXAMPLES = """Examples:
 
@@ -94,10 +94,9 @@ def batch(
         raise UsageError(f"--every: {every} is not 1 or more")
     if workers is not None and workers < 1:
         raise UsageError(f"--workers: {workers} is not 1 or more")
-    from calm.batch.records.choice import parse_period, parse_place
-    from calm.batch.records.opening import open_record
-    from calm.batch.records.record import RULES
     from calm.batch.run import run_batch
+    from calm.records.current_file import open_record
+    from calm.records.record import RULES, parse_period, parse_place
 
     period = None if time is None else parse_period(time)
     check_output(output, file, currents)

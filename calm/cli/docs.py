@@ -68,7 +68,7 @@ def _named(page: str, pages: dict[str, Path]) -> str:
     UsageError
         There is none, or there are several.
     """
-    from calm.files.mistakes import unknown
+    from calm.suggestions import unknown
 
     wanted = page.strip("/").removesuffix(".md").removesuffix(".html")
     for exact in (wanted, f"{wanted}/index"):

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from calm.case import Mooring
-    from calm.motion.measured import Measured
+    from calm.motion.measurements import MooringMeasurements
 
 MOTION_EXAMPLES = """Examples:
 
@@ -114,11 +114,10 @@ def motion(
     from calm.batch.compiling import compile_kernel
     from calm.batch.profiles import Batch
     from calm.batch.result import open_result, readable
+    from calm.motion.instrument_file import read_instruments, write_depths
     from calm.motion.matching import labels_of
-    from calm.motion.onto import read_instruments, write_onto
     from calm.motion.run import run_motion
-    from calm.motion.series import series_of
-    from calm.motion.study import cross_validated, judged, prepare, several
+    from calm.motion.study import cross_validated, judged, prepare, series_of, several
     from calm.motion.task import MeasuredRecord
     from calm.report.folder import check_folder, write_report
     from calm.report.motion_report import motion_files
@@ -179,7 +178,7 @@ def motion(
             series = series_of(measured, task.measured.label, result)
             factor = np.asarray(result["current_factor"].values, np.float64)
             if instruments is not None:
-                for label in write_onto(instruments, result, labels, apart, copy):
+                for label in write_depths(instruments, result, labels, apart, copy):
                     narrate(f"{onto}: `{label}` is not a part of the line; its depth is NaN")
         if cross_validate:
             each = cross_validated(mooring, measured, names, hidden, narrate, workers)
@@ -203,8 +202,8 @@ def fitted(text: str | None) -> tuple[str, ...]:
     UsageError
         What is asked for cannot be estimated.
     """
-    from calm.files.mistakes import unknown
-    from calm.motion.forward import FACTORS
+    from calm.motion.line_response import FACTORS
+    from calm.suggestions import unknown
 
     asked = [] if text is None else [name.strip() for name in text.split(",")]
     for name in asked:
@@ -243,25 +242,24 @@ def read_measured(
     gap: np.timedelta64,
     sea_level: Path | None,
     declination: float | None,
-) -> tuple[Measured, list[str], dict[str, str]]:
+) -> tuple[MooringMeasurements, list[str], dict[str, str]]:
     """What was measured, on common times; what is said of it, and its source."""
     import numpy as np
 
-    from calm.files.mistakes import not_among
     from calm.motion.currents import read_currents
-    from calm.motion.flags import parse_flags
-    from calm.motion.forward import Forward
-    from calm.motion.joined import joined
+    from calm.motion.line_response import Forward
     from calm.motion.matching import (
         instruments_of,
         labels_of,
         matched_by_label,
         matched_by_place,
+        plausible,
+        unusable,
     )
-    from calm.motion.sea_level import read_sea_level
-    from calm.motion.sensors import read_sensors
+    from calm.motion.measurements import joined
+    from calm.motion.sensors import parse_flags, read_sea_level, read_sensors
     from calm.motion.task import without
-    from calm.motion.usable import plausible, unusable
+    from calm.suggestions import not_among
 
     if match not in _MATCHES:
         raise UsageError(not_among("--match", match, _MATCHES))

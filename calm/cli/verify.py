@@ -97,7 +97,7 @@ def verify_field(outputs: Outputs) -> ExitCode:
     from calm.case import Mooring
     from calm.checks.finding import State
     from calm.cli.motion import fitted, parse_gap, read_measured
-    from calm.motion.forward import Forward
+    from calm.motion.line_response import Forward
     from calm.motion.run import estimate_in_memory
     from calm.motion.study import intervals, judge_hidden, prepare
     from calm.report.blocks import Heading, Part, Prose

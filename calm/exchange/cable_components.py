@@ -1,4 +1,4 @@
-"""Buoys, anchors, connectors and materials of WHOI Cable, with that program's drag."""
+"""Make components of WHOI Cable's buoys, anchors, connectors and materials, with its drag."""
 
 from __future__ import annotations
 
@@ -20,6 +20,8 @@ _DYNAMICS = (
     "i", "j", "g", "nu",
 )  # fmt: skip
 _YIELDS = ("swl", "yield")
+_STEPS = 12  # rows of a table between two diameters
+_SLIGHT = 1e-9
 
 
 @dataclass
@@ -151,9 +153,9 @@ class ComponentMaker:
             raise definition.token.refuse(
                 f"`{name}` is a {shape}: CALM has lines that end in a float or at a towing ship"
             )
-        volume, area, height = largest(definition, shape)
-        mass = values.number("m", "mass")
-        mass = mass or values.number("w") / self.gravity
+        hull = _displacement(definition, shape)
+        height, volume, area = hull[-1]
+        mass = values.number("m", "mass") or values.number("w") / self.gravity
         lift = values.number("buoyancy")
         whole = lift / (self.density * self.gravity) if lift else volume
         if not whole:
@@ -174,8 +176,7 @@ class ComponentMaker:
             figures["length"] = 0.0
             component.comment = "That program treats it as a point: the line ends at its depth."
         elif kind == "body":
-            component.hull = displacement(definition, shape)
-            whole = max(whole, component.hull[-1][1]) if not lift else whole
+            component.hull = hull
         figures |= {"mass": mass, "volume": whole}
         windage, wind_drag = values.number("sw"), values.number("cdw") or drag
         if afloat and (windage or wind_drag):
@@ -225,19 +226,10 @@ def varies(definition: CableDefinition) -> bool:
     )
 
 
-_STEPS = 12  # rows of a table between two diameters
-_SLIGHT = 1e-9
-
-
-def largest(definition: CableDefinition, shape: str) -> tuple[float, float, float]:
-    """Volume [m³], area shown to the current [m²] and height [m] of the whole hull."""
-    rows = displacement(definition, shape)
-    draft, volume, area = rows[-1]
-    return volume, area, draft
-
-
-def displacement(definition: CableDefinition, shape: str) -> tuple[tuple[float, float, float], ...]:
-    """Rows of draft [m], displaced volume [m³] and immersed area [m²].
+def _displacement(
+    definition: CableDefinition, shape: str
+) -> tuple[tuple[float, float, float], ...]:
+    """Return rows of draft [m], displaced volume [m³] and immersed area [m²].
 
     Raises
     ------

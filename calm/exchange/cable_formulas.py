@@ -1,4 +1,4 @@
-"""Formulas of problem files: read into functions, of the depth `H` where they depend on it."""
+"""Read formulas of problem files into functions, of the depth `H` where they depend on it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Formula: TypeAlias = Callable[[Mapping[str, float]], float]
 """A value, computed from the values of the names it depends on."""
 
 _DEEPEST = 40  # parentheses within each other
-FUNCTIONS: dict[str, tuple[int, Callable[..., float]]] = {
+_FUNCTIONS: dict[str, tuple[int, Callable[..., float]]] = {
     "sin": (1, math.sin), "cos": (1, math.cos), "tan": (1, math.tan), "asin": (1, math.asin),
     "acos": (1, math.acos), "atan2": (2, math.atan2), "sinh": (1, math.sinh),
     "cosh": (1, math.cosh), "tanh": (1, math.tanh), "exp": (1, math.exp), "log": (1, math.log),
@@ -211,7 +211,7 @@ class _Reader:
             raise token.refuse(f"a number is missing before `{token.text}`")
         if "/" in token.text:  # a sign that names may hold: here it divides
             token = self._cut(token)
-        if token.text.lower() in FUNCTIONS:
+        if token.text.lower() in _FUNCTIONS:
             return self._call(token, depth)
         if token.text.lower() == "pi":
             return lambda at: math.pi
@@ -227,7 +227,7 @@ class _Reader:
         return replace(token, text=head)
 
     def _call(self, token: Token, depth: int) -> Formula:
-        count, function = FUNCTIONS[token.text.lower()]
+        count, function = _FUNCTIONS[token.text.lower()]
         self._words.expect("(")
         arguments = [self.choice(depth + 1)]
         while self._words.comes(","):

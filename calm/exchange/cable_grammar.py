@@ -1,4 +1,4 @@
-"""The grammar of WHOI Cable's problem files: from words to a problem."""
+"""Read the words of WHOI Cable's problem files as a problem, by their grammar."""
 
 from __future__ import annotations
 
@@ -24,6 +24,7 @@ _SECTIONS = frozenset(
 )
 _LONG_SECTIONS = {"problem": "description", "analysis": "parameters"}
 _MOST_NODES = 1_000_000
+_LAYOUT = frozenset(["terminal", "segment", "branch"])
 
 
 @dataclass
@@ -283,9 +284,6 @@ def _rows(words: TokenStream) -> list[tuple[Expression, ...]]:
             words.back(back)
             return []
         rows.append(tuple(row))
-
-
-_LAYOUT = frozenset(["terminal", "segment", "branch"])
 
 
 def _layout(words: TokenStream, problem: CableProblem) -> None:

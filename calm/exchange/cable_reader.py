@@ -1,4 +1,4 @@
-"""A problem file of WHOI Cable as a design."""
+"""Read a problem file of WHOI Cable as a design."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def _read(path: Path, defines: Mapping[str, str], *, allow_include: bool) -> Des
         if value < 0.0 or (key == "gravity" and value == 0.0):
             raise refused(path, f"its {key} is {value:g}")
     makers = ComponentMaker(density or CATALOGUE_DENSITY, gravity, design.dropped)
-    items = _laid(problem, makers, design)
+    items = _pieces_of_layout(problem, makers, design)
     (_lay_tow if problem.kind == "towing" else _lay_mooring)(problem, items, makers, design)
     known = {"buoy", "platform", "anchor", "mu", "x-speed", "y-speed", "x", "y", "z", *_FORCES}
     for end in problem.terminals:
@@ -207,7 +207,9 @@ def _lay_tow(
     design.items = [*items[::-1], ImportedPiece(buoy)]
 
 
-def _laid(problem: CableProblem, makers: ComponentMaker, design: Design) -> list[ImportedPiece]:
+def _pieces_of_layout(
+    problem: CableProblem, makers: ComponentMaker, design: Design
+) -> list[ImportedPiece]:
     """Return the pieces between the ends, from the lower one up."""
     assert design.water is not None
     items: list[ImportedPiece] = []
@@ -260,9 +262,9 @@ def _pieces(
         item = ImportedPiece(component, part_length, guess=guess)
         end = start + part_length
         last = component is made[-1][1]
-        for height, hung in clamps:
+        for height, clamped in clamps:
             if start <= height < end or (last and height >= end):
-                item.clamp(hung, min(max(end - height, 0.0), part_length))
+                item.clamp(clamped, min(max(end - height, 0.0), part_length))
         items.append(item)
         start = end
     for key in ("cdn", "cdt"):

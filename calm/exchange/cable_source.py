@@ -1,4 +1,8 @@
-"""The text of a problem file: comments, macros, conditions and included files resolved."""
+"""Resolve comments, macros, conditions and included files of a problem file, and find its words.
+
+The C preprocessors that can be had as libraries know no limit to what macros grow to within their
+arguments, cut numbers such as `6e3` where `e3` is a macro, and let a comment without an end pass.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +14,7 @@ from pathlib import Path
 
 from calm.errors import InputError, UsageError
 from calm.exchange.design import refused_at
-from calm.files.yaml_document import decoded, read_content
+from calm.whole_file import decoded, read_content
 
 _NAME = re.compile(r"[A-Za-z_]\w*")
 _TEXT = re.compile(r"\"[^\"\n]*\"|'[^'\n]*'")
@@ -19,6 +23,11 @@ _MOST_TEXT = 4_000_000  # characters that a file may become
 _MOST_EXPANSIONS = 20_000
 _DEEPEST = 20  # files within files, macros within macros, conditions within conditions
 _LONGEST = 100_000  # characters of one line once expanded
+_NUMBER = re.compile(r"(?:\d+\.\d*|\.\d+|\d+)(?:[eE][+-]?\d+)?")
+_KEY = re.compile(r"([A-Za-z_][\w.-]*)[ \t]*=(?!=)")
+_WORD = re.compile(r"[A-Za-z_][\w/.:]*")
+_QUOTED = re.compile(r"\"([^\"]*)\"|'([^']*)'")
+_SIGN = re.compile(r"&&|\|\||==|!=|<=|>=|<<|>>|[-+*/%<>!~?:|^&(){}\[\],]")
 
 
 @dataclass(frozen=True)
@@ -276,13 +285,6 @@ def _without_comments(text: str, path: str) -> list[str]:
             lines.append(line.removesuffix("\\"))
             joined = 1 if line.endswith("\\") else 0
     return lines
-
-
-_NUMBER = re.compile(r"(?:\d+\.\d*|\.\d+|\d+)(?:[eE][+-]?\d+)?")
-_KEY = re.compile(r"([A-Za-z_][\w.-]*)[ \t]*=(?!=)")
-_WORD = re.compile(r"[A-Za-z_][\w/.:]*")
-_QUOTED = re.compile(r"\"([^\"]*)\"|'([^']*)'")
-_SIGN = re.compile(r"&&|\|\||==|!=|<=|>=|<<|>>|[-+*/%<>!~?:|^&(){}\[\],]")
 
 
 @dataclass(frozen=True)

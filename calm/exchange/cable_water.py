@@ -1,4 +1,4 @@
-"""The environment of a WHOI Cable problem."""
+"""Read the environment of a WHOI Cable problem, and currents in a file beside it."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from calm.exchange.cable_grammar import KeyValue, KeyValues
 from calm.exchange.design import ImportedWater, Remark, refused
-from calm.files.yaml_document import read_text
 from calm.quantities import bearing_of
+from calm.whole_file import read_text
 
 USUAL_GRAVITY = 9.81
 """Gravity in the problems that come with that program, which has no default [m/s²]."""
@@ -25,6 +25,12 @@ _DIGITS = 9  # of a speed in m/s
 _WAVES = ("x-wave", "y-wave", "x-input", "y-input", "z-input", "wave-file")
 _DYNAMICS = ("forcing-method", "input-type", "velocity-file", "force-file")
 _SEABED = ("bottom-stiffness", "bottom-damping", "bottom-elevation")
+_Profile = tuple[Callable[[float], float], list[float]]
+"""A speed by depth, and the depths between which it is linear."""
+
+_LARGEST = 20_000_000  # bytes
+_MOST = 2_000_000  # speeds
+_AXES = ("time", "depth", "x", "y")
 
 
 def water_of(
@@ -52,7 +58,7 @@ def water_of(
     gridded = None
     if "current-file" in environment:
         value = environment["current-file"]
-        gridded = gridded_current(value, folder, allow_include=allow_include)
+        gridded = _gridded_current(value, folder, allow_include=allow_include)
         if gridded is None:
             what = f"still water: its current-file `{value.text}` is missing"
             water.guesses["current"] = what
@@ -95,10 +101,6 @@ def _current(
     return tuple(rows) if any(any(row[1:]) for row in rows) else ()
 
 
-_Profile = tuple[Callable[[float], float], list[float]]
-"""A speed by depth, and the depths between which it is linear."""
-
-
 def _profile(environment: KeyValues, axis: str, gridded: GriddedCurrent | None) -> _Profile | None:
     scale = environment.number(f"{axis}-current-scale", default=1.0)
     if scale == 1.0:
@@ -137,11 +139,6 @@ def _refined(at: Callable[[float], tuple[float, float, float]], levels: list[flo
     return levels
 
 
-_LARGEST = 20_000_000  # bytes
-_MOST = 2_000_000  # speeds
-_AXES = ("time", "depth", "x", "y")
-
-
 @dataclass(frozen=True)
 class GriddedCurrent:
     """Hold the profile at the anchor at the time 0.
@@ -163,7 +160,9 @@ class GriddedCurrent:
         return lambda depth: float(np.interp(depth, self.depth, column))
 
 
-def gridded_current(value: KeyValue, folder: Path, *, allow_include: bool) -> GriddedCurrent | None:
+def _gridded_current(
+    value: KeyValue, folder: Path, *, allow_include: bool
+) -> GriddedCurrent | None:
     """Return the currents of a file beside the problem; None where there is no such file.
 
     It begins with step, start and count of time, depth, x and y; the speeds to x, y and z follow,

@@ -1,4 +1,4 @@
-"""A mooring or a tow as a problem of WHOI Cable, for its statics and its dynamics."""
+"""Write a mooring or a tow as a problem of WHOI Cable, for its statics and its dynamics."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from math import pi, sqrt
 
-from calm.exchange.exported_parts import ExportedLine, ExportedPart, PartLoad, kept
+from calm.exchange.exported_parts import ExportedLine, ExportedPart, PartLoad, unique_name
 from calm.exchange.part_names import is_chain
 from calm.files import Chain, Cylinder, Rigid, Sphere
 from calm.files.rigid import Displacement
@@ -17,6 +17,7 @@ _LEAST_MASS = 0.01  # kg per metre: what weighs and drags nothing still moves
 _LEAST_WEIGHT = 1e-6  # N per metre: a weight of 0 is worked out from the mass there
 _FINEST, _COARSEST = 3, 401  # nodes of a segment
 _APART = 0.5  # m between nodes, where that many suffice
+_LEAST = 1e-3  # m of diameter, kg of mass
 
 
 @dataclass
@@ -61,7 +62,7 @@ class _Problem:
             f"d = {max(across, 1e-6):.9g}  wet = {-load.net:.9g}  m = {load.mass:.9g}"
             f"  Cdn = {1.0 if across else 0.0:g}"
         )
-        name = kept(self.connectors, f"p_{_word(base)}", figures)
+        name = unique_name(self.connectors, f"p_{_word(base)}", figures)
         self.layout.append(f"    connector = {name}")
 
 
@@ -103,7 +104,7 @@ def cbl_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
         problem.segment(_link(problem), buoy.length)
     if problem.load is not None:
         problem.segment(_link(problem), 0.001)
-    text = _text(design, problem, buoy_figures(buoy, design, density, lost), density, floating)
+    text = _text(design, problem, _buoy_figures(buoy, design, density, lost), density, floating)
     losses = design.losses(lost)
     head = [f"{design.name}, by CALM; lost:", *(f"- {each}" for each in losses)]
     comment = "\n   ".join(line.replace("*/", "* /") for line in head)
@@ -139,7 +140,7 @@ def _link(problem: _Problem) -> str:
         f"d = 0.001  m = {_LEAST_MASS}  wet = {_LEAST_WEIGHT}  Cdn = 0  Cdt = 0"
         f"  EA = {_RIGID:g}  EI = 1e-4  GJ = 1e-4"
     )
-    return kept(problem.materials, "link", figures)
+    return unique_name(problem.materials, "link", figures)
 
 
 def _material(problem: _Problem, part: ExportedPart) -> str:
@@ -157,7 +158,7 @@ def _material(problem: _Problem, part: ExportedPart) -> str:
     name = _word(part.use)
     if isinstance(part.component, Chain) and not is_chain(name):
         name = f"chain_{name}"
-    return kept(problem.materials, name, figures)
+    return unique_name(problem.materials, name, figures)
 
 
 def _word(text: str) -> str:
@@ -232,10 +233,7 @@ def _ends(design: ExportedLine, layout: list[str]) -> list[str]:
     return ["    terminal = { buoy = towed }", *layout, ship]
 
 
-_LEAST = 1e-3  # m of diameter, kg of mass
-
-
-def buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost: list[str]) -> str:
+def _buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost: list[str]) -> str:
     """Its size, mass, buoyancy and drag, in the words of that program.
 
     Parameters

@@ -1,4 +1,4 @@
-"""What a file of another program says, in CALM's terms: the one model that every importer fills.
+"""Define what a file of another program says, in CALM's terms: the model that every importer fills.
 
 Figures are SI and degrees under the names of the mooring file; depths are positive down.
 """
@@ -79,7 +79,7 @@ class ImportedComponent:
         """Return a figure; 0 where it has none."""
         return float(self.figures.get(field, 0.0))
 
-    def says(self) -> tuple[object, ...]:
+    def identity(self) -> tuple[object, ...]:
         """Return all its figures: components with the same figures are one definition."""
         figures = tuple(sorted(self.figures.items(), key=lambda pair: pair[0]))
         return self.name, self.kind, figures, self.hull

@@ -1,4 +1,4 @@
-"""A design as a mooring file, with a comment for every guess in its line."""
+"""Write a design as a mooring file, with a comment for every guess in its line."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class _Page:
         self.lines += [f"{indent}# {line}" for line in wrap(text, _WIDTH - len(indent) - 2)]
 
 
-def written(
+def mooring_text(
     design: Design, source: str, environment: list[str] | None = None, version: str = ""
 ) -> Written:
     """Return the mooring file of a design.
@@ -88,9 +88,9 @@ def written(
         page.add(f"description: {quoted(design.description)}")
     page.add()
     if design.tow is not None:
-        height = f", height: {number(design.tow.height)} m" if design.tow.height else ""
-        toward = f"toward: {number(design.tow.toward)} deg"
-        page.add(f"tow: {{speed: {number(design.tow.speed)} m/s, {toward}{height}}}")
+        height = f", height: {_number(design.tow.height)} m" if design.tow.height else ""
+        toward = f"toward: {_number(design.tow.toward)} deg"
+        page.add(f"tow: {{speed: {_number(design.tow.speed)} m/s, {toward}{height}}}")
         page.add()
     if environment is not None:
         page.lines += environment
@@ -111,7 +111,7 @@ def written(
     return Written("\n".join(page.lines) + "\n", page.guessed)
 
 
-def number(value: float) -> str:
+def _number(value: float) -> str:
     """Return a number as people write it, with nine digits at most."""
     return f"{value:.9g}"
 
@@ -127,17 +127,17 @@ def quoted(text: str) -> str:
 def _write_water(page: _Page, water: ImportedWater) -> None:
     page.add("environment:")
     if water.depth is not None:
-        _keyed(page, "depth", f"{number(water.depth)} m", water)
+        _keyed(page, "depth", f"{_number(water.depth)} m", water)
     if isinstance(water.density, tuple):
         page.add("  density:")
         page.add("    columns: [depth m, density kg/m^3]")
         page.add("    rows:")
         for depth, density in water.density:
-            page.add(f"      - [{number(depth)}, {number(density)}]")
+            page.add(f"      - [{_number(depth)}, {_number(density)}]")
     elif water.density is not None:
-        _keyed(page, "density", f"{number(water.density)} kg/m^3", water)
+        _keyed(page, "density", f"{_number(water.density)} kg/m^3", water)
     if water.gravity is not None:
-        _keyed(page, "gravity", f"{number(water.gravity)} m/s^2", water)
+        _keyed(page, "gravity", f"{_number(water.gravity)} m/s^2", water)
     if water.current:
         up = any(row[3] for row in water.current)
         guess = water.guesses.get("current", "")
@@ -146,12 +146,12 @@ def _write_water(page: _Page, water: ImportedWater) -> None:
         page.add("    rows:")
         for row in water.current:
             values = row if up else row[:3]
-            page.add(f"      - [{', '.join(number(value) for value in values)}]")
+            page.add(f"      - [{', '.join(_number(value) for value in values)}]")
     elif "current" in water.guesses:
         _keyed(page, "current", "{speed: 0 m/s, toward: 0 deg}", water)
     if water.wind is not None:
         speed, toward = water.wind
-        page.add(f"  wind: {{speed: {number(speed)} m/s, toward: {number(toward)} deg}}")
+        page.add(f"  wind: {{speed: {_number(speed)} m/s, toward: {_number(toward)} deg}}")
     page.add()
 
 
@@ -178,7 +178,7 @@ def _bare(item: ImportedPiece) -> bool:
 
 
 def _same(one: ImportedPiece, other: ImportedPiece) -> bool:
-    alike = one.component.says() == other.component.says()
+    alike = one.component.identity() == other.component.identity()
     return alike and one.length == other.length and one.component.entry == other.component.entry
 
 
@@ -186,7 +186,7 @@ def _write_item(page: _Page, item: ImportedPiece, ids: dict[int, str]) -> None:
     use = ids[id(item.component)]
     pairs = [f"use: {use}"]
     if item.length is not None:
-        pairs.append(f"length: {number(item.length)} m")
+        pairs.append(f"length: {_number(item.length)} m")
     if item.count > 1:
         pairs.append(f"count: {item.count}")
     if item.label:
@@ -200,9 +200,9 @@ def _write_item(page: _Page, item: ImportedPiece, ids: dict[int, str]) -> None:
         page.add(f"    {pair}")
     page.add("    clamps:")
     for clamp in item.clamps:
-        hung = ids[id(clamp.component)]
-        line = f"      - {{use: {hung}, at: {number(clamp.at)} m}}"
-        page.add(line, clamp.guess, f"{where}.clamps.{hung}")
+        clamped = ids[id(clamp.component)]
+        line = f"      - {{use: {clamped}, at: {_number(clamp.at)} m}}"
+        page.add(line, clamp.guess, f"{where}.clamps.{clamped}")
 
 
 def _write_solver(page: _Page, design: Design) -> None:
@@ -210,7 +210,7 @@ def _write_solver(page: _Page, design: Design) -> None:
         return
     page.add("solver:")
     for key, (value, comment) in design.solver.items():
-        shown = number(value) if isinstance(value, float) else value
+        shown = _number(value) if isinstance(value, float) else value
         page.add(f"  {key}: {shown}", comment=comment)
     page.add()
 
@@ -235,7 +235,7 @@ def _write_component(
         page.add("    hull:", guess, f"components.{id_}.hull")
         page.add("      displacement:")
         for draft, volume, area in component.hull:
-            row = f"[{number(draft)} m, {number(volume)} m^3, {number(area)} m^2]"
+            row = f"[{_number(draft)} m, {_number(volume)} m^3, {_number(area)} m^2]"
             page.add(f"        - {row}")
 
 
@@ -253,13 +253,13 @@ def figure_text(key: str, value: FigureOrWord, *, per_metre: bool, in_kilograms:
         return quoted(value)
     if key in _FORCES:
         unit = "kgf" if in_kilograms else "N"
-        shown = number(value / KILOGRAM_FORCE if in_kilograms else value)
+        shown = _number(value / KILOGRAM_FORCE if in_kilograms else value)
         return f"{shown} {unit}{'/m' if per_metre else ''}"
     if key == "mass":
-        return f"{number(value)} kg{'/m' if per_metre else ''}"
+        return f"{_number(value)} kg{'/m' if per_metre else ''}"
     unit = _UNITS.get(key, "")
     if unit == "kN":
         value /= 1000.0
     if key == "diameter" and value < 0.1:
         value, unit = value * 1000.0, "mm"
-    return f"{number(value)} {unit}".rstrip()
+    return f"{_number(value)} {unit}".rstrip()

@@ -15,9 +15,9 @@ from calm.exchange.list_headings import SheetRows, headings_of, read_sheets
 from calm.exchange.list_rows import ListRow, rows_of, weights_as_buoyancy
 from calm.exchange.mat_file import MatValue, is_mat, names, numbers, read_variables
 from calm.exchange.part_names import is_line
-from calm.files.mistakes import nearest
-from calm.files.yaml_document import read_content
+from calm.suggestions import nearest
 from calm.units import KILOGRAM_FORCE
+from calm.whole_file import read_content
 
 _NOT_THEIRS = ("at", "count", "height")  # of an element, whatever the heading says
 _A_METRE = 1e-6  # m by which the length of a line's figures may miss a metre
@@ -78,7 +78,7 @@ def key_of(name: str) -> str:
     return "".join(name.lower().split())
 
 
-def complete(rows: Iterable[ListRow], library: Library, source: str) -> None:
+def complete_rows(rows: Iterable[ListRow], library: Library, source: str) -> None:
     """Give rows the figures that they lack, from the element of their name.
 
     Parameters

@@ -1,4 +1,4 @@
-"""A mooring or a tow for other programs: parts with their net force and drag."""
+"""Define a mooring or a tow for other programs: parts with their net force and drag."""
 
 from __future__ import annotations
 
@@ -8,20 +8,17 @@ from math import cos, pi, radians, sin
 
 import numpy as np
 
-from calm.case import Mooring, Result, Tow, TowResult
-from calm.errors import NoEquilibrium, UsageError
+from calm.case import Result, TowResult
+from calm.errors import NoEquilibrium
 from calm.files import Anchor, Component, Sphere
 from calm.files.definition import STANDARD_GRAVITY
 from calm.files.rigid import Displacement
-from calm.physics.line import Line, Water
 from calm.physics.reference import REFERENCE_DENSITY
 
 _LEAST_MASS = 0.1  # of what its net force weighs
-_DIGITS = 9  # of a speed in m/s
 
 Coordinates = tuple[float, float, float]
 """East and north of the anchor, and depth [m]."""
-
 
 Levels = tuple[tuple[float, float, float, float, float], ...]
 """Rows of depth [m], current to the east, to the north and up [m/s], and density [kg/m³]."""
@@ -138,7 +135,7 @@ class PartLoad:
         return PartLoad(self.density, self.names, *(each / length for each in figures))
 
 
-def kept(known: dict[str, str], name: str, figures: str) -> str:
+def unique_name(known: dict[str, str], name: str, figures: str) -> str:
     """Keep figures under a name, and return it: another where it is taken by other figures.
 
     Parameters
@@ -194,7 +191,7 @@ class ExportedLine:
     riding : share of its buoyancy that the float uses here, and of its drag that acts on it; 1, 1
         below the surface
     windage : of the float: its area in the air here [m²], and its drag coefficient there
-    unsaid : what other programs cannot hold
+    omitted : what other programs cannot hold
     solve : finds the equilibrium
     """
 
@@ -210,7 +207,7 @@ class ExportedLine:
     has_draft: bool
     riding: tuple[float, float]
     windage: tuple[float, float]
-    unsaid: tuple[str, ...]
+    omitted: tuple[str, ...]
     solve: Callable[[], Result | TowResult]
 
     @property
@@ -220,7 +217,7 @@ class ExportedLine:
 
     def losses(self, more: Sequence[str]) -> tuple[str, ...]:
         """Return what another program cannot hold, each remark once, `more` first."""
-        return tuple(dict.fromkeys((*more, *self.unsaid)))
+        return tuple(dict.fromkeys((*more, *self.omitted)))
 
     def paths(self) -> list[PartPath]:
         """Return where each part lies in equilibrium, from the top down.
@@ -271,161 +268,3 @@ class ExportedLine:
             return part.net, own[1] * middle / end
         tilt, pull = radians(row.tilt), row.tension_bottom
         return pull * cos(tilt), pull * sin(tilt) / (0.5 * density * end)
-
-
-def assembled(mooring: Mooring | Tow) -> ExportedLine:
-    """Return the parts of a mooring or a tow.
-
-    Raises
-    ------
-    NoEquilibrium
-        A piece is to be cut to fit, and no length does.
-    """
-    file, water, line = mooring.file, mooring.water, mooring.line
-    if file.environment.fluid == "air":
-        raise UsageError(f"{file.path} is towed in air; the other programs know water alone")
-    secant = _secants(mooring)
-    depths = _depths(line, water, isinstance(mooring, Tow))
-    parts = []
-    for i in range(len(line.length)):
-        piece = file.pieces[i]
-        density = float(water.at(np.array(depths[i]))[1])
-        excess = (density - REFERENCE_DENSITY) * float(water.gravity)
-        on = [k for k in range(len(line.clamp_at)) if line.clamp_piece[k] == i]
-        clamps = tuple(
-            (
-                ExportedPart(
-                    clamp.use, clamp.label, clamp.component.role, clamp.component, False,
-                    float(getattr(clamp.component, "length", 0.0)),
-                    float(line.clamp_buoyancy[k]),
-                    float(line.clamp_buoyancy[k] + excess * line.clamp_volume[k]), density,
-                    float(line.clamp_drag[k]), float(line.clamp_drag[k]), False, 0.0,
-                ),
-                float(line.clamp_at[k]),
-            )
-            for k, clamp in zip(on, piece.clamps, strict=True)
-        )  # fmt: skip
-        compliance = float(line.compliance[i])
-        stiffness = secant.get(i, 1.0 / compliance if compliance else 0.0)
-        parts.append(
-            ExportedPart(
-                piece.use, piece.label, piece.component.role, piece.component,
-                bool(line.flexible[i]), float(line.length[i]), float(line.buoyancy[i]),
-                float(line.buoyancy[i] + excess * line.volume[i]), density,
-                float(line.normal_drag[i]), float(line.tangential_drag[i]),
-                bool(line.directional[i]), stiffness, clamps,
-            )
-        )  # fmt: skip
-    wind, anchor, tow = file.environment.wind, None, None
-    if isinstance(mooring, Tow):
-        keys = mooring.keys
-        tow = ExportedTow(*_east_and_north(keys.speed, keys.toward), keys.height)
-    else:
-        anchor = file.anchor, mooring.anchor_weight
-    riding, windage = _riding(mooring)
-    return ExportedLine(
-        name=file.name,
-        parts=tuple(parts),
-        anchor=anchor,
-        depth=float(water.depth),
-        levels=_levels(water, 2.0 * float(line.length.sum()) if tow else float(water.depth)),
-        gravity=float(water.gravity),
-        wind=(0.0, 0.0) if wind is None else _east_and_north(wind.speed, wind.toward),
-        tow=tow,
-        afloat=_reaches(mooring),
-        has_draft=line.floating is not None and line.floating.hull is not None,
-        riding=riding,
-        windage=windage,
-        unsaid=_unsaid(mooring),
-        solve=mooring.solve,
-    )
-
-
-def _east_and_north(speed: float, toward: float) -> tuple[float, float]:
-    """Return the parts of a speed [m/s] towards a bearing [degrees]."""
-    return speed * sin(radians(toward)), speed * cos(radians(toward))
-
-
-def _reaches(mooring: Mooring | Tow) -> bool:
-    """Return whether a mooring floats at the surface; by its length where it has no equilibrium."""
-    if isinstance(mooring, Tow):
-        return False
-    try:
-        return mooring.solve().type == "surface"
-    except NoEquilibrium:
-        whole = mooring.line.anchor_height + float(mooring.line.length.sum())
-        return whole >= float(mooring.water.depth)
-
-
-def _riding(mooring: Mooring | Tow) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return how the float stands at the surface: `riding` and `windage` of `ExportedLine`."""
-    floating = mooring.line.floating
-    if not _reaches(mooring):
-        return (1.0, 1.0), (0.0, 1.0)
-    assert isinstance(mooring, Mooring)
-    try:
-        used = mooring.solve().top.used_buoyancy
-    except NoEquilibrium:
-        used = 1.0
-    if floating is None:
-        return (used, 1.0), (0.0, 1.0)
-    seen = floating.riding(used).drag
-    area = floating.wind_area
-    if area is None:
-        area = 0.0 if floating.hull is None else floating.hull.area * (1.0 - seen)
-    return (used, seen), (area, floating.wind_cd)
-
-
-def _secants(mooring: Mooring | Tow) -> dict[int, float]:
-    """Stiffness of the pieces that stretch by a table, as it is at their tension here [N]."""
-    curves = mooring.line.elongation
-    if not any(curves):
-        return {}
-    rows = mooring.solve().components
-    secants = {}
-    for i, curve in enumerate(curves):
-        if curve is not None:
-            strain = rows[i].length / rows[i].cut_length - 1.0
-            tension = (rows[i].tension_top + rows[i].tension_bottom) / 2.0
-            secants[i] = tension / strain if strain > 0.0 else 0.0
-    return secants
-
-
-def _depths(line: Line, water: Water, towed: bool) -> list[float]:
-    """Depths of the middle of every piece, upright above the anchor or below the ship [m]."""
-    below = np.cumsum(line.length) - line.length / 2.0
-    if not towed:
-        below += float(water.depth) - line.anchor_height - float(line.length.sum())
-    return [max(float(depth), 0.0) for depth in below]
-
-
-def _levels(water: Water, deepest: float) -> Levels:
-    """Rows of depth, u, v, w and density, from the surface to the seabed."""
-    inside = [float(depth) for depth in water.level if 0.0 < depth < deepest]
-    rows = []
-    for depth in (0.0, *inside, deepest):
-        u, v, w, density = (
-            round(float(np.interp(depth, water.level, values)), _DIGITS) + 0.0
-            for values in (water.u, water.v, water.w, water.density)
-        )
-        rows.append((depth, u, v, w, density))
-    return tuple(rows)
-
-
-def _unsaid(mooring: Mooring | Tow) -> tuple[str, ...]:
-    """Return what a mooring file says that other programs do not know."""
-    file = mooring.file
-    unsaid = [
-        "limits of the design check, strengths, ratings and tilts of components",
-    ]
-    if file.solver.strumming is not None:
-        unsaid.append("strumming: the drag of cables is that at rest")
-    if file.solver.drag == "reynolds":
-        unsaid.append("`drag: reynolds`: drags are those of the constant coefficients")
-    if file.solver.friction != "berteaux":
-        unsaid.append(f"`friction: {file.solver.friction}`")
-    if any(mooring.line.elongation):
-        unsaid.append("elongation tables: stiffness is that at the tension found here")
-    if any(mooring.line.lift) or any(mooring.line.clamp_lift):
-        unsaid.append("lift of towed bodies")
-    return tuple(unsaid)

@@ -14,14 +14,14 @@ from calm.assemble.line import drag_of
 from calm.case import Mooring, load
 from calm.errors import CalmError
 from calm.exchange.design import Design, ImportedComponent, one_line, refused
-from calm.exchange.design_writer import figure_text, quoted, written
+from calm.exchange.design_writer import figure_text, mooring_text, quoted
 from calm.files import Anchor, Assembly, Catalogue, Rigid
 from calm.files.components import FLEXIBLE_KINDS, KINDS, Component
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY, STEEL_DENSITY
 from calm.files.yaml_document import read_document
 from calm.quantities import rounded
 
-TOLERANCE = 0.05
+_TOLERANCE = 0.05
 """Share by which size, net force and drag may differ from those of a catalogue entry."""
 
 _COMMON_WORDS = 0.5  # share of the words of a name that an entry must have, two at least
@@ -32,7 +32,7 @@ _DIGITS = 2  # that a guessed weight keeps
 _LEAST = 100.0  # N of a guessed weight
 
 
-def hold(design: Design, environment: list[str] | None, output: Path) -> None:
+def secure_anchor(design: Design, environment: list[str] | None, output: Path) -> None:
     """Give the anchor a weight where the file gives none, or one that the line would lift.
 
     The shape of the line does not depend on it. The weight is what `calm check` asks for in this
@@ -74,7 +74,7 @@ def _pull(
     anchor.figures.pop("mass", None)
     anchor.figures["weight"] = _HOLDS
     try:
-        mooring = load(output, text=written(design, "", environment).text)
+        mooring = load(output, text=mooring_text(design, "", environment).text)
         assert isinstance(mooring, Mooring)
         anchored = mooring.solve().anchor
     except CalmError:
@@ -92,11 +92,11 @@ class CatalogueMatch:
     entry: str
 
 
-def match(design: Design) -> tuple[CatalogueMatch, ...]:
+def match_catalogue_entries(design: Design) -> tuple[CatalogueMatch, ...]:
     """Use catalogue entries for the components whose name and figures agree with one.
 
-    A component is of the same kind, shares half the words of its name, and is within `TOLERANCE` in
-    diameter, length, net force, normal drag and stiffness, as far as both give them.
+    A component is of the same kind, shares half the words of its name, and is within `_TOLERANCE`
+    in diameter, length, net force, normal drag and stiffness, as far as both give them.
     """
     catalogue = Catalogue.load()
     entries = {
@@ -145,7 +145,7 @@ def _weighs_alike(one: Component, other: Component) -> bool:
     if not isinstance(other, Rigid):
         return False
     a, b = one.net_buoyancy, other.net_buoyancy
-    return abs(a - b) <= TOLERANCE * max(abs(a), abs(b))
+    return abs(a - b) <= _TOLERANCE * max(abs(a), abs(b))
 
 
 def _agree(one: Component, other: Component) -> bool:
@@ -157,7 +157,7 @@ def _agree(one: Component, other: Component) -> bool:
         if values[0] is not None and values[1] is not None:
             pairs.append((values[0], values[1]))
     pairs.append((_drag(one), _drag(other)))
-    return all(abs(a - b) <= TOLERANCE * max(abs(a), abs(b)) for a, b in pairs)
+    return all(abs(a - b) <= _TOLERANCE * max(abs(a), abs(b)) for a, b in pairs)
 
 
 def _drag(component: Component) -> float:

@@ -1,4 +1,4 @@
-"""From a file of another program to a mooring file: found, read, written, and read back."""
+"""Import a file of another program: its format is found, it is read, written, and read back."""
 
 from __future__ import annotations
 
@@ -11,16 +11,23 @@ import numpy as np
 from calm.errors import InputError, Problem, UsageError
 from calm.exchange.cable_reader import is_cbl, read_cbl
 from calm.exchange.design import MOST_PIECES, CurrentRecord, Design, Remark, refused
-from calm.exchange.design_writer import written
-from calm.exchange.import_completion import CatalogueMatch, environment_lines, hold, match
+from calm.exchange.design_writer import mooring_text
+from calm.exchange.import_completion import (
+    CatalogueMatch,
+    environment_lines,
+    match_catalogue_entries,
+    secure_anchor,
+)
 from calm.exchange.list_headings import is_table
-from calm.exchange.list_reader import read_table
+from calm.exchange.list_reader import read_list
 from calm.exchange.mat_file import is_mat
 from calm.exchange.mdd_reader import read_mdd
 from calm.exchange.moords_reader import is_moords, read_moords
 from calm.exchange.moordyn_reader import is_moordyn, read_moordyn
 from calm.files import read_mooring
 from calm.version import __version__
+
+_HEAD = 70_000  # bytes from which a format is recognised
 
 
 @dataclass(frozen=True)
@@ -47,32 +54,27 @@ class ImportFormat:
 
     name: str
     program: str
-    recognises: Callable[[Path, bytes], bool]
+    recognises: Callable[[bytes], bool]
     read: Callable[[Path, ImportOptions], Design]
 
 
 FORMATS = (
     ImportFormat(
-        "mdd", "Mooring Design & Dynamics", lambda path, content: is_mat(content),
-        lambda path, options: read_mdd(path),
+        "mdd", "Mooring Design & Dynamics", is_mat, lambda path, options: read_mdd(path)
     ),
     ImportFormat(
-        "cbl", "WHOI Cable", lambda path, content: is_cbl(content),
+        "cbl", "WHOI Cable", is_cbl,
         lambda path, options: read_cbl(
             path, options.defines, allow_include=options.allow_include
         ),
     ),
     ImportFormat(
-        "moordyn", "MoorDyn or MoorPy", lambda path, content: is_moordyn(content),
-        lambda path, options: read_moordyn(path),
+        "moordyn", "MoorDyn or MoorPy", is_moordyn, lambda path, options: read_moordyn(path)
     ),
+    ImportFormat("moords", "moords", is_moords, lambda path, options: read_moords(path)),
     ImportFormat(
-        "moords", "moords", lambda path, content: is_moords(content),
-        lambda path, options: read_moords(path),
-    ),
-    ImportFormat(
-        "table", "a list in CSV or a spreadsheet", lambda path, content: is_table(content),
-        lambda path, options: read_table(path, options.columns, options.elements),
+        "table", "a list in CSV or a spreadsheet", is_table,
+        lambda path, options: read_list(path, options.columns, options.elements),
     ),
 )  # fmt: skip
 
@@ -98,9 +100,6 @@ class Imported:
     dropped: tuple[Remark, ...]
     matched: tuple[CatalogueMatch, ...]
     record: CurrentRecord | None
-
-
-_HEAD = 70_000  # bytes from which a format is recognised
 
 
 def import_file(
@@ -129,7 +128,7 @@ def import_file(
         There is no such format.
     """
     options = options or ImportOptions()
-    chosen = format_of(path, format, listed=options.elements is not None)
+    chosen = _format_of(path, format, listed=options.elements is not None)
     if options.elements is not None and chosen.name != "table":
         raise refused(path, f"is of {chosen.program}; --elements is for lists")
     design = chosen.read(path, options)
@@ -147,9 +146,9 @@ def import_file(
     elif design.water is None and design.tow is None:
         message = "has no environment; give one: --environment FILE (depth, current, density)"
         raise refused(path, message)
-    matched = match(design) if match_catalogue else ()
-    hold(design, lines, output)
-    page = written(design, path.name, lines, __version__)
+    matched = match_catalogue_entries(design) if match_catalogue else ()
+    secure_anchor(design, lines, output)
+    page = mooring_text(design, path.name, lines, __version__)
     _check(path, output, page.text)
     return Imported(
         path, chosen.name, page.text, tuple(page.guessed + design.guessed),
@@ -157,7 +156,7 @@ def import_file(
     )  # fmt: skip
 
 
-def format_of(path: Path, name: str | None, *, listed: bool = False) -> ImportFormat:
+def _format_of(path: Path, name: str | None, *, listed: bool = False) -> ImportFormat:
     """Return the format of a file: as named, or by its content.
 
     Parameters
@@ -183,7 +182,7 @@ def format_of(path: Path, name: str | None, *, listed: bool = False) -> ImportFo
     except OSError as error:
         raise refused(path, f"cannot be read: {error.strerror}") from None
     for each in FORMATS:
-        if each.recognises(path, content) or (listed and each is FORMATS[-1]):
+        if each.recognises(content) or (listed and each is FORMATS[-1]):
             return each
     programs = ", ".join(f"{each.name} ({each.program})" for each in FORMATS)
     raise refused(path, f"is not a file of a program that CALM reads: {programs}")

@@ -1,8 +1,7 @@
-"""Which column of a list holds what, by its heading in English or French."""
+"""Read the cells of a list, and tell what its columns hold by headings in English or French."""
 
 from __future__ import annotations
 
-import csv
 import io
 import re
 import unicodedata
@@ -11,9 +10,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from calm.exchange.design import refused
-from calm.files.mistakes import unknown
-from calm.files.yaml_document import read_content
+from calm.records.delimited import cells_in
+from calm.suggestions import unknown
 from calm.units import KILOGRAM_FORCE
+from calm.whole_file import read_content
 
 COLUMNS = (
     "name", "label", "kind", "role", "length", "diameter", "width", "mass", "buoyancy", "weight",
@@ -63,6 +63,17 @@ _MASSES = {"kg", "g", "lb", "lbs", "t"}
 _FORCES = {"buoyancy", "weight", "stiffness", "breaking_load"}
 _SEARCHED = 60  # rows in which the headings stand
 _MEASURES = {"length", "buoyancy", "weight", "mass"}
+_SPREADSHEETS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1")  # xlsx, xls
+_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
+_LARGEST = 20_000_000
+_MOST_ROWS, _MOST_COLUMNS = 20_000, 500
+SheetRows = list[list[str]]
+"""Cells as text, up to the last that is not empty."""
+
+_NUMBER = re.compile(r"[-+−]?\s*(?:\d{1,3}(?:[ \u00a0]\d{3})+|\d+)?(?:[.,]\d+)?(?:[eE][-+]?\d+)?")
+_NOTHING = {
+    "", "-", "–", "—", "/", "*", "**", "n/a", "na", "nan", "none", "?", "nil", "x", "sans", "null",
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -165,11 +176,11 @@ def _columns(row: list[str], given: Mapping[str, str]) -> dict[str, ListColumn]:
             if re.search(pattern, cell):
                 taken.add(i)
                 found[what] = _column(what, i, row[i])
-    _settle(found)
+    _resolve(found)
     return found
 
 
-def _settle(found: dict[str, ListColumn]) -> None:
+def _resolve(found: dict[str, ListColumn]) -> None:
     """Take a height for a missing length, and a weight beside a buoyancy as that in air."""
     if "length" not in found and "height" in found and _plain(found["height"].heading) == "height":
         found["length"] = found.pop("height")
@@ -244,23 +255,14 @@ def _plain(text: str, keep: str = "") -> str:
     )
 
 
-_SPREADSHEETS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1")  # xlsx, xls
-_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
-_LARGEST = 20_000_000
-_MOST_ROWS, _MOST_COLUMNS = 20_000, 500
-
-SheetRows = list[list[str]]
-"""Cells as text, up to the last that is not empty."""
-
-
-def is_spreadsheet(content: bytes) -> bool:
+def _is_spreadsheet(content: bytes) -> bool:
     """Return whether a file is an Excel workbook, by its first bytes."""
     return content.startswith(_SPREADSHEETS)
 
 
 def is_table(content: bytes) -> bool:
     """Return whether a file is a workbook, or text whose lines have the same separator."""
-    if is_spreadsheet(content):
+    if _is_spreadsheet(content):
         return True
     if content.startswith(_UTF_16):
         content = content[: len(content) // 2 * 2].decode("utf-16", "replace").encode()
@@ -280,8 +282,8 @@ def read_sheets(path: Path) -> dict[str, SheetRows]:
         It cannot be read.
     """
     content = read_content(path, largest=_LARGEST)
-    workbook = is_spreadsheet(content)
-    sheets = _workbook(path, content) if workbook else {"": _csv(path, content)}
+    workbook = _is_spreadsheet(content)
+    sheets = _workbook(path, content) if workbook else {"": cells_in(_text(path, content))}
     for rows in sheets.values():
         if len(rows) > _MOST_ROWS or any(len(row) > _MOST_COLUMNS for row in rows):
             raise refused(path, f"has more than {_MOST_ROWS} rows or {_MOST_COLUMNS} columns")
@@ -298,17 +300,6 @@ def _cleaned(rows: SheetRows) -> SheetRows:
         if cells and not cells[0].startswith("#"):
             cleaned.append(cells)
     return cleaned
-
-
-def _csv(path: Path, content: bytes) -> SheetRows:
-    lines = [line for line in _text(path, content).splitlines() if line.strip()]
-    plain = [line for line in lines if not line.startswith("#")]
-    # the sign that most lines have; commas may be decimal ones beside the others
-    delimiter = max("\t;,", key=lambda sign: sum(sign in line for line in plain[:200]))
-    try:
-        return list(csv.reader(io.StringIO("\n".join(plain)), delimiter=delimiter))
-    except csv.Error as error:
-        raise refused(path, f"is not a table: {error}") from None
 
 
 def _text(path: Path, content: bytes) -> str:
@@ -342,12 +333,6 @@ def _workbook(path: Path, content: bytes) -> dict[str, SheetRows]:
 
 def _shown(cell: object) -> str:
     return f"{cell:.12g}" if isinstance(cell, float) else str(cell)
-
-
-_NUMBER = re.compile(r"[-+−]?\s*(?:\d{1,3}(?:[ \u00a0]\d{3})+|\d+)?(?:[.,]\d+)?(?:[eE][-+]?\d+)?")
-_NOTHING = {
-    "", "-", "–", "—", "/", "*", "**", "n/a", "na", "nan", "none", "?", "nil", "x", "sans", "null",
-}  # fmt: skip
 
 
 def number(cell: str) -> tuple[float | None, str]:

@@ -1,4 +1,4 @@
-"""A list of pieces as a design."""
+"""Read a list of pieces as a design."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from calm.exchange.design import (
     Remark,
     refused,
 )
-from calm.exchange.element_library import Library, complete, is_library, key_of, read_library
+from calm.exchange.element_library import Library, complete_rows, is_library, key_of, read_library
 from calm.exchange.list_headings import (
     ListHeadings,
     SheetRows,
@@ -42,7 +42,7 @@ _WATER = ("z", "U", "V", "W", "rho")  # headings of a sheet of Mooring Design & 
 _NAMES = 3  # at least, in a list of names alone
 
 
-def read_table(path: Path, columns: Mapping[str, str], elements: Path | None = None) -> Design:
+def read_list(path: Path, columns: Mapping[str, str], elements: Path | None = None) -> Design:
     """Read a CSV file or a workbook.
 
     Parameters
@@ -81,7 +81,7 @@ def read_table(path: Path, columns: Mapping[str, str], elements: Path | None = N
     else:
         rows = _names(sheets, design, path, library)
     if elements is not None:
-        complete(rows, library, elements.name)
+        complete_rows(rows, library, elements.name)
     count_lines(rows, headings.columns if headings else {})
     if sum(row.count for row in rows) > MOST_PIECES:
         raise refused(path, f"has more than {MOST_PIECES} pieces")

@@ -1,4 +1,4 @@
-"""The rows of a list in SI, each with how it was interpreted."""
+"""Read the rows of a list in SI, each with how it was interpreted, and make components of them."""
 
 from __future__ import annotations
 
@@ -21,6 +21,11 @@ _ENOUGH = {"length", "buoyancy", "weight"}  # one of them makes a piece
 _MOST = 1000  # of one row's count
 _FULL = 5.0  # times its diameter: a metre of line shows no larger area
 _SPREAD = ("buoyancy", "mass", "area", "drag_area", "tangential_area")  # along a line
+_USUAL = {"cable": 1.3, "chain": 2.75, "sphere": 0.5, "cylinder": 1.2}
+_COEFFICIENT = {"cable": "cn", "chain": "cn", "sphere": "cx", "cylinder": "cn"}
+_ROLES = ("float", "instrument", "release", "connector")
+_ROUND = 1.5  # times its diameter: a float no longer is a sphere
+_HALF_DENSITY = 0.5 * REFERENCE_DENSITY
 
 
 @dataclass(eq=False)
@@ -212,13 +217,6 @@ def _same_for_all(lines: list[ListRow], what: str) -> bool:
         if abs(length - row.figures["length"]) > 0.05 * length and value:
             return abs(value - row.figures[what]) < 0.01 * abs(value)
     return False
-
-
-_USUAL = {"cable": 1.3, "chain": 2.75, "sphere": 0.5, "cylinder": 1.2}
-_COEFFICIENT = {"cable": "cn", "chain": "cn", "sphere": "cx", "cylinder": "cn"}
-_ROLES = ("float", "instrument", "release", "connector")
-_ROUND = 1.5  # times its diameter: a float no longer is a sphere
-_HALF_DENSITY = 0.5 * REFERENCE_DENSITY
 
 
 def component_of(row: ListRow, problems: list[str], *, anchor: bool) -> ImportedComponent:

@@ -1,7 +1,7 @@
-"""The variables of a `.mat` file, whatever program and version wrote it.
+"""Read the variables of a `.mat` file, whatever program and version wrote it.
 
 Nothing in such a file is executed or unpickled: MATLAB 4 and 5 are read by scipy, HDF5 (MATLAB 7.3
-and Octave) by h5py, Octave's text, compressed or not, by a reader of this folder.
+and Octave) by h5py, Octave's text, compressed or not, by the reader below.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.exchange.design import refused
-from calm.files.yaml_document import read_content
+from calm.whole_file import read_content
 
 LARGEST = 200_000_000
 """Bytes of a file."""
@@ -25,6 +25,17 @@ LARGEST = 200_000_000
 _GZIP = b"\x1f\x8b"
 _OCTAVE_BINARY = b"Octave-1-"
 _HEAD = 70_000  # bytes by which a compressed file is recognised
+_CELL = "<cell-element>"
+_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+_TEXTS = ("char", "string", "sq_string")
+_DEEPEST = 4  # cells in cells
+MatValue: TypeAlias = "NDArray[Any] | str | list[MatValue]"
+"""A variable: numbers or characters, a text, or the elements of a cell array."""
+
+_MOST = 20_000_000
+"""Most elements of a variable."""
+
+RealArray = NDArray[np.float64]
 
 
 def read_variables(path: Path, wanted: Collection[str]) -> dict[str, MatValue]:
@@ -41,11 +52,11 @@ def read_variables(path: Path, wanted: Collection[str]) -> dict[str, MatValue]:
     if content.startswith(_OCTAVE_BINARY):
         raise refused(path, "is in Octave's binary format; save it there with -v7, -hdf5 or -text")
     try:
-        if is_octave_text(content):
+        if _is_octave_text(content):
             text = content.decode("utf-8", "replace")
             found = read_octave_text(text)
-        elif is_hdf5(content):
-            found = read_hdf5(content, wanted)
+        elif _is_hdf5(content):
+            found = _read_hdf5(content, wanted)
         else:
             found = _matlab(content, wanted)
     except MemoryError:
@@ -61,9 +72,9 @@ def read_variables(path: Path, wanted: Collection[str]) -> dict[str, MatValue]:
 def is_mat(content: bytes) -> bool:
     """Return whether a file looks like one of MATLAB or Octave, by its first bytes."""
     content = _inflated(content, _HEAD)
-    if is_octave_text(content) or content.startswith((b"MATLAB 5.0", _OCTAVE_BINARY)):
+    if _is_octave_text(content) or content.startswith((b"MATLAB 5.0", _OCTAVE_BINARY)):
         return True
-    return is_hdf5(content) or _is_version_4(content)
+    return _is_hdf5(content) or _is_version_4(content)
 
 
 def _inflated(content: bytes, most: int) -> bytes:
@@ -89,16 +100,13 @@ def _is_version_4(content: bytes) -> bool:
 def _matlab(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
     from scipy.io import loadmat, whosmat
 
-    names = [name for name, shape, _ in whosmat(io.BytesIO(content)) if fits(name, shape)]
+    names = [name for name, shape, _ in whosmat(io.BytesIO(content)) if _fits(name, shape)]
     chosen = [name for name in names if name in wanted]
     found = loadmat(io.BytesIO(content), variable_names=chosen, struct_as_record=True)
     return {name: found[name] for name in chosen if name in found}
 
 
-_CELL = "<cell-element>"
-
-
-def is_octave_text(content: bytes) -> bool:
+def _is_octave_text(content: bytes) -> bool:
     """Return whether a file begins as Octave writes its text files."""
     start = content[:4096]
     return b"\0" not in start and start.lstrip().startswith(b"#") and b"# name:" in content[:65536]
@@ -168,7 +176,7 @@ def _value(name: str, kind: str, header: dict[str, str], rows: list[str]) -> Mat
     except ValueError:
         return None  # a structure, or complex numbers: none of those that matter here
     if kind.endswith("range") and len(numbers) == 3:
-        return spread(name, *numbers)
+        return _spread(name, *numbers)
     if "scalar" in kind or kind == "bool":
         return np.array(numbers[:1]).reshape(1, -1)
     if "ndims" in header:
@@ -187,7 +195,7 @@ def _value(name: str, kind: str, header: dict[str, str], rows: list[str]) -> Mat
     return _shaped(name, array, [size or 0 for size in stated], order="C")
 
 
-def spread(name: str, first: float, last: float, step: float) -> MatValue:
+def _spread(name: str, first: float, last: float, step: float) -> MatValue:
     """Return the numbers of a range, the last included where a step ends at it.
 
     Parameters
@@ -202,7 +210,7 @@ def spread(name: str, first: float, last: float, step: float) -> MatValue:
         The range does not end.
     """
     count = (last - first) / step * (1 + 1e-12) + 1 if step else 0.0
-    if not 0.0 <= count <= MOST:
+    if not 0.0 <= count <= _MOST:
         raise ValueError(f"the range `{name}` has {count:g} numbers")
     return first + step * np.arange(int(count))
 
@@ -229,17 +237,12 @@ def _texts(rows: list[str]) -> list[MatValue]:
     return texts
 
 
-_SIGNATURE = b"\x89HDF\r\n\x1a\n"
-_TEXTS = ("char", "string", "sq_string")
-_DEEPEST = 4  # cells in cells
-
-
-def is_hdf5(content: bytes) -> bool:
+def _is_hdf5(content: bytes) -> bool:
     """Return whether a file is HDF5, by its first bytes or those after MATLAB's header."""
     return _SIGNATURE in (content[:8], content[512:520])
 
 
-def read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
+def _read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
     """Return the wanted variables that a file has; links to other files are not followed.
 
     Raises
@@ -287,12 +290,12 @@ def _values(file: Any, node: Any, kind: str, depth: int) -> MatValue:
         raise ValueError("a variable refers to another file")
     if node.attrs.get("MATLAB_empty", 0) or node.attrs.get("OCTAVE_EMPTY_MATRIX", 0):
         return np.zeros((0, 0))
-    fits(node.name, node.shape)
+    _fits(node.name, node.shape)
     value = node[()]
     if node.dtype == h5py.ref_dtype:
         return [_variable(file, file[each], depth + 1) for each in np.asarray(value).ravel()]
     if node.dtype.names == ("base", "limit", "increment"):
-        return spread(node.name, *(float(value[name]) for name in node.dtype.names))
+        return _spread(node.name, *(float(value[name]) for name in node.dtype.names))
     array = np.asarray(value).T
     if kind in _TEXTS:
         rows = np.atleast_2d(array)
@@ -309,15 +312,6 @@ def _utf_8(row: np.ndarray[Any, np.dtype[Any]]) -> str:
 
 def _text_of(value: object) -> str:
     return value.decode("ascii", "replace") if isinstance(value, bytes) else str(value)
-
-
-MatValue: TypeAlias = "NDArray[Any] | str | list[MatValue]"
-"""A variable: numbers or characters, a text, or the elements of a cell array."""
-
-MOST = 20_000_000
-"""Most elements of a variable."""
-
-RealArray = NDArray[np.float64]
 
 
 def numbers(value: MatValue | None) -> RealArray:
@@ -337,7 +331,7 @@ def numbers(value: MatValue | None) -> RealArray:
     raise ValueError("holds no real numbers")
 
 
-def fits(name: str, shape: tuple[int, ...]) -> bool:
+def _fits(name: str, shape: tuple[int, ...]) -> bool:
     """Return whether a variable of a shape may be read at all.
 
     Raises
@@ -345,7 +339,7 @@ def fits(name: str, shape: tuple[int, ...]) -> bool:
     ValueError
         It may not.
     """
-    if math.prod(shape) > MOST:
+    if math.prod(shape) > _MOST:
         raise ValueError(f"`{name}` has {math.prod(shape)} elements")
     return True
 

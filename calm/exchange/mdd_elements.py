@@ -1,4 +1,4 @@
-"""Elements of Mooring Design & Dynamics as components of CALM, with that program's drag."""
+"""Make components of the elements of Mooring Design & Dynamics, with that program's drag."""
 
 from __future__ import annotations
 
@@ -19,6 +19,10 @@ _SLIGHT = 1e-6  # by which a hull takes more than its net buoyancy
 _FLAT = 1e-3  # m: height of a float that the file gives none
 _SOFT = 1e10  # Pa: the modulus of a rope is below, of a wire above
 _HARD = re.compile(r"\bwire|\bchain|\bsteel", re.I)
+_LARGEST = 1e9  # m, kg: of no piece
+MODULI = (1.38e11, 3.45e8, 8.0e8, 3.45e8, 6.9e8, 6.9e10, 7.6e10, 1.0e11)
+"""Of the materials that the program numbers from 1: steel, nylon, Dacron, polypropylene,
+polyethylene, Kevlar, aluminium, Dyneema [Pa]."""
 
 
 def component_of(element: MddElement) -> ImportedComponent:
@@ -155,13 +159,6 @@ class MddElement:
         return self.width or self.diameter
 
 
-_LARGEST = 1e9  # m, kg: of no piece
-
-MODULI = (1.38e11, 3.45e8, 8.0e8, 3.45e8, 6.9e8, 6.9e10, 7.6e10, 1.0e11)
-"""Of the materials that the program numbers from 1: steel, nylon, Dacron, polypropylene,
-polyethylene, Kevlar, aluminium, Dyneema [Pa]."""
-
-
 def read_elements(
     variables: Mapping[str, MatValue], suffix: str
 ) -> tuple[list[MddElement], list[str]]:
@@ -222,14 +219,19 @@ def mistakes_of(element: MddElement, where: str) -> list[str]:
     return wrong
 
 
-def _matrix(variables: Mapping[str, MatValue], name: str, problems: list[str]) -> RealArray:
-    """``H``: four rows, one column an element; the flag is 0 where a row is missing."""
+def _reals(variables: Mapping[str, MatValue], name: str, problems: list[str]) -> RealArray | None:
+    """Return a variable as numbers; None, and a problem, where it holds something else."""
     try:
-        size = numbers(variables.get(name))
+        return numbers(variables.get(name))
     except ValueError as error:
         problems.append(f"`{name}` {error}")
-        return np.zeros((4, 0))
-    if size.size == 0:
+        return None
+
+
+def _matrix(variables: Mapping[str, MatValue], name: str, problems: list[str]) -> RealArray:
+    """Return ``H``: four rows, one column an element; the flag is 0 where a row is missing."""
+    size = _reals(variables, name, problems)
+    if size is None or size.size == 0:
         return np.zeros((4, 0))
     size = np.atleast_2d(size)
     if size.ndim == 2 and size.shape[0] not in (3, 4) and size.shape[1] in (3, 4):
@@ -244,22 +246,17 @@ def _matrix(variables: Mapping[str, MatValue], name: str, problems: list[str]) -
 def _row(
     variables: Mapping[str, MatValue], name: str, count: int, problems: list[str]
 ) -> RealArray:
-    try:
-        row = numbers(variables.get(name)).ravel()
-    except ValueError as error:
-        problems.append(f"`{name}` {error}")
-        return np.zeros(count)
-    if row.size != count:
+    row = _reals(variables, name, problems)
+    if row is not None and row.size == count:
+        return row.ravel()
+    if row is not None:
         problems.append(f"`{name}` has {row.size} values for {count} elements")
-        return np.zeros(count)
-    return row
+    return np.zeros(count)
 
 
 def _optional(variables: Mapping[str, MatValue], name: str) -> RealArray:
-    try:
-        return numbers(variables.get(name)).ravel()
-    except ValueError:
-        return np.zeros(0)
+    row = _reals(variables, name, [])
+    return np.zeros(0) if row is None else row.ravel()
 
 
 def _names(variables: Mapping[str, MatValue], name: str, count: int) -> list[str]:

@@ -1,4 +1,4 @@
-"""A `.mat` file of Mooring Design & Dynamics as a design."""
+"""Read a `.mat` file of Mooring Design & Dynamics as a design."""
 
 from __future__ import annotations
 
@@ -40,6 +40,8 @@ _NOTE = (
     "cn and cx are its Cd. In that program drag along a line or cylinder is negligible, so ct is "
     "0. See `calm docs import-mdd`."
 )
+_MATLAB_EPOCH = 719529.0  # datenum of 1 January 1970
+_EARLIEST, _LATEST = 500_000.0, 1_000_000.0  # datenums that are dates of this age
 
 
 def read_mdd(path: Path) -> Design:
@@ -62,7 +64,7 @@ def read_mdd(path: Path) -> Design:
         raise refused(path, "holds no mooring (`H`) and no tow (`Ht`) of that program")
     towed = sized[0] == "Ht"
     elements, problems = read_elements(variables, "t" if towed else "")
-    hung, more = read_elements(variables, "CO")
+    clamped, more = read_elements(variables, "CO")
     if problems or more:
         raise refused(path, *problems, *more)
     guessed: list[Remark] = []
@@ -83,7 +85,7 @@ def read_mdd(path: Path) -> Design:
     if record is not None:
         design.notes.append("The current is the first profile of the record beside this file.")
     (_lay_tow if towed else _lay_mooring)(design, elements, variables, path)
-    _clamp(design, hung, variables, towed, path)
+    _clamp(design, clamped, variables, towed, path)
     return design
 
 
@@ -133,21 +135,21 @@ def _item(element: MddElement) -> ImportedPiece:
 
 def _clamp(
     design: Design,
-    hung: list[MddElement],
+    clamped: list[MddElement],
     variables: Mapping[str, MatValue],
     towed: bool,
     path: Path,
 ) -> None:
     """Hang what is clamped on: by element and share of its length, counted from its lower end."""
-    if not hung:
+    if not clamped:
         return
     host, share, height = (_flat(variables.get(name, [])) for name in ("Jobj", "Pobj", "ZCO"))
-    by_share = len(host) == len(share) == len(hung)
-    by_height = len(height) == len(hung)
+    by_share = len(host) == len(share) == len(clamped)
+    by_height = len(height) == len(clamped)
     if not by_share and not by_height:
         counts = f"`Jobj` {len(host)}, `Pobj` {len(share)}, `ZCO` {len(height)}"
-        raise refused(path, f"{len(hung)} clamps without their places: {counts}")
-    for i, element in enumerate(hung):
+        raise refused(path, f"{len(clamped)} clamps without their places: {counts}")
+    for i, element in enumerate(clamped):
         above = _by_height(design.items, height[i], towed) if by_height else None
         if by_share:
             place = _by_share(design.items, host[i], share[i], towed)
@@ -193,10 +195,6 @@ def _by_height(items: list[ImportedPiece], height: float, towed: bool) -> tuple[
 
 def _agree(one: tuple[int, float], other: tuple[int, float]) -> bool:
     return one[0] == other[0] and abs(one[1] - other[1]) <= _APART + _APART * abs(one[1])
-
-
-_MATLAB_EPOCH = 719529.0  # datenum of 1 January 1970
-_EARLIEST, _LATEST = 500_000.0, 1_000_000.0  # datenums that are dates of this age
 
 
 def read_water(

@@ -1,4 +1,4 @@
-"""Designs that moords exports: a row each element, from the anchor up."""
+"""Read designs that moords exports: a row each element, from the anchor up."""
 
 from __future__ import annotations
 
@@ -7,13 +7,7 @@ import io
 import math
 from pathlib import Path
 
-from calm.exchange.design import (
-    MOST_PIECES,
-    Design,
-    ImportedComponent,
-    ImportedPiece,
-    refused,
-)
+from calm.exchange.design import MOST_PIECES, Design, ImportedComponent, ImportedPiece, refused
 from calm.exchange.mdd_elements import (
     MODULI,
     MddElement,
@@ -22,7 +16,7 @@ from calm.exchange.mdd_elements import (
     mistakes_of,
     rigid,
 )
-from calm.files.yaml_document import read_text
+from calm.whole_file import read_text
 
 _MARKS = {"name", "length", "buoyancy", "bool_line", "bool_clampon", "height_along_inline"}
 _SLIGHT = 1e-6  # m by which a clamp may stand off its piece

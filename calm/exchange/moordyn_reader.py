@@ -1,4 +1,4 @@
-"""A single line of a MoorDyn or MoorPy file as a design."""
+"""Read a single line of a MoorDyn or MoorPy file as a design."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from calm.exchange.design import (
 )
 from calm.exchange.part_names import is_chain
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
-from calm.files.yaml_document import read_text
+from calm.whole_file import read_text
 
 _FIXED, _FREE = ("fix", "anchor"), ("free", "connect", "point")
 _CURRENTS = "current_profile.txt"
@@ -28,6 +28,26 @@ _NEAR, _NEAR_AT_LEAST = 0.05, 2.0
 """Share of the depth, and metres: an upper end so near the surface hangs under a float."""
 
 _NOTE = "cn and ct are its Cd and CdAx, defined alike. See `calm docs import-moordyn`."
+
+_SECTIONS = (
+    ("types", r"line (types|dictionary)"),
+    ("points", r"(node|connection|point) properties|^points?( list)?$|connections"),
+    ("lines", r"line properties|^lines?( list)?$"),
+    ("bodies", r"bod(y|ies)"),
+    ("rods", r"^rods?\b(?!.*types)"),
+    ("rod types", r"rod (types|dictionary)"),
+    ("options", r"options"),
+    ("outputs", r"outputs?"),
+)
+_COLUMNS = {
+    "typename": "name", "name": "name", "linetype": "type", "type": "attachment",
+    "attachment": "attachment", "diam": "diameter", "mass/m": "mass", "massden": "mass",
+    "massdeninair": "mass", "massperlength": "mass", "mass/length": "mass", "ea": "ea",
+    "cd": "cd", "cdn": "cd", "cdax": "cdt", "cdt": "cdt", "id": "id", "node": "id", "line": "id",
+    "x": "x", "y": "y", "z": "z", "m": "mass", "mass": "mass", "v": "volume", "volume": "volume",
+    "cda": "cda", "fx": "fx", "fy": "fy", "fz": "fz", "unstrlen": "length", "nodeanch": "a",
+    "nodefair": "b", "nodea": "a", "nodeb": "b", "attacha": "a", "attachb": "b",
+}  # fmt: skip
 
 
 def read_moordyn(path: Path) -> Design:
@@ -38,7 +58,7 @@ def read_moordyn(path: Path) -> Design:
     InputError
         It cannot be read, or holds a platform, a body, a rod or several lines.
     """
-    sections = read_sections(path)
+    sections = _read_sections(path)
     for name in ("bodies", "rods"):
         for row in sections.rows.get(name, []):
             raise row.refuse(
@@ -50,14 +70,14 @@ def read_moordyn(path: Path) -> Design:
         raise refused(path, f"has {len(points)} points and {len(lines)} lines")
     if len(lines) > MOST_PIECES:
         raise refused(path, f"has {len(lines)} lines; more than {MOST_PIECES} are not read")
-    way = _way(points, lines, path)
+    legs = _from_the_anchor(points, lines, path)
     design = Design("MoorDyn", path.stem, [], _water(sections, points, path), notes=[_NOTE])
     assert design.water is not None
     gravity = design.water.gravity
     assert gravity is not None
     types = {row.words.get("name", ""): row for row in sections.rows.get("types", [])}
-    anchor, items = way[0][0], []
-    for point, line in way:
+    anchor, items = legs[0][0], []
+    for point, line in legs:
         if point is not anchor and (at_point := _point(point, design)) is not None:
             items.append(at_point)
         kind = types.get(line.words.get("type", ""))
@@ -67,14 +87,14 @@ def read_moordyn(path: Path) -> Design:
         if length <= 0.0:
             raise line.refuse("a line has no length")
         items.append(ImportedPiece(_cable(kind, gravity), length))
-    design.items = [_upper_end(_last(points, way), items, design), *items[::-1]]
+    design.items = [_upper_end(_last(points, legs), items, design), *items[::-1]]
     design.items.append(ImportedPiece(_anchor(anchor, design.water)))
     what = "damping, stiffness in bending, added mass"
     design.dropped.append(Remark("line types", what))
     return design
 
 
-def _way(
+def _from_the_anchor(
     points: dict[str, SectionRow], lines: list[SectionRow], path: Path
 ) -> list[tuple[SectionRow, SectionRow]]:
     """Return the lines in order from the anchor up, each with the point at its lower end."""
@@ -96,24 +116,24 @@ def _way(
     lower = points[ends[0]]
     if not _is(lower, _FIXED):
         raise lower.refuse("the lower end is not fixed: it is not an anchor")
-    way: list[tuple[SectionRow, SectionRow]] = []
+    legs: list[tuple[SectionRow, SectionRow]] = []
     here, left = ends[0], list(lines)
     while met := [each for each in left if here in _ends(each)]:
-        way.append((points[here], met[0]))
+        legs.append((points[here], met[0]))
         left.remove(met[0])
         a, b = _ends(met[0])
         here = b if here == a else a
     if left:
         raise left[0].refuse("lines that do not hang together; CALM has single lines")
-    return way
+    return legs
 
 
 def _ends(line: SectionRow) -> tuple[str, str]:
     return line.words["a"], line.words["b"]
 
 
-def _last(points: dict[str, SectionRow], way: list[tuple[SectionRow, SectionRow]]) -> SectionRow:
-    point, line = way[-1]
+def _last(points: dict[str, SectionRow], legs: list[tuple[SectionRow, SectionRow]]) -> SectionRow:
+    point, line = legs[-1]
     a, b = _ends(line)
     return points[b] if points[a] is point else points[a]
 
@@ -147,7 +167,7 @@ def _option(options: dict[str, str], *names: str, default: float) -> float:
 
 
 def _currents(path: Path) -> tuple[tuple[float, float, float, float], ...]:
-    from calm.files.yaml_document import read_text
+    from calm.whole_file import read_text
 
     rows = []
     for line in read_text(path).splitlines():
@@ -248,27 +268,6 @@ def _anchor(point: SectionRow, water: ImportedWater) -> ImportedComponent:
     return ImportedComponent("anchor", "anchor", {"length": height} if height > 1e-6 else {})
 
 
-_SECTIONS = (
-    ("types", r"line (types|dictionary)"),
-    ("points", r"(node|connection|point) properties|^points?( list)?$|connections"),
-    ("lines", r"line properties|^lines?( list)?$"),
-    ("bodies", r"bod(y|ies)"),
-    ("rods", r"^rods?\b(?!.*types)"),
-    ("rod types", r"rod (types|dictionary)"),
-    ("options", r"options"),
-    ("outputs", r"outputs?"),
-)
-_COLUMNS = {
-    "typename": "name", "name": "name", "linetype": "type", "type": "attachment",
-    "attachment": "attachment", "diam": "diameter", "mass/m": "mass", "massden": "mass",
-    "massdeninair": "mass", "massperlength": "mass", "mass/length": "mass", "ea": "ea",
-    "cd": "cd", "cdn": "cd", "cdax": "cdt", "cdt": "cdt", "id": "id", "node": "id", "line": "id",
-    "x": "x", "y": "y", "z": "z", "m": "mass", "mass": "mass", "v": "volume", "volume": "volume",
-    "cda": "cda", "fx": "fx", "fy": "fy", "fz": "fz", "unstrlen": "length", "nodeanch": "a",
-    "nodefair": "b", "nodea": "a", "nodeb": "b", "attacha": "a", "attachb": "b",
-}  # fmt: skip
-
-
 @dataclass(frozen=True)
 class SectionRow:
     """Hold a row of a table: its words by heading, and its place in the file."""
@@ -316,7 +315,7 @@ def is_moordyn(content: bytes) -> bool:
     return b"\0" not in content and {"types", "lines"} <= found
 
 
-def read_sections(path: Path) -> MoorDynSections:
+def _read_sections(path: Path) -> MoorDynSections:
     """Read a file.
 
     Raises

@@ -1,4 +1,4 @@
-"""A mooring as an input file of MoorDyn 2, its points where they stand in equilibrium."""
+"""Write a mooring as an input file of MoorDyn 2, its points where they stand in equilibrium."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from calm.exchange.exported_parts import (
     ExportedPart,
     PartLoad,
     PartPath,
-    kept,
+    unique_name,
 )
 
 CURRENTS = "current_profile.txt"
@@ -62,7 +62,7 @@ class _System:
         to : where its upper end stands
         """
         below = self.end_point("Free" if self.points else "Fixed")
-        chosen = kept(self.types, name, figures)
+        chosen = unique_name(self.types, name, figures)
         segments = _SEGMENTS if length > 1.0 else 1
         self.lines.append(
             f"{len(self.lines) + 1}  {chosen}  {below}  {below + 1}  {length:.9g}  {segments}  -"

@@ -1,4 +1,4 @@
-"""What the names of pieces say about them, in English and French."""
+"""Tell what the names of pieces say about them, in English and French, and make ids of them."""
 
 from __future__ import annotations
 
@@ -23,6 +23,9 @@ _LINE = re.compile(
     r"|\bline\b|c[âa]ble|cordage|jetstr|spectra|nilspin",
     re.I,
 )
+_LONGEST = 40
+_NO_IDS = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}  # other words in YAML
+_SIGNS = {'"': "in ", "″": "in ", "↑": " up ", "↓": " down ", "+": " ", "&": " and ", "µ": "u"}
 
 
 def is_release(name: str) -> bool:
@@ -68,12 +71,7 @@ def role_of(name: str, buoyancy: float, *, fastener: bool = False) -> str:
     return "connector" if fastener and buoyancy > -_HEAVY else "instrument"
 
 
-_LONGEST = 40
-_NO_IDS = {"null", "true", "false", "yes", "no", "on", "off", "y", "n"}  # other words in YAML
-_SIGNS = {'"': "in ", "″": "in ", "↑": " up ", "↓": " down ", "+": " ", "&": " and ", "µ": "u"}
-
-
-def kebab(name: str) -> str:
+def _kebab(name: str) -> str:
     """Return a name as an id: ``3/8" wire rope`` becomes ``3-8in-wire-rope``."""
     text = "".join(_SIGNS.get(sign, sign) for sign in name)
     text = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode().lower()
@@ -90,15 +88,15 @@ def ids_of(components: Iterable[ImportedComponent], taken: Iterable[str] = ()) -
     """
     components = list(components)
     ids: dict[int, str] = {}
-    said: dict[tuple[object, ...], str] = {}
+    known_ids: dict[tuple[object, ...], str] = {}
     known = {*taken, *(component.entry for component in components)}
     for component in components:
         if component.entry:
             ids[id(component)] = component.entry
             continue
-        says = component.says()
-        if says not in said:
-            base = kebab(component.name)
+        identity = component.identity()
+        if identity not in known_ids:
+            base = _kebab(component.name)
             if base in _NO_IDS or not any(sign.isalpha() for sign in base):
                 base = f"{component.kind}-{base}".rstrip("-")
             chosen, number = base, 1
@@ -106,6 +104,6 @@ def ids_of(components: Iterable[ImportedComponent], taken: Iterable[str] = ()) -
                 number += 1
                 chosen = f"{base}-v{number}"
             known.add(chosen)
-            said[says] = chosen
-        ids[id(component)] = said[says]
+            known_ids[identity] = chosen
+        ids[id(component)] = known_ids[identity]
     return ids

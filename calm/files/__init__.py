@@ -5,15 +5,7 @@ from calm.files.check_limits import Accept, Checks, SafetyFactors
 from calm.files.components import Anchor, Body, Cable, Chain, Component, Cylinder, Sphere
 from calm.files.environment import Environment, Fouling, Position, Wind
 from calm.files.flexible import Flexible
-from calm.files.mooring_file import (
-    Clamp,
-    LinePart,
-    MooringFile,
-    Piece,
-    Place,
-    Solver,
-    TowKeys,
-)
+from calm.files.mooring_file import Clamp, LinePart, MooringFile, Piece, Place, Solver, TowKeys
 from calm.files.reader import read_mooring
 from calm.files.rigid import Rigid
 from calm.files.schema import mooring_schema
@@ -24,8 +16,8 @@ from calm.files.strumming_keys import (
     Strumming,
     StrummingFactor,
 )
-from calm.files.tables import CurrentTable, DepthTable, SeaWater
 from calm.files.uncertainty import Spread, Uncertainty
+from calm.records.profile_tables import CurrentTable, DepthTable, SeaWater
 
 __all__ = [
     "Accept",

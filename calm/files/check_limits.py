@@ -1,4 +1,7 @@
-"""`checks:` of a mooring file: the limits of the design check, each with its default and source."""
+"""`checks:` of a mooring file: the limits of the design check, and the findings that it accepts.
+
+Each limit has its default and the source of that; each finding accepted has a reason.
+"""
 
 from __future__ import annotations
 
@@ -14,9 +17,9 @@ from pydantic.fields import FieldInfo
 
 from calm.errors import Problem
 from calm.files.fields import LENGTH, POSITIVE_LENGTH, Model, QuantityField, Text, quantity_of
-from calm.files.mistakes import shown, unknown
 from calm.files.rule_texts import ACCEPTABLE
 from calm.files.yaml_document import SourceMapping
+from calm.suggestions import shown, unknown
 
 _FACTOR = QuantityField("number", above=0)
 _SAFETY = QuantityField("number", at_least=1)

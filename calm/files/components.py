@@ -1,4 +1,9 @@
-"""The kinds of components that a catalogue, or `components:` of a mooring file, can define."""
+"""The kinds of components that a catalogue, or `components:` of a mooring file, can define.
+
+Some figures are alternatives: a body gives its drag as `kn` or as `drag_area` with `cd`; a net
+force is given, or follows from mass and volume. An override that gives one alternative drops the
+others; whatever it does not contradict stays.
+"""
 
 from __future__ import annotations
 

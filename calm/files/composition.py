@@ -1,4 +1,4 @@
-"""YAML text to nodes, by the events of PyYAML.
+"""YAML text to a tree of nodes, each with its place and span, by the events of PyYAML.
 
 libyaml, where PyYAML has it, is some thirty times as fast as the parser in Python. A file means the
 same with both: what they read differently, and what libyaml refuses, is read by the one in Python.

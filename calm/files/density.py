@@ -5,26 +5,24 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import Discriminator, Field, Tag, ValidationError
 
 from calm.errors import Problem
 from calm.files.definition import CATALOGUE_DENSITY, DENSITY
-from calm.files.fields import Model, QuantityField
-from calm.files.mistakes import about_quantity
-from calm.files.tables import (
+from calm.files.fields import Model, QuantityField, Text
+from calm.files.yaml_document import SourceMapping
+from calm.records.profile_tables import (
     SALINITY,
     TEMPERATURE,
     WATER_DENSITY,
     DepthTable,
+    Report,
     SeaWater,
-    TableKeys,
     read_profile,
     read_water,
-    report_at,
-    table_of,
 )
-from calm.files.yaml_document import SourceMapping
-from calm.units import QuantityError
+from calm.suggestions import about_quantity
+from calm.units import QuantityError, QuantityRange
 
 USUAL_DENSITY = {"water": CATALOGUE_DENSITY, "air": 1.225}
 """Where a file gives none [kg/m³]; that of air is the standard atmosphere's at sea level."""
@@ -40,15 +38,30 @@ def _table_or_constant(value: object) -> str:
     return "table" if isinstance(value, dict) else "constant"
 
 
+class TableKeys(Model):
+    """Columns, each a name and its unit, and rows of values."""
+
+    columns: tuple[Text, ...] = Field(
+        description="each a name and its unit: depth m, speed m/s, toward deg; or u m/s, v m/s, "
+        "w m/s",
+        examples=[["depth m", "speed m/s", "toward deg"]],
+    )
+    rows: tuple[tuple[Text | None, ...], ...] = Field(
+        description="values, top to bottom", examples=[[[0, 0.8, 90], [1100, 0.05, 60]]]
+    )
+
+
 class SeaWaterKeys(Model):
     """Temperature [°C] and practical salinity, each a constant or a table by depth."""
 
     temperature: Annotated[
-        Annotated[float, TEMPERATURE, Tag("constant")] | Annotated[TableKeys, Tag("table")],
+        Annotated[float, QuantityField(**vars(TEMPERATURE)), Tag("constant")]
+        | Annotated[TableKeys, Tag("table")],
         Discriminator(_table_or_constant),
     ] = Field(description="in situ, a constant or a table", examples=["10 degC"])
     salinity: Annotated[
-        Annotated[float, SALINITY, Tag("constant")] | Annotated[TableKeys, Tag("table")],
+        Annotated[float, QuantityField(**vars(SALINITY)), Tag("constant")]
+        | Annotated[TableKeys, Tag("table")],
         Discriminator(_table_or_constant),
     ] = Field(description="practical, a constant or a table", examples=[35])
 
@@ -62,7 +75,7 @@ Density = Annotated[
 """The value of `density:` as a person writes it."""
 
 
-_RANGES: Mapping[str, QuantityField] = {"water": WATER_DENSITY, "air": DENSITY}
+_RANGES: Mapping[str, QuantityRange] = {"water": WATER_DENSITY, "air": DENSITY}
 _FALL = 0.1
 """Water that gets lighter by more than this with depth turns over [kg/m³]."""
 
@@ -92,6 +105,19 @@ def read_density(
     temperature = _profile("temperature", given.temperature, section, problems)
     salinity = _profile("salinity", given.salinity, section, problems)
     return SeaWater(temperature, salinity) if temperature and salinity else None
+
+
+def table_of(value: object) -> TableKeys | None:
+    """The table that a value of a file is, None where it is none."""
+    try:
+        return TableKeys.model_validate(value)
+    except ValidationError:
+        return None
+
+
+def report_at(section: SourceMapping, *place: str) -> Report:
+    """Tells problems at places below a key of a section, or below a key under that."""
+    return lambda location, message: section.problem((*place, *location), message)
 
 
 def _falls(table: DepthTable) -> list[str]:

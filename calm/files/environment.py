@@ -11,24 +11,32 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from calm.errors import InputError, Problem
-from calm.files.current_terms import DEEPEST, Terms, too_fast
 from calm.files.definition import DENSITY
-from calm.files.density import USUAL_DENSITY, Density, check_density, read_density
+from calm.files.density import (
+    USUAL_DENSITY,
+    Density,
+    TableKeys,
+    check_density,
+    read_density,
+    report_at,
+    table_of,
+)
 from calm.files.fields import POSITIVE_LENGTH, Model, QuantityField, Text
-from calm.files.mistakes import shown, validate
-from calm.files.tables import (
+from calm.files.mistakes import validate
+from calm.files.yaml_document import SourceMapping
+from calm.records.profile_tables import (
+    DEEPEST,
     DIRECTION,
     CurrentTable,
     DepthTable,
     SeaWater,
-    TableKeys,
+    Terms,
     components,
     read_current,
-    report_at,
-    table_of,
+    too_fast,
 )
-from calm.files.times import TimeChoiceError
-from calm.files.yaml_document import SourceMapping
+from calm.records.times import TimeChoiceError
+from calm.suggestions import shown
 from calm.units import QuantityError
 
 _SPEED = QuantityField("speed", at_least=0)
@@ -117,7 +125,7 @@ class Wind(Model):
     speed: Annotated[float, _SPEED] = Field(
         description="of the wind, at the height of the float", examples=["12 m/s"]
     )
-    toward: Annotated[float, DIRECTION] = Field(
+    toward: Annotated[float, QuantityField(**vars(DIRECTION))] = Field(
         description="where it blows to, clockwise from north", examples=["90 deg"]
     )
     surface_drift: Annotated[float, QuantityField("number", at_least=0, at_most=0.1)] = Field(
@@ -140,7 +148,7 @@ class UniformCurrent(Model):
     """The same current at all depths [m/s, degrees]."""
 
     speed: Annotated[float, _SPEED] = Field(description="of the water", examples=["0.5 m/s"])
-    toward: Annotated[float, DIRECTION] = Field(
+    toward: Annotated[float, QuantityField(**vars(DIRECTION))] = Field(
         description="direction it flows or goes to, clockwise from north, e.g. 90 deg",
         examples=["90 deg"],
     )
@@ -366,7 +374,7 @@ def _current(
         maximum_speed=maximum_speed,
     )
     try:
-        from calm.files.current_file import read_current_file
+        from calm.records.current_file import read_current_file
 
         table, remarks = read_current_file(path, current.time, terms)
     except TimeChoiceError as error:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
@@ -17,7 +16,7 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
-from calm.units import DIMENSIONS, QuantityError, parse_quantity
+from calm.units import DIMENSIONS, QuantityRange
 
 
 class Model(BaseModel):
@@ -27,28 +26,8 @@ class Model(BaseModel):
 
 
 @dataclass(frozen=True)
-class QuantityField:
-    """Annotate a field that holds a quantity with its dimension and limits (SI, degrees)."""
-
-    dimension: str
-    usual_unit: str | None = None
-    above: float = -math.inf
-    at_least: float = -math.inf
-    at_most: float = math.inf
-
-    def read(self, text: object) -> float:
-        """Read the SI value of a text with a unit; QuantityError if it is none or out of limits."""
-        if text is None:
-            raise QuantityError("has no value")
-        value = parse_quantity(text, self.dimension, usual_unit=self.usual_unit)
-        unit = DIMENSIONS[self.dimension].unit
-        if value <= self.above:
-            raise QuantityError(f"must be more than {self.above:g} {unit}".rstrip())
-        if value < self.at_least:
-            raise QuantityError(f"must be at least {self.at_least:g} {unit}".rstrip())
-        if value > self.at_most:
-            raise QuantityError(f"must be at most {self.at_most:g} {unit}".rstrip())
-        return value
+class QuantityField(QuantityRange):
+    """Annotate a field that holds a quantity within limits."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(self.read)

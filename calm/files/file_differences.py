@@ -13,8 +13,8 @@ from calm.files.alignment import Alignment, Known, align, own_labels
 from calm.files.fields import QuantityField
 from calm.files.flexible import Flexible
 from calm.files.mooring_file import Clamp, MooringFile, Piece
-from calm.files.tables import CurrentTable, DepthTable
 from calm.quantities import bearing_of
+from calm.records.profile_tables import CurrentTable, DepthTable
 from calm.units import DIMENSIONS, with_unit
 
 Value = float | str | None

@@ -11,13 +11,14 @@ from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, define
 from calm.files.check_limits import LimitKey
 from calm.files.components import Cable, Component, contradicted
 from calm.files.definition import IN_AIR
-from calm.files.fields import LENGTH, POSITIVE_LENGTH, QuantityField
+from calm.files.fields import LENGTH, POSITIVE_LENGTH, QuantityField, quantity_of
 from calm.files.flexible import Flexible, strain_under
 from calm.files.logbook import EQUIPMENT_KEYS, LengthAt, check_serials, read_equipment
-from calm.files.mistakes import about_quantity, shown, unknown, validate
+from calm.files.mistakes import validate
 from calm.files.mooring_file import Clamp, Piece, Place, placed
 from calm.files.rigid import Rigid
 from calm.files.yaml_document import SourceMapping
+from calm.suggestions import about_quantity, shown, unknown
 from calm.units import QuantityError
 
 MOST_PIECES = 10_000
@@ -30,14 +31,11 @@ _ITEM_KEYS = EQUIPMENT_KEYS | {
 _ASSEMBLY_KEYS = frozenset({"use", "label", "count"})
 _CLAMP_KEYS = EQUIPMENT_KEYS | {"use", "label", "at"}
 _WORDS = {"at": "place", "top_depth": "top depth", "body_depth": "body depth"}
-
-
-_LIMITS = {
-    **dict.fromkeys(("breaking_load", "working_load", "opening_load", "grip"), "force"),
-    "depth_rating": "length",
-    **dict.fromkeys(("max_tilt", "warn_tilt"), "angle"),
-}
-"""Limits by which a component is judged, each looser the greater it is; their dimensions."""
+_LIMITS = (
+    *("breaking_load", "working_load", "opening_load", "grip"),
+    *("depth_rating", "max_tilt", "warn_tilt"),
+)
+"""Limits by which a component is judged, each looser the greater it is."""
 
 
 class LineReader:
@@ -306,11 +304,12 @@ class LineReader:
         component: Component,
     ) -> None:
         """Keep what the line lets a component bear beyond its own definition."""
-        for key, dimension in _LIMITS.items():
-            before, after = (getattr(each, key, None) for each in (definition, component))
-            if before is not None and after is not None and after > before:
+        for key in _LIMITS:
+            before, after = (getattr(each, key) for each in (definition, component))
+            quantity = quantity_of(type(definition).model_fields[key])
+            if quantity and before is not None and after is not None and after > before:
                 name, source = f"{key} of {self._label(item)}", f"the definition of {entry.id}"
-                self.looser.append(LimitKey(name, dimension, after, before, source))
+                self.looser.append(LimitKey(name, quantity.dimension, after, before, source))
 
     def _define(
         self, entry: CatalogueEntry, section: SourceMapping, *, also_allowed: Iterable[str] = ()

@@ -11,9 +11,10 @@ from calm.errors import Problem
 from calm.files.check_limits import Day
 from calm.files.environment import Position
 from calm.files.fields import POSITIVE_LENGTH, Model, QuantityField, Text
-from calm.files.mistakes import shown, unknown, validate
-from calm.files.times import TimeChoiceError, parse_time
+from calm.files.mistakes import validate
 from calm.files.yaml_document import SourceMapping
+from calm.records.times import TimeChoiceError, parse_time
+from calm.suggestions import shown, unknown
 
 
 def _moment(text: str) -> str:

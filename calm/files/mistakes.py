@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Mapping
 from typing import Any, Literal, TypeVar, get_args, get_origin
 
@@ -10,9 +9,8 @@ from pydantic import BaseModel, ValidationError
 
 from calm.errors import Problem
 from calm.files.yaml_document import Location, SourceMapping
+from calm.suggestions import about_quantity, nearest, not_among, shown, unknown
 from calm.units import QuantityError
-
-LONGEST_TEXT = 60
 
 M = TypeVar("M", bound=BaseModel)
 
@@ -35,47 +33,6 @@ def validate(
     except ValidationError as error:
         problems.extend(_explain(error, model, section, also_allowed))
         return None
-
-
-def unknown(what: str, text: str, known: Iterable[str]) -> str:
-    """Say that `what` does not exist, and what does: the nearest, or all when they are few."""
-    names = list(known)
-    near = nearest(text, names)
-    if near:
-        return f"{what}; did you mean `{near}`?"
-    if len(names) <= 12:
-        return f"{what}; allowed: {', '.join(sorted(names)) or 'none'}"
-    return what
-
-
-def not_among(name: str, text: str, allowed: Iterable[str], offer: str | None = None) -> str:
-    """Say that a value is not allowed; offer what is like it, else `offer`."""
-    choices = list(allowed)
-    meant = nearest(text, choices) or offer
-    message = f"`{name}: {text}` must be one of {', '.join(choices)}"
-    return f"{message}; did you mean `{name}: {meant}`?" if meant else message
-
-
-def nearest(text: str, known: Iterable[str]) -> str | None:
-    """Return the name most like a text, None when none is like it."""
-    found = difflib.get_close_matches(text[:LONGEST_TEXT], list(known), 1)
-    return found[0] if found else None
-
-
-def shown(value: object) -> str:
-    """Return an offending value as messages show it."""
-    text = value if isinstance(value, str) else "…" if isinstance(value, (dict, list)) else ""
-    text = " ".join(text.split())
-    return text if len(text) <= LONGEST_TEXT else text[: LONGEST_TEXT - 1] + "…"
-
-
-def about_quantity(name: str, value: object, error: QuantityError) -> str:
-    """Return the message of a quantity gone wrong, with the line corrected where that is known."""
-    text = f"`{name}: {shown(value)}`" if shown(value) else f"`{name}`"
-    message = f"{text} {error.complaint}"
-    if error.suggestion:
-        message += f"; did you mean `{name}: {shown(error.suggestion)}`?"
-    return message
 
 
 def _explain(

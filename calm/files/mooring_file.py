@@ -1,4 +1,7 @@
-"""A mooring file as read: the expanded line, its environment and settings, in SI and degrees."""
+"""A mooring file as read: the expanded line, its environment and settings, in SI and degrees.
+
+Every piece and clamp has its own place in the line, and a label that no other has.
+"""
 
 from __future__ import annotations
 

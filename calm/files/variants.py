@@ -10,8 +10,9 @@ from typing import Any
 from calm.errors import InputError, Problem
 from calm.files.environment import read_environment
 from calm.files.fields import Model, Text
-from calm.files.mistakes import unknown, validate
+from calm.files.mistakes import validate
 from calm.files.yaml_document import SourceMapping, read_document
+from calm.suggestions import unknown
 
 
 class EnvironmentFileKeys(Model):

@@ -14,11 +14,9 @@ from typing import Any
 from calm.errors import InputError, Problem
 from calm.files import composition
 from calm.files.composition import Node
+from calm.whole_file import read_text
 
-LARGEST_FILE = 1_000_000
-"""Largest text file that is read [bytes]."""
-
-Place = tuple[int, int]
+LineAndColumn = tuple[int, int]
 Location = tuple[str | int, ...]
 
 
@@ -38,8 +36,8 @@ class Document:
 
     path: str
     data: dict[str, Any]
-    values: dict[Location, Place] = field(default_factory=dict, repr=False)
-    keys: dict[Location, Place] = field(default_factory=dict, repr=False)
+    values: dict[Location, LineAndColumn] = field(default_factory=dict, repr=False)
+    keys: dict[Location, LineAndColumn] = field(default_factory=dict, repr=False)
 
     def problem(
         self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""
@@ -102,43 +100,6 @@ def _note_places(document: Document, node: Node, location: Location) -> None:
         _note_places(document, child, below)
         if child.data is None:
             document.values[below] = key.line, key.column
-
-
-def read_text(path: Path, *, largest: int = LARGEST_FILE) -> str:
-    """Read a small UTF-8 text file, or raise InputError."""
-    return decoded(path, read_content(path, largest=largest)).removeprefix("\ufeff")
-
-
-def read_content(path: Path, *, largest: int = LARGEST_FILE) -> bytes:
-    """Return the bytes of a small regular file, or raise InputError; nothing else is opened."""
-    try:
-        if path.is_dir():
-            raise _refused(path, "is a folder; a file is needed")
-        if not path.is_file():
-            raise _refused(path, "is not a regular file" if path.exists() else "no such file")
-        if path.stat().st_size > largest:
-            megabytes = path.stat().st_size / 1e6
-            message = f"is {megabytes:.1f} MB; more than {largest / 1e6:g} MB is not read"
-            raise _refused(path, message)
-        return path.read_bytes()
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise _refused(path, f"cannot be read: {reason}") from None
-
-
-def decoded(path: Path, content: bytes) -> str:
-    """Return the text of a file with its byte order mark, or raise InputError."""
-    if b"\0" in content:
-        raise _refused(path, "is a binary file; text is needed")
-    try:
-        return content.decode()
-    except UnicodeDecodeError as error:
-        line = content.count(b"\n", 0, error.start) + 1
-        raise _refused(path, "is not UTF-8 text; save it as UTF-8", line) from None
-
-
-def _refused(path: Path, message: str, line: int = 0) -> InputError:
-    return InputError([Problem(str(path), line, 1 if line else 0, message)])
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from calm.errors import InputError, Problem
-from calm.files.mistakes import shown
-from calm.locate.columns import NUMBER, lacking, read_columns
 from calm.physics.line import Floats
+from calm.records.columns import read_named_columns
+from calm.records.delimited import NUMBER, abridged
+from calm.suggestions import shown
 from calm.units import DIMENSIONS
 
 SLOWEST, FASTEST = 1380.0, 1680.0
@@ -65,10 +66,10 @@ def read_sound(path: Path) -> Sound:
         With every mistake of the file: a depth that does not grow, a speed that no water has.
     """
     problems: list[Problem] = []
-    columns = read_columns(path, _COLUMNS, _EXAMPLE, problems)
+    columns = read_named_columns(path, _COLUMNS, _EXAMPLE, problems)
     for name, dimension in _COLUMNS.items():
         if name not in columns.factors:
-            problems.append(lacking(path, name, DIMENSIONS[dimension].unit, columns))
+            problems.append(columns.lacks(path, name, DIMENSIONS[dimension].unit))
     depths: list[float] = []
     speeds: list[float] = []
     for row in columns.rows:
@@ -77,13 +78,13 @@ def read_sound(path: Path) -> Sound:
             complaint = _complaint(name, text, factor, depths)
             if complaint:
                 message = f"`{name}: {shown(text)}` {complaint}"
-                problems.append(Problem(str(path), row.line, 1, message))
+                problems.append(row.problem(path, name, message))
             else:
                 (depths if name == "depth" else speeds).append(float(text) * factor)
     if not problems and not depths:
         problems.append(Problem(str(path), 0, 0, "there are no rows below the header"))
     if problems:
-        raise InputError(problems)
+        raise InputError(abridged(problems))
     return Sound(np.array(depths), np.array(speeds))
 
 

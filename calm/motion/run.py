@@ -20,7 +20,7 @@ from calm.batch.threads import processors
 from calm.batch.work import Progress, Work
 from calm.dataset.variables import Attributes, Layout, labels, numbers
 from calm.motion.matching import labels_of
-from calm.motion.measured import level_names
+from calm.motion.measurements import level_names
 from calm.motion.task import BLOCK, MeasuredRecord, Task
 from calm.physics.line import Floats
 

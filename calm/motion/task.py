@@ -11,16 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.profiles import Profiles
-from calm.batch.records.record import Levels, Record
 from calm.batch.statuses import STATUSES
 from calm.case import Mooring
+from calm.motion.common_unknowns import Common
 from calm.motion.estimate import estimated
-from calm.motion.forward import Forward, points
-from calm.motion.measured import FREE, Measured
-from calm.motion.moment import Moments
-from calm.motion.unknowns import Common
+from calm.motion.line_response import Forward, LineResponse, points
+from calm.motion.measurements import FREE, MooringMeasurements
 from calm.motion.whole_record import forwards_of
 from calm.physics.line import Floats
+from calm.records.record import Levels, Record
 
 BLOCK = 512
 """Times that are estimated, and kept, together."""
@@ -31,7 +30,7 @@ class Task:
     """What is to be estimated: `measured` has the sensors that are used."""
 
     mooring: Mooring
-    measured: Measured
+    measured: MooringMeasurements
     common: Common
 
     def columns(self, start: int, stop: int) -> tuple[Profiles, dict[str, NDArray[np.float64]]]:
@@ -43,7 +42,7 @@ class Task:
         `current_factor`, `current_doubt`, `residual`, `plain_depth`.
         """
         one = self.measured.at(slice(start, stop))
-        moments = Moments(one, *self._forwards)
+        moments = LineResponse(one, *self._forwards)
         found = estimated(moments, self.common)
         likely = moments.forward.solve(found.likely.level, found.likely.u, found.likely.v)
         clamps = likely.clamp_depth.shape[1]
@@ -81,9 +80,9 @@ class Task:
         return Forward(self.mooring, {})
 
 
-def plain(forward: Forward, one: Measured) -> Floats:
+def plain(forward: Forward, one: MooringMeasurements) -> Floats:
     """(n, p) depths of the points by the currents alone, nothing fitted [m]."""
-    moments = Moments(one, forward, {})
+    moments = LineResponse(one, forward, {})
     depth = np.tile(forward.still, (len(one.time), 1))
     for _ in range(2):
         level = moments.levels(np.nan_to_num(depth))
@@ -95,7 +94,9 @@ def plain(forward: Forward, one: Measured) -> Floats:
 class MeasuredRecord(Record):
     """What was measured, as the record that a result is made from."""
 
-    def __init__(self, measured: Measured, source: dict[str, str], notes: Sequence[str]) -> None:
+    def __init__(
+        self, measured: MooringMeasurements, source: dict[str, str], notes: Sequence[str]
+    ) -> None:
         self._measured = measured
         self.time, self.source, self.notes = measured.time, dict(source), tuple(notes)
 
@@ -121,7 +122,7 @@ class MeasuredRecord(Record):
         return digest.hexdigest()
 
 
-def without(measured: Measured, labels: Sequence[str]) -> Measured:
+def without(measured: MooringMeasurements, labels: Sequence[str]) -> MooringMeasurements:
     """What was measured but for some sensors: hidden everywhere, their currents' depths too."""
     kept = [i for i, label in enumerate(measured.label) if label not in labels]
     point = measured.point[kept]

@@ -10,13 +10,10 @@ from numpy.typing import NDArray
 
 from calm.case import Mooring
 from calm.motion import prior
-from calm.motion.filled import gap_errors
-from calm.motion.forward import Forward
-from calm.motion.measured import Measured
-from calm.motion.moment import STEP, Moments
-from calm.motion.posterior import settled
-from calm.motion.slipped import Evidence, first_time, fits, placed
-from calm.motion.unknowns import Common
+from calm.motion.common_unknowns import Common, Evidence, first_time, fits, hanging_sensors
+from calm.motion.line_response import STEP, Forward, LineResponse, gap_errors
+from calm.motion.measurements import MooringMeasurements
+from calm.motion.posterior import best_state
 from calm.physics.line import Floats, Integers
 from calm.solve import expect_many
 
@@ -48,7 +45,7 @@ def forwards_of(mooring: Mooring, common: Common) -> tuple[Forward, dict[str, Fo
     return Forward(mooring, common.factors), shifted
 
 
-def assumed(mooring: Mooring, measured: Measured, names: Sequence[str]) -> Common:
+def assumed(mooring: Mooring, measured: MooringMeasurements, names: Sequence[str]) -> Common:
     """What is common before any pressure is looked at."""
     sensors = len(measured.label)
     spread = [
@@ -58,14 +55,16 @@ def assumed(mooring: Mooring, measured: Measured, names: Sequence[str]) -> Commo
         *[0.0] * sensors,
     ]
     factors = {name: float(np.exp(prior.FACTORS[name][0])) for name in names}
-    moments = Moments(measured, Forward(mooring, factors), {})
+    moments = LineResponse(measured, Forward(mooring, factors), {})
     level = moments.levels(np.tile(moments.forward.still, (len(measured.time), 1)))
     gap = gap_errors(level, measured.u, measured.v, moments.group)
     none, never = np.zeros(sensors), np.full(sensors, "NaT", "M8[ns]")
     return Common(factors, 0.0, none, none, never, none, np.diag(np.square(spread)), 1.0, gap)
 
 
-def estimate_common(mooring: Mooring, measured: Measured, names: Sequence[str]) -> Common:
+def estimate_common(
+    mooring: Mooring, measured: MooringMeasurements, names: Sequence[str]
+) -> Common:
     """Maximum a posteriori by Gauss-Newton; the covariance by Laplace.
 
     The currents of each time are integrated over, by the slopes at what was measured; the mean of
@@ -74,7 +73,7 @@ def estimate_common(mooring: Mooring, measured: Measured, names: Sequence[str]) 
 
     Parameters
     ----------
-    names : of `calm.motion.forward.FACTORS`, those that are estimated
+    names : of `calm.motion.line_response.FACTORS`, those that are estimated
     """
     part = measured.at(_chosen(measured))
     known = assumed(mooring, part, names)
@@ -83,8 +82,8 @@ def estimate_common(mooring: Mooring, measured: Measured, names: Sequence[str]) 
     expect_many(SOLVES)
     common, sensors = known, len(part.label)
     for _ in range(TURNS):
-        moments = Moments(part, *forwards_of(mooring, common))
-        here = settled(moments, replace(common, covariance=np.zeros_like(known.covariance)))
+        moments = LineResponse(part, *forwards_of(mooring, common))
+        here = best_state(moments, replace(common, covariance=np.zeros_like(known.covariance)))
         good = np.isfinite(here.begin.depth).all(axis=1)
         if not good.any():
             return known
@@ -174,7 +173,7 @@ def _placed(
     normal, pull = evidence.normal(seen), evidence.pulls(seen, evidence.left).sum(axis=0)
     free = np.linalg.solve(normal + np.eye(len(normal)) / prior.ELSEWHERE**2, pull)
     longest = _memory(evidence, evidence.left - seen @ free)
-    found = placed(
+    found = hanging_sensors(
         normal / alike, pull / alike, known.value, known.covariance, first, len(time),
         max(longest / alike, 1.0),
     )  # fmt: skip
@@ -193,7 +192,7 @@ def _placed(
     )
 
 
-def _chosen(measured: Measured) -> Integers:
+def _chosen(measured: MooringMeasurements) -> Integers:
     """Times that have a current and a pressure, evenly spread where they are many."""
     currents = np.isfinite(measured.u) & np.isfinite(measured.v)
     used = np.flatnonzero(np.isfinite(measured.depth).any(axis=1) & currents.any(axis=1))

@@ -10,7 +10,7 @@ from calm.checks.finding import Finding, worst_state
 from calm.checks.inventory import total_of
 from calm.checks.rules import RULES
 from calm.quantities import QUANTITIES
-from calm.report.csv import table_csv
+from calm.records.csv_writer import table_csv
 
 if TYPE_CHECKING:
     from calm.checks.assessment import Assessment, Situation

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
 from calm.drop import DropPlan
+from calm.records.csv_writer import table_csv
 from calm.report.blocks import PageBreak, Part, Plate, Prose, Report, Section
-from calm.report.csv import table_csv
 from calm.report.deck_lists import (
     cutting_part,
     hardware_part,

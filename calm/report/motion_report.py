@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from numpy import datetime64
     from numpy.typing import NDArray
 
-    from calm.motion.series import Series
-    from calm.motion.study import Study
+    from calm.motion.study import SensorSeries, Study
     from calm.physics.line import Floats
 
 _DEPTHS = "Depths over time"
@@ -37,7 +36,7 @@ _NOTHING = "Nothing in the residuals is clearly a drift, a slipped clamp or a wr
 
 def motion_files(
     study: Study,
-    series: Sequence[Series],
+    series: Sequence[SensorSeries],
     time: NDArray[datetime64],
     factor: Floats,
     name: str,
@@ -57,7 +56,7 @@ def motion_files(
 
 def motion_report(
     study: Study,
-    series: Sequence[Series],
+    series: Sequence[SensorSeries],
     time: NDArray[datetime64],
     factor: Floats,
     name: str,
@@ -66,7 +65,7 @@ def motion_report(
     """Factors, agreement, what to doubt, depths, scatter and residuals."""
     shown = sorted(series, key=lambda one: not one.hidden)[:MOST_PANELS]
     shown = [one for one in series if any(one is each for each in shown)]
-    doubts = Prose(study.doubts, State.WARN) if study.doubts else Prose((_NOTHING,))
+    doubts = Prose(study.remarks, State.WARN) if study.remarks else Prose((_NOTHING,))
     marks = (Figure(_FALSE, false_figure(time, study.false)),) if study.false else ()
     held: tuple[Block, ...] = (held_out_table(study.held_out),) if study.held_out else ()
     factors = factors_table(study.factors, study.task.common.datum)
@@ -92,7 +91,7 @@ MOST_PANELS = 12
 """Sensors that are drawn; of more, those that are hidden come first."""
 
 
-def depth_figure(series: Sequence[Series]) -> str:
+def depth_figure(series: Sequence[SensorSeries]) -> str:
     """Depths of each sensor over time: measured, estimated with its band, by the currents alone."""
     figure, panels = _panels(series)
     for axes, one in zip(panels, series, strict=True):
@@ -108,7 +107,7 @@ def depth_figure(series: Sequence[Series]) -> str:
     return figure_svg(figure)
 
 
-def residual_figure(series: Sequence[Series]) -> str:
+def residual_figure(series: Sequence[SensorSeries]) -> str:
     """Measured less estimated depths of each sensor over time."""
     figure, panels = _panels(series)
     for axes, one in zip(panels, series, strict=True):
@@ -118,7 +117,7 @@ def residual_figure(series: Sequence[Series]) -> str:
     return figure_svg(figure)
 
 
-def scatter_figure(series: Sequence[Series]) -> str:
+def scatter_figure(series: Sequence[SensorSeries]) -> str:
     """Estimated against measured depths, a panel for each sensor."""
     from matplotlib.figure import Figure
 
@@ -170,7 +169,7 @@ def false_figure(time: Any, false: Mapping[str, Any]) -> str:
     return figure_svg(figure)
 
 
-def _panels(series: Sequence[Series]) -> tuple[Any, Any]:
+def _panels(series: Sequence[SensorSeries]) -> tuple[Any, Any]:
     from matplotlib.figure import Figure
 
     count = len(series)
@@ -179,7 +178,7 @@ def _panels(series: Sequence[Series]) -> tuple[Any, Any]:
     return figure, figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
 
 
-def _name(axes: Axes, one: Series, quantity: str) -> None:
+def _name(axes: Axes, one: SensorSeries, quantity: str) -> None:
     text = axes.set_title(
         f"{one.label}{', hidden' if one.hidden else ''}", fontsize=_FONT_SIZE, loc="left", pad=2
     )

@@ -11,7 +11,7 @@ from calm.checks.finding import State
 from calm.report.blocks import Block, Cell, Column, Heading, Part, Prose, Table
 
 if TYPE_CHECKING:
-    from calm.motion.judge import Agreement
+    from calm.motion.agreement import Agreement
     from calm.motion.study import HeldOut, Study
 
 TITLES = {
@@ -38,8 +38,8 @@ def motion_part(study: Study, name: str) -> Part:
     ]
     if study.held_out:
         blocks.append(held_out_table(study.held_out))
-    if study.doubts:
-        blocks.append(Prose(study.doubts, State.WARN))
+    if study.remarks:
+        blocks.append(Prose(study.remarks, State.WARN))
     return Part("", tuple(blocks))
 
 
@@ -136,7 +136,7 @@ def motion_document(study: Study, name: str) -> dict[str, Any]:
             )
         ],
         "held_out": held_out_document(study.held_out),
-        "doubts": list(study.doubts),
+        "doubts": list(study.remarks),
     }
 
 

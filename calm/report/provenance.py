@@ -18,9 +18,9 @@ from pydantic import BaseModel
 
 from calm.errors import InputError, UsageError
 from calm.files import MooringFile
-from calm.files.yaml_document import read_text
 from calm.quantities import QUANTITIES, bearing_of, say
 from calm.report.blocks import Block, Cell, Column, Listing, Pairs, Part, Prose, Table
+from calm.whole_file import read_text
 
 if TYPE_CHECKING:
     from calm.files import MooringFile, Position

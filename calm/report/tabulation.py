@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -14,6 +12,7 @@ from calm.checks.finding import State
 from calm.errors import NoEquilibrium
 from calm.physics.strumming import BourgetMarichal
 from calm.quantities import QUANTITIES, Quantity
+from calm.records.csv_writer import table_csv
 from calm.report.blocks import Cell, Column, Pairs, Part, Prose, Span, Table
 from calm.units import KNOT
 
@@ -146,16 +145,16 @@ def to_document(tabulation: Tabulation) -> dict[str, Any]:
 
 def to_csv(tabulations: Sequence[Tabulation]) -> str:
     """The rows of one tow or several, of one subject, as CSV text (UTF-8, comma, point, LF)."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
     chosen = list(tabulations[0].rows[0].chosen) if tabulations else []
     figures = [QUANTITIES[name].header for name in FIGURES]
-    writer.writerow(["tow", *map(_header, chosen), "status", *figures])
-    for tabulation in tabulations:
-        for row in tabulation.rows:
-            numbers = ["" if value is None else value for value in row.figures.values()]
-            writer.writerow([tabulation.name, *row.chosen.values(), row.outcome.status, *numbers])
-    return text.getvalue()
+    return table_csv(
+        ["tow", *map(_header, chosen), "status", *figures],
+        (
+            [tabulation.name, *row.chosen.values(), row.outcome.status, *row.figures.values()]
+            for tabulation in tabulations
+            for row in tabulation.rows
+        ),
+    )
 
 
 def _changed(variation: Variation) -> str:

@@ -10,8 +10,8 @@ from datetime import date
 from calm.files.editing import Value
 from calm.files.fields import LENGTH, POSITIVE_LENGTH, QuantityField
 from calm.files.logbook import LOAD
-from calm.files.times import TimeChoiceError, parse_time
-from calm.units import QuantityError
+from calm.records.times import TimeChoiceError, parse_time
+from calm.units import QuantityError, QuantityRange
 
 COUNT = QuantityField("number", at_least=1, at_most=10_000)
 _FIT = re.compile(r"fit\b\s*(?:to\b)?\s*(.*)", re.IGNORECASE)
@@ -89,7 +89,7 @@ def needed(what: str) -> Check:
 
 
 def quantity(
-    kind: QuantityField, *, optional: bool = False, usual_unit: str | None = None
+    kind: QuantityRange, *, optional: bool = False, usual_unit: str | None = None
 ) -> Check:
     """A number with a unit; a number alone is completed by `usual_unit`, the SI unit by default."""
 
@@ -107,7 +107,7 @@ def quantity(
 
 
 def _refused(
-    text: str, error: QuantityError, kind: QuantityField, usual_unit: str | None
+    text: str, error: QuantityError, kind: QuantityRange, usual_unit: str | None
 ) -> Reading:
     offer = error.suggestion
     if offer and error.complaint == "needs a unit":

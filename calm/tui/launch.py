@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from calm.errors import InputError, UsageError
 from calm.files import Catalogue, read_mooring
 from calm.files.editing import Draft, KeptWork, NotWritten, WorkingFile
-from calm.files.mistakes import unknown
+from calm.suggestions import unknown
 from calm.tui.session import Session
 
 if TYPE_CHECKING:

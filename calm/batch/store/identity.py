@@ -16,7 +16,7 @@ from calm.case import Mooring
 from calm.version import __version__
 
 if TYPE_CHECKING:
-    from calm.batch.records.record import Record
+    from calm.records.record import Record
 
 MOST_TOLD = 5
 """So many differences are reported, and how many more there are."""

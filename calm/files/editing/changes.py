@@ -1,4 +1,4 @@
-"""Changes to a text by location, each the patches that make it."""
+"""Changes to a text by location: the patches that make them, and what the text then says."""
 
 from __future__ import annotations
 
@@ -9,16 +9,8 @@ from unicodedata import category
 
 from calm.errors import CalmError
 from calm.files.composition import Node
-from calm.files.editing.items import new_slot, snippet_of, worded_slot
-from calm.files.editing.splicing import (
-    Items,
-    Patch,
-    add_entry,
-    items_of,
-    remove_entry,
-    set_scalar,
-    set_value,
-)
+from calm.files.editing.items import Items, items_of, new_slot, snippet_of, worded_slot
+from calm.files.editing.splicing import Patch, add_entry, remove_entry, set_scalar, set_value
 from calm.files.editing.writing import Value, Worded, WritingStyle
 from calm.files.yaml_document import Location
 

@@ -20,8 +20,8 @@ from calm.files.editing.changes import (
     with_value,
     without,
 )
-from calm.files.editing.items import LineItem, item_of, read_snippet
-from calm.files.editing.splicing import Patch, items_of, patched
+from calm.files.editing.items import LineItem, item_of, items_of, read_snippet
+from calm.files.editing.splicing import Patch, patched
 from calm.files.editing.writing import Value, Worded, WritingStyle
 from calm.files.yaml_document import Location
 

@@ -1,19 +1,22 @@
-"""Which lines, comments included, belong to what in a text; pieces of text put in its place."""
+"""Values put into a text, and taken out of it, at the places where libyaml found them.
+
+A text is never written anew: what emitters of YAML keep of it (ruamel.yaml by round trip keeps most
+comments) is less than a person put there, such as figures in columns and line ends of Windows.
+"""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
-from itertools import pairwise
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 from calm.files.composition import Node
 from calm.files.editing.writing import SECTIONS, Value, WritingStyle, inline, place_of, written
 
 _COMMENT = re.compile(r"[ \t]*#[^\n]*(?:\n|\Z)")
-_BEHIND = re.compile(r"[ \t]*(?:#[^\n]*)?(?:\r?\n|\Z)")
-"""What may follow a value on its line: a comment."""
+
+_FILLING = re.compile(r"(?:[ \t\r\n]|#[^\n]*\n)*")
+_BLANK_LINE = re.compile(r"^[ \t]*\r?\n(?=(?:[ ]*#.*\n|[ \t]*\r?\n)*\S)", re.MULTILINE)
 
 
 class Patch(NamedTuple):
@@ -45,12 +48,12 @@ def line_end(text: str, place: int) -> int:
     return len(text) if found < 0 else found + 1
 
 
-def _first_on_line(text: str, place: int) -> bool:
+def first_on_line(text: str, place: int) -> bool:
     """Return whether only spaces stand before a place on its line."""
     return not text[line_start(text, place) : place].strip(" \t")
 
 
-def _own_end(text: str, place: int, column: int) -> int:
+def own_end(text: str, place: int, column: int) -> int:
     """Return where the lines of something end, of which `place` is the end of the value.
 
     Comments directly below that stand further right than its `column` (from 1) are its own.
@@ -63,7 +66,7 @@ def _own_end(text: str, place: int, column: int) -> int:
     return end
 
 
-def _own_start(text: str, place: int, least: int, column: int | None = None) -> int:
+def own_start(text: str, place: int, least: int, column: int | None = None) -> int:
     """Return where the lines of something begin that starts at `place`, the first on its line.
 
     Comments directly above it are its own, but not above `least`, and not those further right
@@ -83,158 +86,6 @@ def _own_start(text: str, place: int, least: int, column: int | None = None) -> 
 
 def _column(line: str) -> int:
     return len(line) - len(line.lstrip(" \t")) + 1
-
-
-_COMMA = re.compile(r"(?:\s|#[^\n]*\n)*,")
-
-
-class Slot(NamedTuple):
-    """Hold the text of an item up to the end of its value, and what follows it (no comma).
-
-    Where items have lines of their own it is these lines, comments that belong to it included.
-    """
-
-    value: str
-    behind: str = ""
-
-    @property
-    def text(self) -> str:
-        """Return the whole of it."""
-        return self.value + self.behind
-
-
-@dataclass
-class Items:
-    """Hold the items of a list, of which there is at least one, in a text.
-
-    Attributes
-    ----------
-    start, end : int
-        What is rearranged of the text.
-    form : "block", "rows" or "inline"
-        A block list; one in brackets whose items have lines of their own; any other in brackets.
-    column : int
-        Of the dashes, or of the items where there are none, counted from 1.
-    slots : list of Slot
-    gaps : list of str
-        What stands before each item and is not its own (between two `inline` ones their comma).
-    rest : str
-        What follows the last.
-    ends_in_comma : bool
-        There is a comma after the last of the `rows`.
-    """
-
-    start: int
-    end: int
-    form: Literal["block", "rows", "inline"]
-    column: int
-    slots: list[Slot]
-    gaps: list[str]
-    rest: str = ""
-    ends_in_comma: bool = False
-
-    def remove(self, index: int) -> Slot:
-        """Take an item out. What is not its own stays in its place."""
-        slot, gap = self.slots.pop(index), self.gaps.pop(index)
-        last = index == len(self.slots)
-        if self.form != "inline":
-            if last:
-                self.rest = gap + self.rest
-            else:
-                self.gaps[index] = gap + self.gaps[index]
-        elif not last:
-            self.gaps[index] = gap + _comment(self.gaps[index])
-        else:
-            self.rest = _comment(gap) + self.rest
-        return slot
-
-    def insert(self, index: int, slot: Slot) -> None:
-        """Put an item in."""
-        separator = ", " if self.form == "inline" and self.slots else ""
-        self.slots.insert(index, slot)
-        self.gaps.insert(index, separator)
-        if index == 0 and len(self.gaps) > 1:
-            self.gaps[0], self.gaps[1] = self.gaps[1], separator
-
-    def patch(self) -> Patch:
-        """Return what comes in place of the list."""
-        pieces: list[str] = []
-        last = len(self.slots) - 1
-        for i, (gap, slot) in enumerate(zip(self.gaps, self.slots, strict=True)):
-            comma = self.form == "rows" and (i < last or self.ends_in_comma)
-            pieces += gap, slot.value, "," if comma else "", slot.behind
-        return Patch(self.start, self.end, "".join(pieces) + self.rest)
-
-
-def _comment(gap: str) -> str:
-    """Return what stays of a separator whose comma goes."""
-    return gap.replace(",", "", 1) if "#" in gap else ""
-
-
-def items_of(text: str, node: Node) -> Items | None:
-    """Take apart a list in a text that ends in a line break; None where its items are entangled."""
-    if node.style == "block":
-        return _block(text, node)
-    return _rows(text, node) or _inline(text, node)
-
-
-def _block(text: str, node: Node) -> Items | None:
-    dash = re.compile(rf"^[ ]{{{node.column - 1}}}-(?=\s)", re.MULTILINE)
-    if not _first_on_line(text, node.start):
-        return None
-    starts, ends = [_own_start(text, node.start, 0)], []
-    for child, following in zip(node.children, (*node.children[1:], None), strict=True):
-        ends.append(_own_end(text, child.end, node.column))
-        if following is not None:
-            found = dash.search(text, line_end(text, child.end))
-            if found is None:
-                return None
-            starts.append(_own_start(text, found.start(), ends[-1], node.column))
-    slots = [Slot(text[start:end]) for start, end in zip(starts, ends, strict=True)]
-    gaps = ["", *(text[end:start] for end, start in zip(ends, starts[1:], strict=False))]
-    return Items(starts[0], ends[-1], "block", node.column, slots, gaps)
-
-
-def _rows(text: str, node: Node) -> Items | None:
-    """Take apart a list in brackets, items on lines of their own; None where it is no such list."""
-    starts: list[int] = []
-    ends: list[int] = []
-    slots: list[Slot] = []
-    gaps: list[str] = []
-    comma = False
-    for child in node.children:
-        if not _first_on_line(text, child.start):
-            return None
-        least = ends[-1] if ends else line_end(text, node.start)
-        if line_start(text, child.start) < least:
-            return None
-        start = _own_start(text, child.start, least)
-        comma = text.startswith(",", child.end)
-        behind = _BEHIND.match(text, child.end + comma)
-        if behind is None:
-            return None
-        gaps.append(text[ends[-1] : start] if ends else "")
-        slots.append(Slot(text[start : child.end], behind.group()))
-        starts.append(start)
-        ends.append(behind.end())
-    if any(not text.startswith(",", child.end) for child in node.children[:-1]):
-        return None
-    if not _first_on_line(text, node.end - 1) or (not comma and _COMMA.match(text, ends[-1])):
-        return None
-    column = node.children[0].column
-    return Items(starts[0], ends[-1], "rows", column, slots, gaps, "", comma)
-
-
-def _inline(text: str, node: Node) -> Items:
-    children = node.children
-    slots = [Slot(text[child.start : child.end]) for child in children]
-    gaps = ["", *(text[one.end : other.start] for one, other in pairwise(children))]
-    start, end = children[0].start, children[-1].end
-    return Items(start, end, "inline", children[0].column, slots, gaps)
-
-
-_FILLING = re.compile(r"(?:[ \t\r\n]|#[^\n]*\n)*")
-_BLANK_LINE = re.compile(r"^[ \t]*\r?\n(?=(?:[ ]*#.*\n|[ \t]*\r?\n)*\S)", re.MULTILINE)
 
 
 def add_entry(
@@ -257,11 +108,11 @@ def add_entry(
     column = mapping.column
     lines = style.entry(name, value, column, open=open)
     if at:
-        place = _own_end(text, mapping.children[at - 1].end, column)
+        place = own_end(text, mapping.children[at - 1].end, column)
         apart = column == 1 and name in SECTIONS and _BLANK_LINE.search(text)
         return [Patch(place, place, (style.line_break if apart else "") + lines)]
     first = mapping.keys[0].start
-    if _first_on_line(text, first):
+    if first_on_line(text, first):
         place = _start(text, mapping, 0)
         return [Patch(place, place, lines)]
     indent = column - 1
@@ -273,9 +124,9 @@ def _start(text: str, mapping: Node, at: int) -> int:
 
     Those that a file begins with are about the file.
     """
-    least = _own_end(text, mapping.children[at - 1].end, mapping.column) if at else 0
+    least = own_end(text, mapping.children[at - 1].end, mapping.column) if at else 0
     key = mapping.keys[at].start
-    start = _own_start(text, key, least, mapping.column)
+    start = own_start(text, key, least, mapping.column)
     is_head = mapping.column == 1 and start == line_start(text, 0)
     return line_start(text, key) if is_head else start
 
@@ -307,8 +158,8 @@ def remove_entry(text: str, mapping: Node, at: int) -> list[Patch]:
     if mapping.style == "flow":
         return _without_flow_entry(text, mapping, at)
     start = mapping.keys[at].start
-    end = _own_end(text, mapping.children[at].end, mapping.column)
-    if _first_on_line(text, start):
+    end = own_end(text, mapping.children[at].end, mapping.column)
+    if first_on_line(text, start):
         return [Patch(_start(text, mapping, at), end, "")]
     # On the line of a dash: what comes next moves up to it.
     end += len(text[end:]) - len(text[end:].lstrip(" "))
@@ -340,7 +191,7 @@ def _comma_first(between: str) -> bool:
 def _with_lines(text: str, start: int, end: int) -> tuple[int, int]:
     """Return the whole of the lines of a part that has them for itself, but for a comment."""
     comment = _COMMENT.match(text, end)
-    if not _first_on_line(text, start) or not (comment or text[end:].lstrip(" \t\r")[:1] == "\n"):
+    if not first_on_line(text, start) or not (comment or text[end:].lstrip(" \t\r")[:1] == "\n"):
         return start, end
     return line_start(text, start), line_end(text, end)
 
@@ -372,7 +223,7 @@ def set_value(
     assert colon is not None
     if mapping.style == "block" and old.line > key.line:
         # Lines below the key: a comment behind the key stays.
-        start, end = line_end(text, colon), _own_end(text, old.end, old.column - 1)
+        start, end = line_end(text, colon), own_end(text, old.end, old.column - 1)
         return [Patch(colon, colon, head), Patch(start, end, below)]
     patches = [Patch(colon, old.end, head)]
     if below:

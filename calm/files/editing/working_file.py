@@ -1,4 +1,8 @@
-"""The file that a person works on, and the copy of what is not saved of it."""
+"""The file that a person works on, and the copies of what is not saved of it.
+
+A copy is the text itself below a first line, a comment, that shows the host, the process and what
+the file held when the work began. No two sessions keep their work under one name.
+"""
 
 from __future__ import annotations
 
@@ -16,9 +20,7 @@ from pathlib import Path
 from threading import RLock
 
 from calm.errors import CalmError, InputError
-from calm.files.catalogue import GRAIN
-from calm.files.yaml_document import decoded, read_content
-from calm.whole_file import put, sweep
+from calm.whole_file import GRAIN, decoded, put, read_content, sweep
 
 _UNREADABLE = b"\0"
 """Stands for the content of what is there and cannot be read; no text has it."""
@@ -33,7 +35,7 @@ class NotWritten(CalmError):
 class WorkingFile:
     """Represent a mooring file that is worked on, and the copy of unsaved work beside it.
 
-    The copy is this session's own, see `kept_work`; the copies of others are read, and removed
+    The copy is this session's own; the copies of others are read, and removed
     only where their work was taken over with `adopt`, or is given up.
 
     Parameters

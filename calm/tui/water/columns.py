@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from calm.files.fields import QuantityField
-from calm.files.tables import DIRECTION, SALINITY, TEMPERATURE, WATER_DENSITY
+from calm.records.profile_tables import DIRECTION, SALINITY, TEMPERATURE, WATER_DENSITY
 from calm.tui.checking import Check, Reading, number, quantity
-from calm.units import QuantityError, unit_factor
+from calm.units import QuantityError, QuantityRange, unit_factor
 
-_KINDS = {
+_KINDS: dict[str, QuantityRange] = {
     "depth": QuantityField("length"),
     "speed": QuantityField("speed", at_least=0),
     "u": QuantityField("speed"),

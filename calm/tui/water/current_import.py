@@ -9,7 +9,7 @@ from pathlib import Path
 from numpy import float32
 
 from calm.errors import UsageError
-from calm.files.tables import speed_and_direction
+from calm.records.profile_tables import speed_and_direction
 from calm.tui.checking import Check, Reading, anything
 from calm.tui.dialogs import Asked, Sheet
 from calm.tui.water.form import CURRENT_COLUMNS
@@ -60,9 +60,9 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
     CalmError
         The file, or the time, cannot be used.
     """
-    from calm.files.current_file import read_current_file
-    from calm.files.current_terms import Terms
-    from calm.files.times import TimeChoiceError
+    from calm.records.current_file import read_current_file
+    from calm.records.profile_tables import Terms
+    from calm.records.times import TimeChoiceError
 
     try:
         table, _ = read_current_file(path, time or None, Terms(water_depth=depth))

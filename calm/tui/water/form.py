@@ -9,10 +9,10 @@ from calm.files.definition import DENSITY
 from calm.files.density import USUAL_DENSITY
 from calm.files.editing import Draft, Value
 from calm.files.fields import POSITIVE_LENGTH, QuantityField
-from calm.files.tables import SALINITY, TEMPERATURE, speed_and_direction
 from calm.files.yaml_document import Location
+from calm.records.profile_tables import SALINITY, TEMPERATURE, speed_and_direction
 from calm.tui.water.columns import named
-from calm.units import QuantityError
+from calm.units import QuantityError, QuantityRange
 
 CURRENT_FORMS = ("still", "uniform", "table", "file")
 DENSITY_FORMS = ("constant", "table", "temperature and salinity")
@@ -198,7 +198,7 @@ class Water:
         return self.draft.put_at(self.at(key), inherited)
 
 
-def _read(kind: QuantityField, text: str) -> float | None:
+def _read(kind: QuantityRange, text: str) -> float | None:
     """A quantity in SI units; None where it cannot be read."""
     try:
         return kind.read(text) if text else None

@@ -10,7 +10,7 @@ from textual.app import ComposeResult
 from textual.containers import Vertical
 from textual.message import Message
 
-from calm.files.current_text import CopiedTable, NoTableError, copied_table
+from calm.records.delimited import CopiedTable, NoTableError, copied_table
 from calm.tui.checking import Check, Reading
 from calm.tui.dialogs import Asked, Sheet
 from calm.tui.line.cell_editor import CellEditor

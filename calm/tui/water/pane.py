@@ -16,7 +16,7 @@ from textual.widgets import Static
 
 from calm.files.editing import Draft, Value
 from calm.files.fields import POSITIVE_LENGTH, QuantityField
-from calm.files.tables import DIRECTION, SALINITY, TEMPERATURE, WATER_DENSITY
+from calm.records.profile_tables import DIRECTION, SALINITY, TEMPERATURE, WATER_DENSITY
 from calm.tui.checking import needed, quantity
 from calm.tui.field import Field
 from calm.tui.messages import said

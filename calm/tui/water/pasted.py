@@ -8,11 +8,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from calm.errors import Problem
-from calm.files.tables import (
+from calm.records.headings import heading
+from calm.records.profile_tables import (
     CurrentTable,
     DepthTable,
     SeaWater,
-    heading,
     read_current,
     read_profile,
     read_water,
