@@ -83,7 +83,7 @@ def test_plan_of_veering_current(solved):
 
 
 def test_tension_of_veering_current(solved):
-    assert rows(plan(solved("veering-current"), 24, 12)) == [
+    assert rows(tension(solved("veering-current"), 24, 12)) == [
         "at most 3598 N; dotted: ",
         "  0┤⠉⠉⠉⠉⠉⠉⣉⠇          ⠅ ",
         "   │     ⢀⡇           ⠅ ",
