@@ -17,7 +17,9 @@ from calm.exchange.design import refused_at
 from calm.whole_file import decoded, read_content
 
 _NAME = re.compile(r"[A-Za-z_]\w*")
-_TEXT = re.compile(r"\"[^\"\n]*\"|'[^'\n]*'")
+_PIECE = re.compile(  # a text in quotes, a number such as 6e3, a name, or signs between them
+    r"\"[^\"\n]*\"|'[^'\n]*'|\d[\w.]*|[A-Za-z_]\w*|[^\w\"']+|.", re.DOTALL
+)
 _DIRECTIVE = re.compile(r"\s*#\s*([a-z]+)\b(.*)", re.DOTALL)
 _MOST_TEXT = 4_000_000  # characters that a file may become
 _MOST_EXPANSIONS = 20_000
@@ -195,19 +197,11 @@ class Preprocessor:
         """Return a text with its macros replaced; quoted texts stay as they are."""
         pieces: list[str] = []
         size, at = 0, 0
-        while at < len(text):
-            quoted = _TEXT.match(text, at)
-            name = None if quoted else _NAME.match(text, at)
-            if name and (macro := self._macros.get(name[0])) and name[0] not in hidden:
-                piece, at = self._replaced(macro, name, text, hidden)
-            else:
-                found = quoted or name
-                piece = found[0] if found else text[at]
-                at += len(piece)
-                if found is None and piece.isdigit():  # 6e3 holds no macro called e3
-                    more = re.compile(r"[\w.]*").match(text, at)
-                    assert more is not None
-                    piece, at = piece + more[0], more.end()
+        while found := _PIECE.match(text, at):
+            macro = None if found[0] in hidden else self._macros.get(found[0])
+            piece, at = found[0], found.end()
+            if macro is not None:
+                piece, at = self._replaced(macro, found, text, hidden)
             pieces.append(piece)
             size += len(piece)
             if size > _LONGEST:
