@@ -288,6 +288,16 @@ def dialect_of(lines: Sequence[str], *, words: bool = False) -> Dialect:
     return Dialect(best, "," if sure else ".")
 
 
+def no_number(cell: str) -> str | None:
+    """Return what is wrong with a cell that is to be a plain number; None where it is one."""
+    if NUMBER.fullmatch(cell):
+        return None
+    pointed = Dialect(";", ",").with_point(cell)
+    if NUMBER.fullmatch(pointed):
+        return f"has a decimal comma; did you mean `{pointed}`?"
+    return "is no number"
+
+
 def abridged(problems: list[Problem]) -> list[Problem]:
     """Return the first mistakes in the order of the file, and how many more there are."""
     ordered = sorted(dict.fromkeys(problems), key=lambda one: (one.line, one.column))

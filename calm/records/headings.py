@@ -32,10 +32,11 @@ def heading(column: str, dimensions: Sequence[str] = ()) -> tuple[str, str]:
     if bracketed:
         return bracketed[1], bracketed[2].strip()
     words = text.split(" ")
-    for first in range(1, len(words)):
-        unit = " ".join(words[first:])
-        if any(_is_unit(unit, dimension) for dimension in dimensions):
-            return " ".join(words[:first]), unit
+    for wanted in (dimensions, DIMENSIONS if dimensions else ()):  # a wrong unit is one too
+        for first in range(1, len(words)):
+            unit = " ".join(words[first:])
+            if any(_is_unit(unit, dimension) for dimension in wanted):
+                return " ".join(words[:first]), unit
     if dimensions:
         return text, ""
     found = _WORD.fullmatch(text)

@@ -14,6 +14,7 @@ from calm.motion.currents import read_currents
 from calm.motion.sensors import depth_of, read_sea_level, read_sensors
 from calm.records.current_file import open_record, read_current_file
 from calm.records.delimited import copied_table
+from calm.records.headings import heading
 from calm.records.profile_tables import Terms
 from calm.tui.water.pasted import offered_headings, rows_in
 
@@ -225,3 +226,34 @@ def test_thousands_that_could_be_decimals_are_not_guessed(tmp_path: Path) -> Non
     path.write_text("depth[m]\tu[m/s]\tv[m/s]\n0\t1\t1\n1,100\t1\t1\n")
     with pytest.raises(InputError, match=r"`depth: 1,100` has a comma; write"):
         read_current_file(path, None, Terms())
+
+
+@pytest.mark.parametrize(
+    ("column", "named"),
+    [
+        ("depth[m]", ("depth", "m")),
+        ("Depth (m)", ("Depth", "m")),
+        ("depth m", ("depth", "m")),
+        ("drag [N/(m/s)^2]", ("drag", "N/(m/s)^2")),
+        ("toward[deg magnetic]", ("toward", "deg magnetic")),
+        ("time (UTC)", ("time", "UTC")),
+        ("sound speed [m/s]", ("sound speed", "m/s")),
+        ("depth", ("depth", "")),
+    ],
+)
+def test_headings_are_a_name_and_a_unit(column: str, named: tuple[str, str]) -> None:
+    assert heading(column) == named
+
+
+@pytest.mark.parametrize(
+    ("column", "named"),
+    [
+        ("top dbar", ("top", "dbar")),
+        ("deep CTD 37 dbar", ("deep CTD 37", "dbar")),
+        ("upper knot", ("upper", "knot")),
+        ("m", ("m", "")),
+        ("top float", ("top float", "")),
+    ],
+)
+def test_labels_end_where_a_unit_begins(column: str, named: tuple[str, str]) -> None:
+    assert heading(column, ("pressure", "length")) == named
