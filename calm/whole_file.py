@@ -7,9 +7,10 @@ import os
 import secrets
 import stat
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Generic, TypeVar
 
 from calm.errors import InputError, Problem
 
@@ -22,6 +23,12 @@ UNFINISHED = ".calm-part"
 _LONGEST = 40  # characters of a name that its part repeats: a long one leaves no room for more
 _STALE = 600.0  # seconds: no running process is still writing a part of this age
 _TOGETHER = 32  # files handed to the disk at once: one by one each waits for a turn of its own
+
+GRAIN = 2.0
+"""A file written this lately may be written again without its time telling [s]."""
+
+T = TypeVar("T")
+Stamp = tuple[tuple[str, int, int, int], ...]
 
 
 @contextlib.contextmanager
@@ -109,7 +116,7 @@ def _flush(path: Path) -> None:
 
 
 def _give(part: Path, like: os.stat_result) -> None:
-    """Owner and group apart: who may not give the one away may give the other."""
+    """Give owner and group apart: who may not give the one away may give the other."""
     for owner in ((-1, like.st_gid), (like.st_uid, -1)):
         with contextlib.suppress(OSError, AttributeError):
             os.chown(part, *owner)
@@ -122,7 +129,7 @@ def read_text(path: Path, *, largest: int = LARGEST_FILE) -> str:
 
 
 def read_content(path: Path, *, largest: int = LARGEST_FILE) -> bytes:
-    """The bytes of a small regular file, or raise InputError; nothing else is opened."""
+    """Return the bytes of a small regular file, or raise InputError; nothing else is opened."""
     try:
         if path.is_dir():
             raise _refused(path, "is a folder; a file is needed")
@@ -139,7 +146,7 @@ def read_content(path: Path, *, largest: int = LARGEST_FILE) -> bytes:
 
 
 def decoded(path: Path, content: bytes) -> str:
-    """The text of a file with its byte order mark, or raise InputError."""
+    """Return the text of a file with its byte order mark, or raise InputError."""
     if b"\0" in content:
         raise _refused(path, "is a binary file; text is needed")
     try:
@@ -151,3 +158,32 @@ def decoded(path: Path, content: bytes) -> str:
 
 def _refused(path: Path, message: str, line: int = 0) -> InputError:
     return InputError([Problem(str(path), line, 1 if line else 0, message)])
+
+
+class FileCache(Generic[T]):
+    """Keep the last of what was read from files, known by their names, times and sizes."""
+
+    def __init__(self) -> None:
+        self._last: tuple[Stamp, T] | None = None
+
+    def of(self, paths: Sequence[Path], read: Callable[[], T]) -> T:
+        """Return what `read` makes of files; it is called only where they are others or changed."""
+        stamp = _stamp(paths)
+        last = self._last
+        if stamp is not None and last is not None and last[0] == stamp:
+            return last[1]
+        value = read()
+        self._last = None if stamp is None else (stamp, value)
+        return value
+
+
+def _stamp(paths: Sequence[Path]) -> Stamp | None:
+    """Return the names, times and sizes of files; None where they would not show a change."""
+    try:
+        found = [(str(path), path.stat()) for path in paths]
+    except (OSError, ValueError):
+        return None
+    newest = max((status.st_mtime for _, status in found), default=0.0)
+    if time.time() - newest < GRAIN:
+        return None
+    return tuple((name, each.st_mtime_ns, each.st_size, each.st_ino) for name, each in found)

@@ -1,4 +1,4 @@
-"""Buoys, anchors, connectors and materials of WHOI Cable, with that program's drag."""
+"""Make components of WHOI Cable's buoys, anchors, connectors and materials, with its drag."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Formulas of problem files: read into functions, of the depth `H` where they depend on it."""
+"""Read formulas of problem files into functions, of the depth `H` where they depend on it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The grammar of WHOI Cable's problem files: from words to a problem."""
+"""Read the words of WHOI Cable's problem files as a problem, by their grammar."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A problem file of WHOI Cable as a design."""
+"""Read a problem file of WHOI Cable as a design."""
 
 from __future__ import annotations
 

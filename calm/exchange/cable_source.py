@@ -1,4 +1,8 @@
-"""The text of a problem file: comments, macros, conditions and included files resolved."""
+"""Resolve comments, macros, conditions and included files of a problem file, and find its words.
+
+The C preprocessors that can be had as libraries know no limit to what macros grow to within their
+arguments, cut numbers such as `6e3` where `e3` is a macro, and let a comment without an end pass.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The environment of a WHOI Cable problem."""
+"""Read the environment of a WHOI Cable problem, and currents in a file beside it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A mooring or a tow as a problem of WHOI Cable, for its statics and its dynamics."""
+"""Write a mooring or a tow as a problem of WHOI Cable, for its statics and its dynamics."""
 
 from __future__ import annotations
 

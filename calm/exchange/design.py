@@ -1,4 +1,4 @@
-"""What a file of another program says, in CALM's terms: the one model that every importer fills.
+"""Define what a file of another program says, in CALM's terms: the model that every importer fills.
 
 Figures are SI and degrees under the names of the mooring file; depths are positive down.
 """

@@ -1,4 +1,4 @@
-"""A design as a mooring file, with a comment for every guess in its line."""
+"""Write a design as a mooring file, with a comment for every guess in its line."""
 
 from __future__ import annotations
 

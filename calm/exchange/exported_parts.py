@@ -1,4 +1,4 @@
-"""A mooring or a tow for other programs: parts with their net force and drag."""
+"""Define a mooring or a tow for other programs: parts with their net force and drag."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From a file of another program to a mooring file: found, read, written, and read back."""
+"""Import a file of another program: its format is found, it is read, written, and read back."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from calm.exchange.import_completion import (
     secure_anchor,
 )
 from calm.exchange.list_headings import is_table
-from calm.exchange.list_reader import read_table
+from calm.exchange.list_reader import read_list
 from calm.exchange.mat_file import is_mat
 from calm.exchange.mdd_reader import read_mdd
 from calm.exchange.moords_reader import is_moords, read_moords
@@ -74,7 +74,7 @@ FORMATS = (
     ImportFormat("moords", "moords", is_moords, lambda path, options: read_moords(path)),
     ImportFormat(
         "table", "a list in CSV or a spreadsheet", is_table,
-        lambda path, options: read_table(path, options.columns, options.elements),
+        lambda path, options: read_list(path, options.columns, options.elements),
     ),
 )  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""Which column of a list holds what, by its heading in English or French."""
+"""Read the cells of a list, and tell what its columns hold by headings in English or French."""
 
 from __future__ import annotations
 

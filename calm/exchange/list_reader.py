@@ -1,4 +1,4 @@
-"""A list of pieces as a design."""
+"""Read a list of pieces as a design."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _WATER = ("z", "U", "V", "W", "rho")  # headings of a sheet of Mooring Design & 
 _NAMES = 3  # at least, in a list of names alone
 
 
-def read_table(path: Path, columns: Mapping[str, str], elements: Path | None = None) -> Design:
+def read_list(path: Path, columns: Mapping[str, str], elements: Path | None = None) -> Design:
     """Read a CSV file or a workbook.
 
     Parameters

@@ -1,4 +1,4 @@
-"""The rows of a list in SI, each with how it was interpreted."""
+"""Read the rows of a list in SI, each with how it was interpreted, and make components of them."""
 
 from __future__ import annotations
 

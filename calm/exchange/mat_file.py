@@ -1,4 +1,4 @@
-"""The variables of a `.mat` file, whatever program and version wrote it.
+"""Read the variables of a `.mat` file, whatever program and version wrote it.
 
 Nothing in such a file is executed or unpickled: MATLAB 4 and 5 are read by scipy, HDF5 (MATLAB 7.3
 and Octave) by h5py, Octave's text, compressed or not, by the reader below.

@@ -1,4 +1,4 @@
-"""Elements of Mooring Design & Dynamics as components of CALM, with that program's drag."""
+"""Make components of the elements of Mooring Design & Dynamics, with that program's drag."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A `.mat` file of Mooring Design & Dynamics as a design."""
+"""Read a `.mat` file of Mooring Design & Dynamics as a design."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A mooring or a tow as a `.mat` file of Mooring Design & Dynamics."""
+"""Write a mooring or a tow as a `.mat` file of Mooring Design & Dynamics."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Designs that moords exports: a row each element, from the anchor up."""
+"""Read designs that moords exports: a row each element, from the anchor up."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A single line of a MoorDyn or MoorPy file as a design."""
+"""Read a single line of a MoorDyn or MoorPy file as a design."""
 
 from __future__ import annotations
 

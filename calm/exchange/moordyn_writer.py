@@ -1,4 +1,4 @@
-"""A mooring as an input file of MoorDyn 2, its points where they stand in equilibrium."""
+"""Write a mooring as an input file of MoorDyn 2, its points where they stand in equilibrium."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the names of pieces say about them, in English and French."""
+"""Tell what the names of pieces say about them, in English and French, and make ids of them."""
 
 from __future__ import annotations
 

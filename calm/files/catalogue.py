@@ -8,12 +8,11 @@ from __future__ import annotations
 
 import os
 import re
-import time
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, zip_longest
 from pathlib import Path
-from typing import Any, Generic, Literal, NamedTuple, TypeVar
+from typing import Any, Literal, NamedTuple
 
 from pydantic import Field
 
@@ -24,13 +23,7 @@ from calm.files.mistakes import validate
 from calm.files.yaml_document import Document, SourceMapping, compose, read_document
 from calm.shipped import shipped_folder
 from calm.suggestions import nearest, shown, unknown
-from calm.whole_file import read_text
-
-GRAIN = 2.0
-"""A file written this lately may be written again without its time telling [s]."""
-
-T = TypeVar("T")
-Stamp = tuple[tuple[str, int, int, int], ...]
+from calm.whole_file import FileCache, read_text
 
 FAMILY_ROLES = {
     "floats": "float",
@@ -368,35 +361,6 @@ def _cuts(path: Path) -> list[tuple[str | None, _Cut]]:
         cuts.append((head[1], _Cut(path, above, part)))
         above += part.count("\n")
     return cuts
-
-
-class FileCache(Generic[T]):
-    """Keep the last of what was read from files, known by their names, times and sizes."""
-
-    def __init__(self) -> None:
-        self._last: tuple[Stamp, T] | None = None
-
-    def of(self, paths: Sequence[Path], read: Callable[[], T]) -> T:
-        """Return what `read` makes of files; it is called only where they are others or changed."""
-        stamp = _stamp(paths)
-        last = self._last
-        if stamp is not None and last is not None and last[0] == stamp:
-            return last[1]
-        value = read()
-        self._last = None if stamp is None else (stamp, value)
-        return value
-
-
-def _stamp(paths: Sequence[Path]) -> Stamp | None:
-    """Return the names, times and sizes of files; None where they would not show a change."""
-    try:
-        found = [(str(path), path.stat()) for path in paths]
-    except (OSError, ValueError):
-        return None
-    newest = max((status.st_mtime for _, status in found), default=0.0)
-    if time.time() - newest < GRAIN:
-        return None
-    return tuple((name, each.st_mtime_ns, each.st_size, each.st_ino) for name, each in found)
 
 
 _LOADED: FileCache[Catalogue] = FileCache()

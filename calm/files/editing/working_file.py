@@ -20,8 +20,7 @@ from pathlib import Path
 from threading import RLock
 
 from calm.errors import CalmError, InputError
-from calm.files.catalogue import GRAIN
-from calm.whole_file import decoded, put, read_content, sweep
+from calm.whole_file import GRAIN, decoded, put, read_content, sweep
 
 _UNREADABLE = b"\0"
 """Stands for the content of what is there and cannot be read; no text has it."""

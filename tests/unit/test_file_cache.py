@@ -1,7 +1,7 @@
 import os
 from pathlib import Path
 
-from calm.files.catalogue import FileCache
+from calm.whole_file import FileCache
 
 
 def aged(path: Path, text: str, seconds: float = 100.0) -> Path:
