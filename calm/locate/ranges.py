@@ -13,7 +13,7 @@ from calm.errors import InputError, Problem
 from calm.physics.ellipsoid import Frame
 from calm.physics.line import Floats
 from calm.records.columns import NamedRow, read_named_columns
-from calm.records.delimited import GAPS, NUMBER, abridged
+from calm.records.delimited import GAPS, abridged, no_number
 from calm.suggestions import shown
 from calm.units import DIMENSIONS
 
@@ -139,9 +139,9 @@ def _refusal(name: str, text: str, factor: float) -> str:
     if re.sub(r"\.0*$", "", text) in _FILLS:
         leave = "leave the row out" if placed else "leave the cell blank"
         return f"is a fill value; {leave} where there is none"
-    if not NUMBER.fullmatch(text):
+    if complaint := no_number(text):
         degrees = "; decimal degrees are needed, south and west negative" if placed else ""
-        return f"is no number{degrees}"
+        return complaint + degrees
     value = float(text) * factor
     if name == "latitude" and abs(value) > 90.0:
         return "is beyond 90 degrees; are latitude and longitude exchanged?"

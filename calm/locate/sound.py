@@ -10,7 +10,7 @@ import numpy as np
 from calm.errors import InputError, Problem
 from calm.physics.line import Floats
 from calm.records.columns import read_named_columns
-from calm.records.delimited import NUMBER, abridged
+from calm.records.delimited import abridged, no_number
 from calm.suggestions import shown
 from calm.units import DIMENSIONS
 
@@ -89,8 +89,8 @@ def read_sound(path: Path) -> Sound:
 
 
 def _complaint(name: str, text: str, factor: float, depths: list[float]) -> str:
-    if not NUMBER.fullmatch(text):
-        return "is no number"
+    if complaint := no_number(text):
+        return complaint
     value = float(text) * factor
     if name == "depth":
         if value < 0.0 or (depths and value <= depths[-1]):

@@ -141,7 +141,8 @@ def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> Ti
     if complaint := zone_complaint(header.cells[0]):
         problems.append(Problem(str(path), header.number, header.column(0), complaint))
     columns = [
-        _labelled(path, header, j, dimensions, problems) for j in range(1, len(header.cells))
+        _labelled(path, header, j, dimensions, heading(example)[1], problems)
+        for j in range(1, len(header.cells))
     ]
     rows = _whole_rows(table, problems)
     if not rows and not problems:
@@ -192,13 +193,18 @@ class _LabelledColumn:
 
 
 def _labelled(
-    path: Path, header: CellRow, j: int, dimensions: Sequence[str], problems: list[Problem]
+    path: Path,
+    header: CellRow,
+    j: int,
+    dimensions: Sequence[str],
+    usual: str,
+    problems: list[Problem],
 ) -> _LabelledColumn | None:
     """The column of a heading; None, with its mistake added, where it has any."""
     column = header.cells[j]
     name, unit = heading(column, dimensions)
     try:
-        dimension, factor = column_unit(column, unit, dimensions)
+        dimension, factor = column_unit(column, unit, dimensions, usual)
     except QuantityError as error:
         problems.append(Problem(str(path), header.number, header.column(j), str(error)))
         return None
@@ -209,6 +215,7 @@ def _whole_rows(table: TextTable, problems: list[Problem]) -> list[CellRow]:
     """The rows that have as many cells as the header; mistakes are added for the others."""
     whole = []
     for row in table.rows:
+        problems += row.mixed_decimals(table.path)
         count, needed = len(row.cells), len(table.header.cells)
         if count == needed:
             whole.append(row)

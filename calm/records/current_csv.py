@@ -61,10 +61,7 @@ class CurrentHeader:
             return Problem(str(self.path), row.number, column, message)
 
         for row in rows:
-            for j, cell in enumerate(row.cells[first:], first):
-                if complaint := row.dialect.unlike(cell):
-                    place = row.number, row.column(j)
-                    problems.append(Problem(str(self.path), *place, complaint))
+            problems += row.mixed_decimals(self.path)
         values = [[cell or None for cell in row.cells[first:]] for row in rows]
         return read_current(self.columns, values, report, problems, terms)
 

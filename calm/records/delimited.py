@@ -76,12 +76,6 @@ class Dialect:
         found = _COMMA.fullmatch(cell) if self.decimal == "," else None
         return f"{found[1]}.{found[2]}{found[3]}" if found else cell
 
-    def unlike(self, cell: str) -> str | None:
-        """Return what is wrong with a number that has a point where the others have a comma."""
-        if self.decimal != "," or not _POINT.fullmatch(cell):
-            return None
-        return f"`{shown(cell)}` has a decimal point, and the numbers before it have commas"
-
     @property
     def name(self) -> str:
         """What the separator is called."""
@@ -122,6 +116,19 @@ class CellRow:
     def column(self, cell: int) -> int:
         """Return where a cell begins in the line, counted from 1."""
         return self.dialect.column(self.line, cell + self.skipped)
+
+    def mixed_decimals(self, path: Path) -> list[Problem]:
+        """Return a mistake for each number with a point in a table of decimal commas."""
+        if self.dialect.decimal != ",":
+            return []
+        return [
+            Problem(
+                str(path), self.number, self.column(j - self.skipped),
+                f"`{shown(cell)}` has a decimal point, and the numbers before it have commas",
+            )
+            for j, cell in enumerate(Dialect(self.dialect.separator).cells(self.line))
+            if _POINT.fullmatch(cell)
+        ]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -279,6 +286,16 @@ def dialect_of(lines: Sequence[str], *, words: bool = False) -> Dialect:
     commas = [found for cell in cells if (found := _COMMA.fullmatch(cell))]
     sure = any(len(one[2]) != 3 or not one[1].strip("+-0") for one in commas)
     return Dialect(best, "," if sure else ".")
+
+
+def no_number(cell: str) -> str | None:
+    """Return what is wrong with a cell that is to be a plain number; None where it is one."""
+    if NUMBER.fullmatch(cell):
+        return None
+    pointed = Dialect(";", ",").with_point(cell)
+    if NUMBER.fullmatch(pointed):
+        return f"has a decimal comma; did you mean `{pointed}`?"
+    return "is no number"
 
 
 def abridged(problems: list[Problem]) -> list[Problem]:
