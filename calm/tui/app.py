@@ -17,19 +17,17 @@ from textual.timer import Timer
 
 from calm.errors import CalmError
 from calm.files.editing import KeptWork, WorkingFile
-from calm.tui import recovery
+from calm.tui import saving
+from calm.tui.help_screen import Actions
 from calm.tui.judging import Judging
 from calm.tui.line.builder import BuilderScreen
-from calm.tui.messages import CatalogueRead, Edited, Judged, JudgingFailed
-from calm.tui.painted import Painted
-from calm.tui.palette import Actions
-from calm.tui.plain import PlainSigns, shows_all_signs
+from calm.tui.messages import CatalogueRead, Edited, Judged, JudgingFailed, Workspace
+from calm.tui.painted import Painted, PlainSigns, shows_all_signs
 from calm.tui.saving import Saving
 from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
 from calm.tui.theme import PICTURE_DARK, PICTURE_LIGHT, choose_theme, themes
 from calm.tui.turns import InTurn
-from calm.tui.workspace import Workspace
 
 _AUTOSAVED_AFTER = 0.3  # seconds
 _LOOKED_AT_DISK = 2.0  # seconds between two looks
@@ -300,7 +298,7 @@ class BuildApp(InTurn):
                 self.session.recover(kept)
                 self.taken_over("Recovered; save it to keep it")
             elif answer == "discard":
-                self.push_screen(recovery.confirmation(kept), throw_away)
+                self.push_screen(saving.confirmation(kept), throw_away)
             else:
                 self._mend(as_judged=True)
 
@@ -311,4 +309,4 @@ class BuildApp(InTurn):
                 self.session.file.discard(kept)
                 self._mend(as_judged=True)
 
-        self.push_screen(recovery.offer(self.session, kept), take)
+        self.push_screen(saving.offer(self.session, kept), take)

@@ -15,7 +15,7 @@ from textual.scroll_view import ScrollView
 from textual.strip import Strip
 from textual.widgets import Static
 
-from calm.tui.signs import CURSOR, ELLIPSIS
+from calm.tui.theme import CURSOR, ELLIPSIS
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult

@@ -3,7 +3,7 @@
 import pytest
 
 from calm.files import Catalogue
-from calm.tui.catalogue.figures import COLUMNS, wanted
+from calm.tui.catalogue.component_list import COLUMNS, wanted
 from calm.tui.catalogue.index import Index
 
 INDEX = Index(Catalogue.load())

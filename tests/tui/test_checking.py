@@ -4,7 +4,7 @@ import pytest
 
 from calm.files.fields import QuantityField
 from calm.tui import checking
-from calm.tui.catalogue.component_form import defined, form_fields
+from calm.tui.catalogue.component_screen import defined, form_fields
 from calm.tui.catalogue.index import Index
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from calm.records.delimited import NoTableError, copied_table
-from calm.tui.water.columns import check_of
+from calm.tui.water.cells import check_of
 from calm.tui.water.pasted import NoRows, Rows, UnknownColumns, offered_headings, rows_in
 
 COLUMNS = ("depth m", "speed m/s", "toward deg")

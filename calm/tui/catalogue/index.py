@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
 
+from calm import whole_file
 from calm.errors import InputError
 from calm.files.catalogue import FAMILY_ROLES, Catalogue, CatalogueEntry
+from calm.files.editing import state_folder
 from calm.files.yaml_document import SourceMapping, compose
-from calm.tui.catalogue.figures import Figures, figures_of, wanted
-from calm.tui.catalogue.synonyms import with_synonyms
+from calm.tui.catalogue.component_list import Figures, figures_of, wanted
 
 _ROLES = {"cable": "line", "chain": "line", "anchor": "anchor"}
 _ELSEWHERE = 4
@@ -151,3 +153,91 @@ def _listed(entry: CatalogueEntry, shipped: object) -> Listed:
         role=role or _ROLES.get(text("kind"), "instrument"),
         own=own,
     )
+
+
+_GROUPS = (
+    ("twin", "double", "dual", "paired", "pair", "two", "tandem"),
+    ("current meter", "rcm", "aquadopp", "s4", "argonaut", "dvs", "rcm4", "rcm5", "rcm8", "rcm11"),
+    ("current profiler", "adcp", "rdcp", "workhorse", "doppler"),
+    ("ctd", "microcat", "seacat", "sbe37", "sbe16", "sbe19", "conductivity"),
+    ("thermistor", "temperature logger", "hobo", "tr", "sbe39", "sbe56"),
+    ("thimble", "termination", "eye", "socket"),
+    ("float", "flotation", "buoy", "buoyancy"),
+    ("anchor", "sinker", "deadweight", "clump"),
+    ("rope", "line", "hawser"),
+    ("wire", "steel rope", "jacketed"),
+    ("dyneema", "spectra", "hmpe", "amsteel"),
+    ("kevlar", "aramid", "parafil"),
+    ("polyester", "dacron"),
+    ("nylon", "polyamide", "perlon"),
+    ("ring", "link", "maillon"),
+    ("glass", "benthos", "vitrovex"),
+    ("release", "releaser"),
+)
+_FOUND = tuple(
+    (re.compile(r"\b(" + "|".join(map(re.escape, group)) + r")s?\b"), " ".join(group))
+    for group in _GROUPS
+)
+
+
+def with_synonyms(text: str) -> str:
+    """A text in small letters, with the synonyms of its words added."""
+    return " ".join([text, *(words for pattern, words in _FOUND if pattern.search(text))])
+
+
+_NAME = "catalogue.json"
+_MOST_RECENT = 40
+
+
+class Remembered:
+    """Ids of components, each list the last one first; a file that cannot be read is none.
+
+    Attributes
+    ----------
+    favourites : marked by the person
+    recent : taken from the catalogue
+    """
+
+    def __init__(self) -> None:
+        self.favourites, self.recent = _read()
+
+    def take(self, id: str) -> None:
+        """Note that one was taken; where it cannot be kept, for this session only."""
+        self.recent = [id, *(each for each in self.recent if each != id)][:_MOST_RECENT]
+        try:
+            self._keep()
+        except OSError:
+            return
+
+    def mark(self, id: str) -> bool:
+        """Mark a favourite, or unmark it; returns whether it is one now.
+
+        Raises
+        ------
+        OSError
+            It could not be kept, and is one in this session only.
+        """
+        is_new = id not in self.favourites
+        self.favourites = [each for each in self.favourites if each != id]
+        if is_new:
+            self.favourites.insert(0, id)
+        self._keep()
+        return is_new
+
+    def _keep(self) -> None:
+        folder = state_folder()
+        folder.mkdir(parents=True, exist_ok=True)
+        content = json.dumps({"favourites": self.favourites, "recent": self.recent}, indent=1)
+        whole_file.put(folder / _NAME, content.encode())
+
+
+def _read() -> tuple[list[str], list[str]]:
+    try:
+        kept = json.loads((state_folder() / _NAME).read_text(encoding="utf-8"))
+        return _ids(kept["favourites"]), _ids(kept["recent"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return [], []
+
+
+def _ids(kept: Iterable[object]) -> list[str]:
+    return [each for each in kept if isinstance(each, str)]

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from calm.tui.keys.action import Action
-from calm.tui.keys.builder import BUILDER
+from calm.tui.actions import Action
+from calm.tui.keys.builder import BUILDER, SCREENS
 from calm.tui.keys.line import LINE
-from calm.tui.keys.screens import SCREENS
 
 ACTIONS: tuple[Action, ...] = (*LINE, *BUILDER, *SCREENS)

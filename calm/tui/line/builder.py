@@ -9,20 +9,19 @@ from textual.binding import BindingType
 from textual.events import DescendantFocus, Key
 
 from calm.files.components import KINDS
-from calm.tui.actions import bindings, hints
+from calm.tui.actions import Place, bindings, hints
 from calm.tui.bars import KeyBar
 from calm.tui.catalogue.pane import CataloguePane
-from calm.tui.keys.action import Place
 from calm.tui.line.advising import Advising
 from calm.tui.line.body import LineBody
 from calm.tui.line.cell_editor import CellEditor
 from calm.tui.line.comparing import Comparing
 from calm.tui.line.pane import LinePane
+from calm.tui.messages import Workspace
 from calm.tui.pictures import Picture, Tab
 from calm.tui.screen import DraftScreen
 from calm.tui.session import Location
 from calm.tui.verdict_pane import VerdictPane
-from calm.tui.workspace import Workspace
 
 if TYPE_CHECKING:
     from calm.tui.line.sheets import Sheets
@@ -170,7 +169,7 @@ class BuilderScreen(DraftScreen):
     def action_begin(self) -> None:
         """Begin an empty line with a mooring."""
         from calm.templates import TEMPLATES, template
-        from calm.tui.line.questions import beginning
+        from calm.tui.line.papers import beginning
 
         session = self.workspace.session
         if session.draft.items:
@@ -186,7 +185,7 @@ class BuilderScreen(DraftScreen):
 
     def action_history(self) -> None:
         """Show what was done, and go back to before any of it."""
-        from calm.tui.line.questions import history
+        from calm.tui.line.papers import history
 
         steps = self.workspace.session.history
         if not self.part.settle():

@@ -10,7 +10,7 @@ from calm.checks.finding import State
 from calm.files import Place
 from calm.files.editing import Draft, clamps_of
 from calm.files.rule_texts import RULES
-from calm.tui.catalogue.component_form import FormField, form_fields
+from calm.tui.catalogue.component_screen import FormField, form_fields
 from calm.tui.live import View
 from calm.tui.session import Location
 

@@ -12,8 +12,8 @@ from calm.files.editing import Draft, LineItem
 from calm.quantities import QUANTITIES
 from calm.tui.catalogue.index import Index
 from calm.tui.checking import length_text
-from calm.tui.line.table_row import TableRow
-from calm.tui.signs import CLAMP, ROLES, UNKNOWN_MARGIN, UNKNOWN_ROLE, worst
+from calm.tui.line.table import TableRow
+from calm.tui.theme import CLAMP, ROLES, UNKNOWN_MARGIN, UNKNOWN_ROLE, worst
 
 if TYPE_CHECKING:
     from calm.tui.found import Row

@@ -19,7 +19,7 @@ from calm.files.fields import POSITIVE_LENGTH, QuantityField
 from calm.records.profile_tables import DIRECTION, SALINITY, TEMPERATURE, WATER_DENSITY
 from calm.tui.checking import needed, quantity
 from calm.tui.field import Field
-from calm.tui.messages import said
+from calm.tui.messages import Workspace, said
 from calm.tui.profile import Profile
 from calm.tui.verdict_pane import state_word
 from calm.tui.water.form import (
@@ -28,12 +28,11 @@ from calm.tui.water.form import (
     DENSITY_FORMS,
     PROFILE_FORMS,
     USUAL_DEPTH,
+    FormChoice,
     Place,
     Water,
 )
-from calm.tui.water.form_choice import FormChoice
 from calm.tui.water.grid import Grid
-from calm.tui.workspace import Workspace
 
 if TYPE_CHECKING:
     from calm.errors import Problem

@@ -18,8 +18,8 @@ from calm.records.profile_tables import (
     read_water,
     speed_and_direction,
 )
-from calm.tui.signs import ELLIPSIS
-from calm.tui.water.columns import check_of, dimension_of, named
+from calm.tui.theme import ELLIPSIS
+from calm.tui.water.cells import check_of, dimension_of, named
 from calm.units import DIMENSIONS, QuantityError, unit_factor
 
 Rows = tuple[tuple[str, ...], ...]
