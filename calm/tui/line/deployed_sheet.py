@@ -15,7 +15,7 @@ from calm.tui.dialogs import Asked, Sheet
 from calm.tui.line.entries import entered, said
 from calm.tui.line.mooring_sheet import LATITUDE, LONGITUDE, filled, written
 
-_PLACES: dict[str, Location] = {
+_DEPLOYED_PLACES: dict[str, Location] = {
     "date": ("deployed", "date"),
     "latitude": ("deployed", "position", "latitude"),
     "longitude": ("deployed", "position", "longitude"),
@@ -76,7 +76,7 @@ def hung_at(file: MooringFile | None, spot: Place | None) -> Hung | None:
 
 def deployed_sheet(draft: Draft, hung: Hung | None) -> Sheet:
     """When and where the mooring was deployed, and what hangs at a row, as the file has them."""
-    asked = filled(draft, _WHOLE, _PLACES)
+    asked = filled(draft, _WHOLE, _DEPLOYED_PLACES)
     if hung is None:
         return Sheet("As deployed", _COMPARED, asked)
     for key, title, check in _OF_A_ROW:
@@ -91,7 +91,7 @@ def deployed_sheet(draft: Draft, hung: Hung | None) -> Sheet:
 
 def as_deployed(draft: Draft, hung: Hung | None, texts: Mapping[str, str]) -> Draft:
     """The file with what was entered."""
-    draft = written(draft, {key: texts[key] for key in _PLACES}, _PLACES)
+    draft = written(draft, {key: texts[key] for key in _DEPLOYED_PLACES}, _DEPLOYED_PLACES)
     if hung is None:
         return draft
     given = {key: texts[f"item {key}"] for key, _, _ in _OF_A_ROW if f"item {key}" in texts}

@@ -21,7 +21,7 @@ def equipment_sheet(label: str, values: Mapping[str, Any], *, is_clamp: bool) ->
     values : what the file says of it
     """
     asked = [
-        Asked("serial", "Serial number", _said(values, "serial"), _serial, "4711"),
+        Asked("serial", "Serial number", _said(values, "serial"), _serial_of_equipment, "4711"),
         Asked("calibrated", "Calibrated", _said(values, "calibrated"), day, "2027-06-30"),
         Asked("sampling", "Sampling", _said(values, "sampling"), anything, "every 10 min"),
         Asked("battery_until", "Battery until", _said(values, "battery_until"), day, "2028-06-30"),
@@ -49,7 +49,7 @@ def _said(values: Mapping[str, Any], key: str) -> str:
     return ", ".join(map(str, value)) if isinstance(value, list) else str(value or "")
 
 
-def _serial(text: str) -> Reading:
+def _serial_of_equipment(text: str) -> Reading:
     numbers = [" ".join(one.split()) for one in text.split(",")]
     if len(numbers) > 1 and not all(numbers):
         return Reading("", "a number is blank")

@@ -12,7 +12,7 @@ from calm.files.editing import Draft, clamps_of
 from calm.files.rule_texts import RULES
 from calm.tui.catalogue.component_screen import FormField, form_fields
 from calm.tui.live import View
-from calm.tui.session import Location
+from calm.files.yaml_document import Location
 
 
 @dataclass
