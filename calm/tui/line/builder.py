@@ -24,7 +24,7 @@ from calm.tui.session import Location
 from calm.tui.verdict_pane import VerdictPane
 
 if TYPE_CHECKING:
-    from calm.tui.line.sheets import Sheets
+    from calm.tui.line.mooring_sheet import Sheets
 
 
 class BuilderScreen(DraftScreen):
@@ -272,7 +272,7 @@ class BuilderScreen(DraftScreen):
 
     @property
     def _sheets(self) -> Sheets:
-        from calm.tui.line.sheets import Sheets
+        from calm.tui.line.mooring_sheet import Sheets
 
         return Sheets(self.app, self.body.line)
 
