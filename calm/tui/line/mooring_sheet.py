@@ -15,7 +15,7 @@ from calm.files.fields import LENGTH, POSITIVE_LENGTH, QuantityField
 from calm.files.yaml_document import Location
 from calm.tui.checking import Reading, anything, day, moment, quantity
 from calm.tui.dialogs import Asked, Sheet
-from calm.tui.line.entries import entered, said
+from calm.tui.line.missing_screen import entered, said
 from calm.tui.line.pane import LinePane
 
 _PLACES: dict[str, Location] = {
