@@ -14,7 +14,8 @@ from textual.containers import ScrollableContainer
 from textual.screen import Screen
 from textual.widgets import Input, TextArea
 
-from calm.tui.actions import PLACES, Action, actions_in, shown_key, shown_keys
+from calm.tui.actions import actions_in, shown_key, shown_keys
+from calm.tui.keys.builder import PLACES, Action
 from calm.tui.keys.table import ACTIONS
 from calm.tui.theme import LOOKS
 

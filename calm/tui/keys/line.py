@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from calm.tui.actions import Action
+from calm.tui.keys.builder import Action
 
 LINE: tuple[Action, ...] = (
     # the line

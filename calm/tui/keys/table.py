@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from calm.tui.actions import Action
-from calm.tui.keys.builder import BUILDER, SCREENS
+from calm.tui.keys.builder import BUILDER, SCREENS, Action
 from calm.tui.keys.line import LINE
 
 ACTIONS: tuple[Action, ...] = (*LINE, *BUILDER, *SCREENS)

@@ -73,7 +73,7 @@ class MissingScreen(Screen[Filled | None]):
         if not missing.fields:
             yield Static(_ELSEWHERE, classes="elsewhere", markup=False)
             return
-        for field in missing.fields:
+        for wanted in missing.fields:
             title = field.key.replace("_", " ")
             asked = Field(field.key, title, field.check, note=field.takes)
             self._asked[asked] = (missing.use, field.key)
