@@ -15,8 +15,7 @@ from textual.screen import Screen
 from textual.widgets import Input, TextArea
 
 from calm.tui.actions import actions_in, shown_key, shown_keys
-from calm.tui.keys.builder import PLACES, Action
-from calm.tui.keys.table import ACTIONS
+from calm.tui.key_table import ACTIONS, PLACES, Action
 from calm.tui.theme import LOOKS
 
 _SIGNS = "Signs: " + ", ".join(f"{look.sign} {look.word}" for look in LOOKS.values())

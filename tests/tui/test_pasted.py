@@ -3,8 +3,7 @@
 import pytest
 
 from calm.records.delimited import NoTableError, copied_table
-from calm.tui.water.cells import check_of
-from calm.tui.water.pasted import NoRows, Rows, UnknownColumns, offered_headings, rows_in
+from calm.tui.water.pasted import NoRows, Rows, UnknownColumns, check_of, offered_headings, rows_in
 
 COLUMNS = ("depth m", "speed m/s", "toward deg")
 ROWS = (("0", "0.9", "70"), ("50", "1e-3", "60"))

@@ -16,8 +16,8 @@ from textual.widgets import Input, Static
 from calm.errors import CalmError
 from calm.files.components import FLEXIBLE_KINDS, RIGID_KINDS
 from calm.tui.actions import bindings
-from calm.tui.catalogue.component_list import COLUMNS, ComponentList
-from calm.tui.catalogue.index import Index, Listed, Remembered
+from calm.tui.catalogue.component_list import ComponentList
+from calm.tui.catalogue.index import COLUMNS, Index, Listed, Remembered
 from calm.tui.checking import anything, distance, length
 from calm.tui.field import Field
 from calm.tui.scrolled import Entry, ScrolledText

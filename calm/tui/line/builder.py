@@ -12,7 +12,7 @@ from calm.files.components import KINDS
 from calm.tui.actions import bindings, hints
 from calm.tui.bars import KeyBar
 from calm.tui.catalogue.pane import CataloguePane
-from calm.tui.keys.builder import Place
+from calm.tui.key_table import Place
 from calm.tui.line.advising import Advising
 from calm.tui.line.body import LineBody
 from calm.tui.line.cell_editor import CellEditor
@@ -25,7 +25,7 @@ from calm.tui.session import Location
 from calm.tui.verdict_pane import VerdictPane
 
 if TYPE_CHECKING:
-    from calm.tui.line.mooring_sheet import Sheets
+    from calm.tui.line.sheets import Sheets
 
 
 class BuilderScreen(DraftScreen):
@@ -170,7 +170,7 @@ class BuilderScreen(DraftScreen):
     def action_begin(self) -> None:
         """Begin an empty line with a mooring."""
         from calm.templates import TEMPLATES, template
-        from calm.tui.line.papers import beginning
+        from calm.tui.line.mooring_sheet import beginning
 
         session = self.workspace.session
         if session.draft.items:
@@ -186,7 +186,7 @@ class BuilderScreen(DraftScreen):
 
     def action_history(self) -> None:
         """Show what was done, and go back to before any of it."""
-        from calm.tui.line.papers import history
+        from calm.tui.line.mooring_sheet import history
 
         steps = self.workspace.session.history
         if not self.part.settle():
@@ -273,7 +273,7 @@ class BuilderScreen(DraftScreen):
 
     @property
     def _sheets(self) -> Sheets:
-        from calm.tui.line.mooring_sheet import Sheets
+        from calm.tui.line.sheets import Sheets
 
         return Sheets(self.app, self.body.line)
 

@@ -73,10 +73,10 @@ class MissingScreen(Screen[Filled | None]):
         if not missing.fields:
             yield Static(_ELSEWHERE, classes="elsewhere", markup=False)
             return
-        for wanted in missing.fields:
-            title = field.key.replace("_", " ")
-            asked = Field(field.key, title, field.check, note=field.takes)
-            self._asked[asked] = (missing.use, field.key)
+        for figure in missing.fields:
+            title = figure.key.replace("_", " ")
+            asked = Field(figure.key, title, figure.check, note=figure.takes)
+            self._asked[asked] = (missing.use, figure.key)
             yield asked
 
     def on_mount(self) -> None:
@@ -214,44 +214,3 @@ def filled(
                 if source:
                     draft = draft.put_at((*target, "sources", key), source)
     return draft
-
-
-def said(draft: Draft, rows: Location, called: tuple[str, str], key: str) -> str:
-    """What an entry says under a key, where that is a plain text; else empty.
-
-    Parameters
-    ----------
-    rows : the list
-    called : the key and the text that the entry is known by
-    """
-    index = _index(draft, rows, called)
-    return "" if index is None else draft.text_at((*rows, index, key))
-
-
-def entered(
-    draft: Draft, rows: Location, called: tuple[str, str], texts: Mapping[str, str]
-) -> Draft:
-    """The file with the texts in an entry, which is added where it is not there.
-
-    One in which nothing is left but what it is known by is taken out.
-    """
-    changed = {key: text for key, text in texts.items() if text != said(draft, rows, called, key)}
-    index = _index(draft, rows, called)
-    if index is None:
-        given = dict([called]) | changed
-        return draft.insert(len(draft.value(rows) or ()), given, rows) if changed else draft
-    left = draft.value((*rows, index)).keys() - {key for key, text in changed.items() if not text}
-    if changed and left <= {called[0]} and not any(changed.values()):
-        return draft.delete([index], rows)
-    for key, text in changed.items():
-        draft = draft.put_at((*rows, index, key), text or None)
-    return draft
-
-
-def _index(draft: Draft, rows: Location, called: tuple[str, str]) -> int | None:
-    listed: Any = draft.value(rows)
-    key, name = called
-    for index, entry in enumerate(listed if isinstance(listed, list) else ()):
-        if isinstance(entry, dict) and entry.get(key) == name:
-            return index
-    return None

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
-
-from textual.app import App
 
 from calm.case.parts import parts_of
 from calm.files import Flexible, MooringFile, Piece, Place
 from calm.files.editing import Draft, EditError, Value
 from calm.files.fields import LENGTH, POSITIVE_LENGTH, QuantityField
 from calm.files.yaml_document import Location
+from calm.templates import TEMPLATES
 from calm.tui.checking import Reading, anything, day, moment, quantity
-from calm.tui.dialogs import Asked, Sheet
-from calm.tui.line.missing_screen import entered, said
-from calm.tui.line.pane import LinePane
+from calm.tui.dialogs import Answer, Asked, Question, Sheet
+from calm.tui.session import Session
 
 _PLACES: dict[str, Location] = {
     "name": ("name",),
@@ -273,45 +271,79 @@ def _serial_of_equipment(text: str) -> Reading:
     return Reading(", ".join(numbers))
 
 
-class Sheets:
-    """Shows each, and writes what was entered."""
+def said(draft: Draft, rows: Location, called: tuple[str, str], key: str) -> str:
+    """What an entry says under a key, where that is a plain text; else empty.
 
-    def __init__(self, app: App[Any], line: LinePane) -> None:
-        self._app, self._line, self._workspace = app, line, line.workspace
+    Parameters
+    ----------
+    rows : the list
+    called : the key and the text that the entry is known by
+    """
+    index = _index(draft, rows, called)
+    return "" if index is None else draft.text_at((*rows, index, key))
 
-    @property
-    def _draft(self) -> Draft:
-        return self._workspace.session.draft
 
-    def mooring(self) -> None:
-        """Name, description, position."""
-        self._ask(mooring_sheet(self._draft), "name and place", written)
+def entered(
+    draft: Draft, rows: Location, called: tuple[str, str], texts: Mapping[str, str]
+) -> Draft:
+    """The file with the texts in an entry, which is added where it is not there.
 
-    def document(self) -> None:
-        """What the title block of the drawings says, and what the revision changed."""
-        self._ask(document_sheet(self._draft), "the document", documented)
+    One in which nothing is left but what it is known by is taken out.
+    """
+    changed = {key: text for key, text in texts.items() if text != said(draft, rows, called, key)}
+    index = _index(draft, rows, called)
+    if index is None:
+        given = dict([called]) | changed
+        return draft.insert(len(draft.value(rows) or ()), given, rows) if changed else draft
+    left = draft.value((*rows, index)).keys() - {key for key, text in changed.items() if not text}
+    if changed and left <= {called[0]} and not any(changed.values()):
+        return draft.delete([index], rows)
+    for key, text in changed.items():
+        draft = draft.put_at((*rows, index, key), text or None)
+    return draft
 
-    def deployed(self) -> None:
-        """When and where the mooring was deployed, and what hangs at the row."""
-        view = self._workspace.view if self._workspace.is_fresh else None
-        hung = hung_at(None if view is None else view.file, self._line.table.spot)
 
-        def deployed(draft: Draft, texts: Mapping[str, str]) -> Draft:
-            return as_deployed(draft, hung, texts)
+def _index(draft: Draft, rows: Location, called: tuple[str, str]) -> int | None:
+    listed: Any = draft.value(rows)
+    key, name = called
+    for index, entry in enumerate(listed if isinstance(listed, list) else ()):
+        if isinstance(entry, dict) and entry.get(key) == name:
+            return index
+    return None
 
-        self._ask(deployed_sheet(self._draft, hung), "the deployment", deployed)
 
-    def tow(self) -> None:
-        """Speed and course of a tow; a mooring becomes one."""
-        self._ask(tow_sheet(self._draft), "the tow", written)
+_MOST_STEPS = 9
 
-    def _ask(
-        self, sheet: Sheet, label: str, changed: Callable[[Draft, Mapping[str, str]], Draft]
-    ) -> None:
-        session = self._workspace.session
 
-        def take(texts: dict[str, str] | None) -> None:
-            if texts is not None:
-                self._line.attempt(lambda: session.do(changed(session.draft, texts), label))
+def beginning() -> Question:
+    """Ask with which of the `TEMPLATES` an empty line begins; the answer is its number, from 1."""
+    answers = [
+        Answer(str(number), f"{kind}: {meaning}", str(number))
+        for number, (kind, meaning) in enumerate(TEMPLATES.items(), 1)
+    ]
+    text = "Each stands as given: change depth, current and pieces to yours."
+    return Question("Begin with", text, answers)
 
-        self._app.push_screen(sheet, take)
+
+def history(session: Session) -> Question:
+    """How many steps to take back, the last ones listed; it answers with their number."""
+    steps = session.history.steps
+    answers = [
+        Answer(str(number), f"before: {label}", str(number))
+        for number, label in enumerate(steps[:_MOST_STEPS], 1)
+    ]
+    more = len(steps) - _MOST_STEPS
+    text = f"Go back to before one of the last {len(answers)} changes; U does them again."
+    text += f" {more} are older; u goes back one by one." if more > 0 else ""
+    return Question("What was done", text, answers)
+
+
+def naming(session: Session) -> Sheet:
+    """The id of an assembly that is made of marked pieces."""
+    from calm.tui.catalogue.component_screen import id_check
+
+    own = session.draft.value(("components",))
+    check = id_check(own if isinstance(own, dict) else ())
+    asked = [Asked("id", "Id", check=check, placeholder="e.g. glass-pack-own")]
+    text = "The pieces go into the file's components; `use` of this id stands for them."
+    return Sheet("Make an assembly", text, asked)

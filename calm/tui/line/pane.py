@@ -18,8 +18,7 @@ from calm.tui.catalogue.pane import Purpose
 from calm.tui.line.cell_editor import CellEditor
 from calm.tui.line.cells import Cells
 from calm.tui.line.found import Found
-from calm.tui.line.mooring_sheet import equipment_changes, equipment_sheet
-from calm.tui.line.papers import naming
+from calm.tui.line.mooring_sheet import equipment_changes, equipment_sheet, naming
 from calm.tui.line.rows import table_rows
 from calm.tui.line.table import Column, LineTable
 from calm.tui.messages import Workspace

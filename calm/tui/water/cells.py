@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar
 
 from rich.cells import set_cell_size
@@ -15,14 +15,10 @@ from textual.message import Message
 from textual.reactive import reactive
 from textual.strip import Strip
 
-from calm.files.fields import QuantityField
-from calm.records.profile_tables import DIRECTION, SALINITY, TEMPERATURE, WATER_DENSITY
 from calm.tui.actions import bindings
-from calm.tui.checking import Check, Reading, number, quantity
 from calm.tui.scrolled import Listing
 from calm.tui.theme import CURSOR
-from calm.tui.water.pasted import Rows
-from calm.units import QuantityError, QuantityRange, unit_factor
+from calm.tui.water.pasted import Rows, half_way
 
 _WIDTH = 14
 _LEAD = 2
@@ -240,57 +236,7 @@ def _between(columns: Sequence[str], rows: Rows, at: int, seabed: float | None) 
     return tuple(f"{half:g}" for half in halves)
 
 
-_KINDS: dict[str, QuantityRange] = {
-    "depth": QuantityField("length"),
-    "speed": QuantityField("speed", at_least=0),
-    "u": QuantityField("speed"),
-    "v": QuantityField("speed"),
-    "w": QuantityField("speed"),
-    "toward": DIRECTION,
-    "density": WATER_DENSITY,
-    "temperature": TEMPERATURE,
-    "salinity": SALINITY,
-}
-_TURN = 360.0
-
-
 def named(column: str) -> tuple[str, str]:
     """The name and the unit that the heading of a column gives; empty where it gives none."""
     name, _, unit = column.replace("[", " ").replace("]", " ").strip().partition(" ")
     return name, unit.strip()
-
-
-def dimension_of(name: str) -> str:
-    """The dimension of the quantity that a column holds."""
-    return _KINDS[name].dimension
-
-
-def check_of(column: str) -> Check:
-    """What judges the values of a column: numbers where it gives its unit, else quantities."""
-    name, unit = named(column)
-    kind = _KINDS.get(name)
-    if kind is None:
-        return number
-    judged = quantity(kind)
-    if not unit:
-        return judged
-
-    def check(text: str) -> Reading:
-        reading = number(text)
-        complaint = judged(f"{reading.text} {unit}").complaint if reading.is_good else ""
-        return replace(reading, complaint=complaint) if complaint else reading
-
-    return check
-
-
-def half_way(column: str, one: float, other: float) -> float:
-    """The value between two of a column; between directions on the shorter way round."""
-    name, unit = named(column)
-    half = (one + other) / 2
-    if name != "toward":
-        return half
-    try:
-        turn = _TURN / unit_factor(unit or "deg", "angle")
-    except QuantityError:
-        return half
-    return (half + turn / 2) % turn if abs(one - other) > turn / 2 else half

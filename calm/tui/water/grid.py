@@ -14,11 +14,12 @@ from calm.records.delimited import CopiedTable, NoTableError, copied_table
 from calm.tui.checking import Check, Reading
 from calm.tui.dialogs import Asked, Sheet
 from calm.tui.line.cell_editor import CellEditor
-from calm.tui.water.cells import Cells, check_of
+from calm.tui.water.cells import Cells
 from calm.tui.water.pasted import (
     NoRows,
     Rows,
     UnknownColumns,
+    check_of,
     offered_headings,
     previewed,
     rows_in,
