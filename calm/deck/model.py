@@ -18,7 +18,7 @@ from calm.deck.lifts import Lifts, lifts_of
 from calm.deck.order import Order, Surfacing, over_the_side, surfacing
 from calm.deck.shipping import Freight, freight_of
 from calm.drop import DropPlan, drop_plan
-from calm.drop.plan import SHIP_SPEED
+from calm.drop.launch import SHIP_SPEED
 from calm.errors import NoEquilibrium
 from calm.files import CurrentTable
 from calm.solve import Status
