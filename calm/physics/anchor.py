@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-import numpy as np
+from typing import Any
 
-from calm.physics.line import Floats
+import numpy as np
+from numpy.typing import NDArray
+
+Forces = NDArray[np.floating[Any]]
 
 
 def required_weight(
-    vertical: Floats | float, horizontal: Floats | float, factor: float, friction: float
-) -> Floats:
+    vertical: Forces | float, horizontal: Forces | float, factor: float, friction: float
+) -> Forces:
     """Return the weight in water that keeps a dead-weight anchor where it is [N].
 
     It is never below 0: an anchor that the line presses down on the bed needs none.
@@ -22,5 +25,5 @@ def required_weight(
 
     W ≥ factor (V + H / friction): the rule of Dewey's Mooring Design & Dynamics and of WHOI.
     """
-    needed: Floats = np.maximum(factor * (vertical + horizontal / friction), 0.0)
+    needed: Forces = np.maximum(factor * (vertical + horizontal / friction), 0.0)
     return needed
