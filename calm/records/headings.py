@@ -72,7 +72,8 @@ def column_unit(
         except QuantityError as error:
             complaints.append(error)
     said = next((one for one in complaints if one.suggestion), complaints[0])
-    offer = f"; did you mean `{name}[{said.suggestion}]`?" if said.suggestion else ""
+    meant = column.strip().replace(unit, said.suggestion) if said.suggestion else ""
+    offer = f"; did you mean `{shown(meant)}`?" if meant else ""
     raise QuantityError(f"`{shown(column)}` {said.complaint}{offer}")
 
 

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 
 from calm.errors import Problem
 from calm.quantities import bearing_of
-from calm.records.headings import heading, magnetic_columns
+from calm.records.headings import column_unit, heading, magnetic_columns
 from calm.suggestions import about_quantity, shown, unknown
-from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
+from calm.units import QuantityError, QuantityRange
 
 if TYPE_CHECKING:
     from calm.records.water_column import Place
@@ -343,13 +343,11 @@ def _read_headings(
         elif name in units:
             problems.append(report(("columns", j), f"column `{name}` is given twice"))
         else:
-            dimension = known[name].dimension
             try:
-                unit_factor(unit or DIMENSIONS[dimension].unit, dimension)
+                if unit:
+                    column_unit(column, unit, [known[name].dimension])
             except QuantityError as error:
-                offer = f"; did you mean `{name} {error.suggestion}`?" if error.suggestion else ""
-                message = f"`{shown(column)}` {error.complaint}{offer}"
-                problems.append(report(("columns", j), message))
+                problems.append(report(("columns", j), str(error)))
             else:
                 units[name] = unit
     return units

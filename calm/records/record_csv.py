@@ -214,24 +214,21 @@ def _between(header: CellRow) -> str:
 def _by_time(lines: Iterable[NumberedLine], header: CellRow) -> Iterator[ProfileLines]:
     """Yield the lines of every profile: those that follow each other with one time."""
     sign, skipped = header.dialect.separator, header.skipped
-    profile: ProfileLines | None = None
+    profile, before = ProfileLines("", [], []), None
     for number, line in lines:
         if sign == " ":
             own, *others = row_below(header, number, line).cells
             rest = "\t".join(others)
         else:
-            rest = line
-            for _ in range(skipped):
-                rest = rest.partition(sign)[2]
-            own, _, rest = rest.partition(sign)
-            own = own.strip().strip('"')
-        if profile is None or own != profile.time:
-            if profile is not None:
+            numbered = line.partition(sign)[2] if skipped else line
+            own, _, rest = numbered.partition(sign)
+        if own != before:
+            if profile.lines:
                 yield profile
-            profile = ProfileLines(own, [], [])
+            profile, before = ProfileLines(own.strip().strip('"'), [], []), own
         profile.lines.append((number, line))
         profile.behind.append(rest)
-    if profile is not None:
+    if profile.lines:
         yield profile
 
 
