@@ -100,7 +100,7 @@ def magnetic_columns(columns: Sequence[str]) -> tuple[list[str], set[str]]:
 
 
 def _without_north(column: str) -> str:
-    """A heading without the word ``magnetic`` at the end of its unit."""
+    """Return a heading without the word ``magnetic`` at the end of its unit."""
     name, unit = heading(column)
     plain = _MAGNETIC.sub("", unit)
     return column if plain == unit else f"{name} {plain}".strip()
