@@ -313,7 +313,7 @@ def _split(text: str, wanted: Dimension) -> tuple[float, str]:
 
 
 def _tidy(unit: str) -> str:
-    """One spelling for the many ways of writing a unit: `m s-1`, `m.s^-1`, `m·s⁻¹`."""
+    """Return one spelling for the many ways of writing a unit: `m s-1`, `m.s^-1`, `m·s⁻¹`."""
     unit = unit.strip().replace("**", "^").replace("·", "*")
     unit = re.sub("[⁻¹²³⁴]+", lambda power: "^" + power[0].translate(_SUPERSCRIPTS), unit)
     unit = re.sub(r"\s*([*/^()])\s*", r"\1", unit)

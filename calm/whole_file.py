@@ -116,7 +116,7 @@ def _flush(path: Path) -> None:
 
 
 def _give(part: Path, like: os.stat_result) -> None:
-    """Owner and group apart: who may not give the one away may give the other."""
+    """Give owner and group apart: who may not give the one away may give the other."""
     for owner in ((-1, like.st_gid), (like.st_uid, -1)):
         with contextlib.suppress(OSError, AttributeError):
             os.chown(part, *owner)

@@ -140,8 +140,8 @@ def _summarized(output: Path, mooring: Mooring, stop: Event) -> bool:
         The result cannot be read.
     """
     from calm.batch.threads import Stopped, go_on
-    from calm.report.batch.brief import summary_part
-    from calm.report.batch.files import write_summary
+    from calm.report.batch_brief import summary_part
+    from calm.report.batch_page import write_summary
 
     try:
         show_parts(summary_part(write_summary(output, mooring, lambda: go_on(stop))))

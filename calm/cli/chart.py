@@ -154,8 +154,8 @@ def draw(
         The cables drawn: those whose angle at A is below 90° (when not given), or above.
     """
     from calm.report.chart import CHART_FORMATS, chart_picture
+    from calm.report.folder import check_destination, write_file
     from calm.report.picture import check_format
-    from calm.report.write import check_destination, write_file
 
     check_format(output, CHART_FORMATS)
     check_destination(output)

@@ -169,7 +169,7 @@ def _beside(
 ) -> DrawnSection:
     """The section of a mooring, with what differs from an earlier design."""
     from calm.checks.comparison import comparison_of
-    from calm.report.check.section import mooring_section
+    from calm.report.check_report import mooring_section
 
     names = str(path), str(design.path)
     return _drawn(mooring_section(assessment, comparison_of(names, earlier, design.moorings[0])), 1)
@@ -241,9 +241,9 @@ def _ready(stands: int, drawn: bool) -> None:
 
     expect_many(min(SOLVES * stands, COLD - 1))
     if drawn:
-        import calm.report.check.section
+        import calm.report.check_report
         import calm.report.html  # noqa: F401
-        from calm.report.fonts import legible
+        from calm.report.pdf import legible
 
         legible("")  # has the signs of the fonts read
 
@@ -271,7 +271,7 @@ def _concluded(
     of them solved.
     """
     from calm.checks.assess import assessment_of
-    from calm.report.check.section import mooring_section
+    from calm.report.check_report import mooring_section
 
     assessment = assessment_of(name, stands, day)
     if draws is not None:
@@ -308,8 +308,8 @@ def _answer(
     """
     from concurrent.futures import ThreadPoolExecutor
 
-    from calm.report.check.brief import check_part
-    from calm.report.check.document import check_document
+    from calm.report.check_brief import check_part
+    from calm.report.check_documents import check_document
     from calm.report.folder import write_report
     from calm.report.pdf import report_pdf
 
@@ -329,9 +329,9 @@ def _report_files(
     assessments: Sequence[Assessment], drawings: Sequence[DrawnSection], document: dict[str, Any]
 ) -> dict[str, bytes]:
     """The files of a report's folder, without its PDF."""
-    from calm.report.check.csv import checks_csv, inventory_csv
-    from calm.report.document import to_json
+    from calm.report.check_documents import checks_csv, inventory_csv
     from calm.report.html import report_html
+    from calm.report.result_json import to_json
 
     texts = {
         "report.html": report_html(

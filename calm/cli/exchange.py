@@ -70,7 +70,7 @@ def import_(
         Write what was guessed and left out as JSON, - to print it.
     """
     from calm.exchange.importing import ImportOptions, import_file, record_file
-    from calm.report.write import check_destination, write_file
+    from calm.report.folder import check_destination, write_file
 
     if not files:
         raise UsageError("calm import needs a file")
@@ -140,7 +140,7 @@ def _targets(files: tuple[Path, ...], output: Path) -> list[Path]:
     UsageError
         Two would stand in one place, or one in the place of a file that is read.
     """
-    from calm.report.write import check_destination
+    from calm.report.folder import check_destination
 
     if not _is_folder(files, output):
         check_destination(output)
@@ -188,7 +188,7 @@ def _document(imported: Imported, target: Path) -> dict[str, Any]:
 def _write_json(document: object, target: Path) -> None:
     from json import dumps
 
-    from calm.report.write import write_file
+    from calm.report.folder import write_file
 
     text = dumps(document, indent=2, ensure_ascii=False) + "\n"
     if target == STDOUT:
@@ -234,7 +234,7 @@ def export(
         A catalogue of your own; its components hide others of the same id. Repeatable.
     """
     from calm.exchange.exporting import export_file
-    from calm.report.write import check_destination, write_file
+    from calm.report.folder import check_destination, write_file
 
     check_destination(output)
     if os.path.realpath(output) == os.path.realpath(file):

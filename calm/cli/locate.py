@@ -73,9 +73,9 @@ def locate(
     """
     from calm.locate import locate as found_at
     from calm.locate import read_ranges
-    from calm.report.locate import located_figure, located_part
+    from calm.report.folder import check_destination, write_file
+    from calm.report.located_anchor import located_figure, located_part
     from calm.report.picture import check_format, image
-    from calm.report.write import check_destination, write_file
 
     outputs = Outputs((file,), json)
     outputs.check()

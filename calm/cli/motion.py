@@ -120,9 +120,8 @@ def motion(
     from calm.motion.study import cross_validated, judged, prepare, series_of, several
     from calm.motion.task import MeasuredRecord
     from calm.report.folder import check_folder, write_report
-    from calm.report.motion.brief import motion_part
-    from calm.report.motion.document import motion_document
-    from calm.report.motion.report import motion_files
+    from calm.report.motion_report import motion_files
+    from calm.report.motion_tables import motion_document, motion_part
 
     if workers is not None and workers < 1:
         raise UsageError(f"--workers: {workers} is not 1 or more")

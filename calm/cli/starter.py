@@ -69,7 +69,7 @@ def _new_record(output: Path | None, force: bool) -> ExitCode:
 
 
 def _write(output: Path, content: bytes, force: bool) -> None:
-    from calm.report.write import check_destination, write_file
+    from calm.report.folder import check_destination, write_file
 
     if output.exists() and not force:
         raise UsageError(f"{output} exists already; --force overwrites it")

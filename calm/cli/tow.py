@@ -115,7 +115,7 @@ class _Tabulated:
 
     def rendered(self, suffix: str) -> bytes:
         from calm.report.picture import image
-        from calm.report.plot_sweep import draw_sweep
+        from calm.report.plot import draw_sweep
 
         return image(draw_sweep(self.tabulation), suffix)
 
@@ -225,7 +225,7 @@ def strumming(
     json
         Write the answer as JSON, - to print it.
     """
-    from calm.report.bare_cable import bare_cable_document, bare_cable_part
+    from calm.report.tabulation import bare_cable_document, bare_cable_part
 
     outputs = Outputs(json=json)
     outputs.check()

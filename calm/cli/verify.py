@@ -101,8 +101,12 @@ def verify_field(outputs: Outputs) -> ExitCode:
     from calm.motion.run import estimate_in_memory
     from calm.motion.study import intervals, judge_hidden, prepare
     from calm.report.blocks import Heading, Part, Prose
-    from calm.report.motion.brief import factors_table, held_out_table
-    from calm.report.motion.document import factors_document, held_out_document
+    from calm.report.motion_tables import (
+        factors_document,
+        factors_table,
+        held_out_document,
+        held_out_table,
+    )
     from calm.shipped import shipped_folder
 
     folder = shipped_folder("docs") / "field" / "dune2"

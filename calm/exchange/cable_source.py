@@ -17,17 +17,22 @@ from calm.exchange.design import refused_at
 from calm.whole_file import decoded, read_content
 
 _NAME = re.compile(r"[A-Za-z_]\w*")
-_TEXT = re.compile(r"\"[^\"\n]*\"|'[^'\n]*'")
+_PIECE = re.compile(  # a text in quotes, a number such as 6e3, a name, or signs between them
+    r"\"[^\"\n]*\"|'[^'\n]*'|\d[\w.]*|[A-Za-z_]\w*|[^\w\"']+|.", re.DOTALL
+)
 _DIRECTIVE = re.compile(r"\s*#\s*([a-z]+)\b(.*)", re.DOTALL)
 _MOST_TEXT = 4_000_000  # characters that a file may become
 _MOST_EXPANSIONS = 20_000
 _DEEPEST = 20  # files within files, macros within macros, conditions within conditions
 _LONGEST = 100_000  # characters of one line once expanded
-_NUMBER = re.compile(r"(?:\d+\.\d*|\.\d+|\d+)(?:[eE][+-]?\d+)?")
-_KEY = re.compile(r"([A-Za-z_][\w.-]*)[ \t]*=(?!=)")
-_WORD = re.compile(r"[A-Za-z_][\w/.:]*")
-_QUOTED = re.compile(r"\"([^\"]*)\"|'([^']*)'")
-_SIGN = re.compile(r"&&|\|\||==|!=|<=|>=|<<|>>|[-+*/%<>!~?:|^&(){}\[\],]")
+_TOKEN = re.compile(
+    r"""(?P<key>[A-Za-z_][\w.-]*)[ \t]*=(?!=)
+    |(?P<text>"[^"]*"|'[^']*')
+    |(?P<number>(?:\d+\.\d*|\.\d+|\d+)(?:[eE][+-]?\d+)?)
+    |(?P<name>[A-Za-z_][\w/.:]*)
+    |(?P<sign>&&|\|\||==|!=|<=|>=|<<|>>|[-+*/%<>!~?:|^&(){}\[\],])""",
+    re.VERBOSE,
+)
 
 
 @dataclass(frozen=True)
@@ -195,19 +200,11 @@ class Preprocessor:
         """Return a text with its macros replaced; quoted texts stay as they are."""
         pieces: list[str] = []
         size, at = 0, 0
-        while at < len(text):
-            quoted = _TEXT.match(text, at)
-            name = None if quoted else _NAME.match(text, at)
-            if name and (macro := self._macros.get(name[0])) and name[0] not in hidden:
-                piece, at = self._replaced(macro, name, text, hidden)
-            else:
-                found = quoted or name
-                piece = found[0] if found else text[at]
-                at += len(piece)
-                if found is None and piece.isdigit():  # 6e3 holds no macro called e3
-                    more = re.compile(r"[\w.]*").match(text, at)
-                    assert more is not None
-                    piece, at = piece + more[0], more.end()
+        while found := _PIECE.match(text, at):
+            macro = None if found[0] in hidden else self._macros.get(found[0])
+            piece, at = found[0], found.end()
+            if macro is not None:
+                piece, at = self._replaced(macro, found, text, hidden)
             pieces.append(piece)
             size += len(piece)
             if size > _LONGEST:
@@ -329,19 +326,16 @@ def _words(line: SourceLine) -> Iterator[Token]:
             at += 1
             continue
         place = line.path, line.number, at + 1
-        if found := _KEY.match(text, at):
-            yield Token("key", found[1].lower(), *place)
-        elif found := _QUOTED.match(text, at):
-            yield Token("text", found[1] if found[1] is not None else found[2], *place)
-        elif found := _NUMBER.match(text, at):
-            yield Token("number", found[0], *place, number=float(found[0]))
-        elif found := _WORD.match(text, at):
-            name = found[0].rstrip(":")  # of a list: `meter: (3 5)`
-            yield Token("name", name, *place)
-            at += len(name)
-            continue
-        elif found := _SIGN.match(text, at):
-            yield Token("sign", found[0], *place)
-        else:
+        found = _TOKEN.match(text, at)
+        if found is None:
             raise refused_at(*place, f"`{text[at]}` has no place in a problem of WHOI Cable")
-        at = found.end()
+        kind = found.lastgroup or ""
+        word, at = found[kind], found.end()
+        if kind == "key":
+            word = word.lower()
+        elif kind == "text":
+            word = word[1:-1]
+        elif kind == "name":  # of a list: `meter: (3 5)`
+            at -= len(word) - len(word.rstrip(":"))
+            word = word.rstrip(":")
+        yield Token(kind, word, *place, number=float(word) if kind == "number" else 0.0)

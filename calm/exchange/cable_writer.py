@@ -252,20 +252,22 @@ def _buoy_figures(part: ExportedPart, design: ExportedLine, density: float, lost
     if lift <= 0.0:
         mass, lift = -net / gravity * 1.2, 0.2 * -net
     form = getattr(part.component, "hull", None)
+    form = form if isinstance(form, Displacement) else part.component
     wind = _windage(part, design)
-    if floating and isinstance(form, Displacement):
-        diameters, rows = _turned(form)
-        hull = tabulated_hull(rows)
-        most = density * gravity * rows[-1][1]
+    if floating and isinstance(form, Displacement | Cylinder):
+        if isinstance(form, Displacement):
+            diameters, rows = _turned(form)
+            hull, volume = tabulated_hull(rows), rows[-1][1]
+            size = f"type = axisymmetric  m = {mass:.9g}  diameters = {diameters}"
+        else:
+            hull = cylindrical_hull(form.diameter, part.length)
+            volume = pi / 4.0 * form.diameter**2 * part.length
+            size = (
+                f"type = cylinder  d = {form.diameter:.9g}  h = {part.length:.9g}  m = {mass:.9g}"
+            )
+        most = density * gravity * volume
         drag = seen / hull.area * _drag_share(design, hull, mass, part.net, most)
-        size = f"type = axisymmetric  m = {mass:.9g}  diameters = {diameters}"
         return f"{size}  Cdn = {drag:.9g}{wind}"
-    if floating and isinstance(part.component, Cylinder):
-        hull = cylindrical_hull(part.diameter, part.length)
-        most = density * gravity * pi / 4.0 * part.diameter**2 * part.length
-        drag = seen / hull.area * _drag_share(design, hull, mass, part.net, most)
-        size = f"type = cylinder  d = {part.diameter:.9g}  h = {part.length:.9g}"
-        return f"{size}  m = {mass:.9g}  Cdn = {drag:.9g}{wind}"
     if floating and not isinstance(part.component, Sphere):
         lost.append("the hull of the float: it is a sphere of its drag")
     across = part.diameter if isinstance(part.component, Sphere) else sqrt(4.0 * seen / pi)

@@ -107,7 +107,7 @@ def _flexible(element: MddElement) -> ImportedComponent:
                 f"the file's modulus of {modulus / 1e9:g} GPa is that of a rope; is it a remnant "
                 "of an edit?"
             )
-    if chain:
+    if component.kind == "chain":
         component.comment = (
             "The width that the file gives stands as diameter, which is not that of the bar; "
             "Cd counts on it."

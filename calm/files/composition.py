@@ -109,7 +109,7 @@ def _composed_by_python(text: str, start: int, plain: str) -> Composition:
 
 
 def _syntax_mistakes(text: str, error: MarkedYAMLError) -> list[YamlMistake]:
-    """Tabs in the indentation are the usual cause and are all shown; else what the parser says."""
+    """Show every tab in the indentation, the usual cause; else what the parser says."""
     if "\\t" in str(error.problem):
         found = [
             YamlMistake(number, line.index("\t") + 1, "a tab; YAML is indented with spaces")
@@ -257,7 +257,7 @@ class _Reader:
             event = self._next()
 
     def _find_anchor(self, event: AliasEvent) -> None:
-        """Its mistake is reported where its anchor is, which there must be."""
+        """Raise where an alias has no anchor; where it has, the mistake is reported there."""
         if event.anchor not in self._anchors:
             problem = f"found undefined alias '{event.anchor}'"
             raise MarkedYAMLError(None, None, problem, event.start_mark)

@@ -186,7 +186,7 @@ def volume_from_weights(mass: float | None, net_buoyancy: float) -> float | None
 
 
 def refuse_weight_above_mass(mass: float | None, net_buoyancy: float) -> None:
-    """A thing cannot weigh more in water than in air."""
+    """Refuse what weighs more in water than in air."""
     if mass is not None and -net_buoyancy > mass * STANDARD_GRAVITY * (1 + DISAGREEMENT):
         raise ValueError(
             f"weighs more in water ({-net_buoyancy:.5g} N) than its mass of {mass:g} kg does in air"

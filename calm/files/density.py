@@ -87,7 +87,15 @@ def read_density(
     problems: list[Problem],
     notices: list[str],
 ) -> float | DepthTable | SeaWater | None:
-    """The density of a section's `density:`; None, with its mistakes reported, when it has any."""
+    """Read the density of an environment; None where it has mistakes.
+
+    Parameters
+    ----------
+    given : as the model has it
+    fluid : "water" or "air"
+    section : the environment
+    problems, notices : what is wrong, and worth knowing, is added to them
+    """
     density = _RANGES[fluid]
     if isinstance(given, TableKeys):
         report = report_at(section, "density")
@@ -108,7 +116,7 @@ def read_density(
 
 
 def table_of(value: object) -> TableKeys | None:
-    """The table that a value of a file is, None where it is none."""
+    """Return the table that a value of a file is, None where it is none."""
     try:
         return TableKeys.model_validate(value)
     except ValidationError:
@@ -116,12 +124,12 @@ def table_of(value: object) -> TableKeys | None:
 
 
 def report_at(section: SourceMapping, *place: str) -> Report:
-    """Tells problems at places below a key of a section, or below a key under that."""
+    """Return what makes problems at places below a key of a mapping, or a key under that."""
     return lambda location, message: section.problem((*place, *location), message)
 
 
 def _falls(table: DepthTable) -> list[str]:
-    """A notice where the density falls with depth."""
+    """Return a notice where the density falls with depth."""
     greatest, depth = table.value[0], table.depth[0]
     for below, value in zip(table.depth, table.value, strict=True):
         if value < greatest - _FALL:

@@ -273,9 +273,14 @@ def read_environment(
 ) -> Environment | None:
     """Read the environment of a mapping; None, with its mistakes in `problems`, if it has any.
 
-    A tow may be in air and need not give the water's depth. A current file is looked for beside
-    the file that names it; `position` chooses a column of it. With `open_files` false it is not
-    read, and None is returned.
+    Parameters
+    ----------
+    section : the environment
+    name : of the variant or file it is from; None for the file's own
+    problems, notices : what is wrong, and worth knowing, is added to them
+    towed : it may be air, and the water's depth need not be known
+    position : chooses a column of a current file, which is looked for beside its mooring file
+    open_files : read current files; where not, None is returned
     """
     keys = validate(TowEnvironmentKeys if towed else EnvironmentKeys, section, problems)
     if keys is None:
@@ -316,7 +321,7 @@ def read_environment(
 def _check_depth_range(
     keys: TowEnvironmentKeys, section: SourceMapping, problems: list[Problem]
 ) -> None:
-    """Low water, then high water, and the depth between them."""
+    """Check that low water comes first, then high water, with the depth between them."""
     depth, levels = keys.depth, getattr(keys, "depth_range", None)
     if levels is None or depth is None:
         return
@@ -330,7 +335,7 @@ def _check_depth_range(
 
 
 def _check_wind(keys: TowEnvironmentKeys, section: SourceMapping, problems: list[Problem]) -> None:
-    """Wind blows over water, and drives it down to a known depth."""
+    """Check that wind blows over water, and drives it down to a known depth."""
     if keys.wind is None:
         return
     if keys.fluid == "air":

@@ -194,7 +194,7 @@ class LineReader:
         return None
 
     def _tell_of_mass(self, use: str, component: Component) -> None:
-        """In air, a net force in water has to do where it is all that is known."""
+        """Notice that in air a net force in water has to do where it is all that is known."""
         if self._in_air and component.mass is None and component.displaced_volume is None:
             notice = f"{use}: no mass is known; its net force in water is taken for that in air"
             if notice not in self._notices:

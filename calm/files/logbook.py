@@ -203,7 +203,14 @@ def read_equipment(item: SourceMapping, problems: list[Problem]) -> Equipment:
 
 
 def check_serials(item: SourceMapping, count: int, problems: list[Problem]) -> None:
-    """Of an item and of its clamps: a list of serial numbers has one for each of the count."""
+    """Check that serial numbers given as a list are as many as the item, and its clamps, count.
+
+    Parameters
+    ----------
+    item : of the line
+    count : of the item
+    problems : mistakes are added to it
+    """
     clamps: Any = item.data.get("clamps")
     below = [(("clamps", i), one) for i, one in enumerate(clamps if _is_list(clamps) else ())]
     for place, data in [((), item.data), *below]:
@@ -224,7 +231,7 @@ def check_deployed(
     top: SourceMapping,
     problems: list[Problem],
 ) -> None:
-    """What was deployed is of the line, each piece or clamp once, and only cables are cut.
+    """Check that what was deployed is of the line, each part once, and that only cables are cut.
 
     Parameters
     ----------

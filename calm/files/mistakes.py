@@ -23,10 +23,15 @@ def validate(
     also_allowed: Iterable[str] = (),
     context: Mapping[str, object] | None = None,
 ) -> M | None:
-    """Return the model of a mapping; its mistakes are added to `problems`, and None returned.
+    """Return the model of a mapping, or None where it has mistakes.
 
-    `also_allowed` are keys that stand in the same mapping and belong to something else, `context`
-    what the validators of the model may need to know.
+    Parameters
+    ----------
+    model : of the mapping
+    section : the mapping
+    problems : mistakes are added to it
+    also_allowed : keys that stand in the same mapping and belong to something else
+    context : what the validators of the model may need to know
     """
     try:
         return model.model_validate(section.data, context=context)

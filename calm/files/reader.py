@@ -237,7 +237,7 @@ def _in_order(problems: list[Problem], path: str) -> list[Problem]:
 
 
 def _check_tow(pieces: Sequence[Piece], top: SourceMapping, problems: list[Problem]) -> None:
-    """Nothing stands on the seabed in a tow."""
+    """Check that nothing stands on the seabed in a tow."""
     for piece in pieces:
         if isinstance(piece.component, Anchor):
             message = f"anchor `{piece.use}` in a tow; its line ends in the towed body"
@@ -245,7 +245,7 @@ def _check_tow(pieces: Sequence[Piece], top: SourceMapping, problems: list[Probl
 
 
 def _check_anchor(pieces: Sequence[Piece], top: SourceMapping, problems: list[Problem]) -> None:
-    """The line of a mooring ends in its only anchor."""
+    """Check that the line of a mooring ends in its only anchor."""
     if not pieces:
         return
     for piece in pieces[:-1]:
@@ -279,7 +279,7 @@ def _check_fit(
     top: SourceMapping,
     problems: list[Problem],
 ) -> None:
-    """The depth to reach lies above the seabed, and below the ship."""
+    """Check that the depth to reach lies above the seabed, and below the ship."""
     for piece in pieces:
         for key, depth in (("top", piece.fit_top_depth), ("body", piece.fit_body_depth)):
             if depth is not None and seabed is not None and depth >= seabed:

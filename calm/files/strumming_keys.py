@@ -105,7 +105,7 @@ def _forms_in(value: dict[str, object]) -> list[str]:
 
 
 def _written_out(value: object, info: ValidationInfo) -> object:
-    """A name as what it stands for; a mapping as it is, when it is one of the forms."""
+    """Write a name out as what it stands for; leave a mapping that is one of the forms."""
     if value is None:
         raise QuantityError("has no value")
     law = value.get("model") if isinstance(value, dict) else value

@@ -42,7 +42,15 @@ class Document:
     def problem(
         self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""
     ) -> Problem:
-        """Put a problem at a value (or its key), or at the nearest thing around it that exists."""
+        """Put a problem at a value (or its key), or at the nearest thing around it that exists.
+
+        Parameters
+        ----------
+        location : of the value, below this
+        message : for people
+        key : put it at the key of the value
+        lacks : what is missing, where nothing is wrong
+        """
         location = tuple(location)
         places = self.keys if key else self.values
         while location and location not in places:
@@ -124,7 +132,14 @@ class SourceMapping:
 
     @classmethod
     def of(cls, document: Document, location: Location, data: dict[str, Any]) -> SourceMapping:
-        """Return the mapping `data` that stands at `location` of a document."""
+        """Return the mapping `data` that stands at `location` of a document.
+
+        Parameters
+        ----------
+        document : that holds it
+        location : in the document
+        data : the mapping
+        """
         return cls(document, location, data, None, frozenset(data))
 
     def over(self, base: SourceMapping, *, dropping: frozenset[str] = frozenset()) -> SourceMapping:
@@ -146,7 +161,15 @@ class SourceMapping:
     def problem(
         self, location: Sequence[str | int], message: str, *, key: bool = False, lacks: str = ""
     ) -> Problem:
-        """Return a problem at a value below this mapping, or at its key."""
+        """Return a problem at a value below this mapping, or at its key.
+
+        Parameters
+        ----------
+        location : of the value, below this
+        message : for people
+        key : put it at the key of the value
+        lacks : what is missing, where nothing is wrong
+        """
         home = self.home(location[0]) if location else self
         place = (*home.location, *location)
         return home.document.problem(place, message, key=key, lacks=lacks)

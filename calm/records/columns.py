@@ -29,7 +29,14 @@ class NamedRow:
     columns: Mapping[str, int]
 
     def problem(self, path: Path, name: str, message: str) -> Problem:
-        """Return a mistake at the cell of a column."""
+        """Return a mistake at the cell of a column.
+
+        Parameters
+        ----------
+        path : of the table
+        name : of the column
+        message : what is wrong
+        """
         return Problem(str(path), self.line, self.columns[name], message)
 
 
@@ -51,7 +58,14 @@ class NamedColumns:
     header: int
 
     def lacks(self, path: Path, name: str, unit: str) -> Problem:
-        """Return the mistake that there is no column of a name."""
+        """Return the mistake that there is no column of a name.
+
+        Parameters
+        ----------
+        path : of the table
+        name : of the column
+        unit : to offer with it
+        """
         message = unknown(f"there is no column `{name}[{unit}]`", name, self.others or [name])
         return Problem(str(path), self.header, 1, message)
 
@@ -141,7 +155,8 @@ def read_time_columns(path: Path, dimensions: Sequence[str], example: str) -> Ti
     if complaint := zone_complaint(header.cells[0]):
         problems.append(Problem(str(path), header.number, header.column(0), complaint))
     columns = [
-        _labelled(path, header, j, dimensions, problems) for j in range(1, len(header.cells))
+        _labelled(path, header, j, dimensions, heading(example)[1], problems)
+        for j in range(1, len(header.cells))
     ]
     rows = _whole_rows(table, problems)
     if not rows and not problems:
@@ -183,7 +198,7 @@ class _LabelledColumn:
     factor: float
 
     def value(self, cell: str) -> float:
-        """The number of a cell in SI, NaN of a gap; QuantityError where it is none."""
+        """Return the number of a cell in SI, NaN of a gap; QuantityError where it is none."""
         if NUMBER.fullmatch(cell):
             return float(cell) * self.factor
         if cell.lower() in GAPS or cell.lower().lstrip("+-") in _INFINITE:
@@ -192,13 +207,18 @@ class _LabelledColumn:
 
 
 def _labelled(
-    path: Path, header: CellRow, j: int, dimensions: Sequence[str], problems: list[Problem]
+    path: Path,
+    header: CellRow,
+    j: int,
+    dimensions: Sequence[str],
+    usual: str,
+    problems: list[Problem],
 ) -> _LabelledColumn | None:
-    """The column of a heading; None, with its mistake added, where it has any."""
+    """Return the column of a heading; None, with its mistake added, where it has any."""
     column = header.cells[j]
     name, unit = heading(column, dimensions)
     try:
-        dimension, factor = column_unit(column, unit, dimensions)
+        dimension, factor = column_unit(column, unit, dimensions, usual)
     except QuantityError as error:
         problems.append(Problem(str(path), header.number, header.column(j), str(error)))
         return None
@@ -206,9 +226,10 @@ def _labelled(
 
 
 def _whole_rows(table: TextTable, problems: list[Problem]) -> list[CellRow]:
-    """The rows that have as many cells as the header; mistakes are added for the others."""
+    """Return the rows that have as many cells as the header; mistakes are added for the others."""
     whole = []
     for row in table.rows:
+        problems += row.mixed_decimals(table.path)
         count, needed = len(row.cells), len(table.header.cells)
         if count == needed:
             whole.append(row)

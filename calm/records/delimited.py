@@ -76,19 +76,13 @@ class Dialect:
         found = _COMMA.fullmatch(cell) if self.decimal == "," else None
         return f"{found[1]}.{found[2]}{found[3]}" if found else cell
 
-    def unlike(self, cell: str) -> str | None:
-        """Return what is wrong with a number that has a point where the others have a comma."""
-        if self.decimal != "," or not _POINT.fullmatch(cell):
-            return None
-        return f"`{shown(cell)}` has a decimal point, and the numbers before it have commas"
-
     @property
     def name(self) -> str:
-        """What the separator is called."""
+        """Return what the separator is called."""
         return _SEPARATORS[self.separator]
 
     def _placed(self, line: str) -> list[tuple[int, str]]:
-        """The cells of a line, each after its place in it."""
+        """Return the cells of a line, each after its place in it."""
         if self.separator == " ":
             return [(one.start(), _unquoted(one[0])) for one in _WORDS.finditer(line)]
         pattern, at, found = _CELLS[self.separator], 0, []
@@ -122,6 +116,19 @@ class CellRow:
     def column(self, cell: int) -> int:
         """Return where a cell begins in the line, counted from 1."""
         return self.dialect.column(self.line, cell + self.skipped)
+
+    def mixed_decimals(self, path: Path) -> list[Problem]:
+        """Return a mistake for each number with a point in a table of decimal commas."""
+        if self.dialect.decimal != ",":
+            return []
+        return [
+            Problem(
+                str(path), self.number, self.column(j - self.skipped),
+                f"`{shown(cell)}` has a decimal point, and the numbers before it have commas",
+            )
+            for j, cell in enumerate(Dialect(self.dialect.separator).cells(self.line))
+            if _POINT.fullmatch(cell)
+        ]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -211,6 +218,12 @@ def row_below(header: CellRow, number: int, line: str) -> CellRow:
     """Return a line below a header as cells.
 
     Between blanks, a time may be a date and a clock, which are two words.
+
+    Parameters
+    ----------
+    header : of the table
+    number : of the line
+    line : as it stands
     """
     dialect, skipped = header.dialect, header.skipped
     cells = dialect.cells(line)
@@ -281,6 +294,16 @@ def dialect_of(lines: Sequence[str], *, words: bool = False) -> Dialect:
     return Dialect(best, "," if sure else ".")
 
 
+def no_number(cell: str) -> str | None:
+    """Return what is wrong with a cell that is to be a plain number; None where it is one."""
+    if NUMBER.fullmatch(cell):
+        return None
+    pointed = Dialect(";", ",").with_point(cell)
+    if NUMBER.fullmatch(pointed):
+        return f"has a decimal comma; did you mean `{pointed}`?"
+    return "is no number"
+
+
 def abridged(problems: list[Problem]) -> list[Problem]:
     """Return the first mistakes in the order of the file, and how many more there are."""
     ordered = sorted(dict.fromkeys(problems), key=lambda one: (one.line, one.column))
@@ -292,7 +315,9 @@ def abridged(problems: list[Problem]) -> list[Problem]:
 
 
 def _content(lines: Iterable[NumberedLine]) -> Iterator[NumberedLine]:
-    """Those of the lines that are neither blank nor a comment, cells of several lines in one."""
+    """Return those of the lines that are neither blank nor a comment, cells of several lines in
+    one.
+    """
     begun: list[NumberedLine] = []
     for number, line in lines:
         if not begun and (not line.strip() or line.lstrip().startswith("#")):
@@ -318,7 +343,7 @@ def _unquoted(cell: str) -> str:
 
 
 def _begins_with_number(cell: str) -> bool:
-    """Whether a cell is a number, with a unit behind it or not."""
+    """Return whether a cell is a number, with a unit behind it or not."""
     cell = Dialect(";", ",").with_point(cell)
     number = NUMBER.match(cell)
     rest = cell[number.end() :] if number else "?"

@@ -32,10 +32,11 @@ def heading(column: str, dimensions: Sequence[str] = ()) -> tuple[str, str]:
     if bracketed:
         return bracketed[1], bracketed[2].strip()
     words = text.split(" ")
-    for first in range(1, len(words)):
-        unit = " ".join(words[first:])
-        if any(_is_unit(unit, dimension) for dimension in dimensions):
-            return " ".join(words[:first]), unit
+    for wanted in (dimensions, DIMENSIONS if dimensions else ()):  # a wrong unit is one too
+        for first in range(1, len(words)):
+            unit = " ".join(words[first:])
+            if any(_is_unit(unit, dimension) for dimension in wanted):
+                return " ".join(words[:first]), unit
     if dimensions:
         return text, ""
     found = _WORD.fullmatch(text)
@@ -43,7 +44,9 @@ def heading(column: str, dimensions: Sequence[str] = ()) -> tuple[str, str]:
     return found[1], found[2]
 
 
-def column_unit(column: str, unit: str, dimensions: Sequence[str]) -> tuple[str, float]:
+def column_unit(
+    column: str, unit: str, dimensions: Sequence[str], usual: str = ""
+) -> tuple[str, float]:
     """Return the dimension of a column and its factor to SI (degrees).
 
     Parameters
@@ -51,15 +54,16 @@ def column_unit(column: str, unit: str, dimensions: Sequence[str]) -> tuple[str,
     column : its heading, for the message
     unit : that it gives
     dimensions : those it may be of, of `calm.units.DIMENSIONS`
+    usual : the unit to offer; that of SI where it is empty
 
     Raises
     ------
     QuantityError
         The unit is unknown, or of something else; its text is the whole message.
     """
-    name = heading(column)[0]
-    usual = DIMENSIONS[dimensions[0]].unit
+    name = heading(column, dimensions)[0]
     if not unit:
+        usual = usual or DIMENSIONS[dimensions[0]].unit
         raise QuantityError(f"column `{shown(name)}` needs a unit; did you mean `{name}[{usual}]`?")
     complaints = []
     for dimension in dimensions:
@@ -68,7 +72,8 @@ def column_unit(column: str, unit: str, dimensions: Sequence[str]) -> tuple[str,
         except QuantityError as error:
             complaints.append(error)
     said = next((one for one in complaints if one.suggestion), complaints[0])
-    offer = f"; did you mean `{name}[{said.suggestion}]`?" if said.suggestion else ""
+    meant = column.strip().replace(unit, said.suggestion) if said.suggestion else ""
+    offer = f"; did you mean `{shown(meant)}`?" if meant else ""
     raise QuantityError(f"`{shown(column)}` {said.complaint}{offer}")
 
 
@@ -96,7 +101,7 @@ def magnetic_columns(columns: Sequence[str]) -> tuple[list[str], set[str]]:
 
 
 def _without_north(column: str) -> str:
-    """A heading without the word ``magnetic`` at the end of its unit."""
+    """Return a heading without the word ``magnetic`` at the end of its unit."""
     name, unit = heading(column)
     plain = _MAGNETIC.sub("", unit)
     return column if plain == unit else f"{name} {plain}".strip()

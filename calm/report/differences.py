@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from calm.checks.finding import State
 from calm.quantities import QUANTITIES, Quantity
 from calm.report.blocks import Block, Cell, Column, Part, Prose, Table
-from calm.report.check.verdict import SIGNS
+from calm.report.check_summary import SIGNS
 
 if TYPE_CHECKING:
     from calm.checks.comparison import Compared, Comparison

@@ -139,7 +139,7 @@ class Picture(ScrollView, can_focus=True):
         return tension(result, size.width, size.height)
 
     def _schematic(self, result: Result | TowResult, size: Size) -> list[Text]:
-        from calm.report.schematic.text import schematic_text
+        from calm.report.schematic.in_terminal import schematic_text
 
         text = schematic_text(result.file, result, size.width)
         return [Text(line) for line in text.splitlines()]

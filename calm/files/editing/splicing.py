@@ -54,9 +54,13 @@ def first_on_line(text: str, place: int) -> bool:
 
 
 def own_end(text: str, place: int, column: int) -> int:
-    """Return where the lines of something end, of which `place` is the end of the value.
+    """Return where the lines of something end, comments of its own included.
 
-    Comments directly below that stand further right than its `column` (from 1) are its own.
+    Parameters
+    ----------
+    text : it ends in a line break
+    place : the end of the value
+    column : of the thing, from 1; comments below it that stand further right are its own
     """
     end = line_end(text, place)
     while (comment := _COMMENT.match(text, end)) and end < len(text):
@@ -67,10 +71,14 @@ def own_end(text: str, place: int, column: int) -> int:
 
 
 def own_start(text: str, place: int, least: int, column: int | None = None) -> int:
-    """Return where the lines of something begin that starts at `place`, the first on its line.
+    """Return where the lines of something begin, comments of its own included.
 
-    Comments directly above it are its own, but not above `least`, and not those further right
-    than a `column`, which belong to what is above.
+    Parameters
+    ----------
+    text : it ends in a line break
+    place : the beginning, the first on its line
+    least : comments above this are not its own
+    column : nor are those further right than this, from 1
     """
     start = line_start(text, place)
     while start > least:

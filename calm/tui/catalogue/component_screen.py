@@ -136,7 +136,7 @@ class ComponentScreen(Screen[Defined | None]):
         from rich.console import Group, RenderableType
         from rich.text import Text
 
-        from calm.report.catalogue import to_card
+        from calm.report.component_cards import to_card
         from calm.report.terminal import shown
 
         id, values = self._all()

@@ -174,7 +174,7 @@ class CataloguePane(Vertical):
         if chosen is None or self.index is None:
             card.show("No component has all these words.")
             return
-        from calm.report.catalogue import to_card
+        from calm.report.component_cards import to_card
         from calm.report.terminal import shown
 
         try:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from calm.files.fields import QuantityField
+from calm.records.headings import heading
 from calm.records.profile_tables import DIRECTION, SALINITY, TEMPERATURE, WATER_DENSITY
 from calm.tui.checking import Check, Reading, number, quantity
 from calm.units import QuantityError, QuantityRange, unit_factor
@@ -23,12 +24,6 @@ _KINDS: dict[str, QuantityRange] = {
 _TURN = 360.0
 
 
-def named(column: str) -> tuple[str, str]:
-    """The name and the unit that the heading of a column gives; empty where it gives none."""
-    name, _, unit = column.replace("[", " ").replace("]", " ").strip().partition(" ")
-    return name, unit.strip()
-
-
 def dimension_of(name: str) -> str:
     """The dimension of the quantity that a column holds."""
     return _KINDS[name].dimension
@@ -36,7 +31,7 @@ def dimension_of(name: str) -> str:
 
 def check_of(column: str) -> Check:
     """What judges the values of a column: numbers where it gives its unit, else quantities."""
-    name, unit = named(column)
+    name, unit = heading(column)
     kind = _KINDS.get(name)
     if kind is None:
         return number
@@ -54,7 +49,7 @@ def check_of(column: str) -> Check:
 
 def half_way(column: str, one: float, other: float) -> float:
     """The value between two of a column; between directions on the shorter way round."""
-    name, unit = named(column)
+    name, unit = heading(column)
     half = (one + other) / 2
     if name != "toward":
         return half

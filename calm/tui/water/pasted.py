@@ -19,7 +19,7 @@ from calm.records.profile_tables import (
     speed_and_direction,
 )
 from calm.tui.signs import ELLIPSIS
-from calm.tui.water.columns import check_of, dimension_of, named
+from calm.tui.water.columns import check_of, dimension_of
 from calm.units import DIMENSIONS, QuantityError, unit_factor
 
 Rows = tuple[tuple[str, ...], ...]
@@ -40,7 +40,7 @@ def offered_headings(headings: Sequence[str] | None, columns: Sequence[str]) -> 
     """Headings for what was copied: its own, with units where it gives none; else the table's."""
     if headings is None:
         return list(columns)
-    units = {name: unit for name, unit in map(named, columns)}
+    units = {name: unit for name, unit in map(heading, columns)}
     offered = []
     for column in headings:
         name, unit = heading(column)
@@ -61,7 +61,7 @@ def rows_in(columns: Sequence[str], headings: Sequence[str], rows: Sequence[Sequ
     NoRows
         A row has a value that is none.
     """
-    if [heading(one) for one in headings] == [named(one) for one in columns]:
+    if [heading(one) for one in headings] == [heading(one) for one in columns]:
         return tuple(_as_written(i, row, columns) for i, row in enumerate(rows, 1))
     values = _by_name(columns, headings, rows)
     try:
@@ -106,7 +106,7 @@ def _by_name(
         problems.append((number == 0, f"row {number}: {message}" if number else message))
         return Problem("", 0, 0, message)
 
-    names = {named(column)[0] for column in columns}
+    names = {heading(column)[0] for column in columns}
     kept: list[Problem] = []
     table: CurrentTable | DepthTable | SeaWater | None
     if names & _OF_A_CURRENT:
@@ -138,7 +138,7 @@ def _by_name(
 
 def _column(column: str, values: dict[str, Sequence[float]]) -> list[str]:
     """The values of a column in its unit; each with its own where the column has none."""
-    name, unit = named(column)
+    name, unit = heading(column)
     dimension = dimension_of(name)
     usual = DIMENSIONS[dimension].unit
     try:

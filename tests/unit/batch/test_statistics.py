@@ -18,7 +18,7 @@ from calm.batch.statistics.summary import (
     summarize,
 )
 from calm.errors import UsageError
-from calm.report.batch.document import summary_document
+from calm.report.batch_summary import summary_document
 from tests.unit.batch.made_result import FILE, made_mooring, make_result, stormy
 
 HOUR = np.timedelta64(1, "h")

@@ -5,8 +5,7 @@ import pytest
 from rich.console import Console
 
 from calm.case.strumming import Strumming, StrummingBand
-from calm.report.line import Mark, safety_mark, tilt_mark
-from calm.report.sheet import result_part
+from calm.report.sheet import Mark, result_part, safety_mark, tilt_mark
 from calm.report.terminal import shown
 
 GOLDEN = Path(__file__).parent / "golden"

@@ -7,7 +7,7 @@ from rich.console import Console
 
 from calm.case.tow import Variation
 from calm.errors import NoEquilibrium
-from calm.report.plot_sweep import draw_sweep
+from calm.report.plot import draw_sweep
 from calm.report.tabulation import (
     by_coefficient,
     by_speed,
