@@ -6,6 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from calm.case import Mooring
+from calm.checks.finding import OWN
+from calm.checks.inventory import inventory_of
+from calm.checks.recovery import recovery_of
+from calm.deck.cutting import Cut, cuts_of
 from calm.deck.deck_items import (
     Hung,
     Order,
@@ -16,12 +21,6 @@ from calm.deck.deck_items import (
     posted,
     surfacing,
 )
-
-from calm.case import Mooring
-from calm.checks.finding import OWN
-from calm.checks.inventory import inventory_of
-from calm.checks.recovery import recovery_of
-from calm.deck.cutting import Cut, cuts_of
 from calm.deck.hardware import Stock, hardware_of
 from calm.deck.shipping import Freight, Lifts, freight_of, lifts_of
 from calm.drop import DropPlan, drop_plan
