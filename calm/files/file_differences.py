@@ -92,14 +92,14 @@ def differences(before: MooringFile, after: MooringFile) -> Differences:
     partner = dict(pieces.pairs)
     clamps = [[(p.index, clamp) for p in line for clamp in p.clamps] for line in lines]
     known = [_known_clamps(clamps[0], partner), _known_clamps(clamps[1], None)]
-    hung = align(*known)
+    aligned = align(*known)
     changed = [*_changes("", _around(before), _around(after))]
     names = [own_labels([piece.label for piece in line]) for line in lines]
     for i, j in pieces.pairs:
         label = lines[0][i].label
         changed += _of_part(lines[0][i], lines[1][j], names[0][i], names[1][j], label)
     names = [[one.label for one in each] for each in known]
-    for i, j in hung.pairs:
+    for i, j in aligned.pairs:
         (above, first), (below, second) = clamps[0][i], clamps[1][j]
         changed += _of_part(first, second, names[0][i], names[1][j], first.label)
         if partner.get(above) != below:
@@ -110,15 +110,15 @@ def differences(before: MooringFile, after: MooringFile) -> Differences:
         moved=tuple(_moves(pieces, *lines)),
         removed=(
             *(lines[0][i].label for i in pieces.removed),
-            *(clamps[0][i][1].label for i in hung.removed),
+            *(clamps[0][i][1].label for i in aligned.removed),
         ),
         added=(
             *(lines[1][j].label for j in pieces.added),
-            *(clamps[1][j][1].label for j in hung.added),
+            *(clamps[1][j][1].label for j in aligned.added),
         ),
         pairs=(
             *((lines[0][i], lines[1][j]) for i, j in pieces.pairs),
-            *((clamps[0][i][1], clamps[1][j][1]) for i, j in hung.pairs),
+            *((clamps[0][i][1], clamps[1][j][1]) for i, j in aligned.pairs),
         ),
     )
 

@@ -26,7 +26,7 @@ MISSED = 0.25
 
 @dataclass(frozen=True)
 class Located:
-    """Where what answers stands.
+    """Describe where what answers stands.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class Located:
     depth_given: bool
 
     def to_dict(self) -> dict[str, Any]:
-        """The JSON object; None stands where a figure is unknown."""
+        """Return the JSON object; None stands where a figure is unknown."""
         lines = self.survey.line
         major, minor, bearing = map(_known, self.ellipse)
         return {

@@ -32,7 +32,7 @@ class RangeModel:
         return 2 if self.depth is not None else 3
 
     def place(self, x: Floats) -> Floats:
-        """(3,) of the unknowns; a given depth is one below the curved surface."""
+        """Return (3,) of the unknowns; a given depth is one below the curved surface."""
         if self.depth is None:
             return x
         # the surface is that much below the plane of the frame
@@ -44,7 +44,7 @@ class RangeModel:
         return self.sound.mean(self.survey.transducer, max(below, self.survey.transducer))
 
     def measured(self, x: Floats) -> Floats:
-        """(n,) ranges [m], of times by the speed of sound on the way to the place."""
+        """Return (n,) ranges [m], of times by the speed of sound on the way to the place."""
         if not self.survey.timed:
             return self.survey.measured
         ranges: Floats = 0.5 * self.survey.measured * self.mean_speed(x)
@@ -56,7 +56,7 @@ class RangeModel:
         return found
 
     def jacobian(self, x: Floats) -> Floats:
-        """(n, unknowns) of the residuals."""
+        """Return (n, unknowns) of the residuals."""
         step = 0.01
         columns = []
         for i in range(self.unknowns):
@@ -74,7 +74,7 @@ FLOOR = 0.02
 
 
 def fitted(model: RangeModel) -> tuple[Floats, Booleans]:
-    """The unknowns, and which ranges belong."""
+    """Return the unknowns, and which ranges belong."""
     x = _sturdy(model)
     residuals = np.abs(model.residuals(x))
     used = residuals <= 5.0 * scatter(residuals, model.unknowns)
@@ -90,7 +90,7 @@ def fitted(model: RangeModel) -> tuple[Floats, Booleans]:
 
 
 def _sturdy(model: RangeModel) -> Floats:
-    """The unknowns by a fit that outliers hardly move, from several sides."""
+    """Return the unknowns by a fit that outliers hardly move, from several sides."""
     from scipy.optimize import least_squares
 
     found = []
@@ -119,7 +119,7 @@ def _starts(model: RangeModel) -> list[Floats]:
 
 
 def _below(model: RangeModel, x: Floats) -> Floats:
-    """The same place below the ship, where a fit has found its mirror image above."""
+    """Return the same place below the ship, where a fit has found its mirror image above."""
     if model.depth is None:
         level = float(model.ships[:, 2].mean())
         x = np.array([x[0], x[1], min(x[2], 2.0 * level - x[2])])
@@ -127,14 +127,21 @@ def _below(model: RangeModel, x: Floats) -> Floats:
 
 
 def scatter(residuals: Floats, unknowns: int) -> float:
-    """Standard deviation of most of the residuals, by their median [m]."""
+    """Return the standard deviation of most of the residuals, by their median [m]."""
     count = len(residuals)
     freedom = max(count - unknowns, 1)
     return max(1.4826 * float(np.median(residuals)) * sqrt(count / freedom), FLOOR)
 
 
 def least_squares_of(model: RangeModel, x: Floats, used: Booleans) -> Floats:
-    """The unknowns that fit the ranges in use best, from a guess."""
+    """Return the unknowns that fit the ranges in use best, from a guess.
+
+    Parameters
+    ----------
+    model : of the ranges
+    x : a guess of the unknowns
+    used : (n,) which ranges count
+    """
     from scipy.optimize import least_squares
 
     fit = least_squares(
@@ -145,7 +152,7 @@ def least_squares_of(model: RangeModel, x: Floats, used: Booleans) -> Floats:
 
 
 def _judged(model: RangeModel, x: Floats, used: Booleans) -> Booleans:
-    """The ranges that belong: the worst of them out, or what fits the others in.
+    """Return the ranges that belong: the worst of them out, or what fits the others in.
 
     A range is judged by its residual over its standard error as the others give it.
     """

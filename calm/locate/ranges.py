@@ -59,7 +59,7 @@ class Survey:
 
 
 def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
-    """The ranges of a file.
+    """Return the ranges of a file.
 
     A row without a range, its cell blank or `nan`, is one that was not answered: it is left out.
     So is a row that repeats another, which tells nothing new. Other columns are not read.
@@ -124,7 +124,7 @@ def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
 def _value(
     path: Path, row: NamedRow, name: str, factor: float, problems: list[Problem]
 ) -> float | None:
-    """A cell in SI or degrees; None, with a mistake added, where it is no such figure."""
+    """Return a cell in SI or degrees; None, with a mistake added, where it is no such figure."""
     text = row.cells[name]
     refusal = _refusal(name, text, factor)
     if refusal:
@@ -134,7 +134,7 @@ def _value(
 
 
 def _refusal(name: str, text: str, factor: float) -> str:
-    """What is wrong with a cell; empty where nothing is."""
+    """Return what is wrong with a cell; empty where nothing is."""
     placed = name in ("latitude", "longitude")
     if re.sub(r"\.0*$", "", text) in _FILLS:
         leave = "leave the row out" if placed else "leave the cell blank"
@@ -157,7 +157,7 @@ def _refusal(name: str, text: str, factor: float) -> str:
 
 
 def _misplaced(path: Path, values: list[tuple[int, float, float, float]]) -> list[Problem]:
-    """Positions that are none, and those that are far from the others."""
+    """Return the mistakes of positions that are none, and those that are far from the others."""
     problems = []
     places = []
     for line, latitude, longitude, _ in values:

@@ -35,11 +35,11 @@ class Sound:
 
     @classmethod
     def constant(cls, speed: float) -> Sound:
-        """The same speed at all depths [m/s]."""
+        """Return the same speed at all depths [m/s]."""
         return cls(np.zeros(1), np.array([speed]))
 
     def mean(self, above: float, below: float) -> float:
-        """Harmonic mean between two depths [m/s].
+        """Return the harmonic mean between two depths [m/s].
 
         A straight ray spends its way evenly over the depths between its ends, at any slope, so its
         time is its length over this mean.
@@ -58,7 +58,7 @@ class Sound:
 
 
 def read_sound(path: Path) -> Sound:
-    """A profile from a CSV file with the header ``depth[m],sound_speed[m/s]``.
+    """Return a profile from a CSV file with the header ``depth[m],sound_speed[m/s]``.
 
     Raises
     ------
@@ -100,5 +100,5 @@ def _complaint(name: str, text: str, factor: float, depths: list[float]) -> str:
 
 
 def sound_complaint() -> str:
-    """What is said of a speed of sound that no water has."""
+    """Return what is said of a speed of sound that no water has."""
     return f"is not a speed of sound in water; it is {SLOWEST:g} to {FASTEST:g} m/s"

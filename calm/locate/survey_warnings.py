@@ -13,7 +13,13 @@ from calm.physics.line import Booleans, Floats
 
 
 def consistency(model: RangeModel, x: Floats, used: Booleans) -> list[str]:
-    """Whether the ranges fit better when all are longer or shorter by a factor.
+    """Return whether the ranges fit better when all are longer or shorter by a factor.
+
+    Parameters
+    ----------
+    model : of the ranges
+    x : the unknowns found
+    used : (n,) which ranges count
 
     Raises
     ------
@@ -78,7 +84,14 @@ def _doubled(timed: bool, factor: float) -> str:
 
 
 def another_place(model: RangeModel, x: Floats, used: Booleans) -> list[str]:
-    """Whether a place on the other side of the ship's track fits as well."""
+    """Return whether a place on the other side of the ship's track fits as well.
+
+    Parameters
+    ----------
+    model : of the ranges
+    x : the unknowns found
+    used : (n,) which ranges count
+    """
     other = least_squares_of(model, mirrored(model.ships[used], model.place(x))[: len(x)], used)
     apart = float(np.linalg.norm((other - x)[:2]))
     own, its = (model.residuals(each)[used] for each in (x, other))
@@ -104,7 +117,7 @@ depth."""
 def geometry_warnings(
     ships: Floats, place: Floats, below: float, depth_given: bool
 ) -> Iterator[str]:
-    """What of a survey leaves the place poorly known.
+    """Return what of a survey leaves the place poorly known.
 
     Parameters
     ----------
@@ -139,19 +152,19 @@ def geometry_warnings(
 
 
 def is_line(ships: Floats) -> bool:
-    """Whether places are as good as on one line, or one place."""
+    """Return whether places are as good as on one line, or one place."""
     _, spread, _ = np.linalg.svd((ships - ships.mean(axis=0))[:, :2], full_matrices=False)
     return len(spread) < 2 or bool(spread[1] <= NARROW * spread[0])
 
 
 def widest_gap(away: Floats) -> float:
-    """The widest angle between neighbouring directions (n, 2) [degrees]."""
+    """Return the widest angle between neighbouring directions (n, 2) [degrees]."""
     bearing = np.sort(np.degrees(np.arctan2(away[:, 0], away[:, 1])))
     return float(np.diff(np.append(bearing, bearing[0] + 360.0)).max())
 
 
 def mirrored(ships: Floats, place: Floats) -> Floats:
-    """A place (3,) on the other side of the line that the ships (n, 3) are nearest to."""
+    """Return a place (3,) on the other side of the line that the ships (n, 3) are nearest to."""
     middle = ships.mean(axis=0)
     _, _, axes = np.linalg.svd((ships - middle)[:, :2], full_matrices=True)
     other = place.copy()

@@ -17,7 +17,7 @@ BAND = 1.96
 
 @dataclass(frozen=True)
 class Agreement:
-    """Of computed with measured depths.
+    """Tell how computed depths agree with measured ones.
 
     Attributes
     ----------
@@ -36,7 +36,9 @@ class Agreement:
 
 
 def calm_times(down: Floats, among: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Those of some times at which the knockdown [m] is least: a tenth of them, one at least."""
+    """Return those of some times at which the knockdown [m] is least: a tenth of them, one at
+    least.
+    """
     known = among & np.isfinite(down)
     chosen = np.zeros_like(known)
     count = int(known.sum())
@@ -50,7 +52,14 @@ def calm_times(down: Floats, among: NDArray[np.bool_]) -> NDArray[np.bool_]:
 def difference(
     computed: Floats, measured: Floats, calm: NDArray[np.bool_], among: NDArray[np.bool_]
 ) -> Floats:
-    """(n,) computed less measured, less its mean over the calm times; NaN elsewhere [m]."""
+    """Return (n,) computed less measured, less its mean over the calm times; NaN elsewhere [m].
+
+    Parameters
+    ----------
+    computed, measured : (n,) depths [m]
+    calm : (n,) times of the least knockdown
+    among : (n,) times that count
+    """
     off = np.where(among, computed - measured, np.nan)
     at_rest = off[calm & np.isfinite(off)]
     result: Floats = off - (at_rest.mean() if at_rest.size else np.nan)
@@ -58,7 +67,7 @@ def difference(
 
 
 def rms(off: Floats) -> float:
-    """Of the values there are; NaN of none."""
+    """Return the root of the mean square of the values there are; NaN of none."""
     known = off[np.isfinite(off)]
     return float(np.sqrt((known**2).mean())) if known.size else float("nan")
 
@@ -66,7 +75,14 @@ def rms(off: Floats) -> float:
 def agreement(
     computed: Floats, measured: Floats, calm: NDArray[np.bool_], among: NDArray[np.bool_]
 ) -> Agreement:
-    """Of the depths (n,) at some of the times."""
+    """Return how depths agree at some of the times.
+
+    Parameters
+    ----------
+    computed, measured : (n,) depths [m]
+    calm : (n,) times of the least knockdown
+    among : (n,) times that count
+    """
     both = among & np.isfinite(computed) & np.isfinite(measured)
     count = int(both.sum())
     if count < 2:
@@ -86,14 +102,15 @@ def agreement(
 
 
 def coverage(off: Floats, deviation: Floats) -> float:
-    """Share of the differences within the band of 95 %; NaN of none."""
+    """Return the share of the differences within the band of 95 %; NaN of none."""
     known = np.isfinite(off) & np.isfinite(deviation)
     inside = np.abs(off[known]) <= BAND * deviation[known]
     return float(inside.mean()) if inside.size else float("nan")
 
 
 def linear(depth: Floats, point: Integers, still: Floats, wanted: int) -> Floats:
-    """(n,) depths at a point, linear by height in still water between the nearest sensors [m].
+    """Return (n,) depths at a point, linear by height in still water between the nearest sensors
+    [m].
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ REACH = 5.0
 
 @dataclass(frozen=True)
 class Common:
-    """What is common to the whole record, as far as it is known.
+    """Hold what is common to the whole record, as far as it is known.
 
     The q columns of the covariance are the logarithms of the factors, the datum [m], the offsets
     of the sensors [m], and how far down the line they have moved [m].
@@ -57,14 +57,15 @@ class Common:
 
     @property
     def value(self) -> Floats:
-        """(q,) as the columns of the covariance stand."""
+        """Return (q,) as the columns of the covariance stand."""
         logs = np.log(list(self.factors.values()))
         return np.concatenate([logs, [self.datum], self.offset, self.moved])
 
     def fall(
         self, time: NDArray[np.datetime64], depth: Floats, still: Floats, point: Integers
     ) -> Floats:
-        """(n, s) change of the depth of each sensor with how far it has moved; 0 before it has.
+        """Return (n, s) change of the depth of each sensor with how far it has moved; 0 before it
+        has.
 
         Parameters
         ----------
@@ -93,7 +94,7 @@ FEWEST = 4
 
 @dataclass(frozen=True)
 class Evidence:
-    """What each time says of the common unknowns x, by the linear law left = seen (x - 0).
+    """Hold what each time says of the common unknowns x, by the linear law left = seen (x - 0).
 
     Attributes
     ----------
@@ -111,19 +112,19 @@ class Evidence:
     known: NDArray[np.bool_]
 
     def pulls(self, seen: Floats, left: Floats) -> Floats:
-        """(n, q) slopes of the logarithm of the likelihood of each time."""
+        """Return (n, q) slopes of the logarithm of the likelihood of each time."""
         pull: Floats = np.einsum("n,nsq,nst,nt->nq", self.weight, seen, self.inverse, left)
         return pull
 
     def normal(self, seen: Floats) -> Floats:
-        """(q, q) the information of all times."""
+        """Return (q, q) the information of all times."""
         heavy = self.weight[:, None, None] * self.inverse
         matrix: Floats = np.einsum("nsq,nsr->qr", seen, heavy @ seen)
         return matrix
 
 
 def first_time(evidence: Evidence, fall: Floats, mean: Floats, covariance: Floats) -> Integers:
-    """(s,) the time from which on each sensor most likely hangs elsewhere, if it does.
+    """Return (s,) the time from which on each sensor most likely hangs elsewhere, if it does.
 
     0 is throughout; -1 where it has too few readings. Each is weighed beside all that is known
     beforehand.
@@ -159,7 +160,7 @@ def first_time(evidence: Evidence, fall: Floats, mean: Floats, covariance: Float
 def fits(
     evidence: Evidence, fall: Floats, mean: Floats, covariance: Floats
 ) -> Iterator[tuple[bool, Floats, float]]:
-    """The best fits where no sensor hangs elsewhere, and then where one does.
+    """Yield the best fits where no sensor hangs elsewhere, and then where one does.
 
     A slip that is taken for errors of the currents makes these so large, and the times that show
     it so light, that it is never found: so the errors are sought beside each of these.
@@ -211,7 +212,7 @@ def hanging_sensors(
     normal: Floats, pull: Floats, mean: Floats, covariance: Floats, first: Integers,
     times: int, alike: float,
 ) -> HangingSensors:  # fmt: skip
-    """The mixture over all ways the sensors may hang.
+    """Return the mixture over all ways the sensors may hang.
 
     Parameters
     ----------
@@ -258,7 +259,7 @@ def hanging_sensors(
 
 
 def _ways(sensors: Integers) -> Iterator[tuple[int, ...]]:
-    """None of them elsewhere, one or two."""
+    """Yield the sensors that hang elsewhere: none of them, one or two."""
     return chain.from_iterable(combinations(sensors.tolist(), size) for size in range(3))
 
 

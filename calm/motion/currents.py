@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class CurrentMeasurements:
-    """What one file says of the current.
+    """Hold what one file says of the current.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ def read_currents(
     declination: float | None,
     maximum_speed: float,
 ) -> list[CurrentMeasurements]:
-    """The currents of some files.
+    """Return the currents of some files.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ def _plausible(one: CurrentMeasurements, maximum_speed: float) -> CurrentMeasure
 
 
 def _labelled(path: Path, declination: float | None) -> CurrentMeasurements | None:
-    """The currents of a file whose levels are parts of the line; None of any other."""
+    """Return the currents of a file whose levels are parts of the line; None of any other."""
     with reading(path), open_current(path) as dataset:
         dataset = with_components(dataset)
         try:

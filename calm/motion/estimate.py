@@ -23,7 +23,7 @@ the pressures no more misfit than is expected of them."""
 
 @dataclass(frozen=True)
 class Estimate:
-    """What is known of a block of times.
+    """Hold what is known of a block of times.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class Estimate:
 
 
 def estimated(moments: LineResponse, common: Common) -> Estimate:
-    """The posterior of all ways to read the currents and the sensors."""
+    """Return the posterior of all ways to read the currents and the sensors."""
     one, still = moments.measured, moments.forward.still
     known = best_state(moments, common)
     first, at = known.found, known.at
@@ -75,7 +75,10 @@ def estimated(moments: LineResponse, common: Common) -> Estimate:
 
 
 def _odds(moments: LineResponse) -> Floats:
-    """(n, g) logarithms of the odds that the current of a group is false; none without one."""
+    """Return (n, g) logarithms of the odds that the current of a group is false.
+
+    None without one.
+    """
     one = moments.measured
     known = np.isfinite(one.u) & np.isfinite(one.v)
     false = np.where(known, prior.by_flag(prior.FALSE, one.flag), 0.0)
@@ -91,7 +94,9 @@ def _odds(moments: LineResponse) -> Floats:
 def _tried(
     part: LineResponse, other: ReadCurrents, at: Linear, common: Common, tried: NDArray[np.int64]
 ) -> Posterior:
-    """The posterior of another way, whose slopes begin with those of the currents as measured."""
+    """Return the posterior of another way, whose slopes begin with those of the currents as
+    measured.
+    """
     none, still = np.zeros((len(tried), part.groups)), part.forward.still
     there = part.depths(other, none)
     before = np.maximum(at.depth[tried] - still, 1.0)
@@ -149,14 +154,14 @@ class Mixture:
 
     @property
     def best(self) -> Floats:
-        """(n,) greatest weight so far, its logarithm."""
+        """Return (n,) greatest weight so far, its logarithm."""
         best = np.full(len(self.first.evidence), -np.inf)
         for times, log, *_ in self._found:
             best[times] = np.maximum(best[times], log)
         return best
 
     def estimate(self) -> Estimate:
-        """The mean over all explanations, and the deviation about it."""
+        """Return the mean over all explanations, and the deviation about it."""
         pass
         from calm.motion.line_response import ReadCurrents
 

@@ -52,7 +52,7 @@ class Instruments:
 
 
 def read_instruments(path: Path, labels: Sequence[str], *, replace: bool) -> Instruments:
-    """What a file holds, before anything is estimated for it.
+    """Return what a file holds, before anything is estimated for it.
 
     Parameters
     ----------
@@ -112,6 +112,14 @@ def write_depths(
     output: Path,
 ) -> list[str]:
     """Write the copy with `depth` and `depth_sd`, whole; returns the instruments without either.
+
+    Parameters
+    ----------
+    instruments : the file that is copied
+    result : of `calm.motion.run.run_motion`
+    labels : of the points of the result
+    gap : between neighbours of a depth, at most
+    output : the copy
 
     Raises
     ------

@@ -58,7 +58,7 @@ class LineResponse:
     # --- currents
 
     def levels(self, depths: Floats) -> Floats:
-        """(n, k) depths of the levels, of those that hang by the depths of the points.
+        """Return (n, k) depths of the levels, of those that hang by the depths of the points.
 
         A current whose sensor is used hangs where that was measured.
         """
@@ -77,7 +77,7 @@ class LineResponse:
     def read(
         self, level: Floats, without: tuple[int, ...] = ()
     ) -> tuple[Floats, Floats, NDArray[np.bool_]]:
-        """(n, k) u and v [m/s] at these levels, and whether each was measured.
+        """Return (n, k) u and v [m/s] at these levels, and whether each was measured.
 
         Parameters
         ----------
@@ -89,7 +89,14 @@ class LineResponse:
         return filled(level, one.u, known), filled(level, one.v, known), known
 
     def way(self, level: Floats, common: Common, without: tuple[int, ...] = ()) -> ReadCurrents:
-        """The currents at these levels with their errors; some groups taken from the others."""
+        """Return the currents at these levels with their errors; some groups taken from the others.
+
+        Parameters
+        ----------
+        level : (n, k) depths [m]
+        common : what is common to the record
+        without : groups whose currents are taken from the others
+        """
         u, v, known = self.read(level, without)
         speed = np.maximum(np.hypot(u, v), 1e-3)
         own = np.hypot(prior.by_flag(prior.LEVEL, self.measured.flag), prior.STEADY / speed)
@@ -104,12 +111,26 @@ class LineResponse:
         return ReadCurrents(level, u, v, common.scale**2 * spread)
 
     def depths(self, way: ReadCurrents, logs: Floats, forward: Forward | None = None) -> Floats:
-        """(n, p) depths of the points with factors on the currents."""
+        """Return (n, p) depths of the points with factors on the currents.
+
+        Parameters
+        ----------
+        way : the currents as they are read
+        logs : (n, g) logarithms of the factors on them
+        forward : the mooring; that of the block where it is None
+        """
         factor = np.exp(logs[:, self.group])
         return (forward or self.forward).depths(way.level, way.u * factor, way.v * factor)
 
     def slopes(self, way: ReadCurrents, logs: Floats, there: Floats) -> Floats:
-        """(n, p, g) change of the depths with the logarithm of each group's factor [m]."""
+        """Return (n, p, g) change of the depths with the logarithm of each group's factor [m].
+
+        Parameters
+        ----------
+        way : the currents as they are read
+        logs : (n, g) logarithms of the factors on them
+        there : (n, p) depths at these [m]
+        """
         columns = np.zeros((*there.shape, self.groups))
         for g in range(self.groups):
             ahead = logs.copy()
@@ -118,7 +139,7 @@ class LineResponse:
         return np.nan_to_num(columns)
 
     def common_slopes(self, way: ReadCurrents, there: Floats) -> Floats:
-        """(n, p, f) change of the depths with the logarithm of each common factor [m]."""
+        """Return (n, p, f) change of the depths with the logarithm of each common factor [m]."""
         none = np.zeros((len(there), self.groups))
         columns = [
             (self.depths(way, none, forward) - there) / STEP for forward in self.shifted.values()
@@ -132,7 +153,7 @@ clamped instruments; net force of all that floats; lengths of cables and chains.
 
 
 def with_factors(line: Line, factors: Mapping[str, float]) -> Line:
-    """A line with factors on its drags, on the net force of its floats, on its lengths."""
+    """Return a line with factors on its drags, on the net force of its floats, on its lengths."""
     cable, rigid, lift, length = (factors.get(name, 1.0) for name in FACTORS)
     drag = np.where(line.flexible, cable, rigid)
     cut = np.where(line.flexible, length, 1.0)
@@ -164,22 +185,34 @@ class Forward:
 
     @cached_property
     def still(self) -> Floats:
-        """(p,) depths of the points in still water [m]."""
+        """Return (p,) depths of the points in still water [m]."""
         nothing = np.zeros((1, 1))
         depths: Floats = points(self.solve(nothing, nothing, nothing))[0]
         return depths
 
     def solve(self, depth: Floats, u: Floats, v: Floats) -> Profiles:
-        """The mooring in currents (n, k) at levels (n, k), on one thread."""
+        """Return the mooring in many currents, solved on one thread.
+
+        Parameters
+        ----------
+        depth : (n, k) of the levels [m]
+        u, v : (n, k) to the east and to the north [m/s]
+        """
         return self._batch.solve(u, v, depth, workers=1)
 
     def depths(self, depth: Floats, u: Floats, v: Floats) -> Floats:
-        """(n, p) depths of the points [m], NaN where there is no equilibrium."""
+        """Return (n, p) depths of the points [m], NaN where there is no equilibrium.
+
+        Parameters
+        ----------
+        depth : (n, k) of the levels [m]
+        u, v : (n, k) to the east and to the north [m/s]
+        """
         return points(self.solve(depth, u, v))
 
 
 def points(profiles: Profiles) -> Floats:
-    """(n, p) depths of all points [m]."""
+    """Return (n, p) depths of all points [m]."""
     return np.hstack([profiles.clamp_depth, profiles.depth_top])
 
 
@@ -190,9 +223,16 @@ NORMAL = 1.4826
 
 
 def filled(depth: Floats, value: Floats, known: NDArray[np.bool_]) -> Floats:
-    """Values (n, k) at levels (n, k), those that are not known linear in depth between the others.
+    """Return values (n, k) at levels (n, k), those that are not known linear in depth between the
+    others.
 
     Beyond the first and the last known level they are constant; NaN where none is known.
+
+    Parameters
+    ----------
+    depth : (n, k) of the levels [m]
+    value : (n, k) at these
+    known : (n, k) which of the values count
     """
     result = np.where(known, value, np.nan)
     for i in np.flatnonzero(~known.all(axis=1)):
@@ -206,7 +246,7 @@ def filled(depth: Floats, value: Floats, known: NDArray[np.bool_]) -> Floats:
 
 
 def gap_errors(level: Floats, u: Floats, v: Floats, group: Integers) -> Floats:
-    """(g, g) how far the speeds of a group of levels are from those that the others give.
+    """Return (g, g) how far the speeds of a group of levels are from those that the others give.
 
     The median size of the logarithm of their ratio, as the deviation of a normal law, over the half
     of the times with the stronger current: of the group of a row, left out with that of a column.

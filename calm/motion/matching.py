@@ -29,7 +29,7 @@ def labels_of(mooring: Mooring) -> tuple[str, ...]:
 
 
 def instruments_of(mooring: Mooring) -> list[int]:
-    """The points that may be instruments: all clamps, and the pieces whose role it is."""
+    """Return the points that may be instruments: all clamps, and the pieces whose role it is."""
     pieces = mooring.file.pieces
     clamps = len(clamps_down(pieces))
     inline = [clamps + i for i, piece in enumerate(pieces) if piece.component.role == "instrument"]
@@ -39,7 +39,7 @@ def instruments_of(mooring: Mooring) -> list[int]:
 def matched_by_label(
     sensors: Sequence[Sensor], labels: Sequence[str]
 ) -> tuple[dict[int, int], list[str]]:
-    """The point of each sensor whose label a part has, and what is said of the others.
+    """Return the point of each sensor whose label a part has, and what is said of the others.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def matched_by_label(
 def matched_by_place(
     sensors: Sequence[Sensor], places: Sequence[int], still: Floats, labels: Sequence[str]
 ) -> dict[int, int]:
-    """The point of each sensor by its nominal depth, in their order down the line.
+    """Return the point of each sensor by its nominal depth, in their order down the line.
 
     Of all ways to set the sensors on the instruments without changing their order, the one whose
     depths agree best.
@@ -114,7 +114,9 @@ def matched_by_place(
 
 
 def _cheapest(miss: Floats) -> tuple[list[int], float]:
-    """Columns, rising, one for each row, whose sum is least, and that sum; infinite without any."""
+    """Return columns, rising, one for each row, whose sum is least, and that sum; infinite without
+    any.
+    """
     rows, columns = miss.shape
     best = np.full((rows + 1, columns + 1), np.inf)
     best[0] = 0.0
@@ -142,7 +144,7 @@ BELOW = 1.1
 
 
 def plausible(sensor: Sensor, place: float, seabed: float) -> tuple[Sensor, list[str]]:
-    """A sensor without the readings that cannot be from its place, and what is said of them.
+    """Return a sensor without the readings that cannot be from its place, and what is said of them.
 
     Those far above its place in still water (on deck, a fill value), those far below the seabed,
     and the later ones of a time that stands twice. Where most are so, the sensor is wrong, not

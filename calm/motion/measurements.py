@@ -59,12 +59,12 @@ class MooringMeasurements:
 
     @property
     def group(self) -> Integers:
-        """(k,) which levels share their error: each has its own where they are few."""
+        """Return (k,) which levels share their error: each has its own where they are few."""
         count = len(self.level_point)
         return np.arange(count) * min(count, MOST_GROUPS) // max(count, 1)
 
     def at(self, times: slice | Integers) -> MooringMeasurements:
-        """What was measured at some of the times."""
+        """Return what was measured at some of the times."""
         return replace(
             self,
             time=self.time[times],
@@ -79,7 +79,7 @@ class MooringMeasurements:
 
 
 def level_names(measured: MooringMeasurements, labels: Sequence[str]) -> tuple[str, ...]:
-    """What each level of the currents is called: its part of the line, or its mean depth."""
+    """Return what each level of the currents is called: its part of the line, or its mean depth."""
     names = []
     for k, point in enumerate(measured.level_point.tolist()):
         depth = measured.level_depth[:, k]
@@ -93,7 +93,8 @@ Times = NDArray[np.datetime64]
 
 
 def common_times(currents: Sequence[CurrentMeasurements], sensors: Sequence[Sensor]) -> Times:
-    """Those of the first current; of the others, and then of the sensors, what is far from these.
+    """Return those of the first current; of the others, and then of the sensors, what is far from
+    these.
 
     Far is more than half of the median step of what is there already; of readings less than a
     quarter apart, as those of a burst, the first is taken.
@@ -110,7 +111,7 @@ def common_times(currents: Sequence[CurrentMeasurements], sensors: Sequence[Sens
 
 
 def _sparse(times: Times, step: np.timedelta64) -> Times:
-    """Those of rising times that are further than a step from the last one taken."""
+    """Return those of rising times that are further than a step from the last one taken."""
     taken: list[np.datetime64] = []
     at = 0
     while at < len(times):
@@ -120,7 +121,16 @@ def _sparse(times: Times, step: np.timedelta64) -> Times:
 
 
 def interpolated(time: Times, value: Floats, wanted: Times, gap: np.timedelta64) -> Floats:
-    """Values (n,) at other times, linear between known neighbours no further apart than the gap."""
+    """Return values (n,) at other times, linear between known neighbours no further apart than the
+    gap.
+
+    Parameters
+    ----------
+    time : (m,) rising
+    value : (m,) at these
+    wanted : (n,) other times
+    gap : between known neighbours, at most
+    """
     known = np.isfinite(value)
     if not known.any():
         return np.full(len(wanted), np.nan)
@@ -136,7 +146,15 @@ def interpolated(time: Times, value: Floats, wanted: Times, gap: np.timedelta64)
 
 
 def measured_at(one: Sensor, wanted: Times, gap: np.timedelta64) -> Floats:
-    """Depths of a sensor at other times; where it has a reading of its own, that one or none."""
+    """Return depths of a sensor at other times; where it has a reading of its own, that one or
+    none.
+
+    Parameters
+    ----------
+    one : the sensor
+    wanted : (n,) other times
+    gap : between known neighbours, at most
+    """
     result = interpolated(one.time, one.depth, wanted, gap)
     at = np.minimum(np.searchsorted(one.time, wanted), len(one.time) - 1)
     own: Floats = np.where(one.time[at] == wanted, one.depth[at], result)
@@ -152,7 +170,7 @@ def joined(
     gap: np.timedelta64,
     sea_level: tuple[Times, Floats] | None = None,
 ) -> MooringMeasurements:
-    """All that was measured, on common times; levels and sensors from the top down.
+    """Return all that was measured, on common times; levels and sensors from the top down.
 
     Parameters
     ----------
@@ -222,7 +240,7 @@ def _mean(depth: Floats) -> float:
 
 
 def _nearest(one: CurrentMeasurements, k: int, time: Times) -> NDArray[np.int8]:
-    """The worse of the flags on either side of each time; 9 outside of the record."""
+    """Return the worse of the flags on either side of each time; 9 outside of the record."""
     after = np.searchsorted(one.time, time)
     upper, lower = np.minimum(after, len(one.time) - 1), np.maximum(after - 1, 0)
     exact = one.time[upper] == time

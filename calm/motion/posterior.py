@@ -37,7 +37,7 @@ class Linear:
     common: Floats
 
     def moved(self, logs: Floats, depth: Floats) -> Linear:
-        """At another state, the slopes such that they lead from the one to the other (Broyden)."""
+        """Return the line at another state, with slopes that lead there from this one (Broyden)."""
         step = logs - self.logs
         size = (step**2).sum(axis=1)[:, None]
         miss = depth - self.depth - np.einsum("npg,ng->np", self.slope, step)
@@ -48,7 +48,7 @@ class Linear:
 
 @dataclass(frozen=True)
 class Posterior:
-    """What the pressures make of the currents.
+    """Hold what the pressures make of the currents.
 
     Attributes
     ----------
@@ -79,7 +79,7 @@ def posterior(
     still: Floats,
     spike: int = -1,
 ) -> Posterior:
-    """The best state by a linear law, and what is known of all depths then.
+    """Return the best state by a linear law, and what is known of all depths then.
 
     Parameters
     ----------
@@ -183,7 +183,8 @@ def best_state(moments: LineResponse, common: Common) -> CurrentsState:
 
 
 def between(one: MooringMeasurements, depth: Floats, still: Floats) -> Floats:
-    """(n, p) depths with what the sensors measure beside them, linear by the height in still water.
+    """Return (n, p) depths with what the sensors measure beside them, linear by the height in still
+    water.
 
     Parameters
     ----------

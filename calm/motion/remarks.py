@@ -38,7 +38,7 @@ def sensor_remarks(
     down: Floats,
     common: Common,
 ) -> list[str]:
-    """Sentences on sensors that drift, clamps that slipped, offsets that are too large.
+    """Return sentences on sensors that drift, clamps that slipped, offsets that are too large.
 
     They are looked for in the calmer half of the times, where the currents explain little.
 
@@ -97,7 +97,7 @@ def sensor_remarks(
 
 
 def _or_another(label: str, labels: Sequence[str], common: Common) -> str:
-    """Which other sensor it may be as well, as far as the pressures can tell."""
+    """Return which other sensor it may be as well, as far as the pressures can tell."""
     if common.elsewhere[labels.index(label)] > CERTAIN:
         return ""
     pairs = zip(labels, common.elsewhere, strict=True)
@@ -113,7 +113,9 @@ def _way(moved: float) -> str:
 
 
 def _change(time: Times, residual: Floats) -> tuple[float, str, np.datetime64] | None:
-    """A step or a drift: its size [m], which, and when; None where there is none that is clear."""
+    """Return a step or a drift: its size [m], which, and when; None where there is none that is
+    clear.
+    """
     count = len(residual)
     if count < 2 * FEWEST:
         return None
@@ -137,7 +139,7 @@ def _change(time: Times, residual: Floats) -> tuple[float, str, np.datetime64] |
 
 
 def false_current_times(names: Sequence[str], time: Times, doubt: Floats) -> dict[str, Times]:
-    """The times at which the current of a level is more likely false than not, by its name.
+    """Return the times at which the current of a level is more likely false than not, by its name.
 
     Parameters
     ----------
@@ -149,7 +151,7 @@ def false_current_times(names: Sequence[str], time: Times, doubt: Floats) -> dic
 
 
 def current_remarks(false: Mapping[str, Times], count: int) -> list[str]:
-    """A sentence on each level whose current looks false at some of so many times."""
+    """Return a sentence on each level whose current looks false at some of so many times."""
     return [
         f"current at {name}: its direction or speed looks false at {len(when)} of {count} times, "
         f"first at {np.datetime_as_string(when[0], 'm')}"
@@ -158,7 +160,7 @@ def current_remarks(false: Mapping[str, Times], count: int) -> list[str]:
 
 
 def datum_remarks(common: Common, seabed: float) -> list[str]:
-    """A sentence where all sensors are off alike: by the weight of the air, or by much.
+    """Return a sentence where all sensors are off alike: by the weight of the air, or by much.
 
     Parameters
     ----------

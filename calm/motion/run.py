@@ -109,7 +109,7 @@ class MotionWork(Work):
 
 
 def motion_layout(task: Task, record: MeasuredRecord) -> Layout:
-    """The result of a batch, with what is estimated besides."""
+    """Return the result of a batch, with what is estimated besides."""
     layout = layout_of(task.mooring, record, None)
     known = dict(layout.sizes)
     known["sensor"] = len(task.measured.label)
@@ -135,7 +135,14 @@ def motion_layout(task: Task, record: MeasuredRecord) -> Layout:
 def estimate_in_memory(
     task: Task, points: Sequence[int], workers: int | None = None
 ) -> tuple[Floats, Floats]:
-    """(n, m) depths of some points and their deviations [m], which are kept nowhere."""
+    """Return (n, m) depths of some points and their deviations [m], which are kept nowhere.
+
+    Parameters
+    ----------
+    task : what is estimated
+    points : which points of the line
+    workers : threads
+    """
     starts = range(0, len(task.measured.time), BLOCK)
 
     def one(start: int) -> tuple[Floats, Floats]:

@@ -47,7 +47,7 @@ _NOT_MEASURED = re.compile(
 
 @dataclass(frozen=True)
 class Sensor:
-    """What one sensor measured.
+    """Hold what one sensor measured.
 
     Attributes
     ----------
@@ -70,7 +70,8 @@ class Sensor:
 def read_sensors(
     given: Sequence[str], flags: frozenset[int], latitude: float, seabed: float
 ) -> list[Sensor]:
-    """The sensors of some files, each given by its path, or as ``LABEL=PATH`` where it has one.
+    """Return the sensors of some files, each given by its path, or as ``LABEL=PATH`` where it has
+    one.
 
     Pressures are turned into depths by TEOS-10.
 
@@ -117,7 +118,9 @@ def _split(text: str) -> tuple[str, Path]:
 
 
 def depth_of(dbar: Floats, latitude: float) -> Floats:
-    """Depths [m] of pressures above that of the air [dbar], by TEOS-10; NaN of infinite ones."""
+    """Return depths [m] of pressures above that of the air [dbar], by TEOS-10; NaN of infinite
+    ones.
+    """
     import gsw
 
     known = np.where(np.isfinite(dbar), dbar, np.nan)
@@ -198,7 +201,7 @@ def _tells(dataset: xr.Dataset, dimension: str, seabed: float) -> bool:
 
 
 def _find(dataset: xr.Dataset) -> tuple[str, bool]:
-    """The variable of the pressures, or else of the depths; whether it is the former."""
+    """Return the variable of the pressures, or else of the depths; whether it is the former."""
     for standard in _PRESSURES:
         found = [str(name) for name in dataset.cf.standard_names.get(standard, [])]
         usual = [name for name in _USUAL if name in found]
@@ -224,7 +227,7 @@ def _find(dataset: xr.Dataset) -> tuple[str, bool]:
 
 
 def _from_csv(path: Path, latitude: float) -> list[Sensor]:
-    """A table ``time,LABEL[dbar],…``; a label may come with a unit of length instead."""
+    """Return a table ``time,LABEL[dbar],…``; a label may come with a unit of length instead."""
     table = read_time_columns(path, ("pressure", "length"), "LABEL[dbar]")
     time, values = table.time, table.values
     return [
@@ -247,7 +250,7 @@ INTERPOLATED = 8
 
 
 def parse_flags(text: str) -> frozenset[int]:
-    """The flags of a text such as ``1,2``.
+    """Return the flags of a text such as ``1,2``.
 
     Raises
     ------
@@ -278,7 +281,7 @@ _STANDARD = (
 
 
 def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
-    """Times, rising, and the height of the sea surface above a datum [m].
+    """Return times, rising, and the height of the sea surface above a datum [m].
 
     Raises
     ------

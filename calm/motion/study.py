@@ -58,7 +58,7 @@ class HeldOut:
 
 @dataclass(frozen=True)
 class Study:
-    """What was found.
+    """Hold what was found.
 
     Attributes
     ----------
@@ -84,6 +84,13 @@ def prepare(
 ) -> Task:
     """Estimate what is common to the record from the sensors that are not hidden.
 
+    Parameters
+    ----------
+    mooring : as its file says
+    measured : with the sensors that are hidden
+    names : of the factors that are estimated
+    hidden : labels of sensors that are not used
+
     Raises
     ------
     UsageError
@@ -100,7 +107,7 @@ def prepare(
 
 
 def intervals(task: Task) -> dict[str, tuple[float, float, float]]:
-    """Of each factor its value and the ends of its interval of 95 %."""
+    """Return the value of each factor and the ends of its interval of 95 %."""
     spread = np.sqrt(np.diag(task.common.covariance))
     return {
         name: (value, value * float(np.exp(-BAND * sd)), value * float(np.exp(BAND * sd)))
@@ -109,7 +116,7 @@ def intervals(task: Task) -> dict[str, tuple[float, float, float]]:
 
 
 def judged(task: Task, measured: MooringMeasurements, result: Dataset) -> Study:
-    """How a finished result agrees with all that was measured.
+    """Return how a finished result agrees with all that was measured.
 
     Parameters
     ----------
@@ -143,7 +150,7 @@ def judged(task: Task, measured: MooringMeasurements, result: Dataset) -> Study:
 
 
 def knockdown(used: MooringMeasurements) -> Floats:
-    """(n,) how far below its least depth the highest sensor with a pressure is [m]."""
+    """Return (n,) how far below its least depth the highest sensor with a pressure is [m]."""
     down = np.full(len(used.time), np.nan)
     for j in range(len(used.label)):
         depth = used.depth[:, j]
@@ -160,7 +167,16 @@ def judge_hidden(
     spread: Floats,
     still: Floats,
 ) -> HeldOut:
-    """A hidden sensor against what was estimated, and against interpolation."""
+    """Return a hidden sensor against what was estimated, and against interpolation.
+
+    Parameters
+    ----------
+    measured : with all sensors
+    used : with those that are used
+    label : of the hidden one
+    depth, spread : (n,) estimated there, and its deviation [m]
+    still : (p,) depths in still water [m]
+    """
     column = measured.label.index(label)
     own = measured.depth[:, column]
     among = np.isfinite(own) & np.isfinite(used.depth).all(axis=1) & np.isfinite(depth)
@@ -173,7 +189,7 @@ def judge_hidden(
 
 
 def several(measured: MooringMeasurements, hidden: Sequence[str]) -> list[str]:
-    """The sensors that can be hidden in turn.
+    """Return the sensors that can be hidden in turn.
 
     Raises
     ------
@@ -196,6 +212,12 @@ def cross_validated(
 ) -> tuple[HeldOut, ...]:
     """Each used sensor hidden in turn, besides those that are hidden anyway.
 
+    Parameters
+    ----------
+    mooring, measured, names, hidden : as for `prepare`
+    tell : is told what is going on
+    workers : threads
+
     Raises
     ------
     UsageError
@@ -214,7 +236,7 @@ def cross_validated(
 
 @dataclass(frozen=True)
 class SensorSeries:
-    """Of one sensor.
+    """Hold the depths of one sensor over time.
 
     Attributes
     ----------
@@ -233,7 +255,7 @@ class SensorSeries:
 
 
 def depths_at(result: Dataset, point: int) -> tuple[Floats, Floats]:
-    """(n,) depths of a point in a result, and their standard deviations [m]."""
+    """Return (n,) depths of a point in a result, and their standard deviations [m]."""
     clamps = result.sizes.get("clamp", 0)
     names = ("clamp_depth", "clamp_depth_sd") if point < clamps else ("depth_top", "depth_sd")
     column = point if point < clamps else point - clamps
@@ -244,7 +266,7 @@ def depths_at(result: Dataset, point: int) -> tuple[Floats, Floats]:
 def series_of(
     measured: MooringMeasurements, used: tuple[str, ...], result: Dataset
 ) -> list[SensorSeries]:
-    """Of all sensors from the top down.
+    """Return the depths of all sensors from the top down.
 
     Parameters
     ----------

@@ -27,14 +27,15 @@ BLOCK = 512
 
 @dataclass(frozen=True)
 class Task:
-    """What is to be estimated: `measured` has the sensors that are used."""
+    """Hold what is to be estimated: `measured` has the sensors that are used."""
 
     mooring: Mooring
     measured: MooringMeasurements
     common: Common
 
     def columns(self, start: int, stop: int) -> tuple[Profiles, dict[str, NDArray[np.float64]]]:
-        """Some of the times: the line in the most likely currents, and what is known besides.
+        """Return some of the times: the line in the most likely currents, and what is known
+        besides.
 
         Returns
         -------
@@ -81,7 +82,7 @@ class Task:
 
 
 def plain(forward: Forward, one: MooringMeasurements) -> Floats:
-    """(n, p) depths of the points by the currents alone, nothing fitted [m]."""
+    """Return (n, p) depths of the points by the currents alone, nothing fitted [m]."""
     moments = LineResponse(one, forward, {})
     depth = np.tile(forward.still, (len(one.time), 1))
     for _ in range(2):
@@ -92,7 +93,7 @@ def plain(forward: Forward, one: MooringMeasurements) -> Floats:
 
 
 class MeasuredRecord(Record):
-    """What was measured, as the record that a result is made from."""
+    """Hold what was measured, as the record that a result is made from."""
 
     def __init__(
         self, measured: MooringMeasurements, source: dict[str, str], notes: Sequence[str]
@@ -106,7 +107,7 @@ class MeasuredRecord(Record):
         return one.level_depth, one.u, one.v, None
 
     def close(self) -> None:
-        """Nothing is open."""
+        """Do nothing: no file is open."""
 
     def digest(self, check: Callable[[], None] = lambda: None) -> str:
         """SHA-256 of all that was measured."""
@@ -123,7 +124,9 @@ class MeasuredRecord(Record):
 
 
 def without(measured: MooringMeasurements, labels: Sequence[str]) -> MooringMeasurements:
-    """What was measured but for some sensors: hidden everywhere, their currents' depths too."""
+    """Return what was measured but for some sensors: hidden everywhere, their currents' depths
+    too.
+    """
     kept = [i for i, label in enumerate(measured.label) if label not in labels]
     point = measured.point[kept]
     places = point.tolist()

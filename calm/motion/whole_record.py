@@ -37,7 +37,7 @@ LONGEST_MEMORY = 25
 
 
 def forwards_of(mooring: Mooring, common: Common) -> tuple[Forward, dict[str, Forward]]:
-    """The mooring at the common factors, and a step from each."""
+    """Return the mooring at the common factors, and a step from each."""
     shifted = {
         name: Forward(mooring, {**common.factors, name: value * float(np.exp(STEP))})
         for name, value in common.factors.items()
@@ -46,7 +46,14 @@ def forwards_of(mooring: Mooring, common: Common) -> tuple[Forward, dict[str, Fo
 
 
 def assumed(mooring: Mooring, measured: MooringMeasurements, names: Sequence[str]) -> Common:
-    """What is common before any pressure is looked at."""
+    """Return what is common before any pressure is looked at.
+
+    Parameters
+    ----------
+    mooring : as its file says
+    measured : on common times
+    names : of the factors that are estimated
+    """
     sensors = len(measured.label)
     spread = [
         *(prior.FACTORS[name][1] for name in names),
@@ -135,7 +142,7 @@ def estimate_common(
 def _evidence(
     raw: Floats, left: Floats, seen: Floats, expected: Floats, known: NDArray[np.bool_]
 ) -> Evidence:
-    """What each time says, times of large misfit less."""
+    """Return what each time says, times of large misfit less."""
     inverse = np.asarray(np.linalg.inv(expected), np.float64)
     misfit = np.einsum("ns,nst,nt->n", left, inverse, left)
     weight = (ROBUST + known.sum(axis=1)) / (ROBUST + misfit)
@@ -149,7 +156,7 @@ def _unmoved(known: Common) -> tuple[Floats, Floats]:
 
 
 def _memory(evidence: Evidence, left: Floats) -> float:
-    """Of so many times that follow each other the errors of a sensor are the same, at most."""
+    """Return over how many times in a row the errors of a sensor are the same, at most."""
     sensors = left.shape[1]
     return max(_alike(column) for column in evidence.pulls(evidence.seen, left)[:, -sensors:].T)
 
@@ -157,7 +164,7 @@ def _memory(evidence: Evidence, left: Floats) -> float:
 def _placed(
     known: Common, evidence: Evidence, fall: Floats, time: NDArray[np.datetime64], alike: float
 ) -> Common:
-    """What is common by the linear law of all times, over all ways the sensors may hang.
+    """Return what is common by the linear law of all times, over all ways the sensors may hang.
 
     Parameters
     ----------
@@ -193,7 +200,7 @@ def _placed(
 
 
 def _chosen(measured: MooringMeasurements) -> Integers:
-    """Times that have a current and a pressure, evenly spread where they are many."""
+    """Return times that have a current and a pressure, evenly spread where they are many."""
     currents = np.isfinite(measured.u) & np.isfinite(measured.v)
     used = np.flatnonzero(np.isfinite(measured.depth).any(axis=1) & currents.any(axis=1))
     if len(used) <= MOST_TIMES:
@@ -202,7 +209,7 @@ def _chosen(measured: MooringMeasurements) -> Integers:
 
 
 def _scale(left: Floats, expected: Floats, currents: Floats, scale: float) -> tuple[float, float]:
-    """The factor on the errors of the currents under which the pressures are most likely.
+    """Return the factor on the errors of the currents under which the pressures are most likely.
 
     And the logarithm of how likely they then are, but for a constant.
     """
@@ -219,7 +226,7 @@ def _scale(left: Floats, expected: Floats, currents: Floats, scale: float) -> tu
 
 
 def _alike(pull: Floats) -> float:
-    """How many times that follow each other have the same error, by its autocorrelation."""
+    """Return how many times that follow each other have the same error, by its autocorrelation."""
     one = pull - pull.mean()
     whole = float(one @ one)
     total, chance = 1.0, 2.0 / np.sqrt(max(len(one), 1))

@@ -84,13 +84,14 @@ _FROM = re.compile(r"\bfrom direction\b|\bdirection from\b|\bcom(es|ing) from\b|
 
 
 def words_of(variable: xr.DataArray, *attributes: str) -> str:
-    """Some attributes of a variable as plain lower-case words, one blank between them."""
+    """Return some attributes of a variable as plain lower-case words, one blank between them."""
     told = " ".join(str(variable.attrs.get(name, "")) for name in attributes)
     return re.sub(r"[\W_]+", " ", told.lower()).strip()
 
 
 def not_a_current(variable: xr.DataArray) -> str | None:
-    """Why a variable is no velocity of the water to the east, the north or up; None if it may be.
+    """Return why a variable is no velocity of the water to the east, the north or up; None if it
+    may be.
 
     Only what it says of itself counts: its long name, standard name, frame and cell methods.
     """
@@ -111,7 +112,7 @@ def not_a_current(variable: xr.DataArray) -> str | None:
 
 
 def another_way(variable: xr.DataArray, way: str) -> str | None:
-    """Why a velocity is not ``"east"``, ``"north"`` or ``"up"``, by its long name."""
+    """Return why a velocity is not ``"east"``, ``"north"`` or ``"up"``, by its long name."""
     against, for_it = _OPPOSED[way]
     own = words_of(variable, "long_name")
     if re.search(against, own) and not re.search(for_it, own):
@@ -120,7 +121,8 @@ def another_way(variable: xr.DataArray, way: str) -> str | None:
 
 
 def other_frame(attributes: Mapping[Any, Any]) -> str | None:
-    """Why a current is not to the east and north, by its coordinate system; None if it may be.
+    """Return why a current is not to the east and north, by its coordinate system; None if it may
+    be.
 
     Parameters
     ----------
@@ -143,7 +145,7 @@ def other_frame(attributes: Mapping[Any, Any]) -> str | None:
 
 
 def is_magnetic(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProxyType({})) -> bool:
-    """Whether a velocity or direction is relative to magnetic north, as it or its file says.
+    """Return whether a velocity or direction is relative to magnetic north, as it or its file says.
 
     Parameters
     ----------
@@ -161,14 +163,16 @@ def is_magnetic(variable: xr.DataArray, dataset: Mapping[Any, Any] = MappingProx
 
 
 def _counts_from_it(name: str, said: Any) -> bool:
-    """Whether an attribute says that directions are relative to magnetic north."""
+    """Return whether an attribute says that directions are relative to magnetic north."""
     if _UNTURNED.fullmatch(name):
         return str(said).strip().lower() in _NO
     return _says_so(said, _MAGNETIC if _DATUM.fullmatch(name) else _MAGNETIC_NORTH)
 
 
 def _says_so(said: Any, magnetic: re.Pattern[str]) -> bool:
-    """Whether a text speaks of magnetic north in a sentence, and of its correction in none."""
+    """Return whether a text speaks of magnetic north in a sentence, and of its correction in
+    none.
+    """
     if not isinstance(said, str):
         return False
     sentences = [" ".join(re.split(r"[_\W]+", one)) for one in _SENTENCE.split(said.lower())]
@@ -179,7 +183,8 @@ def _says_so(said: Any, magnetic: re.Pattern[str]) -> bool:
 
 
 def way_of(variable: xr.DataArray, *attributes: str) -> str | None:
-    """Whether a direction is where the current flows ``"to"`` or comes ``"from"``, in its words.
+    """Return whether a direction is where the current flows ``"to"`` or comes ``"from"``, in its
+    words.
 
     Parameters
     ----------
@@ -242,7 +247,8 @@ _OVER_YEARS = re.compile(r"\b(within|over) (years|days)\b")
 
 
 def part_in_words(own: str) -> str | None:
-    """The words by which the name of a quantity is a part of the current; None where none is.
+    """Return the words by which the name of a quantity is a part of the current; None where none
+    is.
 
     Parameters
     ----------
@@ -255,7 +261,8 @@ def part_in_words(own: str) -> str | None:
 
 
 def part_in_texts(attributes: Mapping[Any, Any]) -> str | None:
-    """Why a current is a part of the whole, by titles, comments and filters; None if it may be it.
+    """Return why a current is a part of the whole, by titles, comments and filters; None if it may
+    be it.
 
     A sentence that denies it, or speaks of another variable too, does not count.
 

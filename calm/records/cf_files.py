@@ -53,12 +53,12 @@ class UnreadableError(Exception):
 
 
 def is_zarr(path: Path) -> bool:
-    """Whether a folder is a zarr store."""
+    """Return whether a folder is a zarr store."""
     return any((path / name).is_file() for name in _ZARR)
 
 
 def is_netcdf(path: Path) -> bool:
-    """Whether a file is NetCDF, by its first bytes."""
+    """Return whether a file is NetCDF, by its first bytes."""
     with path.open("rb") as file:
         signature = file.read(4)
     return signature == b"\x89HDF" or signature[:3] == b"CDF"
@@ -66,7 +66,7 @@ def is_netcdf(path: Path) -> bool:
 
 @contextmanager
 def reading(path: Path) -> Iterator[None]:
-    """Turns what is wrong with a file into an InputError."""
+    """Turn what is wrong with a file into an InputError."""
     try:
         yield
     except (CalmError, TimeChoiceError):
@@ -82,7 +82,7 @@ def reading(path: Path) -> Iterator[None]:
 
 
 def open_current(path: Path) -> xr.Dataset:
-    """The dataset of a file, its values read when they are asked for, its times undecoded."""
+    """Return the dataset of a file, its values read as they are asked for, its times undecoded."""
     import cf_xarray  # noqa: F401  (gives datasets their `cf`)
     import xarray as xr
 
@@ -96,7 +96,7 @@ def open_current(path: Path) -> xr.Dataset:
 
 
 def holdings(dataset: xr.Dataset) -> str:
-    """The variables of a dataset with their dimensions, units and standard names, as text."""
+    """Return the variables of a dataset with their dimensions, units and standard names."""
     listed = []
     for name, variable in dataset.variables.items():
         sizes = ", ".join(f"{dim} {size}" for dim, size in variable.sizes.items())
@@ -112,7 +112,7 @@ def holdings(dataset: xr.Dataset) -> str:
 
 
 def factor_of(variable: xr.DataArray, dimension: str) -> float:
-    """What turns a variable into SI (angles: degrees).
+    """Return what turns a variable into SI (angles: degrees).
 
     Raises
     ------
@@ -133,12 +133,12 @@ def factor_of(variable: xr.DataArray, dimension: str) -> float:
 
 
 def first_present(dataset: xr.Dataset, names: Iterable[str]) -> list[str]:
-    """Those of the names that the dataset has, each once."""
+    """Return those of the names that the dataset has, each once."""
     return [name for name in dict.fromkeys(names) if name in dataset.variables]
 
 
 def known_values(variable: xr.DataArray) -> NDArray[np.float64]:
-    """The values of a variable as it stands in its file, NaN outside its valid range.
+    """Return the values of a variable as it stands in its file, NaN outside its valid range.
 
     `valid_range`, or `valid_min` and `valid_max`, are those of the NetCDF User Guide: of packed
     values where they are of the packed kind.
@@ -151,7 +151,7 @@ def known_values(variable: xr.DataArray) -> NDArray[np.float64]:
 
 
 def _valid_range(variable: xr.DataArray) -> tuple[float, float]:
-    """The least and the greatest valid value, unpacked."""
+    """Return the least and the greatest valid value, unpacked."""
     attributes = variable.attrs
     low, high = attributes.get("valid_min"), attributes.get("valid_max")
     both = attributes.get("valid_range")
@@ -178,7 +178,7 @@ def _unpacked(limit: Any, variable: xr.DataArray, absent: float) -> float:
 
 
 def flag_variable(dataset: xr.Dataset, name: str) -> xr.DataArray | None:
-    """The flags of a variable: its ancillary variable, or the one that is called after it."""
+    """Return the flags of a variable: its ancillary variable, or the one called after it."""
     beside = str(dataset[name].attrs.get("ancillary_variables", "")).split()
     named = [*beside, *(f"{name}{ending}" for ending in _ENDINGS)]
     for other in named:
@@ -199,7 +199,7 @@ def _tells_flags(variable: xr.DataArray) -> bool:
 
 
 def flags_of(variable: xr.DataArray) -> NDArray[np.int8]:
-    """The flags as numbers; one without a value is 9, missing."""
+    """Return the flags as numbers; one without a value is 9, missing."""
     values = np.asarray(variable.values)
     if values.dtype.kind in "SU":
         values = np.where(values.astype(str) == "", "9", values.astype(str)).astype(float)
@@ -208,7 +208,7 @@ def flags_of(variable: xr.DataArray) -> NDArray[np.int8]:
 
 
 def labels_along(dataset: xr.Dataset, dimension: str) -> tuple[str, ...] | None:
-    """The labels of what a dimension counts; None where it has none."""
+    """Return the labels of what a dimension counts; None where it has none."""
     for name in (*_LABELS, dimension):
         if name not in dataset.variables or dataset[name].dims != (dimension,):
             continue
@@ -220,9 +220,15 @@ def labels_along(dataset: xr.Dataset, dimension: str) -> tuple[str, ...] | None:
 
 
 def places_along(dataset: xr.Dataset, dimension: str | None, seabed: float) -> Floats | None:
-    """Nominal depths of what a dimension counts [m]; of the one instrument without it.
+    """Return the nominal depths of what a dimension counts [m]; of the one instrument without it.
 
     Heights above the bottom are counted from `seabed` [m].
+
+    Parameters
+    ----------
+    dataset : of instruments
+    dimension : what counts these; None for one instrument
+    seabed : depth of the water, for heights above it [m]
     """
     dims = () if dimension is None else (dimension,)
     for names, sign, start in ((_HEIGHTS, -1.0, seabed), (_DEPTHS, 1.0, 0.0)):
@@ -238,7 +244,7 @@ def places_along(dataset: xr.Dataset, dimension: str | None, seabed: float) -> F
 
 
 def find_times(dataset: xr.Dataset, velocity: str) -> str | None:
-    """The name of the variable with the times of a velocity; None where it has none.
+    """Return the name of the variable with the times of a velocity; None where it has none.
 
     Its dimension, if it has one, is one of the velocity's.
     """
@@ -253,7 +259,7 @@ def find_times(dataset: xr.Dataset, velocity: str) -> str | None:
 
 
 def read_times(dataset: xr.Dataset, name: str) -> NDArray[np.datetime64]:
-    """Its times to the nanosecond, one-dimensional, in the order of the file.
+    """Return its times to the nanosecond, one-dimensional, in the order of the file.
 
     Raises
     ------
@@ -280,7 +286,7 @@ def read_times(dataset: xr.Dataset, name: str) -> NDArray[np.datetime64]:
 
 
 def zone_notices(dataset: xr.Dataset, name: str) -> list[str]:
-    """What is said where the attributes of the times name another zone than UTC."""
+    """Return what is said where the attributes of the times name another zone than UTC."""
     attributes = dataset[name].attrs
     zones = [str(attributes.get(one, "")) for one in _ZONED]
     zone = next((one for one in zones if one and one.strip().upper() not in ZONES_OF_UTC), None)
@@ -324,7 +330,7 @@ def _decoded(times: xr.DataArray) -> NDArray[Any]:
 
 
 def _no_date(times: xr.DataArray) -> UnreadableError:
-    """What is said where the unit of times is understood, but not all of their values."""
+    """Return what is said where the unit of times is understood, but not all of their values."""
     values = times.values.ravel()
     worst = values[np.nanargmax(np.abs(values - np.nanmedian(values)))]
     return UnreadableError(

@@ -29,7 +29,14 @@ class NamedRow:
     columns: Mapping[str, int]
 
     def problem(self, path: Path, name: str, message: str) -> Problem:
-        """Return a mistake at the cell of a column."""
+        """Return a mistake at the cell of a column.
+
+        Parameters
+        ----------
+        path : of the table
+        name : of the column
+        message : what is wrong
+        """
         return Problem(str(path), self.line, self.columns[name], message)
 
 
@@ -51,7 +58,14 @@ class NamedColumns:
     header: int
 
     def lacks(self, path: Path, name: str, unit: str) -> Problem:
-        """Return the mistake that there is no column of a name."""
+        """Return the mistake that there is no column of a name.
+
+        Parameters
+        ----------
+        path : of the table
+        name : of the column
+        unit : to offer with it
+        """
         message = unknown(f"there is no column `{name}[{unit}]`", name, self.others or [name])
         return Problem(str(path), self.header, 1, message)
 
@@ -184,7 +198,7 @@ class _LabelledColumn:
     factor: float
 
     def value(self, cell: str) -> float:
-        """The number of a cell in SI, NaN of a gap; QuantityError where it is none."""
+        """Return the number of a cell in SI, NaN of a gap; QuantityError where it is none."""
         if NUMBER.fullmatch(cell):
             return float(cell) * self.factor
         if cell.lower() in GAPS or cell.lower().lstrip("+-") in _INFINITE:
@@ -200,7 +214,7 @@ def _labelled(
     usual: str,
     problems: list[Problem],
 ) -> _LabelledColumn | None:
-    """The column of a heading; None, with its mistake added, where it has any."""
+    """Return the column of a heading; None, with its mistake added, where it has any."""
     column = header.cells[j]
     name, unit = heading(column, dimensions)
     try:
@@ -212,7 +226,7 @@ def _labelled(
 
 
 def _whole_rows(table: TextTable, problems: list[Problem]) -> list[CellRow]:
-    """The rows that have as many cells as the header; mistakes are added for the others."""
+    """Return the rows that have as many cells as the header; mistakes are added for the others."""
     whole = []
     for row in table.rows:
         problems += row.mixed_decimals(table.path)

@@ -40,18 +40,25 @@ class CurrentHeader:
 
     @property
     def timed(self) -> bool:
-        """Whether the file is a record."""
+        """Return whether the file is a record."""
         return is_time(self.row.cells[0])
 
     @property
     def columns(self) -> list[str]:
-        """The names with their units, without that of the time."""
+        """Return the names with their units, without that of the time."""
         return list(self.row.cells[int(self.timed) :])
 
     def profile(
         self, rows: Sequence[CellRow], problems: list[Problem], terms: Terms
     ) -> CurrentTable | None:
-        """Return the current of the rows of one time; None, with mistakes added, if it has any."""
+        """Return the current of the rows of one time; None, with mistakes added, if it has any.
+
+        Parameters
+        ----------
+        rows : of one time, or all where there is none
+        problems : to add to
+        terms : how the current is to be taken
+        """
         first = int(self.timed)
 
         def report(location: Sequence[str | int], message: str) -> Problem:
@@ -115,7 +122,7 @@ def read_current_csv(path: Path, time: str | None, terms: Terms) -> tuple[Curren
 
 
 def _rows_of(rows: list[CellRow], time: str | None, path: Path) -> tuple[list[CellRow], list[str]]:
-    """The rows of the time nearest to the one wanted, and the notice that says so."""
+    """Return the rows of the time nearest to the one wanted, and the notice that says so."""
     problems = []
     moments = []
     for row in rows:

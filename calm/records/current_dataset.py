@@ -83,12 +83,12 @@ class CurrentDataset:
 
     @property
     def moves(self) -> bool:
-        """Whether the levels move with time."""
+        """Return whether the levels move with time."""
         return self._levels.vary_in(self._time)
 
     @property
     def chunk(self) -> int:
-        """How many times the file decompresses together; 1 where it does not compress."""
+        """Return how many times the file decompresses together; 1 where it does not compress."""
         variable = self._parts[0][0]
         chunks: dict[str | None, int] = variable.encoding.get("preferred_chunks", {})
         return chunks.get(self._time, 1)
@@ -101,7 +101,10 @@ class CurrentDataset:
         return 8 * levels * (len(self._parts) + self.moves)
 
     def read(self, index: slice | NDArray[np.intp]) -> CurrentArrays:
-        """The profiles of some times, by their index; all profiles where there is no time."""
+        """Return the profiles of some times, by their index.
+
+        All profiles where there is no time.
+        """
         first, second, *up = (
             self._values(variable, index) * factor for variable, factor in self._parts
         )
@@ -121,7 +124,9 @@ class CurrentDataset:
         return CurrentArrays(depth, first, second, up[0] if up else None)
 
     def flags(self, index: slice | NDArray[np.intp]) -> NDArray[np.int8] | None:
-        """(n, k) the worse quality flags of both components at some times; None without flags."""
+        """Return (n, k) the worse quality flags of both components at some times; None without
+        flags.
+        """
         if self._time is None or not self._flags:
             return None
         first = self._parts[0][0].isel({self._time: index}).transpose(self._time, ...)
@@ -132,7 +137,9 @@ class CurrentDataset:
         return worst.reshape(len(worst), -1)
 
     def _values(self, variable: xr.DataArray, index: Any) -> NDArray[np.float64]:
-        """Times by levels, contiguous, so that equal values give equal results in any company."""
+        """Return times by levels, contiguous, so that equal values give equal results in any
+        company.
+        """
         if self._time is None:
             return known_values(variable).reshape(1, -1)
         values = known_values(variable.isel({self._time: index}).transpose(self._time, ...))
@@ -140,7 +147,7 @@ class CurrentDataset:
 
 
 def understand(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
-    """What a dataset holds, without reading its currents.
+    """Return what a dataset holds, without reading its currents.
 
     Parameters
     ----------
@@ -199,7 +206,7 @@ def _understood(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
 
 
 def _turned(velocity: Velocity, declination: float | None) -> tuple[str, ...]:
-    """What is reported of a current that is relative to magnetic north."""
+    """Return what is reported of a current that is relative to magnetic north."""
     counted = velocity.names if velocity.turn is None else velocity.names[1:]
     which = " and ".join(f"`{name}`" for name in counted)
     if velocity.magnetic and declination is None:
@@ -220,14 +227,14 @@ def _turned(velocity: Velocity, declination: float | None) -> tuple[str, ...]:
 
 
 def _dimension(dataset: xr.Dataset, time: str | None) -> str | None:
-    """The dimension of the times, None where they have none."""
+    """Return the dimension of the times, None where they have none."""
     return None if time is None else next(map(str, dataset[time].dims), None)
 
 
 def _single_levels(
     dataset: xr.Dataset, velocity: Velocity, time: str | None
 ) -> tuple[str | None, xr.Dataset]:
-    """The dimension of the levels, and the dataset without dimensions of one value."""
+    """Return the dimension of the levels, and the dataset without dimensions of one value."""
     name = velocity.names[0]
     single = [dim for dim, size in dataset.sizes.items() if size == 1 and dim != time]
     dataset = dataset.isel(dict.fromkeys(single, 0))
@@ -246,7 +253,7 @@ def _single_levels(
 
 
 def _parts(dataset: xr.Dataset, velocity: Velocity) -> list[tuple[xr.DataArray, float]]:
-    """The variables of the current, each with its factor to SI (angles: degrees)."""
+    """Return the variables of the current, each with its factor to SI (angles: degrees)."""
     dimensions = ("speed", "speed" if velocity.turn is None else "angle", "speed")
     return [
         (dataset[name], factor_of(dataset[name], dimension))
@@ -304,7 +311,9 @@ class ArrayRecord(Record):
             return self._current.flags(part(self._index, start, stop))
 
     def _window(self, start: int, stop: int) -> tuple[int, int, CurrentArrays]:
-        """The profiles around those wanted that are decompressed with them, and which they are."""
+        """Return the profiles around those wanted that are decompressed with them, and which they
+        are.
+        """
         if self._ahead is not None and self._ahead[0] <= start and stop <= self._ahead[1]:
             return self._ahead
         self._ahead = None
@@ -317,7 +326,7 @@ class ArrayRecord(Record):
         return window
 
     def _end_of_chunk(self, start: int) -> int:
-        """The profile after those that a file has compressed together with one."""
+        """Return the profile after those that a file has compressed together with one."""
         chunk = self._current.chunk
         if isinstance(self._index, slice):
             position = self._index.start + start * self._index.step

@@ -19,7 +19,13 @@ from calm.records.water_column import Place
 
 
 def read_current_file(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
-    """The profile of a file at a time, and what to report about it.
+    """Return the profile of a file at a time, and what to report about it.
+
+    Parameters
+    ----------
+    path : CSV, NetCDF or zarr
+    time : in ISO 8601; None where there is only one
+    terms : how the current is to be taken
 
     Raises
     ------
@@ -42,7 +48,7 @@ def open_record(
     time: Period | None = None,
     every: int = 1,
 ) -> Record:
-    """A record in NetCDF, in zarr, or in CSV.
+    """Return a record in NetCDF, in zarr, or in CSV.
 
     Parameters
     ----------
@@ -70,7 +76,7 @@ def open_record(
 
 
 def holds_arrays(path: Path) -> bool:
-    """Whether a file is NetCDF or a folder zarr; any other file is taken as CSV.
+    """Return whether a file is NetCDF or a folder zarr; any other file is taken as CSV.
 
     Raises
     ------
@@ -88,7 +94,13 @@ def holds_arrays(path: Path) -> bool:
 def read_current_netcdf(
     path: Path, time: str | None, terms: Terms
 ) -> tuple[CurrentTable, list[str]]:
-    """The profile of a time, and notices; `time` may be None where there is only one.
+    """Return the profile of a time, and notices; `time` may be None where there is only one.
+
+    Parameters
+    ----------
+    path : NetCDF or zarr
+    time : in ISO 8601; None where there is only one
+    terms : how the current is to be taken
 
     Raises
     ------
@@ -112,7 +124,7 @@ def read_current_netcdf(
 
 
 def _profile(arrays: CurrentArrays, terms: Terms, notices: list[str]) -> CurrentTable:
-    """The levels in water that have a value, by depth."""
+    """Return the levels in water that have a value, by depth."""
     depth, u, v = (values.ravel() for values in (arrays.depth, arrays.u, arrays.v))
     w = np.zeros_like(u) if arrays.w is None else arrays.w.ravel()
     known = ~np.isnan(u + v + w) & np.isfinite(depth)

@@ -78,11 +78,11 @@ class Dialect:
 
     @property
     def name(self) -> str:
-        """What the separator is called."""
+        """Return what the separator is called."""
         return _SEPARATORS[self.separator]
 
     def _placed(self, line: str) -> list[tuple[int, str]]:
-        """The cells of a line, each after its place in it."""
+        """Return the cells of a line, each after its place in it."""
         if self.separator == " ":
             return [(one.start(), _unquoted(one[0])) for one in _WORDS.finditer(line)]
         pattern, at, found = _CELLS[self.separator], 0, []
@@ -218,6 +218,12 @@ def row_below(header: CellRow, number: int, line: str) -> CellRow:
     """Return a line below a header as cells.
 
     Between blanks, a time may be a date and a clock, which are two words.
+
+    Parameters
+    ----------
+    header : of the table
+    number : of the line
+    line : as it stands
     """
     dialect, skipped = header.dialect, header.skipped
     cells = dialect.cells(line)
@@ -309,7 +315,9 @@ def abridged(problems: list[Problem]) -> list[Problem]:
 
 
 def _content(lines: Iterable[NumberedLine]) -> Iterator[NumberedLine]:
-    """Those of the lines that are neither blank nor a comment, cells of several lines in one."""
+    """Return those of the lines that are neither blank nor a comment, cells of several lines in
+    one.
+    """
     begun: list[NumberedLine] = []
     for number, line in lines:
         if not begun and (not line.strip() or line.lstrip().startswith("#")):
@@ -335,7 +343,7 @@ def _unquoted(cell: str) -> str:
 
 
 def _begins_with_number(cell: str) -> bool:
-    """Whether a cell is a number, with a unit behind it or not."""
+    """Return whether a cell is a number, with a unit behind it or not."""
     cell = Dialect(";", ",").with_point(cell)
     number = NUMBER.match(cell)
     rest = cell[number.end() :] if number else "?"

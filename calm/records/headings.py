@@ -72,7 +72,8 @@ def column_unit(
         except QuantityError as error:
             complaints.append(error)
     said = next((one for one in complaints if one.suggestion), complaints[0])
-    offer = f"; did you mean `{name}[{said.suggestion}]`?" if said.suggestion else ""
+    meant = column.strip().replace(unit, said.suggestion) if said.suggestion else ""
+    offer = f"; did you mean `{shown(meant)}`?" if meant else ""
     raise QuantityError(f"`{shown(column)}` {said.complaint}{offer}")
 
 
@@ -100,7 +101,7 @@ def magnetic_columns(columns: Sequence[str]) -> tuple[list[str], set[str]]:
 
 
 def _without_north(column: str) -> str:
-    """A heading without the word ``magnetic`` at the end of its unit."""
+    """Return a heading without the word ``magnetic`` at the end of its unit."""
     name, unit = heading(column)
     plain = _MAGNETIC.sub("", unit)
     return column if plain == unit else f"{name} {plain}".strip()

@@ -57,12 +57,14 @@ class LevelDepths:
     notes: tuple[str, ...]
 
     def vary_in(self, time: str | None) -> bool:
-        """Whether the levels move with time."""
+        """Return whether the levels move with time."""
         moving = [self.variable, *([self.instrument[0]] if self.instrument else [])]
         return any(time in one.dims for one in moving)
 
     def depths(self, time: str | None, index: Any) -> NDArray[Any]:
-        """The depths [m] at some times: times by levels, or levels only where they never move."""
+        """Return the depths [m] at some times: times by levels, or levels only where they never
+        move.
+        """
 
         def values(variable: xr.DataArray) -> NDArray[Any]:
             chosen = variable.isel({time: index}) if time in variable.dims else variable
@@ -81,10 +83,17 @@ class LevelDepths:
 def find_levels(
     dataset: xr.Dataset, level: str | None, time: str | None, water_depth: float
 ) -> LevelDepths:
-    """The levels of a velocity that spreads over `level` and `time`, either of them None.
+    """Return the levels of a velocity that spreads over `level` and `time`, either of them None.
 
     Those that move with time come before those that do not; `water_depth` [m] places heights
     above the seabed.
+
+    Parameters
+    ----------
+    dataset : of the velocity
+    level : its dimension of levels, None where it has none
+    time : its dimension of times, None where it has none
+    water_depth : where heights above the seabed begin [m]
 
     Raises
     ------
@@ -169,7 +178,7 @@ def _above_seabed(levels: xr.DataArray, factor: float, water_depth: float) -> Le
 
 
 def _sign(levels: xr.DataArray, time: str | None) -> int:
-    """1 or -1 where all values other than zero have that sign, else 0; of the first time."""
+    """Return 1 or -1 where all values other than zero have that sign, else 0; of the first time."""
 
     first = levels.isel({time: slice(1)}) if time in levels.dims else levels
     values = known_values(first)
@@ -186,7 +195,7 @@ def _from_instrument(
     time: str | None,
     water_depth: float,
 ) -> LevelDepths:
-    """Levels counted from an instrument that looks up or down.
+    """Return levels counted from an instrument that looks up or down.
 
     MHKiT adds the height of the instrument above the seabed to `range` where a person gives it, or
     the instrument's depth where it looks down, and then calls the depth of the water `depth`.
@@ -218,13 +227,15 @@ def _from_instrument(
 
 
 def _offset_by_hand(dataset: xr.Dataset) -> bool:
-    """Whether MHKiT was given the place of the instrument; Teledyne's offsets are of its head."""
+    """Return whether MHKiT was given the place of the instrument; Teledyne's offsets are of its
+    head.
+    """
     given = any(dataset.attrs.get(name) for name in ("range_offset", "h_deploy"))
     return given and "rdi" not in str(dataset.attrs.get("inst_make", "")).lower()
 
 
 def _way_it_looks(dataset: xr.Dataset, levels: xr.DataArray, words: str) -> str:
-    """Whether an instrument looks ``"up"`` or ``"down"``; empty where nothing says so."""
+    """Return whether an instrument looks ``"up"`` or ``"down"``; empty where nothing says so."""
     for word, way in (("above", "up"), ("below", "down")):
         if word in words.split():
             return way
@@ -243,7 +254,7 @@ Depth = tuple[Any, float]
 def _depths(
     dataset: xr.Dataset, levels: xr.DataArray, time: str | None
 ) -> tuple[Depth | None, Depth | None]:
-    """The depth of the instrument and that of the water, each None where the file has none."""
+    """Return the depth of the instrument and that of the water, None where the file has none."""
     instrument: Depth | None = None
     water: Depth | None = None
     names = [*dataset.cf.standard_names.get(_STANDARD_DEPTH, []), *_NAMES, "depth_avg"]

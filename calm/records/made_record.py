@@ -26,7 +26,7 @@ _MISSING = -32767
 
 
 def made_record() -> bytes:
-    """The record as a classic NetCDF file: the same bytes wherever it is made."""
+    """Return the record as a classic NetCDF file: the same bytes wherever it is made."""
     import xarray as xr
 
     hours = np.arange(24 * DAYS)

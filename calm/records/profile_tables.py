@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 
 from calm.errors import Problem
 from calm.quantities import bearing_of
-from calm.records.headings import heading, magnetic_columns
+from calm.records.headings import column_unit, heading, magnetic_columns
 from calm.suggestions import about_quantity, shown, unknown
-from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
+from calm.units import QuantityError, QuantityRange
 
 if TYPE_CHECKING:
     from calm.records.water_column import Place
@@ -66,7 +66,7 @@ IMPOSSIBLE = (
 
 @dataclass(frozen=True)
 class Terms:
-    """How a person wants the currents of a file to be taken.
+    """Describe how a person wants the currents of a file to be taken.
 
     Attributes
     ----------
@@ -221,6 +221,12 @@ def read_water(
 
     Its columns are `depth`, and `density` or `temperature` and `salinity`; `density` is the
     plausible range of the fluid.
+
+    Parameters
+    ----------
+    columns, rows, report : as for `read_current`
+    problems : to add to
+    density : the plausible range of the fluid
     """
     before = len(problems)
     values = _read_columns(columns, rows, {**_WATER, "density": density}, report, problems)
@@ -242,7 +248,14 @@ def read_profile(
     report: Report,
     problems: list[Problem],
 ) -> DepthTable | None:
-    """Read `temperature` [°C] or `salinity` by depth from a table as that of `read_current`."""
+    """Read `temperature` [°C] or `salinity` by depth from a table as that of `read_current`.
+
+    Parameters
+    ----------
+    name : `temperature` or `salinity`
+    columns, rows, report : as for `read_current`
+    problems : to add to
+    """
     before = len(problems)
     known = {"depth": _DEPTH, name: _WATER[name]}
     values = _read_columns(columns, rows, known, report, problems)
@@ -261,7 +274,13 @@ def components(speed: float, toward: float) -> tuple[float, float]:
 
 
 def turned_by(angle: float, u: float, v: float) -> tuple[float, float]:
-    """Return a flow u to the east, v to the north, turned clockwise by an angle [degrees]."""
+    """Return a flow u to the east, v to the north, turned clockwise by an angle [degrees].
+
+    Parameters
+    ----------
+    angle : clockwise [degrees]
+    u, v : to the east and to the north [m/s]
+    """
     sine, cosine = math.sin(math.radians(angle)), math.cos(math.radians(angle))
     return u * cosine + v * sine, v * cosine - u * sine
 
@@ -324,13 +343,11 @@ def _read_headings(
         elif name in units:
             problems.append(report(("columns", j), f"column `{name}` is given twice"))
         else:
-            dimension = known[name].dimension
             try:
-                unit_factor(unit or DIMENSIONS[dimension].unit, dimension)
+                if unit:
+                    column_unit(column, unit, [known[name].dimension])
             except QuantityError as error:
-                offer = f"; did you mean `{name} {error.suggestion}`?" if error.suggestion else ""
-                message = f"`{shown(column)}` {error.complaint}{offer}"
-                problems.append(report(("columns", j), message))
+                problems.append(report(("columns", j), str(error)))
             else:
                 units[name] = unit
     return units
@@ -369,7 +386,8 @@ def _check_depths(
 
 
 def too_fast(u: float, v: float, w: float, maximum_speed: float) -> str | None:
-    """What is wrong with a current faster than the greatest that is plausible; None if it is not.
+    """Return what is wrong with a current faster than the greatest that is plausible; None if it
+    is not.
 
     Parameters
     ----------
@@ -387,7 +405,7 @@ def too_fast(u: float, v: float, w: float, maximum_speed: float) -> str | None:
 
 
 def too_deep(depth: float) -> str | None:
-    """What is wrong with a depth [m] below that of any sea; None if it is not."""
+    """Return what is wrong with a depth [m] below that of any sea; None if it is not."""
     if not depth > DEEPEST:
         return None
     return f"depth {depth:g} m is deeper than any sea, {DEEPEST:g} m"

@@ -68,7 +68,7 @@ class Record(ABC):
 
     @abstractmethod
     def profiles(self, start: int, stop: int) -> Levels:
-        """Depth (k,) or (m, k) [m], and u, v, w (m, k) [m/s] of some profiles, NaN in gaps.
+        """Return depth (k,) or (m, k) [m], and u, v, w (m, k) [m/s] of some profiles, NaN in gaps.
 
         The depths are positive down, in any order; `w` is None where the record has none.
 
@@ -79,7 +79,7 @@ class Record(ABC):
         """
 
     def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
-        """(m, k) quality flags of the currents of some profiles; None where it has none."""
+        """Return (m, k) quality flags of the currents of some profiles; None where it has none."""
         return None
 
     @abstractmethod
@@ -116,7 +116,7 @@ class Record(ABC):
 
 
 def parse_period(text: str) -> Period:
-    """A period ``A/B`` of ISO times; a year, a month or a day as B counts whole.
+    """Return a period ``A/B`` of ISO times; a year, a month or a day as B counts whole.
 
     Either end may be left out, or be two points: ``2026-03/``, ``../2026-03-31``.
 
@@ -135,7 +135,7 @@ def parse_period(text: str) -> Period:
 
 
 def parse_place(text: str) -> Place:
-    """A place ``LAT,LON`` [degrees north, degrees east], longitudes from −180 or from 0.
+    """Return a place ``LAT,LON`` [degrees north, degrees east], longitudes from −180 or from 0.
 
     Raises
     ------
@@ -155,7 +155,14 @@ def parse_place(text: str) -> Place:
 def choose_profiles(
     times: Times, period: Period | None, every: int, path: Path
 ) -> tuple[Index, tuple[str, ...]]:
-    """The indices of the profiles wanted, in the order of time, and what to report about it.
+    """Return the indices of the profiles wanted, in the order of time, and what to report about it.
+
+    Parameters
+    ----------
+    times : (n,) in the order of the file
+    period : first and last time wanted; None for all
+    every : take one in so many
+    path : of the record, for messages
 
     Raises
     ------
@@ -194,14 +201,20 @@ def choose_profiles(
 
 
 def part(index: Index, start: int, stop: int) -> Index:
-    """The indices of some of the chosen profiles."""
+    """Return the indices of some of the chosen profiles.
+
+    Parameters
+    ----------
+    index : of the chosen profiles
+    start, stop : which of these
+    """
     if not isinstance(index, slice):
         return index[start:stop]
     return slice(index.start + start * index.step, index.start + stop * index.step, index.step)
 
 
 def time_text(time: np.datetime64) -> str:
-    """A time as a person reads it."""
+    """Return a time as a person reads it."""
     text: str = np.datetime_as_string(time.astype("datetime64[s]"))
     return text.removesuffix(":00")
 
@@ -225,7 +238,9 @@ def _end(text: str, *, whole: bool) -> np.datetime64 | None:
 
 
 def _in_reach(moment: np.datetime64) -> np.datetime64:
-    """A time to the nanosecond; one before or after those of any record as the first or last."""
+    """Return a time to the nanosecond; one before or after those of any record as the first or
+    last.
+    """
     first, last = (np.datetime64(end, "us") for end in REACH)
     near: Any = min(max(moment, first), last)
     return np.datetime64(near, "ns")

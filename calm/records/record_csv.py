@@ -58,7 +58,7 @@ class CsvRecord(Record):
         self.source = {"file": path.name, "columns": ", ".join(header.columns)}
 
     def _read(self, path: Path) -> CurrentHeader:
-        """Every profile of the file into the temporary one."""
+        """Return every profile of the file into the temporary one."""
         try:
             with path.open(encoding="utf-8-sig") as file:
                 lines = ((i, line.rstrip("\n")) for i, line in enumerate(file, 1))
@@ -171,7 +171,7 @@ class RowReader:
         return np.concatenate(tables), [len(table) for table in tables]
 
     def _together(self, profiles: Sequence[ProfileLines], counts: list[int]) -> Floats | None:
-        """All rows, None where one is not plain."""
+        """Return all rows, None where one is not plain."""
         if self._factors is None:
             return None
         sign = _between(self._header.row)
@@ -206,37 +206,34 @@ class RowReader:
 
 
 def _between(header: CellRow) -> str:
-    """What stands between the cells behind a time: runs of blanks have become tabs."""
+    """Return what stands between the cells behind a time: runs of blanks have become tabs."""
     separator = header.dialect.separator
     return "\t" if separator == " " else separator
 
 
 def _by_time(lines: Iterable[NumberedLine], header: CellRow) -> Iterator[ProfileLines]:
-    """The lines of every profile: those that follow each other with one time."""
+    """Yield the lines of every profile: those that follow each other with one time."""
     sign, skipped = header.dialect.separator, header.skipped
-    profile: ProfileLines | None = None
+    profile, before = ProfileLines("", [], []), None
     for number, line in lines:
         if sign == " ":
             own, *others = row_below(header, number, line).cells
             rest = "\t".join(others)
         else:
-            rest = line
-            for _ in range(skipped):
-                rest = rest.partition(sign)[2]
-            own, _, rest = rest.partition(sign)
-            own = own.strip().strip('"')
-        if profile is None or own != profile.time:
-            if profile is not None:
+            numbered = line.partition(sign)[2] if skipped else line
+            own, _, rest = numbered.partition(sign)
+        if own != before:
+            if profile.lines:
                 yield profile
-            profile = ProfileLines(own, [], [])
+            profile, before = ProfileLines(own.strip().strip('"'), [], []), own
         profile.lines.append((number, line))
         profile.behind.append(rest)
-    if profile is not None:
+    if profile.lines:
         yield profile
 
 
 def _gathered(profiles: Iterator[ProfileLines]) -> Iterator[list[ProfileLines]]:
-    """So many profiles that they have some `AT_ONCE` lines."""
+    """Yield so many profiles that they have some `AT_ONCE` lines."""
     gathered: list[ProfileLines] = []
     lines = 0
     for profile in profiles:
@@ -263,7 +260,7 @@ def _name(column: str) -> str:
 
 
 def _factors(columns: Sequence[str]) -> dict[str, float] | None:
-    """The factor of every column to SI (degrees), None where a column is not plain."""
+    """Return the factor of every column to SI (degrees), None where a column is not plain."""
     factors: dict[str, float] = {}
     for column in columns:
         name = _name(column)
@@ -278,7 +275,7 @@ def _factors(columns: Sequence[str]) -> dict[str, float] | None:
 
 
 def _components(values: dict[str, Floats], turn: float) -> Floats:
-    """Depth, u, v and w, whatever way the current is given, turned clockwise [degrees]."""
+    """Return Depth, u, v and w, whatever way the current is given, turned clockwise [degrees]."""
     w = values.get("w", np.zeros_like(values["depth"]))
     if "u" in values:
         u, v = values["u"], values["v"]
@@ -293,7 +290,7 @@ def _components(values: dict[str, Floats], turn: float) -> Floats:
 
 
 def _possible(values: dict[str, Floats], rows: Floats, counts: list[int]) -> bool:
-    """Whether a reading row by row would find no mistake."""
+    """Return whether a reading row by row would find no mistake."""
     known = ~np.isnan(rows).any(axis=1)
     depth = values["depth"]
     if not (np.isfinite(depth) & (depth >= 0) & (depth <= DEEPEST)).all() or np.isinf(rows).any():

@@ -14,7 +14,7 @@ class TimeChoiceError(ValueError):
 
 
 def parse_time(text: str) -> datetime:
-    """An ISO 8601 time, in UTC where it names no zone.
+    """Return an ISO 8601 time, in UTC where it names no zone.
 
     Raises
     ------
@@ -29,7 +29,8 @@ def parse_time(text: str) -> datetime:
 
 
 def choose_time(times: Sequence[datetime], wanted: str | None) -> tuple[int, str | None]:
-    """The index of the time nearest to the one wanted, and a notice where it is not that very time.
+    """Return the index of the time nearest to the one wanted, and a notice where it is not that
+    very time.
 
     Raises
     ------

@@ -77,12 +77,13 @@ class Velocity:
 
     @property
     def all_names(self) -> tuple[str, ...]:
-        """Of two variables or three."""
+        """Name the two variables or three."""
         return self.names if self.up is None else (*self.names, self.up)
 
 
 def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
-    """The current of a dataset; `regular` where its grid runs along latitudes and longitudes.
+    """Return the current of a dataset; `regular` where its grid runs along latitudes and
+    longitudes.
 
     Raises
     ------
@@ -122,7 +123,7 @@ def find_velocity(dataset: xr.Dataset, *, regular: bool) -> Velocity:
 def _direction(
     dataset: xr.Dataset, regular: bool, notes: list[str]
 ) -> tuple[str | None, str | None]:
-    """The variable of a direction, and which way it is: None where the file does not say."""
+    """Return the variable of a direction, and which way it is: None where the file does not say."""
     for sought, way in ((_TOWARD, "to"), (_FROM, "from")):
         name = _find(dataset, sought, regular, notes)
         if name is not None:
@@ -141,7 +142,8 @@ def _direction(
 
 
 def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str]) -> str | None:
-    """The variable of a standard name, else of a usual name; one to true north before another.
+    """Return the variable of a standard name, else of a usual name; one to true north before
+    another.
 
     Raises
     ------
@@ -169,13 +171,13 @@ def _find(dataset: xr.Dataset, sought: _Sought, regular: bool, notes: list[str])
 
 
 def _only_marked(own: str, sought: _Sought) -> bool:
-    """Whether a standard name is one of those sought but for a word on its north."""
+    """Return whether a standard name is one of those sought but for a word on its north."""
     plain = re.sub(r"_?magnetic_?(north)?", "", own)
     return plain != own and plain in sought.standard
 
 
 def _believed(dataset: xr.Dataset, name: str, sought: _Sought) -> str:
-    """The name of a variable whose own words do not speak against it."""
+    """Return the name of a variable whose own words do not speak against it."""
     reason = not_a_current(dataset[name])
     if reason is None and sought.way:
         reason = another_way(dataset[name], sought.way)
@@ -209,7 +211,7 @@ _DIRECTIONS = "dir"
 
 
 def with_components(dataset: xr.Dataset) -> xr.Dataset:
-    """The dataset with the velocity `vel (dir, ...)` taken apart into its components.
+    """Return the dataset with the velocity `vel (dir, ...)` taken apart into its components.
 
     The components are called ``vel[E]`` and so on, with the standard names of velocities to the
     east, north and up. A dataset without such a variable is returned as it is.

@@ -44,7 +44,9 @@ class GridColumn:
 
 
 def is_regular(dataset: xr.Dataset) -> bool:
-    """Whether latitude and longitude are axes of their own, so that x is east and y is north."""
+    """Return whether latitude and longitude are axes of their own, so that x is east and y is
+    north.
+    """
     latitudes, longitudes = (
         {dataset[name].dims for name in _named(dataset, *which)}
         for which in (("latitude", _LATITUDES), ("longitude", _LONGITUDES))
@@ -56,7 +58,7 @@ def is_regular(dataset: xr.Dataset) -> bool:
 def choose_column(
     dataset: xr.Dataset, velocity: tuple[str, str], time: str | None, wanted: Place | None
 ) -> GridColumn:
-    """The column of a place; the only one where there is but one.
+    """Return the column of a place; the only one where there is but one.
 
     Parameters
     ----------
@@ -118,7 +120,7 @@ def choose_column(
 
 
 def written(place: Place) -> str:
-    """A place as a person reads it."""
+    """Return a place as a person reads it."""
     latitude, longitude = place[0], _signed(place[1])
     return (
         f"{abs(latitude):.6g}° {'S' if latitude < 0 else 'N'} "
@@ -131,7 +133,7 @@ def _named(dataset: xr.Dataset, coordinate: str, usual: tuple[str, ...]) -> list
 
 
 def _positions(dataset: xr.Dataset, dims: set[Any]) -> tuple[xr.DataArray, xr.DataArray] | None:
-    """Latitude and longitude of the columns that the dimensions span."""
+    """Return latitude and longitude of the columns that the dimensions span."""
     found = []
     for coordinate, usual in (("latitude", _LATITUDES), ("longitude", _LONGITUDES)):
         fitting = [
@@ -150,7 +152,7 @@ def _positions(dataset: xr.Dataset, dims: set[Any]) -> tuple[xr.DataArray, xr.Da
 def _box(
     latitude: xr.DataArray, longitude: xr.DataArray, horizontal: list[str], wanted: Place
 ) -> dict[str, NDArray[Any]]:
-    """The part of the grid around the place: indices by dimension."""
+    """Return the part of the grid around the place: indices by dimension."""
     if len(horizontal) == 1:  # a list of places, in any order
         return {horizontal[0]: np.arange(latitude.sizes[horizontal[0]])}
     north = np.abs(latitude.values - wanted[0])
@@ -173,7 +175,7 @@ def _box(
 
 
 def _goes_round(longitude: xr.DataArray) -> bool:
-    """Whether an axis of longitudes, in even steps, goes all round the earth."""
+    """Return whether an axis of longitudes, in even steps, goes all round the earth."""
     if longitude.ndim != 1 or longitude.size <= 2 * REACH:
         return False
     steps = np.diff(longitude.values.astype(np.float64))
@@ -182,7 +184,7 @@ def _goes_round(longitude: xr.DataArray) -> bool:
 
 
 def _spread(values: xr.DataArray, horizontal: list[str]) -> NDArray[Any]:
-    """Values with an axis for every horizontal dimension, of length 1 where they have none."""
+    """Return values with an axis for every horizontal dimension, of length 1 where it is new."""
     missing = [dim for dim in horizontal if dim not in values.dims]
     values = values.isel({dim: 0 for dim in values.dims if dim not in horizontal})
     return values.expand_dims(missing).transpose(*horizontal).values
@@ -191,7 +193,7 @@ def _spread(values: xr.DataArray, horizontal: list[str]) -> NDArray[Any]:
 def _wet(
     near: xr.Dataset, velocity: tuple[str, str], time: str | None, horizontal: list[str]
 ) -> NDArray[Any]:
-    """Which columns have a current other than zero, which some models have on land.
+    """Return which columns have a current other than zero, which some models have on land.
 
     The first time, the middle and the last are asked: one may be a gap.
     """
@@ -206,7 +208,7 @@ def _wet(
 
 
 def _distance(latitude: NDArray[Any], longitude: NDArray[Any], place: Place) -> NDArray[Any]:
-    """Along great circles [km]."""
+    """Return Along great circles [km]."""
     first, second = np.radians(latitude), np.radians(place[0])
     east = np.radians(longitude - place[1])
     chord = (
@@ -216,14 +218,16 @@ def _distance(latitude: NDArray[Any], longitude: NDArray[Any], place: Place) -> 
 
 
 def _spacing(latitude: NDArray[Any], longitude: NDArray[Any], at: tuple[Any, ...]) -> float:
-    """Distance from a column to the farthest of those next to it [km]."""
+    """Return distance from a column to the farthest of those next to it [km]."""
     around = tuple(slice(max(i - 1, 0), i + 2) for i in at)
     place = float(latitude[at]), float(longitude[at])
     return float(np.nanmax(_distance(latitude[around], longitude[around], place)))
 
 
 def _drift(dataset: xr.Dataset, time: str | None, wanted: Place | None) -> tuple[str, ...]:
-    """What to report about a record whose place changes with time, such as that of a drifter."""
+    """Return what to report about a record whose place changes with time, such as that of a
+    drifter.
+    """
     found = []
     for which in (("latitude", _LATITUDES), ("longitude", _LONGITUDES)):
         moving = [name for name in _named(dataset, *which) if dataset[name].dims == (time,)]
@@ -264,5 +268,5 @@ def _turned(degrees: Any) -> Any:
 
 
 def _signed(longitude: float) -> float:
-    """A longitude between −180° and 180°; as it stands where it is there already."""
+    """Return a longitude between −180° and 180°; as it stands where it is there already."""
     return longitude if -180.0 <= longitude <= 180.0 else float(_turned(longitude))

@@ -110,8 +110,8 @@ class WorkingFile:
     @property
     def stamp(self) -> Stamp | None:
         """Return what tells one state of the file on the disk from another; None without a file."""
-        told = None if self.path is None else _status(self.path)
-        return told and (told.st_mtime_ns, told.st_size, told.st_ino)
+        status = None if self.path is None else _status(self.path)
+        return status and (status.st_mtime_ns, status.st_size, status.st_ino)
 
     def changed_on_disk(self) -> bool:
         """Return whether the file is another than that last read or saved; it may be gone.
@@ -124,8 +124,8 @@ class WorkingFile:
         if stamp is None or stamp != self._looked:
             self._differs = self._content() != self._seen
             # a file written this lately may be written again without its time telling
-            settled = stamp is not None and time.time() - stamp[0] / 1e9 > GRAIN
-            self._looked = stamp if settled else None
+            is_old = stamp is not None and time.time() - stamp[0] / 1e9 > GRAIN
+            self._looked = stamp if is_old else None
         return self._differs
 
     def keep(self) -> Path | None:
@@ -248,12 +248,12 @@ def _lost(before: os.stat_result | None, after: os.stat_result | None) -> str:
     """Return what a file could not take over from the one that it replaced; empty as a rule."""
     if before is None or after is None:
         return ""
-    told = []
+    losses = []
     if (before.st_uid, before.st_gid) != (after.st_uid, after.st_gid):
-        told.append("its owner or group could not be kept")
+        losses.append("its owner or group could not be kept")
     if before.st_nlink > 1:
-        told.append("its other hard links keep the old text")
-    return "; ".join(told)
+        losses.append("its other hard links keep the old text")
+    return "; ".join(losses)
 
 
 def _status(path: Path) -> os.stat_result | None:

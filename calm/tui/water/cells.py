@@ -234,9 +234,3 @@ def _between(columns: Sequence[str], rows: Rows, at: int, seabed: float | None) 
         return (f"{deeper if seabed is None else min(deeper, seabed):g}", *above[1:])
     halves = (half_way(column, *pair) for column, pair in zip(columns, pairs, strict=True))
     return tuple(f"{half:g}" for half in halves)
-
-
-def named(column: str) -> tuple[str, str]:
-    """The name and the unit that the heading of a column gives; empty where it gives none."""
-    name, _, unit = column.replace("[", " ").replace("]", " ").strip().partition(" ")
-    return name, unit.strip()

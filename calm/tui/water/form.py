@@ -15,10 +15,10 @@ from calm.files.density import USUAL_DENSITY
 from calm.files.editing import Draft, Value
 from calm.files.fields import POSITIVE_LENGTH, QuantityField
 from calm.files.yaml_document import Location
+from calm.records.headings import heading
 from calm.records.profile_tables import SALINITY, TEMPERATURE, speed_and_direction
 from calm.tui.actions import bindings
 from calm.tui.field import Cycle
-from calm.tui.water.cells import named
 from calm.units import QuantityError, QuantityRange
 
 CURRENT_FORMS = ("still", "uniform", "table", "file")
@@ -180,7 +180,7 @@ class Water:
         place = {name: self.text("current", name) for name in ("speed", "toward")}
         columns, rows = self.table("current")
         for column, text in zip(columns, rows[0] if rows else (), strict=False):
-            name, unit = named(column)
+            name, unit = heading(column)
             place[name] = f"{text} {unit}".strip()
         speed, u, v = (
             _read(QuantityField("speed"), place.get(name, "")) for name in ("speed", "u", "v")

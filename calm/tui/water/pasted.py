@@ -26,7 +26,6 @@ from calm.records.profile_tables import (
 )
 from calm.tui.checking import Check, Reading, number, quantity
 from calm.tui.theme import ELLIPSIS
-from calm.tui.water.cells import named
 from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
 
 Rows = tuple[tuple[str, ...], ...]
@@ -47,7 +46,7 @@ def offered_headings(headings: Sequence[str] | None, columns: Sequence[str]) -> 
     """Headings for what was copied: its own, with units where it gives none; else the table's."""
     if headings is None:
         return list(columns)
-    units = {name: unit for name, unit in map(named, columns)}
+    units = {name: unit for name, unit in map(heading, columns)}
     offered = []
     for column in headings:
         name, unit = heading(column)
@@ -68,7 +67,7 @@ def rows_in(columns: Sequence[str], headings: Sequence[str], rows: Sequence[Sequ
     NoRows
         A row has a value that is none.
     """
-    if [heading(one) for one in headings] == [named(one) for one in columns]:
+    if [heading(one) for one in headings] == [heading(one) for one in columns]:
         return tuple(_as_written(i, row, columns) for i, row in enumerate(rows, 1))
     values = _by_name(columns, headings, rows)
     try:
@@ -113,7 +112,7 @@ def _by_name(
         problems.append((number == 0, f"row {number}: {message}" if number else message))
         return Problem("", 0, 0, message)
 
-    names = {named(column)[0] for column in columns}
+    names = {heading(column)[0] for column in columns}
     kept: list[Problem] = []
     table: CurrentTable | DepthTable | SeaWater | None
     if names & _OF_A_CURRENT:
@@ -145,7 +144,7 @@ def _by_name(
 
 def _column(column: str, values: dict[str, Sequence[float]]) -> list[str]:
     """The values of a column in its unit; each with its own where the column has none."""
-    name, unit = named(column)
+    name, unit = heading(column)
     dimension = dimension_of(name)
     usual = DIMENSIONS[dimension].unit
     try:
@@ -179,7 +178,7 @@ def dimension_of(name: str) -> str:
 
 def check_of(column: str) -> Check:
     """What judges the values of a column: numbers where it gives its unit, else quantities."""
-    name, unit = named(column)
+    name, unit = heading(column)
     kind = _KINDS.get(name)
     if kind is None:
         return number
@@ -197,7 +196,7 @@ def check_of(column: str) -> Check:
 
 def half_way(column: str, one: float, other: float) -> float:
     """The value between two of a column; between directions on the shorter way round."""
-    name, unit = named(column)
+    name, unit = heading(column)
     half = (one + other) / 2
     if name != "toward":
         return half

@@ -254,6 +254,16 @@ def test_a_clamp_in_two_places_is_pointed_out(tmp_path):
     assert "`ZCO` has it at 20 m" in made.guessed[0].what
 
 
+def test_a_chain_that_floats_is_a_cable(tmp_path):
+    """As from the other programs: a chain of CALM has a weight."""
+    lifts = mooring()["B"].copy()
+    lifts[0, 5] = 4.0
+    chain = read(tmp_path, mooring(B=lifts)).items[5].component
+    assert (chain.name, chain.kind) == ("1/2 chain", "cable")
+    assert chain.figures["buoyancy"] == pytest.approx(4.0 * KILOGRAM)
+    assert "weight" not in chain.figures
+
+
 def test_a_tow_leads_from_the_ship_to_the_body(tmp_path):
     made = imported(tmp_path, tow())
     assert "tow: {speed: 1 m/s, toward: 36.8698976 deg}" in made.text
