@@ -280,7 +280,7 @@ def anchor_load(mooring: Mooring, solution: Solution) -> AnchorLoad:
         vertical=vertical,
         horizontal=horizontal,
         angle=float(np.degrees(np.arctan2(horizontal, vertical))),
-        required_weight=max(required_weight(vertical, horizontal, factor, friction), 0.0),
+        required_weight=float(required_weight(vertical, horizontal, factor, friction)),
         weight=mooring.anchor_weight,
         friction=friction,
         grounded_length=solution.grounded_length,
@@ -297,7 +297,7 @@ def _accuracy(mooring: Mooring, solution: Solution) -> Accuracy:
         depth=solution.depth_error,
         tension=solution.tension_error,
         anchor=max(lift, pull),
-        required_weight=required_weight(lift, pull, factor, _friction(mooring)),
+        required_weight=float(required_weight(lift, pull, factor, _friction(mooring))),
     )
 
 

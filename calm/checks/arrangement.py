@@ -12,9 +12,9 @@ from calm.assemble import axial_drag_of, drag_of, net_buoyancy
 from calm.case.warnings import is_synthetic
 from calm.checks.criterion import JudgedPart, parts_of
 from calm.checks.finding import State, Verdict, at_most, reported, rule, unknown, verdict_on
-from calm.checks.launch import Launch
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Recovery
+from calm.drop.launch import Launch
 from calm.files import Cable, Component, Flexible
 from calm.physics.reference import REFERENCE_DENSITY
 from calm.quantities import say
@@ -185,9 +185,10 @@ def clamp_grip(result: Result) -> Iterator[Verdict]:
 
 @rule("clamp-grip", situation="launch and recovery", once=True)
 def clamp_grip_on_the_way(handling: Handling) -> Iterator[Verdict]:
-    """The greater pull along the line of the fall, which drags up, and the rise, which drags down.
+    """Judge the greater pull along the line, of the fall, which drags up, or the rise, down.
 
-    Both at terminal speed, with the drag of what is clamped in the flow along its axis.
+    The fall is that at touchdown and the rise at terminal speed, with the drag of what is clamped
+    in the flow along its axis.
     """
     launch, rise = handling.launch, handling.recovery
     deep = np.array(handling.mooring.water.depth)

@@ -15,11 +15,11 @@ from calm.checks.criterion import limits_used
 from calm.checks.finding import AS_GIVEN, OWN, Finding, State
 from calm.checks.handling import Handling
 from calm.checks.inventory import inventory_of
-from calm.checks.launch import Launch, launch_of
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Recovery, recovery_of
 from calm.checks.rules import ONCE, STANDING, STILL_ONLY, equilibrium
 from calm.checks.situations import SOLVES, STRUMMING, situations_of
+from calm.drop.launch import Launch, launch_of
 from calm.errors import NoEquilibrium
 from calm.files import MooringFile, Place
 from calm.solve import expect_many
@@ -169,7 +169,7 @@ def handled(mooring: Mooring, result: Result) -> Handling:
     launch: Launch | NoEquilibrium
     recovery: Recovery | NoEquilibrium
     try:
-        launch = launch_of(mooring, result)
+        launch = launch_of(mooring)
     except NoEquilibrium as failure:
         launch = failure
     try:

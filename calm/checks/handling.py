@@ -18,9 +18,9 @@ from calm.checks.finding import (
     unknown,
     verdict_on,
 )
-from calm.checks.launch import Launch
 from calm.checks.recovery import Recovery
 from calm.checks.strength import lesser_load
+from calm.drop.launch import Launch
 from calm.errors import NoEquilibrium
 from calm.files import LinePart
 from calm.quantities import QUANTITIES, say
@@ -136,7 +136,7 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
 
 @rule("launch-speed", once=True)
 def launch_speed(handling: Handling) -> Iterator[Verdict]:
-    """Terminal speed of the anchor as it meets the seabed."""
+    """Judge the speed of the anchor as it meets the seabed."""
     launch = handling.launch
     if isinstance(launch, NoEquilibrium):
         yield _unsolved("fall", launch)
@@ -148,8 +148,6 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
         f"drag along the line and of the anchor); {GREATEST_TOUCHDOWN_SPEED:g} m/s should not be "
         "exceeded"
     )
-    if launch.in_still_water:
-        message += " (in still water: in the current it finds no steady motion)"
     remedy = "Lower it, or add drag: a parachute, a wider anchor."
     if launch.anchor_drag_known:
         limit = GREATEST_TOUCHDOWN_SPEED

@@ -24,7 +24,7 @@ from calm.deck.deck_items import (
 from calm.deck.hardware import Stock, hardware_of
 from calm.deck.shipping import Freight, Lifts, freight_of, lifts_of
 from calm.drop import DropPlan, drop_plan
-from calm.drop.plan import SHIP_SPEED
+from calm.drop.launch import SHIP_SPEED
 from calm.errors import NoEquilibrium
 from calm.files import CurrentTable
 from calm.solve import Status

@@ -10,7 +10,7 @@ import numpy as np
 from calm.drop.chain import chain_of
 from calm.drop.loads import WaterColumn
 from calm.drop.motion import ChainState, Mover, NoStep
-from calm.errors import UsageError
+from calm.errors import NoEquilibrium, UsageError
 from calm.physics.line import Line, Water
 from calm.solve import FallingAnchor, Status
 
@@ -76,10 +76,14 @@ def towed(
     Raises
     ------
     NoEquilibrium
-        ``not-converged`` where no steady shape is found.
+        ``not-converged`` where no steady shape is found, ``no-equilibrium`` where nothing would
+        limit the speed of the fall.
     UsageError
         It streams farther than it is to be, however slow the ship.
     """
+    across = line.normal_drag[~line.directional]
+    if not (anchor.drag or any(k.any() for k in (line.tangential_drag, across, line.clamp_drag))):
+        raise nothing_limits()
     flow = replace(water, u=water.u - ship.east, v=water.v - ship.north)
     mover = Mover(chain_of(line, fineness.bars), _sea(flow), anchor, held=True)
     current, _ = flow.at(np.zeros(()))
@@ -120,7 +124,7 @@ def fall(
     way = water.depth / fineness.steps
     states, step = [start], 0.005 * way
     while states[-1].node[-1, 2] > bottom:
-        if len(states) > _MOST * fineness.steps:
+        if len(states) > _MOST * fineness.steps or step >= LONG:
             raise Status.ANCHOR_LIFTS.because(
                 f"The anchor weighs {anchor.weight:.0f} N in water and does not pull the line to "
                 "the seabed."
@@ -141,6 +145,14 @@ def fall(
         step = min(_GROWTH * (state.time - states[-1].time), way / max(speed, 1e-300), LONG)
         states.append(state)
     return Motion(mover, (*states[:-1], _passing(states[-2], states[-1], bottom)))
+
+
+def nothing_limits() -> NoEquilibrium:
+    """Return the failure of a fall that has no speed, since nothing drags along its line."""
+    return Status.NO_EQUILIBRIUM.because(
+        "Nothing limits the speed of the line: neither it nor its anchor has any drag.",
+        advice="Give its pieces, or the anchor (`kt`), their drag.",
+    )
 
 
 def settle(

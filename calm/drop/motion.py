@@ -275,6 +275,8 @@ class Mover:
 
 _SIDE = 6
 """Diagonals of the band on either side."""
+_MIDDLE = 2 * _SIDE
+"""Row of the main diagonal."""
 
 
 @dataclass(frozen=True)
@@ -309,25 +311,23 @@ class Band:
         axis : (n, 3) of the bars, downward
         slack : (n,) by how much a bar is longer with its tension, negative
         """
-        from scipy.linalg import solve_banded
+        from scipy.linalg.lapack import dgbsv
 
         size = 4 * self.bars + 3
-        band = np.zeros((2 * _SIDE + 1, size))
+        # the rows above the band are for the factors
+        band = np.zeros((3 * _SIDE + 1, size))
         flat = band.reshape(-1)
         blocks = (diagonal, *beside, axis, -axis, -axis, axis)
         for places, block in zip(self._places, blocks, strict=True):
             flat[places] = block
-        band[_SIDE, 3::4] = slack
+        band[_MIDDLE, 3::4] = slack
         equations = residual.reshape(-1)[:-1]
         for row in self.fixed:
             columns = np.arange(max(row - _SIDE, 0), min(row + _SIDE + 1, size))
-            band[_SIDE + row - columns, columns] = 0.0
-            band[_SIDE, row], equations[row] = 1.0, 0.0
-        change: Floats = solve_banded(
-            (_SIDE, _SIDE), band, equations, overwrite_ab=True, overwrite_b=True,
-            check_finite=False,
-        )  # fmt: skip
-        return change
+            band[_MIDDLE + row - columns, columns] = 0.0
+            band[_MIDDLE, row], equations[row] = 1.0, 0.0
+        _, _, change, singular = dgbsv(_SIDE, _SIDE, band, equations)
+        return np.full(size, np.nan) if singular else change
 
     @cached_property
     def _places(self) -> tuple[Integers, ...]:
@@ -337,7 +337,7 @@ class Band:
         pull = 4 * np.arange(self.bars)[:, np.newaxis] + 3
 
         def at(row: Integers, column: Integers) -> Integers:
-            return (_SIDE + row - column) * width + column
+            return (_MIDDLE + row - column) * width + column
 
         above, below = node[:-1], node[1:]
         return (

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from math import cos, hypot, radians, sin
+from math import cos, radians, sin
 from typing import Any
 
 import numpy as np
 
-from calm.assemble import with_axial_clamps
 from calm.case import Mooring, Result
-from calm.drop.fall import Fineness, Motion, Ship, fall, settle, towed
+from calm.drop.fall import Fineness, Motion, fall, settle, towed
+from calm.drop.launch import (
+    SHIP_SPEED,
+    course_into_current,
+    falling_anchor,
+    falling_line,
+    ship_of,
+)
 from calm.drop.motion import ChainState
 from calm.drop.record import (
     DepthReached,
@@ -23,12 +29,12 @@ from calm.drop.record import (
     pulls_of,
     rest_difference,
 )
-from calm.errors import NoEquilibrium, UsageError
+from calm.errors import NoEquilibrium
 from calm.files import Position
 from calm.physics.ellipsoid import Frame
 from calm.physics.line import Floats, Water
 from calm.quantities import bearing_of
-from calm.solve import FallingAnchor, Status
+from calm.solve import Status
 
 ASTRAY = 1e-3
 """Share of the depth by which the line may come to rest elsewhere than its equilibrium; beyond it
@@ -201,8 +207,6 @@ class DropPlan:
         }
 
 
-SHIP_SPEED = 1.0
-"""Of a ship that tows the line out [m/s]: some two knots."""
 FINE = Fineness(bars=100, steps=100)
 FINEST = 4
 """Times as many bars at most, until the line comes to rest in its equilibrium."""
@@ -212,8 +216,6 @@ CAUTION = 2.0
 """How many times what steps and bars of twice the length change the stated errors are."""
 LEAST_TIME_ERROR = 5e-4
 """Of the fall time, where the changes by steps and bars happen to be small."""
-SLOWEST_SHIP = 0.05
-"""Through the water, to stream a line at all [m/s]."""
 
 
 def drop_plan(
@@ -246,10 +248,9 @@ def drop_plan(
     """
     if result is None:
         result = _equilibrium(mooring)
-    course = _into_the_current(mooring.water) if course is None else course % 360.0
-    ship = _ship(mooring, ship_speed, streamed, course)
-    anchor = FallingAnchor(mooring.anchor_weight, mooring.anchor_drag)
-    falling = with_axial_clamps(mooring.line, mooring.file.pieces[:-1])
+    course = course_into_current(mooring.water) if course is None else course % 360.0
+    ship = ship_of(mooring, ship_speed, course, streamed)
+    anchor, falling = falling_anchor(mooring), falling_line(mooring)
     water = mooring.water
 
     def let_go(start: ChainState, drag: float, fineness: Fineness) -> Motion:
@@ -336,30 +337,6 @@ def _equilibrium(mooring: Mooring) -> Result | None:
         if failure.status != Status.SLACK.label:
             raise
         return None
-
-
-def _into_the_current(water: Water) -> float:
-    """Course against the current at the surface, north where there is none [degrees]."""
-    (east, north, _), _ = water.at(np.zeros(()))
-    return bearing_of(-east, -north) if east or north else 0.0
-
-
-def _ship(mooring: Mooring, speed: float, streamed: float | None, course: float) -> Ship:
-    east, north = speed * sin(radians(course)), speed * cos(radians(course))
-    (u, v, _), _ = mooring.water.at(np.zeros(()))
-    through = hypot(u - east, v - north)
-    if not (speed > 0.0 and through >= SLOWEST_SHIP):
-        raise UsageError(
-            f"a ship at {speed:g} m/s makes {through:.2g} m/s through the water, which is too "
-            "slow to stream the line"
-        )
-    length = float(mooring.line.length.sum())
-    if streamed is not None and not 0.0 < streamed < length:
-        raise UsageError(
-            f"a line of {length:.1f} m cannot be streamed to {streamed:g} m: give less than its "
-            "length"
-        )
-    return Ship(east, north, streamed)
 
 
 def _split(state: ChainState, toward: Floats) -> tuple[float, float]:

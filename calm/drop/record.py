@@ -115,19 +115,26 @@ def clamp_places(chain: BarChain, state: ChainState) -> Floats:
     return place_of(chain, state, chain.clamp_bar, chain.clamp_place)
 
 
-def end_tensions(mover: Mover, state: ChainState) -> Floats:
-    """(n, 2) in every bar at its upper and at its lower end [N]; 0 in one that is pushed.
+def end_tensions(mover: Mover, state: ChainState, *, within: bool = False) -> Floats:
+    """Return (n, 2) in every bar at its upper and at its lower end [N]; 0 in one that is pushed.
+
+    Parameters
+    ----------
+    within : whether at the bar's side of what is at its very ends, else beyond that
 
     In the first moment the anchor pushes what is beside it, where a real line goes slack.
     """
     on = mover.chain.elements
     loads, axis = mover.loads(state.node, state.velocity, state.tension, mover.variation(state))
     pull = state.tension[:, np.newaxis] * axis
+    force = loads.force
+    if within:
+        force = np.where(((on.place > 0.0) & (on.place < 1.0))[:, np.newaxis], force, 0.0)
     lower = on.place[:, np.newaxis]
     above = np.zeros_like(pull)
     below = np.zeros_like(pull)
-    np.add.at(above, on.bar, (1.0 - lower) * loads.force)
-    np.add.at(below, on.bar, lower * loads.force)
+    np.add.at(above, on.bar, (1.0 - lower) * force)
+    np.add.at(below, on.bar, lower * force)
     ends = np.linalg.norm(np.stack([pull + above, pull - below], axis=1), axis=2)
     return np.where(state.tension[:, np.newaxis] > 0.0, ends, 0.0)
 
@@ -195,15 +202,47 @@ def _depths(chain: BarChain, state: ChainState) -> Floats:
 
 
 def pulls_of(pieces: Sequence[Piece], drop: Motion) -> tuple[Pull, ...]:
-    """The greatest tension in every piece from letting go to the touchdown."""
-    chain = drop.mover.chain
-    tension = np.array([end_tensions(drop.mover, state).max(axis=1) for state in drop.states])
-    pulls = []
-    for piece, (first, end) in zip(pieces[:-1], chain.bars.tolist(), strict=True):
-        over_time = tension[:, first : max(end, first + 1)].max(axis=1)
-        when = int(over_time.argmax())
-        pulls.append(Pull(piece, float(over_time[when]), drop.states[when].time))
-    return tuple(pulls)
+    """Return the greatest tension in every piece from letting go to the touchdown."""
+    tension = greatest_tensions(drop)
+    latest = tension.argmax(axis=0).tolist()
+    return tuple(
+        Pull(piece, float(tension[when, number]), drop.states[1 + when].time)
+        for number, (piece, when) in enumerate(zip(pieces[:-1], latest, strict=True))
+    )
+
+
+def piece_tensions(drop: Motion) -> Floats:
+    """Return the tensions of every piece at its upper and its lower end, (t-1, p, 2) [N].
+
+    The first state is left out: the ship still tows, and the water flows past it otherwise.
+    Pieces that are rigid with the free end are one bar, and have the tensions of its ends.
+    """
+    return _ends_of_pieces(drop, _over_time(drop))
+
+
+def greatest_tensions(drop: Motion) -> Floats:
+    """Return the greatest tension in every piece at each time but the first, (t-1, p) [N]."""
+    tension = _over_time(drop)
+    found: Floats = _ends_of_pieces(drop, tension).max(axis=2)
+    for piece, (first, end) in enumerate(drop.mover.chain.bars.tolist()):
+        if end - first > 1:
+            found[:, piece] = tension[:, first:end].max(axis=(1, 2))
+    return found
+
+
+def _over_time(drop: Motion) -> Floats:
+    return np.array([end_tensions(drop.mover, state, within=True) for state in drop.states[1:]])
+
+
+def _ends_of_pieces(drop: Motion, tension: Floats) -> Floats:
+    """Return (t, p, 2) of the pieces from (t, n, 2) of the bars [N]."""
+    first, end = drop.mover.chain.bars.T
+    last = np.maximum(end, first + 1) - 1
+    found = np.stack([tension[:, first, 0], tension[:, last, 1]], axis=2)
+    # a piece without length is on the bar beside it
+    short = end == first
+    found[:, short] = tension[:, first[short]].max(axis=2)[:, :, np.newaxis]
+    return found
 
 
 def rest_difference(result: Result, rest: Motion) -> float:

@@ -140,7 +140,6 @@ def _launch(assessment: Assessment) -> dict[str, Any] | None:
         "anchor_tension": launch.anchor_tension,
         "anchor_drag_known": launch.anchor_drag_known,
         "greatest_speed": launch.greatest_speed,
-        "in_still_water": launch.in_still_water,
         "drift": list(launch.drift),
         "components": launch.components(),
     }

@@ -102,7 +102,7 @@ of wire between a sphere of 1.5 m at the surface and an anchor of 8896 N in wate
 in 1000 m of still water. Expected is what a program with inertia and added mass finds when the end
 bodies are dragged by |V|V, as CALM's are; WHOI Cable 3.12 drags them axis by axis and finds 233
 to 234 s and 107.9 m, that program with that drag 232.6 s and 108.3 m. The distance streamed is that
-of WHOI Cable's own static solution. Then the terminal speed, against that of `calm check`, and
+of WHOI Cable's own static solution. Then the terminal speed, against that of the steady fall, and
 √(W/K) of a heavy sphere.""",
     (
         Case("streamed behind the ship", 894.8, "m", 0.5, "The chain's bars are 10 m long.",
@@ -115,7 +115,7 @@ of WHOI Cable's own static solution. Then the terminal speed, against that of `c
              lambda: _pull(-1, 1), Kind.INDEPENDENT),
         Case("greatest tension below the float", 7432.0, "N", 0.03 * 7432.0, _INERTIA,
              lambda: _pull(1, 0), Kind.INDEPENDENT),
-        Case("terminal speed less that of the design check", 0.0, "m/s", 2e-3,
+        Case("terminal speed less that of the steady fall", 0.0, "m/s", 2e-3,
              "Both are within 1e-4 of the speed; the line has had 2850 m to become plumb.",
              lambda: _deep_fall()[0] - _deep_fall()[1], Kind.PROPERTY),
         Case("speed of a heavy sphere", _ALONE, "m/s", 0.01, _THREAD, _alone, Kind.CLOSED_FORM),

@@ -9,15 +9,15 @@ import pytest
 import calm
 from calm.assemble import with_axial_clamps
 from calm.case.tow import Tow
-from calm.checks.launch import launch_of
 from calm.drop import drop_plan, plan
 from calm.drop.chain import chain_of
 from calm.drop.fall import Fineness, Ship, fall, settle, towed
+from calm.drop.launch import IN_SHORT, launch_of
 from calm.drop.motion import ChainState
 from calm.drop.record import rest_difference
 from calm.errors import UsageError
 from calm.shipped import shipped_folder
-from calm.solve import FallingAnchor, Towing, solve_tow
+from calm.solve import FallingAnchor, Towing, solve_fall, solve_tow
 from tests.validation import drop_dynamics
 
 COARSE = Fineness(bars=50, steps=50)
@@ -188,14 +188,30 @@ components:
 """
 
 
-def test_in_deep_water_it_falls_at_the_terminal_speed_of_the_design_check(loaded):
+@pytest.mark.parametrize("name", ["s1000", "chain-and-rope-surface"])
+def test_the_design_check_and_the_plan_tell_of_one_fall(name):
+    """A line that lands before it is plumb, and one whose float is at the surface."""
+    mooring = calm.load(shipped_folder("lines") / f"{name}.yaml")
+    launch, told = launch_of(mooring), drop_plan(mooring, fineness=IN_SHORT)
+    assert told.touchdown_speed == pytest.approx(launch.fall_speed, rel=1e-12)
+    pulls = [pull.tension for pull in told.pulls]
+    given = np.maximum(launch.tension_top, launch.tension_bottom)
+    assert pulls == pytest.approx(given, rel=5e-3)  # the greatest may be between the ends
+    finer = launch_of(mooring, plan.FINE)
+    assert launch.fall_speed == pytest.approx(finer.fall_speed, rel=0.02)
+    assert launch.greatest_tension == pytest.approx(finer.greatest_tension, rel=0.02)
+
+
+def test_in_deep_water_it_falls_at_the_terminal_speed(loaded):
     mooring = loaded(LEAN.format(depth=3000, length=100, current=0.0))
     _, drop, _ = dropped(mooring, fineness=Fineness(50, 200))
-    launch = launch_of(mooring, mooring.solve())
+    anchor = FallingAnchor(mooring.anchor_weight, mooring.anchor_drag)
+    line = with_axial_clamps(mooring.line, mooring.file.pieces[:-1])
+    terminal = -solve_fall(line, mooring.water, anchor).velocity[2]
     last = drop.states[-1]
-    # after 2800 m of fall the line has long been plumb; the design check's own accuracy is 1e-4
-    assert -last.velocity[-1, 2] == pytest.approx(launch.fall_speed, rel=5e-4)
-    assert -last.velocity[0, 2] == pytest.approx(launch.fall_speed, rel=5e-4)
+    # after 2800 m of fall the line has long been plumb; the terminal speed's own accuracy is 1e-4
+    assert -last.velocity[-1, 2] == pytest.approx(terminal, rel=5e-4)
+    assert -last.velocity[0, 2] == pytest.approx(terminal, rel=5e-4)
 
 
 def test_a_heavy_sphere_on_a_thin_line_falls_as_if_alone(loaded):

@@ -17,6 +17,7 @@ from calm.checks.finding import Rule, State
 from calm.checks.posture import reaches_the_surface
 from calm.checks.rules import RULES, equilibrium
 from calm.files.rule_texts import RULES as TEXTS
+from calm.physics.anchor import required_weight
 
 NOT_JUDGED = {
     name: TEXTS[name].unseen
@@ -134,13 +135,12 @@ def _greatest_depth(series: ResultColumns, part: JudgedPart, mooring: Mooring) -
 
 
 def _required_weight(series: ResultColumns, _: JudgedPart, mooring: Mooring) -> Column:
-    """Factor (V + H / friction): see `calm.physics.anchor.required_weight`."""
-    factor, friction = mooring.file.checks.anchor_factor, _friction(mooring)
-    needed = series.ends("anchor_horizontal")
-    np.divide(needed, friction, out=needed)
-    needed += series.ends("anchor_vertical")
-    needed *= factor
-    return needed
+    return required_weight(
+        series.ends("anchor_vertical"),
+        series.ends("anchor_horizontal"),
+        mooring.file.checks.anchor_factor,
+        _friction(mooring),
+    )
 
 
 def _slide(series: ResultColumns, _: JudgedPart, mooring: Mooring) -> Column:
