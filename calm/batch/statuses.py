@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.physics.line import Floats
-from calm.records.profile_tables import DEEPEST, IMPOSSIBLE
+from calm.records.current_terms import DEEPEST, IMPOSSIBLE
 from calm.solve import Status
 
 if TYPE_CHECKING:

@@ -33,8 +33,8 @@ class Situation:
 
 
 @dataclass(frozen=True)
-class Stand:
-    """A mooring in one environment.
+class MooringInEnvironment:
+    """Hold what was solved and found of a mooring in one environment.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ class Assessment:
     """
 
     name: str
-    stands: tuple[Stand, ...]
+    stands: tuple[MooringInEnvironment, ...]
     launch: Launch | None
     recovery: Recovery | None
     backup: tuple[Break, ...]

@@ -20,7 +20,7 @@ from calm.errors import InputError, Problem, UsageError, internal_failure
 if TYPE_CHECKING:
     from calm.case import Mooring
     from calm.case.uncertain import Mapped
-    from calm.checks.assessment import Assessment, Stand
+    from calm.checks.assessment import Assessment, MooringInEnvironment
     from calm.report.blocks import Section
 
 CHECK_EXAMPLES = """Examples:
@@ -259,7 +259,7 @@ def _solve_and_conclude(
 def _concluded(
     number: int,
     name: str,
-    stands: Sequence[Stand],
+    stands: Sequence[MooringInEnvironment],
     day: date,
     drawn: bool,
     draws: tuple[int, int] | None,
@@ -283,7 +283,7 @@ def _concluded(
     )
 
 
-def _stand(task: tuple[str, Mooring, date]) -> Stand:
+def _stand(task: tuple[str, Mooring, date]) -> MooringInEnvironment:
     """A mooring in an environment; CALM's own failure there does not stop the others."""
     from calm.checks.assess import failed_stand, stand_of
 

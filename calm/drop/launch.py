@@ -88,7 +88,7 @@ def launch_of(mooring: Mooring, fineness: Fineness = IN_SHORT) -> Launch:
     """
     line, water, anchor = falling_line(mooring), mooring.water, falling_anchor(mooring)
     ship = ship_of(mooring, SHIP_SPEED, course_into_current(water))
-    drop = fall(line, water, anchor, towed(line, water, anchor, ship, fineness), fineness)
+    drop = mooring.memory.of(_let_go, line, water, anchor, ship, fineness)
     landed, known = drop.states[-1], mooring.file.anchor.kt is not None
     (top, bottom), greatest = (
         piece_tensions(drop).max(axis=0).T,
@@ -124,6 +124,12 @@ def launch_of(mooring: Mooring, fineness: Fineness = IN_SHORT) -> Launch:
         greatest_tension=greatest,
         tangles=_tangles(drop),
     )
+
+
+def _let_go(
+    line: Line, water: Water, anchor: FallingAnchor, ship: Ship, fineness: Fineness
+) -> Motion:
+    return fall(line, water, anchor, towed(line, water, anchor, ship, fineness), fineness)
 
 
 def falling_line(mooring: Mooring) -> Line:

@@ -24,16 +24,14 @@ from calm.files.density import (
 from calm.files.fields import POSITIVE_LENGTH, Model, QuantityField, Text
 from calm.files.mistakes import validate
 from calm.files.yaml_document import SourceMapping
+from calm.records.current_terms import DEEPEST, Terms, too_fast
 from calm.records.profile_tables import (
-    DEEPEST,
     DIRECTION,
     CurrentTable,
     DepthTable,
     SeaWater,
-    Terms,
     components,
     read_current,
-    too_fast,
 )
 from calm.records.times import TimeChoiceError
 from calm.suggestions import shown

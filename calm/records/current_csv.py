@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from calm.errors import InputError, Problem
+from calm.records.current_terms import Terms
 from calm.records.delimited import (
     GAPS,
     CellRow,
@@ -19,7 +20,7 @@ from calm.records.delimited import (
     read_table,
 )
 from calm.records.headings import heading, is_time, zone_complaint
-from calm.records.profile_tables import CurrentTable, Terms, read_current, turned_notices
+from calm.records.profile_tables import CurrentTable, read_current, turned_notices
 from calm.records.times import TimeChoiceError, choose_time, parse_time
 
 EXAMPLE = "depth[m],u[m/s],v[m/s]"

@@ -23,8 +23,8 @@ from calm.records.cf_files import (
     reading,
     zone_notices,
 )
+from calm.records.current_terms import Terms
 from calm.records.level_depths import LevelDepths, find_levels
-from calm.records.profile_tables import Terms
 from calm.records.record import RULES, Levels, Period, Record, choose_profiles, part
 from calm.records.velocity import Velocity, find_velocity, refuse_ragged, with_components
 from calm.records.water_column import choose_column, is_regular

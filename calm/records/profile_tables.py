@@ -6,21 +6,18 @@ import math
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from math import hypot, inf, isinf
-from typing import TYPE_CHECKING
 
 from calm.errors import Problem
 from calm.quantities import bearing_of
+from calm.records.current_terms import Terms, too_deep, too_fast
 from calm.records.headings import column_unit, heading, magnetic_columns
 from calm.suggestions import about_quantity, shown, unknown
 from calm.units import QuantityError, QuantityRange
 
-if TYPE_CHECKING:
-    from calm.records.water_column import Place
-
 Report = Callable[[Sequence[str | int], str], Problem]
 """Makes a problem of a message, at ``("columns", j)`` or ``("rows", i, j)``."""
 
+_AS_THEY_STAND = Terms()
 _BARE_NUMBER = re.compile(r"[-+.,/\deE ]*")
 
 TEMPERATURE = QuantityRange("temperature", at_least=-6, at_most=40)
@@ -54,35 +51,6 @@ _WATER = {
 }
 
 
-DEEPEST = 11_000.0
-"""Depth that no sea exceeds [m]."""
-
-IMPOSSIBLE = (
-    "an infinite or negative speed, or a direction outside -360 to 360°: a fill value, or "
-    "another unit?"
-)
-"""What is said of a current whose speed is infinite in `too_fast`."""
-
-
-@dataclass(frozen=True)
-class Terms:
-    """Describe how a person wants the currents of a file to be taken.
-
-    Attributes
-    ----------
-    water_depth : places heights above the seabed [m]; inf where it is not known
-    place : whose column is wanted, where a file holds several
-    declination : of magnetic north from true north, positive to the east [degrees]; turns what
-        the file says is magnetic
-    maximum_speed : a faster current is a mistake of the file [m/s]
-    """
-
-    water_depth: float = inf
-    place: Place | None = None
-    declination: float | None = None
-    maximum_speed: float = inf
-
-
 @dataclass(frozen=True)
 class CurrentTable:
     """Hold a current: east, north and upward speeds [m/s] at increasing depths [m]."""
@@ -114,7 +82,7 @@ def read_current(
     rows: Sequence[Sequence[str | None]],
     report: Report,
     problems: list[Problem],
-    terms: Terms = Terms(),
+    terms: Terms = _AS_THEY_STAND,
 ) -> CurrentTable | None:
     """Read a current from a table; None, with its mistakes in `problems`, if it has any.
 
@@ -383,29 +351,3 @@ def _check_depths(
             message = f"depth {depth:g} m {word} {previous:g} m; depths must increase"
             problems.append(report(("rows", i, column), message))
         previous = depth
-
-
-def too_fast(u: float, v: float, w: float, maximum_speed: float) -> str | None:
-    """Return what is wrong with a current faster than the greatest that is plausible; None if it
-    is not.
-
-    Parameters
-    ----------
-    u, v, w : [m/s]
-    """
-    speed = hypot(u, v, w)
-    if isinf(speed):
-        return IMPOSSIBLE
-    if not speed > maximum_speed:
-        return None
-    return (
-        f"{speed:.5g} m/s is faster than `maximum_speed`, {maximum_speed:g} m/s: a fill value, or "
-        "another unit? (`maximum_speed` of the environment allows it if it is true)"
-    )
-
-
-def too_deep(depth: float) -> str | None:
-    """Return what is wrong with a depth [m] below that of any sea; None if it is not."""
-    if not depth > DEEPEST:
-        return None
-    return f"depth {depth:g} m is deeper than any sea, {DEEPEST:g} m"

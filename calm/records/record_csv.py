@@ -13,6 +13,7 @@ import numpy as np
 from calm.errors import InputError, Problem, UsageError
 from calm.physics.line import Floats
 from calm.records.current_csv import EXAMPLE, CurrentHeader
+from calm.records.current_terms import DEEPEST, Terms
 from calm.records.delimited import (
     GAPS,
     MOST_PROBLEMS,
@@ -23,7 +24,7 @@ from calm.records.delimited import (
     table_lines,
 )
 from calm.records.headings import heading, magnetic_columns
-from calm.records.profile_tables import DEEPEST, Terms, turned_notices
+from calm.records.profile_tables import turned_notices
 from calm.records.record import RULES, Levels, Period, Record, choose_profiles, part
 from calm.records.times import TimeChoiceError, parse_time
 from calm.units import QuantityError, unit_factor

@@ -15,7 +15,7 @@ from calm.report.check_summary import margin_of, place_of, say_in_unit, worst_by
 from calm.report.sheet import figure_cell, place_text, quantity_column
 
 if TYPE_CHECKING:
-    from calm.checks.assessment import Assessment, Stand
+    from calm.checks.assessment import Assessment, MooringInEnvironment
     from calm.checks.backup import Break
     from calm.checks.finding import Finding
     from calm.checks.inventory import InventoryItem
@@ -33,14 +33,14 @@ _RESULTS = (
 )
 
 
-def results_table(stands: Sequence[Stand]) -> Table:
+def results_table(stands: Sequence[MooringInEnvironment]) -> Table:
     """The mooring as given in each environment: its top, and the pull on its anchor."""
     columns = (Column("environment"), *map(quantity_column, _RESULTS))
     note = "Depth, knockdown and offset: of the top. Tilt and tension: the greatest in the line."
     return Table("Results by environment", columns, tuple(map(_standing, stands)), note)
 
 
-def _standing(stand: Stand) -> tuple[Cell, ...]:
+def _standing(stand: MooringInEnvironment) -> tuple[Cell, ...]:
     result = stand.result
     if result is None:
         failure = stand.situations[0].failure

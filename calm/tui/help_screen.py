@@ -15,7 +15,7 @@ from textual.screen import Screen
 from textual.widgets import Input, TextArea
 
 from calm.tui.actions import actions_in, shown_key, shown_keys
-from calm.tui.key_table import ACTIONS, PLACES, Action
+from calm.tui.key_table import ACTIONS, Action, Place
 from calm.tui.theme import LOOKS
 
 _SIGNS = "Signs: " + ", ".join(f"{look.sign} {look.word}" for look in LOOKS.values())
@@ -60,6 +60,25 @@ def _section(title: str, rows: Iterable[tuple[str, str]]) -> list[RenderableType
 
 
 _PLACES = ("line", "anywhere")
+
+PLACES: dict[Place, str] = {
+    "line": "The line",
+    "anywhere": "Anywhere on the first screen",
+    "verdict": "The verdict, line by line",
+    "cell": "While a value is edited in place",
+    "catalogue": "The catalogue",
+    "water": "The water",
+    "grid": "A table of the water",
+    "choice": "One of some words between arrows",
+    "given": "The form in which density or current is given",
+    "text": "The file as text",
+    "area": "While the text is typed",
+    "form": "A component of your own",
+    "sheet": "Some values asked for together",
+    "question": "A question, answered by the letter in front of each answer",
+    "help": "This help",
+}
+"""The headings of the help, in its order."""
 
 
 class Actions(Provider):

@@ -12,26 +12,6 @@ Place = Literal[
 """Where the keys of an action work: what has the focus, or the screen it is on."""
 
 
-PLACES: dict[Place, str] = {
-    "line": "The line",
-    "anywhere": "Anywhere on the first screen",
-    "verdict": "The verdict, line by line",
-    "cell": "While a value is edited in place",
-    "catalogue": "The catalogue",
-    "water": "The water",
-    "grid": "A table of the water",
-    "choice": "One of some words between arrows",
-    "given": "The form in which density or current is given",
-    "text": "The file as text",
-    "area": "While the text is typed",
-    "form": "A component of your own",
-    "sheet": "Some values asked for together",
-    "question": "A question, answered by the letter in front of each answer",
-    "help": "This help",
-}
-"""The headings of the help, in its order."""
-
-
 @dataclass(frozen=True)
 class Action:
     """A verb.

@@ -16,7 +16,7 @@ from pathlib import Path
 from calm.case import Mooring, Result, Tow, TowResult
 from calm.case.memory import Memory
 from calm.checks.assess import assessment_of, findings_of, stand_of
-from calm.checks.assessment import Situation, Stand
+from calm.checks.assessment import MooringInEnvironment, Situation
 from calm.checks.finding import AS_GIVEN, OWN, Finding
 from calm.checks.situations import cut_like
 from calm.errors import InputError, NoEquilibrium, Problem, internal_failure
@@ -69,7 +69,7 @@ class View:
     environments: tuple[str, ...] = ()
     rows: tuple[Row, ...] = ()
     complete: bool = False
-    stands: tuple[Stand, ...] = ()
+    stands: tuple[MooringInEnvironment, ...] = ()
     elsewhere: tuple[Problem, ...] = ()
     memory: Memory = field(default_factory=Memory, repr=False, compare=False)
 

@@ -14,7 +14,7 @@ from calm.tui.theme import ELLIPSIS, LOOKS, worst
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
-    from calm.checks.assessment import Stand
+    from calm.checks.assessment import MooringInEnvironment
     from calm.files import Place
     from calm.tui.live import View
 
@@ -124,7 +124,7 @@ def _environment(name: str) -> str:
     return "own environment" if name == OWN else name
 
 
-def _stand(stand: Stand) -> Saying:
+def _stand(stand: MooringInEnvironment) -> Saying:
     """How the line does in one environment, in one line."""
     said, result = _judged(stand.findings), stand.result
     figures = ""

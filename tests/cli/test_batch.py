@@ -290,7 +290,7 @@ def test_statistics_that_fail_leave_the_result_and_say_so(
             raise error
 
         with monkeypatch.context() as patched:
-            patched.setattr("calm.report.batch_summary.write_summary", fail)
+            patched.setattr("calm.report.batch_page.write_summary", fail)
             done = calm("batch", write_mooring(), "--currents", record, "-o", "r.nc")
         assert done.code == 75
         assert f"r.nc is done; its statistics are not: {words}. The same command" in done.err

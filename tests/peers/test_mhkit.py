@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from calm.records.current_file import read_current_file
-from calm.records.profile_tables import Terms
+from calm.records.current_terms import Terms
 
 pytestmark = [pytest.mark.peers, pytest.mark.filterwarnings("ignore")]
 

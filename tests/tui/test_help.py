@@ -7,7 +7,7 @@ from calm.tui.catalogue.component_screen import ComponentScreen
 from calm.tui.catalogue.pane import CataloguePane
 from calm.tui.dialogs import LongText, Question, Sheet
 from calm.tui.field import Cycle
-from calm.tui.key_table import PLACES
+from calm.tui.help_screen import PLACES
 from calm.tui.line.builder import BuilderScreen
 from calm.tui.line.cell_editor import CellEditor
 from calm.tui.line.pane import LinePane

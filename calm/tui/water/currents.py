@@ -185,7 +185,7 @@ def imported(path: Path, time: str, depth: float) -> tuple[Sequence[str], Sequen
         The file, or the time, cannot be used.
     """
     from calm.records.current_file import read_current_file
-    from calm.records.profile_tables import Terms
+    from calm.records.current_terms import Terms
     from calm.records.times import TimeChoiceError
 
     try:

@@ -9,7 +9,7 @@ import xarray as xr
 from calm.errors import InputError, UsageError
 from calm.files import CurrentTable
 from calm.records.current_file import open_record, read_current_file
-from calm.records.profile_tables import Terms
+from calm.records.current_terms import Terms
 from calm.records.record import Record, parse_period, time_text
 from tests.unit.batch.records import ARRAYS, COUNT, HERE, SEABED, adcp, glorys, hycom, write
 

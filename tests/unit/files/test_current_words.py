@@ -11,7 +11,7 @@ import xarray as xr
 
 from calm.errors import InputError
 from calm.records.current_file import read_current_file
-from calm.records.profile_tables import Terms
+from calm.records.current_terms import Terms
 
 WRITTEN = Path(__file__).parent / "written"
 """Files that MHKiT 1.1.2 wrote: velocities (dir, range, time) of a Signature looking up, at 60 dbar

@@ -13,9 +13,9 @@ from calm.locate.sound import read_sound
 from calm.motion.currents import read_currents
 from calm.motion.sensors import depth_of, read_sea_level, read_sensors
 from calm.records.current_file import open_record, read_current_file
+from calm.records.current_terms import Terms
 from calm.records.delimited import copied_table
 from calm.records.headings import heading
-from calm.records.profile_tables import Terms
 from calm.tui.water.pasted import offered_headings, rows_in
 
 Table = list[list[str]]
