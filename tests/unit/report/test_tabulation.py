@@ -82,7 +82,7 @@ def test_csv(swept):
         "frequency[Hz]"
     )
     assert failed == "Survey,0.5144,grounded,,,,,,"
-    assert converged == "Survey,1.0289,converged,120.0,140.0,3000.4,35.26,1500.0,3.559"
+    assert converged == "Survey,1.0289,converged,120,140,3000.4,35.26,1500,3.559"
 
 
 def test_coefficients(make_tow_result):
