@@ -19,11 +19,10 @@ import calm
 from calm.checks.comparison import comparison_of
 from calm.deck import deck_of
 from calm.deck.cutting import cuts_of
-from calm.deck.hung import hung_of
-from calm.deck.order import Order
+from calm.deck.deck_items import Order, hung_of
 from calm.drop import drop_plan
-from calm.report.deck.paper import Paper
-from calm.report.deck.report import deck_report
+from calm.report.deck_files import deck_report
+from calm.report.diagram_layout import Paper
 from calm.report.pdf import printed
 
 COMPONENTS = """

@@ -21,7 +21,7 @@ import xarray
 from machine import describe
 
 import calm
-from calm.motion.forward import Forward, points
+from calm.motion.line_response import Forward, points
 from calm.motion.matching import labels_of
 
 HOURS, SMOKE = 8766, 48

@@ -15,12 +15,12 @@ from dataclasses import dataclass
 
 
 class CalmError(Exception):
-    """Base of all errors that are meant for people."""
+    """Mark an error that is meant for people."""
 
 
 @dataclass(frozen=True)
 class Problem:
-    """One mistake in one place of a file.
+    """Describe one mistake in one place of a file.
 
     `line` and `column` count from 1; 0 means the file as a whole. `lacks` shows, where nothing is
     wrong but something is still missing, what that is: ``no length on wire 2``.
@@ -38,7 +38,7 @@ class Problem:
 
 
 class InputError(CalmError):
-    """A file that cannot be used as it stands; `problems` holds every mistake found in it."""
+    """Say that a file cannot be used as it stands; `problems` holds every mistake found in it."""
 
     def __init__(self, problems: Sequence[Problem]) -> None:
         self.problems = tuple(problems)
@@ -46,11 +46,11 @@ class InputError(CalmError):
 
 
 class UsageError(CalmError):
-    """A command line or a call that asks for something that does not exist."""
+    """Say that a command line or a call asks for something that does not exist."""
 
 
 class NoEquilibrium(CalmError):
-    """The mooring has no equilibrium that may be shown.
+    """Say that the mooring has no equilibrium that may be shown.
 
     Parameters
     ----------
@@ -71,16 +71,16 @@ class NoEquilibrium(CalmError):
         super().__init__(f"{status}: {self.message} {advice}")
 
     def naming(self, piece: str) -> NoEquilibrium:
-        """The same, with the piece called by a name."""
+        """Return the same exception, with the piece called by a name."""
         return NoEquilibrium(self.status, self.wording.format(piece=piece), self.advice)
 
     def to_dict(self) -> dict[str, str]:
-        """`status`, `message` and `advice`, as they stand in JSON in place of a result."""
+        """Return `status`, `message` and `advice`, as they stand in JSON in place of a result."""
         return {"status": self.status, "message": self.message, "advice": self.advice}
 
 
 def internal_failure(error: Exception) -> NoEquilibrium:
-    """CALM's own failure, reported as an unsolved line: it does not stop the others."""
+    """Report CALM's own failure as an unsolved line: it does not stop the others."""
     return NoEquilibrium(
         "internal-error",
         f"CALM failed ({type(error).__name__}: {error}).",

@@ -11,7 +11,7 @@ from typing import Literal
 
 
 def shipped_folder(name: Literal["catalog", "lines", "docs"]) -> Path:
-    """The folder of the shipped catalogue, lines or manual.
+    """Return the folder of the shipped catalogue, lines or manual.
 
     Raises
     ------

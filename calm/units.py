@@ -27,7 +27,7 @@ KNOT = 1852 / 3600
 
 @dataclass(frozen=True)
 class Dimension:
-    """One kind of quantity: what it is called, its SI unit and its everyday units."""
+    """Describe one kind of quantity: what it is called, its SI unit and its everyday units."""
 
     noun: str
     unit: str
@@ -158,7 +158,7 @@ _LARGEST = 1e30  # so that products of a few of them are numbers still
 
 
 class QuantityError(ValueError):
-    """A text that is not the quantity wanted.
+    """Say that a text is not the quantity wanted.
 
     Attributes
     ----------
@@ -198,7 +198,7 @@ def parse_quantity(text: object, dimension: str, *, usual_unit: str | None = Non
 
 @functools.lru_cache(maxsize=4096)
 def _parsed(text: str, dimension: str, usual_unit: str | None) -> float:
-    """The value of a text without blanks around it."""
+    """Return the value of a text without blanks around it."""
     wanted = DIMENSIONS[dimension]
     number, unit = _split(text, wanted)
     if unit:
@@ -218,14 +218,45 @@ def _parsed(text: str, dimension: str, usual_unit: str | None) -> float:
     return value
 
 
+@dataclass(frozen=True)
+class QuantityRange:
+    """Hold the dimension of a quantity and its limits (SI, degrees)."""
+
+    dimension: str
+    usual_unit: str | None = None
+    above: float = -math.inf
+    at_least: float = -math.inf
+    at_most: float = math.inf
+
+    def read(self, text: object) -> float:
+        """Return the SI value of a text with a unit.
+
+        Raises
+        ------
+        QuantityError
+            The text is no such quantity, or beyond the limits.
+        """
+        if text is None:
+            raise QuantityError("has no value")
+        value = parse_quantity(text, self.dimension, usual_unit=self.usual_unit)
+        unit = DIMENSIONS[self.dimension].unit
+        if value <= self.above:
+            raise QuantityError(f"must be more than {self.above:g} {unit}".rstrip())
+        if value < self.at_least:
+            raise QuantityError(f"must be at least {self.at_least:g} {unit}".rstrip())
+        if value > self.at_most:
+            raise QuantityError(f"must be at most {self.at_most:g} {unit}".rstrip())
+        return value
+
+
 def with_unit(value: float, unit: str) -> str:
-    """A value in six digits with its unit, as a person reads it."""
+    """Return a value in six digits with its unit, as a person reads it."""
     return f"{value:.6g} {unit}".rstrip()
 
 
 @functools.lru_cache(maxsize=1024)
 def unit_factor(text: str, dimension: str) -> float:
-    """What a number in this unit is multiplied by to be in SI (degrees, degC).
+    """Return what a number in this unit is multiplied by to be in SI (degrees, degC).
 
     Raises
     ------
@@ -258,7 +289,7 @@ def unit_factor(text: str, dimension: str) -> float:
 
 
 def _split(text: str, wanted: Dimension) -> tuple[float, str]:
-    """The number a text begins with, and the rest: its unit."""
+    """Return the number a text begins with, and the rest: its unit."""
     fraction = _FRACTION.match(text)
     if fraction:
         sign, whole, numerator, denominator = fraction.groups()
@@ -282,7 +313,7 @@ def _split(text: str, wanted: Dimension) -> tuple[float, str]:
 
 
 def _tidy(unit: str) -> str:
-    """One spelling for the many ways of writing a unit: `m s-1`, `m.s^-1`, `m·s⁻¹`."""
+    """Return one spelling for the many ways of writing a unit: `m s-1`, `m.s^-1`, `m·s⁻¹`."""
     unit = unit.strip().replace("**", "^").replace("·", "*")
     unit = re.sub("[⁻¹²³⁴]+", lambda power: "^" + power[0].translate(_SUPERSCRIPTS), unit)
     unit = re.sub(r"\s*([*/^()])\s*", r"\1", unit)
@@ -292,7 +323,7 @@ def _tidy(unit: str) -> str:
 
 
 def _described(dimension: Dimension) -> str:
-    """What to write instead, e.g. "a length (m, mm, cm, km, in …)"."""
+    """Return what to write instead, e.g. "a length (m, mm, cm, km, in …)"."""
     units = [unit for unit in dimension.units if unit]
     listed = ", ".join(units[:6]) + (" …" if len(units) > 6 else "")
     return dimension.noun if dimension.unit == "" else f"{dimension.noun} ({listed})"
@@ -306,7 +337,7 @@ def _registry() -> pint.UnitRegistry[float]:
 
 
 def _factor_by_pint(unit: str, wanted: Dimension) -> float:
-    """The factor of a unit the table does not hold."""
+    """Return the factor of a unit the table does not hold."""
     import difflib
 
     import pint

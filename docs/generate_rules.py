@@ -7,7 +7,7 @@ python docs/generate_rules.py --check    # exit 1 where it is out of date
 import sys
 from pathlib import Path
 
-from calm.files.rules import RULES
+from calm.files.rule_texts import RULES
 
 PAGE = Path(__file__).parent / "reference" / "check.md"
 BEGIN, END = "<!-- rules -->\n", "<!-- rules end -->\n"

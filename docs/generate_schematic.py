@@ -9,7 +9,7 @@ from pathlib import Path
 
 import calm
 from calm.report.schematic import schematic_svg
-from calm.report.schematic.text import schematic_text
+from calm.report.schematic.in_terminal import schematic_text
 
 PAGE = Path(__file__).parent / "reference" / "schematic.md"
 IMAGES = Path(__file__).with_name("images")

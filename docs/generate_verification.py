@@ -20,13 +20,12 @@ from calm.report.picture import image
 from calm.report.verification import COLUMNS, by_kind, figures
 from calm.verification import (
     SOURCES,
+    CaseOutcome,
     Kind,
-    Outcome,
     Source,
-    cdms_1,
-    convergence,
-    drag_curves,
-    s1000,
+    drag_and_sea_water,
+    march_properties,
+    solved_moorings,
 )
 
 PAGE = Path(__file__).parent / "explanation" / "verification.md"
@@ -39,7 +38,7 @@ Printed by `python docs/generate_verification.py`; do not edit.
 `calm verify` computes {verifying} figures that are known without CALM, and compares them. The exit
 code is 1 when one is outside its tolerance. `calm verify cdms tension` selects the figures whose
 source or name contains both words; `--json -` gives every digit. The cases are in
-`calm/verification/`, one module for each source, and the tests run them.
+`calm/verification/`, and the tests run them.
 
 Agreement does not always prove the same, so every figure has a kind:
 
@@ -127,7 +126,7 @@ def figures_section(source: Source) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def table(outcomes: list[Outcome]) -> Iterator[str]:
+def table(outcomes: list[CaseOutcome]) -> Iterator[str]:
     """The lines of a table."""
     yield f"| {' | '.join(COLUMNS)} |"
     yield "| --- | ---: | ---: | ---: | ---: | --- |"
@@ -142,11 +141,11 @@ def draw_cdms_1() -> Figure:
     """Shape and tensions of CDMS-1 with what the programs print."""
     figure = Figure(figsize=(9, 5), layout="constrained")
     shape, tension = figure.subplots(1, 2, sharey=True)
-    answer = cdms_1.solved()
+    answer = solved_moorings.solved_cdms_1()
     shape.plot(answer.offset, answer.height, color=LINE, label="CALM")
     tension.plot(answer.tension[1:], answer.height[1:], color=LINE, label="CALM")
     heights = [answer.height[node] for node in answer.nodes_of_tensions]
-    for program, (height, offset, *tensions) in cdms_1.PROGRAMS.items():
+    for program, (height, offset, *tensions) in solved_moorings.PROGRAMS.items():
         marker, colour = STYLES[program]
         look = {"marker": marker, "color": colour, "linestyle": "none", "fillstyle": "none"}
         shape.plot(offset, height, label=program, **look)
@@ -162,16 +161,20 @@ def draw_s1000() -> Figure:
     """Shape of S1000 with the known place of its float, and the errors by angle step."""
     figure = Figure(figsize=(9, 4.5), layout="constrained")
     shape, errors = figure.subplots(1, 2)
-    solution = s1000.solved(1.0)
+    solution = solved_moorings.solved_s1000(1.0)
     shape.plot(solution.position[:, 0], -solution.position[:, 2], color=LINE, label="CALM at 1°")
-    shape.plot(s1000.OFFSET, s1000.DEPTH, "o", color="#cc3311", label="float, known")
+    shape.plot(
+        solved_moorings.OFFSET, solved_moorings.DEPTH, "o", color="#cc3311", label="float, known"
+    )
     shape.set(xlabel="offset [m]", ylabel="depth [m]", ylim=(1100.0, 0.0))
     shape.legend(frameon=False)
 
-    steps = np.array(convergence.ANGLE_STEPS)
-    solved = [s1000.solved(step) for step in steps.tolist()]
-    depth = np.array([abs(s1000.depth(each) - s1000.DEPTH) for each in solved])
-    offset = np.array([abs(each.position[0, 0] - s1000.OFFSET) for each in solved])
+    steps = np.array(march_properties.ANGLE_STEPS)
+    solved = [solved_moorings.solved_s1000(step) for step in steps.tolist()]
+    depth = np.array(
+        [abs(solved_moorings.float_depth(each) - solved_moorings.DEPTH) for each in solved]
+    )
+    offset = np.array([abs(each.position[0, 0] - solved_moorings.OFFSET) for each in solved])
     stated = np.array([each.depth_error for each in solved])
     errors.plot(steps, depth, "o-", color=LINE, label="depth of the float")
     errors.plot(steps, offset, "s-", color="#cc3311", label="its offset")
@@ -186,8 +189,8 @@ def draw_convergence() -> Figure:
     """Miss of a heavy line's free end by angle step."""
     figure = Figure(figsize=(5, 4), layout="constrained")
     axes = figure.subplots()
-    steps = np.array(convergence.ANGLE_STEPS)
-    missed = np.array([convergence.heavy_line_error(step) for step in steps.tolist()])
+    steps = np.array(march_properties.ANGLE_STEPS)
+    missed = np.array([march_properties.heavy_line_error(step) for step in steps.tolist()])
     axes.plot(steps, missed, "o-", color=LINE, label="miss of the free end, 1000 m of line")
     finish(axes, steps, missed)
     return figure
@@ -207,9 +210,9 @@ def draw_drag_curves() -> Figure:
     figure = Figure(figsize=(8, 4.5), layout="constrained")
     axes = figure.subplots()
     published = (
-        ("Wieselsberger, measured", drag_curves.WIESELSBERGER, "o", LINE),
-        ("DNV-RP-C205", drag_curves.DNV, "D", "#e69f00"),
-        ("Morrison, sphere", drag_curves.MORRISON, "^", "#cc3311"),
+        ("Wieselsberger, measured", drag_and_sea_water.WIESELSBERGER, "o", LINE),
+        ("DNV-RP-C205", drag_and_sea_water.DNV, "D", "#e69f00"),
+        ("Morrison, sphere", drag_and_sea_water.MORRISON, "^", "#cc3311"),
     )
     for name, points, marker, colour in published:
         axes.plot(*zip(*points, strict=True), marker, color=colour, fillstyle="none", label=name)
@@ -225,10 +228,10 @@ def draw_drag_curves() -> Figure:
 
 
 PICTURES: dict[str, Callable[[], Figure]] = {
-    cdms_1.SOURCE.picture: draw_cdms_1,
-    s1000.SOURCE.picture: draw_s1000,
-    convergence.SOURCE.picture: draw_convergence,
-    drag_curves.SOURCE.picture: draw_drag_curves,
+    solved_moorings.CDMS_1.picture: draw_cdms_1,
+    solved_moorings.S1000.picture: draw_s1000,
+    march_properties.CONVERGENCE.picture: draw_convergence,
+    drag_and_sea_water.DRAG_CURVES.picture: draw_drag_curves,
 }
 
 

@@ -19,13 +19,13 @@ from math import hypot, inf, isfinite, sqrt, tanh
 import numpy as np
 from numpy.typing import ArrayLike
 
-from calm.analytic.station import Floats
+from calm.analytic.hodograph import Floats
 
 
 def position(
     arc: ArrayLike, horizontal: ArrayLike, vertical: ArrayLike, weight: ArrayLike
 ) -> tuple[Floats, Floats]:
-    """Where an inextensible line is at a distance from a point whose pull is known.
+    """Return where an inextensible line is at a distance from a point whose pull is known.
 
     Parameters
     ----------

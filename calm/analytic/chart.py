@@ -14,11 +14,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from calm.analytic.chart_branch import Branch, check_k
-from calm.analytic.chart_given import ANGLES, SIZES, check, mirrored
 from calm.analytic.chart_length import LengthSearch
-from calm.analytic.chart_reasons import Refusal, contradiction, family, is_taut, reason
-from calm.analytic.chart_search import Piece, Search, size_of
-from calm.analytic.chart_straight import straight
+from calm.analytic.chart_reasons import (
+    ChartRefusal,
+    contradiction,
+    family,
+    is_taut,
+    reason,
+    straight,
+)
+from calm.analytic.chart_search import ChartSearch, Piece, size_of
+from calm.errors import UsageError
 
 
 @dataclass(frozen=True)
@@ -51,7 +57,7 @@ class ChartSolution:
 
 @dataclass(frozen=True)
 class ChartAnswer:
-    """What three quantities say about a cable.
+    """Hold what three quantities say about a cable.
 
     Parameters
     ----------
@@ -130,7 +136,7 @@ def chart_solve(
         for name, value in sunk.items()
     }
     answer = _solve(float(k), over_weight, floats)
-    if isinstance(answer, Refusal):
+    if isinstance(answer, ChartRefusal):
         return ChartAnswer(answer.status, float(k), (), answer.message, answer.advice)
     solutions = [_weighted(solution, abs(weight)) for solution in answer]
     if floats:
@@ -146,7 +152,7 @@ def _weighted(solution: ChartSolution, weight: float) -> ChartSolution:
     )
 
 
-def _solve(k: float, known: dict[str, float], floats: bool) -> list[ChartSolution] | Refusal:
+def _solve(k: float, known: dict[str, float], floats: bool) -> list[ChartSolution] | ChartRefusal:
     """The cables that sink, tensions over w; those that float have been turned upside down."""
     refusal = contradiction(known)
     if refusal:
@@ -180,7 +186,7 @@ def _on_branch(
     turned = dict(sizes)
     if "distance" in sizes:
         turned["distance"] *= branch.sign
-    search = Search(branch, turned)
+    search = ChartSearch(branch, turned)
     if start is None and end is None and search.log_ratio() is None:
         (third,) = sizes.keys() - {"distance", "length"}
         length = sizes["length"]
@@ -224,3 +230,49 @@ def _cable(branch: Branch, piece: Piece, sizes: Mapping[str, float]) -> ChartSol
         scale * unit["length"],
         scale,
     )
+
+
+ANGLES = ("phi_a", "phi_b")
+SIZES = ("tension_a", "tension_b", "height", "distance", "length")
+GIVENS = (*ANGLES, *SIZES)
+
+
+def check(known: Mapping[str, float], weight: float) -> None:
+    """Refuse what is no question at all."""
+    if len(known) != 3:
+        names = ", ".join(known) or "none"
+        raise UsageError(f"three of {', '.join(GIVENS)} are needed; given: {names}")
+    if not math.isfinite(weight) or weight == 0.0:
+        raise UsageError(f"the weight is {weight:g} N/m; it must be a number other than 0")
+    for name, value in known.items():
+        if not math.isfinite(value):
+            raise UsageError(f"{name} is not a finite number")
+        if name in ("height", "length") and value <= 0.0:
+            raise UsageError(f"{name} is {value:g} m; it must be positive")
+        if name.startswith("tension") and value < 0.0:
+            raise UsageError(f"{name} is {value:g} N; it must not be negative")
+    for name in known.keys() & set(ANGLES):
+        least = -math.pi if (name == "phi_a") == (weight > 0.0) else 0.0
+        if not least <= known[name] <= math.pi:
+            raise UsageError(
+                f"{name} is {math.degrees(known[name]):.6g}°; "
+                f"it must be from {math.degrees(least):g}° to 180°"
+            )
+
+
+def mirrored(values: Mapping[str, float]) -> dict[str, float]:
+    """Return the same cable upside down: a floating one becomes a sinking one and the other way
+    round.
+    """
+    swapped = {"a": "b", "b": "a"}
+    mirrored = {}
+    for name, value in values.items():
+        stem, _, end = name.rpartition("_")
+        if stem == "phi":
+            turned = math.pi - value
+            mirrored[f"phi_{swapped[end]}"] = turned - 2 * math.pi if turned > math.pi else turned
+        elif stem == "tension":
+            mirrored[f"tension_{swapped[end]}"] = value
+        else:
+            mirrored[name] = -value if name == "distance" else value
+    return mirrored

@@ -181,7 +181,9 @@ class LengthSearch:
 
 
 def last_positive(function: Callable[[Floats], Floats], low: Floats, high: Floats) -> Floats:
-    """Where a function positive at `low` changes sign; `high` where it does not up to there."""
+    """Return where a function positive at `low` changes sign; `high` where it does not up to
+    there.
+    """
     begin, end = function(low), function(high)
     crosses = (begin > 0.0) & (end < 0.0)
     found = refine(function, low, np.where(crosses, high, low))

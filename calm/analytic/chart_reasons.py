@@ -1,4 +1,6 @@
-"""Why three quantities give no cable, said for people."""
+"""Quantities that give no cable, and why, said for people; and the straight cable at the critical
+angle, the only one that no branch of the curve holds.
+"""
 
 from __future__ import annotations
 
@@ -13,21 +15,24 @@ _LEAST_SLACK = 1e-12
 
 
 @dataclass(frozen=True)
-class Refusal:
-    """Why there is no answer: its status, what is wrong and what to change."""
+class ChartRefusal:
+    """Describe why there is no answer: its status, what is wrong and what to change."""
 
     status: str
     message: str
     advice: str
 
 
-def family(what: str) -> Refusal:
+def family(what: str) -> ChartRefusal:
     """The refusal of quantities that leave one free."""
-    return Refusal("one-parameter-family", what, "Give another quantity in place of one of these.")
+    return ChartRefusal(
+        "one-parameter-family", what, "Give another quantity in place of one of these."
+    )
 
 
-def contradiction(known: Mapping[str, float]) -> Refusal | None:
-    """What is wrong with the quantities of a sinking cable whatever K is; None if nothing is.
+def contradiction(known: Mapping[str, float]) -> ChartRefusal | None:
+    """Return what is wrong with the quantities of a sinking cable whatever K is; None if nothing
+    is.
 
     Tensions are over w [m]. A cable that floats comes here upside down; messages hold for both.
     """
@@ -55,13 +60,13 @@ def contradiction(known: Mapping[str, float]) -> Refusal | None:
 
 
 def is_taut(known: Mapping[str, float]) -> bool:
-    """Whether the cable is no longer than the straight way between its ends, to rounding."""
+    """Return whether the cable is no longer than the straight way between its ends, to rounding."""
     chord = math.hypot(known.get("height", 0.0), known.get("distance", 0.0))
     return "length" in known and chord >= known["length"] * (1.0 - _LEAST_SLACK)
 
 
-def reason(k: float, known: Mapping[str, float], floats: bool) -> Refusal:
-    """Why no cable has quantities that do not contradict each other.
+def reason(k: float, known: Mapping[str, float], floats: bool) -> ChartRefusal:
+    """Return why no cable has quantities that do not contradict each other.
 
     Parameters
     ----------
@@ -99,9 +104,73 @@ def reason(k: float, known: Mapping[str, float], floats: bool) -> Refusal:
     )
 
 
-def _inconsistent(message: str, advice: str) -> Refusal:
-    return Refusal("inconsistent", message, advice)
+def _inconsistent(message: str, advice: str) -> ChartRefusal:
+    return ChartRefusal("inconsistent", message, advice)
 
 
-def _none(message: str, advice: str) -> Refusal:
-    return Refusal("no-equilibrium", message, advice)
+def _none(message: str, advice: str) -> ChartRefusal:
+    return ChartRefusal("no-equilibrium", message, advice)
+
+
+_AGREEMENT = 1e-9
+
+
+@dataclass(frozen=True)
+class StraightCable:
+    """A straight cable; `tension_a` (over w) or `length` is None where nothing fixes it."""
+
+    angle: float
+    tension_a: float | None
+    length: float | None
+
+    @property
+    def figures(self) -> dict[str, float] | None:
+        """The seven quantities and h0, tensions over w; None where they are not fixed."""
+        if self.tension_a is None or self.length is None:
+            return None
+        rise = self.length * math.sin(self.angle)
+        return {
+            "phi_a": self.angle,
+            "phi_b": self.angle,
+            "tension_a": self.tension_a,
+            "tension_b": self.tension_a + rise,
+            "height": rise,
+            "distance": self.length * math.cos(self.angle),
+            "length": self.length,
+            "h0": 0.0,
+        }
+
+
+def straight(k: float, known: Mapping[str, float]) -> StraightCable | None:
+    """The straight cable that has the known quantities to 1e-9, tensions over w; None if none has.
+
+    Parameters
+    ----------
+    k : float
+        K.
+    known : mapping
+        Three of the seven quantities [rad, m].
+    """
+    angle = float(critical_angle(k))
+    sine, cosine = math.sin(angle), 0.0 if k == 0.0 else math.cos(angle)
+    if any(abs(known[name] - angle) > _AGREEMENT for name in ("phi_a", "phi_b") if name in known):
+        return None
+    below, above, distance = (known.get(name) for name in ("tension_a", "tension_b", "distance"))
+    lengths = [known["length"]] if "length" in known else []
+    if "height" in known:
+        lengths.append(known["height"] / sine)
+    if below is not None and above is not None:
+        lengths.append((above - below) / sine)
+    if distance is not None and cosine != 0.0:
+        lengths.append(distance / cosine)
+    elif distance:
+        return None
+    if lengths and (min(lengths) <= 0.0 or max(lengths) > (1.0 + _AGREEMENT) * min(lengths)):
+        return None
+    length = lengths[0] if lengths else None
+    if below is None and above is not None and length is not None:
+        below = above - length * sine
+        if below < -_AGREEMENT * above:
+            return None
+        below = max(below, 0.0)
+    return StraightCable(angle, below, length)

@@ -36,7 +36,7 @@ _WINDOW = 2 * _AROUND + 1
 
 
 @dataclass(frozen=True)
-class Search:
+class ChartSearch:
     """A branch and the sizes given.
 
     Parameters
@@ -200,7 +200,9 @@ def refine(function: Callable[[Floats], Floats], left: Floats, right: Floats) ->
 def _next_share(
     a: Floats, b: Floats, c: Floats, at_a: Floats, at_b: Floats, at_c: Floats
 ) -> Floats:
-    """Where to try between a and b, as a share of the way, from these and the place before."""
+    """Return where to try between a and b, as a share of the way, from these and the place
+    before.
+    """
     with np.errstate(divide="ignore", invalid="ignore"):
         place, value = (a - b) / (c - b), (at_a - at_b) / (at_c - at_b)
         safe = (value**2 < place) & ((1.0 - value) ** 2 < 1.0 - place)

@@ -25,12 +25,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import inf, isfinite, nan, sqrt
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
-
-from calm.analytic.station import Floats
+from numpy.typing import ArrayLike, NDArray
 
 Law = Literal["constant", "square"]
 
@@ -229,3 +227,28 @@ class Hodograph:
             near, width = far, 2.0 * width
             far = farther(near, width)
         return side * float(brentq(miss, near, far, xtol=1e-300, rtol=1e-15)) if far else 0.0
+
+
+Floats = NDArray[np.float64]
+
+
+class Station(NamedTuple):
+    """A point of a line in a stream, counted from the end that is given.
+
+    Attributes
+    ----------
+    angle : between the line going up and the way upstream [rad]
+    tension : [N]
+    x : distance upstream of the given end [m]
+    z : height above the given end [m]
+
+    All have the shape of the arcs asked for. A towed cable, given at its body, has angles below
+    90°; a mooring line leans downstream and has angles above 90° (90° + tilt). A force at the
+    given end is that of the part below it: a body of weight W in water and drag D pulls with
+    T₀ = √(W² + D²) at the angle atan2(W, D); under a float of buoyancy B it is atan2(B, −D).
+    """
+
+    angle: Floats
+    tension: Floats
+    x: Floats
+    z: Floats

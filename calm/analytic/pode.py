@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from calm.analytic.station import Floats
+from calm.analytic.hodograph import Floats
 from calm.analytic.uniform import branch_of
 
 

@@ -17,7 +17,7 @@ from math import hypot, pi
 import numpy as np
 from numpy.typing import ArrayLike
 
-from calm.analytic.station import Floats, Station
+from calm.analytic.hodograph import Floats, Station
 from calm.analytic.villain_guillot import check_arc, straight_angle, straight_cable
 
 

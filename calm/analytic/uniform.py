@@ -20,8 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from calm.analytic import catenary
-from calm.analytic.hodograph import Hodograph, Law, cosine_of_critical_angle
-from calm.analytic.station import Floats, Station
+from calm.analytic.hodograph import Floats, Hodograph, Law, Station, cosine_of_critical_angle
 
 
 def neutral_line(

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from calm.analytic import catenary
-from calm.analytic.station import Floats, Station
+from calm.analytic.hodograph import Floats, Station
 from calm.analytic.uniform import critical_angle, heavy_line
 
 

@@ -36,7 +36,8 @@ class Datasheet:
 def datasheet(
     definition: Component | Assembly, catalogue: Catalogue | None = None
 ) -> Datasheet | None:
-    """What follows from the figures of a definition; for an assembly, the sums over its parts.
+    """Return what follows from the figures of a definition; for an assembly, the sums over its
+    parts.
 
     None for an assembly whose parts cannot be summed here: they override figures of a component, or
     use what the catalogue does not have (`catalogue` None: no catalogue at all).
@@ -75,7 +76,7 @@ def _component(catalogue: Catalogue, item: Mapping[str, Any]) -> Component | Non
 
 
 def _of_component(component: Component, metres: float) -> Datasheet:
-    """Of so many metres of a cable or chain; what is rigid has its own length."""
+    """Return the figures of some metres of a cable or chain; a rigid piece has its own length."""
     if isinstance(component, Anchor):
         return Datasheet(component.net_buoyancy, None, component.kt, None)
     kn, kt, along = drag_of(component, getattr(component, "length", metres))

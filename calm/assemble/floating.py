@@ -12,9 +12,9 @@ from calm.files import Cylinder, Environment, Piece, Rigid, Sphere
 from calm.files.components import RigidComponent
 from calm.files.definition import CATALOGUE_DENSITY
 from calm.files.rigid import Displacement
-from calm.files.tables import components
 from calm.physics.hull import Floating, Hull, cylindrical_hull, spherical_hull, tabulated_hull
 from calm.physics.line import Water
+from calm.records.profile_tables import components
 
 
 def _first_float(pieces: Sequence[Piece]) -> Piece | None:
@@ -29,7 +29,8 @@ def _first_float(pieces: Sequence[Piece]) -> Piece | None:
 def assemble_floating(
     pieces: Sequence[Piece], environment: Environment, water: Water
 ) -> Floating | None:
-    """How the first float rides at the surface; None where neither its draft nor its drag is known.
+    """Return how the first float rides at the surface; None where neither its draft nor its drag
+    is known.
 
     A hull is that of the component's `hull`, or of its kind for a sphere and a cylinder; without
     mass or volume there is no draft, and only a `k_surface` makes a difference.

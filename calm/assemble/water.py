@@ -8,9 +8,9 @@ import numpy as np
 
 from calm.files import CurrentTable, DepthTable, Environment, SeaWater
 from calm.files.definition import STANDARD_GRAVITY
-from calm.files.tables import components
 from calm.physics import seawater
 from calm.physics.line import REFERENCE_VISCOSITY, Floats, Water
+from calm.records.profile_tables import components
 
 DEEPEST = 11_000.0
 """Depth of the water where a tow gives none [m]: more than the deepest trench has."""
@@ -74,7 +74,7 @@ def _gravity(environment: Environment) -> float:
 
 
 def _surface_drift(environment: Environment) -> list[CurrentTable]:
-    """What the wind adds to the current; nothing where it drives no surface drift."""
+    """Return what the wind adds to the current; nothing where it drives no surface drift."""
     wind = environment.wind
     if wind is None or wind.surface_drift == 0.0:
         return []

@@ -16,7 +16,7 @@ from calm.errors import UsageError
 from calm.version import __version__
 
 if TYPE_CHECKING:
-    from calm.batch.records.record import Levels
+    from calm.records.record import Levels
 
 AHEAD = 2
 """Blocks that are under way for each thread of the workers."""
@@ -120,7 +120,7 @@ def _lost(error: Exception) -> ConnectionError:
 
 
 class _Workers:
-    """How many threads the workers of a scheduler have, asked for now and then."""
+    """Describe how many threads the workers of a scheduler have, asked for now and then."""
 
     def __init__(self, client: Any) -> None:
         self._client = client
@@ -140,14 +140,16 @@ class _Workers:
 
 
 def solve_there(mooring: Mooring, levels: Levels) -> Profiles:
-    """What a worker does with a block."""
+    """Solve a block: the work of one worker."""
     depth, u, v, w = levels
     return _ready(mooring).solve(u, v, depth, w, workers=1)
 
 
 @lru_cache(maxsize=2)
 def _ready(mooring: Mooring) -> Batch:
-    """The same for every block, as the mooring comes anew with each and is long in the making."""
+    """Return the same for every block, as the mooring comes anew with each and is long in the
+    making.
+    """
     from distributed import get_worker
 
     worker, batch = get_worker(), Batch(mooring)

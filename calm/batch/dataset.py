@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.profiles import Profiles
-from calm.batch.shape import Shape
+from calm.batch.shape import ShapeNodes
 from calm.batch.statuses import STATUSES
 from calm.case import Mooring
-from calm.case.measure import clamps_down
+from calm.case.parts import clamps_down
 from calm.dataset.variables import (
     CLAMPS,
     OF_CLAMP,
@@ -31,7 +31,7 @@ from calm.dataset.variables import (
 )
 
 if TYPE_CHECKING:
-    from calm.batch.records.record import Record
+    from calm.records.record import Record
 
 _ALONG = {"component": OF_COMPONENT, "clamp": OF_CLAMP, "node": OF_NODE}
 _LABELLED = {"component": "component_label", "clamp": "clamp_label", "node": "node_distance"}
@@ -39,7 +39,7 @@ _TIME_UNITS = (("seconds", 10**9), ("milliseconds", 10**6), ("nanoseconds", 1))
 
 
 def arrays_of(
-    layout: Layout, time: NDArray[np.datetime64], profiles: Profiles, shape: Shape | None
+    layout: Layout, time: NDArray[np.datetime64], profiles: Profiles, shape: ShapeNodes | None
 ) -> dict[str, NDArray[Any]]:
     """The values of some profiles, by the names of the variables that go with time.
 
@@ -68,7 +68,7 @@ def laid_out(
     }
 
 
-def layout_of(mooring: Mooring, record: Record, shape: Shape | None) -> Layout:
+def layout_of(mooring: Mooring, record: Record, shape: ShapeNodes | None) -> Layout:
     """Lay out the result of a mooring in the profiles of a record."""
     pieces = mooring.file.pieces
     clamps = [clamp.label for clamp in clamps_down(pieces)]
@@ -114,7 +114,7 @@ def layout_of(mooring: Mooring, record: Record, shape: Shape | None) -> Layout:
     return Layout(sizes, tuple(variables), known)
 
 
-def _nodes(shape: Shape) -> list[Variable]:
+def _nodes(shape: ShapeNodes) -> list[Variable]:
     distance = {"units": "m", "long_name": "unstretched length of line above the node"}
     component = {"units": "1", "long_name": "index of the component that the node is on, from 0"}
     return [

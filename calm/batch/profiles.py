@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from calm.assemble import assemble_water
-from calm.batch.plausible import implausible
 from calm.batch.solving import (
     HEAPED,
     LACKS_ROOM,
@@ -25,10 +24,11 @@ from calm.batch.solving import (
     Results,
     solve_rows,
 )
-from calm.batch.statuses import STATUSES
+from calm.batch.statuses import STATUSES, implausible
 from calm.batch.threads import processors
 from calm.case import Mooring
-from calm.case.measure import clamps_down, clamps_of, components_of
+from calm.case.measure import clamps_of, components_of
+from calm.case.parts import clamps_down
 from calm.files import CurrentTable
 from calm.physics.compiled import by_address, entry, record_type
 from calm.physics.line import Floats, Integers, Water

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import UsageError
-from calm.files.explain import unknown
+from calm.suggestions import unknown
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -105,7 +105,7 @@ def readable(path: Path) -> Iterator[None]:
 
 
 def attributes_of(path: Path) -> Mapping[str, Any]:
-    """Of a result as a whole; none where it is something else, or cannot be read."""
+    """Return the attributes of a result; none where it is something else, or cannot be read."""
     if path.suffix == ".zarr":
         try:
             content = json.loads((path / ".zattrs").read_bytes())
@@ -166,7 +166,7 @@ def place_of(dataset: Stored, label: str) -> tuple[str, int]:
 
 
 def status_names(dataset: Stored) -> tuple[str, ...]:
-    """What the numbers of `status` in a result mean; the first is 0.
+    """Return what the numbers of `status` in a result mean; the first is 0.
 
     Raises
     ------
@@ -182,7 +182,7 @@ def status_names(dataset: Stored) -> tuple[str, ...]:
 
 
 def statuses_of(dataset: Stored) -> dict[str, int]:
-    """How many profiles of a result ended with each status that occurs.
+    """Return how many profiles of a result ended with each status that occurs.
 
     Raises
     ------

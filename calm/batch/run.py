@@ -14,18 +14,18 @@ from calm.batch.compiling import compile_solver
 from calm.batch.dataset import layout_of
 from calm.batch.profiles import Batch
 from calm.batch.result import readable, statuses_of, stored_result
-from calm.batch.shape import shape_of
+from calm.batch.shape import nodes_of
 from calm.batch.statuses import Ending, endings
-from calm.batch.store.identity import identity_of, to_text
-from calm.batch.store.lock import locked
-from calm.batch.store.result import (
+from calm.batch.store.finish import (
     ENDINGS,
     clear,
     finish,
     is_finished,
     left_behind,
+    locked,
     store_folder,
 )
+from calm.batch.store.identity import identity_of, to_text
 from calm.batch.store.store import open_store
 from calm.batch.threads import Stopped, go_on, processors
 from calm.batch.work import Progress, Work
@@ -33,7 +33,7 @@ from calm.case import Mooring
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
-    from calm.batch.records.record import Record
+    from calm.records.record import Record
 
 BLOCK = 8192
 """Profiles to a block: what is written at once, and lost where a process is stopped."""
@@ -49,7 +49,7 @@ ATTEMPTS = 3
 
 
 @dataclass(frozen=True)
-class Outcome:
+class BatchOutcome:
     """How a batch ended.
 
     Attributes
@@ -82,7 +82,7 @@ def run_batch(
     progress: Callable[[Progress], None] | None = None,
     tell: Callable[[str], None] | None = None,
     stop: Event | None = None,
-) -> Outcome:
+) -> BatchOutcome:
     """Solve a mooring in every profile of a record, and write the result.
 
     The work is kept in a folder beside the result, ``RESULT.part``. Whatever ends it, even at
@@ -111,7 +111,7 @@ def run_batch(
     if record.count == 0:
         raise UsageError("the record has no profile in the time that was asked for")
     say, stop = tell or (lambda _: None), stop or Event()
-    nodes = shape_of(mooring) if shape else None
+    nodes = nodes_of(mooring) if shape else None
     batch = Batch(nodes.mooring if nodes else mooring)
     if block is None:
         block = _block_for(record.count)
@@ -149,7 +149,7 @@ def run_kept(
     begin: Callable[[Path, str], W],
     solve: Callable[[W], None],
     say: Callable[[str], None],
-) -> Outcome:
+) -> BatchOutcome:
     """Do work that is kept beside its result as it is done, and make the result.
 
     Parameters
@@ -185,10 +185,10 @@ def run_kept(
             clear(output)
     except (KeyboardInterrupt, Stopped, OSError, MemoryError) as error:
         if work is None:
-            return Outcome({}, False, _reason(error))
+            return BatchOutcome({}, False, _reason(error))
         if not is_finished(output, identity):
-            return Outcome(work.counts, False, _reason(error))
-    return Outcome(work.counts, True)
+            return BatchOutcome(work.counts, False, _reason(error))
+    return BatchOutcome(work.counts, True)
 
 
 def _complete(
@@ -206,10 +206,10 @@ def _complete(
     raise OSError(f"{work.store.folder} loses what is written to it")
 
 
-def _found(output: Path) -> Outcome:
+def _found(output: Path) -> BatchOutcome:
     """Of a finished result."""
     with stored_result(output) as result, readable(output):
-        return Outcome(statuses_of(result), True)
+        return BatchOutcome(statuses_of(result), True)
 
 
 def _block_for(count: int) -> int:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from calm.batch.profiles import Profiles
 from calm.case import Mooring
-from calm.case.measure import clamps_down
+from calm.case.parts import clamps_down
 from calm.files import Clamp
 from calm.files.rigid import Body
 from calm.physics.line import Floats
@@ -20,11 +20,11 @@ PARTS = 64
 """Into so many parts, about, the nodes divide the cables and chains of a line."""
 
 OF_NODE = ("depth", "x", "y", "tension")
-"""What is known of a node; see `Shape.columns`."""
+"""What is known of a node; see `ShapeNodes.columns`."""
 
 
 @dataclass(frozen=True)
-class Shape:
+class ShapeNodes:
     """The nodes of a line: the top of every piece, points on its cables, the top of the anchor.
 
     A node on a cable is a clamp that weighs nothing and takes no drag, so that what is solved for
@@ -59,7 +59,7 @@ class Shape:
         }
 
 
-def shape_of(mooring: Mooring) -> Shape:
+def nodes_of(mooring: Mooring) -> ShapeNodes:
     """Lay the nodes along the line of a mooring.
 
     Raises
@@ -88,7 +88,7 @@ def shape_of(mooring: Mooring) -> Shape:
         pieces.append(piece)
     order = np.lexsort((distance, component))
     own = np.array([clamp.use == "" for clamp in clamps_down(pieces)], bool)
-    return Shape(
+    return ShapeNodes(
         mooring=Mooring(replace(mooring.file, pieces=tuple(pieces))),
         component=np.array(component, np.int32)[order],
         distance=np.array(distance)[order],

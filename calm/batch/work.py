@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 
 from calm.batch.dataset import arrays_of
 from calm.batch.profiles import Batch, Profiles
-from calm.batch.shape import Shape
+from calm.batch.shape import ShapeNodes
 from calm.batch.statuses import STATUSES, Ending, endings
 from calm.batch.store.store import Arrays, Store
 from calm.batch.threads import in_threads
 
 if TYPE_CHECKING:
-    from calm.batch.records.record import Levels, Record
+    from calm.records.record import Levels, Record
 
 FIRST, FEWEST = 256, 8
 """Profiles solved before progress is reported or a stop heeded: at first, and at least. `SLICE`
@@ -55,7 +55,7 @@ class Work:
         batch: Batch,
         record: Record,
         store: Store,
-        shape: Shape | None,
+        shape: ShapeNodes | None,
         progress: Callable[[Progress], None] | None,
         stop: Event,
     ) -> None:

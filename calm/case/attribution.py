@@ -107,7 +107,7 @@ def attribute(
 
 
 def with_drag(line: Line, factor: float) -> Line:
-    """The same line with all its drags multiplied."""
+    """Return the same line with all its drags multiplied."""
     return replace(
         line,
         normal_drag=factor * line.normal_drag,

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from functools import cached_property
 from math import isfinite
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Protocol, Self, TypeVar
 
 import numpy as np
 
@@ -16,16 +16,13 @@ from calm.physics.line import Floats, Integers
 if TYPE_CHECKING:
     import pandas
 
-    from calm.case.result import Result
-    from calm.case.tow import TowResult
-
 Row = TypeVar("Row")
 
 _OF_THE_FILE = "part"
 """The column with the models of the file, left out of JSON and of a data frame."""
 
 
-class Columns(Generic[Row]):
+class ColumnTable(Generic[Row]):
     """A table whose dataclass fields are its columns, all of one length, as those of `record`."""
 
     record: ClassVar[type[Any]]
@@ -55,7 +52,7 @@ class Columns(Generic[Row]):
         return tuple(map(self.record, *plain))
 
     def with_row(self, row: Row) -> Self:
-        """The same table with one more row."""
+        """Return the same table with one more row."""
         columns = {name: getattr(self, name) for name in self._names()}
         longer = {
             name: [*column, getattr(row, name)]
@@ -112,7 +109,7 @@ class ComponentRow:
 
     @property
     def place(self) -> Place:
-        """Which piece it is."""
+        """Return which piece it is."""
         return self.part.place
 
 
@@ -133,12 +130,12 @@ class ClampRow:
 
     @property
     def place(self) -> Place:
-        """Which clamp it is."""
+        """Return which clamp it is."""
         return self.part.place
 
 
 @dataclass(frozen=True)
-class Components(Columns[ComponentRow]):
+class Components(ColumnTable[ComponentRow]):
     """The n pieces of the line in file order; NaN where a figure is unknown.
 
     Those of a mooring from the free end down, the anchor last; those of a tow from the ship.
@@ -187,7 +184,7 @@ class Components(Columns[ComponentRow]):
 
 
 @dataclass(frozen=True)
-class Clamps(Columns[ClampRow]):
+class Clamps(ColumnTable[ClampRow]):
     """The m instruments clamped on the line, in file order.
 
     Attributes
@@ -233,8 +230,20 @@ class Shape:
     tilt: Floats
 
 
-def rows_down(result: Result | TowResult) -> Iterator[tuple[ComponentRow, list[ClampRow]]]:
-    """The pieces of a result, each with what is clamped on it."""
+class WithClamps(Protocol):
+    """Describe a result as far as its pieces and clamps go."""
+
+    @property
+    def components(self) -> Components:
+        """Return the pieces."""
+
+    @property
+    def clamps(self) -> Clamps:
+        """Return what is clamped on them."""
+
+
+def rows_down(result: WithClamps) -> Iterator[tuple[ComponentRow, list[ClampRow]]]:
+    """Yield the pieces of a result, each with what is clamped on it."""
     on: dict[int, list[ClampRow]] = {}
     for clamp in result.clamps:
         on.setdefault(clamp.index, []).append(clamp)

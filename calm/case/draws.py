@@ -80,7 +80,7 @@ def normals_of(samples: int, seed: int) -> Floats:
 
 
 def draws_of(uncertainty: Uncertainty, normals: Floats) -> list[Draw]:
-    """What standard normals (n, causes) stand for.
+    """Return what standard normals (n, causes) stand for.
 
     A deviation is that of a normal distribution about what is given. A pair is the 5 and the 95 %
     of a normal distribution of an angle, of a lognormal one of a factor.
@@ -162,7 +162,7 @@ class Neighbours(Forgetful):
         self._laid: tuple[Line, Track] | None = None
 
     def of(self, solver: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
-        """What the solver returns."""
+        """Return what the solver returns."""
         if solver is solve_mooring:
             solved: Any = self._solved
             return cast("T", solved(*given, **named))

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from calm.case.attribution import FAIR, Attribution, SolverPart, attribute, with_drag
-from calm.case.columns import Columns
-from calm.case.figures import Figures, figures_of
-from calm.case.measure import clamps_in
+from calm.case.columns import ColumnTable
 from calm.case.mooring import Mooring
-from calm.case.parts import TOP, one_part
+from calm.case.parts import TOP, clamps_in, one_part
+from calm.case.targets import Figures, figures_of
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Place
 from calm.physics.line import Floats, Integers, Line, Water
@@ -31,7 +30,7 @@ CHANGE = 0.1
 
 @dataclass(frozen=True, slots=True)
 class Cause:
-    """What the drag of a piece or clamp causes: a row of `Causes`."""
+    """Hold what the drag of a piece or clamp causes: a row of `Causes`."""
 
     index: int
     label: str
@@ -43,7 +42,7 @@ class Cause:
 
 
 @dataclass(frozen=True)
-class Causes(Columns[Cause]):
+class Causes(ColumnTable[Cause]):
     """The p pieces and clamped instruments that have drag, in file order.
 
     Attributes
@@ -77,7 +76,7 @@ class WhatIf:
 
 @dataclass(frozen=True)
 class Explanation:
-    """What causes the knockdown and excursion of a mooring, and what would change them.
+    """Hold what causes the knockdown and excursion of a mooring, and what would change them.
 
     Attributes
     ----------
@@ -256,7 +255,7 @@ def _variations(mooring: Mooring) -> Iterator[tuple[str, Mooring]]:
 
 
 def _with(mooring: Mooring, line: Line | None = None, water: Water | None = None) -> Mooring:
-    """The same mooring with a line or water that differs from its file."""
+    """Return the same mooring with a line or water that differs from its file."""
     return Mooring(mooring.file, line=line or mooring.line, water=water or mooring.water)
 
 

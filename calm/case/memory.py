@@ -36,7 +36,9 @@ class Memory:
         return Memory, ()
 
     def of(self, solver: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
-        """What a solver returns for what it is given, or the `NoEquilibrium` that it raises."""
+        """Return what a solver returns for what it is given, or the `NoEquilibrium` that it
+        raises.
+        """
         key = _digits((solver.__module__, solver.__qualname__, given, named))
         with self._lock:
             known = key in self._outcomes
@@ -66,7 +68,7 @@ class Forgetful(Memory):
         return Forgetful, ()
 
     def of(self, solver: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
-        """What the solver returns."""
+        """Return what the solver returns."""
         return solver(*given, **named)
 
 

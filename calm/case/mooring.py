@@ -10,10 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from calm.assemble import assemble_floating, assemble_line, assemble_water, net_buoyancy
-from calm.case.labels import naming_the_piece
+from calm.case.measure import result_of
 from calm.case.memory import Forgetful, Memory
-from calm.case.moored import result_of
-from calm.case.parts import parts_of
+from calm.case.parts import naming_the_piece, parts_of
 from calm.case.result import Result
 from calm.case.tow import Tow
 from calm.errors import NoEquilibrium
@@ -81,7 +80,7 @@ class Mooring:
         vars(self).update(fields, _line=line, _water=water)
 
     def __reduce__(self) -> tuple[type[Mooring], tuple[object, ...]]:
-        """What another process needs: all else follows from these."""
+        """Return what another process needs: all else follows from these."""
         return Mooring, (self.file, self.for_surface, self.memory, self._line, self._water)
 
     @cached_property
@@ -91,7 +90,7 @@ class Mooring:
 
     @property
     def settings(self) -> Settings:
-        """How the line is solved."""
+        """Return how the line is solved."""
         solver = self.file.solver
         return Settings(solver.angle_step, solver.tolerance, solver.seabed_friction)
 
@@ -189,7 +188,9 @@ class Mooring:
                 raise self.heaped(pieces[lying].label)
 
     def heaped(self, label: str) -> NoEquilibrium:
-        """Why a sub-surface line is refused where more of it than chain lies on the seabed."""
+        """Return why a sub-surface line is refused where more of it than chain lies on the
+        seabed.
+        """
         lift = standing_lift(self.line, self.water)
         if float(lift.sum()) <= 0.0:
             return too_heavy(lift)
@@ -199,7 +200,7 @@ class Mooring:
         )
 
     def still_beside(self, solution: Solution) -> Solution | None:
-        """The same line without current; None where it has no unique shape."""
+        """Return the same line without current; None where it has no unique shape."""
         floating = self.line.floating
         blown = solution.riding is not None and floating is not None and floating.blown
         return self.at_rest if self.water.moving or blown else solution

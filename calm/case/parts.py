@@ -1,12 +1,14 @@
-"""Finding pieces and clamped instruments by what a person calls them."""
+"""Pieces and clamped instruments by what a person calls them, and their names for the solver's."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 
+from calm.errors import NoEquilibrium
 from calm.files import Clamp, Piece
-from calm.files.explain import unknown
+from calm.suggestions import unknown
 
 TOP = "top"
 """The free end of the line, whatever its label."""
@@ -18,6 +20,16 @@ def parts_of(pieces: Sequence[Piece]) -> list[Piece | Clamp]:
     for piece in pieces:
         parts += (piece, *piece.clamps)
     return parts
+
+
+def clamps_in(pieces: Sequence[Piece]) -> list[Clamp]:
+    """List the clamps of a line in the order of the file, which is that of the solver."""
+    return [clamp for piece in pieces for clamp in piece.clamps]
+
+
+def clamps_down(pieces: Sequence[Piece]) -> list[Clamp]:
+    """List the clamps of a mooring's line from its top to its anchor, the order of its results."""
+    return [clamp for piece in pieces for clamp in sorted(piece.clamps, key=lambda clamp: clamp.at)]
 
 
 def one_part(pieces: Sequence[Piece], text: str) -> Piece | Clamp:
@@ -61,3 +73,21 @@ def _listed(labels: Sequence[str]) -> str:
     if len(labels) <= 6:
         return ", ".join(labels)
     return f"{', '.join(labels[:3])} … {labels[-1]}"
+
+
+@contextmanager
+def naming_the_piece(pieces: Sequence[Piece], *, towed: bool = False) -> Iterator[None]:
+    """Adds the label of a piece to what the solver reports of it.
+
+    Parameters
+    ----------
+    pieces : in the order of the file
+    towed : whether the solver counts them from the other end
+    """
+    try:
+        yield
+    except NoEquilibrium as error:
+        if error.piece is None:
+            raise
+        piece = pieces[len(pieces) - 1 - error.piece if towed else error.piece]
+        raise error.naming(f"{piece.label} (piece {piece.index + 1})") from error

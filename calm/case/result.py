@@ -1,4 +1,7 @@
-"""What a solved mooring shows, in the names and units of the result format."""
+"""The result of a solved mooring, in the names and units of the result format.
+
+Its ends, its anchor, its pieces, its knockdown, and its JSON object.
+"""
 
 from __future__ import annotations
 
@@ -7,8 +10,9 @@ from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from calm.case.band import StrummingBand, mooring_band
 from calm.case.columns import Clamps, Components, Shape
+from calm.case.strumming import Strumming, StrummingBand, mooring_band
+from calm.files import Clamp, Piece
 
 if TYPE_CHECKING:
     from calm.case.mooring import Mooring
@@ -89,7 +93,7 @@ class Top:
 
 @dataclass(frozen=True)
 class AnchorLoad:
-    """What the line does to its anchor [N]; `angle` is from the vertical [degrees].
+    """Hold what the line does to its anchor [N]; `angle` is from the vertical [degrees].
 
     `required_weight` is the weight in water that holds it, `weight` what it has, `friction` its
     coefficient on the bed; `grounded_length` is the unstretched length of line on the seabed [m].
@@ -105,21 +109,8 @@ class AnchorLoad:
     grounded_length: float
 
 
-@dataclass(frozen=True)
-class Strumming:
-    """How the cables strum: the frequency [Hz], and the range of their Cn.
-
-    `frequency` is that at which all of a towed cable vibrates; of a mooring, the highest at which
-    any cable sheds its vortices.
-    """
-
-    frequency: float
-    cn_min: float
-    cn_max: float
-
-
 class Solved:
-    """How a result shows its table, whatever was solved.
+    """Describe how a result shows its table, whatever was solved.
 
     `notebook_form` makes HTML of a result; the rooms above set it.
     """
@@ -170,7 +161,9 @@ class Result(Solved):
 
     @property
     def other_equilibrium(self) -> dict[str, float] | None:
-        """Where the free end is in another equilibrium, and what lies on the seabed there [m]."""
+        """Return where the free end is in another equilibrium, and what lies on the seabed there
+        [m].
+        """
         if self.other_depth is None:
             return None
         return {"depth": self.other_depth, "grounded_length": self.other_grounded_length}
@@ -182,7 +175,7 @@ class Result(Solved):
 
     @cached_property
     def strumming_band(self) -> StrummingBand | None:
-        """The same mooring with more drag on its cables; solved when first asked for."""
+        """Return the same mooring with more drag on its cables; solved when first asked for."""
         still = self.still_shape
         return mooring_band(self.mooring, None if still is None else float(still.depth[0]))
 

@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from calm.case.adjustment import Adjustment
-from calm.case.changes import parse_change, parse_range
-from calm.case.figures import Figures, figures_of
+from calm.case.adjustment import Adjustment, parse_change, parse_range
 from calm.case.mooring import Mooring
 from calm.case.result import Result
-from calm.case.targets import Target, parse_target
+from calm.case.targets import Figures, Target, figures_of, parse_target
 from calm.errors import NoEquilibrium, UsageError
 from calm.solve import expect_many
 from calm.solve.least_change import LeastChange
@@ -48,7 +46,7 @@ class Trial:
 
     @property
     def figures(self) -> Figures | None:
-        """Of the line and its top."""
+        """Return the figures of the line and its top."""
         return None if self.result is None else figures_of(self.result)
 
 
@@ -81,7 +79,7 @@ class Sizing:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What to keep in mind with the answer."""
+        """Return what to keep in mind with the answer."""
         notes = [self.change.note] if self.change.note and self.status == MET else []
         if not self.steady:
             notes.append(
@@ -136,7 +134,7 @@ def size(
     Parameters
     ----------
     target : e.g. ``knockdown(top) <= 20 m``, see `calm.case.targets`
-    change : e.g. ``top float.buoyancy``, see `calm.case.changes`
+    change : e.g. ``top float.buoyancy``, see `calm.case.adjustment`
     between : the range of the change, each end with its unit; by default a buoyancy goes from 0
         to a hundred times what it is, a length to twice the water depth, a count to 1000
 
@@ -233,7 +231,7 @@ def _understood(
 
 
 def _why_not(search: LeastChange, trials: _Trials) -> tuple[str, str]:
-    """Why no value was found, and what to do."""
+    """Return why no value was found, and what to do."""
     change, target = trials.change, trials.target
     least = search.least
     span = f"from {with_unit(search.low, change.unit)} to {with_unit(search.high, change.unit)}"

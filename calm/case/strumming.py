@@ -1,13 +1,38 @@
-"""What a solution gives for the strumming of its cables."""
+"""Strumming of cables: what a solution gives for it, what it could do at worst, a cable alone."""
 
 from __future__ import annotations
 
-from calm.case.result import Strumming
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from calm.errors import NoEquilibrium
 from calm.files import Solver
 from calm.physics.drag import line_drag
-from calm.physics.strumming import shedding_frequency
-from calm.solve import Solution
+from calm.physics.strumming import BourgetMarichal, shedding_frequency
+from calm.solve import Solution, Status, solve_mooring, solve_tow
 from calm.solve.audit import amplification, flow_across
+
+if TYPE_CHECKING:
+    from calm.case.mooring import Mooring
+    from calm.case.tow import Tow
+    from calm.physics.line import Line
+
+
+@dataclass(frozen=True)
+class Strumming:
+    """Describe how the cables strum: the frequency [Hz], and the range of their Cn.
+
+    `frequency` is that at which all of a towed cable vibrates; of a mooring, the highest at which
+    any cable sheds its vortices.
+    """
+
+    frequency: float
+    cn_min: float
+    cn_max: float
 
 
 def strumming_of(solver: Solver, solution: Solution) -> Strumming | None:
@@ -24,3 +49,105 @@ def strumming_of(solver: Solver, solution: Solution) -> Strumming | None:
         speeds = flow_across(solution)[cables].tolist()
         frequency = max(map(shedding_frequency, speeds, diameter.tolist()))
     return Strumming(frequency, float(cn.min()), float(cn.max()))
+
+
+FACTOR = 1.5
+"""Factor on the Cn of every cable: about what is measured on mooring lines that strum."""
+
+
+@dataclass(frozen=True)
+class StrummingBand:
+    """Hold the same line with Cn × `factor` on all its cables, None where that has no equilibrium.
+
+    Attributes
+    ----------
+    factor : [-]
+    status : of that line
+    depth : of the top of a mooring, or of a towed body [m]
+    knockdown : of the top of a mooring, where still water has a shape of its own [m]
+    tension : on the anchor or the ship [N]
+    """
+
+    factor: float
+    status: str
+    depth: float | None = None
+    knockdown: float | None = None
+    tension: float | None = None
+
+
+def mooring_band(mooring: Mooring, still_depth: float | None) -> StrummingBand | None:
+    """The band of a mooring that is `still_depth` deep in still water [m].
+
+    None where nothing can strum or a law of strumming is already in use.
+    """
+    return _band(
+        mooring,
+        lambda line: solve_mooring(line, mooring.water, mooring.settings),
+        still_depth,
+    )
+
+
+def tow_band(tow: Tow) -> StrummingBand | None:
+    """The band of a tow; None as for `mooring_band`."""
+    return _band(tow, lambda line: solve_tow(line, tow.water, tow.towing, tow.settings))
+
+
+def _band(
+    case: Mooring | Tow, solve: Callable[[Line], Solution], still_depth: float | None = None
+) -> StrummingBand | None:
+    line = _strumming(case.line)
+    if line is None or case.file.solver.strumming is not None:
+        return None
+    try:
+        solution = solve(line)
+    except NoEquilibrium as failure:
+        return StrummingBand(FACTOR, failure.status)
+    node = solution.body_node if solution.line.towed else 0
+    depth = -float(solution.position[node, 2])
+    return StrummingBand(
+        FACTOR,
+        Status.CONVERGED.label,
+        depth,
+        None if still_depth is None else depth - still_depth,
+        float(solution.tension[-1]),
+    )
+
+
+def _strumming(line: Line) -> Line | None:
+    cables = line.diameter > 0.0
+    if not (line.normal_drag[cables] > 0.0).any():
+        return None
+    return replace(line, normal_drag=np.where(cables, FACTOR, 1.0) * line.normal_drag)
+
+
+@dataclass(frozen=True)
+class BareCable:
+    """A cable towed with nothing at its end.
+
+    Attributes
+    ----------
+    angle : to the horizontal, measured [degrees], above 0 and below 90
+    speed : of the ship through the water [m/s], > 0
+    diameter : [m], > 0
+    weight : of a metre in water [N/m], > 0
+    density : of the water [kg/m³], > 0
+    """
+
+    angle: float
+    speed: float
+    diameter: float
+    weight: float
+    density: float
+
+    @property
+    def vibration(self) -> tuple[float, float]:
+        """C* and a/D, by `BourgetMarichal.from_bare_cable`."""
+        return BourgetMarichal().from_bare_cable(
+            math.radians(self.angle), self.speed, self.diameter, self.weight, self.density
+        )
+
+    @property
+    def frequency(self) -> float:
+        """Frequency of the vibration [Hz]."""
+        angle = math.radians(self.angle)
+        return BourgetMarichal().frequency(self.speed, angle, self.diameter)

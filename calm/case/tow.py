@@ -2,29 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from math import atan2, degrees, hypot
 from typing import Any
 
 from calm.assemble import assemble_line, assemble_water
-from calm.case.band import StrummingBand, tow_band
 from calm.case.columns import Clamps, Components, Shape
-from calm.case.labels import naming_the_piece
 from calm.case.measure import clamps_of, components_of, shape_of
 from calm.case.memory import Forgetful, Memory
-from calm.case.result import Accuracy, Solved, Strumming, document_of, known
-from calm.case.strumming import strumming_of
+from calm.case.parts import naming_the_piece
+from calm.case.result import Accuracy, Solved, document_of, known
+from calm.case.strumming import Strumming, StrummingBand, strumming_of, tow_band
 from calm.case.warnings import tow_warnings_of
+from calm.errors import NoEquilibrium, UsageError
 from calm.files import MooringFile, TowKeys
-from calm.files.tables import components
+from calm.files.strumming_keys import BourgetMarichalKeys
 from calm.physics.line import Line, Water
+from calm.records.profile_tables import components
 from calm.solve import Settings, Solution, Status, Towing, fit_tow_length, solve_tow
 
 
 @dataclass(frozen=True)
 class TowPoint:
-    """What the line does to the ship: its tension, downward and backward [N].
+    """Hold what the line does to the ship: its tension, downward and backward [N].
 
     `angle` is that of the line there below the horizontal [degrees].
     """
@@ -90,7 +92,7 @@ class TowResult(Solved):
 
     @cached_property
     def strumming_band(self) -> StrummingBand | None:
-        """The same tow with more drag on its cables; solved when first asked for."""
+        """Return the same tow with more drag on its cables; solved when first asked for."""
         return tow_band(self.tow)
 
     def to_dict(self) -> dict[str, Any]:
@@ -125,7 +127,7 @@ class Tow:
         vars(self).update(file=file, memory=memory, _line=line)
 
     def __reduce__(self) -> tuple[type[Tow], tuple[object, ...]]:
-        """What another process needs: all else follows from it."""
+        """Return what another process needs: all else follows from it."""
         return Tow, (self.file, None, self._line)
 
     @property
@@ -141,7 +143,7 @@ class Tow:
 
     @property
     def settings(self) -> Settings:
-        """How the line is solved."""
+        """Return how the line is solved."""
         return Settings(self.file.solver.angle_step, self.file.solver.tolerance)
 
     @property
@@ -178,7 +180,9 @@ class Tow:
         return line
 
     def at_speed(self, speed: float) -> Tow:
-        """The same tow at another speed of the ship [m/s], a fitted cable as long as at its own."""
+        """Return the same tow at another speed of the ship [m/s], a fitted cable as long as at its
+        own.
+        """
         keys = self.keys.model_copy(update={"speed": speed})
         return Tow(replace(self.file, tow=keys), line=self.line)
 
@@ -239,3 +243,100 @@ def _body(solution: Solution) -> TowedBody:
         tension=float(solution.tension[node]),
         angle=degrees(atan2(pull[2], hypot(pull[0], pull[1]))),
     )
+
+
+SOLVES = 3.0
+"""About how many equilibria one speed takes."""
+
+CHANGE = 0.1
+"""Share by which `sensitivity` changes a coefficient, down and up."""
+
+_COEFFICIENTS = ("a1", "b1", "c1")
+
+
+@dataclass(frozen=True)
+class Variation:
+    """A tow with one coefficient of its strumming changed.
+
+    Attributes
+    ----------
+    coefficient : ``"a1"``, ``"b1"`` or ``"c1"``; empty for the tow as its file gives it
+    change : relative, e.g. -0.1
+    outcome : the result, or why there is none
+    """
+
+    coefficient: str
+    change: float
+    outcome: TowResult | NoEquilibrium
+
+
+def sweep(tow: Tow, speeds: Iterable[float]) -> list[TowResult | NoEquilibrium]:
+    """Solve a tow at several speeds [m/s], one after the other.
+
+    Parameters
+    ----------
+    tow : Tow
+        Its own speed only decides the length of a cable that is fitted.
+    speeds : iterable of float
+        Of the ship [m/s], > 0; taken one at a time.
+
+    Returns
+    -------
+    list of TowResult or NoEquilibrium
+        One for each speed, in order: the result, or the reason why there is none.
+
+    Raises
+    ------
+    NoEquilibrium
+        Where no length of a cable to be fitted reaches its depth at the tow's own speed.
+    """
+    return [_attempt(tow.at_speed(speed)) for speed in speeds]
+
+
+def sensitivity(tow: Tow) -> list[Variation]:
+    """Return how a tow answers to A₁, B₁ and C₁ of its strumming, each smaller and greater by
+    `CHANGE`.
+
+    Returns
+    -------
+    list of Variation
+        The tow as it is, then two for each coefficient.
+
+    Raises
+    ------
+    UsageError
+        The tow does not strum by Bourget & Marichal.
+    NoEquilibrium
+        As in `sweep`.
+    """
+    keys = tow.file.solver.strumming
+    if not isinstance(keys, BourgetMarichalKeys):
+        raise UsageError(
+            f"{tow.file.name} has no coefficients to change; they belong to "
+            "`solver: {strumming: bourget-marichal}`"
+        )
+    variations = [Variation("", 0.0, _attempt(tow))]
+    for name in _COEFFICIENTS:
+        for change in (-CHANGE, CHANGE):
+            changed = keys.model_copy(update={name: getattr(keys, name) * (1.0 + change)})
+            variations.append(Variation(name, change, _attempt(_with_strumming(tow, changed))))
+    return variations
+
+
+def _attempt(tow: Tow) -> TowResult | NoEquilibrium:
+    try:
+        return tow.solve()
+    except NoEquilibrium as failure:
+        return failure
+
+
+def _with_strumming(tow: Tow, keys: BourgetMarichalKeys) -> Tow:
+    """Return the same tow, a fitted cable as long as it is, with other coefficients."""
+    pieces = tuple(
+        replace(piece, length=float(tow.line.length[piece.index]), fit_body_depth=None)
+        if piece.fit_body_depth is not None
+        else piece
+        for piece in tow.file.pieces
+    )
+    solver = tow.file.solver.model_copy(update={"strumming": keys})
+    return Tow(replace(tow.file, pieces=pieces, solver=solver))

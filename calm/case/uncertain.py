@@ -10,15 +10,14 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import combinations
 from math import hypot
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from calm.case.chaos import Indices, sobol_indices
 from calm.case.draws import CAUSES, SAMPLES, Draw, checked_samples, drawn, draws_of, normals_of
-from calm.case.measure import measured
-from calm.case.moored import anchor_load
+from calm.case.measure import anchor_load, measured
 from calm.errors import NoEquilibrium
 from calm.physics.line import Floats
 from calm.solve import expect_many
@@ -46,7 +45,7 @@ class Contribution:
 
 @dataclass(frozen=True)
 class Uncertain:
-    """How sure the figures of a mooring are. Percentiles are in the order of `LEVELS`.
+    """Describe how sure the figures of a mooring are. Percentiles are in the order of `LEVELS`.
 
     Attributes
     ----------
@@ -115,7 +114,7 @@ def uncertain(
     mapped: Mapped = map,
     normals: Callable[[], Floats] | None = None,
 ) -> Uncertain:
-    """How sure the figures of a solved mooring are.
+    """Return how sure the figures of a solved mooring are.
 
     Parameters
     ----------
@@ -171,7 +170,7 @@ def uncertain(
 def _figures(
     mooring: Mooring, draws: Sequence[Draw]
 ) -> list[tuple[Floats, tuple[float, float]] | NoEquilibrium]:
-    """Of each draw (5, p) figures of the pieces, in the order of `Uncertain`, and the anchor's."""
+    """Return (5, p) figures of the pieces and those of the anchor, draw by draw."""
     figures: list[tuple[Floats, tuple[float, float]] | NoEquilibrium] = []
     for one in drawn(mooring, draws):
         try:
@@ -202,3 +201,74 @@ def _contributions(quantity: str, indices: Indices | None) -> tuple[Contribution
         for cause, first, total in zip(CAUSES, indices.first, indices.total, strict=True)
     ]
     return tuple(sorted(found, key=lambda each: -each.total))
+
+
+ORDER = 3
+"""Order of the terms of one input; those of two have the order 2, and there are none of three."""
+FEWEST = 4
+"""Samples for each coefficient, at least."""
+
+
+@dataclass(frozen=True)
+class Indices:
+    """Shares of the variance of a figure.
+
+    Attributes
+    ----------
+    first : (k,) what each input causes by itself
+    total : (k,) what it has a part in
+    unexplained : what no term of the fit explains
+    """
+
+    first: Floats
+    total: Floats
+    unexplained: float
+
+
+def sobol_indices(normals: Floats, values: Floats) -> Indices | None:
+    """Return the Sobol' indices of a figure from samples of it, by a fit of Hermite polynomials.
+
+    A figure y of independent standard normal inputs z is written y = Σ c_a ψ_a(z), ψ_a products of
+    normalised Hermite polynomials. These are orthonormal, so that c_a² is the part of the variance
+    that the term adds: all terms of one input alone give its first-order index, all terms that it
+    is in its total index. The coefficients are found by least squares (Sudret, Reliability
+    Engineering and System Safety 93, 2008, 964-979).
+
+    Parameters
+    ----------
+    normals : (n, k) independent standard normal inputs
+    values : (n,) the figure at them
+
+    Returns
+    -------
+    Indices, or None where there are too few samples, or the figure does not vary
+    """
+    count, inputs = normals.shape
+    powers = [(i, order) for i in range(inputs) for order in range(1, ORDER + 1)]
+    pairs = list(combinations(range(inputs), 2))
+    variance = float(values.var()) if count else 0.0
+    scale = float(np.abs(values).max()) if count else 0.0
+    if count < FEWEST * (1 + len(powers) + len(pairs)) or variance <= (1e-9 * scale) ** 2:
+        return None
+    hermite = (
+        normals,
+        (normals**2 - 1.0) / np.sqrt(2.0),
+        (normals**3 - 3.0 * normals) / np.sqrt(6.0),
+    )
+    columns = [np.ones(count)]
+    columns += [hermite[order - 1][:, i] for i, order in powers]
+    columns += [normals[:, i] * normals[:, j] for i, j in pairs]
+    terms = np.column_stack(columns)
+    coefficients, *_ = np.linalg.lstsq(terms, values, rcond=None)
+    left = float((values - terms @ coefficients).var()) / variance
+    parts = coefficients[1:] ** 2
+    explained = parts.sum()
+    parts *= (1.0 - left) / explained
+    first, total = np.zeros(inputs), np.zeros(inputs)
+    for (i, _), part in zip(powers, parts, strict=False):
+        first[i] += part
+        total[i] += part
+    for (i, j), part in zip(pairs, parts[len(powers) :], strict=True):
+        total[i] += part
+        total[j] += part
+    return Indices(first, total, left)

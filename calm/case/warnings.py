@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calm.case.measure import clamps_in
+from calm.case.parts import clamps_in
 from calm.files import Cable, Component
 from calm.physics.line import Floats
 from calm.physics.stretch import FIBRES, published_stiffnesses
@@ -25,7 +25,7 @@ LARGEST_STRAIN = 0.25
 
 
 def is_synthetic(component: Component) -> bool:
-    """Whether a component is a rope of a synthetic fibre, by its `material`."""
+    """Return whether a component is a rope of a synthetic fibre, by its `material`."""
     material = (component.material or "").lower()
     return component.kind == "cable" and any(fibre in material for fibre in FIBRES)
 
@@ -97,7 +97,9 @@ def _stiffness_unknown(result: Result | TowResult, _: Solution) -> Iterator[str]
 
 
 def _published(strains: list[float]) -> str:
-    """What the published stiffnesses of such ropes say of a stretch; the greatest strain first."""
+    """Return what the published stiffnesses of such ropes say of a stretch; the greatest strain
+    first.
+    """
     if not strains:
         return "no stiffness of such a rope is published."
     if len(strains) == 1:
@@ -110,7 +112,7 @@ def _published(strains: list[float]) -> str:
 
 
 def _percent(share: float) -> str:
-    """In two digits."""
+    """Write a share in two digits."""
     return f"{100 * share:.2g}" if share < 0.995 else f"{100 * share:.0f}"
 
 
@@ -157,7 +159,7 @@ def _fast_flow(result: Result | TowResult, solution: Solution) -> Iterator[str]:
 
 
 def _power(number: float) -> str:
-    """In two digits, as 2e5."""
+    """Write a number in two digits, as 2e5."""
     return f"{number:.2g}".replace("e+0", "e")
 
 

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calm.checks.criterion import Criterion, criteria, pieces_of
+from calm.checks.criterion import Citing, Criterion, criteria, pieces_of
 from calm.checks.inventory import anchor_dry_mass
-from calm.checks.limits import Citing
 from calm.quantities import say
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""How a line is put together: its release, its swivels, its metals."""
+"""How a line is put together: its release, its swivels, its metals, and whether its clamps hold."""
 
 from __future__ import annotations
 
@@ -6,12 +6,21 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from calm.assemble import axial_drag_of, drag_of, net_buoyancy
 from calm.case.warnings import is_synthetic
-from calm.checks.finding import State, Verdict, rule, unknown, verdict_on
+from calm.checks.criterion import JudgedPart, parts_of
+from calm.checks.finding import State, Verdict, at_most, reported, rule, unknown, verdict_on
 from calm.checks.posture import reaches_the_surface
+from calm.checks.recovery import Recovery
+from calm.drop.launch import Launch
 from calm.files import Cable, Component, Flexible
+from calm.physics.reference import REFERENCE_DENSITY
+from calm.quantities import say
 
 if TYPE_CHECKING:
+    from calm.case import Mooring, Result
     from calm.checks.handling import Handling
     from calm.files import Clamp, Piece
 
@@ -154,3 +163,71 @@ def _has(piece: Piece, words: Sequence[str]) -> bool:
 
 def _words(*texts: str | None) -> str:
     return " ".join(text for text in texts if text).casefold()
+
+
+_HOLDS = "Take a clamp that holds more, two of them, or a stopper below it."
+
+
+@rule("clamp-grip")
+def clamp_grip(result: Result) -> Iterator[Verdict]:
+    """Pull of what is clamped on the line: its weight in water and the drag of the current."""
+    water = result.mooring.water
+    for part in _clamps(result.mooring):
+        assert part.clamp is not None
+        depth = np.array(float(result.clamps.depth[part.clamp]))
+        flow, density = water.at(depth)
+        flow = np.asarray(flow, float).reshape(3)
+        drag = _length_drag(part) * float(density) / REFERENCE_DENSITY
+        force = drag * float(np.linalg.norm(flow)) * flow
+        force[2] += _lift(part, result.mooring, float(density))
+        yield _verdict(part, float(np.linalg.norm(force)), "")
+
+
+@rule("clamp-grip", situation="launch and recovery", once=True)
+def clamp_grip_on_the_way(handling: Handling) -> Iterator[Verdict]:
+    """Judge the greater pull along the line, of the fall, which drags up, or the rise, down.
+
+    The fall is that at touchdown and the rise at terminal speed, with the drag of what is clamped
+    in the flow along its axis.
+    """
+    launch, rise = handling.launch, handling.recovery
+    deep = np.array(handling.mooring.water.depth)
+    density = float(handling.mooring.water.at(deep)[1])
+    for part in _clamps(handling.mooring):
+        drag = axial_drag_of(part.component) * density / REFERENCE_DENSITY
+        lift = _lift(part, handling.mooring, density)
+        pulls = []
+        if isinstance(launch, Launch):
+            pulls.append((abs(lift + drag * launch.greatest_speed**2), " in the fall"))
+        if isinstance(rise, Recovery) and part.index <= rise.released:
+            pulls.append((abs(lift - drag * rise.rise_speed**2), " in the rise"))
+        if pulls:
+            yield _verdict(part, *max(pulls))
+
+
+def _clamps(mooring: Mooring) -> list[JudgedPart]:
+    return [part for part in parts_of(mooring) if part.clamp is not None]
+
+
+def _length_drag(part: JudgedPart) -> float:
+    """K of the drag K|V|V across the axis [N/(m/s)²]."""
+    return drag_of(part.component, getattr(part.component, "length", 0.0))[0]
+
+
+def _lift(part: JudgedPart, mooring: Mooring, density: float) -> float:
+    """Net force in water of a density [N], + up."""
+    gravity, volume = mooring.water.gravity, part.component.displaced_volume or 0.0
+    excess = (density - REFERENCE_DENSITY) * volume * gravity
+    return net_buoyancy(part.component, gravity) + excess
+
+
+def _verdict(part: JudgedPart, pull: float, when: str) -> Verdict:
+    grip, breaking = part.component.grip, part.component.breaking_load
+    pulls = f"{part.label} pulls on its clamp with {say('tension', pull)}{when}"
+    if grip is not None:
+        message = f"{pulls}; it grips with {say('tension', grip)}."
+        return at_most(part, pull, grip, message, _HOLDS)
+    if breaking is not None:
+        message = f"{pulls}; it breaks at {say('tension', breaking)}."
+        return at_most(part, pull, breaking, message, _HOLDS)
+    return reported(part, pull, f"{pulls}; its `grip` is not given.")

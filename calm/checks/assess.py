@@ -9,18 +9,17 @@ from datetime import date
 import numpy as np
 
 from calm.case import Mooring, Result
-from calm.checks.acceptance import Acceptance
-from calm.checks.assessment import Assessment, Situation, Stand
+from calm.checks.assessment import Acceptance, Assessment, MooringInEnvironment, Situation
 from calm.checks.backup import breaks_of, losses_of
+from calm.checks.criterion import limits_used
 from calm.checks.finding import AS_GIVEN, OWN, Finding, State
 from calm.checks.handling import Handling
 from calm.checks.inventory import inventory_of
-from calm.checks.launch import Launch, launch_of
-from calm.checks.limits import limits_used
 from calm.checks.posture import reaches_the_surface
 from calm.checks.recovery import Recovery, recovery_of
 from calm.checks.rules import ONCE, STANDING, STILL_ONLY, equilibrium
 from calm.checks.situations import SOLVES, STRUMMING, situations_of
+from calm.drop.launch import Launch, launch_of
 from calm.errors import NoEquilibrium
 from calm.files import MooringFile, Place
 from calm.solve import expect_many
@@ -42,7 +41,7 @@ def check(mooring: Mooring, /, *others: Mooring, day: date | None = None) -> Ass
     return assessment_of(name, [stand_of(mooring, name, day) for mooring in moorings], day)
 
 
-def stand_of(mooring: Mooring, name: str, day: date | None = None) -> Stand:
+def stand_of(mooring: Mooring, name: str, day: date | None = None) -> MooringInEnvironment:
     """Solve a mooring in its environment, in every situation, and judge it.
 
     Parameters
@@ -63,18 +62,20 @@ def stand_of(mooring: Mooring, name: str, day: date | None = None) -> Stand:
     worst = _worst_of_each_rule((*listed, *others))
     tighter = tuple(finding for finding in worst if finding not in listed)
     accepted = tuple(one for one in (*given, *others) if one.accept is not None)
-    return Stand(environment, mooring, situations, listed, tighter, accepted)
+    return MooringInEnvironment(environment, mooring, situations, listed, tighter, accepted)
 
 
-def failed_stand(mooring: Mooring, name: str, failure: NoEquilibrium) -> Stand:
+def failed_stand(mooring: Mooring, name: str, failure: NoEquilibrium) -> MooringInEnvironment:
     """The stand of a mooring that could not be judged, for a reason of its own or of CALM's."""
     environment = mooring.file.environment.name or OWN
     situation = Situation(AS_GIVEN, None, failure)
     findings = tuple(findings_of(situation, name, environment))
-    return Stand(environment, mooring, (situation,), findings)
+    return MooringInEnvironment(environment, mooring, (situation,), findings)
 
 
-def assessment_of(name: str, stands: Sequence[Stand], day: date | None = None) -> Assessment:
+def assessment_of(
+    name: str, stands: Sequence[MooringInEnvironment], day: date | None = None
+) -> Assessment:
     """Judge a mooring's launch, recovery and breaks too, in the first environment it stands in.
 
     Parameters
@@ -170,7 +171,7 @@ def handled(mooring: Mooring, result: Result) -> Handling:
     launch: Launch | NoEquilibrium
     recovery: Recovery | NoEquilibrium
     try:
-        launch = launch_of(mooring, result)
+        launch = launch_of(mooring)
     except NoEquilibrium as failure:
         launch = failure
     try:
@@ -180,7 +181,7 @@ def handled(mooring: Mooring, result: Result) -> Handling:
     return Handling(mooring, launch, recovery, breaks_of(mooring), losses_of(mooring))
 
 
-def _handled(stand: Stand) -> Handling:
+def _handled(stand: MooringInEnvironment) -> Handling:
     """The same of a stand; of one that has no equilibrium, why not."""
     mooring, result = stand.mooring, stand.result
     if result is not None:

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from datetime import date
 from typing import TYPE_CHECKING
 
 from calm.checks.finding import Finding, State, worst_state
+from calm.files import Accept
 
 if TYPE_CHECKING:
     from calm.case import Mooring, Result
     from calm.checks.backup import Break, Loss
-    from calm.checks.inventory import Item
-    from calm.checks.launch import Launch
+    from calm.checks.inventory import InventoryItem
     from calm.checks.recovery import Recovery
+    from calm.drop.launch import Launch
     from calm.errors import NoEquilibrium
-    from calm.files.checks import LimitKey
+    from calm.files.check_limits import LimitKey
 
 
 @dataclass(frozen=True)
@@ -31,8 +33,8 @@ class Situation:
 
 
 @dataclass(frozen=True)
-class Stand:
-    """A mooring in one environment.
+class MooringInEnvironment:
+    """Hold what was solved and found of a mooring in one environment.
 
     Attributes
     ----------
@@ -76,11 +78,11 @@ class Assessment:
     """
 
     name: str
-    stands: tuple[Stand, ...]
+    stands: tuple[MooringInEnvironment, ...]
     launch: Launch | None
     recovery: Recovery | None
     backup: tuple[Break, ...]
-    inventory: tuple[Item, ...]
+    inventory: tuple[InventoryItem, ...]
     findings: tuple[Finding, ...]
     losses: tuple[Loss, ...] = ()
     limits: tuple[LimitKey, ...] = ()
@@ -117,3 +119,38 @@ class Assessment:
         """Of every environment, where another situation leaves less margin."""
         for stand in self.stands:
             yield from stand.tighter
+
+
+@dataclass(frozen=True)
+class Acceptance:
+    """The accepts of a mooring file on a day; only failures and what is unknown are accepted."""
+
+    accepts: tuple[Accept, ...]
+    day: date
+
+    def of(self, finding: Finding) -> Finding:
+        """The finding, accepted where the file does."""
+        if finding.state not in (State.FAIL, State.UNKNOWN):
+            return finding
+        for accept in self.accepts:
+            if accept.counts_on(self.day) and accept.covers(finding.rule, finding.component):
+                return replace(finding, state=State.ACCEPTED, accept=accept)
+        return finding
+
+    def notices(self, accepted: Iterable[Finding]) -> Iterator[str]:
+        """Notices of accepts that do not count, or that no finding needs.
+
+        Parameters
+        ----------
+        accepted : every finding that is accepted
+        """
+        used = {finding.accept for finding in accepted}
+        for accept in sorted(self.accepts, key=lambda one: one.line):
+            of = f" of {accept.component}" if accept.component is not None else ""
+            what = f"line {accept.line}: `accept` for {accept.rule}{of}"
+            if accept.date is not None and accept.date > self.day.isoformat():
+                yield f"{what} is dated {accept.date}, in the future: it does not count yet"
+            elif not accept.counts_on(self.day):
+                yield f"{what} ended on {accept.until}: it no longer counts"
+            elif accept not in used:
+                yield f"{what} is not needed: nothing there fails or is unknown"

@@ -9,10 +9,16 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from math import pi
+from typing import TYPE_CHECKING
 
+from calm.checks.finding import State, Verdict, rule, verdict_on
 from calm.files import Cable, Chain, Component, Cylinder, Flexible, Sphere
 from calm.files.catalogue import Assembly
 from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY, STEEL_DENSITY
+
+if TYPE_CHECKING:
+    from calm.checks.handling import Handling
+    from calm.files import Clamp, Piece
 
 ROUNDING = 1.05
 """Excess that rounded figures of a data sheet may show: 5 %, or 1.7 % of a sphere's diameter."""
@@ -46,7 +52,7 @@ _NO_SOURCE = "does not say where its figures come from (`source`)"
 
 
 @dataclass(frozen=True)
-class Finding:
+class CatalogueFinding:
     """Something impossible about a definition, by its id."""
 
     id: str
@@ -55,7 +61,7 @@ class Finding:
 
 def check_catalogue(
     definitions: Mapping[str, Component | Assembly], known: Collection[str]
-) -> list[Finding]:
+) -> list[CatalogueFinding]:
     """All findings about the definitions of a catalogue.
 
     Parameters
@@ -71,15 +77,15 @@ def check_catalogue(
             messages = _unknown_parts(definition, known)
         else:
             messages = (message for rule in RULES if (message := rule(definition)) is not None)
-        findings += [Finding(identifier, message) for message in messages]
+        findings += [CatalogueFinding(identifier, message) for message in messages]
         if definition.prefer is not None:
             other = definitions.get(definition.prefer)
             if definition.prefer not in known or definition.prefer == identifier:
                 message = f"prefers `{definition.prefer}`, which no catalogue has"
-                findings.append(Finding(identifier, message))
+                findings.append(CatalogueFinding(identifier, message))
             elif other is not None and other.prefer is not None:
                 message = f"prefers `{definition.prefer}`, which itself prefers `{other.prefer}`"
-                findings.append(Finding(identifier, message))
+                findings.append(CatalogueFinding(identifier, message))
     return findings
 
 
@@ -253,3 +259,21 @@ def _envelope(component: Component) -> float | None:
     if isinstance(component, Cylinder):
         return pi / 4 * component.diameter**2 * component.length
     return None
+
+
+@rule("figures", once=True)
+def figures(handling: Handling) -> Iterator[Verdict]:
+    """What no component of its size and material can have, such as a load in N that was in kN.
+
+    What hangs several times on the line is named once.
+    """
+    named: set[tuple[str, str]] = set()
+    for piece in handling.mooring.file.pieces:
+        parts: tuple[Piece | Clamp, ...] = (piece, *piece.clamps)
+        for part in parts:
+            for impossible in IMPOSSIBLE:
+                said = impossible(part.component)
+                if said is not None and (part.use, said) not in named:
+                    named.add((part.use, said))
+                    remedy = "Look at its figures, and at their units."
+                    yield verdict_on(part, State.WARN, f"{part.label} {said}.", remedy)

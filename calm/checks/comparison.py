@@ -17,7 +17,7 @@ from calm.checks.inventory import total_of
 from calm.checks.rules import RULES
 from calm.errors import NoEquilibrium
 from calm.files import Flexible, Place
-from calm.files.differences import Change, Differences, differences
+from calm.files.file_differences import Change, Differences, differences
 from calm.quantities import QUANTITIES
 
 Number = float | None

@@ -12,19 +12,20 @@ from itertools import groupby
 from math import hypot, isnan, nan
 from typing import TYPE_CHECKING
 
-from calm.case.measure import clamps_down
+from calm.case.parts import clamps_down
 from calm.checks.finding import Rule, State, Verdict, rule, unknown, verdict_on
+from calm.files.check_limits import LimitKey, limit_keys
 
 if TYPE_CHECKING:
     from calm.case import Mooring, Result
-    from calm.files import Component, Place
+    from calm.files import Component, MooringFile, Place
 
 AT_SURFACE = 0.1
 """Depth down to which a part counts as at the surface [m]."""
 
 
 @dataclass(frozen=True)
-class Judged:
+class JudgedPart:
     """A piece of the line, or a clamp on one.
 
     Attributes
@@ -42,19 +43,20 @@ class Judged:
     clamp: int | None = None
 
 
-def pieces_of(mooring: Mooring) -> list[Judged]:
+def pieces_of(mooring: Mooring) -> list[JudgedPart]:
     """The pieces from the top to the anchor."""
     return [
-        Judged(each.label, each.place, each.component, each.index) for each in mooring.file.pieces
+        JudgedPart(each.label, each.place, each.component, each.index)
+        for each in mooring.file.pieces
     ]
 
 
-def parts_of(mooring: Mooring) -> list[Judged]:
+def parts_of(mooring: Mooring) -> list[JudgedPart]:
     """The pieces above the anchor, then the clamps, those on the anchor too, each from the top."""
     pieces = mooring.file.pieces
     on = [piece.index for piece in pieces for _ in piece.clamps]
     clamps = [
-        Judged(each.label, each.place, each.component, index, number)
+        JudgedPart(each.label, each.place, each.component, index, number)
         for number, (index, each) in enumerate(zip(on, clamps_down(pieces), strict=True))
     ]
     return pieces_of(mooring)[:-1] + clamps
@@ -77,7 +79,7 @@ class Criterion:
     stated : value and limit as people state them, of the same margin, where not these
     """
 
-    part: Judged
+    part: JudgedPart
     quantity: str
     limit: float | None
     words: Callable[[float, Result], tuple[str, str]]
@@ -125,12 +127,12 @@ def criteria(
     return of
 
 
-def _tilt(result: Result, part: Judged) -> float:
+def _tilt(result: Result, part: JudgedPart) -> float:
     rows = result.components if part.clamp is None else result.clamps
     return float(rows.tilt[part.index if part.clamp is None else part.clamp])
 
 
-def _depth(result: Result, part: Judged) -> float:
+def _depth(result: Result, part: JudgedPart) -> float:
     """The greatest of a part; NaN of a piece that is at the surface."""
     if part.clamp is not None:
         return float(result.clamps.depth[part.clamp])
@@ -141,11 +143,11 @@ def _depth(result: Result, part: Judged) -> float:
     return nan if result.type == "surface" and top <= AT_SURFACE else max(top, bottom)
 
 
-def _reserve(result: Result, _: Judged) -> float:
+def _reserve(result: Result, _: JudgedPart) -> float:
     return 1.0 - result.top.used_buoyancy if result.type == "surface" else 0.0
 
 
-READINGS: dict[str, Callable[[Result, Judged], float]] = {
+READINGS: dict[str, Callable[[Result, JudgedPart], float]] = {
     "tension": lambda result, part: float(result.components.tension[part.index]),
     "tension_bottom": lambda result, part: float(result.components.tension_bottom[part.index]),
     "least_tension": lambda result, part: float(result.components.least_tension[part.index]),
@@ -163,3 +165,61 @@ READINGS: dict[str, Callable[[Result, Judged], float]] = {
 }
 """What is read of a part in a result: a tension of the whole piece is the greatest on it, that of a
 least tension leaves out what lies on the seabed, a slide is H + friction × V."""
+
+
+_SAID = {"length": "m", "force": "N", "speed": "m/s", "angle": "°", "number": ""}
+
+
+def limits_used(file: MooringFile, surface: bool) -> tuple[LimitKey, ...]:
+    """Every limit that the design check judges a mooring by.
+
+    One that the design does not give has its default; one that has none and is not given is not
+    used. The friction of an anchor that gives its own stands for `anchor_friction`. What the line
+    lets a component bear beyond its own definition is a limit that departs from it.
+
+    Parameters
+    ----------
+    surface : whether the mooring is meant for the surface: then no depth of its top is asked for
+    """
+    given = file.checks.minimum_top_depth is not None
+    used = (
+        key
+        for key in _keys(file)
+        if key.value is not None and (key.name != "minimum_top_depth" or given or not surface)
+    )
+    return (*used, *file.looser)
+
+
+def _keys(file: MooringFile) -> Iterator[LimitKey]:
+    friction = file.anchor.friction
+    for key in limit_keys(file.checks):
+        own = key.name == "anchor_friction" and friction is not None
+        yield replace(key, value=friction) if own else key
+
+
+@dataclass(frozen=True)
+class Citing:
+    """Who is cited for a limit: the source of its default, or the design that departs from it."""
+
+    departed: dict[str, LimitKey]
+
+    @classmethod
+    def of(cls, file: MooringFile) -> Citing:
+        """For the limits of a mooring file."""
+        return cls({key.name: key for key in _keys(file) if key.departs})
+
+    def __call__(self, *names: str) -> str:
+        """Of the limits of some names: the design where one departs; "" where none does."""
+        own = [self.departed[name] for name in names if name in self.departed]
+        return "; ".join(
+            f"The design's own `{key.name}`, {said(key, key.value)} in place of "
+            f"{said(key, key.default)}"
+            for key in own
+        )
+
+
+def said(key: LimitKey, value: float | None) -> str:
+    """A value or a default of a limit with its unit; a dash for none."""
+    if value is None:
+        return "-"
+    return f"{value:.10g} {_SAID[key.dimension]}".strip().replace(" °", "°")

@@ -8,8 +8,8 @@ from enum import StrEnum
 from math import inf
 from typing import Any
 
-from calm.files import Accept, Part, Place
-from calm.files.rules import RULES as RULE_TEXTS
+from calm.files import Accept, LinePart, Place
+from calm.files.rule_texts import RULES as RULE_TEXTS
 
 AS_GIVEN = "as given"
 """The situation of a mooring in its environment, with nothing changed."""
@@ -84,7 +84,7 @@ class Verdict:
 
 
 def at_most(
-    part: Part | None,
+    part: LinePart | None,
     value: float,
     limit: float,
     message: str,
@@ -97,7 +97,7 @@ def at_most(
 
 
 def at_least(
-    part: Part | None,
+    part: LinePart | None,
     value: float,
     limit: float,
     message: str,
@@ -109,18 +109,20 @@ def at_least(
     return _verdict(part, value, limit, value - limit, message, remedy, beyond, source)
 
 
-def reported(part: Part | None, value: float, message: str) -> Verdict:
+def reported(part: LinePart | None, value: float, message: str) -> Verdict:
     """The verdict on a value that has no limit: it passes as nothing is asked of it."""
     return verdict_on(part, State.PASS, message, value=value)
 
 
-def unknown(part: Part | None, message: str, remedy: str, value: float | None = None) -> Verdict:
+def unknown(
+    part: LinePart | None, message: str, remedy: str, value: float | None = None
+) -> Verdict:
     """The verdict where a figure that the rule needs is missing."""
     return verdict_on(part, State.UNKNOWN, message, remedy, value)
 
 
 def verdict_on(
-    part: Part | None,
+    part: LinePart | None,
     state: State,
     message: str,
     remedy: str | None = None,
@@ -135,7 +137,7 @@ def verdict_on(
 
 
 def _verdict(
-    part: Part | None,
+    part: LinePart | None,
     value: float,
     limit: float,
     margin: float,
@@ -193,7 +195,7 @@ class Rule:
 def rule(
     name: str, *, of_anchor: bool = False, once: bool = False, situation: str = AS_GIVEN
 ) -> Callable[[Callable[[Any], Iterator[Verdict]]], Rule]:
-    """Make the `Rule` of that name in `calm.files.rules` from a function that judges."""
+    """Make the `Rule` of that name in `calm.files.rule_texts` from a function that judges."""
     text = RULE_TEXTS[name]
 
     def of(judge: Callable[[Any], Iterator[Verdict]]) -> Rule:

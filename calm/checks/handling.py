@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from math import isnan
 from typing import TYPE_CHECKING
 
+from calm.checks.criterion import Citing
 from calm.checks.finding import (
     State,
     Verdict,
@@ -17,18 +18,17 @@ from calm.checks.finding import (
     unknown,
     verdict_on,
 )
-from calm.checks.launch import Launch
-from calm.checks.limits import Citing
 from calm.checks.recovery import Recovery
 from calm.checks.strength import lesser_load
+from calm.drop.launch import Launch
 from calm.errors import NoEquilibrium
-from calm.files import Part
+from calm.files import LinePart
 from calm.quantities import QUANTITIES, say
 
 if TYPE_CHECKING:
     from calm.case import Mooring
     from calm.checks.backup import Break, Loss
-    from calm.files import Part
+    from calm.files import LinePart
 
 GREATEST_TOUCHDOWN_SPEED = 2.5
 """Speed above which an anchor may bury itself or break what is on it [m/s]."""
@@ -71,7 +71,7 @@ def backup(handling: Handling) -> Iterator[Verdict]:
     worst_loss = min(handling.losses, key=_room, default=None)
     if worst_loss is not None and _room(worst_loss) < _room(worst_break):
         worst: Break | Loss = worst_loss
-        part: Part = worst_loss
+        part: LinePart = worst_loss
         after = f"After the loss of {worst.label}"
     else:
         worst, part = worst_break, handling.mooring.file.pieces[worst_break.break_after]
@@ -136,7 +136,7 @@ def launch_strength(handling: Handling) -> Iterator[Verdict]:
 
 @rule("launch-speed", once=True)
 def launch_speed(handling: Handling) -> Iterator[Verdict]:
-    """Terminal speed of the anchor as it meets the seabed."""
+    """Judge the speed of the anchor as it meets the seabed."""
     launch = handling.launch
     if isinstance(launch, NoEquilibrium):
         yield _unsolved("fall", launch)
@@ -148,8 +148,6 @@ def launch_speed(handling: Handling) -> Iterator[Verdict]:
         f"drag along the line and of the anchor); {GREATEST_TOUCHDOWN_SPEED:g} m/s should not be "
         "exceeded"
     )
-    if launch.in_still_water:
-        message += " (in still water: in the current it finds no steady motion)"
     remedy = "Lower it, or add drag: a parachute, a wider anchor."
     if launch.anchor_drag_known:
         limit = GREATEST_TOUCHDOWN_SPEED
@@ -211,7 +209,7 @@ def tangling(handling: Handling) -> Iterator[Verdict]:
         )
 
 
-def _hauled_in(lowest: Part, arrival: float, rise: Recovery) -> Verdict:
+def _hauled_in(lowest: LinePart, arrival: float, rise: Recovery) -> Verdict:
     """Of a line whose float is at the surface: whether its lower end comes up by itself."""
     if isnan(arrival):
         depth = say("depth", float(rise.hangs_at[rise.released]))

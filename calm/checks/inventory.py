@@ -19,7 +19,7 @@ CONCRETE_DENSITY = 2400.0
 
 
 @dataclass(frozen=True)
-class Item:
+class InventoryItem:
     """A piece of the line or an instrument clamped on one.
 
     Attributes
@@ -67,7 +67,7 @@ class Total:
     missing_weights: int
 
 
-def total_of(items: Sequence[Item]) -> Total:
+def total_of(items: Sequence[InventoryItem]) -> Total:
     """The sums over pieces and clamps."""
     masses, weights = ([getattr(each, name) for each in items] for name in _SUMMED)
     return Total(_known(masses), masses.count(None), _known(weights), weights.count(None))
@@ -80,7 +80,7 @@ def _known(values: Sequence[float | None]) -> float:
     return sum(value for value in values if value is not None)
 
 
-def inventory_of(mooring: Mooring) -> tuple[Item, ...]:
+def inventory_of(mooring: Mooring) -> tuple[InventoryItem, ...]:
     """Every piece from the top to the anchor, each with its clamps after it."""
     try:
         lengths: list[float | None] = [*mooring.line.length.tolist()]
@@ -95,11 +95,11 @@ def inventory_of(mooring: Mooring) -> tuple[Item, ...]:
     )
 
 
-def _items(piece: Piece, length: float | None, gravity: float) -> Iterator[Item]:
+def _items(piece: Piece, length: float | None, gravity: float) -> Iterator[InventoryItem]:
     clamped = [_dry_mass(clamp.component, 0.0) for clamp in piece.clamps]
     masses = [_dry_mass(piece.component, length), *clamped]
     known = [mass for mass in masses if mass is not None]
-    yield Item(
+    yield InventoryItem(
         index=piece.index,
         use=piece.use,
         label=piece.label,
@@ -114,7 +114,7 @@ def _items(piece: Piece, length: float | None, gravity: float) -> Iterator[Item]
     )
     for clamp, mass in zip(piece.clamps, clamped, strict=True):
         along = getattr(clamp.component, "length", 0.0)
-        yield Item(
+        yield InventoryItem(
             index=piece.index,
             use=clamp.use,
             label=clamp.label,

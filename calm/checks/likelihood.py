@@ -23,7 +23,7 @@ from calm.solve import expect_many
 
 if TYPE_CHECKING:
     from calm.case import Mooring
-    from calm.checks.assessment import Assessment, Stand
+    from calm.checks.assessment import Assessment, MooringInEnvironment
     from calm.files import Place
 
 HANDLED = 64
@@ -59,7 +59,9 @@ def with_probabilities(
     return replace(assessment, stands=stands, findings=findings, draws=(samples, seed))
 
 
-def _stand(stand: Stand, draws: Sequence[Draw], mapped: Mapped) -> Stand:
+def _stand(
+    stand: MooringInEnvironment, draws: Sequence[Draw], mapped: Mapped
+) -> MooringInEnvironment:
     """With the probabilities of every situation that something is listed of."""
     found = [stand.findings, stand.tighter, stand.accepted]
     wanted = {finding.situation for each in found for finding in each}

@@ -22,7 +22,7 @@ TILTED_ROLES = ("instrument", "release")
 
 
 @dataclass(frozen=True)
-class Missing:
+class MissingFigures:
     """What a component does not give: `searched` was looked for and is printed nowhere."""
 
     id: str
@@ -30,7 +30,7 @@ class Missing:
     searched: tuple[str, ...]
 
 
-def missing_figures(definitions: Mapping[str, Component | Assembly]) -> list[Missing]:
+def missing_figures(definitions: Mapping[str, Component | Assembly]) -> list[MissingFigures]:
     """The components of a catalogue that lack a figure, and which.
 
     Assemblies give no figures of their own.
@@ -42,7 +42,7 @@ def missing_figures(definitions: Mapping[str, Component | Assembly]) -> list[Mis
         figures = tuple(_missing(definition))
         sought = tuple(name for name in figures if name in (definition.searched or ()))
         if figures:
-            found.append(Missing(identifier, figures, sought))
+            found.append(MissingFigures(identifier, figures, sought))
     return found
 
 

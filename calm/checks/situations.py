@@ -1,21 +1,26 @@
-"""A mooring with something changed: still water, the tide, growth, strumming, as deployed."""
+"""A mooring with something changed: still water, the tide, growth, strumming; and as deployed."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
+from math import hypot
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from calm.case import Mooring, Result
-from calm.case.band import FACTOR
+from calm.case.strumming import FACTOR
 from calm.checks.assessment import Situation
-from calm.checks.deployed import as_deployed, cut_like, differs
-from calm.checks.finding import AS_GIVEN
+from calm.checks.finding import AS_GIVEN, State, Verdict, at_most, rule
 from calm.checks.growth import grown
-from calm.checks.posture import meant_for_the_surface
-from calm.errors import NoEquilibrium
-from calm.files import Cable, CurrentTable, StrummingFactor
+from calm.checks.posture import meant_for_the_surface, reaches_the_surface
+from calm.errors import NoEquilibrium, UsageError
+from calm.files import Cable, Clamp, CurrentTable, MooringFile, Piece, StrummingFactor
+from calm.files.logbook import DeployedItem
+from calm.quantities import say
 from calm.solve import Status
+
+if TYPE_CHECKING:
+    from calm.checks.handling import Handling
 
 STILL, STILL_LOW = "still water", "still low water"
 HIGH, LOW = "high water", "low water"
@@ -84,3 +89,113 @@ def _shapeless(situation: Situation) -> bool:
     failure = situation.failure
     still = situation.name in (STILL, STILL_LOW)
     return still and failure is not None and failure.status == Status.SLACK.label
+
+
+_Part = TypeVar("_Part", Piece, Clamp)
+
+SOUNDING = 1.0, 0.023
+"""Of a sounding's error, 95 %: the fixed part [m] and the share of the depth; IHO S-44, order 2."""
+
+
+def as_deployed(mooring: Mooring) -> Mooring:
+    """The mooring with the depth, position, serial numbers and cut lengths of its `deployed`.
+
+    What is cut to fit keeps the length that fits as designed, unless another was cut.
+
+    Raises
+    ------
+    UsageError
+        The file says nothing of a deployment.
+    NoEquilibrium
+        What is cut to fit has no length that fits as designed.
+    """
+    deployed = mooring.file.deployed
+    if deployed is None:
+        raise UsageError(f"{mooring.file.path} has no `deployed:` to compare its design with")
+    items = {item.label: item for item in deployed.items}
+    file = cut_like(mooring.file, mooring)
+    depth, position = deployed.depth, deployed.position
+    environment = replace(
+        file.environment,
+        depth=file.environment.depth if depth is None else depth,
+        position=position or file.environment.position,
+    )
+    return Mooring(
+        replace(
+            file,
+            position=position or file.position,
+            environment=environment,
+            pieces=tuple(_as_cut(piece, items) for piece in file.pieces),
+        )
+    )
+
+
+def differs(mooring: Mooring, deployed: Mooring) -> bool:
+    """Whether it stands in another depth than designed, or on other lengths."""
+    return deployed.water.depth != mooring.water.depth or any(
+        piece.length is not None and piece.length != length
+        for piece, length in zip(deployed.file.pieces, mooring.line.length.tolist(), strict=False)
+    )
+
+
+def cut_like(file: MooringFile, mooring: Mooring) -> MooringFile:
+    """A file with the piece that is cut to fit at the length that it has in a mooring.
+
+    Raises
+    ------
+    NoEquilibrium
+        No length fits there.
+    """
+    pieces = tuple(
+        piece
+        if piece.fit_top_depth is None
+        else replace(piece, length=float(mooring.line.length[piece.index]), fit_top_depth=None)
+        for piece in file.pieces
+    )
+    return replace(file, pieces=pieces)
+
+
+@rule("as-deployed", once=True)
+def deployed_depth(handling: Handling) -> Iterator[Verdict]:
+    """How far the top of the upright line is from where it was designed to be.
+
+    A line to the surface keeps its top there: what differs is the depth under it.
+    """
+    mooring = handling.mooring
+    if mooring.file.deployed is None:
+        return
+    try:
+        deployed = as_deployed(mooring)
+    except NoEquilibrium:  # found by `equilibrium`
+        return
+    if not differs(mooring, deployed):
+        return
+    designed, depth = mooring.water.depth, deployed.water.depth
+    longer = float(deployed.line.length.sum() - mooring.line.length.sum())
+    fixed, share = SOUNDING
+    limit = hypot(fixed, share * designed)
+    moved, what = depth - designed - longer, "its top, upright,"
+    if reaches_the_surface(mooring):
+        moved, what = depth - designed, "it"
+    way = "deeper" if moved > 0.0 else "shallower"
+    message = (
+        f"Deployed in {say('depth', depth)} of water, designed for {say('depth', designed)}: "
+        f"{what} is {say('depth', abs(moved))} {way}; {say('depth', limit)} are within "
+        "a sounding's error."
+    )
+    remedy = "`calm diff` with this file alone shows what that does."
+    yield at_most(None, abs(moved), limit, message, remedy, State.WARN)
+
+
+def _as_cut(piece: Piece, items: dict[str, DeployedItem]) -> Piece:
+    item = items.get(piece.label)
+    clamps = tuple(_numbered(clamp, items) for clamp in piece.clamps)
+    piece = replace(_numbered(piece, items), clamps=clamps)
+    return piece if item is None or item.length is None else replace(piece, length=item.length)
+
+
+def _numbered(part: _Part, items: dict[str, DeployedItem]) -> _Part:
+    item = items.get(part.label)
+    if item is None or item.serial is None:
+        return part
+    return replace(part, equipment=part.equipment.model_copy(update={"serial": item.serial}))

@@ -1,4 +1,4 @@
-"""Whether every piece bears its load, and how the strength goes along the line."""
+"""Whether every piece bears its tension, and whether the line stays taut."""
 
 from __future__ import annotations
 
@@ -7,9 +7,8 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from calm.case.warnings import is_synthetic
-from calm.checks.criterion import Criterion, Judged, criteria, pieces_of
+from calm.checks.criterion import Citing, Criterion, JudgedPart, criteria, pieces_of
 from calm.checks.finding import State, Verdict, at_least, rule
-from calm.checks.limits import Citing
 from calm.checks.posture import meant_for_the_surface, reaches_the_surface
 from calm.files import Cable, Component, Piece
 from calm.quantities import say
@@ -74,7 +73,7 @@ def strength(mooring: Mooring) -> Iterator[Criterion]:
 
 
 def _strength_words(
-    part: Judged, limit: float | None, factor: float, tension: float, _: Result
+    part: JudgedPart, limit: float | None, factor: float, tension: float, _: Result
 ) -> tuple[str, str]:
     component, bears = part.component, f"{part.label} bears {say('tension', tension)}"
     if limit is None:
@@ -115,7 +114,7 @@ def release_load(mooring: Mooring) -> Iterator[Criterion]:
 
 
 def _release_words(
-    part: Judged, does: str, limit: float | None, tension: float, _: Result
+    part: JudgedPart, does: str, limit: float | None, tension: float, _: Result
 ) -> tuple[str, str]:
     bears, given = f"{part.label} {does} {say('tension', tension)}", part.component.opening_load
     if limit is None:
@@ -173,3 +172,31 @@ def _steps(
         if load is not None and above is not None and below is not None:
             beside = min(above, below)
             yield load / beside, result.file.pieces[index], load, beside
+
+
+@criteria("slack")
+def slack(mooring: Mooring) -> Iterator[Criterion]:
+    """The least tension in every wire and rope above the release; of the whole line without one.
+
+    A line that falls slack wears, kinks and snatches. Mooring groups ask for some 500 to 1000 N
+    above the release at slack water; no rule is published, so 500 N of wire and 300 N of rope are
+    the defaults. A piece with ``slack: allowed`` is not judged, nor what lies on the seabed.
+    """
+    file, cite = mooring.file, Citing.of(mooring.file)
+    lowest = len(file.pieces) - 1 if file.release is None else file.release
+    for part in pieces_of(mooring)[:lowest]:
+        if not isinstance(part.component, Cable) or part.component.slack == "allowed":
+            continue
+        name = "rope" if is_synthetic(part.component) else "wire"
+        limit = getattr(file.checks.minimum_tension, name)
+        words = partial(_words, part, limit, name)
+        source = cite(f"minimum_tension.{name}")
+        yield Criterion(part, "least_tension", limit, words, least=True, silent=True, source=source)
+
+
+def _words(part: JudgedPart, limit: float, name: str, least: float, _: Result) -> tuple[str, str]:
+    return (
+        f"{part.label} bears no more than {say('tension', least)} at its slackest; "
+        f"{say('tension', limit)} keep a {name} taut.",
+        "Add buoyancy above it, or take weight off; `slack: allowed` exempts a piece.",
+    )

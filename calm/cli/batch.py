@@ -4,24 +4,25 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from threading import Event, current_thread, main_thread
+from time import monotonic
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from calm.cli.batch_progress import Teller, grouped
-from calm.cli.exit_codes import ExitCode
 from calm.cli.options import quantities
-from calm.cli.streams import narrate, show_parts
+from calm.cli.streams import ExitCode, narrate, show_parts
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
-    from calm.batch.records.record import Record
-    from calm.batch.run import Outcome
+    from calm.batch.run import BatchOutcome
+    from calm.batch.work import Progress
     from calm.case import Mooring
+    from calm.records.record import Record
 
 BATCH_EXAMPLES = """Examples:
 
@@ -93,10 +94,9 @@ def batch(
         raise UsageError(f"--every: {every} is not 1 or more")
     if workers is not None and workers < 1:
         raise UsageError(f"--workers: {workers} is not 1 or more")
-    from calm.batch.records.choice import parse_period, parse_place
-    from calm.batch.records.opening import open_record
-    from calm.batch.records.record import RULES
     from calm.batch.run import run_batch
+    from calm.records.current_file import open_record
+    from calm.records.record import RULES, parse_period, parse_place
 
     period = None if time is None else parse_period(time)
     check_output(output, file, currents)
@@ -105,7 +105,7 @@ def batch(
     own = None if position is None else (position.latitude, position.longitude)
     place = own if at is None else parse_place(at)
     seabed = float(mooring.water.depth)
-    teller = Teller()
+    teller = ProgressTeller()
     turned = quantities({"declination": (declination, "angle")}).get("declination")
     with stopped_by_a_signal() as stop:
         with open_record(
@@ -140,8 +140,8 @@ def _summarized(output: Path, mooring: Mooring, stop: Event) -> bool:
         The result cannot be read.
     """
     from calm.batch.threads import Stopped, go_on
-    from calm.report.batch.brief import summary_part
-    from calm.report.batch.files import write_summary
+    from calm.report.batch_brief import summary_part
+    from calm.report.batch_page import write_summary
 
     try:
         show_parts(summary_part(write_summary(output, mooring, lambda: go_on(stop))))
@@ -157,9 +157,9 @@ def _summarized(output: Path, mooring: Mooring, stop: Event) -> bool:
     return False
 
 
-def _implausible(outcome: Outcome, mooring: Mooring, record: Record) -> str:
+def _implausible(outcome: BatchOutcome, mooring: Mooring, record: Record) -> str:
     """How many profiles have a current that cannot be true, and the first of them."""
-    from calm.batch.plausible import first_implausible
+    from calm.batch.statuses import first_implausible
 
     greatest = mooring.file.environment.maximum_speed
     count = grouped(outcome.counts["implausible-current"])
@@ -169,7 +169,7 @@ def _implausible(outcome: Outcome, mooring: Mooring, record: Record) -> str:
     )
 
 
-def ended(outcome: Outcome, output: Path, total: int) -> ExitCode:
+def ended(outcome: BatchOutcome, output: Path, total: int) -> ExitCode:
     """Tell how the batch ended."""
     from calm.batch.statuses import Ending
 
@@ -189,7 +189,7 @@ def ended(outcome: Outcome, output: Path, total: int) -> ExitCode:
     return ExitCode.DONE if solved else ExitCode.NO_EQUILIBRIUM
 
 
-def _kinds(outcome: Outcome) -> Iterator[str]:
+def _kinds(outcome: BatchOutcome) -> Iterator[str]:
     """Profiles that are NaN, by what they come to, and by status where that says more."""
     from calm.batch.statuses import Ending, ending_of
 
@@ -254,3 +254,82 @@ def stopped_by_a_signal() -> Iterator[Event]:
         yield stop
     finally:
         signal.signal(signal.SIGTERM, before)
+
+
+BAR = 24
+"""Signs from nothing to all."""
+
+_REDRAWN = 0.2  # seconds between two states of the bar
+_FIRST_LINE, _NEXT_LINES = 10.0, 60.0  # seconds without a terminal
+
+
+class ProgressTeller:
+    """Tells how far a batch is; to be called with its `Progress`."""
+
+    def __init__(self) -> None:
+        self._terminal = sys.stderr is not None and sys.stderr.isatty()
+        self._drawn = False
+        self._started: float | None = None
+        self._due = 0.0
+
+    def note(self, text: str) -> None:
+        """Write a line of its own."""
+        self.clear()
+        print(text, file=sys.stderr, flush=True)
+
+    def __call__(self, progress: Progress) -> None:
+        """Report it, unless something was reported a moment ago."""
+        now = monotonic()
+        if self._started is None:
+            self._started = now
+            self._due = now + (0.0 if self._terminal else _FIRST_LINE)
+        if now < self._due:
+            return
+        text = state(progress, now - self._started)
+        if self._terminal:
+            print(f"\r\x1b[K{bar(progress)} {text}", end="", file=sys.stderr, flush=True)
+            self._drawn, self._due = True, now + _REDRAWN
+        else:
+            print(text, file=sys.stderr, flush=True)
+            self._due = now + _NEXT_LINES
+
+    def clear(self) -> None:
+        """Take the bar away."""
+        if self._drawn:
+            print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+            self._drawn = False
+
+
+def bar(progress: Progress) -> str:
+    """As much of a bar as is done."""
+    filled = BAR * progress.done // progress.total
+    return f"[{'#' * filled}{'.' * (BAR - filled)}]"
+
+
+def state(progress: Progress, seconds: float) -> str:
+    """How many are done, the rate, the time that the rest takes at it, and the failures so far."""
+    from calm.batch.statuses import Ending
+
+    text = f"{grouped(progress.done)} of {grouped(progress.total)} profiles"
+    solved = progress.done - progress.found
+    if solved and seconds > 0.0:
+        rate = solved / seconds
+        left = (progress.total - progress.done) / rate
+        text += f", {grouped(round(rate))} a second, {duration(left)} left"
+    for ending, count in progress.endings.items():
+        if count and ending is not Ending.SOLVED:
+            text += f", {grouped(count)} {ending.value}"
+    return text
+
+
+def grouped(number: int) -> str:
+    """A count with its thousands apart."""
+    return f"{number:,}".replace(",", " ")
+
+
+def duration(seconds: float) -> str:
+    """A time in the unit that fits."""
+    if seconds < 90.0:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60.0)
+    return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60:02d} min"

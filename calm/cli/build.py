@@ -8,8 +8,7 @@ from importlib.util import find_spec
 from math import inf
 from pathlib import Path
 
-from calm.cli.exit_codes import ExitCode
-from calm.cli.streams import narrate
+from calm.cli.streams import ExitCode, narrate
 from calm.errors import UsageError
 
 BUILD_EXAMPLES = """Examples:

@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING, Literal
 
 from cyclopts import App
 
-from calm.cli.exit_codes import ExitCode
-from calm.cli.streams import narrate, show, show_parts
+from calm.cli.streams import ExitCode, narrate, show, show_parts
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
     from calm.files import Catalogue
-    from calm.report.catalogue import Definition
+    from calm.report.component_cards import Definition
 
 catalog = App(
     name="catalog",
@@ -95,7 +94,7 @@ def show_components(ids: list[str], /, *, json: bool = False) -> ExitCode:
         raise UsageError("; ".join(unknown))
     if json:
         return _show(catalogue, chosen, json)
-    from calm.report.catalogue import to_card
+    from calm.report.component_cards import to_card
 
     show_parts(*(to_card(each, definition, catalogue) for each, definition in chosen.items()))
     return ExitCode.DONE
@@ -124,7 +123,7 @@ def check(file: Path | None = None, /, *, json: bool = False) -> ExitCode:
     from calm.checks.catalogue import check_catalogue
     from calm.checks.missing import missing_figures
     from calm.files import Catalogue
-    from calm.report.missing import in_words, summarised, to_objects
+    from calm.report.component_cards import in_words, summarised, to_objects
 
     catalogue = Catalogue.load([file] if file else [])
     checked = Catalogue(catalogue.levels[:1]) if file else catalogue
@@ -149,7 +148,7 @@ def _load() -> Catalogue:
 
 
 def _show(catalogue: Catalogue, definitions: Mapping[str, Definition], as_json: bool) -> ExitCode:
-    from calm.report.catalogue import to_documents, to_list
+    from calm.report.component_cards import to_documents, to_list
 
     if as_json:
         show(_json(to_documents(catalogue, definitions)))

@@ -8,10 +8,9 @@ from typing import Annotated, Literal
 
 from cyclopts import App, Group, Parameter
 
-from calm.cli.exit_codes import ExitCode
 from calm.cli.options import option, quantities
 from calm.cli.outputs import Outputs
-from calm.cli.streams import narrate
+from calm.cli.streams import ExitCode, narrate
 from calm.errors import UsageError
 
 _BUOY = """  calm chart solve --k 2.4 --weight "5 N/m" \\
@@ -155,8 +154,8 @@ def draw(
         The cables drawn: those whose angle at A is below 90° (when not given), or above.
     """
     from calm.report.chart import CHART_FORMATS, chart_picture
+    from calm.report.folder import check_destination, write_file
     from calm.report.picture import check_format
-    from calm.report.write import check_destination, write_file
 
     check_format(output, CHART_FORMATS)
     check_destination(output)

@@ -10,18 +10,17 @@ from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from calm.cli.check_files import Design, read_designs
-from calm.cli.exit_codes import ExitCode, gravest
+from calm.cli.check_files import DesignFile, read_designs
 from calm.cli.outputs import OutputPath, Outputs
 from calm.cli.run import draws_of
-from calm.cli.streams import narrate
+from calm.cli.streams import ExitCode, gravest, narrate
 from calm.cli.workers import FEW, mapped
 from calm.errors import InputError, Problem, UsageError, internal_failure
 
 if TYPE_CHECKING:
     from calm.case import Mooring
     from calm.case.uncertain import Mapped
-    from calm.checks.assessment import Assessment, Stand
+    from calm.checks.assessment import Assessment, MooringInEnvironment
     from calm.report.blocks import Section
 
 CHECK_EXAMPLES = """Examples:
@@ -120,7 +119,7 @@ def _read(
     workers: int | None,
     against: Path | None,
     ready: Callable[[], None],
-) -> tuple[list[Design], list[Path], Mooring | None]:
+) -> tuple[list[DesignFile], list[Path], Mooring | None]:
     """What is judged, the tows among the files, and the earlier design; or all their mistakes.
 
     `ready` is called while other processes read.
@@ -132,7 +131,7 @@ def _read(
 
     problems: list[Problem] = []
     earlier: Mooring | Tow | None = None
-    designs: list[Design] = []
+    designs: list[DesignFile] = []
     tows: list[Path] = []
     try:
         first = environments[0] if environments else None
@@ -150,7 +149,7 @@ def _read(
     return designs, tows, earlier
 
 
-class Drawn(NamedTuple):
+class DrawnSection(NamedTuple):
     """A mooring's part of the report: what a summary takes of it, and what each form shows."""
 
     section: Section
@@ -158,28 +157,30 @@ class Drawn(NamedTuple):
     pdf: str
 
 
-class Judged(NamedTuple):
+class CheckedMooring(NamedTuple):
     """A mooring that is judged, and its part of the report where there is one."""
 
     assessment: Assessment
-    drawn: Drawn | None
+    drawn: DrawnSection | None
 
 
-def _beside(path: Path, earlier: Mooring, design: Design, assessment: Assessment) -> Drawn:
+def _beside(
+    path: Path, earlier: Mooring, design: DesignFile, assessment: Assessment
+) -> DrawnSection:
     """The section of a mooring, with what differs from an earlier design."""
     from calm.checks.comparison import comparison_of
-    from calm.report.check.section import mooring_section
+    from calm.report.check_report import mooring_section
 
     names = str(path), str(design.path)
     return _drawn(mooring_section(assessment, comparison_of(names, earlier, design.moorings[0])), 1)
 
 
-def _drawn(section: Section, number: int) -> Drawn:
+def _drawn(section: Section, number: int) -> DrawnSection:
     """The `number`th section of a report."""
     from calm.report.html import leaf
     from calm.report.pdf import pdf_leaf
 
-    return Drawn(replace(section, parts=()), leaf(section, number), pdf_leaf(section))
+    return DrawnSection(replace(section, parts=()), leaf(section, number), pdf_leaf(section))
 
 
 def _check_report(folder: Path, json: Path | None, given: Sequence[Path]) -> None:
@@ -199,8 +200,8 @@ def _check_report(folder: Path, json: Path | None, given: Sequence[Path]) -> Non
 
 
 def _judged(
-    designs: Sequence[Design], workers: int | None, drawn: bool, draws: tuple[int, int] | None
-) -> list[Judged]:
+    designs: Sequence[DesignFile], workers: int | None, drawn: bool, draws: tuple[int, int] | None
+) -> list[CheckedMooring]:
     """All of them on one day: that of the report, today where it has none.
 
     Many moorings are shared out whole, each judged and drawn where it was solved; of a few, their
@@ -239,16 +240,16 @@ def _ready(stands: int, drawn: bool) -> None:
 
     expect_many(min(SOLVES * stands, COLD - 1))
     if drawn:
-        import calm.report.check.section
+        import calm.report.check_report
         import calm.report.html  # noqa: F401
-        from calm.report.fonts import legible
+        from calm.report.pdf import legible
 
         legible("")  # has the signs of the fonts read
 
 
 def _solve_and_conclude(
-    task: tuple[int, Design, date, bool, tuple[int, int] | None],
-) -> Judged:
+    task: tuple[int, DesignFile, date, bool, tuple[int, int] | None],
+) -> CheckedMooring:
     number, design, day, drawn, draws = task
     stands = [_stand((design.name, mooring, day)) for mooring in design.moorings]
     return _concluded(number, design.name, stands, day, drawn, draws, map)
@@ -257,29 +258,31 @@ def _solve_and_conclude(
 def _concluded(
     number: int,
     name: str,
-    stands: Sequence[Stand],
+    stands: Sequence[MooringInEnvironment],
     day: date,
     drawn: bool,
     draws: tuple[int, int] | None,
     shared: Mapped,
-) -> Judged:
+) -> CheckedMooring:
     """What is judged of a mooring as a whole, and the `number`th section of the report.
 
     `draws` are samples and seed of the probabilities, where they are asked for; `shared` has blocks
     of them solved.
     """
     from calm.checks.assess import assessment_of
-    from calm.report.check.section import mooring_section
+    from calm.report.check_report import mooring_section
 
     assessment = assessment_of(name, stands, day)
     if draws is not None:
         from calm.checks.likelihood import with_probabilities
 
         assessment = with_probabilities(assessment, *draws, shared)
-    return Judged(assessment, _drawn(mooring_section(assessment), number) if drawn else None)
+    return CheckedMooring(
+        assessment, _drawn(mooring_section(assessment), number) if drawn else None
+    )
 
 
-def _stand(task: tuple[str, Mooring, date]) -> Stand:
+def _stand(task: tuple[str, Mooring, date]) -> MooringInEnvironment:
     """A mooring in an environment; CALM's own failure there does not stop the others."""
     from calm.checks.assess import failed_stand, stand_of
 
@@ -294,7 +297,7 @@ def _stand(task: tuple[str, Mooring, date]) -> Stand:
 
 def _answer(
     assessments: Sequence[Assessment],
-    drawings: Sequence[Drawn],
+    drawings: Sequence[DrawnSection],
     outputs: Outputs,
     folder: Path | None,
 ) -> None:
@@ -304,8 +307,8 @@ def _answer(
     """
     from concurrent.futures import ThreadPoolExecutor
 
-    from calm.report.check.brief import check_part
-    from calm.report.check.document import check_document
+    from calm.report.check_brief import check_part
+    from calm.report.check_documents import check_document
     from calm.report.folder import write_report
     from calm.report.pdf import report_pdf
 
@@ -322,12 +325,12 @@ def _answer(
 
 
 def _report_files(
-    assessments: Sequence[Assessment], drawings: Sequence[Drawn], document: dict[str, Any]
+    assessments: Sequence[Assessment], drawings: Sequence[DrawnSection], document: dict[str, Any]
 ) -> dict[str, bytes]:
     """The files of a report's folder, without its PDF."""
-    from calm.report.check.csv import checks_csv, inventory_csv
-    from calm.report.document import to_json
+    from calm.report.check_documents import checks_csv, inventory_csv
     from calm.report.html import report_html
+    from calm.report.result_json import to_json
 
     texts = {
         "report.html": report_html(

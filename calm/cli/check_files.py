@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Design:
+class DesignFile:
     """A mooring file, under a name that no other has, read in each of its environments."""
 
     path: Path
@@ -31,7 +31,7 @@ def read_designs(
     workers: int | None,
     command: str = "calm check",
     meanwhile: Callable[[], object] | None = None,
-) -> tuple[list[Design], list[Path]]:
+) -> tuple[list[DesignFile], list[Path]]:
     """Every mooring in every environment, and which of the files are tows, which a command leaves.
 
     Parameters
@@ -64,7 +64,7 @@ def read_designs(
     for its in stands.values():
         _refuse_one_name(its)
     called = _told_apart({path: its[0].file.name for path, its in stands.items()})
-    designs = [Design(path, called[path], _cut_alike(its)) for path, its in stands.items()]
+    designs = [DesignFile(path, called[path], _cut_alike(its)) for path, its in stands.items()]
     return designs, tows
 
 
@@ -86,7 +86,7 @@ def _cut_alike(moorings: Sequence[Mooring]) -> tuple[Mooring, ...]:
     """
     from calm.case import Mooring
     from calm.case.memory import Memory
-    from calm.checks.deployed import cut_like
+    from calm.checks.situations import cut_like
 
     memory = Memory()
     first, *others = (Mooring(each.file, memory=memory) for each in moorings)

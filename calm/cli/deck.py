@@ -9,15 +9,14 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from calm.cli.check_files import Design, read_designs
-from calm.cli.exit_codes import ExitCode
+from calm.cli.check_files import DesignFile, read_designs
 from calm.cli.options import quantities
-from calm.cli.streams import narrate
+from calm.cli.streams import ExitCode, narrate
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
     from calm.deck import Deck
-    from calm.report.deck.paper import Paper
+    from calm.report.diagram_layout import Paper
 
 DECK_EXAMPLES = """Examples:
 
@@ -73,8 +72,8 @@ def deck(
         A catalogue of your own; its components hide others of the same id. Repeatable.
     """
     from calm.deck import deck_of
-    from calm.deck.order import Order
-    from calm.report.deck.paper import Paper
+    from calm.deck.deck_items import Order
+    from calm.report.diagram_layout import Paper
     from calm.report.folder import check_folder
     from calm.report.provenance import moment
 
@@ -116,11 +115,10 @@ def _write(folder: Path, path: Path, deck: Deck, paper: Paper) -> None:
 
 
 def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, bytes]:
-    from calm.report.deck.diagram import diagram_svg
-    from calm.report.deck.files import deck_csvs
-    from calm.report.deck.report import deck_report, diagram_report
-    from calm.report.document import to_json
+    from calm.report.deck_files import deck_csvs, deck_report, diagram_report
+    from calm.report.diagram import diagram_svg
     from calm.report.pdf import printed
+    from calm.report.result_json import to_json
 
     texts = {"diagram.svg": diagram_svg(deck, paper), **deck_csvs(deck)}
     texts["plan.json"] = to_json([_plan(deck)])
@@ -133,7 +131,7 @@ def _contents(deck: Deck, paper: Paper, notes: tuple[str, ...]) -> Mapping[str, 
 
 def _plan(deck: Deck) -> dict[str, Any]:
     """The plan of the anchor drop, or why there is none."""
-    from calm.report.document import failure_document
+    from calm.report.result_json import failure_document
 
     if deck.plan is None:
         return {"status": str(deck.order), "message": "The anchor goes first: it is not dropped."}
@@ -144,7 +142,7 @@ def _plan(deck: Deck) -> dict[str, Any]:
 
 def _signs_that_are_lacking(deck: Deck) -> tuple[str, ...]:
     """What the sheets cannot show of the names in a file, and where."""
-    from calm.report.fonts import lacking
+    from calm.report.pdf import lacking
 
     signs = lacking(text for text, _ in _texts(deck))
     if not signs:
@@ -156,7 +154,7 @@ def _signs_that_are_lacking(deck: Deck) -> tuple[str, ...]:
 
 def _texts(deck: Deck) -> Iterator[tuple[str, str]]:
     """What a person wrote, and where it stands."""
-    from calm.report.title_block import title_pairs
+    from calm.report.provenance import title_pairs
 
     for name, text in title_pairs(deck.file):
         yield text, name
@@ -170,7 +168,7 @@ def _texts(deck: Deck) -> Iterator[tuple[str, str]]:
         yield " ".join(filter(None, texts)), f"`{one.label}`"
 
 
-def _folders(designs: Sequence[Design], output: Path) -> list[Path]:
+def _folders(designs: Sequence[DesignFile], output: Path) -> list[Path]:
     """Where each mooring's sheets go.
 
     Raises

@@ -6,10 +6,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from calm.cli.exit_codes import ExitCode
 from calm.cli.outputs import OutputPath, Outputs
 from calm.cli.run import read_files
-from calm.cli.streams import narrate
+from calm.cli.streams import ExitCode, narrate
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
@@ -78,7 +77,7 @@ def compared(files: tuple[Path, ...], lines: list[Mooring | Tow]) -> Comparison:
     """
     from calm.case import Mooring
     from calm.checks.comparison import comparison_of
-    from calm.checks.deployed import as_deployed
+    from calm.checks.situations import as_deployed
 
     first, last = lines[0], lines[-1]
     if isinstance(first, Mooring) != isinstance(last, Mooring):

@@ -7,8 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from calm.cli.exit_codes import ExitCode
-from calm.cli.streams import show
+from calm.cli.streams import ExitCode, show
 from calm.errors import UsageError
 
 DOCS_EXAMPLES = """Examples:
@@ -69,7 +68,7 @@ def _named(page: str, pages: dict[str, Path]) -> str:
     UsageError
         There is none, or there are several.
     """
-    from calm.files.explain import unknown
+    from calm.suggestions import unknown
 
     wanted = page.strip("/").removesuffix(".md").removesuffix(".html")
     for exact in (wanted, f"{wanted}/index"):

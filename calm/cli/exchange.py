@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from calm.cli.exit_codes import ExitCode
 from calm.cli.outputs import STDOUT, OutputPath
-from calm.cli.streams import narrate, show
+from calm.cli.streams import ExitCode, narrate, show
 from calm.errors import InputError, Problem, UsageError
 
 if TYPE_CHECKING:
@@ -70,13 +69,14 @@ def import_(
     json
         Write what was guessed and left out as JSON, - to print it.
     """
-    from calm.exchange.importing import Options, import_file
-    from calm.exchange.records import record_file
-    from calm.report.write import check_destination, write_file
+    from calm.exchange.importing import ImportOptions, import_file, record_file
+    from calm.report.folder import check_destination, write_file
 
     if not files:
         raise UsageError("calm import needs a file")
-    options = Options(_pairs("--define", define or []), _columns(columns), elements, allow_include)
+    options = ImportOptions(
+        _pairs("--define", define or []), _columns(columns), elements, allow_include
+    )
     targets = _targets(files, output)
     if json is not None and json != STDOUT:
         check_destination(json)
@@ -140,7 +140,7 @@ def _targets(files: tuple[Path, ...], output: Path) -> list[Path]:
     UsageError
         Two would stand in one place, or one in the place of a file that is read.
     """
-    from calm.report.write import check_destination
+    from calm.report.folder import check_destination
 
     if not _is_folder(files, output):
         check_destination(output)
@@ -188,7 +188,7 @@ def _document(imported: Imported, target: Path) -> dict[str, Any]:
 def _write_json(document: object, target: Path) -> None:
     from json import dumps
 
-    from calm.report.write import write_file
+    from calm.report.folder import write_file
 
     text = dumps(document, indent=2, ensure_ascii=False) + "\n"
     if target == STDOUT:
@@ -234,7 +234,7 @@ def export(
         A catalogue of your own; its components hide others of the same id. Repeatable.
     """
     from calm.exchange.exporting import export_file
-    from calm.report.write import check_destination, write_file
+    from calm.report.folder import check_destination, write_file
 
     check_destination(output)
     if os.path.realpath(output) == os.path.realpath(file):

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from calm.cli.exit_codes import ExitCode
 from calm.cli.options import quantities
 from calm.cli.outputs import OutputPath, Outputs
-from calm.cli.streams import narrate
+from calm.cli.streams import ExitCode, narrate
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
@@ -74,9 +73,9 @@ def locate(
     """
     from calm.locate import locate as found_at
     from calm.locate import read_ranges
-    from calm.report.locate import located_figure, located_part
+    from calm.report.folder import check_destination, write_file
+    from calm.report.located_anchor import located_figure, located_part
     from calm.report.picture import check_format, image
-    from calm.report.write import check_destination, write_file
 
     outputs = Outputs((file,), json)
     outputs.check()

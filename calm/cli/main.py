@@ -8,7 +8,7 @@ import sys
 import traceback
 import warnings
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from cyclopts import App, CycloptsError, Parameter, UnusedCliTokensError
 
@@ -17,20 +17,17 @@ from calm.cli.build import BUILD_EXAMPLES, build
 from calm.cli.catalog import catalog
 from calm.cli.chart import chart
 from calm.cli.check import CHECK_EXAMPLES, check
-from calm.cli.completion import COMPLETION_EXAMPLES, completion
 from calm.cli.deck import DECK_EXAMPLES, deck
 from calm.cli.diff import DIFF_EXAMPLES, diff
 from calm.cli.docs import DOCS_EXAMPLES, docs
 from calm.cli.exchange import EXPORT_EXAMPLES, IMPORT_EXAMPLES, export, import_
-from calm.cli.exit_codes import ExitCode
 from calm.cli.locate import LOCATE_EXAMPLES, locate
 from calm.cli.motion import MOTION_EXAMPLES, motion
 from calm.cli.run import RUN_EXAMPLES, run
 from calm.cli.size import SIZE_EXAMPLES, size
 from calm.cli.starter import NEW_EXAMPLES, SCHEMA_EXAMPLES, new, schema
-from calm.cli.streams import narrate, prepare
-from calm.cli.strumming import STRUMMING_EXAMPLES, strumming
-from calm.cli.tow import TOW_EXAMPLES, tow
+from calm.cli.streams import ExitCode, narrate, prepare, show
+from calm.cli.tow import STRUMMING_EXAMPLES, TOW_EXAMPLES, strumming, tow
 from calm.cli.verify import VERIFY_EXAMPLES, verify
 from calm.errors import CalmError, InputError, NoEquilibrium
 
@@ -53,7 +50,7 @@ _SELDOM = 100_000
 tenth of its time: what it imports is all looked through again and again."""
 
 
-class SetAnew:
+class HelpAtWidth:
     """Sets `--help` to the width of the terminal: texts of options lose their line breaks."""
 
     def __call__(self, console: Console, options: ConsoleOptions, panel: HelpPanel) -> None:
@@ -81,12 +78,41 @@ def _version() -> str:
     return f"{__version__} (commit {commit})" if commit else __version__
 
 
+COMPLETION_EXAMPLES = """Examples:
+
+  calm completion bash > ~/.local/share/bash-completion/completions/calm
+  calm completion zsh > "${fpath[1]}/_calm"
+  calm completion fish > ~/.config/fish/completions/calm.fish"""
+
+
+# The file of an autoloaded function runs at the first Tab; one that is sourced names its function.
+_ZSH_CALL = """
+
+if [ "$funcstack[1]" = _calm ]; then _calm "$@"; else compdef _calm calm; fi
+"""
+
+
+def completion(shell: Literal["bash", "zsh", "fish"], /) -> ExitCode:
+    """Print a script that lets a shell complete commands and options.
+
+    Parameters
+    ----------
+    shell
+        The shell that reads it.
+    """
+    script = app.generate_completion(prog_name="calm", shell=shell)
+    if shell == "zsh":  # which calls the function that has the name of the file
+        script = script.replace("_cyclopts_calm", "_calm").rstrip("\n") + _ZSH_CALL
+    show(script)
+    return ExitCode.DONE
+
+
 app = App(
     name="calm",
     help="Statics of oceanographic moorings and tows: shape and tensions in a current.",
     help_epilogue=_EPILOGUE,
     help_format="plaintext",
-    help_formatter=SetAnew(),
+    help_formatter=HelpAtWidth(),
     version=_version,
     default_parameter=Parameter(negative=(), show_default=False),
     suppress_keyboard_interrupt=False,

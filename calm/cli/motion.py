@@ -4,18 +4,21 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from calm.cli.batch import check_output, ended, mooring_of, stopped_by_a_signal
-from calm.cli.batch_progress import Teller
-from calm.cli.exit_codes import ExitCode
-from calm.cli.motion_input import fitted, parse_gap, read_measured
+from calm.cli.batch import ProgressTeller, check_output, ended, mooring_of, stopped_by_a_signal
 from calm.cli.options import quantities
 from calm.cli.outputs import OutputPath, Outputs
-from calm.cli.streams import narrate
+from calm.cli.streams import ExitCode, narrate
 from calm.errors import UsageError
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from calm.case import Mooring
+    from calm.motion.measurements import MooringMeasurements
 
 MOTION_EXAMPLES = """Examples:
 
@@ -111,16 +114,14 @@ def motion(
     from calm.batch.compiling import compile_solver
     from calm.batch.profiles import Batch
     from calm.batch.result import open_result, readable
+    from calm.motion.instrument_file import read_instruments, write_depths
     from calm.motion.matching import labels_of
-    from calm.motion.onto import read_instruments, write_onto
     from calm.motion.run import run_motion
-    from calm.motion.series import series_of
-    from calm.motion.study import cross_validated, judged, prepare, several
+    from calm.motion.study import cross_validated, judged, prepare, series_of, several
     from calm.motion.task import MeasuredRecord
     from calm.report.folder import check_folder, write_report
-    from calm.report.motion.brief import motion_part
-    from calm.report.motion.document import motion_document
-    from calm.report.motion.report import motion_files
+    from calm.report.motion_report import motion_files
+    from calm.report.motion_tables import motion_document, motion_part
 
     if workers is not None and workers < 1:
         raise UsageError(f"--workers: {workers} is not 1 or more")
@@ -153,7 +154,7 @@ def motion(
     )
     for note in notes:
         narrate(note)
-    teller = Teller()
+    teller = ProgressTeller()
     hidden = [] if hold_out is None else [label.strip() for label in hold_out.split(",")]
     if cross_validate:
         several(measured, hidden)
@@ -177,7 +178,7 @@ def motion(
             series = series_of(measured, task.measured.label, result)
             factor = np.asarray(result["current_factor"].values, np.float64)
             if instruments is not None:
-                for label in write_onto(instruments, result, labels, apart, copy):
+                for label in write_depths(instruments, result, labels, apart, copy):
                     narrate(f"{onto}: `{label}` is not a part of the line; its depth is NaN")
         if cross_validate:
             each = cross_validated(mooring, measured, names, hidden, narrate, workers)
@@ -188,3 +189,125 @@ def motion(
         write_report(report, files_of)
     outputs.write_answer(lambda: motion_document(study, name), motion_part(study, name))
     return code
+
+
+_MATCHES = ("label", "height", "depth")
+
+
+def fitted(text: str | None) -> tuple[str, ...]:
+    """The factors that are estimated: those of the drag, and what is asked for besides.
+
+    Raises
+    ------
+    UsageError
+        What is asked for cannot be estimated.
+    """
+    from calm.motion.line_response import FACTORS
+    from calm.suggestions import unknown
+
+    asked = [] if text is None else [name.strip() for name in text.split(",")]
+    for name in asked:
+        if name not in FACTORS:
+            raise UsageError(unknown(f"--fit: `{name}` cannot be estimated", name, FACTORS))
+    return tuple(name for name in FACTORS if name.endswith("_drag") or name in asked)
+
+
+def parse_gap(text: str) -> np.timedelta64:
+    """A time such as ``2 h``.
+
+    Raises
+    ------
+    UsageError
+        It is none, or is not between 0 and three years.
+    """
+    import numpy as np
+
+    from calm.units import QuantityError, parse_quantity
+
+    try:
+        seconds = parse_quantity(text, "time", usual_unit="h")
+    except QuantityError as error:
+        raise UsageError(f"--gap: `{text}` {error}") from None
+    if not 0.0 <= seconds < 1e8:
+        raise UsageError(f"--gap: `{text}` is not between 0 and three years")
+    return np.timedelta64(round(seconds * 1e9), "ns")
+
+
+def read_measured(
+    mooring: Mooring,
+    currents: list[Path],
+    pressures: list[str],
+    match: str,
+    flags: str,
+    gap: np.timedelta64,
+    sea_level: Path | None,
+    declination: float | None,
+) -> tuple[MooringMeasurements, list[str], dict[str, str]]:
+    """What was measured, on common times; what is said of it, and its source."""
+    import numpy as np
+
+    from calm.motion.currents import read_currents
+    from calm.motion.line_response import Forward
+    from calm.motion.matching import (
+        instruments_of,
+        labels_of,
+        matched_by_label,
+        matched_by_place,
+        plausible,
+        unusable,
+    )
+    from calm.motion.measurements import joined
+    from calm.motion.sensors import parse_flags, read_sea_level, read_sensors
+    from calm.motion.task import without
+    from calm.suggestions import not_among
+
+    if match not in _MATCHES:
+        raise UsageError(not_among("--match", match, _MATCHES))
+    position = mooring.file.position
+    if position is None:
+        raise UsageError(
+            f"{mooring.file.path} has no `position`, whose latitude turns pressures into depths"
+        )
+    place = position.latitude, position.longitude
+    seabed = float(mooring.water.depth)
+    wanted = parse_flags(flags)
+    sensors = read_sensors(pressures, wanted, position.latitude, seabed)
+    labels, still = labels_of(mooring), Forward(mooring, {}).still
+    notes: list[str] = []
+    if match == "label":
+        points, notes = matched_by_label(sensors, labels)
+    else:
+        points = matched_by_place(sensors, instruments_of(mooring), still, labels)
+        notes = [
+            f"the sensor at {sensors[i].nominal:.1f} m of {sensors[i].source} is `{labels[at]}`"
+            for i, at in points.items()
+        ]
+        sensors = [replace(one, label=labels[points[i]]) for i, one in enumerate(sensors)]
+    read = read_currents(
+        currents, seabed, place, declination, mooring.file.environment.maximum_speed
+    )
+    level = None if sea_level is None else read_sea_level(sea_level)
+    used = []
+    for i, at in points.items():
+        one, said = plausible(sensors[i], float(still[at]), seabed)
+        used.append(one)
+        notes += said
+    notes += [
+        f"{one.label}: {one.dropped} pressures left out for their flag"
+        for one in used
+        if one.dropped
+    ]
+    if not any(np.isfinite(one.depth).any() for one in used):
+        raise UsageError("--pressures: no sensor has a good pressure: " + "; ".join(notes))
+    measured = joined(read, used, list(points.values()), labels, still, gap, level)
+    notes += [f"{one.source}: {note}" for one in read for note in one.notes]
+    lost = unusable(measured, still)
+    notes += [f"{label} {reason}" for label, reason in lost.items()]
+    measured = without(measured, list(lost))
+    if not measured.label:
+        raise UsageError("--pressures: no sensor is left: " + "; ".join(notes))
+    source = {
+        "currents": ", ".join(one.source for one in read),
+        "pressures": ", ".join(dict.fromkeys(one.source for one in sensors)),
+    }
+    return measured, notes, source

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Protocol
 
 from cyclopts import Parameter
 
-from calm.cli.exit_codes import ExitCode
-from calm.cli.streams import narrate, show, show_parts
+from calm.cli.streams import ExitCode, narrate, show, show_parts
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
     from calm.case.explain import Explanation
     from calm.case.uncertain import Uncertain
     from calm.report.blocks import Part
-    from calm.report.schematic.text import TerminalSchematic
+    from calm.report.schematic.in_terminal import TerminalSchematic
 
     Shows = Part | TerminalSchematic
 
@@ -53,7 +52,7 @@ class Shown(Protocol):
 
 
 @dataclass(frozen=True)
-class Outcome:
+class FileOutcome:
     """The outcome of one file: a result, or the reason why there is none."""
 
     file: Path
@@ -76,7 +75,7 @@ class Outcome:
 
     def document(self) -> dict[str, Any]:
         """The JSON object of the result, or of the failure."""
-        from calm.report.document import failure_document
+        from calm.report.result_json import failure_document
 
         if self.failure:
             return failure_document(self.name, self.failure)
@@ -98,7 +97,7 @@ class Outcome:
 
             parts.append(result_part(self.result))
         if self.explanation is not None:
-            from calm.report.explain import explanation_part
+            from calm.report.explanation import explanation_part
 
             parts.append(explanation_part(self.explanation))
         if self.uncertain is not None:
@@ -120,7 +119,7 @@ class Outcome:
 
             return result_pdf(self.result, self.uncertain)
         if suffix == ".nc":
-            from calm.report.netcdf import result_netcdf
+            from calm.report.result_netcdf import result_netcdf
 
             return result_netcdf(self.result)
         from calm.report.plot import picture
@@ -169,8 +168,8 @@ class Outputs:
             A path that cannot be written, that another output or a mooring file has already, or
             that looks like an option; a picture of an unknown format.
         """
+        from calm.report.folder import check_destination
         from calm.report.provenance import moment
-        from calm.report.write import check_destination
 
         asked = [path for path in (self.json, self.csv) if path is not None]
         asked += [path for paths in self.drawn_paths for path in paths]
@@ -214,8 +213,8 @@ class Outputs:
         UsageError
             The system refuses to write.
         """
-        from calm.report.document import to_json
-        from calm.report.write import write_file
+        from calm.report.folder import write_file
+        from calm.report.result_json import to_json
 
         if self.json == STDOUT:
             show(to_json([document()]))
@@ -240,8 +239,8 @@ class Outputs:
         UsageError
             The system refuses to write.
         """
-        from calm.report.document import to_json
-        from calm.report.write import write_file
+        from calm.report.folder import write_file
+        from calm.report.result_json import to_json
 
         texts: dict[Path, str] = {}
         if self.json is not None:

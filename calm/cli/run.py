@@ -9,9 +9,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from calm.cli.exit_codes import ExitCode, gravest
-from calm.cli.outputs import Outcome, OutputPath, Outputs
-from calm.cli.streams import narrate
+from calm.cli.outputs import FileOutcome, OutputPath, Outputs
+from calm.cli.streams import ExitCode, gravest, narrate
 from calm.errors import InputError, NoEquilibrium, Problem, UsageError
 
 if TYPE_CHECKING:
@@ -175,14 +174,14 @@ def solve_and_show(
     return gravest(outcome.code for outcome in outcomes)
 
 
-def _solve(file: Path, line: Mooring | Tow) -> Outcome:
+def _solve(file: Path, line: Mooring | Tow) -> FileOutcome:
     try:
-        return Outcome(file, line.file.name, result=line.solve())
+        return FileOutcome(file, line.file.name, result=line.solve())
     except NoEquilibrium as failure:
         for notice in line.file.notices:  # a result has them among its warnings
             narrate(f"{file}: {notice}")
         narrate(f"{file}: {failure}")
-        return Outcome(file, line.file.name, failure=failure)
+        return FileOutcome(file, line.file.name, failure=failure)
 
 
 def _refuse_tows(option: str, files: Sequence[Path], lines: Sequence[Mooring | Tow]) -> None:
@@ -193,7 +192,7 @@ def _refuse_tows(option: str, files: Sequence[Path], lines: Sequence[Mooring | T
         raise UsageError(f"{option} is for moorings; these are tows: {', '.join(tows)}")
 
 
-def _explained(outcome: Outcome) -> Outcome:
+def _explained(outcome: FileOutcome) -> FileOutcome:
     """The outcome with its explanation, where there is a mooring to explain."""
     from calm.case import Result
     from calm.case.explain import explain
@@ -203,7 +202,7 @@ def _explained(outcome: Outcome) -> Outcome:
     return replace(outcome, explanation=explain(outcome.result))
 
 
-def _to_draw_often(samples: int, seed: int) -> Callable[[Outcome], Outcome]:
+def _to_draw_often(samples: int, seed: int) -> Callable[[FileOutcome], FileOutcome]:
     """What adds to an outcome how sure its figures are, where there is a mooring that stands.
 
     The sequence is begun now: scipy takes as long to load as the compiled march.
@@ -216,7 +215,7 @@ def _to_draw_often(samples: int, seed: int) -> Callable[[Outcome], Outcome]:
     normals = begun(normals_of, samples, seed)
     solved = partial(mapped, workers=None, what="blocks of samples solved")
 
-    def drawn_often(outcome: Outcome) -> Outcome:
+    def drawn_often(outcome: FileOutcome) -> FileOutcome:
         if not isinstance(outcome.result, Result):
             return outcome
         found = uncertain(outcome.result, samples, seed, solved, normals)
@@ -225,9 +224,9 @@ def _to_draw_often(samples: int, seed: int) -> Callable[[Outcome], Outcome]:
     return drawn_often
 
 
-def _drawn(outcome: Outcome, line: Mooring | Tow) -> Outcome:
+def _drawn(outcome: FileOutcome, line: Mooring | Tow) -> FileOutcome:
     """The outcome with its line drawn in the signs that the standard output can carry."""
-    from calm.report.schematic.text import TerminalSchematic, can_carry
+    from calm.report.schematic.in_terminal import TerminalSchematic, can_carry
 
     plain = not can_carry(getattr(sys.stdout, "encoding", None))
     return replace(outcome, schematic=TerminalSchematic(line.file, outcome.result, plain))

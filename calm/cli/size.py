@@ -7,9 +7,8 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from calm.cli.exit_codes import ExitCode
 from calm.cli.outputs import OutputPath, Outputs
-from calm.cli.streams import narrate
+from calm.cli.streams import ExitCode, narrate
 from calm.errors import UsageError
 
 SIZE_EXAMPLES = """Examples:
@@ -68,7 +67,7 @@ def size(
     import calm
     from calm.case import Tow
     from calm.case.size import size as sized
-    from calm.report.size import refusal, sizing_part
+    from calm.report.sizing import refusal, sizing_part
 
     mooring = calm.load(file, environment=environment, catalogs=catalog or [])
     if isinstance(mooring, Tow):

@@ -8,10 +8,9 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from calm.cli.exit_codes import ExitCode
-from calm.cli.streams import narrate, show
+from calm.cli.streams import ExitCode, narrate, show
 from calm.errors import UsageError
-from calm.starts import Start, start
+from calm.templates import Template, template
 
 NEW_EXAMPLES = """Examples:
 
@@ -26,7 +25,7 @@ SCHEMA_EXAMPLES = """Examples:
 
 
 def new(
-    kind: Start = "shelf",
+    kind: Template = "shelf",
     /,
     *,
     record: bool = False,
@@ -48,7 +47,7 @@ def new(
     """
     if record:
         return _new_record(output, force)
-    text = start(kind)
+    text = template(kind)
     if output is None:
         show(text)
         return ExitCode.DONE
@@ -59,7 +58,7 @@ def new(
 
 
 def _new_record(output: Path | None, force: bool) -> ExitCode:
-    from calm.batch.records.made import made_record
+    from calm.records.made_record import made_record
 
     if output is None:
         raise UsageError("a record is not text; give the file to write, --output record.nc")
@@ -70,7 +69,7 @@ def _new_record(output: Path | None, force: bool) -> ExitCode:
 
 
 def _write(output: Path, content: bytes, force: bool) -> None:
-    from calm.report.write import check_destination, write_file
+    from calm.report.folder import check_destination, write_file
 
     if output.exists() and not force:
         raise UsageError(f"{output} exists already; --force overwrites it")

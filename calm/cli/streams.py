@@ -1,4 +1,4 @@
-"""Standard output is for data, standard error for narration."""
+"""Standard output is for data, standard error for narration; and how a command ends."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import os
 import re
 import sys
 from collections.abc import Iterable, Iterator, Sized
+from enum import IntEnum
 from time import monotonic
 from typing import TYPE_CHECKING, TypeVar
 
@@ -111,3 +112,37 @@ def progress(items: Iterable[_Item], what: str, total: int | None = None) -> Ite
 def _abandon_output() -> None:
     """Throw away what is still buffered, which would fail again when the interpreter ends."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+class ExitCode(IntEnum):
+    """The exit codes of ``calm``, the same for every command."""
+
+    DONE = 0
+    """What was asked is done."""
+
+    FINDING = 1
+    """A check failed, or lacks a figure that it needs."""
+
+    BAD_INPUT = 2
+    """A file, an option or an output path cannot be used; nothing was solved."""
+
+    NO_EQUILIBRIUM = 3
+    """A mooring has no equilibrium that may be shown."""
+
+    INTERNAL_ERROR = 70
+    """CALM itself failed: a bug, worth a report."""
+
+    INCOMPLETE = 75
+    """A batch was stopped; what is done is kept, and the same command does the rest."""
+
+    INTERRUPTED = 130
+    """Stopped by Ctrl-C."""
+
+
+_GRAVEST_FIRST = (ExitCode.BAD_INPUT, ExitCode.NO_EQUILIBRIUM, ExitCode.FINDING)
+
+
+def gravest(codes: Iterable[ExitCode]) -> ExitCode:
+    """The code of a command that did several things: the first of 2, 3, 1, 0 that occurred."""
+    occurred = set(codes)
+    return next((code for code in _GRAVEST_FIRST if code in occurred), ExitCode.DONE)

@@ -1,7 +1,8 @@
-"""``calm tow``: towed lines, at their own speed or at many."""
+"""``calm tow`` and ``calm strumming``: towed lines at one speed or many, and a bare cable."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,15 +10,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from calm.cli.exit_codes import ExitCode, gravest
-from calm.cli.options import speed_range
-from calm.cli.outputs import Outcome, OutputPath, Outputs
+from calm.cli.options import option, quantities, speed_range
+from calm.cli.outputs import FileOutcome, OutputPath, Outputs
 from calm.cli.run import read_files, solve_and_show
-from calm.cli.streams import narrate, progress
+from calm.cli.streams import ExitCode, gravest, narrate, progress
 from calm.errors import NoEquilibrium, UsageError
 
 if TYPE_CHECKING:
     from calm.case import Tow
+    from calm.case.strumming import BareCable
     from calm.cli.outputs import Shows
     from calm.report.tabulation import Tabulation
 
@@ -114,7 +115,7 @@ class _Tabulated:
 
     def rendered(self, suffix: str) -> bytes:
         from calm.report.picture import image
-        from calm.report.plot_sweep import draw_sweep
+        from calm.report.plot import draw_sweep
 
         return image(draw_sweep(self.tabulation), suffix)
 
@@ -132,7 +133,7 @@ def _only_tows(files: list[Path], environment: str | None, catalogs: list[Path])
 
 
 def _sweep(file: Path, each: Tow, speeds: list[float]) -> _Tabulated:
-    from calm.case.sweep import SOLVES, sweep
+    from calm.case.tow import SOLVES, sweep
     from calm.report.tabulation import by_speed
     from calm.solve import expect_many
 
@@ -153,7 +154,7 @@ def _sweep(file: Path, each: Tow, speeds: list[float]) -> _Tabulated:
 
 
 def _vary(file: Path, each: Tow) -> _Tabulated:
-    from calm.case.sweep import sensitivity
+    from calm.case.tow import sensitivity
     from calm.report.tabulation import by_coefficient
 
     return _Tabulated(file, by_coefficient(each, sensitivity(each)))
@@ -163,13 +164,13 @@ def _tabulate(
     tows: Sequence[Tow], outputs: Outputs, tabulate: Callable[[Path, Tow], _Tabulated]
 ) -> ExitCode:
     """Solve each tow many times, and write the outputs."""
-    shown: list[_Tabulated | Outcome] = []
+    shown: list[_Tabulated | FileOutcome] = []
     for file, each in zip(outputs.files, tows, strict=True):
         try:
             shown.append(tabulate(file, each))
         except NoEquilibrium as failure:  # no length of cable fits: there is nothing to tabulate
             narrate(f"{file}: {failure}")
-            shown.append(Outcome(file, each.file.name, failure=failure))
+            shown.append(FileOutcome(file, each.file.name, failure=failure))
 
     def to_csv() -> str:
         from calm.report.tabulation import to_csv
@@ -178,3 +179,90 @@ def _tabulate(
 
     outputs.write(shown, to_csv)
     return gravest(each.code for each in shown)
+
+
+STRUMMING_EXAMPLES = """Examples:
+
+  calm strumming --angle "30 deg" --speed "1 m/s" --diameter "17 mm" \\
+      --weight "3.1 N/m"
+  calm strumming --angle "18 deg" --speed "1.3 m/s" --diameter "17 mm" \\
+      --solid-density "2383 kg/m^3" --density "1000 kg/m^3" --json -"""
+
+_Given = Annotated[str | None, Parameter(allow_leading_hyphen=True)]
+_Asked = Annotated[str, Parameter(allow_leading_hyphen=True)]
+
+
+def strumming(
+    *,
+    angle: _Asked,
+    speed: _Asked,
+    diameter: _Asked,
+    weight: _Given = None,
+    solid_density: _Given = None,
+    density: _Given = None,
+    json: OutputPath = None,
+) -> ExitCode:
+    """Find how a bare towed cable vibrates from the angle at which it tows.
+
+    Bourget & Marichal: a cable towed with nothing at its end is straight, and its
+    angle gives its drag coefficient C*; the excess of C* over that of a cable at
+    rest gives the amplitude a of its vibration. Quantities carry their units.
+
+    Parameters
+    ----------
+    angle
+        Angle of the cable to the horizontal, as measured.
+    speed
+        Speed of the ship through the water.
+    diameter
+        Diameter of the cable.
+    weight
+        Weight in water of a metre of cable.
+    solid_density
+        Density of the cable, in place of its weight.
+    density
+        Density of the water; 1025 kg/m^3 when not given.
+    json
+        Write the answer as JSON, - to print it.
+    """
+    from calm.report.tabulation import bare_cable_document, bare_cable_part
+
+    outputs = Outputs(json=json)
+    outputs.check()
+    cable = _cable(
+        quantities(
+            {
+                "angle": (angle, "angle"),
+                "speed": (speed, "speed"),
+                "diameter": (diameter, "length"),
+                "weight": (weight, "force per length"),
+                "solid_density": (solid_density, "density"),
+                "density": (density, "density"),
+            }
+        )
+    )
+    outputs.write_answer(lambda: bare_cable_document(cable), bare_cable_part(cable))
+    return ExitCode.DONE
+
+
+def _cable(given: dict[str, float]) -> BareCable:
+    """The cable that was measured, or what is wrong with it."""
+    from calm.case.strumming import BareCable
+    from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
+
+    if ("weight" in given) == ("solid_density" in given):
+        raise UsageError("give one of --weight and --solid-density")
+    given.setdefault("density", CATALOGUE_DENSITY)
+    complaints = [
+        f"{option(name)} must be above 0" for name, value in given.items() if value <= 0.0
+    ]
+    if given["angle"] >= 90.0:
+        complaints.append("--angle must be below 90 deg")
+    if complaints:
+        raise UsageError("; ".join(complaints))
+    if "solid_density" in given:
+        excess = given.pop("solid_density") - given["density"]
+        if excess <= 0.0:
+            raise UsageError("--solid-density must be above the density of the water")
+        given["weight"] = excess * STANDARD_GRAVITY * math.pi / 4.0 * given["diameter"] ** 2
+    return BareCable(**given)

@@ -1,18 +1,17 @@
-"""``calm verify``: figures that are known without CALM against what it computes."""
+"""``calm verify``: figures that are known without CALM, or from the sea, against its own."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import islice
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from calm.cli.exit_codes import ExitCode
 from calm.cli.outputs import OutputPath, Outputs
-from calm.cli.streams import progress
+from calm.cli.streams import ExitCode, progress
 from calm.errors import UsageError
 
 if TYPE_CHECKING:
-    from calm.verification import Outcome, Source
+    from calm.verification import CaseOutcome, Source
 
 VERIFY_EXAMPLES = """Examples:
 
@@ -48,7 +47,7 @@ def verify(
     outputs = Outputs(json=json)
     outputs.check()
     if field:
-        from calm.cli.verify_field import verify_field
+        pass
 
         if words:
             raise UsageError("--field takes no words")
@@ -78,8 +77,78 @@ def _chosen(words: Sequence[str]) -> list[Source]:
     return chosen
 
 
-def _checked(sources: Sequence[Source]) -> list[tuple[Source, list[Outcome]]]:
+def _checked(sources: Sequence[Source]) -> list[tuple[Source, list[CaseOutcome]]]:
     """The outcomes of every case, source by source."""
     cases = [case for source in sources for case in source.cases]
     outcomes = iter([case.check() for case in progress(cases, "figures")])
     return [(source, list(islice(outcomes, len(source.cases)))) for source in sources]
+
+
+HIDDEN = tuple(f"Aquadopp {height}" for height in (526, 426, 326, 226, 126))
+MEAN, EACH, BANDS = 0.55, 0.75, (0.88, 0.99)
+"""Most of the rms of interpolation, in the mean and for each; share within the bands of 95 %."""
+
+
+def verify_field(outputs: Outputs) -> ExitCode:
+    """Estimate the hidden depths of dune2, show them, and judge them by the figures above."""
+    import numpy as np
+
+    import calm
+    from calm.case import Mooring
+    from calm.checks.finding import State
+    from calm.cli.motion import fitted, parse_gap, read_measured
+    from calm.motion.line_response import Forward
+    from calm.motion.run import estimate_in_memory
+    from calm.motion.study import intervals, judge_hidden, prepare
+    from calm.report.blocks import Heading, Part, Prose
+    from calm.report.motion_tables import (
+        factors_document,
+        factors_table,
+        held_out_document,
+        held_out_table,
+    )
+    from calm.shipped import shipped_folder
+
+    folder = shipped_folder("docs") / "field" / "dune2"
+    mooring = calm.load(folder / "mooring.yaml")
+    assert isinstance(mooring, Mooring)
+    measured, _, _ = read_measured(
+        mooring, [folder / "currents.nc"], [str(folder / "pressures.nc")],
+        "label", "1,2", parse_gap("2 h"), None, None,
+    )  # fmt: skip
+    task = prepare(mooring, measured, fitted(None), HIDDEN)
+    points = [int(measured.point[measured.label.index(label)]) for label in HIDDEN]
+    depth, spread = estimate_in_memory(task, points)
+    still = Forward(mooring, {}).still
+    held = tuple(
+        judge_hidden(measured, task.measured, label, depth[:, j], spread[:, j], still)
+        for j, label in enumerate(HIDDEN)
+    )
+    ratio = float(np.mean([one.rms for one in held]) / np.mean([one.linear_rms for one in held]))
+    worst = max(one.rms / one.linear_rms for one in held)
+    inside = float(np.mean([one.coverage for one in held]))
+    good = ratio <= MEAN and worst <= EACH and BANDS[0] <= inside <= BANDS[1]
+    verdict = (
+        f"rms over that of interpolation: {ratio:.2f} in the mean (at most {MEAN}), {worst:.2f} at "
+        f"worst (at most {EACH}); within the bands of 95 %: {100.0 * inside:.0f} % "
+        f"({100.0 * BANDS[0]:.0f} to {100.0 * BANDS[1]:.0f} %)"
+    )
+    factors = intervals(task)
+    document: dict[str, Any] = {
+        "calm": calm.__version__,
+        "factors": factors_document(factors),
+        "held_out": held_out_document(held),
+        "ratio": ratio,
+        "within": good,
+    }
+    part = Part(
+        "",
+        (
+            Heading("dune2, Denmark Strait: depths at hidden sensors"),
+            factors_table(factors, task.common.datum),
+            held_out_table(held),
+            Prose((verdict,), State.PASS if good else State.FAIL),
+        ),
+    )
+    outputs.write_answer(lambda: document, part)
+    return ExitCode.DONE if good else ExitCode.FINDING

@@ -86,7 +86,7 @@ def _take_room(handle: int, size: int) -> None:
 
 
 def chunk_shape(layout: Layout, variable: Variable, block: int) -> tuple[int, ...]:
-    """Of the chunks of a variable that goes with time: all are whole, the last one too."""
+    """Return the shape of the chunks of a variable that goes with time; the last is whole, too."""
     length = min(block, layout.sizes["time"])
     return length, *(layout.sizes[name] for name in variable.dimensions[1:])
 

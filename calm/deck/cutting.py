@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from calm.deck.order import Order
+from calm.deck.deck_items import Order
 from calm.errors import NoEquilibrium
 from calm.files import Cable, Chain, Flexible, Piece
 from calm.files.flexible import strain_under
@@ -14,7 +14,7 @@ from calm.solve import expect_many
 
 if TYPE_CHECKING:
     from calm.case import Result
-    from calm.deck.hung import Hung
+    from calm.deck.deck_items import Hung
 
 LENGTH_ERROR = 0.005
 """Error of a length, as a share of it: the tolerance, and the error whose effect is reported."""

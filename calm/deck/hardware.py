@@ -13,7 +13,7 @@ from calm.checks.arrangement import unlike_metals
 from calm.files import Cable, Chain, Piece
 
 if TYPE_CHECKING:
-    from calm.deck.hung import Hung
+    from calm.deck.deck_items import Hung
     from calm.files import Component
 
 SPARE_SHARE = 0.1

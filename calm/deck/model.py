@@ -11,14 +11,20 @@ from calm.checks.finding import OWN
 from calm.checks.inventory import inventory_of
 from calm.checks.recovery import recovery_of
 from calm.deck.cutting import Cut, cuts_of
+from calm.deck.deck_items import (
+    Hung,
+    Order,
+    Posted,
+    Surfacing,
+    hung_of,
+    over_the_side,
+    posted,
+    surfacing,
+)
 from calm.deck.hardware import Stock, hardware_of
-from calm.deck.hung import Hung, hung_of
-from calm.deck.instruments import Posted, posted
-from calm.deck.lifts import Lifts, lifts_of
-from calm.deck.order import Order, Surfacing, over_the_side, surfacing
-from calm.deck.shipping import Freight, freight_of
+from calm.deck.shipping import Freight, Lifts, freight_of, lifts_of
 from calm.drop import DropPlan, drop_plan
-from calm.drop.planning import SHIP_SPEED
+from calm.drop.launch import SHIP_SPEED
 from calm.errors import NoEquilibrium
 from calm.files import CurrentTable
 from calm.solve import Status

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from calm.drop.chain import chain_of
-from calm.drop.loads import Sea
-from calm.drop.motion import Anchor, Mover, NoStep, State
-from calm.errors import UsageError
+from calm.drop.loads import WaterColumn
+from calm.drop.motion import ChainState, Mover, NoStep
+from calm.errors import NoEquilibrium, UsageError
 from calm.physics.line import Line, Water
-from calm.solve import Status
+from calm.solve import FallingAnchor, Status
 
 SKIN, THICKEST_SKIN = 5e-4, 0.3
 """Of the layer in which what floats loses its buoyancy: share of the depth, and at most [m]."""
@@ -58,14 +58,16 @@ class Ship:
 
 
 @dataclass(frozen=True)
-class Course:
+class Motion:
     """What a chain went through: states by growing time, each a step of the mover."""
 
     mover: Mover
-    states: tuple[State, ...]
+    states: tuple[ChainState, ...]
 
 
-def towed(line: Line, water: Water, anchor: Anchor, ship: Ship, fineness: Fineness) -> State:
+def towed(
+    line: Line, water: Water, anchor: FallingAnchor, ship: Ship, fineness: Fineness
+) -> ChainState:
     """The line as it streams behind the ship, with its lower end at the surface, at the origin.
 
     Streamed less far than the ship's speed takes it, it is as a slower ship streams it; farther,
@@ -74,10 +76,14 @@ def towed(line: Line, water: Water, anchor: Anchor, ship: Ship, fineness: Finene
     Raises
     ------
     NoEquilibrium
-        ``not-converged`` where no steady shape is found.
+        ``not-converged`` where no steady shape is found, ``no-equilibrium`` where nothing would
+        limit the speed of the fall.
     UsageError
         It streams farther than it is to be, however slow the ship.
     """
+    across = line.normal_drag[~line.directional]
+    if not (anchor.drag or any(k.any() for k in (line.tangential_drag, across, line.clamp_drag))):
+        raise nothing_limits()
     flow = replace(water, u=water.u - ship.east, v=water.v - ship.north)
     mover = Mover(chain_of(line, fineness.bars), _sea(flow), anchor, held=True)
     current, _ = flow.at(np.zeros(()))
@@ -87,7 +93,7 @@ def towed(line: Line, water: Water, anchor: Anchor, ship: Ship, fineness: Finene
     astern /= np.linalg.norm(astern)
     length = mover.chain.length
     along = np.append(np.cumsum(length[::-1])[::-1], 0.0)
-    state = State(
+    state = ChainState(
         time=0.0,
         node=along[:, np.newaxis] * astern,
         tension=np.full(len(length), 0.01 * mover.scale),
@@ -100,7 +106,9 @@ def towed(line: Line, water: Water, anchor: Anchor, ship: Ship, fineness: Finene
     return replace(state, time=0.0, velocity=np.zeros_like(state.node))
 
 
-def fall(line: Line, water: Water, anchor: Anchor, start: State, fineness: Fineness) -> Course:
+def fall(
+    line: Line, water: Water, anchor: FallingAnchor, start: ChainState, fineness: Fineness
+) -> Motion:
     """The fall of a line from where it is towed until its anchor meets the seabed.
 
     The instant of the touchdown is interpolated within the step that passes it.
@@ -116,7 +124,7 @@ def fall(line: Line, water: Water, anchor: Anchor, start: State, fineness: Finen
     way = water.depth / fineness.steps
     states, step = [start], 0.005 * way
     while states[-1].node[-1, 2] > bottom:
-        if len(states) > _MOST * fineness.steps:
+        if len(states) > _MOST * fineness.steps or step >= LONG:
             raise Status.ANCHOR_LIFTS.because(
                 f"The anchor weighs {anchor.weight:.0f} N in water and does not pull the line to "
                 "the seabed."
@@ -136,10 +144,20 @@ def fall(line: Line, water: Water, anchor: Anchor, start: State, fineness: Finen
         speed = float(np.linalg.norm(state.velocity[-1]))
         step = min(_GROWTH * (state.time - states[-1].time), way / max(speed, 1e-300), LONG)
         states.append(state)
-    return Course(mover, (*states[:-1], _passing(states[-2], states[-1], bottom)))
+    return Motion(mover, (*states[:-1], _passing(states[-2], states[-1], bottom)))
 
 
-def settle(line: Line, water: Water, anchor: Anchor, landed: State, fineness: Fineness) -> Course:
+def nothing_limits() -> NoEquilibrium:
+    """Return the failure of a fall that has no speed, since nothing drags along its line."""
+    return Status.NO_EQUILIBRIUM.because(
+        "Nothing limits the speed of the line: neither it nor its anchor has any drag.",
+        advice="Give its pieces, or the anchor (`kt`), their drag.",
+    )
+
+
+def settle(
+    line: Line, water: Water, anchor: FallingAnchor, landed: ChainState, fineness: Fineness
+) -> Motion:
     """How a line comes to rest on the anchor that holds it.
 
     Raises
@@ -148,18 +166,18 @@ def settle(line: Line, water: Water, anchor: Anchor, landed: State, fineness: Fi
         ``not-converged`` where it does not.
     """
     mover = Mover(chain_of(line, fineness.bars), _sea(water), anchor, held=True)
-    return Course(mover, _settled(mover, landed, 0.2 * water.depth / fineness.steps))
+    return Motion(mover, _settled(mover, landed, 0.2 * water.depth / fineness.steps))
 
 
-def _sea(water: Water) -> Sea:
-    return Sea(water, min(SKIN * water.depth, THICKEST_SKIN))
+def _sea(water: Water) -> WaterColumn:
+    return WaterColumn(water, min(SKIN * water.depth, THICKEST_SKIN))
 
 
-def _passing(before: State, after: State, bottom: float) -> State:
+def _passing(before: ChainState, after: ChainState, bottom: float) -> ChainState:
     """The state at which the lower end is at a height [m]."""
     high, low = float(before.node[-1, 2]), float(after.node[-1, 2])
     share = (high - bottom) / (high - low)
-    return State(
+    return ChainState(
         time=before.time + share * (after.time - before.time),
         node=before.node + share * (after.node - before.node),
         tension=before.tension + share * (after.tension - before.tension),
@@ -167,7 +185,7 @@ def _passing(before: State, after: State, bottom: float) -> State:
     )
 
 
-def _stepped(mover: Mover, state: State, step: float, depth: float) -> State:
+def _stepped(mover: Mover, state: ChainState, step: float, depth: float) -> ChainState:
     """A step, or a shorter one where it is not found.
 
     Raises
@@ -186,7 +204,7 @@ def _stepped(mover: Mover, state: State, step: float, depth: float) -> State:
     )
 
 
-def _settled(mover: Mover, state: State, step: float) -> tuple[State, ...]:
+def _settled(mover: Mover, state: ChainState, step: float) -> tuple[ChainState, ...]:
     """States from one on, in longer and longer steps, until nothing moves any more.
 
     What then stands on its lower end, pushed and not pulled, is laid down: a long step holds it
@@ -210,7 +228,7 @@ def _settled(mover: Mover, state: State, step: float) -> tuple[State, ...]:
     return tuple(states)
 
 
-def _laid_down(mover: Mover, state: State) -> State | None:
+def _laid_down(mover: Mover, state: ChainState) -> ChainState | None:
     """The state with the bars that are pushed along the next one above them that is not.
 
     None where no bar is.
@@ -228,12 +246,12 @@ def _laid_down(mover: Mover, state: State) -> State | None:
     return replace(state, node=node, velocity=np.zeros_like(node))
 
 
-def _streamed(state: State) -> float:
+def _streamed(state: ChainState) -> float:
     """Horizontal distance from the lower end to the free one [m]."""
     return float(np.linalg.norm(state.node[0, :2] - state.node[-1, :2]))
 
 
-def _slowed(mover: Mover, state: State, streamed: float) -> State:
+def _slowed(mover: Mover, state: ChainState, streamed: float) -> ChainState:
     """The line in a flow so much slower that it streams to a distance [m].
 
     A free end that is pushed nearer in the whole flow would bend the line as no rope bends.
@@ -273,7 +291,7 @@ def _slowed(mover: Mover, state: State, streamed: float) -> State:
     return state
 
 
-def _drawn(mover: Mover, state: State, streamed: float) -> State:
+def _drawn(mover: Mover, state: ChainState, streamed: float) -> ChainState:
     """The line with its free end held at a horizontal distance from the other [m]."""
     end = state.node[0, :2]
     here = float(np.linalg.norm(end))

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from calm.drop.chain import Chain
+from calm.drop.chain import BarChain
 from calm.physics.friction import Friction
 from calm.physics.line import Floats, Water
 from calm.physics.reference import REFERENCE_DENSITY
@@ -20,7 +20,7 @@ _UNIT = np.eye(3)
 
 
 @dataclass(frozen=True)
-class Sea:
+class WaterColumn:
     """Water by depth with its gradients.
 
     Attributes
@@ -71,8 +71,8 @@ class Loads:
 
 
 def loads_on(
-    chain: Chain,
-    sea: Sea,
+    chain: BarChain,
+    sea: WaterColumn,
     height: Floats,
     velocity: Floats,
     axis: Floats,
@@ -130,7 +130,7 @@ def loads_on(
 
 
 def _friction(
-    chain: Chain,
+    chain: BarChain,
     kt: Floats,
     flow: Floats,
     axis: Floats,
@@ -166,7 +166,7 @@ def _friction(
 
 
 def _afloat(
-    chain: Chain, sea: Sea, height: Floats, density: Floats
+    chain: BarChain, sea: WaterColumn, height: Floats, density: Floats
 ) -> tuple[Floats, Floats, Floats, Floats, Floats]:
     """Net force, its growth per metre upward, share of the drag and its growth, push of the wind.
 

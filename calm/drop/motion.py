@@ -13,12 +13,12 @@ from functools import cached_property
 
 import numpy as np
 
-from calm.drop.band import Band
-from calm.drop.chain import Chain
-from calm.drop.loads import SLOWEST, Loads, Sea, loads_on
+from calm.drop.chain import BarChain
+from calm.drop.loads import SLOWEST, Loads, WaterColumn, loads_on
 from calm.physics.line import Floats, Integers
 from calm.physics.reference import REFERENCE_DENSITY
 from calm.physics.reynolds import Smooth, drag_variation
+from calm.solve import FallingAnchor
 
 MOST_ROUNDS = 16
 """Of Newton's method; a step that takes more is too long."""
@@ -45,7 +45,7 @@ def _overturned(before: Floats, after: Floats) -> bool:
 
 
 @dataclass(frozen=True)
-class State:
+class ChainState:
     """Where a chain is.
 
     Attributes
@@ -63,14 +63,6 @@ class State:
 
 
 @dataclass(frozen=True)
-class Anchor:
-    """What hangs at the lower end: weight in water [N] and K of its drag in reference water."""
-
-    weight: float
-    drag: float
-
-
-@dataclass(frozen=True)
 class Mover:
     """A chain in its sea.
 
@@ -81,14 +73,14 @@ class Mover:
     tether : (2,) horizontal place to which its free end is brought [m]; None where that is free
     """
 
-    chain: Chain
-    sea: Sea
-    anchor: Anchor
+    chain: BarChain
+    sea: WaterColumn
+    anchor: FallingAnchor
     held: bool = False
     bedded: bool = True
     tether: Floats | None = None
 
-    def stepped(self, state: State, step: float, gently: bool = False) -> State:
+    def stepped(self, state: ChainState, step: float, gently: bool = False) -> ChainState:
         """The state a time later [s].
 
         A line at rest begins to move by rounds in which drag goes with the speed: they find the
@@ -124,7 +116,7 @@ class Mover:
             if close and np.abs(moved[:-1, 3]).max() < CLOSE * self.scale and slowest == SLOWEST:
                 if _overturned(state.node, node):
                     break
-                return State(state.time + step, node, tension, (node - state.node) / step)
+                return ChainState(state.time + step, node, tension, (node - state.node) / step)
             if slowest == SLOWEST and farthest > max(nearer, 0.1 * reach):
                 break
             nearer, slowest = farthest, max(0.2 * slowest, SLOWEST)
@@ -178,7 +170,7 @@ class Mover:
         force = k * speed * flow - [0.0, 0.0, self.anchor.weight]
         return force, -k * (speed * _UNIT + np.outer(flow, flow) / speed)
 
-    def variation(self, state: State) -> Floats:
+    def variation(self, state: ChainState) -> Floats:
         """(k,) by how much a smooth body's drag differs from the constant one, as it moved last."""
         on = self.chain.elements
         variation = np.ones(len(on.bar))
@@ -279,3 +271,81 @@ class Mover:
         upper = () if self.tether is None else (0, 1)
         lower = (4 * bars, 4 * bars + 1, 4 * bars + 2) if self.held else ()
         return Band(bars, (*upper, *lower))
+
+
+_SIDE = 6
+"""Diagonals of the band on either side."""
+_MIDDLE = 2 * _SIDE
+"""Row of the main diagonal."""
+
+
+@dataclass(frozen=True)
+class Band:
+    """Where the blocks of a chain's matrix stand.
+
+    Attributes
+    ----------
+    bars : how many the chain has
+    fixed : rows of the unknowns that are known
+    """
+
+    bars: int
+    fixed: tuple[int, ...]
+
+    def solved(
+        self,
+        residual: Floats,
+        diagonal: Floats,
+        beside: tuple[Floats, Floats],
+        axis: Floats,
+        slack: Floats,
+    ) -> Floats:
+        """(4 n + 3,) what the nodes and tensions are too much by.
+
+        Parameters
+        ----------
+        residual : (n+1, 4) of the forces on the nodes and of the lengths of the bars
+        diagonal : (n+1, 3, 3) change of the force on a node with its own place
+        beside : (n, 3, 3) each; that on the node above with the place of the one below, and the
+            other way round
+        axis : (n, 3) of the bars, downward
+        slack : (n,) by how much a bar is longer with its tension, negative
+        """
+        from scipy.linalg.lapack import dgbsv
+
+        size = 4 * self.bars + 3
+        # the rows above the band are for the factors
+        band = np.zeros((3 * _SIDE + 1, size))
+        flat = band.reshape(-1)
+        blocks = (diagonal, *beside, axis, -axis, -axis, axis)
+        for places, block in zip(self._places, blocks, strict=True):
+            flat[places] = block
+        band[_MIDDLE, 3::4] = slack
+        equations = residual.reshape(-1)[:-1]
+        for row in self.fixed:
+            columns = np.arange(max(row - _SIDE, 0), min(row + _SIDE + 1, size))
+            band[_MIDDLE + row - columns, columns] = 0.0
+            band[_MIDDLE, row], equations[row] = 1.0, 0.0
+        _, _, change, singular = dgbsv(_SIDE, _SIDE, band, equations)
+        return np.full(size, np.nan) if singular else change
+
+    @cached_property
+    def _places(self) -> tuple[Integers, ...]:
+        """Where the blocks stand in the band, flat."""
+        width = 4 * self.bars + 3
+        node = 4 * np.arange(self.bars + 1)[:, np.newaxis] + np.arange(3)
+        pull = 4 * np.arange(self.bars)[:, np.newaxis] + 3
+
+        def at(row: Integers, column: Integers) -> Integers:
+            return (_MIDDLE + row - column) * width + column
+
+        above, below = node[:-1], node[1:]
+        return (
+            at(node[:, :, np.newaxis], node[:, np.newaxis]),
+            at(above[:, :, np.newaxis], below[:, np.newaxis]),
+            at(below[:, :, np.newaxis], above[:, np.newaxis]),
+            at(above, pull),
+            at(below, pull),
+            at(pull, above),
+            at(pull, below),
+        )

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from calm.case import Result
-from calm.case.measure import clamps_in
-from calm.drop.chain import Chain
-from calm.drop.fall import Course
-from calm.drop.motion import Mover, State
+from calm.case.parts import clamps_in
+from calm.drop.chain import BarChain
+from calm.drop.fall import Motion
+from calm.drop.motion import ChainState, Mover
 from calm.files import Clamp, Piece
 from calm.physics.line import Floats, Integers
 
@@ -61,7 +61,7 @@ class Pull:
 
 
 @dataclass(frozen=True)
-class Moment:
+class ShapeInTime:
     """The shape of the line at a time [s]: distance towards the float and depth of nodes [m]."""
 
     time: float
@@ -71,7 +71,7 @@ class Moment:
 
 
 @dataclass(frozen=True)
-class Path:
+class FallPath:
     """What happens over time, from the moment the anchor is let go to its touchdown; (t,) each.
 
     Attributes
@@ -93,14 +93,14 @@ class Path:
     anchor_tension: Floats
 
 
-def place_of(chain: Chain, state: State, bar: Integers, place: Floats) -> Floats:
+def place_of(chain: BarChain, state: ChainState, bar: Integers, place: Floats) -> Floats:
     """(m, 3) of points at places of bars [m]."""
     share = place[:, np.newaxis]
     found: Floats = (1.0 - share) * state.node[bar] + share * state.node[bar + 1]
     return found
 
 
-def piece_ends(chain: Chain, state: State) -> tuple[Floats, Floats]:
+def piece_ends(chain: BarChain, state: ChainState) -> tuple[Floats, Floats]:
     """(p, 3) of the upper and of the lower end of every piece [m]."""
     first, end = chain.bars.T
     last = np.maximum(end - 1, first)
@@ -110,29 +110,36 @@ def piece_ends(chain: Chain, state: State) -> tuple[Floats, Floats]:
     )
 
 
-def clamp_places(chain: Chain, state: State) -> Floats:
+def clamp_places(chain: BarChain, state: ChainState) -> Floats:
     """(m, 3) of the clamps [m]."""
     return place_of(chain, state, chain.clamp_bar, chain.clamp_place)
 
 
-def end_tensions(mover: Mover, state: State) -> Floats:
-    """(n, 2) in every bar at its upper and at its lower end [N]; 0 in one that is pushed.
+def end_tensions(mover: Mover, state: ChainState, *, within: bool = False) -> Floats:
+    """Return (n, 2) in every bar at its upper and at its lower end [N]; 0 in one that is pushed.
+
+    Parameters
+    ----------
+    within : whether at the bar's side of what is at its very ends, else beyond that
 
     In the first moment the anchor pushes what is beside it, where a real line goes slack.
     """
     on = mover.chain.elements
     loads, axis = mover.loads(state.node, state.velocity, state.tension, mover.variation(state))
     pull = state.tension[:, np.newaxis] * axis
+    force = loads.force
+    if within:
+        force = np.where(((on.place > 0.0) & (on.place < 1.0))[:, np.newaxis], force, 0.0)
     lower = on.place[:, np.newaxis]
     above = np.zeros_like(pull)
     below = np.zeros_like(pull)
-    np.add.at(above, on.bar, (1.0 - lower) * loads.force)
-    np.add.at(below, on.bar, lower * loads.force)
+    np.add.at(above, on.bar, (1.0 - lower) * force)
+    np.add.at(below, on.bar, lower * force)
     ends = np.linalg.norm(np.stack([pull + above, pull - below], axis=1), axis=2)
     return np.where(state.tension[:, np.newaxis] > 0.0, ends, 0.0)
 
 
-def path_of(drop: Course, toward: Floats, anchor_height: float) -> Path:
+def path_of(drop: Motion, toward: Floats, anchor_height: float) -> FallPath:
     """The fall over time.
 
     Parameters
@@ -142,7 +149,7 @@ def path_of(drop: Course, toward: Floats, anchor_height: float) -> Path:
     """
     states = drop.states
     foot, top = (np.array([state.node[i] for state in states]) for i in (-1, 0))
-    return Path(
+    return FallPath(
         time=np.array([state.time for state in states]),
         anchor_depth=anchor_height - foot[:, 2],
         anchor_speed=np.array([-state.velocity[-1, 2] for state in states]),
@@ -153,7 +160,7 @@ def path_of(drop: Course, toward: Floats, anchor_height: float) -> Path:
     )
 
 
-def moments_of(drop: Course, rest: Course | None, toward: Floats) -> tuple[Moment, ...]:
+def moments_of(drop: Motion, rest: Motion | None, toward: Floats) -> tuple[ShapeInTime, ...]:
     """Shapes at equal intervals from letting go to the touchdown, and at rest where known."""
     times = np.array([state.time for state in drop.states])
     chosen = [int(np.argmin(np.abs(times - t))) for t in np.linspace(0.0, times[-1], MOMENTS)]
@@ -163,12 +170,12 @@ def moments_of(drop: Course, rest: Course | None, toward: Floats) -> tuple[Momen
         shown.append(rest.states[-1])
         names.append("at rest")
     return tuple(
-        Moment(state.time, name, state.node[:, :2] @ toward, -state.node[:, 2])
+        ShapeInTime(state.time, name, state.node[:, :2] @ toward, -state.node[:, 2])
         for state, name in zip(shown, names, strict=True)
     )
 
 
-def depths_of(pieces: Sequence[Piece], drop: Course, rest: Course) -> tuple[DepthReached, ...]:
+def depths_of(pieces: Sequence[Piece], drop: Motion, rest: Motion) -> tuple[DepthReached, ...]:
     """How deep floats, instruments and releases come, from letting go to rest."""
     parts: list[Piece | Clamp] = [*pieces[:-1], *clamps_in(pieces[:-1])]
     chain, states = drop.mover.chain, (*drop.states, *rest.states[1:])
@@ -187,26 +194,58 @@ def depths_of(pieces: Sequence[Piece], drop: Course, rest: Course) -> tuple[Dept
     )
 
 
-def _depths(chain: Chain, state: State) -> Floats:
+def _depths(chain: BarChain, state: ChainState) -> Floats:
     """Of the deeper end of every piece, and of every clamp [m]."""
     upper, lower = piece_ends(chain, state)
     clamps = clamp_places(chain, state)
     return -np.append(np.minimum(upper[:, 2], lower[:, 2]), clamps[:, 2])
 
 
-def pulls_of(pieces: Sequence[Piece], drop: Course) -> tuple[Pull, ...]:
-    """The greatest tension in every piece from letting go to the touchdown."""
-    chain = drop.mover.chain
-    tension = np.array([end_tensions(drop.mover, state).max(axis=1) for state in drop.states])
-    pulls = []
-    for piece, (first, end) in zip(pieces[:-1], chain.bars.tolist(), strict=True):
-        over_time = tension[:, first : max(end, first + 1)].max(axis=1)
-        when = int(over_time.argmax())
-        pulls.append(Pull(piece, float(over_time[when]), drop.states[when].time))
-    return tuple(pulls)
+def pulls_of(pieces: Sequence[Piece], drop: Motion) -> tuple[Pull, ...]:
+    """Return the greatest tension in every piece from letting go to the touchdown."""
+    tension = greatest_tensions(drop)
+    latest = tension.argmax(axis=0).tolist()
+    return tuple(
+        Pull(piece, float(tension[when, number]), drop.states[1 + when].time)
+        for number, (piece, when) in enumerate(zip(pieces[:-1], latest, strict=True))
+    )
 
 
-def rest_difference(result: Result, rest: Course) -> float:
+def piece_tensions(drop: Motion) -> Floats:
+    """Return the tensions of every piece at its upper and its lower end, (t-1, p, 2) [N].
+
+    The first state is left out: the ship still tows, and the water flows past it otherwise.
+    Pieces that are rigid with the free end are one bar, and have the tensions of its ends.
+    """
+    return _ends_of_pieces(drop, _over_time(drop))
+
+
+def greatest_tensions(drop: Motion) -> Floats:
+    """Return the greatest tension in every piece at each time but the first, (t-1, p) [N]."""
+    tension = _over_time(drop)
+    found: Floats = _ends_of_pieces(drop, tension).max(axis=2)
+    for piece, (first, end) in enumerate(drop.mover.chain.bars.tolist()):
+        if end - first > 1:
+            found[:, piece] = tension[:, first:end].max(axis=(1, 2))
+    return found
+
+
+def _over_time(drop: Motion) -> Floats:
+    return np.array([end_tensions(drop.mover, state, within=True) for state in drop.states[1:]])
+
+
+def _ends_of_pieces(drop: Motion, tension: Floats) -> Floats:
+    """Return (t, p, 2) of the pieces from (t, n, 2) of the bars [N]."""
+    first, end = drop.mover.chain.bars.T
+    last = np.maximum(end, first + 1) - 1
+    found = np.stack([tension[:, first, 0], tension[:, last, 1]], axis=2)
+    # a piece without length is on the bar beside it
+    short = end == first
+    found[:, short] = tension[:, first[short]].max(axis=2)[:, :, np.newaxis]
+    return found
+
+
+def rest_difference(result: Result, rest: Motion) -> float:
     """Farthest that an end of a piece comes to rest from its place in the equilibrium [m].
 
     Of a line that comes down on the seabed before its anchor, pieces that lie there are left out:

@@ -1,4 +1,4 @@
-"""What a file of another program says, in CALM's terms: the one model that every importer fills.
+"""Define what a file of another program says, in CALM's terms: the model that every importer fills.
 
 Figures are SI and degrees under the names of the mooring file; depths are positive down.
 """
@@ -11,21 +11,23 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from calm.errors import InputError, Problem
+
 MOST_PIECES = 2_000
 """Most pieces of a line, and most levels of its water."""
 
-Figure = float | str
+FigureOrWord = float | str
 """A number in SI, or a word of the mooring file such as ``insensitive``."""
 
 
 def one_line(text: str) -> str:
-    """A text in one line, without control signs."""
+    """Return a text in one line, without control signs."""
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())
 
 
 @dataclass(frozen=True)
 class Remark:
-    """Something guessed, or left out: where it stands, and what."""
+    """Say that something was guessed, or left out: where it stands, and what."""
 
     where: str
     what: str
@@ -35,8 +37,8 @@ class Remark:
 
 
 @dataclass(eq=False)
-class Component:
-    """A definition, with the figures of the file it comes from.
+class ImportedComponent:
+    """Hold a definition, with the figures of the file it comes from.
 
     Attributes
     ----------
@@ -51,42 +53,79 @@ class Component:
 
     name: str
     kind: str
-    figures: dict[str, Figure]
+    figures: dict[str, FigureOrWord]
     guesses: dict[str, str] = field(default_factory=dict)
     comment: str = ""
     hull: tuple[tuple[float, float, float], ...] = ()
     entry: str = ""
 
-    def says(self) -> tuple[object, ...]:
-        """All its figures: components with the same figures are one definition."""
+    @classmethod
+    def of_line(
+        cls, name: str, weight: float, figures: dict[str, FigureOrWord], *, chain: bool
+    ) -> ImportedComponent:
+        """Make a cable, or a chain where it is called one and sinks.
+
+        Parameters
+        ----------
+        name : as that file calls it
+        weight : of a metre in water, negative for what floats [N]
+        figures : its diameter and drag, to which the weight is added
+        chain : whether it is called a chain
+        """
+        figures["buoyancy" if weight < 0.0 else "weight"] = abs(weight)
+        return cls(name, "chain" if chain and weight >= 0.0 else "cable", figures)
+
+    def number(self, field: str) -> float:
+        """Return a figure; 0 where it has none."""
+        return float(self.figures.get(field, 0.0))
+
+    def identity(self) -> tuple[object, ...]:
+        """Return all its figures: components with the same figures are one definition."""
         figures = tuple(sorted(self.figures.items(), key=lambda pair: pair[0]))
         return self.name, self.kind, figures, self.hull
 
 
 @dataclass(eq=False)
-class Hung:
-    """A component clamped on a piece, `at` metres from the piece's upper end."""
+class ImportedClamp:
+    """Represent a component clamped on a piece, `at` metres from the piece's upper end."""
 
-    component: Component
+    component: ImportedComponent
     at: float
     guess: str = ""
 
 
 @dataclass(eq=False)
-class Item:
-    """A piece of the line; `length` [m] is that of a cable or chain."""
+class ImportedPiece:
+    """Represent a piece of the line; `length` [m] is that of a cable or chain."""
 
-    component: Component
+    component: ImportedComponent
     length: float | None = None
-    clamps: list[Hung] = field(default_factory=list)
+    clamps: list[ImportedClamp] = field(default_factory=list)
     guess: str = ""
     label: str = ""
     count: int = 1
 
+    @property
+    def extent(self) -> float:
+        """The length of a line, or that of its component [m]."""
+        return self.component.number("length") if self.length is None else self.length
+
+    def clamp(self, component: ImportedComponent, at: float, guess: str = "") -> None:
+        """Clamp a component on it, after those that sit above.
+
+        Parameters
+        ----------
+        component : that is clamped on
+        at : distance from its upper end [m]
+        guess : why the place is not from the file
+        """
+        self.clamps.append(ImportedClamp(component, at, guess))
+        self.clamps.sort(key=lambda clamp: clamp.at)
+
 
 @dataclass(eq=False)
-class Record:
-    """Currents at several times: `u`, `v`, `w` [m/s] by time and level, `depth` [m] of the levels.
+class CurrentRecord:
+    """Hold currents at several times: `u`, `v`, `w` [m/s] by time and level, `depth` [m].
 
     `days` count from `epoch`, a date.
     """
@@ -100,8 +139,8 @@ class Record:
 
 
 @dataclass(eq=False)
-class Water:
-    """The environment of the line.
+class ImportedWater:
+    """Hold the environment of the line.
 
     Attributes
     ----------
@@ -122,8 +161,8 @@ class Water:
 
 
 @dataclass(eq=False)
-class Tow:
-    """Speed [m/s], course [degrees], height of the sheave above the water [m]."""
+class ImportedTow:
+    """Hold speed [m/s], course [degrees], height of the sheave above the water [m]."""
 
     speed: float
     toward: float
@@ -132,7 +171,7 @@ class Tow:
 
 @dataclass(eq=False)
 class Design:
-    """A mooring or a tow as another program's file gives it.
+    """Hold a mooring or a tow as another program's file gives it.
 
     Attributes
     ----------
@@ -148,20 +187,37 @@ class Design:
 
     program: str
     name: str
-    items: list[Item]
-    water: Water | None
+    items: list[ImportedPiece]
+    water: ImportedWater | None
     description: str = ""
-    tow: Tow | None = None
-    record: Record | None = None
-    solver: dict[str, tuple[Figure, str]] = field(default_factory=dict)
+    tow: ImportedTow | None = None
+    record: CurrentRecord | None = None
+    solver: dict[str, tuple[FigureOrWord, str]] = field(default_factory=dict)
     guessed: list[Remark] = field(default_factory=list)
     dropped: list[Remark] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     in_kilograms: bool = False
 
-    def components(self) -> Iterator[Component]:
+    def components(self) -> Iterator[ImportedComponent]:
         """Every definition in use, those of clamps after that of their piece; repeats included."""
         for item in self.items:
             yield item.component
             for clamp in item.clamps:
                 yield clamp.component
+
+
+def refused(path: object, *messages: str) -> InputError:
+    """Return why a file cannot be read, or what in it CALM cannot represent."""
+    return InputError([Problem(str(path), 0, 0, one_line(message)) for message in messages])
+
+
+def refused_at(path: object, line: int, column: int, message: str) -> InputError:
+    """Return why a file cannot be read, with the place in its text.
+
+    Parameters
+    ----------
+    path : of the file
+    line, column : from 1
+    message : what is wrong there
+    """
+    return InputError([Problem(str(path), line, column, one_line(message))])

@@ -1,32 +1,35 @@
-"""From a mooring file to the file of another program."""
+"""Export a mooring file to another program: its line as parts, written by one of the writers."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import cos, radians, sin
 from pathlib import Path
 
-from calm.case import load
-from calm.errors import UsageError
-from calm.exchange.assembling import assembled
-from calm.exchange.cbl.writing import cbl_file
-from calm.exchange.mdd.writing import mdd_file
-from calm.exchange.moordyn.writing import CURRENTS, current_profile, moordyn_file
-from calm.exchange.parts import Assembled
-from calm.exchange.table.writing import csv_file
-from calm.files.explain import unknown
+import numpy as np
 
-Writer = Callable[[Assembled], tuple[bytes, tuple[str, ...]]]
+from calm.case import Mooring, Tow, load
+from calm.errors import NoEquilibrium, UsageError
+from calm.exchange.cable_writer import cbl_file
+from calm.exchange.exported_parts import ExportedLine, ExportedPart, ExportedTow, Levels
+from calm.exchange.mdd_writer import mdd_file
+from calm.exchange.moordyn_writer import CURRENTS, current_profile, moordyn_file
+from calm.physics.line import Line, Water
+from calm.physics.reference import REFERENCE_DENSITY
+from calm.records.csv_writer import table_csv
+from calm.suggestions import unknown
 
-WRITERS: dict[str, Writer] = {
-    "mdd": mdd_file, "cbl": cbl_file, "csv": csv_file, "moordyn": moordyn_file,
-}  # fmt: skip
-"""What a mooring can be written for."""
+_HEADER = (
+    "name", "label", "kind", "role", "clamped at[m]", "length[m]", "diameter[m]", "whole mass[kg]",
+    "whole buoyancy[N]", "whole Cd x area[m^2]", "whole tangential Cd x area[m^2]", "EA[N]",
+)  # fmt: skip
+_DIGITS = 9  # of a speed in m/s
 
 
 @dataclass(frozen=True)
 class Exported:
-    """The content of a file for another program, what it cannot hold, and the files beside it."""
+    """Hold the content of a file for another program, what it cannot hold, and files beside it."""
 
     content: bytes
     lost: tuple[str, ...]
@@ -58,7 +61,209 @@ def export_file(
         raise UsageError(
             unknown(f"--to: `{to}` is not a program that CALM writes for", to, WRITERS)
         )
-    design = assembled(load(path, environment, list(catalogs)))
+    design = _exported_line(load(path, environment, list(catalogs)))
     content, lost = WRITERS[to](design)
     beside = {CURRENTS: current_profile(design)} if to == "moordyn" else {}
     return Exported(content, lost, beside)
+
+
+def _exported_line(mooring: Mooring | Tow) -> ExportedLine:
+    """Return the parts of a mooring or a tow.
+
+    Raises
+    ------
+    NoEquilibrium
+        A piece is to be cut to fit, and no length does.
+    """
+    file, water, line = mooring.file, mooring.water, mooring.line
+    if file.environment.fluid == "air":
+        raise UsageError(f"{file.path} is towed in air; the other programs know water alone")
+    secant = _secants(mooring)
+    depths = _depths(line, water, isinstance(mooring, Tow))
+    parts = []
+    for i in range(len(line.length)):
+        piece = file.pieces[i]
+        density = float(water.at(np.array(depths[i]))[1])
+        excess = (density - REFERENCE_DENSITY) * float(water.gravity)
+        on = [k for k in range(len(line.clamp_at)) if line.clamp_piece[k] == i]
+        clamps = tuple(
+            (
+                ExportedPart(
+                    clamp.use, clamp.label, clamp.component.role, clamp.component, False,
+                    float(getattr(clamp.component, "length", 0.0)),
+                    float(line.clamp_buoyancy[k]),
+                    float(line.clamp_buoyancy[k] + excess * line.clamp_volume[k]), density,
+                    float(line.clamp_drag[k]), float(line.clamp_drag[k]), False, 0.0,
+                ),
+                float(line.clamp_at[k]),
+            )
+            for k, clamp in zip(on, piece.clamps, strict=True)
+        )  # fmt: skip
+        compliance = float(line.compliance[i])
+        stiffness = secant.get(i, 1.0 / compliance if compliance else 0.0)
+        parts.append(
+            ExportedPart(
+                piece.use, piece.label, piece.component.role, piece.component,
+                bool(line.flexible[i]), float(line.length[i]), float(line.buoyancy[i]),
+                float(line.buoyancy[i] + excess * line.volume[i]), density,
+                float(line.normal_drag[i]), float(line.tangential_drag[i]),
+                bool(line.directional[i]), stiffness, clamps,
+            )
+        )  # fmt: skip
+    wind, anchor, tow = file.environment.wind, None, None
+    if isinstance(mooring, Tow):
+        keys = mooring.keys
+        tow = ExportedTow(*_east_and_north(keys.speed, keys.toward), keys.height)
+    else:
+        anchor = file.anchor, mooring.anchor_weight
+    riding, windage = _riding(mooring)
+    return ExportedLine(
+        name=file.name,
+        parts=tuple(parts),
+        anchor=anchor,
+        depth=float(water.depth),
+        levels=_levels(water, 2.0 * float(line.length.sum()) if tow else float(water.depth)),
+        gravity=float(water.gravity),
+        wind=(0.0, 0.0) if wind is None else _east_and_north(wind.speed, wind.toward),
+        tow=tow,
+        afloat=_reaches(mooring),
+        has_draft=line.floating is not None and line.floating.hull is not None,
+        riding=riding,
+        windage=windage,
+        omitted=_omitted(mooring),
+        solve=mooring.solve,
+    )
+
+
+def _east_and_north(speed: float, toward: float) -> tuple[float, float]:
+    """Return the parts of a speed [m/s] towards a bearing [degrees]."""
+    return speed * sin(radians(toward)), speed * cos(radians(toward))
+
+
+def _reaches(mooring: Mooring | Tow) -> bool:
+    """Return whether a mooring floats at the surface; by its length where it has no equilibrium."""
+    if isinstance(mooring, Tow):
+        return False
+    try:
+        return mooring.solve().type == "surface"
+    except NoEquilibrium:
+        whole = mooring.line.anchor_height + float(mooring.line.length.sum())
+        return whole >= float(mooring.water.depth)
+
+
+def _riding(mooring: Mooring | Tow) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return how the float stands at the surface: `riding` and `windage` of `ExportedLine`."""
+    floating = mooring.line.floating
+    if not _reaches(mooring):
+        return (1.0, 1.0), (0.0, 1.0)
+    assert isinstance(mooring, Mooring)
+    try:
+        used = mooring.solve().top.used_buoyancy
+    except NoEquilibrium:
+        used = 1.0
+    if floating is None:
+        return (used, 1.0), (0.0, 1.0)
+    seen = floating.riding(used).drag
+    area = floating.wind_area
+    if area is None:
+        area = 0.0 if floating.hull is None else floating.hull.area * (1.0 - seen)
+    return (used, seen), (area, floating.wind_cd)
+
+
+def _secants(mooring: Mooring | Tow) -> dict[int, float]:
+    """Stiffness of the pieces that stretch by a table, as it is at their tension here [N]."""
+    curves = mooring.line.elongation
+    if not any(curves):
+        return {}
+    rows = mooring.solve().components
+    secants = {}
+    for i, curve in enumerate(curves):
+        if curve is not None:
+            strain = rows[i].length / rows[i].cut_length - 1.0
+            tension = (rows[i].tension_top + rows[i].tension_bottom) / 2.0
+            secants[i] = tension / strain if strain > 0.0 else 0.0
+    return secants
+
+
+def _depths(line: Line, water: Water, towed: bool) -> list[float]:
+    """Depths of the middle of every piece, upright above the anchor or below the ship [m]."""
+    below = np.cumsum(line.length) - line.length / 2.0
+    if not towed:
+        below += float(water.depth) - line.anchor_height - float(line.length.sum())
+    return [max(float(depth), 0.0) for depth in below]
+
+
+def _levels(water: Water, deepest: float) -> Levels:
+    """Rows of depth, u, v, w and density, from the surface to the seabed."""
+    inside = [float(depth) for depth in water.level if 0.0 < depth < deepest]
+    rows = []
+    for depth in (0.0, *inside, deepest):
+        u, v, w, density = (
+            round(float(np.interp(depth, water.level, values)), _DIGITS) + 0.0
+            for values in (water.u, water.v, water.w, water.density)
+        )
+        rows.append((depth, u, v, w, density))
+    return tuple(rows)
+
+
+def _omitted(mooring: Mooring | Tow) -> tuple[str, ...]:
+    """Return what a mooring file says that other programs do not know."""
+    file = mooring.file
+    omitted = [
+        "limits of the design check, strengths, ratings and tilts of components",
+    ]
+    if file.solver.strumming is not None:
+        omitted.append("strumming: the drag of cables is that at rest")
+    if file.solver.drag == "reynolds":
+        omitted.append("`drag: reynolds`: drags are those of the constant coefficients")
+    if file.solver.friction != "berteaux":
+        omitted.append(f"`friction: {file.solver.friction}`")
+    if any(mooring.line.elongation):
+        omitted.append("elongation tables: stiffness is that at the tension found here")
+    if any(mooring.line.lift) or any(mooring.line.clamp_lift):
+        omitted.append("lift of towed bodies")
+    return tuple(omitted)
+
+
+def _csv_file(design: ExportedLine) -> tuple[bytes, tuple[str, ...]]:
+    """Return the content of the file, and what it cannot hold."""
+    lost = ["the water", "hulls and wind: floats drag in full at the surface"]
+    if design.tow is not None:
+        lost.append("the speed of the ship: a list is a mooring's")
+    losses = design.losses(lost)
+    rows = [
+        row
+        for part in design.parts
+        for row in (_row(part, None), *(_row(clamp, at) for clamp, at in part.clamps))
+    ]
+    if design.anchor is not None:
+        anchor, weight = design.anchor
+        figures = [None, anchor.length, None, anchor.mass, -weight, None, None, None]
+        rows.append([*["anchor"] * 4, *figures])
+    comments = (f"{design.name}, by CALM; lost:", *losses)
+    above = "".join(f"# {' '.join(line.split())}\n" for line in comments)
+    return (above + table_csv(_HEADER, rows)).encode(), losses
+
+
+def _row(part: ExportedPart, at: float | None) -> list[str | float | None]:
+    whole = part.length if part.flexible else 1.0
+    return [
+        part.use,
+        part.label,
+        part.component.kind,
+        part.role,
+        at,
+        part.length,
+        part.diameter or None,
+        None if part.mass is None else part.mass * whole,
+        part.buoyancy * whole,
+        part.area() * whole,
+        part.area(along=True) * whole if part.directional else None,
+        part.stiffness or None,
+    ]
+
+
+WRITERS: dict[str, Callable[[ExportedLine], tuple[bytes, tuple[str, ...]]]] = {
+    "mdd": mdd_file, "cbl": cbl_file, "csv": _csv_file, "moordyn": moordyn_file,
+}  # fmt: skip
+"""What a mooring can be written for."""

@@ -1,4 +1,4 @@
-"""From a file of another program to a mooring file: found, read, written, and read back."""
+"""Import a file of another program: its format is found, it is read, written, and read back."""
 
 from __future__ import annotations
 
@@ -6,28 +6,33 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy as np
+
 from calm.errors import InputError, Problem, UsageError
-from calm.exchange.anchors import hold
-from calm.exchange.cbl.reading import is_cbl, read_cbl
-from calm.exchange.design import MOST_PIECES, Design, Record, Remark
-from calm.exchange.environments import environment_lines
-from calm.exchange.matching import Match, match
-from calm.exchange.mdd.matfile import is_mat
-from calm.exchange.mdd.reading import read_mdd
-from calm.exchange.moordyn.reading import read_moordyn
-from calm.exchange.moordyn.sections import is_moordyn
-from calm.exchange.refusal import refused
-from calm.exchange.table.moords import is_moords, read_moords
-from calm.exchange.table.reading import read_table
-from calm.exchange.table.sheet import is_table
-from calm.exchange.writing import written
+from calm.exchange.cable_reader import is_cbl, read_cbl
+from calm.exchange.design import MOST_PIECES, CurrentRecord, Design, Remark, refused
+from calm.exchange.design_writer import mooring_text
+from calm.exchange.import_completion import (
+    CatalogueMatch,
+    environment_lines,
+    match_catalogue_entries,
+    secure_anchor,
+)
+from calm.exchange.list_headings import is_table
+from calm.exchange.list_reader import read_list
+from calm.exchange.mat_file import is_mat
+from calm.exchange.mdd_reader import read_mdd
+from calm.exchange.moords_reader import is_moords, read_moords
+from calm.exchange.moordyn_reader import is_moordyn, read_moordyn
 from calm.files import read_mooring
 from calm.version import __version__
 
+_HEAD = 70_000  # bytes from which a format is recognised
+
 
 @dataclass(frozen=True)
-class Options:
-    """The options of a command line.
+class ImportOptions:
+    """Hold the options of a command line.
 
     Attributes
     ----------
@@ -44,44 +49,39 @@ class Options:
 
 
 @dataclass(frozen=True)
-class Format:
-    """A format of files that can be imported: its name, how it is recognised and read."""
+class ImportFormat:
+    """Describe a format that can be imported: its name, how it is recognised and read."""
 
     name: str
     program: str
-    recognises: Callable[[Path, bytes], bool]
-    read: Callable[[Path, Options], Design]
+    recognises: Callable[[bytes], bool]
+    read: Callable[[Path, ImportOptions], Design]
 
 
 FORMATS = (
-    Format(
-        "mdd", "Mooring Design & Dynamics", lambda path, content: is_mat(content),
-        lambda path, options: read_mdd(path),
+    ImportFormat(
+        "mdd", "Mooring Design & Dynamics", is_mat, lambda path, options: read_mdd(path)
     ),
-    Format(
-        "cbl", "WHOI Cable", lambda path, content: is_cbl(content),
+    ImportFormat(
+        "cbl", "WHOI Cable", is_cbl,
         lambda path, options: read_cbl(
             path, options.defines, allow_include=options.allow_include
         ),
     ),
-    Format(
-        "moordyn", "MoorDyn or MoorPy", lambda path, content: is_moordyn(content),
-        lambda path, options: read_moordyn(path),
+    ImportFormat(
+        "moordyn", "MoorDyn or MoorPy", is_moordyn, lambda path, options: read_moordyn(path)
     ),
-    Format(
-        "moords", "moords", lambda path, content: is_moords(content),
-        lambda path, options: read_moords(path),
-    ),
-    Format(
-        "table", "a list in CSV or a spreadsheet", lambda path, content: is_table(content),
-        lambda path, options: read_table(path, options.columns, options.elements),
+    ImportFormat("moords", "moords", is_moords, lambda path, options: read_moords(path)),
+    ImportFormat(
+        "table", "a list in CSV or a spreadsheet", is_table,
+        lambda path, options: read_list(path, options.columns, options.elements),
     ),
 )  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Imported:
-    """A mooring file made of another program's file.
+    """Hold a mooring file made of another program's file.
 
     Attributes
     ----------
@@ -98,11 +98,8 @@ class Imported:
     text: str
     guessed: tuple[Remark, ...]
     dropped: tuple[Remark, ...]
-    matched: tuple[Match, ...]
-    record: Record | None
-
-
-_HEAD = 70_000  # bytes from which a format is recognised
+    matched: tuple[CatalogueMatch, ...]
+    record: CurrentRecord | None
 
 
 def import_file(
@@ -111,7 +108,7 @@ def import_file(
     *,
     format: str | None = None,
     environment: Path | None = None,
-    options: Options | None = None,
+    options: ImportOptions | None = None,
     match_catalogue: bool = False,
 ) -> Imported:
     """Read a file of another program.
@@ -130,8 +127,8 @@ def import_file(
     UsageError
         There is no such format.
     """
-    options = options or Options()
-    chosen = format_of(path, format, listed=options.elements is not None)
+    options = options or ImportOptions()
+    chosen = _format_of(path, format, listed=options.elements is not None)
     if options.elements is not None and chosen.name != "table":
         raise refused(path, f"is of {chosen.program}; --elements is for lists")
     design = chosen.read(path, options)
@@ -149,9 +146,9 @@ def import_file(
     elif design.water is None and design.tow is None:
         message = "has no environment; give one: --environment FILE (depth, current, density)"
         raise refused(path, message)
-    matched = match(design) if match_catalogue else ()
-    hold(design, lines, output)
-    page = written(design, path.name, lines, __version__)
+    matched = match_catalogue_entries(design) if match_catalogue else ()
+    secure_anchor(design, lines, output)
+    page = mooring_text(design, path.name, lines, __version__)
     _check(path, output, page.text)
     return Imported(
         path, chosen.name, page.text, tuple(page.guessed + design.guessed),
@@ -159,8 +156,8 @@ def import_file(
     )  # fmt: skip
 
 
-def format_of(path: Path, name: str | None, *, listed: bool = False) -> Format:
-    """The format of a file: as named, or by its content.
+def _format_of(path: Path, name: str | None, *, listed: bool = False) -> ImportFormat:
+    """Return the format of a file: as named, or by its content.
 
     Parameters
     ----------
@@ -185,7 +182,7 @@ def format_of(path: Path, name: str | None, *, listed: bool = False) -> Format:
     except OSError as error:
         raise refused(path, f"cannot be read: {error.strerror}") from None
     for each in FORMATS:
-        if each.recognises(path, content) or (listed and each is FORMATS[-1]):
+        if each.recognises(content) or (listed and each is FORMATS[-1]):
             return each
     programs = ", ".join(f"{each.name} ({each.program})" for each in FORMATS)
     raise refused(path, f"is not a file of a program that CALM reads: {programs}")
@@ -202,8 +199,42 @@ def _check(path: Path, output: Path, text: str) -> None:
 
 
 def _blamed(problem: Problem, text: str) -> str:
-    """A mistake of the mooring file, with the line it is in."""
+    """Return a mistake of the mooring file, with the line it is in."""
     lines: Sequence[str] = text.splitlines()
     if not 0 < problem.line <= len(lines):
         return problem.message
     return f"{problem.message} (in `{' '.join(lines[problem.line - 1].split())[:80]}`)"
+
+
+def record_file(record: CurrentRecord, source: str) -> bytes:
+    """Return a record as a classic NetCDF file by the CF conventions."""
+    import xarray as xr
+
+    speeds = {
+        name: (
+            ("time", "depth"),
+            np.ascontiguousarray(values, np.float64),
+            {"standard_name": standard_name, "units": "m s-1"},
+        )
+        for name, standard_name, values in (
+            ("u", "eastward_sea_water_velocity", record.u),
+            ("v", "northward_sea_water_velocity", record.v),
+            ("w", "upward_sea_water_velocity", record.w),
+        )
+    }
+    seconds = np.rint(record.days * 86_400e3) / 1e3  # days hold a millisecond, hardly more
+    time = {
+        "standard_name": "time",
+        "units": f"seconds since {record.epoch}",
+        "calendar": "standard",
+    }
+    depth = {"standard_name": "depth", "units": "m", "positive": "down", "axis": "Z"}
+    dataset = xr.Dataset(
+        speeds,
+        {
+            "time": ("time", seconds, {**time, "axis": "T"}),
+            "depth": ("depth", np.asarray(record.depth, np.float64), depth),
+        },
+        {"Conventions": "CF-1.11", "title": "Currents", "source": source},
+    )
+    return bytes(dataset.to_netcdf(engine="scipy"))

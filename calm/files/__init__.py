@@ -1,32 +1,23 @@
 """Mooring files and catalogues: text in, validated models in SI out. Nothing is computed here."""
 
-from calm.files.accept import Accept
 from calm.files.catalogue import Assembly, Catalogue
-from calm.files.checks import Checks, SafetyFactors
+from calm.files.check_limits import Accept, Checks, SafetyFactors
 from calm.files.components import Anchor, Body, Cable, Chain, Component, Cylinder, Sphere
 from calm.files.environment import Environment, Fouling, Position, Wind
 from calm.files.flexible import Flexible
-from calm.files.mooring import (
-    Clamp,
-    MooringFile,
-    Part,
-    Piece,
-    Place,
-    Solver,
-    TowKeys,
-)
+from calm.files.mooring_file import Clamp, LinePart, MooringFile, Piece, Place, Solver, TowKeys
 from calm.files.reader import read_mooring
 from calm.files.rigid import Rigid
 from calm.files.schema import mooring_schema
-from calm.files.strumming import (
+from calm.files.strumming_keys import (
     AmplitudeModel,
     BourgetMarichalKeys,
     ConstantCn,
     Strumming,
     StrummingFactor,
 )
-from calm.files.tables import CurrentTable, DepthTable, SeaWater
 from calm.files.uncertainty import Spread, Uncertainty
+from calm.records.profile_tables import CurrentTable, DepthTable, SeaWater
 
 __all__ = [
     "Accept",
@@ -48,8 +39,8 @@ __all__ = [
     "Environment",
     "Flexible",
     "Fouling",
+    "LinePart",
     "MooringFile",
-    "Part",
     "Piece",
     "Place",
     "Position",

@@ -19,7 +19,7 @@ _NUMBERED = re.compile(r"(.+) ([1-9]\d*)")
 
 @dataclass(frozen=True)
 class Known:
-    """What identifies a part: its label without a number that `numbered` added, and its content.
+    """Hold what identifies a part: its label without a number that `numbered` added, its content.
 
     `contents` are the ways in which parts are alike, the strictest first.
     """
@@ -30,7 +30,7 @@ class Known:
 
 @dataclass(frozen=True)
 class Alignment:
-    """Places of parts in two lines.
+    """Hold the places of parts in two lines.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class Alignment:
 
 
 def own_labels(labels: Sequence[str]) -> list[str]:
-    """The labels, without the numbers of those that go from 1 to n."""
+    """Return the labels, without the numbers of those that go from 1 to n."""
     numbers: dict[str, list[int]] = defaultdict(list)
     matches = [_NUMBERED.fullmatch(label) for label in labels]
     for match in filter(None, matches):
@@ -86,7 +86,7 @@ def align(before: Sequence[Known], after: Sequence[Known]) -> Alignment:
 
 
 def _places(parts: Sequence[Known]) -> dict[str, int]:
-    """The place of each label that only one part has."""
+    """Return the place of each label that only one part has."""
     places: dict[str, list[int]] = defaultdict(list)
     for place, part in enumerate(parts):
         places[part.label].append(place)
@@ -117,7 +117,7 @@ def _pair_between(
 
 
 def _longest_rise(values: Iterable[int]) -> frozenset[int]:
-    """The longest of the rising sequences within different values (patience sorting)."""
+    """Return the longest of the rising sequences within different values (patience sorting)."""
     ends: list[int] = []
     below: dict[int, list[int]] = {}
     for value in values:

@@ -1,44 +1,64 @@
 """The component catalogue: shipped, the user's own, files given with a command, and in-file ones.
 
 Definitions are kept as written and validated when they are asked for, so that a run pays only for
-the components it uses.
+the components it uses. A user's files are read again only where they changed.
 """
 
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import islice
+from itertools import islice, zip_longest
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
+
+from pydantic import Field
 
 from calm.errors import InputError, Problem, UsageError
 from calm.files.components import KINDS, Component
 from calm.files.definition import Definition
-from calm.files.entries import FAMILY_ROLES, Entry, Level, UnreadLevel, entries_of, read_level
-from calm.files.explain import nearest, shown, unknown, validate
-from calm.files.section import Section
-from calm.files.unchanged import Unchanged
+from calm.files.mistakes import validate
+from calm.files.yaml_document import Document, SourceMapping, compose, read_document
 from calm.shipped import shipped_folder
+from calm.suggestions import nearest, shown, unknown
+from calm.whole_file import FileCache, read_text
+
+FAMILY_ROLES = {
+    "floats": "float",
+    "instruments": "instrument",
+    "releases": "release",
+    "ropes": "line",
+    "chains": "line",
+    "connectors": "connector",
+    "anchors": "anchor",
+}
+"""The families of the catalogue, one file each, and what their components are for."""
+
+_HEAD = re.compile(r"^(?=[^ \n#])(?:([\w.-]+): *(?:#.*)?$)?", re.MULTILINE | re.ASCII)
+"""A line that is not indented; its group is the id where it is one and nothing else."""
 
 
 class Assembly(Definition):
     """Pieces that are always used together; `parts` are items as in the `line` of a mooring."""
 
-    kind: Literal["assembly"]
-    parts: tuple[dict[str, Any], ...]
+    kind: Literal["assembly"] = Field(description="which kind of component it is")
+    parts: tuple[dict[str, Any], ...] = Field(
+        description="pieces as in `line`, from the top",
+        examples=[[{"use": "glass-17in", "count": 2}, {"use": "chain-13", "length": "1 m"}]],
+    )
 
 
 @dataclass(frozen=True)
 class Catalogue:
-    """Component definitions in levels, the nearest first: it hides those of the same id below."""
+    """Hold definitions in levels, the nearest first: it hides those of the same id below."""
 
     levels: tuple[Level, ...]
 
     @classmethod
     def load(cls, files: Sequence[str | Path] = ()) -> Catalogue:
-        """The shipped catalogue, under the user's own, under the files given (the last on top).
+        """Load the shipped catalogue, the user's own above it, and the files given on top.
 
         Raises
         ------
@@ -62,39 +82,39 @@ class Catalogue:
 
     @classmethod
     def shipped(cls) -> Catalogue:
-        """The catalogue that comes with CALM."""
+        """Return the catalogue that comes with CALM."""
         return cls((UnreadLevel(_shipped_files()),))
 
-    def under(self, definitions: Section, problems: list[Problem]) -> Catalogue:
-        """This catalogue under the `components:` of a mooring file."""
+    def under(self, definitions: SourceMapping, problems: list[Problem]) -> Catalogue:
+        """Lay this catalogue under the `components:` of a mooring file."""
         entries = entries_of(definitions, None, problems)
         return Catalogue(({entry.id: entry for entry in entries}, *self.levels))
 
     def ids(self) -> list[str]:
-        """Every id, in the order of the files."""
+        """Return every id, in the order of the files."""
         return list(dict.fromkeys(id for level in reversed(self.levels) for id in level))
 
-    def entry(self, id: str) -> Entry | None:
-        """The definition of an id as written; None when there is none."""
+    def entry(self, id: str) -> CatalogueEntry | None:
+        """Return the definition of an id as written; None when there is none."""
         return next(self._of(id), None)
 
-    def hidden(self, id: str) -> Entry | None:
-        """The definition that a nearer one of the same id hides."""
+    def hidden(self, id: str) -> CatalogueEntry | None:
+        """Return the definition that a nearer one of the same id hides."""
         return next(islice(self._of(id), 1, None), None)
 
-    def _of(self, id: str) -> Iterator[Entry]:
-        """The definitions of an id, the nearest first."""
+    def _of(self, id: str) -> Iterator[CatalogueEntry]:
+        """Return the definitions of an id, the nearest first."""
         return (level[id] for level in self.levels if id in level)
 
-    def _all(self) -> dict[str, Entry]:
+    def _all(self) -> dict[str, CatalogueEntry]:
         return {id: next(self._of(id)) for id in self.ids()}
 
     def nearest(self, id: str) -> str | None:
-        """The id most like a text."""
+        """Return the id most like a text."""
         return nearest(id, self.ids())
 
     def get(self, id: str) -> Component | Assembly:
-        """A component or assembly, validated.
+        """Return a component or assembly, validated.
 
         Raises
         ------
@@ -113,7 +133,7 @@ class Catalogue:
         return definition
 
     def all(self) -> dict[str, Component | Assembly]:
-        """Every component and assembly, validated.
+        """Return every component and assembly, validated.
 
         Raises
         ------
@@ -131,7 +151,7 @@ class Catalogue:
         return found
 
     def same_thing(self, id: str) -> list[str]:
-        """The ids that describe the thing an id does, the one to use first; the id alone if none.
+        """Return the ids of the same thing as an id, the one to use first; the id alone if none.
 
         Those are the id that it prefers and all that prefer the same.
         """
@@ -140,7 +160,7 @@ class Catalogue:
         return [first, *(each for each, other in preferred.items() if other == first)]
 
     def search(self, words: Iterable[str]) -> list[str]:
-        """The ids whose definition (or family) holds every one of the words."""
+        """Return the ids whose definition (or family) holds every one of the words."""
         wanted = [word.casefold() for word in words]
         return [
             id
@@ -149,15 +169,12 @@ class Catalogue:
         ]
 
 
-_LOADED: Unchanged[Catalogue] = Unchanged()
-
-
 def _shipped_files() -> list[Path]:
     return sorted(shipped_folder("catalog").glob("*.yaml"))
 
 
 def user_folder() -> Path:
-    """The folder of the user's own catalogue: `CALM_CATALOG_DIR`, or one in the home folder."""
+    """Return the user's own catalogue: `CALM_CATALOG_DIR`, or a folder in the home folder."""
     if folder := os.environ.get("CALM_CATALOG_DIR"):
         return Path(folder)
     configuration = os.environ.get("XDG_CONFIG_HOME") or os.path.expanduser("~/.config")
@@ -165,16 +182,22 @@ def user_folder() -> Path:
 
 
 def define(
-    entry: Entry,
-    section: Section,
+    entry: CatalogueEntry,
+    section: SourceMapping,
     problems: list[Problem],
     *,
     also_allowed: Iterable[str] = (),
     context: Mapping[str, object] | None = None,
 ) -> Component | Assembly | None:
-    """The model of an entry, or of a section laid over it; None when it has mistakes.
+    """Return the model of an entry, or of a section laid over it; None when it has mistakes.
 
-    `context` is None or, where it is to be used in air, `IN_AIR`.
+    Parameters
+    ----------
+    entry : CatalogueEntry
+    section : of the entry, or laid over it
+    problems : mistakes are added to it
+    also_allowed : keys that stand beside and belong to something else
+    context : None or, where it is to be used in air, `IN_AIR`
     """
     kind = section.data.get("kind")
     if kind is None:
@@ -189,7 +212,7 @@ def define(
         return None
     role = FAMILY_ROLES.get(entry.family or "")
     if role and "role" not in section.data:
-        family_default = Section.of(section.document, section.location, {"role": role})
+        family_default = SourceMapping.of(section.document, section.location, {"role": role})
         section = section.over(family_default)
     if kind == "assembly":
         return validate(Assembly, section, problems)
@@ -200,6 +223,144 @@ def _kinds() -> str:
     return ", ".join([*KINDS, "assembly"])
 
 
-def _searchable(entry: Entry) -> str:
+def _searchable(entry: CatalogueEntry) -> str:
     texts = [value for value in entry.section.data.values() if isinstance(value, str)]
     return " ".join([entry.id, entry.family or "", *texts]).casefold()
+
+
+@dataclass(frozen=True)
+class CatalogueEntry:
+    """Hold a definition as written, with the name of the family (the file) it belongs to."""
+
+    id: str
+    family: str | None
+    section: SourceMapping
+
+    @property
+    def place(self) -> str:
+        """Return where the definition is, for people."""
+        place = self.section.problem((), "")
+        return f"{place.path}:{place.line}" if place.line else place.path
+
+
+Level = Mapping[str, CatalogueEntry]
+
+
+class _Cut(NamedTuple):
+    """Hold the text of one definition, and the lines of its file that are above it."""
+
+    path: Path
+    above: int
+    text: str
+
+
+class UnreadLevel(Level):
+    """Hold the entries of files whose mistakes need not be known before they matter.
+
+    Only the ids are looked for beforehand, by the lines that are not indented; an entry is read
+    when it is asked for. Where such a line is anything else, or an entry turns out to be wrong,
+    all files are read whole. An id alone in a line within a text in quotes would be taken for one.
+
+    Parameters
+    ----------
+    paths : of the files
+
+    Raises
+    ------
+    InputError
+        A file cannot be read; or, as soon as that is seen, with the mistakes of all.
+    """
+
+    def __init__(self, paths: Sequence[Path]) -> None:
+        self._paths = paths
+        self._read: dict[str, CatalogueEntry] = {}
+        cuts = [cut for path in paths for cut in _cuts(path)]
+        self._cuts = {id: cut for id, cut in cuts if id}
+        if len(self._cuts) < len(cuts):
+            self._read_whole()
+
+    def __getitem__(self, id: str) -> CatalogueEntry:
+        if id not in self._read:
+            path, above, text = self._cuts[id]
+            problems: list[Problem] = []
+            try:
+                document = compose(str(path), "\n" * above + text)
+                for entry in _entries_of(document, problems):
+                    self._read.setdefault(id, entry)
+            except InputError as error:
+                problems += error.problems
+            if problems:
+                self._read_whole()
+        return self._read[id]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._cuts or self._read)
+
+    def __len__(self) -> int:
+        return len(self._cuts or self._read)
+
+    def _read_whole(self) -> None:
+        problems: list[Problem] = []
+        self._cuts = {}
+        self._read = dict(read_level(self._paths, problems))
+        if problems:
+            raise InputError(problems)
+
+
+def read_level(paths: Iterable[Path], problems: list[Problem]) -> Level:
+    """Read the entries of files, which together define an id once."""
+    level: dict[str, CatalogueEntry] = {}
+    for path in paths:
+        try:
+            document = read_document(path)
+        except InputError as error:
+            problems.extend(error.problems)
+            continue
+        for entry in _entries_of(document, problems):
+            if entry.id in level:
+                message = f"`{entry.id}` is defined already, in {level[entry.id].place}"
+                problems.append(document.problem((entry.id,), message, key=True))
+            else:
+                level[entry.id] = entry
+    return level
+
+
+def entries_of(
+    definitions: SourceMapping, family: str | None, problems: list[Problem]
+) -> list[CatalogueEntry]:
+    """Return the entries of a mapping of definitions by id.
+
+    Parameters
+    ----------
+    definitions : mapping of definitions by id
+    family : the name of their file; None in a mooring file
+    problems : mistakes are added to it
+    """
+    entries = []
+    for id, fields in definitions.data.items():
+        if isinstance(fields, dict):
+            entries.append(CatalogueEntry(id, family, definitions.child(id)))
+        else:
+            problems.append(definitions.problem((id,), f"`{id}` must hold `key: value` entries"))
+    return entries
+
+
+def _entries_of(document: Document, problems: list[Problem]) -> list[CatalogueEntry]:
+    stem = Path(document.path).stem
+    family = stem if stem in FAMILY_ROLES else None
+    return entries_of(SourceMapping.of(document, (), document.data), family, problems)
+
+
+def _cuts(path: Path) -> list[tuple[str | None, _Cut]]:
+    """Return the text of each definition by its id, or by None where it does not begin plainly."""
+    text = read_text(path)
+    heads = list(_HEAD.finditer(text))
+    cuts, above = [], text.count("\n", 0, heads[0].start()) if heads else 0
+    for head, following in zip_longest(heads, heads[1:]):
+        part = text[head.start() : following.start() if following else None]
+        cuts.append((head[1], _Cut(path, above, part)))
+        above += part.count("\n")
+    return cuts
+
+
+_LOADED: FileCache[Catalogue] = FileCache()

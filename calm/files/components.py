@@ -1,24 +1,32 @@
-"""The kinds of components that a catalogue, or `components:` of a mooring file, can define."""
+"""The kinds of components that a catalogue, or `components:` of a mooring file, can define.
+
+Some figures are alternatives: a body gives its drag as `kn` or as `drag_area` with `cd`; a net
+force is given, or follows from mass and volume. An override that gives one alternative drops the
+others; whatever it does not contradict stays.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Set
 from typing import Annotated, Literal
 
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from calm.files.definition import (
     CATALOGUE_DENSITY,
-    DENSITY,
-    MASS,
     STANDARD_GRAVITY,
     STEEL_DENSITY,
     Definition,
+    Length,
+    Mass,
+    MaterialDensity,
+    TangentialDrag,
     refuse_weight_above_mass,
     volume_from_weights,
 )
-from calm.files.fields import DRAG, LENGTH, Quantity, Role
+from calm.files.fields import QuantityField, Role
 from calm.files.flexible import Cable, Chain, Flexible
-from calm.files.rigid import Body, Cylinder, CylinderShape, Rigid, Sphere, SphereShape
+from calm.files.rigid import DRAG_FORMS, Body, Cylinder, CylinderShape, Rigid, Sphere, SphereShape
 
 __all__ = [
     "FLEXIBLE_KINDS",
@@ -51,17 +59,23 @@ class Anchor(Definition):
     """The lower end: stands on the seabed, carries no drag."""
 
     role: Role = "anchor"
-    kind: Literal["anchor"]
-    mass: Annotated[float | None, MASS] = None
-    weight: Annotated[float | None, Quantity("force", at_least=0)] = None
-    density: Annotated[float | None, DENSITY] = None
-    length: Annotated[float, LENGTH] = 0.0
-    friction: Annotated[float | None, Quantity("number", above=0)] = None
-    kt: Annotated[float | None, DRAG] = None
+    kind: Literal["anchor"] = Field(description="which kind of component it is")
+    mass: Mass = None
+    weight: Annotated[float | None, QuantityField("force", at_least=0)] = Field(
+        default=None,
+        description="in sea water of 1025 kg/m^3 (per metre of a cable or chain)",
+        examples=["5000 N"],
+    )
+    density: MaterialDensity = None
+    length: Length = 0.0
+    friction: Annotated[float | None, QuantityField("number", above=0)] = Field(
+        default=None, description="coefficient on the seabed", examples=[0.6]
+    )
+    kt: TangentialDrag = None
 
     @property
     def net_buoyancy(self) -> float:
-        """Net force in water, positive up: the weight negated [N]."""
+        """Return the net force in water, positive up: the weight negated [N]."""
         if self.weight is not None:
             return -self.weight
         assert self.mass is not None
@@ -70,17 +84,17 @@ class Anchor(Definition):
 
     @property
     def material_known(self) -> bool:
-        """Whether its weight in water is given, or follows from a known material."""
+        """Return whether its weight in water is given, or follows from a known material."""
         return self.weight is not None or self.material_density is not None
 
     @property
     def material_density(self) -> float | None:
-        """As given, or that of its material [kg/m³]; None of one that is not known."""
+        """Return the density given, or that of its material [kg/m³]; None if unknown."""
         return self.density or ANCHOR_DENSITIES.get((self.material or "").strip().casefold())
 
     @property
     def displaced_volume(self) -> float | None:
-        """Volume of water displaced [m³], None when only the weight is known."""
+        """Return the volume of water displaced [m³], None when only the weight is known."""
         return volume_from_weights(self.mass, self.net_buoyancy)
 
     @model_validator(mode="after")
@@ -109,3 +123,58 @@ FLEXIBLE_KINDS = frozenset(kind for kind, model in KINDS.items() if issubclass(m
 
 RIGID_KINDS = frozenset(kind for kind, model in KINDS.items() if issubclass(model, Rigid))
 """Those of a fixed length, which may be clamped on a line too."""
+
+
+_DRAG_KEYS = frozenset(key for form in DRAG_FORMS for key in form) | {"kt"}
+
+
+def contradicted(kind: str, base: Set[str], override: Set[str]) -> frozenset[str]:
+    """Return the keys of a definition that an override of it makes void.
+
+    Parameters
+    ----------
+    kind : str
+        Of the definition.
+    base, override : set of str
+        The keys that the definition and the override give.
+
+    Notes
+    -----
+    ================ =========================== ==============================================
+    kind             override gives              dropped from the definition
+    ================ =========================== ==============================================
+    body             a drag in another form      its own form, with the `kt` that went with it
+    rigid            `buoyancy`                  `volume`
+    rigid            `mass` or `volume`, both    `buoyancy`, which then follows from them
+                     being known
+    cable            `weight` or `buoyancy`      the other of the two
+    cable            `density`, or `mass` where  `weight`, `buoyancy`, which then follow
+                     a density is known
+    cable            `stiffness`                 `elongation`, `permanent_elongation`
+    cable            `elongation`                `stiffness`
+    chain, anchor    `mass` or `density`         `weight`, which then follows
+    ================ =========================== ==============================================
+    """
+    known = base | override
+    void: set[str] = set()
+    if kind == "body":
+        for form in DRAG_FORMS:
+            if override & set(form) and not base & set(form):
+                void = set(_DRAG_KEYS)
+    if kind in RIGID_KINDS:
+        if "buoyancy" in override:
+            void.add("volume")
+        elif known >= {"mass", "volume"} and override & {"mass", "volume"}:
+            void.add("buoyancy")
+    elif kind == "cable":
+        if override & {"weight", "buoyancy"} or (
+            known >= {"mass", "density"} and override & {"mass", "density"}
+        ):
+            void |= {"weight", "buoyancy"}
+        if "stiffness" in override:
+            void |= {"elongation", "permanent_elongation"}
+        if "elongation" in override:
+            void.add("stiffness")
+    elif override & {"mass", "density"}:
+        void.add("weight")
+    return frozenset(void - override)

@@ -1,4 +1,4 @@
-"""YAML text to nodes, by the events of PyYAML.
+"""YAML text to a tree of nodes, each with its place and span, by the events of PyYAML.
 
 libyaml, where PyYAML has it, is some thirty times as fast as the parser in Python. A file means the
 same with both: what they read differently, and what libyaml refuses, is read by the one in Python.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Literal, NamedTuple
 
 import yaml
 from yaml.error import MarkedYAMLError, YAMLError
@@ -24,8 +24,6 @@ from yaml.events import (
     StreamEndEvent,
 )
 
-from calm.files.nodes import Composition, Kind, Node, Refusal
-
 _DEEPEST = 100
 """Mappings and lists within others; the time to read brackets grows with the square of this."""
 
@@ -33,9 +31,6 @@ _DEEPEST = 100
 _NO_BREAKS = str.maketrans(dict.fromkeys("\x85\u2028\u2029", " "))
 
 _TAG = re.compile(r"(?<![^\s\[{,])!")
-
-# The parser in Python takes these within brackets for the sign of a key.
-_INNER_QUESTION_MARK = re.compile(r"(?<=[^\s,\[\]{}])\?|(?<=[^\s,\[\]{}:?-]) +\?")
 
 # They would move the cursor of a terminal, turn the figures beside them round, or be no text.
 _CONTROL_CHARACTER = re.compile(
@@ -57,7 +52,9 @@ _PLAIN_TAGS = frozenset(
 
 
 class _Parser(yaml.SafeLoader):
-    """The parser in Python, to which a tab between values within brackets is a space."""
+    """Parse in Python, reading tabs and question marks within brackets as libyaml does."""
+
+    _within_plain = False
 
     def scan_to_next_token(self) -> None:
         super().scan_to_next_token()
@@ -65,13 +62,24 @@ class _Parser(yaml.SafeLoader):
             self.forward()
             super().scan_to_next_token()
 
+    def scan_plain(self) -> yaml.Token:
+        self._within_plain = True
+        token = super().scan_plain()
+        self._within_plain = False
+        return token
+
+    def peek(self, index: int = 0) -> str:
+        # Here a question mark would end a plain text; what is taken of it comes from the buffer.
+        sign = super().peek(index)
+        return "x" if self._within_plain and sign == "?" else sign
+
 
 class _TooDeep(Exception):
     """Too many collections stand within others."""
 
 
 def compose(text: str) -> Composition:
-    """The nodes of a YAML text, before which a byte order mark may stand."""
+    """Return the nodes of a YAML text, before which a byte order mark may stand."""
     start = int(text.startswith("\ufeff"))
     plain = text[start:] if text.isascii() else text[start:].translate(_NO_BREAKS)
     try:
@@ -82,42 +90,29 @@ def compose(text: str) -> Composition:
                 pass  # which the parser in Python says better
         return _composed_by_python(text, start, plain)
     except _TooDeep:
-        return Composition(None, (Refusal(0, 0, "is nested too deeply"),))
+        return Composition(None, (YamlMistake(0, 0, "is nested too deeply"),))
 
 
 def _is_read_differently(text: str) -> bool:
-    """Whether the parser in Python sees other tabs, byte order marks or tags in it."""
+    """Return whether the parser in Python sees other tabs, byte order marks or tags in it."""
     return "\t" in text or "\ufeff" in text or ("!" in text and _TAG.search(text) is not None)
 
 
 def _composed_by_python(text: str, start: int, plain: str) -> Composition:
-    # Messages would show a sign that cannot be printed by its number.
-    stand_in = next((sign for sign in map(chr, range(0x4E00, 0x9FFF)) if sign not in plain), "?")
-    masked = _INNER_QUESTION_MARK.sub(lambda found: found[0].replace("?", stand_in), plain)
-
-    def next_event() -> Event:
-        event = parser.get_event()
-        if isinstance(event, ScalarEvent):
-            event.value = event.value.replace(stand_in, "?")
-        return event
-
     try:
-        parser = _Parser(masked)
-        return _Reader(text, start, next_event).read()
+        return _Reader(text, start, _Parser(plain).get_event).read()
     except MarkedYAMLError as error:
-        refusals = _syntax_refusals(plain, error)
+        return Composition(None, tuple(_syntax_mistakes(plain, error)))
     except (YAMLError, ValueError, OverflowError) as error:
         first_line = str(error).partition("\n")[0]
-        refusals = [Refusal(0, 0, f"is not valid YAML: {first_line}")]
-    shown = [one._replace(message=one.message.replace(stand_in, "?")) for one in refusals]
-    return Composition(None, tuple(shown))
+        return Composition(None, (YamlMistake(0, 0, f"is not valid YAML: {first_line}"),))
 
 
-def _syntax_refusals(text: str, error: MarkedYAMLError) -> list[Refusal]:
-    """Tabs in the indentation are the usual cause and are all shown; else what the parser says."""
+def _syntax_mistakes(text: str, error: MarkedYAMLError) -> list[YamlMistake]:
+    """Show every tab in the indentation, the usual cause; else what the parser says."""
     if "\\t" in str(error.problem):
         found = [
-            Refusal(number, line.index("\t") + 1, "a tab; YAML is indented with spaces")
+            YamlMistake(number, line.index("\t") + 1, "a tab; YAML is indented with spaces")
             for number, line in enumerate(text.splitlines(), 1)
             if "\t" in line[: len(line) - len(line.lstrip())]
         ]
@@ -127,11 +122,11 @@ def _syntax_refusals(text: str, error: MarkedYAMLError) -> list[Refusal]:
     what = error.problem or error.context
     if error.context and error.context_mark and error.problem:
         what = f"{error.context} from line {error.context_mark.line + 1}, {what}"
-    return [Refusal(mark.line + 1, mark.column + 1, f"is not valid YAML: {what}")]
+    return [YamlMistake(mark.line + 1, mark.column + 1, f"is not valid YAML: {what}")]
 
 
 class _Reader:
-    """Turns the events of a text into nodes, noting what is not allowed.
+    """Turn the events of a text into nodes, noting what is not allowed.
 
     Parameters
     ----------
@@ -145,11 +140,11 @@ class _Reader:
         self._text = text
         self._start = start
         self._next = next_event
-        self._refusals: list[Refusal] = []
+        self._refusals: list[YamlMistake] = []
         self._anchors: set[str] = set()
 
     def read(self) -> Composition:
-        """The nodes of the only document."""
+        """Return the nodes of the only document."""
         self._next()  # the stream begins
         if isinstance(self._next(), StreamEndEvent):
             return Composition(None)
@@ -163,7 +158,7 @@ class _Reader:
         return Composition(root, tuple(self._refusals))
 
     def _node(self, event: NodeEvent, depth: int) -> Node:
-        """The node that an event begins, and all below it."""
+        """Return the node that an event begins, and all below it."""
         if depth > _DEEPEST:
             raise _TooDeep
         mark = event.start_mark
@@ -195,14 +190,14 @@ class _Reader:
         return Node(kind, start, end, *place, style, data, tuple(keys), tuple(children))
 
     def _items(self, depth: int) -> tuple[list[Node], CollectionEndEvent]:
-        """The items of a sequence, and what ends it."""
+        """Return the items of a sequence, and what ends it."""
         items = []
         while not isinstance(event := self._next(), CollectionEndEvent):
             items.append(self._node(event, depth))
         return items, event
 
     def _entries(self, keys: list[Node], depth: int) -> tuple[list[Node], CollectionEndEvent]:
-        """The values of a mapping, whose keys are put into `keys`, and what ends it."""
+        """Return the values of a mapping, whose keys are put into `keys`, and what ends it."""
         lines: dict[str, int] = {}
         values = []
         while not isinstance(event := self._next(), CollectionEndEvent):
@@ -243,7 +238,7 @@ class _Reader:
 
     def _refuse(self, event: NodeEvent, message: str) -> None:
         mark = event.start_mark
-        self._refusals.append(Refusal(mark.line + 1, mark.column + 1, message))
+        self._refusals.append(YamlMistake(mark.line + 1, mark.column + 1, message))
 
     def _skip(self, event: Event) -> None:
         """Pass over a node that an event begins."""
@@ -262,7 +257,7 @@ class _Reader:
             event = self._next()
 
     def _find_anchor(self, event: AliasEvent) -> None:
-        """Its mistake is reported where its anchor is, which there must be."""
+        """Raise where an alias has no anchor; where it has, the mistake is reported there."""
         if event.anchor not in self._anchors:
             problem = f"found undefined alias '{event.anchor}'"
             raise MarkedYAMLError(None, None, problem, event.start_mark)
@@ -272,3 +267,52 @@ def _shown(value: str) -> str:
     if value.isprintable():
         return value
     return _CONTROL_CHARACTER.sub("\N{REPLACEMENT CHARACTER}", value)
+
+
+Kind = Literal["mapping", "sequence", "scalar"]
+
+
+class Node(NamedTuple):
+    """Represent a value in a text.
+
+    Attributes
+    ----------
+    kind : "mapping", "sequence" or "scalar"
+    start, end : int
+        Its text is ``text[start:end]``; an empty value is right after its colon or dash.
+    line, column : int
+        Of its start, counted from 1.
+    style : str
+        Of a collection `block` or `flow`; of a scalar its first sign when quoted or a block.
+    data : dict, list, str or None
+        What it says, scalars as the text the person wrote. Shared: not to be changed.
+    keys : tuple of Node
+        Of a mapping, in the order of the file.
+    children : tuple of Node
+        The values of a mapping, or the items of a sequence.
+    """
+
+    kind: Kind
+    start: int
+    end: int
+    line: int
+    column: int
+    style: str
+    data: Any
+    keys: tuple[Node, ...] = ()
+    children: tuple[Node, ...] = ()
+
+
+class YamlMistake(NamedTuple):
+    """Hold what is no YAML, or YAML that these files do not allow; places count from 1."""
+
+    line: int
+    column: int
+    message: str
+
+
+class Composition(NamedTuple):
+    """Hold the nodes of a text (None: it is empty, or no YAML), and what in it is not allowed."""
+
+    root: Node | None
+    refusals: tuple[YamlMistake, ...] = ()

@@ -9,9 +9,21 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from pydantic import ValidationInfo, model_validator
+from pydantic import Field, ValidationInfo, model_validator
 
-from calm.files.fields import POSITIVE_FORCE, POSITIVE_LENGTH, TILT, Model, Quantity, Role, Text
+from calm.files.fields import (
+    COEFFICIENT,
+    DIAMETER,
+    DRAG,
+    LENGTH,
+    POSITIVE_FORCE,
+    POSITIVE_LENGTH,
+    TILT,
+    Model,
+    QuantityField,
+    Role,
+    Text,
+)
 from calm.units import KILOGRAM_FORCE
 
 CATALOGUE_DENSITY = 1025.0
@@ -29,8 +41,48 @@ DISAGREEMENT = 0.01
 IN_AIR: Mapping[str, object] = {"fluid": "air"}
 """Context of a definition that is read for use in air, where its mass is all that is needed."""
 
-MASS = Quantity("mass", at_least=0)
-DENSITY = Quantity("density", above=0)
+MASS = QuantityField("mass", at_least=0)
+DENSITY = QuantityField("density", above=0)
+
+
+Length = Annotated[
+    float,
+    LENGTH,
+    Field(
+        description="along the line, unstretched; `fit` cuts a cable to reach a depth",
+        examples=["480 m"],
+    ),
+]
+Diameter = Annotated[
+    float,
+    DIAMETER,
+    Field(description="e.g. 12 mm; of a chain, that of its bar", examples=["12 mm"]),
+]
+Mass = Annotated[
+    float | None,
+    MASS,
+    Field(description="in air (per metre of a cable or chain)", examples=["35 kg"]),
+]
+MaterialDensity = Annotated[
+    float | None,
+    DENSITY,
+    Field(description="of the water, or of the material of a component", examples=["1025 kg/m^3"]),
+]
+NormalCoefficient = Annotated[
+    float | None,
+    COEFFICIENT,
+    Field(description="drag coefficient across the axis", examples=[1.2]),
+]
+TangentialCoefficient = Annotated[
+    float | None,
+    COEFFICIENT,
+    Field(description="drag coefficient along the axis", examples=[0.01]),
+]
+TangentialDrag = Annotated[
+    float | None,
+    DRAG,
+    Field(description="drag along the axis at 1 m/s", examples=["9 N/(m/s)^2"]),
+]
 
 
 class Definition(Model):
@@ -42,24 +94,74 @@ class Definition(Model):
     """
 
     role: Role = "instrument"
-    name: Text | None = None
-    manufacturer: Text | None = None
-    part_number: Text | None = None
-    material: Text | None = None
-    note: Text | None = None
-    source: Text | None = None
-    sources: dict[str, Text] | None = None
-    searched: tuple[str, ...] | None = None
-    prefer: Text | None = None
-    date: Text | None = None
-    depth_rating: Annotated[float | None, POSITIVE_LENGTH] = None
-    working_load: Annotated[float | None, POSITIVE_FORCE] = None
-    breaking_load: Annotated[float | None, POSITIVE_FORCE] = None
-    opening_load: Annotated[float | None, POSITIVE_FORCE] = None
-    grip: Annotated[float | None, POSITIVE_FORCE] = None
-    max_tilt: Annotated[float | None, TILT] = None
-    warn_tilt: Annotated[float | None, TILT] = None
-    slack: Literal["allowed"] | None = None
+    name: Text | None = Field(
+        default=None, description="what people call it", examples=["Shelf edge 2026"]
+    )
+    manufacturer: Text | None = Field(
+        default=None, description="who makes it", examples=["the maker"]
+    )
+    part_number: Text | None = Field(default=None, description="the maker's", examples=["1250-A"])
+    material: Text | None = Field(
+        default=None, description="what it is made of", examples=["steel"]
+    )
+    note: Text | None = Field(
+        default=None,
+        description="anything worth knowing",
+        examples=["galvanised; look at it after each cruise"],
+    )
+    source: Text | None = Field(
+        default=None,
+        description="where the figures come from",
+        examples=["data sheet of the maker, 2026"],
+    )
+    sources: dict[str, Text] | None = Field(
+        default=None,
+        description="by field, where a figure comes from that is not of `source`",
+        examples=[{"breaking_load": "test of 2025"}],
+    )
+    searched: tuple[str, ...] | None = Field(
+        default=None,
+        description="fields that no source prints, though they were looked for",
+        examples=[["breaking_load"]],
+    )
+    prefer: Text | None = Field(
+        default=None,
+        description="id of the definition of the same thing to use in place of this one",
+        examples=["sbe37"],
+    )
+    date: Text | None = Field(
+        default=None, description="day, e.g. 2026-11-20", examples=["2026-11-20"]
+    )
+    depth_rating: Annotated[float | None, POSITIVE_LENGTH] = Field(
+        default=None, description="deepest it may be used", examples=["2000 m"]
+    )
+    working_load: Annotated[float | None, POSITIVE_FORCE] = Field(
+        default=None, description="load it may carry in use, e.g. 20 kN", examples=["20 kN"]
+    )
+    breaking_load: Annotated[float | None, POSITIVE_FORCE] = Field(
+        default=None, description="load at which it breaks, e.g. 40 kN", examples=["40 kN"]
+    )
+    opening_load: Annotated[float | None, POSITIVE_FORCE] = Field(
+        default=None,
+        description="of a release, the greatest under which it opens, e.g. 10 kN",
+        examples=["10 kN"],
+    )
+    grip: Annotated[float | None, POSITIVE_FORCE] = Field(
+        default=None,
+        description="pull at which its clamp slips along the line, e.g. 1 kN",
+        examples=["1 kN"],
+    )
+    max_tilt: Annotated[float | None, TILT] = Field(
+        default=None, description="tilt beyond which it is not to be trusted", examples=["20 deg"]
+    )
+    warn_tilt: Annotated[float | None, TILT] = Field(
+        default=None, description="tilt to be warned of", examples=["15 deg"]
+    )
+    slack: Literal["allowed"] | None = Field(
+        default=None,
+        description="`allowed` exempts the piece from `minimum_tension`",
+        examples=["allowed"],
+    )
 
     @model_validator(mode="after")
     def _works_below_breaking(self) -> Definition:
@@ -72,19 +174,19 @@ class Definition(Model):
 
 
 def is_in_air(info: ValidationInfo) -> bool:
-    """Whether the definition that is being validated is read for use in air."""
+    """Return whether the definition that is being validated is read for use in air."""
     return info.context == IN_AIR
 
 
 def volume_from_weights(mass: float | None, net_buoyancy: float) -> float | None:
-    """Volume of water displaced [m³, per metre where they are], None where the mass is unknown."""
+    """Return the volume of water displaced [m³, or per metre], None where the mass is unknown."""
     if mass is None:
         return None
     return (mass + net_buoyancy / STANDARD_GRAVITY) / CATALOGUE_DENSITY
 
 
 def refuse_weight_above_mass(mass: float | None, net_buoyancy: float) -> None:
-    """A thing cannot weigh more in water than in air."""
+    """Refuse what weighs more in water than in air."""
     if mass is not None and -net_buoyancy > mass * STANDARD_GRAVITY * (1 + DISAGREEMENT):
         raise ValueError(
             f"weighs more in water ({-net_buoyancy:.5g} N) than its mass of {mass:g} kg does in air"

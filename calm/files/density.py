@@ -5,26 +5,24 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated
 
-from pydantic import Discriminator, Tag
+from pydantic import Discriminator, Field, Tag, ValidationError
 
 from calm.errors import Problem
 from calm.files.definition import CATALOGUE_DENSITY, DENSITY
-from calm.files.explain import about_quantity
-from calm.files.fields import Model, Quantity
-from calm.files.section import Section
-from calm.files.tables import (
+from calm.files.fields import Model, QuantityField, Text
+from calm.files.yaml_document import SourceMapping
+from calm.records.profile_tables import (
     SALINITY,
     TEMPERATURE,
     WATER_DENSITY,
     DepthTable,
+    Report,
     SeaWater,
-    Table,
     read_profile,
     read_water,
-    report_at,
-    table_of,
 )
-from calm.units import QuantityError
+from calm.suggestions import about_quantity
+from calm.units import QuantityError, QuantityRange
 
 USUAL_DENSITY = {"water": CATALOGUE_DENSITY, "air": 1.225}
 """Where a file gives none [kg/m³]; that of air is the standard atmosphere's at sea level."""
@@ -40,43 +38,66 @@ def _table_or_constant(value: object) -> str:
     return "table" if isinstance(value, dict) else "constant"
 
 
+class TableKeys(Model):
+    """Columns, each a name and its unit, and rows of values."""
+
+    columns: tuple[Text, ...] = Field(
+        description="each a name and its unit: depth m, speed m/s, toward deg; or u m/s, v m/s, "
+        "w m/s",
+        examples=[["depth m", "speed m/s", "toward deg"]],
+    )
+    rows: tuple[tuple[Text | None, ...], ...] = Field(
+        description="values, top to bottom", examples=[[[0, 0.8, 90], [1100, 0.05, 60]]]
+    )
+
+
 class SeaWaterKeys(Model):
     """Temperature [°C] and practical salinity, each a constant or a table by depth."""
 
     temperature: Annotated[
-        Annotated[float, TEMPERATURE, Tag("constant")] | Annotated[Table, Tag("table")],
+        Annotated[float, QuantityField(**vars(TEMPERATURE)), Tag("constant")]
+        | Annotated[TableKeys, Tag("table")],
         Discriminator(_table_or_constant),
-    ]
+    ] = Field(description="in situ, a constant or a table", examples=["10 degC"])
     salinity: Annotated[
-        Annotated[float, SALINITY, Tag("constant")] | Annotated[Table, Tag("table")],
+        Annotated[float, QuantityField(**vars(SALINITY)), Tag("constant")]
+        | Annotated[TableKeys, Tag("table")],
         Discriminator(_table_or_constant),
-    ]
+    ] = Field(description="practical, a constant or a table", examples=[35])
 
 
 Density = Annotated[
     Annotated[float, DENSITY, Tag("constant")]
-    | Annotated[Table, Tag("table")]
+    | Annotated[TableKeys, Tag("table")]
     | Annotated[SeaWaterKeys, Tag("sea water")],
     Discriminator(_form),
 ]
 """The value of `density:` as a person writes it."""
 
 
-_RANGES: Mapping[str, Quantity] = {"water": WATER_DENSITY, "air": DENSITY}
+_RANGES: Mapping[str, QuantityRange] = {"water": WATER_DENSITY, "air": DENSITY}
 _FALL = 0.1
 """Water that gets lighter by more than this with depth turns over [kg/m³]."""
 
 
 def read_density(
-    given: float | Table | SeaWaterKeys,
+    given: float | TableKeys | SeaWaterKeys,
     fluid: str,
-    section: Section,
+    section: SourceMapping,
     problems: list[Problem],
     notices: list[str],
 ) -> float | DepthTable | SeaWater | None:
-    """The density of a section's `density:`; None, with its mistakes reported, when it has any."""
+    """Read the density of an environment; None where it has mistakes.
+
+    Parameters
+    ----------
+    given : as the model has it
+    fluid : "water" or "air"
+    section : the environment
+    problems, notices : what is wrong, and worth knowing, is added to them
+    """
     density = _RANGES[fluid]
-    if isinstance(given, Table):
+    if isinstance(given, TableKeys):
         report = report_at(section, "density")
         table = read_water(given.columns, given.rows, report, problems, density)
         if isinstance(table, DepthTable):
@@ -94,8 +115,21 @@ def read_density(
     return SeaWater(temperature, salinity) if temperature and salinity else None
 
 
+def table_of(value: object) -> TableKeys | None:
+    """Return the table that a value of a file is, None where it is none."""
+    try:
+        return TableKeys.model_validate(value)
+    except ValidationError:
+        return None
+
+
+def report_at(section: SourceMapping, *place: str) -> Report:
+    """Return what makes problems at places below a key of a mapping, or a key under that."""
+    return lambda location, message: section.problem((*place, *location), message)
+
+
 def _falls(table: DepthTable) -> list[str]:
-    """A notice where the density falls with depth."""
+    """Return a notice where the density falls with depth."""
     greatest, depth = table.value[0], table.depth[0]
     for below, value in zip(table.depth, table.value, strict=True):
         if value < greatest - _FALL:
@@ -108,7 +142,7 @@ def _falls(table: DepthTable) -> list[str]:
     return []
 
 
-def check_density(section: Section, problems: list[Problem]) -> None:
+def check_density(section: SourceMapping, problems: list[Problem]) -> None:
     """Report the mistakes in the tables below `density:`, whatever else is wrong with it."""
     given = section.data.get("density")
     density = _RANGES["air" if section.data.get("fluid") == "air" else "water"]
@@ -122,9 +156,9 @@ def check_density(section: Section, problems: list[Problem]) -> None:
 
 
 def _profile(
-    name: str, given: float | Table, section: Section, problems: list[Problem]
+    name: str, given: float | TableKeys, section: SourceMapping, problems: list[Problem]
 ) -> DepthTable | None:
-    if isinstance(given, Table):
+    if isinstance(given, TableKeys):
         report = report_at(section, "density", name)
         return read_profile(name, given.columns, given.rows, report, problems)
     return DepthTable((0.0,), (given,))

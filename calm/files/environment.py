@@ -8,44 +8,54 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Discriminator, Tag, model_validator
+from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from calm.errors import InputError, Problem
-from calm.files.current_terms import DEEPEST, Terms, too_fast
 from calm.files.definition import DENSITY
-from calm.files.density import USUAL_DENSITY, Density, check_density, read_density
-from calm.files.explain import shown, validate
-from calm.files.fields import POSITIVE_LENGTH, Model, Quantity, Text
-from calm.files.section import Section
-from calm.files.tables import (
+from calm.files.density import (
+    USUAL_DENSITY,
+    Density,
+    TableKeys,
+    check_density,
+    read_density,
+    report_at,
+    table_of,
+)
+from calm.files.fields import POSITIVE_LENGTH, Model, QuantityField, Text
+from calm.files.mistakes import validate
+from calm.files.yaml_document import SourceMapping
+from calm.records.current_terms import DEEPEST, Terms, too_fast
+from calm.records.profile_tables import (
     DIRECTION,
     CurrentTable,
     DepthTable,
     SeaWater,
-    Table,
     components,
     read_current,
-    report_at,
-    table_of,
 )
-from calm.files.times import TimeChoiceError
+from calm.records.times import TimeChoiceError
+from calm.suggestions import shown
 from calm.units import QuantityError
 
-_SPEED = Quantity("speed", at_least=0)
-_WATER_DEPTH = Quantity("length", above=0, at_most=DEEPEST)
+_SPEED = QuantityField("speed", at_least=0)
+_WATER_DEPTH = QuantityField("length", above=0, at_most=DEEPEST)
 _MAXIMUM_SPEED = 5.0
 
 
 class Position(Model):
     """Where the mooring stands [degrees]."""
 
-    latitude: Annotated[float, Quantity("angle", at_least=-90, at_most=90)]
-    longitude: Annotated[float, Quantity("angle", at_least=-360, at_most=360)]
+    latitude: Annotated[float, QuantityField("angle", at_least=-90, at_most=90)] = Field(
+        description="north positive", examples=["48.3 deg"]
+    )
+    longitude: Annotated[float, QuantityField("angle", at_least=-360, at_most=360)] = Field(
+        description="east positive", examples=["-5.2 deg"]
+    )
 
 
 @dataclass(frozen=True)
 class Environment:
-    """What the line stands in, or is towed through.
+    """Hold what the line stands in, or is towed through.
 
     Attributes
     ----------
@@ -90,9 +100,17 @@ class Fouling(Model):
     Without a density [kg/m³] it is as heavy as water.
     """
 
-    depth: Annotated[float, POSITIVE_LENGTH]
-    thickness: Annotated[float, Quantity("length", usual_unit="mm", above=0)]
-    density: Annotated[float | None, DENSITY] = None
+    depth: Annotated[float, POSITIVE_LENGTH] = Field(
+        description="how far down it grows", examples=["50 m"]
+    )
+    thickness: Annotated[float, QuantityField("length", usual_unit="mm", above=0)] = Field(
+        description="of the growth all around, e.g. 20 mm", examples=["20 mm"]
+    )
+    density: Annotated[float | None, DENSITY] = Field(
+        default=None,
+        description="of the growth; as heavy as water when absent",
+        examples=["1025 kg/m^3"],
+    )
 
 
 class Wind(Model):
@@ -102,10 +120,20 @@ class Wind(Model):
     below ever less, linearly, down to `drift_depth` [m]: the seabed where it is None.
     """
 
-    speed: Annotated[float, _SPEED]
-    toward: Annotated[float, DIRECTION]
-    surface_drift: Annotated[float, Quantity("number", at_least=0, at_most=0.1)] = 0.0
-    drift_depth: Annotated[float | None, POSITIVE_LENGTH] = None
+    speed: Annotated[float, _SPEED] = Field(
+        description="of the wind, at the height of the float", examples=["12 m/s"]
+    )
+    toward: Annotated[float, QuantityField(**vars(DIRECTION))] = Field(
+        description="where it blows to, clockwise from north", examples=["90 deg"]
+    )
+    surface_drift: Annotated[float, QuantityField("number", at_least=0, at_most=0.1)] = Field(
+        default=0.0,
+        description="share of the wind's speed that the surface water drifts at",
+        examples=["2 %"],
+    )
+    drift_depth: Annotated[float | None, POSITIVE_LENGTH] = Field(
+        default=None, description="how deep the water that the wind drives goes", examples=["50 m"]
+    )
 
     @model_validator(mode="after")
     def _depth_of_a_drift(self) -> Wind:
@@ -117,9 +145,14 @@ class Wind(Model):
 class UniformCurrent(Model):
     """The same current at all depths [m/s, degrees]."""
 
-    speed: Annotated[float, _SPEED]
-    toward: Annotated[float, DIRECTION]
-    w: Annotated[float, Quantity("speed")] = 0.0
+    speed: Annotated[float, _SPEED] = Field(description="of the water", examples=["0.5 m/s"])
+    toward: Annotated[float, QuantityField(**vars(DIRECTION))] = Field(
+        description="direction it flows or goes to, clockwise from north, e.g. 90 deg",
+        examples=["90 deg"],
+    )
+    w: Annotated[float, QuantityField("speed")] = Field(
+        default=0.0, description="vertical speed, positive up", examples=["0.01 m/s"]
+    )
 
 
 class CurrentFile(Model):
@@ -128,9 +161,21 @@ class CurrentFile(Model):
     `declination` [degrees], positive to the east, turns what the file says is magnetic.
     """
 
-    file: Text
-    time: Text | None = None
-    declination: Annotated[float | None, Quantity("angle", at_least=-180, at_most=180)] = None
+    file: Text = Field(
+        description="CSV or CF NetCDF, beside the mooring file", examples=["adcp.nc"]
+    )
+    time: Text | None = Field(
+        default=None,
+        description="of the profile wanted, e.g. 2026-03-01T06:00",
+        examples=["2026-03-01T06:00"],
+    )
+    declination: Annotated[float | None, QuantityField("angle", at_least=-180, at_most=180)] = (
+        Field(
+            default=None,
+            description="turns directions that a file gives from magnetic north; east positive",
+            examples=["12.5 deg"],
+        )
+    )
 
 
 def _current_form(value: object) -> str:
@@ -159,31 +204,63 @@ def _two_depths(value: object) -> object:
 class TowEnvironmentKeys(Model):
     """The keys of `environment:` as a person writes them for a tow."""
 
-    fluid: Literal["water", "air"] = "water"
-    depth: Annotated[float | None, _WATER_DEPTH] = None
-    density: Density = USUAL_DENSITY["water"]
-    gravity: Annotated[float | None, Quantity("acceleration", above=0)] = None
+    fluid: Literal["water", "air"] = Field(
+        default="water", description="what the line is in: a tow may be in air", examples=["water"]
+    )
+    depth: Annotated[float | None, _WATER_DEPTH] = Field(
+        default=None, description="of the water, e.g. 1100 m", examples=["1100 m"]
+    )
+    density: Density = Field(
+        default=USUAL_DENSITY["water"],
+        description="of the water: one, a table, or by temperature and salinity",
+        examples=["1025 kg/m^3"],
+    )
+    gravity: Annotated[float | None, QuantityField("acceleration", above=0)] = Field(
+        default=None, description="acceleration", examples=["9.81 m/s^2"]
+    )
     current: Annotated[
-        Annotated[Table, Tag("table")]
+        Annotated[TableKeys, Tag("table")]
         | Annotated[CurrentFile, Tag("file")]
         | Annotated[UniformCurrent, Tag("uniform")],
         Discriminator(_current_form),
-    ] = UniformCurrent.model_construct(speed=0.0, toward=0.0, w=0.0)
-    wind: Wind | None = None
+    ] = Field(
+        default=UniformCurrent.model_construct(speed=0.0, toward=0.0, w=0.0),
+        description="a table, one speed for all depths, or a file",
+        examples=[{"speed": "0.5 m/s", "toward": "90 deg"}],
+    )
+    wind: Wind | None = Field(
+        default=None,
+        description="over the water",
+        examples=[{"speed": "12 m/s", "toward": "90 deg"}],
+    )
 
 
 class EnvironmentKeys(TowEnvironmentKeys):
     """The same for a mooring, which stands in water of a given depth."""
 
-    fluid: Annotated[Literal["water"], BeforeValidator(_water_only)] = "water"
-    depth: Annotated[float, _WATER_DEPTH]
-    maximum_speed: Annotated[float, Quantity("speed", above=0)] = _MAXIMUM_SPEED
-    depth_range: Annotated[_Levels | None, BeforeValidator(_two_depths)] = None
-    fouling: Fouling | None = None
+    fluid: Annotated[Literal["water"], BeforeValidator(_water_only)] = Field(
+        default="water", description="what the line is in: a tow may be in air", examples=["water"]
+    )
+    depth: Annotated[float, _WATER_DEPTH] = Field(
+        description="of the water, e.g. 1100 m", examples=["1100 m"]
+    )
+    maximum_speed: Annotated[float, QuantityField("speed", above=0)] = Field(
+        default=_MAXIMUM_SPEED, description="a faster current is an error", examples=["3 m/s"]
+    )
+    depth_range: Annotated[_Levels | None, BeforeValidator(_two_depths)] = Field(
+        default=None,
+        description="water depth at low and at high water, e.g. [98 m, 104 m]",
+        examples=[["98 m", "104 m"]],
+    )
+    fouling: Fouling | None = Field(
+        default=None,
+        description="growth on everything from the surface down, for the design check",
+        examples=[{"depth": "50 m", "thickness": "20 mm"}],
+    )
 
 
 def read_environment(
-    section: Section,
+    section: SourceMapping,
     name: str | None,
     problems: list[Problem],
     notices: list[str],
@@ -192,11 +269,16 @@ def read_environment(
     position: Position | None = None,
     open_files: bool = True,
 ) -> Environment | None:
-    """The environment of a section; its mistakes are added to `problems`, and None returned.
+    """Read the environment of a mapping; None, with its mistakes in `problems`, if it has any.
 
-    A tow may be in air and need not give the water's depth. A current file is looked for beside
-    the file that names it; `position` chooses a column of it. With `open_files` false it is not
-    read, and None is returned.
+    Parameters
+    ----------
+    section : the environment
+    name : of the variant or file it is from; None for the file's own
+    problems, notices : what is wrong, and worth knowing, is added to them
+    towed : it may be air, and the water's depth need not be known
+    position : chooses a column of a current file, which is looked for beside its mooring file
+    open_files : read current files; where not, None is returned
     """
     keys = validate(TowEnvironmentKeys if towed else EnvironmentKeys, section, problems)
     if keys is None:
@@ -234,8 +316,10 @@ def read_environment(
     )
 
 
-def _check_depth_range(keys: TowEnvironmentKeys, section: Section, problems: list[Problem]) -> None:
-    """Low water, then high water, and the depth between them."""
+def _check_depth_range(
+    keys: TowEnvironmentKeys, section: SourceMapping, problems: list[Problem]
+) -> None:
+    """Check that low water comes first, then high water, with the depth between them."""
     depth, levels = keys.depth, getattr(keys, "depth_range", None)
     if levels is None or depth is None:
         return
@@ -248,8 +332,8 @@ def _check_depth_range(keys: TowEnvironmentKeys, section: Section, problems: lis
         problems.append(section.problem(("depth_range",), message, key=True))
 
 
-def _check_wind(keys: TowEnvironmentKeys, section: Section, problems: list[Problem]) -> None:
-    """Wind blows over water, and drives it down to a known depth."""
+def _check_wind(keys: TowEnvironmentKeys, section: SourceMapping, problems: list[Problem]) -> None:
+    """Check that wind blows over water, and drives it down to a known depth."""
     if keys.wind is None:
         return
     if keys.fluid == "air":
@@ -262,7 +346,7 @@ def _check_wind(keys: TowEnvironmentKeys, section: Section, problems: list[Probl
 
 def _current(
     keys: TowEnvironmentKeys,
-    section: Section,
+    section: SourceMapping,
     problems: list[Problem],
     notices: list[str],
     open_files: bool,
@@ -271,7 +355,7 @@ def _current(
     current = keys.current
     report = report_at(section, "current")
     maximum_speed = getattr(keys, "maximum_speed", math.inf)
-    if isinstance(current, Table):
+    if isinstance(current, TableKeys):
         terms = Terms(maximum_speed=maximum_speed)
         return read_current(current.columns, current.rows, report, problems, terms)
     if isinstance(current, UniformCurrent):
@@ -293,7 +377,7 @@ def _current(
         maximum_speed=maximum_speed,
     )
     try:
-        from calm.files.current_file import read_current_file
+        from calm.records.current_file import read_current_file
 
         table, remarks = read_current_file(path, current.time, terms)
     except TimeChoiceError as error:
@@ -306,7 +390,7 @@ def _current(
     return None
 
 
-def _check_tables(section: Section, problems: list[Problem]) -> None:
+def _check_tables(section: SourceMapping, problems: list[Problem]) -> None:
     """Look into the tables although other keys are wrong, to report all mistakes at once."""
     check_density(section, problems)
     table = table_of(section.data.get("current"))

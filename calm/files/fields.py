@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, GetJsonSchemaHandler, WithJsonSchema
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    GetJsonSchemaHandler,
+    WithJsonSchema,
+)
+from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
-from calm.units import DIMENSIONS, QuantityError, parse_quantity
+from calm.units import DIMENSIONS, QuantityRange
 
 
 class Model(BaseModel):
@@ -19,28 +26,8 @@ class Model(BaseModel):
 
 
 @dataclass(frozen=True)
-class Quantity:
-    """Annotation of a field that holds a quantity: its dimension and limits (SI, degrees)."""
-
-    dimension: str
-    usual_unit: str | None = None
-    above: float = -math.inf
-    at_least: float = -math.inf
-    at_most: float = math.inf
-
-    def read(self, text: object) -> float:
-        """The SI value of a text with a unit; QuantityError when it is none or out of limits."""
-        if text is None:
-            raise QuantityError("has no value")
-        value = parse_quantity(text, self.dimension, usual_unit=self.usual_unit)
-        unit = DIMENSIONS[self.dimension].unit
-        if value <= self.above:
-            raise QuantityError(f"must be more than {self.above:g} {unit}".rstrip())
-        if value < self.at_least:
-            raise QuantityError(f"must be at least {self.at_least:g} {unit}".rstrip())
-        if value > self.at_most:
-            raise QuantityError(f"must be at most {self.at_most:g} {unit}".rstrip())
-        return value
+class QuantityField(QuantityRange):
+    """Annotate a field that holds a quantity within limits."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(self.read)
@@ -51,7 +38,7 @@ class Quantity:
         return self.json_schema()
 
     def json_schema(self) -> dict[str, Any]:
-        """The JSON Schema of the text, without the limits."""
+        """Return the JSON Schema of the text, without the limits."""
         kind = DIMENSIONS[self.dimension]
         number = r"^\s*[-+]?[0-9.]+([eE][-+]?[0-9]+)?(\s*[0-9]*/[0-9]+)?"
         if not kind.unit:
@@ -71,12 +58,20 @@ def _as_text(value: object) -> object:
 Text = Annotated[str, BeforeValidator(_as_text), WithJsonSchema({"type": ["string", "number"]})]
 """Text; a bare number is taken as the person wrote it."""
 
-POSITIVE_LENGTH = Quantity("length", above=0)
-DIAMETER = Quantity("length", usual_unit="mm", above=0)
-LENGTH = Quantity("length", at_least=0)
-POSITIVE_FORCE = Quantity("force", usual_unit="kN", above=0)
-COEFFICIENT = Quantity("number", at_least=0)
-DRAG = Quantity("drag", at_least=0)
-TILT = Quantity("angle", above=0, at_most=180)
+POSITIVE_LENGTH = QuantityField("length", above=0)
+DIAMETER = QuantityField("length", usual_unit="mm", above=0)
+LENGTH = QuantityField("length", at_least=0)
+POSITIVE_FORCE = QuantityField("force", usual_unit="kN", above=0)
+COEFFICIENT = QuantityField("number", at_least=0)
+DRAG = QuantityField("drag", at_least=0)
+TILT = QuantityField("angle", above=0, at_most=180)
 
-Role = Literal["float", "instrument", "release", "connector", "line", "anchor"]
+Role = Annotated[
+    Literal["float", "instrument", "release", "connector", "line", "anchor"],
+    Field(description="what the piece is for", examples=["instrument"]),
+]
+
+
+def quantity_of(field: FieldInfo) -> QuantityField | None:
+    """Return the quantity that a field of a model holds, None where it holds none."""
+    return next((one for one in field.metadata if isinstance(one, QuantityField)), None)

@@ -4,23 +4,26 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, ValidationInfo, model_validator
+from pydantic import AfterValidator, Field, ValidationInfo, model_validator
 
 from calm.files.definition import (
     CATALOGUE_DENSITY,
-    DENSITY,
     STANDARD_GRAVITY,
     STEEL_DENSITY,
     Definition,
+    Diameter,
+    MaterialDensity,
+    NormalCoefficient,
+    TangentialCoefficient,
     is_in_air,
     refuse_weight_above_mass,
     volume_from_weights,
 )
-from calm.files.fields import COEFFICIENT, DIAMETER, POSITIVE_FORCE, Quantity, Role
+from calm.files.fields import POSITIVE_FORCE, QuantityField, Role
 from calm.physics.stretch import ElongationCurve
 
-_LOAD = Quantity("number", at_least=0, at_most=1)
-_STRAIN = Quantity("number", at_least=0)
+_LOAD = QuantityField("number", at_least=0, at_most=1)
+_STRAIN = QuantityField("number", at_least=0)
 
 Points = tuple[tuple[float, float], ...]
 
@@ -40,31 +43,63 @@ Elongation = Annotated[
 """Load over breaking load, and the strain under it: rows by growing load."""
 
 
+WeightPerMetre = Annotated[
+    float | None,
+    QuantityField("force per length"),
+    Field(description="in sea water of 1025 kg/m^3 (per metre of a cable or chain)"),
+]
+MassPerMetre = Annotated[
+    float | None,
+    QuantityField("mass per length", at_least=0),
+    Field(description="in air (per metre of a cable or chain)"),
+]
+
+
 class Flexible(Definition):
     """A cable or chain: all its figures are per metre."""
 
     role: Role = "line"
-    diameter: Annotated[float, DIAMETER]
-    weight: Annotated[float | None, Quantity("force per length")] = None
-    mass: Annotated[float | None, Quantity("mass per length", at_least=0)] = None
-    density: Annotated[float | None, DENSITY] = None
-    cn: Annotated[float | None, COEFFICIENT] = None
-    ct: Annotated[float | None, COEFFICIENT] = None
-    stiffness: Annotated[float | None, POSITIVE_FORCE] = None
+    diameter: Diameter
+    weight: WeightPerMetre = Field(default=None, examples=["2.1 N/m"])
+    mass: MassPerMetre = Field(default=None, examples=["0.2 kg/m"])
+    density: MaterialDensity = None
+    cn: NormalCoefficient = None
+    ct: TangentialCoefficient = None
+    stiffness: Annotated[float | None, POSITIVE_FORCE] = Field(
+        default=None,
+        description="EA, the force that would double the length, e.g. 4 MN",
+        examples=["4 MN"],
+    )
 
 
 class Cable(Flexible):
     """A rope, wire or electrical cable."""
 
-    kind: Literal["cable"]
-    buoyancy: Annotated[float | None, Quantity("force per length")] = None
-    finish: Literal["smooth", "rough", "very-rough"] | None = None
-    elongation: Elongation | None = None
-    permanent_elongation: Annotated[float | None, Quantity("number", at_least=0, at_most=1)] = None
+    kind: Literal["cable"] = Field(description="which kind of component it is")
+    buoyancy: Annotated[float | None, QuantityField("force per length")] = Field(
+        default=None,
+        description="net force in sea water of 1025 kg/m^3, positive up (per metre of a cable)",
+        examples=["0.1 N/m"],
+    )
+    finish: Literal["smooth", "rough", "very-rough"] | None = Field(
+        default=None, description="of the surface of a cable", examples=["rough"]
+    )
+    elongation: Elongation | None = Field(
+        default=None,
+        description="rows of load over breaking load and strain, e.g. [[0.1, 0.03], [0.3, 0.08]]",
+        examples=[[[0.05, 0.05], [0.1, 0.08], [0.2, 0.12]]],
+    )
+    permanent_elongation: Annotated[
+        float | None, QuantityField("number", at_least=0, at_most=1)
+    ] = Field(
+        default=None,
+        description="of a rope that has been loaded, at every tension, e.g. 4 %",
+        examples=["4 %"],
+    )
 
     @property
     def net_buoyancy(self) -> float:
-        """Net force in water of a metre, positive up; of a mass alone, that in air [N/m]."""
+        """Return the net force of a metre in water, positive up; of a mass alone, in air [N/m]."""
         if self.buoyancy is not None:
             return self.buoyancy
         if self.weight is not None:
@@ -75,7 +110,7 @@ class Cable(Flexible):
 
     @property
     def displaced_volume(self) -> float | None:
-        """Volume displaced by a metre [m³/m], None when the mass is unknown, or is all."""
+        """Return the volume displaced by a metre [m³/m], None if the mass is unknown, or is all."""
         if self._gives_no_force and self.density is None:
             return None
         return volume_from_weights(self.mass, self.net_buoyancy)
@@ -109,7 +144,7 @@ class Cable(Flexible):
 
 
 def strain_under(component: Flexible, load: float) -> float:
-    """Strain of a cable or chain under a load ≥ 0 [N], as the solver has it [-].
+    """Return the strain of a cable or chain under a load ≥ 0 [N], as the solver has it [-].
 
     By its `elongation`, else load / `stiffness`; 0 of one that gives neither.
     """
@@ -125,11 +160,13 @@ def strain_under(component: Flexible, load: float) -> float:
 class Chain(Flexible):
     """A chain; `diameter` is that of its bar."""
 
-    kind: Literal["chain"]
+    kind: Literal["chain"] = Field(description="which kind of component it is")
+    weight: WeightPerMetre = Field(default=None, examples=["27 N/m"])
+    mass: MassPerMetre = Field(default=None, examples=["3.2 kg/m"])
 
     @property
     def net_buoyancy(self) -> float:
-        """Net force in water of a metre, positive up [N/m]."""
+        """Return the net force in water of a metre, positive up [N/m]."""
         if self.weight is not None:
             return -self.weight
         mass = 19.9e3 * self.diameter**2 if self.mass is None else self.mass
@@ -137,7 +174,7 @@ class Chain(Flexible):
 
     @property
     def displaced_volume(self) -> float | None:
-        """Volume of water displaced by a metre [m³/m], None when only its weight is known."""
+        """Return the volume displaced by a metre [m³/m], None when only its weight is known."""
         if self.mass is not None or self.weight is not None:
             return volume_from_weights(self.mass, self.net_buoyancy)
         return 19.9e3 * self.diameter**2 / (self.density or STEEL_DENSITY)

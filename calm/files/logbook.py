@@ -8,12 +8,13 @@ from typing import Annotated, Any, TypeGuard
 from pydantic import AfterValidator, Field, WithJsonSchema
 
 from calm.errors import Problem
-from calm.files.accept import Day
+from calm.files.check_limits import Day
 from calm.files.environment import Position
-from calm.files.explain import shown, unknown, validate
-from calm.files.fields import POSITIVE_LENGTH, Model, Quantity, Text
-from calm.files.section import Section
-from calm.files.times import TimeChoiceError, parse_time
+from calm.files.fields import POSITIVE_LENGTH, Model, QuantityField, Text
+from calm.files.mistakes import validate
+from calm.files.yaml_document import SourceMapping
+from calm.records.times import TimeChoiceError, parse_time
+from calm.suggestions import shown, unknown
 
 
 def _moment(text: str) -> str:
@@ -35,40 +36,60 @@ Moment = Annotated[
 class Revision(Model):
     """What a revision of the document changed."""
 
-    revision: Text
-    date: Day | None = None
-    by: Text | None = None
-    change: Text | None = None
+    revision: Text = Field(description="letter or number", examples=["B"])
+    date: Day | None = Field(
+        default=None, description="day, e.g. 2026-11-20", examples=["2026-11-20"]
+    )
+    by: Text | None = Field(default=None, description="who made it", examples=["A. Martin"])
+    change: Text | None = Field(
+        default=None, description="what is new", examples=["wire 20 m longer"]
+    )
 
 
 class DocumentKeys(Model):
     """What the title block of a drawing says."""
 
-    id: Text | None = None
-    revision: Text | None = None
-    date: Day | None = None
-    author: Text | None = None
-    checked: Text | None = None
-    approved: Text | None = None
-    project: Text | None = None
-    ship: Text | None = None
-    cruise: Text | None = None
-    history: tuple[Revision, ...] = ()
+    id: Text | None = Field(default=None, description="of the drawing", examples=["M-2026-17"])
+    revision: Text | None = Field(default=None, description="letter or number", examples=["B"])
+    date: Day | None = Field(
+        default=None, description="day, e.g. 2026-11-20", examples=["2026-11-20"]
+    )
+    author: Text | None = Field(default=None, description="who drew it", examples=["A. Martin"])
+    checked: Text | None = Field(default=None, description="by whom", examples=["B. Li"])
+    approved: Text | None = Field(default=None, description="by whom", examples=["C. Okafor"])
+    project: Text | None = Field(
+        default=None, description="what it belongs to", examples=["Slope currents"]
+    )
+    ship: Text | None = Field(
+        default=None, description="the ship that deploys the mooring", examples=["RV Example"]
+    )
+    cruise: Text | None = Field(default=None, description="its name or number", examples=["EX-142"])
+    history: tuple[Revision, ...] = Field(
+        default=(),
+        description="the revisions, and what each changed",
+        examples=[
+            [{"revision": "A", "date": "2026-10-02", "by": "A. Martin", "change": "first issue"}]
+        ],
+    )
 
     def to_dict(self) -> dict[str, Any]:
-        """What is given, as JSON has it."""
+        """Return what is given, as JSON has it."""
         return self.model_dump(mode="json", exclude_none=True, exclude_defaults=True)
 
 
 class ReleaseKeys(Model):
     """A release by its serial number, and its codes: one text, several, or several by name."""
 
-    serial: Text | None = None
-    codes: Text | tuple[Text, ...] | dict[str, Text] | None = None
+    serial: Text | None = Field(default=None, description="of the release", examples=[1729])
+    codes: Text | tuple[Text, ...] | dict[str, Text] | None = Field(
+        default=None,
+        description="one text, several, or several by name, e.g. {enable: 0123, release: 4567}",
+        examples=[{"enable": "0A51", "release": "0A55"}],
+    )
 
     @property
     def code_lines(self) -> tuple[str, ...]:
-        """The codes as a person reads them, one a line."""
+        """Return the codes as a person reads them, one a line."""
         if isinstance(self.codes, dict):
             return tuple(f"{name}: {code}" for name, code in self.codes.items())
         return (self.codes,) if isinstance(self.codes, str) else self.codes or ()
@@ -77,19 +98,43 @@ class ReleaseKeys(Model):
 class DeployedItem(Model):
     """What went over the side for a piece or a clamp; `length` [m] is what a cable was cut to."""
 
-    label: Text
-    serial: Text | None = None
-    length: Annotated[float | None, POSITIVE_LENGTH] = None
-    remark: Text | None = None
+    label: Text = Field(
+        description="of the piece or clamp in results", examples=["wire-jacketed-8"]
+    )
+    serial: Text | None = Field(
+        default=None,
+        description="serial number; for a count, a list with one for each",
+        examples=[12345],
+    )
+    length: Annotated[float | None, POSITIVE_LENGTH] = Field(
+        default=None, description="what a cable was cut to", examples=["480 m"]
+    )
+    remark: Text | None = Field(
+        default=None, description="anything worth knowing", examples=["one terminal remade"]
+    )
 
 
 class Deployed(Model):
     """Where and when the mooring was deployed, and what of it differs from the design."""
 
-    date: Moment | None = None
-    position: Position | None = None
-    depth: Annotated[float | None, Quantity("length", above=0)] = None
-    items: tuple[DeployedItem, ...] = ()
+    date: Moment | None = Field(
+        default=None,
+        description="day or time, e.g. 2027-03-02T10:40",
+        examples=["2027-03-02T10:40"],
+    )
+    position: Position | None = Field(
+        default=None,
+        description="where it stands",
+        examples=[{"latitude": "48.3 deg", "longitude": "-5.2 deg"}],
+    )
+    depth: Annotated[float | None, QuantityField("length", above=0)] = Field(
+        default=None, description="of the water there", examples=["1100 m"]
+    )
+    items: tuple[DeployedItem, ...] = Field(
+        default=(),
+        description="what differs, piece by piece",
+        examples=[[{"label": "wire-jacketed-8", "length": "479.2 m"}]],
+    )
 
 
 class Equipment(Model):
@@ -99,44 +144,73 @@ class Equipment(Model):
     each piece.
     """
 
-    serial: Text | Annotated[tuple[Text, ...], Field(min_length=1)] | None = None
-    calibrated: Day | None = None
-    sampling: Text | None = None
-    battery_until: Day | None = None
-    termination: Text | None = None
+    serial: Text | Annotated[tuple[Text, ...], Field(min_length=1)] | None = Field(
+        default=None,
+        description="serial number; for a count, a list with one for each",
+        examples=[12345],
+    )
+    calibrated: Day | None = Field(
+        default=None,
+        description="day of its last calibration, e.g. 2026-03-01",
+        examples=["2026-03-01"],
+    )
+    sampling: Text | None = Field(
+        default=None,
+        description="how it samples, as people read it, e.g. every 10 min",
+        examples=["every 10 min"],
+    )
+    battery_until: Day | None = Field(
+        default=None,
+        description="day on which its battery is empty, e.g. 2027-06-30",
+        examples=["2028-01-31"],
+    )
+    termination: Text | None = Field(
+        default=None,
+        description="how the ends of a cable are made, e.g. swaged sockets",
+        examples=["swaged sockets"],
+    )
 
     def of(self, repeat: int) -> Equipment:
-        """That of one of a count, from 0."""
+        """Return the equipment of one of a count, from 0."""
         if not isinstance(self.serial, tuple):
             return self
         return self.model_copy(update={"serial": self.serial[min(repeat, len(self.serial) - 1)]})
 
 
-LOAD = Quantity("force", usual_unit="kN", at_least=0)
+LOAD = QuantityField("force", usual_unit="kN", at_least=0)
 
 
 class LengthAt(Model):
     """A length of a cable [m] as measured under a load [N]."""
 
-    load: Annotated[float, LOAD]
-    length: Annotated[float, POSITIVE_LENGTH]
+    load: Annotated[float, LOAD] = Field(description="that the cable was under", examples=["2 kN"])
+    length: Annotated[float, POSITIVE_LENGTH] = Field(
+        description="as measured under `load`", examples=["480 m"]
+    )
 
 
 EQUIPMENT_KEYS = frozenset(Equipment.model_fields)
 NO_EQUIPMENT = Equipment()
 
 
-def read_equipment(item: Section, problems: list[Problem]) -> Equipment:
-    """What an item or a clamp says of the individual thing; mistakes are added to `problems`."""
+def read_equipment(item: SourceMapping, problems: list[Problem]) -> Equipment:
+    """Read what an item or a clamp says of the individual thing."""
     given = {key: item.data[key] for key in item.data.keys() & EQUIPMENT_KEYS}
     if not given:
         return NO_EQUIPMENT
-    section = Section.of(item.document, item.location, given)
+    section = SourceMapping.of(item.document, item.location, given)
     return validate(Equipment, section, problems) or NO_EQUIPMENT
 
 
-def check_serials(item: Section, count: int, problems: list[Problem]) -> None:
-    """Of an item and of its clamps: a list of serial numbers has one for each of the count."""
+def check_serials(item: SourceMapping, count: int, problems: list[Problem]) -> None:
+    """Check that serial numbers given as a list are as many as the item, and its clamps, count.
+
+    Parameters
+    ----------
+    item : of the line
+    count : of the item
+    problems : mistakes are added to it
+    """
     clamps: Any = item.data.get("clamps")
     below = [(("clamps", i), one) for i, one in enumerate(clamps if _is_list(clamps) else ())]
     for place, data in [((), item.data), *below]:
@@ -154,10 +228,10 @@ def check_deployed(
     deployed: Deployed,
     labels: Sequence[str],
     cables: Sequence[str],
-    top: Section,
+    top: SourceMapping,
     problems: list[Problem],
 ) -> None:
-    """What was deployed is of the line, each piece or clamp once, and only cables are cut.
+    """Check that what was deployed is of the line, each part once, and that only cables are cut.
 
     Parameters
     ----------

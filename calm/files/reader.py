@@ -9,22 +9,19 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field
 
 from calm.errors import InputError, Problem
-from calm.files.accept import read_accepts
 from calm.files.catalogue import Catalogue
-from calm.files.checks import Checks
+from calm.files.check_limits import Checks, read_accepts
 from calm.files.components import Anchor
-from calm.files.document import compose, read_document
 from calm.files.environment import Position, read_environment
-from calm.files.explain import validate
 from calm.files.fields import Model, Text
 from calm.files.flexible import Flexible
-from calm.files.labels import numbered
-from calm.files.line import LineReader
+from calm.files.line_items import LineReader
 from calm.files.logbook import Deployed, DocumentKeys, ReleaseKeys, check_deployed
-from calm.files.mooring import Clamp, MooringFile, Piece, Place, Solver, TowKeys
-from calm.files.section import Section
+from calm.files.mistakes import validate
+from calm.files.mooring_file import Clamp, MooringFile, Piece, Place, Solver, TowKeys, numbered
 from calm.files.uncertainty import Uncertainty
 from calm.files.variants import choose_environment
+from calm.files.yaml_document import SourceMapping, compose, read_document
 from calm.units import QuantityError
 
 STAND_IN = ""
@@ -40,20 +37,70 @@ def _given(value: object) -> object:
 class MooringKeys(Model):
     """The keys at the top level of a mooring file."""
 
-    name: Text | None = None
-    description: Text | None = None
-    document: DocumentKeys | None = None
-    position: Position | None = None
-    tow: Annotated[TowKeys | None, BeforeValidator(_given, json_schema_input_type=TowKeys)] = None
-    environment: dict[str, Any] = Field(default_factory=dict)
-    line: Annotated[tuple[Any, ...], Field(min_length=1)]
-    components: dict[str, Any] | None = None
-    environments: dict[str, dict[str, Any]] | None = None
-    solver: Solver | None = None
-    checks: Checks | None = None
-    uncertainty: Uncertainty | None = None
-    releases: tuple[ReleaseKeys, ...] | None = None
-    deployed: Deployed | None = None
+    name: Text | None = Field(
+        default=None, description="what people call it", examples=["Shelf edge 2026"]
+    )
+    description: Text | None = Field(
+        default=None, description="what it is for", examples=["Slope currents, first year"]
+    )
+    document: DocumentKeys | None = Field(
+        default=None,
+        description="what the title block of a drawing says",
+        examples=[{"id": "M-2026-17", "revision": "B"}],
+    )
+    position: Position | None = Field(
+        default=None,
+        description="where it stands",
+        examples=[{"latitude": "48.3 deg", "longitude": "-5.2 deg"}],
+    )
+    tow: Annotated[TowKeys | None, BeforeValidator(_given, json_schema_input_type=TowKeys)] = Field(
+        default=None,
+        description="what tows the line, in place of an anchor",
+        examples=[{"speed": "4 knot", "toward": "90 deg"}],
+    )
+    environment: dict[str, Any] = Field(
+        default_factory=dict, description="the water", examples=[{"depth": "1100 m"}]
+    )
+    line: Annotated[tuple[Any, ...], Field(min_length=1)] = Field(
+        description="the pieces from the top to the anchor; in a tow, from the ship to the towed "
+        "body",
+        examples=[[{"use": "sphere-steel-1250"}, {"use": "anchor-wheels-4"}]],
+    )
+    components: dict[str, Any] | None = Field(
+        default=None,
+        description="definitions of your own, used only here",
+        examples=[{"my-float": {"kind": "sphere", "diameter": "1.2 m", "buoyancy": "7000 N"}}],
+    )
+    environments: dict[str, dict[str, Any]] | None = Field(
+        default=None,
+        description="named variants, each overriding keys of `environment`",
+        examples=[{"storm": {"current": {"speed": "1.2 m/s", "toward": "90 deg"}}}],
+    )
+    solver: Solver | None = Field(
+        default=None,
+        description="how the line is solved",
+        examples=[{"angle_step": "1 deg", "strumming": "vandiver"}],
+    )
+    checks: Checks | None = Field(
+        default=None,
+        description="limits of the design check",
+        examples=[{"anchor_factor": 1.5, "maximum_knockdown": "50 m"}],
+    )
+    uncertainty: Uncertainty | None = Field(
+        default=None,
+        description="how well the inputs of the design are known",
+        examples=[{"current": "10 %", "cable_drag": ["-15 %", "30 %"]}],
+    )
+    releases: tuple[ReleaseKeys, ...] | None = Field(
+        default=None,
+        description="the codes of each release by its serial number",
+        examples=[[{"serial": 1729, "codes": {"enable": "0A51", "release": "0A55"}}]],
+    )
+    deployed: Deployed | None = Field(
+        default=None,
+        description="where and when it was deployed, and what differs from the design",
+        examples=[{"date": "2027-03-02T10:40", "depth": "1103 m"}],
+    )
 
 
 def read_mooring(
@@ -90,7 +137,7 @@ def read_mooring(
     notices: list[str] = []
     catalogue = Catalogue.load(catalogs)
     document = read_document(Path(path)) if text is None else compose(str(path), text)
-    top = Section.of(document, (), document.data)
+    top = SourceMapping.of(document, (), document.data)
     towed = "tow" in top.data
     keys = validate(MooringKeys, top, problems, context={"towed": towed})
     definitions = _child(top, "components")
@@ -147,7 +194,7 @@ def read_mooring(
 
 
 def _labels(pieces: Sequence[Piece]) -> list[str]:
-    """Of pieces and clamps, down the line."""
+    """Return the labels of pieces and clamps, down the line."""
     return [
         label
         for piece in pieces
@@ -158,7 +205,7 @@ def _labels(pieces: Sequence[Piece]) -> list[str]:
 def _unknown_releases(
     releases: Sequence[ReleaseKeys], pieces: Sequence[Piece], deployed: Deployed | None
 ) -> list[str]:
-    """Of releases whose serial number nothing in the line has, as designed or as deployed."""
+    """Note the releases whose serial number nothing in the line has, designed or deployed."""
     parts: list[Piece | Clamp] = []
     for piece in pieces:
         parts += (piece, *piece.clamps)
@@ -173,32 +220,32 @@ def _unknown_releases(
 
 
 def _stand_in(item: int) -> Piece:
-    """An anchor without height that holds anything, as an item below the last."""
+    """Return an anchor without height that holds anything, as an item below the last."""
     component = Anchor.model_validate({"kind": "anchor", "weight": "1e6 kN"})
     return Piece(0, STAND_IN, "anchor", component, 0.0, None, (), 0, 0, Place(item))
 
 
-def _child(section: Section, key: str) -> Section | None:
-    """The mapping under a key, None where there is none."""
+def _child(section: SourceMapping, key: str) -> SourceMapping | None:
+    """Return the mapping under a key, None where there is none."""
     return section.child(key) if isinstance(section.data.get(key), dict) else None
 
 
 def _in_order(problems: list[Problem], path: str) -> list[Problem]:
-    """Each problem once: those of the mooring file first, down the file."""
+    """Return each problem once: those of the mooring file first, down the file."""
     once = dict.fromkeys(problems)
     return sorted(once, key=lambda one: (one.path != path, one.path, one.line, one.column))
 
 
-def _check_tow(pieces: Sequence[Piece], top: Section, problems: list[Problem]) -> None:
-    """Nothing stands on the seabed in a tow."""
+def _check_tow(pieces: Sequence[Piece], top: SourceMapping, problems: list[Problem]) -> None:
+    """Check that nothing stands on the seabed in a tow."""
     for piece in pieces:
         if isinstance(piece.component, Anchor):
             message = f"anchor `{piece.use}` in a tow; its line ends in the towed body"
             problems.append(_at(piece, top, message))
 
 
-def _check_anchor(pieces: Sequence[Piece], top: Section, problems: list[Problem]) -> None:
-    """The line of a mooring ends in its only anchor."""
+def _check_anchor(pieces: Sequence[Piece], top: SourceMapping, problems: list[Problem]) -> None:
+    """Check that the line of a mooring ends in its only anchor."""
     if not pieces:
         return
     for piece in pieces[:-1]:
@@ -218,7 +265,7 @@ def _anchored(pieces: Sequence[Piece]) -> bool:
     return any(isinstance(piece.component, Anchor) for piece in pieces)
 
 
-def _check_one_fit(pieces: Sequence[Piece], top: Section, problems: list[Problem]) -> None:
+def _check_one_fit(pieces: Sequence[Piece], top: SourceMapping, problems: list[Problem]) -> None:
     fits = [piece for piece in pieces if piece.length is None]
     for piece in fits[1:]:
         message = f"only one piece can be cut to fit; line {fits[0].line} has one already"
@@ -229,10 +276,10 @@ def _check_fit(
     pieces: Sequence[Piece],
     seabed: float | None,
     tow: TowKeys | None,
-    top: Section,
+    top: SourceMapping,
     problems: list[Problem],
 ) -> None:
-    """The depth to reach lies above the seabed, and below the ship."""
+    """Check that the depth to reach lies above the seabed, and below the ship."""
     for piece in pieces:
         for key, depth in (("top", piece.fit_top_depth), ("body", piece.fit_body_depth)):
             if depth is not None and seabed is not None and depth >= seabed:
@@ -243,5 +290,5 @@ def _check_fit(
             problems.append(_at(piece, top, message))
 
 
-def _at(piece: Piece, top: Section, message: str, lacks: str = "") -> Problem:
+def _at(piece: Piece, top: SourceMapping, message: str, lacks: str = "") -> Problem:
     return Problem(top.document.path, piece.line, piece.column, message, lacks)

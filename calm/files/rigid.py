@@ -9,20 +9,39 @@ from pydantic import Discriminator, Field, Tag, ValidationInfo, model_validator
 from calm.files.definition import (
     CATALOGUE_DENSITY,
     DISAGREEMENT,
-    MASS,
     STANDARD_GRAVITY,
     Definition,
+    Diameter,
+    Length,
+    Mass,
+    NormalCoefficient,
+    TangentialCoefficient,
+    TangentialDrag,
     is_in_air,
     refuse_weight_above_mass,
     volume_from_weights,
 )
-from calm.files.fields import COEFFICIENT, DIAMETER, DRAG, LENGTH, Model, Quantity
+from calm.files.fields import COEFFICIENT, DRAG, LENGTH, Model, QuantityField
 from calm.physics.hull import tabulated_hull
 
-_AREA = Quantity("area", at_least=0)
+_AREA = QuantityField("area", at_least=0)
 
-Inclination = Literal["follows", "insensitive"]
-Surface = Literal["painted", "smooth"]
+Inclination = Annotated[
+    Literal["follows", "insensitive"] | None,
+    Field(description="whether drag follows the inclination of the piece", examples=["follows"]),
+]
+Surface = Annotated[
+    Literal["painted", "smooth"] | None,
+    Field(
+        description="`smooth` may follow the drag curves; `painted` keeps the constant",
+        examples=["smooth"],
+    ),
+]
+SphereCoefficient = Annotated[
+    float | None,
+    COEFFICIENT,
+    Field(description="drag coefficient of a sphere", examples=[0.5]),
+]
 
 
 class Displacement(Model):
@@ -31,11 +50,14 @@ class Displacement(Model):
     displacement: tuple[
         tuple[
             Annotated[float, LENGTH],
-            Annotated[float, Quantity("volume", at_least=0)],
+            Annotated[float, QuantityField("volume", at_least=0)],
             Annotated[float, _AREA],
         ],
         ...,
-    ]
+    ] = Field(
+        description="rows of draft, volume, area seen from the side; the last is all of it",
+        examples=[[["0 m", "0 m^3", "0 m^2"], ["0.8 m", "2.4 m^3", "1.9 m^2"]]],
+    )
 
     @model_validator(mode="after")
     def _grows(self) -> Displacement:
@@ -56,17 +78,35 @@ Hull = Annotated[
 class Rigid(Definition):
     """A piece of fixed length, or one clamped on a line."""
 
-    mass: Annotated[float | None, MASS] = None
-    buoyancy: Annotated[float | None, Quantity("force")] = None
-    volume: Annotated[float | None, Quantity("volume", at_least=0)] = None
-    hull: Hull | None = None
-    k_surface: Annotated[float | None, DRAG] = None
-    wind_area: Annotated[float | None, _AREA] = None
-    wind_cd: Annotated[float | None, COEFFICIENT] = None
+    mass: Mass = None
+    buoyancy: Annotated[float | None, QuantityField("force")] = Field(
+        default=None,
+        description="net force in sea water of 1025 kg/m^3, positive up (per metre of a cable)",
+        examples=["7000 N"],
+    )
+    volume: Annotated[float | None, QuantityField("volume", at_least=0)] = Field(
+        default=None, description="of water displaced, e.g. 0.9 m^3", examples=["0.9 m^3"]
+    )
+    hull: Hull | None = Field(
+        default=None,
+        description="of a float at the surface: a shape, or its displacement by draft",
+        examples=["sphere"],
+    )
+    k_surface: Annotated[float | None, DRAG] = Field(
+        default=None,
+        description="drag of a float at the surface at 1 m/s",
+        examples=["40 N/(m/s)^2"],
+    )
+    wind_area: Annotated[float | None, _AREA] = Field(
+        default=None, description="area in the wind, with mast and sensors", examples=["1.4 m^2"]
+    )
+    wind_cd: Annotated[float | None, COEFFICIENT] = Field(
+        default=None, description="drag coefficient of `wind_area`", examples=[1.0]
+    )
 
     @property
     def net_buoyancy(self) -> float:
-        """Net force in water, positive up; of a mass alone, that in air [N]."""
+        """Return the net force in water, positive up; of a mass alone, that in air [N]."""
         if self.buoyancy is not None:
             return self.buoyancy
         assert self.mass is not None
@@ -74,7 +114,7 @@ class Rigid(Definition):
 
     @property
     def displaced_volume(self) -> float | None:
-        """Volume displaced [m³], None when it is not known, nor follows from the weights."""
+        """Return the volume displaced [m³], None if it is unknown, nor follows from the weights."""
         if self.volume is not None or self.buoyancy is None:
             return self.volume
         return volume_from_weights(self.mass, self.net_buoyancy)
@@ -108,49 +148,53 @@ class Rigid(Definition):
 class Sphere(Rigid):
     """A sphere; its length along the line is its diameter unless it says otherwise."""
 
-    kind: Literal["sphere"]
-    diameter: Annotated[float, DIAMETER]
-    length: Annotated[float, LENGTH] = Field(default_factory=lambda data: data.get("diameter", 0.0))
-    cx: Annotated[float | None, COEFFICIENT] = None
-    surface: Surface | None = None
+    kind: Literal["sphere"] = Field(description="which kind of component it is")
+    diameter: Diameter
+    length: Length = Field(default_factory=lambda data: data.get("diameter", 0.0))
+    cx: SphereCoefficient = None
+    surface: Surface = None
 
 
 class Cylinder(Rigid):
     """A cylinder along the line."""
 
-    kind: Literal["cylinder"]
-    diameter: Annotated[float, DIAMETER]
-    length: Annotated[float, LENGTH]
-    cn: Annotated[float | None, COEFFICIENT] = None
-    ct: Annotated[float | None, COEFFICIENT] = None
-    inclination: Inclination | None = None
-    surface: Surface | None = None
+    kind: Literal["cylinder"] = Field(description="which kind of component it is")
+    diameter: Diameter
+    length: Length
+    cn: NormalCoefficient = None
+    ct: TangentialCoefficient = None
+    inclination: Inclination = None
+    surface: Surface = None
 
 
 class DragMeasurement(Model):
     """A drag measured at a speed [m/s, N]."""
 
-    speed: Annotated[float, Quantity("speed", above=0)]
-    force: Annotated[float, Quantity("force", at_least=0)]
+    speed: Annotated[float, QuantityField("speed", above=0)] = Field(
+        description="of the water past it", examples=["0.5 m/s"]
+    )
+    force: Annotated[float, QuantityField("force", at_least=0)] = Field(
+        description="measured", examples=["48 N"]
+    )
 
 
 class SphereShape(Model):
     """A sphere as part of a body, for its drag alone."""
 
-    kind: Literal["sphere"]
-    diameter: Annotated[float, DIAMETER]
-    cx: Annotated[float | None, COEFFICIENT] = None
+    kind: Literal["sphere"] = Field(description="which kind of component it is")
+    diameter: Diameter
+    cx: SphereCoefficient = None
 
 
 class CylinderShape(Model):
     """A cylinder as part of a body, for its drag alone."""
 
-    kind: Literal["cylinder"]
-    diameter: Annotated[float, DIAMETER]
-    length: Annotated[float, LENGTH]
-    cn: Annotated[float | None, COEFFICIENT] = None
-    ct: Annotated[float | None, COEFFICIENT] = None
-    inclination: Inclination | None = None
+    kind: Literal["cylinder"] = Field(description="which kind of component it is")
+    diameter: Diameter
+    length: Length
+    cn: NormalCoefficient = None
+    ct: TangentialCoefficient = None
+    inclination: Inclination = None
 
 
 Shape = Annotated[SphereShape | CylinderShape, Field(discriminator="kind")]
@@ -167,16 +211,36 @@ DRAG_FORMS: tuple[tuple[str, ...], ...] = (
 class Body(Rigid):
     """A piece of any shape that gives its drag in one of the `DRAG_FORMS`."""
 
-    kind: Literal["body"]
-    length: Annotated[float, LENGTH]
-    kn: Annotated[float | None, DRAG] = None
-    kt: Annotated[float | None, DRAG] = None
-    drag_area: Annotated[float | None, _AREA] = None
-    cd: Annotated[float | None, COEFFICIENT] = None
-    drag_measurements: tuple[DragMeasurement, ...] | None = None
-    made_of: tuple[Shape, ...] | None = None
-    inclination: Inclination | None = None
-    lift: Annotated[float | None, Quantity("drag")] = None
+    kind: Literal["body"] = Field(description="which kind of component it is")
+    length: Length
+    kn: Annotated[float | None, DRAG] = Field(
+        default=None,
+        description="drag across the axis at 1 m/s, e.g. 26 N/(m/s)^2",
+        examples=["26 N/(m/s)^2"],
+    )
+    kt: TangentialDrag = None
+    drag_area: Annotated[float | None, _AREA] = Field(
+        default=None, description="area seen by the current, e.g. 0.12 m^2", examples=["0.12 m^2"]
+    )
+    cd: Annotated[float | None, COEFFICIENT] = Field(
+        default=None, description="drag coefficient of `drag_area`", examples=[1.2]
+    )
+    drag_measurements: tuple[DragMeasurement, ...] | None = Field(
+        default=None,
+        description="forces measured at several speeds",
+        examples=[[{"speed": "0.5 m/s", "force": "12 N"}, {"speed": "1 m/s", "force": "48 N"}]],
+    )
+    made_of: tuple[Shape, ...] | None = Field(
+        default=None,
+        description="simple shapes whose drags add up",
+        examples=[[{"kind": "cylinder", "diameter": "80 mm", "length": "1 m"}]],
+    )
+    inclination: Inclination = None
+    lift: Annotated[float | None, QuantityField("drag")] = Field(
+        default=None,
+        description="of a towed body at 1 m/s, positive up",
+        examples=["-30 N/(m/s)^2"],
+    )
 
     @model_validator(mode="after")
     def _drag_is_given_once(self) -> Body:

@@ -6,25 +6,28 @@ a unit; what needs the catalogue or several fields at once is left to the reader
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
 from calm.files.catalogue import Assembly
-from calm.files.components import KINDS
+from calm.files.components import KINDS, Component
 from calm.files.environment import EnvironmentKeys, TowEnvironmentKeys, UniformCurrent
-from calm.files.fields import LENGTH
-from calm.files.line import MOST_PIECES
+from calm.files.fields import LENGTH, quantity_of
+from calm.files.line_items import MOST_PIECES
 from calm.files.logbook import Equipment, LengthAt
 from calm.files.reader import MooringKeys
-from calm.files.schema_words import EXAMPLES, MEANINGS
 
 Schema = dict[str, Any]
 
+_NO_FORM = ("description", "examples", "default", "title")
+"""What in the schema of a field does not say what may stand there."""
+
 
 def mooring_schema() -> Schema:
-    """The JSON Schema (draft 2020-12) of a mooring file."""
+    """Return the JSON Schema (draft 2020-12) of a mooring file."""
     models: list[type[BaseModel]] = [MooringKeys, EnvironmentKeys, TowEnvironmentKeys, Assembly]
     models += [*KINDS.values(), Equipment, LengthAt]
     UniformCurrent.model_rebuild()  # a default is written by its model, which pydantic builds late
@@ -34,14 +37,15 @@ def mooring_schema() -> Schema:
     refs = {model: names[(model, "validation")] for model in models}
     schemas: dict[str, Schema] = definitions["$defs"]
     component = {"oneOf": [refs[model] for model in (*KINDS.values(), Assembly)]}
-    fields = _fields([schemas[kind.__name__] for kind in KINDS.values()])
-    fields |= schemas.pop("Equipment")["properties"]
+    fields = _fields(KINDS.values(), schemas) | schemas.pop("Equipment")["properties"]
     schemas |= {"Clamp": _clamp(fields), "Item": _item(fields, refs[LengthAt])}
     items = {"type": "array", "minItems": 1, "items": {"$ref": "#/$defs/Item"}}
-    schemas["Assembly"]["properties"]["parts"] = dict(items)
+    parts = schemas["Assembly"]["properties"]
+    parts["parts"] = items | _words_of(parts["parts"])
     variant = {key: value for key, value in schemas["EnvironmentKeys"].items() if key != "required"}
     top = schemas.pop("MooringKeys")
-    top["properties"] |= {
+    known = top["properties"]
+    forms: dict[str, Schema] = {
         "environment": {"type": "object"},
         "line": items,
         "components": {"type": ["object", "null"], "additionalProperties": component},
@@ -50,12 +54,14 @@ def mooring_schema() -> Schema:
             "additionalProperties": {"anyOf": [refs[TowEnvironmentKeys], variant]},
         },
     }
+    known |= {name: form | _words_of(known[name]) for name, form in forms.items()}
     # Only a tow may do without an environment, or without a depth in it; a variant always may.
     top["required"] = ["line"]
     top["if"] = {"required": ["tow"]}
-    top["then"] = {"properties": {"environment": refs[TowEnvironmentKeys]}}
+    water = _words_of(known["environment"])
+    top["then"] = {"properties": {"environment": refs[TowEnvironmentKeys] | water}}
     top["else"] = {
-        "properties": {"environment": refs[EnvironmentKeys]},
+        "properties": {"environment": refs[EnvironmentKeys] | water},
         "required": ["environment"],
     }
     schema = {
@@ -72,58 +78,90 @@ def _item(fields: Schema, length_at: Schema) -> Schema:
     fit = {"anyOf": [{"const": "fit"}, LENGTH.json_schema()]}
     count = {"type": "integer", "minimum": 1, "maximum": MOST_PIECES}
     clamps = {"type": "array", "items": {"$ref": "#/$defs/Clamp"}}
-    depths = {"top_depth": LENGTH.json_schema(), "body_depth": LENGTH.json_schema()}
-    measured = {"description": MEANINGS["length_at"], **length_at}
-    own = {"count": count, "length": fit, "length_at": measured, **depths, "clamps": clamps}
-    return _mapping("A piece of the line; other fields override the component's.", fields | own)
+    own = {
+        "count": _said(count, "how many follow one another in the line", 6),
+        "length": {**fields["length"], **fit},
+        "length_at": _said(
+            length_at,
+            "a length measured under a load, e.g. {load: 2 kN, length: 480 m}",
+            {"load": "2 kN", "length": "480 m"},
+        ),
+        "top_depth": _said(
+            LENGTH.json_schema(), "depth wanted in still water for the top of the line", "105 m"
+        ),
+        "body_depth": _said(
+            LENGTH.json_schema(),
+            "depth wanted in a tow for the lower end of this cable, at the tow's speed",
+            "70 m",
+        ),
+        "clamps": _said(
+            clamps, "instruments fixed to this piece", [{"use": "sbe37", "at": "20 m"}]
+        ),
+    }
+    text = "A piece of the line; other fields override the component's."
+    return _mapping(text, "wire-jacketed-8", fields | own)
 
 
 def _clamp(fields: Schema) -> Schema:
-    schema = _mapping("An instrument fixed to a piece.", fields | {"at": LENGTH.json_schema()})
+    at = _said(LENGTH.json_schema(), "distance from the top of the piece, unstretched", "20 m")
+    schema = _mapping("An instrument fixed to a piece.", "sbe37", fields | {"at": at})
     schema["required"].append("at")
     return schema
 
 
-def _mapping(description: str, properties: Schema) -> Schema:
-    text = {"type": "string"}
+def _words_of(form: Schema) -> Schema:
+    return {key: form[key] for key in ("description", "examples") if key in form}
+
+
+def _said(form: Schema, description: str, example: object) -> Schema:
+    return {**form, "description": description, "examples": [example]}
+
+
+def _mapping(description: str, use: str, properties: Schema) -> Schema:
+    words = "id of a component of the catalogue or of `components`"
+    label = _said(
+        {"type": ["string", "number"]},
+        "name of the piece in results; the id when there is none",
+        "top float",
+    )
     return {
         "type": "object",
         "description": description,
-        "properties": {"use": text, "label": {"type": ["string", "number"]}, **properties},
+        "properties": {"use": _said({"type": "string"}, words, use), "label": label, **properties},
         "required": ["use"],
         "additionalProperties": False,
     }
 
 
-def _fields(schemas: list[Schema]) -> Schema:
-    """Every field that can be overridden; where kinds differ, either form."""
+def _fields(kinds: Iterable[type[Component]], schemas: Schema) -> Schema:
+    """Return every field that can be overridden; where kinds differ, either form."""
     forms: dict[str, list[Schema]] = {}
-    for schema in schemas:
-        for name, form in schema["properties"].items():
+    words: dict[str, Schema] = {}
+    for kind in kinds:
+        for name, schema in schemas[kind.__name__]["properties"].items():
+            form = {key: part for key, part in schema.items() if key not in _NO_FORM}
+            quantity = quantity_of(kind.model_fields[name])
+            if quantity and "anyOf" in form and {"type": "null"} not in form["anyOf"]:
+                form = quantity.json_schema()
+            words.setdefault(name, _words_of(schema))
             if name != "kind" and form not in forms.setdefault(name, []):
                 forms[name].append(form)
     return {
-        name: found[0] if len(found) == 1 else {"anyOf": found} for name, found in forms.items()
+        name: (found[0] if len(found) == 1 else {"anyOf": found}) | words[name]
+        for name, found in forms.items()
+        if found
     }
 
 
-def _tidy(schema: Any, model: str = "") -> None:
-    """Say what fields are, with an example, and leave out defaults (in SI) and titles."""
+def _tidy(schema: Any) -> None:
+    """Leave out the titles of fields, and their defaults (in SI)."""
     if isinstance(schema, list):
         for part in schema:
-            _tidy(part, model)
-    if not isinstance(schema, dict):
-        return
-    for name, field in schema.get("properties", {}).items():
-        field.pop("title", None)
-        field.pop("default", None)
-        for keyword, words in (("description", MEANINGS), ("examples", EXAMPLES)):
-            said = words.get(f"{model}.{name}", words.get(name))
-            if said is not None:
-                field[keyword] = [said] if keyword == "examples" else said
-    for name, part in schema.items():
-        if name == "$defs":
-            for model_of_part, definition in part.items():
-                _tidy(definition, model_of_part)
-        elif name != "examples":
-            _tidy(part, model)
+            _tidy(part)
+    if isinstance(schema, dict):
+        for field in schema.get("properties", {}).values():
+            field.pop("title", None)
+            field.pop("default", None)
+        for name, part in schema.items():
+            if name != "examples":
+                _tidy(part)

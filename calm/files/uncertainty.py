@@ -5,21 +5,21 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from pydantic import GetJsonSchemaHandler
+from pydantic import Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
-from calm.files.fields import Model, Quantity
+from calm.files.fields import Model, QuantityField
 from calm.units import QuantityError
 
 MOST_DEVIATION = 0.25
 """Of a share: a normal distribution wider than this would often pass below nothing."""
-_SHARE = Quantity("number", at_least=0.0)
+_SHARE = QuantityField("number", at_least=0.0)
 _TOO_WIDE = "is too wide for a deviation, 25 % at most; give a pair, its 5 and 95 %"
 
 
 @dataclass(frozen=True)
 class Spread:
-    """How far a figure may be off: of a share that of 1, of an angle in degrees.
+    """Say how far a figure may be off: of a share that of 1, of an angle in degrees.
 
     Attributes
     ----------
@@ -33,21 +33,19 @@ class Spread:
 
 @dataclass(frozen=True)
 class SpreadOf:
-    """Annotation of a key of `uncertainty:`.
+    """Annotate a key of `uncertainty:` with what may stand there.
 
     Attributes
     ----------
     one : what a standard deviation may be
     end : what the 5 and the 95 % may be
-    meaning : of the key, for the schema
     """
 
-    one: Quantity
-    end: Quantity
-    meaning: str
+    one: QuantityField
+    end: QuantityField
 
     def read(self, value: object) -> Spread:
-        """Of one text with a unit, or of two in a list."""
+        """Read one text with a unit, or two in a list."""
         if not isinstance(value, list | tuple):
             return Spread(self._deviation(value))
         if len(value) != 2:
@@ -78,39 +76,51 @@ class SpreadOf:
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
         pair = {"type": "array", "items": self.end.json_schema(), "minItems": 2, "maxItems": 2}
-        return {"description": self.meaning, "anyOf": [self.one.json_schema(), pair]}
+        return {"anyOf": [self.one.json_schema(), pair]}
 
 
-_SHARES = (_SHARE, Quantity("number", above=-1.0, at_most=10.0))
+_SHARES = (_SHARE, QuantityField("number", above=-1.0, at_most=10.0))
 _ANGLES = (
-    Quantity("angle", at_least=0.0, at_most=180.0),
-    Quantity("angle", at_least=-180.0, at_most=180.0),
+    QuantityField("angle", at_least=0.0, at_most=180.0),
+    QuantityField("angle", at_least=-180.0, at_most=180.0),
 )
 
 
 class Uncertainty(Model):
     """How sure what a design stands on is: one draw of each a mooring."""
 
-    current: Annotated[Spread, SpreadOf(*_SHARES, "of the speed at all depths alike")] = Spread(0.1)
-    direction: Annotated[
-        Spread, SpreadOf(*_ANGLES, "of the current's direction at all depths alike")
-    ] = Spread(5.0)
-    cable_drag: Annotated[
-        Spread, SpreadOf(*_SHARES, "of the drag of cables and chains, strumming aside")
-    ] = Spread(between=(-0.15, 0.30))
-    rigid_drag: Annotated[
-        Spread, SpreadOf(*_SHARES, "of the drag of rigid pieces and of what is clamped on")
-    ] = Spread(0.15)
-    buoyancy: Annotated[
-        Spread, SpreadOf(*_SHARES, "of the net buoyancy of what is rigid and floats")
-    ] = Spread(0.02)
-    cable_weight: Annotated[
-        Spread, SpreadOf(*_SHARES, "of the net force of cables and chains in water")
-    ] = Spread(0.03)
-    length: Annotated[Spread, SpreadOf(*_SHARES, "of the cut lengths of cables and chains")] = (
-        Spread(0.003)
+    current: Annotated[Spread, SpreadOf(*_SHARES)] = Field(
+        default=Spread(0.1), description="of the speed, at all depths alike", examples=["10 %"]
     )
-    stiffness: Annotated[Spread, SpreadOf(*_SHARES, "of the force that stretches a cable")] = (
-        Spread(0.2)
+    direction: Annotated[Spread, SpreadOf(*_ANGLES)] = Field(
+        default=Spread(5.0), description="of the current, at all depths alike", examples=["5 deg"]
     )
-    depth: Annotated[Spread, SpreadOf(*_SHARES, "of the water's depth")] = Spread(0.01)
+    cable_drag: Annotated[Spread, SpreadOf(*_SHARES)] = Field(
+        default=Spread(between=(-0.15, 0.30)),
+        description="of cables and chains, strumming aside",
+        examples=[["-15 %", "30 %"]],
+    )
+    rigid_drag: Annotated[Spread, SpreadOf(*_SHARES)] = Field(
+        default=Spread(0.15),
+        description="of rigid pieces and of what is clamped on",
+        examples=["15 %"],
+    )
+    buoyancy: Annotated[Spread, SpreadOf(*_SHARES)] = Field(
+        default=Spread(0.02),
+        description="net, of rigid pieces and clamps that float",
+        examples=["2 %"],
+    )
+    cable_weight: Annotated[Spread, SpreadOf(*_SHARES)] = Field(
+        default=Spread(0.03),
+        description="net force of cables and chains in water",
+        examples=["3 %"],
+    )
+    length: Annotated[Spread, SpreadOf(*_SHARES)] = Field(
+        default=Spread(0.003), description="of cables and chains, as cut", examples=["0.3 %"]
+    )
+    stiffness: Annotated[Spread, SpreadOf(*_SHARES)] = Field(
+        default=Spread(0.2), description="of cables and chains", examples=["20 %"]
+    )
+    depth: Annotated[Spread, SpreadOf(*_SHARES)] = Field(
+        default=Spread(0.01), description="of the water", examples=["1 %"]
+    )

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from calm.errors import InputError, Problem
-from calm.files.document import read_document
 from calm.files.environment import read_environment
-from calm.files.explain import unknown, validate
 from calm.files.fields import Model, Text
-from calm.files.section import Section
+from calm.files.mistakes import validate
+from calm.files.yaml_document import SourceMapping, read_document
+from calm.suggestions import unknown
 
 
 class EnvironmentFileKeys(Model):
@@ -23,9 +23,9 @@ class EnvironmentFileKeys(Model):
 
 
 def choose_environment(
-    top: Section, chosen: str | Path | None, problems: list[Problem], *, towed: bool
-) -> tuple[Section, str | None] | None:
-    """The `environment` of a file, or the chosen one laid over it, and its name; yet to be read.
+    top: SourceMapping, chosen: str | Path | None, problems: list[Problem], *, towed: bool
+) -> tuple[SourceMapping, str | None] | None:
+    """Return the `environment` of a file, or the chosen one laid over it, and its name; unread.
 
     Variants that are not chosen, and the own environment where another one is, are checked here,
     so that mistakes are reported where they are. None where there is no environment.
@@ -44,7 +44,7 @@ def choose_environment(
             message = "`environment` is missing"
             problems.append(top.problem((), message, lacks="no environment"))
             return None
-        own = Section.of(top.document, (), {})
+        own = SourceMapping.of(top.document, (), {})
     variants = top.child("environments") if _is_mapping(top, "environments") else None
     overlays = dict(_mappings(variants)) if variants else {}
     for overlay in overlays.values():
@@ -62,33 +62,33 @@ def choose_environment(
 
 
 def _from_file(
-    path: Path, own: Section, problems: list[Problem]
-) -> tuple[Section, str | None] | None:
+    path: Path, own: SourceMapping, problems: list[Problem]
+) -> tuple[SourceMapping, str | None] | None:
     try:
         document = read_document(path)
     except InputError as error:
         problems.extend(error.problems)
         return None
-    file = Section.of(document, (), document.data)
+    file = SourceMapping.of(document, (), document.data)
     keys = validate(EnvironmentFileKeys, file, problems)
     if keys is None:
         return None
     return file.child("environment").over(own), keys.name or path.stem
 
 
-def _check(section: Section, problems: list[Problem], towed: bool) -> None:
+def _check(section: SourceMapping, problems: list[Problem], towed: bool) -> None:
     """Look for mistakes in keys that may stand over, or under, others: on any depth."""
-    section = section.over(Section.of(section.document, (), {"depth": "1 m"}))
+    section = section.over(SourceMapping.of(section.document, (), {"depth": "1 m"}))
     read_environment(section, None, problems, [], open_files=False, towed=towed)
 
 
-def _mappings(section: Section) -> Iterator[tuple[str, Section]]:
+def _mappings(section: SourceMapping) -> Iterator[tuple[str, SourceMapping]]:
     for key in section.data:
         if _is_mapping(section, key):
             yield key, section.child(key)
 
 
-def _is_mapping(section: Section, key: str) -> bool:
+def _is_mapping(section: SourceMapping, key: str) -> bool:
     return isinstance(section.data.get(key), dict)
 
 

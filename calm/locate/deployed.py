@@ -24,7 +24,8 @@ DEEPER = 0.05
 def with_deployed(
     path: Path, located: Located, water_depth: float
 ) -> tuple[WorkingFile, str, tuple[str, ...]]:
-    """A mooring file, its text with the place in its `deployed`, and how far that is from the plan.
+    """Return a mooring file, its text with the place in its `deployed`, and how far that is from
+    the plan.
 
     All else stays byte for byte: comments, and what `deployed` says besides.
 
@@ -60,7 +61,7 @@ def with_deployed(
 
 
 def _beside_the_plan(file: MooringFile, located: Located, water_depth: float) -> tuple[str, ...]:
-    """Where the anchor stands from its planned position, and how much deeper."""
+    """Return where the anchor stands from its planned position, and how much deeper."""
     planned, plan_depth = file.position, file.environment.depth
     assert plan_depth is not None  # of a mooring
     deeper = water_depth - plan_depth

@@ -13,12 +13,10 @@ from typing import Any
 import numpy as np
 
 from calm.errors import UsageError
-from calm.locate.doubts import another_place, consistency
-from calm.locate.geometry import geometry_warnings
-from calm.locate.model import Model
-from calm.locate.outliers import fitted
+from calm.locate.range_model import RangeModel, fitted
 from calm.locate.ranges import Survey
 from calm.locate.sound import Sound
+from calm.locate.survey_warnings import another_place, consistency, geometry_warnings
 from calm.physics.line import Booleans, Floats
 
 CONFIDENCE = 0.95
@@ -28,7 +26,7 @@ MISSED = 0.25
 
 @dataclass(frozen=True)
 class Located:
-    """Where what answers stands.
+    """Describe where what answers stands.
 
     Attributes
     ----------
@@ -64,7 +62,7 @@ class Located:
     depth_given: bool
 
     def to_dict(self) -> dict[str, Any]:
-        """The JSON object; None stands where a figure is unknown."""
+        """Return the JSON object; None stands where a figure is unknown."""
         lines = self.survey.line
         major, minor, bearing = map(_known, self.ellipse)
         return {
@@ -116,7 +114,7 @@ def locate(survey: Survey, sound: Sound, depth: float | None = None) -> Located:
         )
     frame = survey.frame
     ships = frame.place(survey.latitude, survey.longitude, np.full(count, survey.transducer))
-    model = Model(survey, sound, frame, ships, depth)
+    model = RangeModel(survey, sound, frame, ships, depth)
     x, used = fitted(model)
     residuals = model.residuals(x)
     inconsistent = consistency(model, x, used)  # a wrong unit is named for what it is

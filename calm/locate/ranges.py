@@ -10,10 +10,11 @@ from pathlib import Path
 import numpy as np
 
 from calm.errors import InputError, Problem
-from calm.files.explain import shown
-from calm.locate.columns import NUMBER, Row, lacking, read_columns
 from calm.physics.ellipsoid import Frame
 from calm.physics.line import Floats
+from calm.records.columns import NamedRow, read_named_columns
+from calm.records.delimited import GAPS, abridged, no_number
+from calm.suggestions import shown
 from calm.units import DIMENSIONS
 
 EXAMPLE = "latitude[deg],longitude[deg],range[m]"
@@ -21,8 +22,6 @@ LONGEST = {"range": 25_000.0, "time": 35.0}
 """Beyond what the transponders of moorings answer [m], and there and back [s]."""
 WIDEST = 50_000.0
 """How far from the middle of a survey its positions may be [m]."""
-MOST_PROBLEMS = 20
-_UNANSWERED = frozenset({"", "nan", "na", "n/a", "-", "none", "null"})
 _FILLS = frozenset({"-9999", "-999", "-99", "9999", "99999", "999999", "-99999", "1e35", "1e+35"})
 _COLUMNS = {"latitude": "angle", "longitude": "angle", "range": "length", "time": "time"}
 _EARTH = 111_200.0  # metres of a degree, about
@@ -60,7 +59,7 @@ class Survey:
 
 
 def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
-    """The ranges of a file.
+    """Return the ranges of a file.
 
     A row without a range, its cell blank or `nan`, is one that was not answered: it is left out.
     So is a row that repeats another, which tells nothing new. Other columns are not read.
@@ -75,22 +74,20 @@ def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
         With every mistake of the file, each with its line.
     """
     problems: list[Problem] = []
-    columns = read_columns(path, _COLUMNS, EXAMPLE, problems)
+    columns = read_named_columns(path, _COLUMNS, EXAMPLE, problems)
     heads = columns.factors
     problems += [
-        lacking(path, name, "deg", columns)
-        for name in ("latitude", "longitude")
-        if name not in heads
+        columns.lacks(path, name, "deg") for name in ("latitude", "longitude") if name not in heads
     ]
     if ("range" in heads) == ("time" in heads):
         both = "there are columns `range` and `time`; leave one of them out"
         none = "there is no column `range[m]` or `time[s]`"
-        problems.append(Problem(str(path), 1, 1, both if "range" in heads else none))
+        problems.append(Problem(str(path), columns.header, 1, both if "range" in heads else none))
     measure = "time" if "time" in heads else "range"
     values: list[tuple[int, float, float, float]] = []
     silent: list[int] = []
     for row in columns.rows:
-        if row.cells.get(measure, "").strip().lower() in _UNANSWERED:
+        if row.cells.get(measure, "").strip().lower() in GAPS:
             silent.append(row.line)
             continue
         names = [name for name in ("latitude", "longitude", measure) if name in heads]
@@ -99,9 +96,8 @@ def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
         if len(numbers) == 3:
             values.append((row.line, numbers[0], numbers[1], numbers[2]))
     problems += _misplaced(path, values)
-    problems.sort(key=lambda problem: problem.line)
     if problems:
-        raise InputError(problems[:MOST_PROBLEMS])
+        raise InputError(abridged(problems))
     notices = [f"not read: {', '.join(f'`{shown(one)}`' for one in columns.others)}"]
     notices = notices if columns.others else []
     once: dict[tuple[float, float, float], int] = {}
@@ -125,25 +121,27 @@ def read_ranges(path: Path, transducer: float = 0.0) -> Survey:
     )
 
 
-def _value(path: Path, row: Row, name: str, factor: float, problems: list[Problem]) -> float | None:
-    """A cell in SI or degrees; None, with a mistake added, where it is no such figure."""
+def _value(
+    path: Path, row: NamedRow, name: str, factor: float, problems: list[Problem]
+) -> float | None:
+    """Return a cell in SI or degrees; None, with a mistake added, where it is no such figure."""
     text = row.cells[name]
     refusal = _refusal(name, text, factor)
     if refusal:
-        problems.append(Problem(str(path), row.line, 1, f"`{name}: {shown(text)}` {refusal}"))
+        problems.append(row.problem(path, name, f"`{name}: {shown(text)}` {refusal}"))
         return None
     return float(text) * factor
 
 
 def _refusal(name: str, text: str, factor: float) -> str:
-    """What is wrong with a cell; empty where nothing is."""
+    """Return what is wrong with a cell; empty where nothing is."""
     placed = name in ("latitude", "longitude")
     if re.sub(r"\.0*$", "", text) in _FILLS:
         leave = "leave the row out" if placed else "leave the cell blank"
         return f"is a fill value; {leave} where there is none"
-    if not NUMBER.fullmatch(text):
+    if complaint := no_number(text):
         degrees = "; decimal degrees are needed, south and west negative" if placed else ""
-        return f"is no number{degrees}"
+        return complaint + degrees
     value = float(text) * factor
     if name == "latitude" and abs(value) > 90.0:
         return "is beyond 90 degrees; are latitude and longitude exchanged?"
@@ -159,7 +157,7 @@ def _refusal(name: str, text: str, factor: float) -> str:
 
 
 def _misplaced(path: Path, values: list[tuple[int, float, float, float]]) -> list[Problem]:
-    """Positions that are none, and those that are far from the others."""
+    """Return the mistakes of positions that are none, and those that are far from the others."""
     problems = []
     places = []
     for line, latitude, longitude, _ in values:

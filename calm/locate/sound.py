@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from calm.errors import InputError, Problem
-from calm.files.explain import shown
-from calm.locate.columns import NUMBER, lacking, read_columns
 from calm.physics.line import Floats
+from calm.records.columns import read_named_columns
+from calm.records.delimited import abridged, no_number
+from calm.suggestions import shown
 from calm.units import DIMENSIONS
 
 SLOWEST, FASTEST = 1380.0, 1680.0
@@ -34,11 +35,11 @@ class Sound:
 
     @classmethod
     def constant(cls, speed: float) -> Sound:
-        """The same speed at all depths [m/s]."""
+        """Return the same speed at all depths [m/s]."""
         return cls(np.zeros(1), np.array([speed]))
 
     def mean(self, above: float, below: float) -> float:
-        """Harmonic mean between two depths [m/s].
+        """Return the harmonic mean between two depths [m/s].
 
         A straight ray spends its way evenly over the depths between its ends, at any slope, so its
         time is its length over this mean.
@@ -57,7 +58,7 @@ class Sound:
 
 
 def read_sound(path: Path) -> Sound:
-    """A profile from a CSV file with the header ``depth[m],sound_speed[m/s]``.
+    """Return a profile from a CSV file with the header ``depth[m],sound_speed[m/s]``.
 
     Raises
     ------
@@ -65,10 +66,10 @@ def read_sound(path: Path) -> Sound:
         With every mistake of the file: a depth that does not grow, a speed that no water has.
     """
     problems: list[Problem] = []
-    columns = read_columns(path, _COLUMNS, _EXAMPLE, problems)
+    columns = read_named_columns(path, _COLUMNS, _EXAMPLE, problems)
     for name, dimension in _COLUMNS.items():
         if name not in columns.factors:
-            problems.append(lacking(path, name, DIMENSIONS[dimension].unit, columns))
+            problems.append(columns.lacks(path, name, DIMENSIONS[dimension].unit))
     depths: list[float] = []
     speeds: list[float] = []
     for row in columns.rows:
@@ -77,19 +78,19 @@ def read_sound(path: Path) -> Sound:
             complaint = _complaint(name, text, factor, depths)
             if complaint:
                 message = f"`{name}: {shown(text)}` {complaint}"
-                problems.append(Problem(str(path), row.line, 1, message))
+                problems.append(row.problem(path, name, message))
             else:
                 (depths if name == "depth" else speeds).append(float(text) * factor)
     if not problems and not depths:
         problems.append(Problem(str(path), 0, 0, "there are no rows below the header"))
     if problems:
-        raise InputError(problems)
+        raise InputError(abridged(problems))
     return Sound(np.array(depths), np.array(speeds))
 
 
 def _complaint(name: str, text: str, factor: float, depths: list[float]) -> str:
-    if not NUMBER.fullmatch(text):
-        return "is no number"
+    if complaint := no_number(text):
+        return complaint
     value = float(text) * factor
     if name == "depth":
         if value < 0.0 or (depths and value <= depths[-1]):
@@ -99,5 +100,5 @@ def _complaint(name: str, text: str, factor: float, depths: list[float]) -> str:
 
 
 def sound_complaint() -> str:
-    """What is said of a speed of sound that no water has."""
+    """Return what is said of a speed of sound that no water has."""
     return f"is not a speed of sound in water; it is {SLOWEST:g} to {FASTEST:g} m/s"

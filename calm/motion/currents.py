@@ -10,28 +10,33 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.plausible import implausible
-from calm.batch.records.choice import choose_profiles
-from calm.batch.records.opening import open_record
+from calm.batch.statuses import implausible
 from calm.errors import InputError, Problem
-from calm.files.current_file import holds_arrays
-from calm.files.current_netcdf import open_current, reading
-from calm.files.current_place import is_regular
-from calm.files.current_times import find_times, read_times
-from calm.files.current_values import known_values
-from calm.files.current_variables import UnreadableError, factor_of, find_velocity
-from calm.files.current_vectors import with_components
-from calm.files.quality_flags import flag_variable, flags_of
-from calm.motion.labelled import labels_along
 from calm.physics.line import Floats
+from calm.records.cf_files import (
+    UnreadableError,
+    factor_of,
+    find_times,
+    flag_variable,
+    flags_of,
+    known_values,
+    labels_along,
+    open_current,
+    read_times,
+    reading,
+)
+from calm.records.current_file import holds_arrays, open_record
+from calm.records.record import choose_profiles
+from calm.records.velocity import find_velocity, with_components
+from calm.records.water_column import is_regular
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
 
 @dataclass(frozen=True)
-class Currents:
-    """What one file says of the current.
+class CurrentMeasurements:
+    """Hold what one file says of the current.
 
     Attributes
     ----------
@@ -62,14 +67,14 @@ def read_currents(
     place: tuple[float, float] | None,
     declination: float | None,
     maximum_speed: float,
-) -> list[Currents]:
-    """The currents of some files.
+) -> list[CurrentMeasurements]:
+    """Return the currents of some files.
 
     Parameters
     ----------
     seabed : depth of the water [m]
     place : latitude and longitude of the mooring [degrees], where it is known
-    declination : see `calm.batch.records.opening.open_record`
+    declination : see `calm.records.record.open_record`
     maximum_speed : what is faster is left out, and said [m/s]
 
     Raises
@@ -89,12 +94,12 @@ def read_currents(
                 marks = record.flags(0, record.count)
                 flag = np.zeros(u.shape, np.int8) if marks is None else marks
                 time = np.asarray(record.time)
-            mine = Currents(time, depth, ("",) * u.shape[1], u, v, flag, path.name)
+            mine = CurrentMeasurements(time, depth, ("",) * u.shape[1], u, v, flag, path.name)
         found.append(_plausible(mine, maximum_speed))
     return found
 
 
-def _plausible(one: Currents, maximum_speed: float) -> Currents:
+def _plausible(one: CurrentMeasurements, maximum_speed: float) -> CurrentMeasurements:
     """Without the levels whose current cannot be."""
     depth = np.where([bool(label) for label in one.label], 0.0, one.depth)
     false = implausible(depth, one.u, one.v, None, maximum_speed)
@@ -113,8 +118,8 @@ def _plausible(one: Currents, maximum_speed: float) -> Currents:
     )
 
 
-def _labelled(path: Path, declination: float | None) -> Currents | None:
-    """The currents of a file whose levels are parts of the line; None of any other."""
+def _labelled(path: Path, declination: float | None) -> CurrentMeasurements | None:
+    """Return the currents of a file whose levels are parts of the line; None of any other."""
     with reading(path), open_current(path) as dataset:
         dataset = with_components(dataset)
         try:
@@ -154,7 +159,7 @@ def _labelled(path: Path, declination: float | None) -> Currents | None:
         times = read_times(dataset, clock)
         index, notes = choose_profiles(times, None, 1, path)
         nowhere = np.full(u.shape, np.nan)
-        return Currents(
+        return CurrentMeasurements(
             times[index], nowhere, labels, u[index], v[index],
             np.broadcast_to(flag, u.shape)[index], path.name, notes,
         )  # fmt: skip

@@ -1,24 +1,26 @@
-"""Which part of the line a sensor, or a current meter, is."""
+"""Which sensor hangs where on the line, and which of its readings can be right."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from calm.case import Mooring
-from calm.case.measure import clamps_down
+from calm.case.parts import clamps_down
 from calm.errors import UsageError
-from calm.files.explain import nearest
+from calm.motion.measurements import MooringMeasurements
 from calm.motion.sensors import Sensor
 from calm.physics.line import Floats
+from calm.suggestions import nearest
 
 CERTAIN = 2.0
 """An order of sensors counts as the only one where any other is off by so much more [m]."""
 
 
 def labels_of(mooring: Mooring) -> tuple[str, ...]:
-    """Labels of all points, see `calm.motion.forward`."""
+    """Labels of all points, see `calm.motion.line_response`."""
     pieces = mooring.file.pieces
     return (
         *(clamp.label for clamp in clamps_down(pieces)),
@@ -27,7 +29,7 @@ def labels_of(mooring: Mooring) -> tuple[str, ...]:
 
 
 def instruments_of(mooring: Mooring) -> list[int]:
-    """The points that may be instruments: all clamps, and the pieces whose role it is."""
+    """Return the points that may be instruments: all clamps, and the pieces whose role it is."""
     pieces = mooring.file.pieces
     clamps = len(clamps_down(pieces))
     inline = [clamps + i for i, piece in enumerate(pieces) if piece.component.role == "instrument"]
@@ -37,7 +39,7 @@ def instruments_of(mooring: Mooring) -> list[int]:
 def matched_by_label(
     sensors: Sequence[Sensor], labels: Sequence[str]
 ) -> tuple[dict[int, int], list[str]]:
-    """The point of each sensor whose label a part has, and what is said of the others.
+    """Return the point of each sensor whose label a part has, and what is said of the others.
 
     Raises
     ------
@@ -69,7 +71,7 @@ def matched_by_label(
 def matched_by_place(
     sensors: Sequence[Sensor], places: Sequence[int], still: Floats, labels: Sequence[str]
 ) -> dict[int, int]:
-    """The point of each sensor by its nominal depth, in their order down the line.
+    """Return the point of each sensor by its nominal depth, in their order down the line.
 
     Of all ways to set the sensors on the instruments without changing their order, the one whose
     depths agree best.
@@ -112,7 +114,9 @@ def matched_by_place(
 
 
 def _cheapest(miss: Floats) -> tuple[list[int], float]:
-    """Columns, rising, one for each row, whose sum is least, and that sum; infinite without any."""
+    """Return columns, rising, one for each row, whose sum is least, and that sum; infinite without
+    any.
+    """
     rows, columns = miss.shape
     best = np.full((rows + 1, columns + 1), np.inf)
     best[0] = 0.0
@@ -128,3 +132,76 @@ def _cheapest(miss: Floats) -> tuple[list[int], float]:
         chosen.append(j - 1)
         j -= 1
     return chosen[::-1], float(best[rows, columns])
+
+
+CONSTANT = 1e-6
+"""A sensor whose depths span no more than this measures nothing [m]."""
+MISPLACED = 20.0
+"""How far from its place in still water a sensor may be at its least depth [m], where that is
+not within a factor of two either."""
+BELOW = 1.1
+"""No reading is deeper than the seabed by this factor, and by `MISPLACED`."""
+
+
+def plausible(sensor: Sensor, place: float, seabed: float) -> tuple[Sensor, list[str]]:
+    """Return a sensor without the readings that cannot be from its place, and what is said of them.
+
+    Those far above its place in still water (on deck, a fill value), those far below the seabed,
+    and the later ones of a time that stands twice. Where most are so, the sensor is wrong, not
+    these readings, and all stay: see `unusable`.
+
+    Parameters
+    ----------
+    place : depth where it hangs in still water [m]
+    seabed : depth of the water [m]
+    """
+    notes = []
+    again = np.zeros(len(sensor.time), bool)
+    again[1:] = sensor.time[1:] == sensor.time[:-1]
+    if again.any():
+        when = np.datetime_as_string(sensor.time[again][0], "s")
+        notes.append(
+            f"{sensor.label}: {again.sum()} of its times stand twice, the first {when}: the first "
+            "reading of each counts"
+        )
+        sensor = replace(sensor, time=sensor.time[~again], depth=sensor.depth[~again])
+    least = min(0.5 * place, place - MISPLACED)
+    greatest = max(BELOW * seabed, seabed + MISPLACED)
+    wrong = (sensor.depth < least) | (sensor.depth > greatest)
+    if wrong.any() and 2 * wrong.sum() < np.isfinite(sensor.depth).sum():
+        first = int(wrong.argmax())
+        notes.append(
+            f"{sensor.label}: {wrong.sum()} of its readings cannot be from its place, "
+            f"{place:.1f} m, and are left out: the first is {sensor.depth[first]:.1f} m, at "
+            f"{np.datetime_as_string(sensor.time[first], 's')}"
+        )
+        sensor = replace(sensor, depth=np.where(wrong, np.nan, sensor.depth))
+    return sensor, notes
+
+
+def unusable(measured: MooringMeasurements, still: Floats) -> dict[str, str]:
+    """Sensors that cannot be used, each with the reason; what cannot be right is refused.
+
+    Raises
+    ------
+    UsageError
+        A sensor is nowhere near its place on the line, so that its unit or its label is wrong.
+    """
+    reasons, complaints = {}, []
+    for j, label in enumerate(measured.label):
+        depth = measured.depth[:, j][np.isfinite(measured.depth[:, j])]
+        if not depth.size:
+            reasons[label] = "has no good pressure at any time of the currents"
+            continue
+        if depth.size > 2 and np.ptp(depth) <= CONSTANT:
+            reasons[label] = f"is constant at {depth[0]:.1f} m: it is left out"
+            continue
+        least, place = float(np.percentile(depth, 5.0)), float(still[measured.point[j]])
+        if abs(least - place) > MISPLACED and not 0.5 < least / place < 2.0:
+            complaints.append(
+                f"`{label}` is at {least:.1f} m at its least, where the line has it at "
+                f"{place:.1f} m: its unit (bar, kPa?) or its label is wrong"
+            )
+    if complaints:
+        raise UsageError("--pressures: " + "; ".join(complaints))
+    return reasons

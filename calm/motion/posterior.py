@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from calm.motion import prior
-from calm.motion.measured import Measured
-from calm.motion.moment import Moments, Way
-from calm.motion.unknowns import Common
+from calm.motion.common_unknowns import Common
+from calm.motion.line_response import LineResponse, ReadCurrents
+from calm.motion.measurements import MooringMeasurements
 from calm.physics.line import Floats
 
 FURTHEST = 0.7
@@ -37,7 +37,7 @@ class Linear:
     common: Floats
 
     def moved(self, logs: Floats, depth: Floats) -> Linear:
-        """At another state, the slopes such that they lead from the one to the other (Broyden)."""
+        """Return the line at another state, with slopes that lead there from this one (Broyden)."""
         step = logs - self.logs
         size = (step**2).sum(axis=1)[:, None]
         miss = depth - self.depth - np.einsum("npg,ng->np", self.slope, step)
@@ -48,7 +48,7 @@ class Linear:
 
 @dataclass(frozen=True)
 class Posterior:
-    """What the pressures make of the currents.
+    """Hold what the pressures make of the currents.
 
     Attributes
     ----------
@@ -72,9 +72,14 @@ class Posterior:
 
 
 def posterior(
-    one: Measured, at: Linear, spread: Floats, common: Common, still: Floats, spike: int = -1
+    one: MooringMeasurements,
+    at: Linear,
+    spread: Floats,
+    common: Common,
+    still: Floats,
+    spike: int = -1,
 ) -> Posterior:
-    """The best state by a linear law, and what is known of all depths then.
+    """Return the best state by a linear law, and what is known of all depths then.
 
     Parameters
     ----------
@@ -143,7 +148,7 @@ def posterior(
 
 
 @dataclass(frozen=True)
-class Settled:
+class CurrentsState:
     """The currents as measured, at the levels where the line has them.
 
     Attributes
@@ -153,14 +158,14 @@ class Settled:
     at, found : the same at the best state
     """
 
-    way: Way
+    way: ReadCurrents
     begin: Linear
     before: Posterior
     at: Linear
     found: Posterior
 
 
-def settled(moments: Moments, common: Common) -> Settled:
+def best_state(moments: LineResponse, common: Common) -> CurrentsState:
     """Hang the currents where the line is, and find the best state."""
     one, still = moments.measured, moments.forward.still
     none = np.zeros((len(one.time), moments.groups))
@@ -174,11 +179,12 @@ def settled(moments: Moments, common: Common) -> Settled:
     for _ in range(2):
         at = at.moved(found.logs, moments.depths(way, found.logs))
         found = posterior(one, at, way.spread, common, still)
-    return Settled(way, begin, before, at, found)
+    return CurrentsState(way, begin, before, at, found)
 
 
-def between(one: Measured, depth: Floats, still: Floats) -> Floats:
-    """(n, p) depths with what the sensors measure beside them, linear by the height in still water.
+def between(one: MooringMeasurements, depth: Floats, still: Floats) -> Floats:
+    """Return (n, p) depths with what the sensors measure beside them, linear by the height in still
+    water.
 
     Parameters
     ----------

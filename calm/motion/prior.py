@@ -57,7 +57,7 @@ WORST = 0.07
 
 
 def by_flag(values: Mapping[int, float], flag: NDArray[np.int8]) -> Floats:
-    """A figure for every flag; one that is not known counts as bad, 4."""
+    """Return a figure for every flag; one that is not known counts as bad, 4."""
     table = np.full(256, values[4])
     for number, value in values.items():
         table[number] = value

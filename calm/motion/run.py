@@ -13,14 +13,14 @@ import numpy as np
 
 from calm.batch.dataset import laid_out, layout_of
 from calm.batch.profiles import Batch
-from calm.batch.run import Outcome, run_kept
+from calm.batch.run import BatchOutcome, run_kept
 from calm.batch.store.identity import identity_of, to_text
 from calm.batch.store.store import Store, open_store
 from calm.batch.threads import processors
 from calm.batch.work import Progress, Work
 from calm.dataset.variables import Attributes, Layout, labels, numbers
 from calm.motion.matching import labels_of
-from calm.motion.measured import level_names
+from calm.motion.measurements import level_names
 from calm.motion.task import BLOCK, MeasuredRecord, Task
 from calm.physics.line import Floats
 
@@ -58,7 +58,7 @@ def run_motion(
     progress: Callable[[Progress], None] | None = None,
     tell: Callable[[str], None] = lambda _: None,
     stop: Event | None = None,
-) -> Outcome:
+) -> BatchOutcome:
     """Estimate every time, and write the result; see `calm.batch.run.run_batch`.
 
     Parameters
@@ -109,7 +109,7 @@ class MotionWork(Work):
 
 
 def motion_layout(task: Task, record: MeasuredRecord) -> Layout:
-    """The result of a batch, with what is estimated besides."""
+    """Return the result of a batch, with what is estimated besides."""
     layout = layout_of(task.mooring, record, None)
     known = dict(layout.sizes)
     known["sensor"] = len(task.measured.label)
@@ -135,7 +135,14 @@ def motion_layout(task: Task, record: MeasuredRecord) -> Layout:
 def estimate_in_memory(
     task: Task, points: Sequence[int], workers: int | None = None
 ) -> tuple[Floats, Floats]:
-    """(n, m) depths of some points and their deviations [m], which are kept nowhere."""
+    """Return (n, m) depths of some points and their deviations [m], which are kept nowhere.
+
+    Parameters
+    ----------
+    task : what is estimated
+    points : which points of the line
+    workers : threads
+    """
     starts = range(0, len(task.measured.time), BLOCK)
 
     def one(start: int) -> tuple[Floats, Floats]:

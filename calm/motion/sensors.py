@@ -1,4 +1,4 @@
-"""Pressures of instruments on a mooring: read, and turned into depths."""
+"""Pressures of instruments on a mooring, turned into depths, and the height of the sea surface."""
 
 from __future__ import annotations
 
@@ -12,17 +12,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import InputError, Problem, UsageError
-from calm.files.current_file import holds_arrays
-from calm.files.current_netcdf import open_current, reading
-from calm.files.current_times import find_times, read_times
-from calm.files.current_values import known_values
-from calm.files.current_variables import UnreadableError, factor_of, holdings, refuse_ragged
-from calm.files.current_words import words_of
-from calm.files.quality_flags import flag_variable, flags_of
-from calm.motion.flags import INTERPOLATED
-from calm.motion.labelled import labels_along, places_along
-from calm.motion.tables import read_table
 from calm.physics.line import Floats
+from calm.records.attributes import words_of
+from calm.records.cf_files import (
+    MISSING,
+    UnreadableError,
+    factor_of,
+    find_times,
+    flag_variable,
+    flags_of,
+    holdings,
+    known_values,
+    labels_along,
+    open_current,
+    places_along,
+    read_times,
+    reading,
+)
+from calm.records.columns import read_time_columns
+from calm.records.current_file import holds_arrays
+from calm.records.velocity import refuse_ragged
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -38,7 +47,7 @@ _NOT_MEASURED = re.compile(
 
 @dataclass(frozen=True)
 class Sensor:
-    """What one sensor measured.
+    """Hold what one sensor measured.
 
     Attributes
     ----------
@@ -61,7 +70,8 @@ class Sensor:
 def read_sensors(
     given: Sequence[str], flags: frozenset[int], latitude: float, seabed: float
 ) -> list[Sensor]:
-    """The sensors of some files, each given by its path, or as ``LABEL=PATH`` where it has one.
+    """Return the sensors of some files, each given by its path, or as ``LABEL=PATH`` where it has
+    one.
 
     Pressures are turned into depths by TEOS-10.
 
@@ -108,7 +118,9 @@ def _split(text: str) -> tuple[str, Path]:
 
 
 def depth_of(dbar: Floats, latitude: float) -> Floats:
-    """Depths [m] of pressures above that of the air [dbar], by TEOS-10; NaN of infinite ones."""
+    """Return depths [m] of pressures above that of the air [dbar], by TEOS-10; NaN of infinite
+    ones.
+    """
     import gsw
 
     known = np.where(np.isfinite(dbar), dbar, np.nan)
@@ -189,7 +201,7 @@ def _tells(dataset: xr.Dataset, dimension: str, seabed: float) -> bool:
 
 
 def _find(dataset: xr.Dataset) -> tuple[str, bool]:
-    """The variable of the pressures, or else of the depths; whether it is the former."""
+    """Return the variable of the pressures, or else of the depths; whether it is the former."""
     for standard in _PRESSURES:
         found = [str(name) for name in dataset.cf.standard_names.get(standard, [])]
         usual = [name for name in _USUAL if name in found]
@@ -215,8 +227,9 @@ def _find(dataset: xr.Dataset) -> tuple[str, bool]:
 
 
 def _from_csv(path: Path, latitude: float) -> list[Sensor]:
-    """A table ``time,LABEL[dbar],…``; a label may come with a unit of length instead."""
-    time, columns, values = read_table(path, ("pressure", "length"), "LABEL[dbar]")
+    """Return a table ``time,LABEL[dbar],…``; a label may come with a unit of length instead."""
+    table = read_time_columns(path, ("pressure", "length"), "LABEL[dbar]")
+    time, values = table.time, table.values
     return [
         Sensor(
             label,
@@ -226,5 +239,87 @@ def _from_csv(path: Path, latitude: float) -> list[Sensor]:
             else values[:, j],
             path.name,
         )
-        for j, (label, dimension) in enumerate(columns)
+        for j, (label, dimension) in enumerate(zip(table.names, table.dimensions, strict=True))
     ]
+
+
+GOOD = frozenset({1, 2})
+"""Good and probably good: what is taken unless something else is asked for."""
+INTERPOLATED = 8
+"""Never a measurement."""
+
+
+def parse_flags(text: str) -> frozenset[int]:
+    """Return the flags of a text such as ``1,2``.
+
+    Raises
+    ------
+    UsageError
+        They are no flags, or 8 is among them: what was interpolated is no measurement.
+    """
+    try:
+        flags = frozenset(int(part) for part in text.split(","))
+    except ValueError:
+        raise UsageError(f"--flags: `{text[:40]}` is not a list of flags; write 1,2") from None
+    if INTERPOLATED in flags:
+        raise UsageError("--flags: 8 marks what was interpolated, which is never a measurement")
+    if not flags <= set(range(MISSING)):
+        raise UsageError(f"--flags: `{text[:40]}`: flags are from 0 to 8")
+    return flags
+
+
+FURTHEST = 20.0
+"""A height of the sea surface is this far from the others at most [m]: no tide has half of it."""
+
+_STANDARD = (
+    "sea_surface_height_above_mean_sea_level",
+    "sea_surface_height_above_geoid",
+    "sea_surface_height_above_geopotential_datum",
+    "tidal_sea_surface_height_above_mean_sea_level",
+    "water_surface_height_above_reference_datum",
+)
+
+
+def read_sea_level(path: Path) -> tuple[NDArray[np.datetime64], Floats]:
+    """Return times, rising, and the height of the sea surface above a datum [m].
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or holds no height with its unit, or one that cannot be.
+    """
+    if not path.exists():
+        raise InputError([Problem(str(path), 0, 0, "no such file")])
+    if not holds_arrays(path):
+        table = read_time_columns(path, ("length",), "level[m]")
+        if len(table.names) != 1:
+            message = "has several columns; the sea level is one: `time,level[m]`"
+            raise InputError([Problem(str(path), 1, 1, message)])
+        _refuse_far(path, table.time, table.values[:, 0])
+        return table.time, table.values[:, 0]
+    with reading(path), open_current(path) as dataset:
+        for standard in _STANDARD:
+            for name in map(str, dataset.cf.standard_names.get(standard, [])):
+                clock = find_times(dataset, name)
+                variable = dataset[name].squeeze()
+                if clock is None or variable.ndim != 1:
+                    continue
+                times = read_times(dataset, clock)
+                order = np.argsort(times, kind="stable")
+                level = known_values(variable) * factor_of(variable, "length")
+                _refuse_far(path, times, level)
+                return times[order], level[order]
+        raise UnreadableError(f"holds no height of the sea surface; it holds {holdings(dataset)}")
+
+
+def _refuse_far(path: Path, time: NDArray[np.datetime64], level: Floats) -> None:
+    known = level[np.isfinite(level)]
+    far = np.abs(level - (np.median(known) if known.size else 0.0)) > FURTHEST
+    if far.any():
+        at = int(far.argmax())
+        message = (
+            f"is {level[at]:g} m at {np.datetime_as_string(time[at], 's')}: no height of the sea "
+            f"surface is more than {FURTHEST:g} m from the others; leave empty what was not "
+            "measured"
+        )
+        raise InputError([Problem(str(path), 0, 0, message)])

@@ -11,10 +11,7 @@ from numpy.typing import NDArray
 
 from calm.case import Mooring
 from calm.errors import UsageError
-from calm.files.explain import unknown
-from calm.motion.doubts import doubts, false_currents, said_of_currents, said_of_datum
-from calm.motion.forward import Forward
-from calm.motion.judge import (
+from calm.motion.agreement import (
     BAND,
     Agreement,
     agreement,
@@ -24,13 +21,15 @@ from calm.motion.judge import (
     linear,
     rms,
 )
+from calm.motion.line_response import Forward
 from calm.motion.matching import labels_of
-from calm.motion.measured import Measured, level_names
+from calm.motion.measurements import MooringMeasurements, level_names
+from calm.motion.remarks import current_remarks, datum_remarks, false_current_times, sensor_remarks
 from calm.motion.run import estimate_in_memory
-from calm.motion.series import depths_at
 from calm.motion.task import Task, without
 from calm.motion.whole_record import estimate_common
 from calm.physics.line import Floats
+from calm.suggestions import unknown
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -59,7 +58,7 @@ class HeldOut:
 
 @dataclass(frozen=True)
 class Study:
-    """What was found.
+    """Hold what was found.
 
     Attributes
     ----------
@@ -67,7 +66,7 @@ class Study:
     factors : of each name its value and the ends of its interval of 95 %
     fit, plain : agreement of each used sensor, of what is estimated and of the currents alone
     held_out : of the hidden ones
-    doubts : what to doubt, in sentences
+    remarks : what to doubt, in sentences
     false : times at which the current of a level looks false, by its name
     """
 
@@ -76,14 +75,21 @@ class Study:
     fit: Mapping[str, Agreement]
     plain: Mapping[str, Agreement]
     held_out: tuple[HeldOut, ...]
-    doubts: tuple[str, ...]
+    remarks: tuple[str, ...]
     false: Mapping[str, NDArray[np.datetime64]]
 
 
 def prepare(
-    mooring: Mooring, measured: Measured, names: Sequence[str], hidden: Sequence[str]
+    mooring: Mooring, measured: MooringMeasurements, names: Sequence[str], hidden: Sequence[str]
 ) -> Task:
     """Estimate what is common to the record from the sensors that are not hidden.
+
+    Parameters
+    ----------
+    mooring : as its file says
+    measured : with the sensors that are hidden
+    names : of the factors that are estimated
+    hidden : labels of sensors that are not used
 
     Raises
     ------
@@ -101,7 +107,7 @@ def prepare(
 
 
 def intervals(task: Task) -> dict[str, tuple[float, float, float]]:
-    """Of each factor its value and the ends of its interval of 95 %."""
+    """Return the value of each factor and the ends of its interval of 95 %."""
     spread = np.sqrt(np.diag(task.common.covariance))
     return {
         name: (value, value * float(np.exp(-BAND * sd)), value * float(np.exp(BAND * sd)))
@@ -109,8 +115,8 @@ def intervals(task: Task) -> dict[str, tuple[float, float, float]]:
     }
 
 
-def judged(task: Task, measured: Measured, result: Dataset) -> Study:
-    """How a finished result agrees with all that was measured.
+def judged(task: Task, measured: MooringMeasurements, result: Dataset) -> Study:
+    """Return how a finished result agrees with all that was measured.
 
     Parameters
     ----------
@@ -135,16 +141,16 @@ def judged(task: Task, measured: Measured, result: Dataset) -> Study:
         point = int(measured.point[measured.label.index(label)])
         depth, spread = depths_at(result, point)
         held.append(judge_hidden(measured, used, label, depth, spread, still))
-    said = doubts(used.label, used.time, residual, down, task.common)
+    said = sensor_remarks(used.label, used.time, residual, down, task.common)
     names = level_names(used, labels_of(task.mooring))
-    false = false_currents(names, used.time, np.asarray(result["current_doubt"].values))
-    said += said_of_currents(false, len(used.time))
-    said += said_of_datum(task.common, float(task.mooring.water.depth))
+    false = false_current_times(names, used.time, np.asarray(result["current_doubt"].values))
+    said += current_remarks(false, len(used.time))
+    said += datum_remarks(task.common, float(task.mooring.water.depth))
     return Study(task, intervals(task), fit_of, plain_of, tuple(held), tuple(said), false)
 
 
-def knockdown(used: Measured) -> Floats:
-    """(n,) how far below its least depth the highest sensor with a pressure is [m]."""
+def knockdown(used: MooringMeasurements) -> Floats:
+    """Return (n,) how far below its least depth the highest sensor with a pressure is [m]."""
     down = np.full(len(used.time), np.nan)
     for j in range(len(used.label)):
         depth = used.depth[:, j]
@@ -154,9 +160,23 @@ def knockdown(used: Measured) -> Floats:
 
 
 def judge_hidden(
-    measured: Measured, used: Measured, label: str, depth: Floats, spread: Floats, still: Floats
+    measured: MooringMeasurements,
+    used: MooringMeasurements,
+    label: str,
+    depth: Floats,
+    spread: Floats,
+    still: Floats,
 ) -> HeldOut:
-    """A hidden sensor against what was estimated, and against interpolation."""
+    """Return a hidden sensor against what was estimated, and against interpolation.
+
+    Parameters
+    ----------
+    measured : with all sensors
+    used : with those that are used
+    label : of the hidden one
+    depth, spread : (n,) estimated there, and its deviation [m]
+    still : (p,) depths in still water [m]
+    """
     column = measured.label.index(label)
     own = measured.depth[:, column]
     among = np.isfinite(own) & np.isfinite(used.depth).all(axis=1) & np.isfinite(depth)
@@ -168,8 +188,8 @@ def judge_hidden(
     return HeldOut(label, int(among.sum()), bias, rms(off), rms(other), coverage(off, spread))
 
 
-def several(measured: Measured, hidden: Sequence[str]) -> list[str]:
-    """The sensors that can be hidden in turn.
+def several(measured: MooringMeasurements, hidden: Sequence[str]) -> list[str]:
+    """Return the sensors that can be hidden in turn.
 
     Raises
     ------
@@ -184,13 +204,19 @@ def several(measured: Measured, hidden: Sequence[str]) -> list[str]:
 
 def cross_validated(
     mooring: Mooring,
-    measured: Measured,
+    measured: MooringMeasurements,
     names: Sequence[str],
     hidden: Sequence[str],
     tell: Callable[[str], None],
     workers: int | None = None,
 ) -> tuple[HeldOut, ...]:
     """Each used sensor hidden in turn, besides those that are hidden anyway.
+
+    Parameters
+    ----------
+    mooring, measured, names, hidden : as for `prepare`
+    tell : is told what is going on
+    workers : threads
 
     Raises
     ------
@@ -206,3 +232,56 @@ def cross_validated(
         depth, spread = estimate_in_memory(task, [point], workers)
         held.append(judge_hidden(measured, task.measured, label, depth[:, 0], spread[:, 0], still))
     return tuple(held)
+
+
+@dataclass(frozen=True)
+class SensorSeries:
+    """Hold the depths of one sensor over time.
+
+    Attributes
+    ----------
+    hidden : whether it was hidden from the estimate
+    time, measured, estimated, spread : (n,) depths and standard deviation [m]
+    plain : (n,) by the currents alone; None of a hidden sensor
+    """
+
+    label: str
+    hidden: bool
+    time: NDArray[np.datetime64]
+    measured: Floats
+    estimated: Floats
+    spread: Floats
+    plain: Floats | None
+
+
+def depths_at(result: Dataset, point: int) -> tuple[Floats, Floats]:
+    """Return (n,) depths of a point in a result, and their standard deviations [m]."""
+    clamps = result.sizes.get("clamp", 0)
+    names = ("clamp_depth", "clamp_depth_sd") if point < clamps else ("depth_top", "depth_sd")
+    column = point if point < clamps else point - clamps
+    depth, spread = (np.asarray(result[name][:, column].values, np.float64) for name in names)
+    return depth, spread
+
+
+def series_of(
+    measured: MooringMeasurements, used: tuple[str, ...], result: Dataset
+) -> list[SensorSeries]:
+    """Return the depths of all sensors from the top down.
+
+    Parameters
+    ----------
+    measured : with the sensors that were hidden
+    used : labels of those that were not
+    result : of `calm.motion.run.run_motion`
+    """
+    found = []
+    for j, label in enumerate(measured.label):
+        depth, spread = depths_at(result, int(measured.point[j]))
+        hidden = label not in used
+        plain = None
+        if not hidden:
+            plain = np.asarray(result["plain_depth"][:, used.index(label)].values, np.float64)
+        found.append(
+            SensorSeries(label, hidden, measured.time, measured.depth[:, j], depth, spread, plain)
+        )
+    return found

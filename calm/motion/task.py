@@ -11,16 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.batch.profiles import Profiles
-from calm.batch.records.record import Levels, Record
 from calm.batch.statuses import STATUSES
 from calm.case import Mooring
+from calm.motion.common_unknowns import Common
 from calm.motion.estimate import estimated
-from calm.motion.forward import Forward, points
-from calm.motion.measured import FREE, Measured
-from calm.motion.moment import Moments
-from calm.motion.unknowns import Common
+from calm.motion.line_response import Forward, LineResponse, points
+from calm.motion.measurements import FREE, MooringMeasurements
 from calm.motion.whole_record import forwards_of
 from calm.physics.line import Floats
+from calm.records.record import Levels, Record
 
 BLOCK = 512
 """Times that are estimated, and kept, together."""
@@ -28,14 +27,15 @@ BLOCK = 512
 
 @dataclass(frozen=True)
 class Task:
-    """What is to be estimated: `measured` has the sensors that are used."""
+    """Hold what is to be estimated: `measured` has the sensors that are used."""
 
     mooring: Mooring
-    measured: Measured
+    measured: MooringMeasurements
     common: Common
 
     def columns(self, start: int, stop: int) -> tuple[Profiles, dict[str, NDArray[np.float64]]]:
-        """Some of the times: the line in the most likely currents, and what is known besides.
+        """Return some of the times: the line in the most likely currents, and what is known
+        besides.
 
         Returns
         -------
@@ -43,7 +43,7 @@ class Task:
         `current_factor`, `current_doubt`, `residual`, `plain_depth`.
         """
         one = self.measured.at(slice(start, stop))
-        moments = Moments(one, *self._forwards)
+        moments = LineResponse(one, *self._forwards)
         found = estimated(moments, self.common)
         likely = moments.forward.solve(found.likely.level, found.likely.u, found.likely.v)
         clamps = likely.clamp_depth.shape[1]
@@ -81,9 +81,9 @@ class Task:
         return Forward(self.mooring, {})
 
 
-def plain(forward: Forward, one: Measured) -> Floats:
-    """(n, p) depths of the points by the currents alone, nothing fitted [m]."""
-    moments = Moments(one, forward, {})
+def plain(forward: Forward, one: MooringMeasurements) -> Floats:
+    """Return (n, p) depths of the points by the currents alone, nothing fitted [m]."""
+    moments = LineResponse(one, forward, {})
     depth = np.tile(forward.still, (len(one.time), 1))
     for _ in range(2):
         level = moments.levels(np.nan_to_num(depth))
@@ -93,9 +93,11 @@ def plain(forward: Forward, one: Measured) -> Floats:
 
 
 class MeasuredRecord(Record):
-    """What was measured, as the record that a result is made from."""
+    """Hold what was measured, as the record that a result is made from."""
 
-    def __init__(self, measured: Measured, source: dict[str, str], notes: Sequence[str]) -> None:
+    def __init__(
+        self, measured: MooringMeasurements, source: dict[str, str], notes: Sequence[str]
+    ) -> None:
         self._measured = measured
         self.time, self.source, self.notes = measured.time, dict(source), tuple(notes)
 
@@ -105,7 +107,7 @@ class MeasuredRecord(Record):
         return one.level_depth, one.u, one.v, None
 
     def close(self) -> None:
-        """Nothing is open."""
+        """Do nothing: no file is open."""
 
     def digest(self, check: Callable[[], None] = lambda: None) -> str:
         """SHA-256 of all that was measured."""
@@ -121,8 +123,10 @@ class MeasuredRecord(Record):
         return digest.hexdigest()
 
 
-def without(measured: Measured, labels: Sequence[str]) -> Measured:
-    """What was measured but for some sensors: hidden everywhere, their currents' depths too."""
+def without(measured: MooringMeasurements, labels: Sequence[str]) -> MooringMeasurements:
+    """Return what was measured but for some sensors: hidden everywhere, their currents' depths
+    too.
+    """
     kept = [i for i, label in enumerate(measured.label) if label not in labels]
     point = measured.point[kept]
     places = point.tolist()

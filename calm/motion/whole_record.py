@@ -10,13 +10,10 @@ from numpy.typing import NDArray
 
 from calm.case import Mooring
 from calm.motion import prior
-from calm.motion.filled import gap_errors
-from calm.motion.forward import Forward
-from calm.motion.measured import Measured
-from calm.motion.moment import STEP, Moments
-from calm.motion.posterior import settled
-from calm.motion.slipped import Evidence, first_time, fits, placed
-from calm.motion.unknowns import Common
+from calm.motion.common_unknowns import Common, Evidence, first_time, fits, hanging_sensors
+from calm.motion.line_response import STEP, Forward, LineResponse, gap_errors
+from calm.motion.measurements import MooringMeasurements
+from calm.motion.posterior import best_state
 from calm.physics.line import Floats, Integers
 from calm.solve import expect_many
 
@@ -40,7 +37,7 @@ LONGEST_MEMORY = 25
 
 
 def forwards_of(mooring: Mooring, common: Common) -> tuple[Forward, dict[str, Forward]]:
-    """The mooring at the common factors, and a step from each."""
+    """Return the mooring at the common factors, and a step from each."""
     shifted = {
         name: Forward(mooring, {**common.factors, name: value * float(np.exp(STEP))})
         for name, value in common.factors.items()
@@ -48,8 +45,15 @@ def forwards_of(mooring: Mooring, common: Common) -> tuple[Forward, dict[str, Fo
     return Forward(mooring, common.factors), shifted
 
 
-def assumed(mooring: Mooring, measured: Measured, names: Sequence[str]) -> Common:
-    """What is common before any pressure is looked at."""
+def assumed(mooring: Mooring, measured: MooringMeasurements, names: Sequence[str]) -> Common:
+    """Return what is common before any pressure is looked at.
+
+    Parameters
+    ----------
+    mooring : as its file says
+    measured : on common times
+    names : of the factors that are estimated
+    """
     sensors = len(measured.label)
     spread = [
         *(prior.FACTORS[name][1] for name in names),
@@ -58,14 +62,16 @@ def assumed(mooring: Mooring, measured: Measured, names: Sequence[str]) -> Commo
         *[0.0] * sensors,
     ]
     factors = {name: float(np.exp(prior.FACTORS[name][0])) for name in names}
-    moments = Moments(measured, Forward(mooring, factors), {})
+    moments = LineResponse(measured, Forward(mooring, factors), {})
     level = moments.levels(np.tile(moments.forward.still, (len(measured.time), 1)))
     gap = gap_errors(level, measured.u, measured.v, moments.group)
     none, never = np.zeros(sensors), np.full(sensors, "NaT", "M8[ns]")
     return Common(factors, 0.0, none, none, never, none, np.diag(np.square(spread)), 1.0, gap)
 
 
-def estimate_common(mooring: Mooring, measured: Measured, names: Sequence[str]) -> Common:
+def estimate_common(
+    mooring: Mooring, measured: MooringMeasurements, names: Sequence[str]
+) -> Common:
     """Maximum a posteriori by Gauss-Newton; the covariance by Laplace.
 
     The currents of each time are integrated over, by the slopes at what was measured; the mean of
@@ -74,7 +80,7 @@ def estimate_common(mooring: Mooring, measured: Measured, names: Sequence[str]) 
 
     Parameters
     ----------
-    names : of `calm.motion.forward.FACTORS`, those that are estimated
+    names : of `calm.motion.line_response.FACTORS`, those that are estimated
     """
     part = measured.at(_chosen(measured))
     known = assumed(mooring, part, names)
@@ -83,8 +89,8 @@ def estimate_common(mooring: Mooring, measured: Measured, names: Sequence[str]) 
     expect_many(SOLVES)
     common, sensors = known, len(part.label)
     for _ in range(TURNS):
-        moments = Moments(part, *forwards_of(mooring, common))
-        here = settled(moments, replace(common, covariance=np.zeros_like(known.covariance)))
+        moments = LineResponse(part, *forwards_of(mooring, common))
+        here = best_state(moments, replace(common, covariance=np.zeros_like(known.covariance)))
         good = np.isfinite(here.begin.depth).all(axis=1)
         if not good.any():
             return known
@@ -136,7 +142,7 @@ def estimate_common(mooring: Mooring, measured: Measured, names: Sequence[str]) 
 def _evidence(
     raw: Floats, left: Floats, seen: Floats, expected: Floats, known: NDArray[np.bool_]
 ) -> Evidence:
-    """What each time says, times of large misfit less."""
+    """Return what each time says, times of large misfit less."""
     inverse = np.asarray(np.linalg.inv(expected), np.float64)
     misfit = np.einsum("ns,nst,nt->n", left, inverse, left)
     weight = (ROBUST + known.sum(axis=1)) / (ROBUST + misfit)
@@ -150,7 +156,7 @@ def _unmoved(known: Common) -> tuple[Floats, Floats]:
 
 
 def _memory(evidence: Evidence, left: Floats) -> float:
-    """Of so many times that follow each other the errors of a sensor are the same, at most."""
+    """Return over how many times in a row the errors of a sensor are the same, at most."""
     sensors = left.shape[1]
     return max(_alike(column) for column in evidence.pulls(evidence.seen, left)[:, -sensors:].T)
 
@@ -158,7 +164,7 @@ def _memory(evidence: Evidence, left: Floats) -> float:
 def _placed(
     known: Common, evidence: Evidence, fall: Floats, time: NDArray[np.datetime64], alike: float
 ) -> Common:
-    """What is common by the linear law of all times, over all ways the sensors may hang.
+    """Return what is common by the linear law of all times, over all ways the sensors may hang.
 
     Parameters
     ----------
@@ -174,7 +180,7 @@ def _placed(
     normal, pull = evidence.normal(seen), evidence.pulls(seen, evidence.left).sum(axis=0)
     free = np.linalg.solve(normal + np.eye(len(normal)) / prior.ELSEWHERE**2, pull)
     longest = _memory(evidence, evidence.left - seen @ free)
-    found = placed(
+    found = hanging_sensors(
         normal / alike, pull / alike, known.value, known.covariance, first, len(time),
         max(longest / alike, 1.0),
     )  # fmt: skip
@@ -193,8 +199,8 @@ def _placed(
     )
 
 
-def _chosen(measured: Measured) -> Integers:
-    """Times that have a current and a pressure, evenly spread where they are many."""
+def _chosen(measured: MooringMeasurements) -> Integers:
+    """Return times that have a current and a pressure, evenly spread where they are many."""
     currents = np.isfinite(measured.u) & np.isfinite(measured.v)
     used = np.flatnonzero(np.isfinite(measured.depth).any(axis=1) & currents.any(axis=1))
     if len(used) <= MOST_TIMES:
@@ -203,7 +209,7 @@ def _chosen(measured: Measured) -> Integers:
 
 
 def _scale(left: Floats, expected: Floats, currents: Floats, scale: float) -> tuple[float, float]:
-    """The factor on the errors of the currents under which the pressures are most likely.
+    """Return the factor on the errors of the currents under which the pressures are most likely.
 
     And the logarithm of how likely they then are, but for a constant.
     """
@@ -220,7 +226,7 @@ def _scale(left: Floats, expected: Floats, currents: Floats, scale: float) -> tu
 
 
 def _alike(pull: Floats) -> float:
-    """How many times that follow each other have the same error, by its autocorrelation."""
+    """Return how many times that follow each other have the same error, by its autocorrelation."""
     one = pull - pull.mean()
     whole = float(one @ one)
     total, chance = 1.0, 2.0 / np.sqrt(max(len(one), 1))

@@ -12,7 +12,7 @@ from calm.checks.finding import State
 
 if TYPE_CHECKING:
     from calm.checks.finding import Finding
-    from calm.files.checks import LimitKey
+    from calm.files.check_limits import LimitKey
 
 ON_THE_WAY = "launch, recovery, breaks"
 """The column of a summary for what is judged of a mooring outside its environments."""

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 from calm.checks.finding import State
 from calm.quantities import QUANTITIES, Quantity
 from calm.report.blocks import Block, Cell, Column, Part, Prose, Table
-from calm.report.check.verdict import SIGNS
+from calm.report.check_summary import SIGNS
 
 if TYPE_CHECKING:
     from calm.checks.comparison import Compared, Comparison
-    from calm.files.differences import Change
+    from calm.files.file_differences import Change
 
 
 def comparison_part(comparison: Comparison) -> Part:

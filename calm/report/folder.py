@@ -1,4 +1,4 @@
-"""A folder of reports: all of its files appear, or none."""
+"""Files and folders of reports: looked at before anything is solved, and whole or not there."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from calm.errors import UsageError
+from calm.whole_file import put
 
 REPORT_FILES = ("report.html", "report.pdf", "report.json", "checks.csv", "inventory.csv")
 """What a design check writes in the folder."""
@@ -90,3 +91,39 @@ def _restore(folder: Path, parts: Mapping[str, Path], kept: Mapping[str, Path]) 
             (folder / name).unlink(missing_ok=True)
         if os.path.lexists(kept[name]):
             os.replace(kept[name], folder / name)
+
+
+def check_destination(path: Path) -> None:
+    """Refuse a file that could not be written, before the work for it is done.
+
+    Raises
+    ------
+    UsageError
+        The folder is missing, or the file or its folder may not be written.
+    """
+    folder = os.path.dirname(os.path.realpath(path))
+    if os.path.isdir(path):
+        raise UsageError(f"cannot write {path}: it is a folder")
+    if not os.path.isdir(folder):
+        raise UsageError(f"cannot write {path}: there is no folder {folder}")
+    if not os.access(path if os.path.exists(path) else folder, os.W_OK):
+        raise UsageError(f"cannot write {path}: permission denied")
+
+
+def write_file(path: Path, content: bytes) -> None:
+    """Write a file whole: a reader sees the old content or the new, never a part.
+
+    A device or a pipe is written as it is, and a symbolic link keeps pointing where it did.
+
+    Raises
+    ------
+    UsageError
+        The system refuses, e.g. because the disk is full; the old file is then untouched.
+    """
+    try:
+        if os.path.exists(path) and not os.path.isfile(path):
+            path.write_bytes(content)
+        else:
+            put(Path(os.path.realpath(path)), content)
+    except OSError as error:
+        raise UsageError(f"cannot write {path}: {error.strerror}") from None

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from functools import cache
 from importlib.resources import files
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from calm.report.blocks import Section
-from calm.report.fonts import font_folder, legible
 from calm.report.provenance import moment
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ def report_pdf(sections: Sequence[Section], leaves: Sequence[str] | None = None)
     The same sections give the same bytes: the fonts are those that typst and matplotlib bring, and
     the only date is that of SOURCE_DATE_EPOCH. A sign that no font has shows as �.
     """
-    from calm.report.check.section import check_report
+    from calm.report.check_report import check_report
 
     return printed(check_report(sections), leaves=leaves)
 
@@ -87,3 +88,36 @@ def _members(part: Any) -> dict[str, Any]:
     if isinstance(part, Section):
         return {"name": part.name, "parts": part.parts}
     return {"kind": type(part).__name__, **vars(part)}
+
+
+def font_folder() -> Path:
+    """The fonts that are always there: those that matplotlib brings."""
+    import matplotlib
+
+    return Path(matplotlib.get_data_path(), "fonts", "ttf")
+
+
+def lacking(texts: Iterable[str]) -> str:
+    """The signs of some texts that no font of a PDF has, each once, in order."""
+    held, known = list(texts), _signs()
+    unknown = {sign for sign in set().union(*held) if sign.isprintable() and ord(sign) not in known}
+    if not unknown:  # as nearly always: a report has millions of signs
+        return ""
+    return "".join(dict.fromkeys(sign for text in held for sign in text if sign in unknown))
+
+
+def legible(text: str) -> str:
+    """A text for a PDF: a sign that no font has is a question mark in a lozenge.
+
+    A single one would otherwise have all of a drawing's label shown in boxes.
+    """
+    unknown = lacking([text])
+    return text.translate(dict.fromkeys(map(ord, unknown), "\ufffd")) if unknown else text
+
+
+@cache
+def _signs() -> frozenset[int]:
+    from matplotlib.ft2font import FT2Font
+
+    fonts = sorted(font_folder().glob("DejaVuSans*.ttf"))
+    return frozenset(code for font in fonts for code in FT2Font(str(font)).get_charmap())

@@ -1,4 +1,4 @@
-"""Where a report comes from: the versions that made it, its date, and a hash of its inputs."""
+"""Where a report comes from: title block, inputs, versions, date and a hash."""
 
 from __future__ import annotations
 
@@ -9,14 +9,22 @@ import platform
 from collections.abc import Sequence
 from datetime import UTC, datetime
 from importlib.metadata import version
+from math import hypot
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from pydantic import BaseModel
 
 from calm.errors import InputError, UsageError
 from calm.files import MooringFile
-from calm.files.document import read_text
+from calm.quantities import QUANTITIES, bearing_of, say
+from calm.report.blocks import Block, Cell, Column, Listing, Pairs, Part, Prose, Table
+from calm.whole_file import read_text
+
+if TYPE_CHECKING:
+    from calm.files import MooringFile, Position
+    from calm.physics.line import Water
 
 _LIBRARIES = ("numpy", "pydantic", "matplotlib", "jinja2", "typst")
 
@@ -87,3 +95,128 @@ def canonical(value: Any) -> str:
 
 def _members(value: Any) -> dict[str, Any]:
     return value.model_dump() if isinstance(value, BaseModel) else vars(value)
+
+
+UNSEEN = (
+    "A static calculation does not see waves and the tensions they cause; snap loads on a line "
+    "that falls slack; fatigue, by waves and by vortices; creep, corrosion and wear; the jerk at "
+    "the end of the launch and the swing of the line before it; hauling and lifts on recovery.",
+    "No margin in this report covers them. They decide the life of surface moorings in harsh "
+    "weather, and no factor on a static tension replaces looking at them.",
+)
+"""What is printed in every report."""
+
+_MOST_LEVELS = 40
+
+
+def environments_table(names: Sequence[str], waters: Sequence[Water]) -> Table:
+    """Depth, density and the greatest current of each environment, and where it is."""
+    rows = []
+    for name, water in zip(names, waters, strict=True):
+        speed = np.hypot(water.u, water.v)
+        fastest = int(speed.argmax())
+        densities = sorted({f"{density:.0f}" for density in water.density})
+        rows.append(
+            (
+                Cell(name),
+                Cell(QUANTITIES["depth"].format(water.depth) if np.isfinite(water.depth) else "-"),
+                Cell(densities[0] + (f"–{densities[-1]}" if len(densities) > 1 else "")),
+                Cell(QUANTITIES["speed"].format(float(speed[fastest]))),
+                Cell(QUANTITIES["depth"].format(float(water.level[fastest]))),
+                Cell(str(len(water.level))),
+            )
+        )
+    columns = (
+        Column("environment"),
+        Column("water depth", "m", numeric=True),
+        Column("density", "kg/m³", numeric=True),
+        Column("greatest current", "m/s", numeric=True),
+        Column("at depth", "m", numeric=True),
+        Column("levels", numeric=True),
+    )
+    return Table("Environments", columns, tuple(rows))
+
+
+def current_listing(name: str, water: Water) -> Listing:
+    """The current as computed with, level by level; of many levels, some at equal steps."""
+    count = len(water.level)
+    chosen = np.unique(np.linspace(0, count - 1, min(count, _MOST_LEVELS)).round().astype(int))
+    lines = [f"{'depth m':>10} {'speed m/s':>10} {'toward °':>10} {'upward m/s':>11}"]
+    for level in chosen:
+        u, v, w = water.u[level], water.v[level], water.w[level]
+        toward = bearing_of(u, v)
+        lines.append(f"{water.level[level]:10.1f} {hypot(u, v):10.3f} {toward:10.1f} {w:11.3f}")
+    if len(chosen) < count:
+        lines.append(f"{len(chosen)} of {count} levels")
+    return Listing(f"Current, {name}", "\n".join(lines))
+
+
+def file_listing(file: MooringFile) -> Listing:
+    """The mooring file as it stands."""
+    text = source_text(file)
+    return Listing(
+        "Mooring file", "The file could not be read again." if text is None else text.rstrip()
+    )
+
+
+def origin(files: Sequence[MooringFile]) -> Prose:
+    """The hash of the inputs of one mooring, and the versions that computed."""
+    made_by = ", ".join(f"{name} {number}" for name, number in versions())
+    return Prose((f"SHA-256 of the inputs: {input_hash(files)}", f"Computed with {made_by}"))
+
+
+def document_part(file: MooringFile) -> tuple[Part, ...]:
+    """The title block and the history of revisions; nothing where a file gives no document."""
+    if file.document is None:
+        return ()
+    blocks: list[Block] = [Pairs(tuple(title_pairs(file)))]
+    if file.document.history:
+        rows = tuple(
+            (Cell(one.revision), Cell(one.date or ""), Cell(one.by or ""), Cell(one.change or ""))
+            for one in file.document.history
+        )
+        columns = (
+            Column("revision", share=0.0),
+            Column("date", share=0.0),
+            Column("by"),
+            Column("change", share=3.0),
+        )
+        blocks.append(Table("History", columns, rows))
+    return (Part("Document", tuple(blocks)),)
+
+
+def title_pairs(file: MooringFile) -> list[tuple[str, str]]:
+    """What is known of the names under which a mooring goes, and where it is."""
+    document = file.document
+    names = (
+        ("document", "id"),
+        ("revision", "revision"),
+        ("date", "date"),
+        ("project", "project"),
+        ("ship", "ship"),
+        ("cruise", "cruise"),
+        ("author", "author"),
+        ("checked", "checked"),
+        ("approved", "approved"),
+    )
+    pairs = [("mooring", file.name)]
+    if document is not None:
+        given = ((title, getattr(document, key)) for title, key in names)
+        pairs += [(title, text) for title, text in given if text is not None]
+    if file.position is not None:
+        pairs.append(("position", position_text(file.position)))
+    if file.environment.depth is not None:
+        pairs.append(("water depth", say("depth", file.environment.depth)))
+    return pairs
+
+
+def position_text(position: Position) -> str:
+    """A position as ships write it: degrees and minutes to a thousandth, some 2 m."""
+    latitude = degrees_text(position.latitude, "NS", 2)
+    return f"{latitude}, {degrees_text((position.longitude + 180.0) % 360.0 - 180.0, 'EW', 3)}"
+
+
+def degrees_text(degrees: float, sides: str, digits: int) -> str:
+    """Degrees, of so many digits at least, and minutes to a thousandth; `sides` are + and -."""
+    whole, minutes = divmod(round(abs(degrees) * 60_000), 60_000)
+    return f"{whole:0{digits}d}° {minutes / 1000:06.3f}′ {sides[degrees < 0.0]}"

@@ -6,24 +6,24 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from calm.case import TowResult
+from calm.checks.criterion import limits_used
 from calm.checks.finding import State
-from calm.checks.limits import limits_used
 from calm.checks.posture import reaches_the_surface
 from calm.report.blocks import Figure, Part, Prose, Report, Section
-from calm.report.check.verdict import limits_table
-from calm.report.inputs import (
+from calm.report.check_summary import limits_table
+from calm.report.picture import figure_svg
+from calm.report.plot import draw
+from calm.report.provenance import (
     UNSEEN,
     current_listing,
+    date,
+    document_part,
     environments_table,
     file_listing,
     origin,
 )
-from calm.report.plot import draw
-from calm.report.provenance import date
 from calm.report.sheet import sheet
-from calm.report.title_block import document_part
 from calm.report.uncertain import uncertainty_part
-from calm.report.vector import figure_svg
 
 if TYPE_CHECKING:
     from calm.case import Result

@@ -1,23 +1,25 @@
-"""One tow solved many times, a row each: at several speeds, or with a coefficient changed."""
+"""One tow solved many times, a row each, and what the angle of a bare cable gives."""
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import floor, log10
 from typing import TYPE_CHECKING, Any
 
 from calm.checks.finding import State
 from calm.errors import NoEquilibrium
+from calm.physics.strumming import BourgetMarichal
 from calm.quantities import QUANTITIES, Quantity
-from calm.report.blocks import Cell, Column, Part, Prose, Span, Table
+from calm.records.csv_writer import table_csv
+from calm.report.blocks import Cell, Column, Pairs, Part, Prose, Span, Table
 from calm.units import KNOT
 
 if TYPE_CHECKING:
     from calm.case import Tow, TowResult
-    from calm.case.sweep import Variation
+    from calm.case.strumming import BareCable
+    from calm.case.tow import Variation
 
 FIGURES = ("depth", "layback", "tension", "angle", "body_tension", "frequency")
 """What a row tells of a result: depth and layback of the body, tension and angle at the ship."""
@@ -143,16 +145,16 @@ def to_document(tabulation: Tabulation) -> dict[str, Any]:
 
 def to_csv(tabulations: Sequence[Tabulation]) -> str:
     """The rows of one tow or several, of one subject, as CSV text (UTF-8, comma, point, LF)."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
     chosen = list(tabulations[0].rows[0].chosen) if tabulations else []
     figures = [QUANTITIES[name].header for name in FIGURES]
-    writer.writerow(["tow", *map(_header, chosen), "status", *figures])
-    for tabulation in tabulations:
-        for row in tabulation.rows:
-            numbers = ["" if value is None else value for value in row.figures.values()]
-            writer.writerow([tabulation.name, *row.chosen.values(), row.outcome.status, *numbers])
-    return text.getvalue()
+    return table_csv(
+        ["tow", *map(_header, chosen), "status", *figures],
+        (
+            [tabulation.name, *row.chosen.values(), row.outcome.status, *row.figures.values()]
+            for tabulation in tabulations
+            for row in tabulation.rows
+        ),
+    )
 
 
 def _changed(variation: Variation) -> str:
@@ -218,3 +220,52 @@ def _remark(tabulation: Tabulation, row: TabulationRow) -> str:
     if isinstance(row.outcome, NoEquilibrium):
         return row.outcome.status
     return "!" if set(row.outcome.warnings) - set(tabulation.warnings) else ""
+
+
+def bare_cable_document(cable: BareCable) -> dict[str, Any]:
+    """The JSON object: what was given (SI, degrees), `cn`, `amplitude` a/D, `frequency`, `notes`.
+
+    `frequency` is None where the cable does not vibrate.
+    """
+    cn, amplitude = cable.vibration
+    return {
+        **vars(cable),
+        "cn": cn,
+        "amplitude": amplitude,
+        "frequency": cable.frequency if amplitude else None,
+        "notes": list(_notes(cable)),
+    }
+
+
+def bare_cable_part(cable: BareCable) -> Part:
+    """The answer, and what to keep in mind with it."""
+    cn, amplitude = cable.vibration
+    pairs = [
+        ("weight in water", f"{cable.weight:.3f} N/m"),
+        ("drag coefficient C*", f"{cn:.3f}"),
+        ("amplitude a/D", f"{amplitude:.3f}"),
+    ]
+    if amplitude:
+        pairs += [
+            ("amplitude a", f"{1000.0 * amplitude * cable.diameter:.1f} mm"),
+            ("frequency", f"{cable.frequency:.2f} Hz"),
+        ]
+    notes = tuple(_notes(cable))
+    warned = (Prose(notes, State.WARN),) if notes else ()
+    title = f"Bare cable at {cable.angle:g}° behind a ship at {cable.speed:.3g} m/s"
+    return Part(title, (Pairs(tuple(pairs)), *warned))
+
+
+def _notes(cable: BareCable) -> Iterator[str]:
+    law = BourgetMarichal()
+    cn, amplitude = cable.vibration
+    least = math.degrees(law.LEAST_ANGLE)
+    if cable.angle < least:
+        yield (
+            f"Below {least:.0f}° the coefficient of a cable at rest, C0 = {law.rest:g}, is not "
+            "claimed: a/D needs a look."
+        )
+    if not amplitude:
+        yield f"C* is not above C0 = {law.rest:g}, a cable at rest: it does not vibrate."
+    if cn > law.ceiling:
+        yield f"C* is above {law.ceiling:g}, the greatest of the method: look at what was measured."

@@ -11,9 +11,9 @@ from calm.checks.finding import State
 from calm.report.blocks import Block, Cell, Column, Heading, Line, Part, Prose, Span, Table
 
 if TYPE_CHECKING:
-    from calm.verification import Case, Kind, Outcome, Source
+    from calm.verification import Case, CaseOutcome, Kind, Source
 
-    Findings = Sequence[tuple[Source, Sequence[Outcome]]]
+    Findings = Sequence[tuple[Source, Sequence[CaseOutcome]]]
 
 COLUMNS = ("case", "expected", "got", "difference", "tolerance", "unit")
 _SMALL = 1e-3
@@ -62,7 +62,7 @@ def verification_part(findings: Findings) -> Part:
     return Part("", (*of_sources, _sum(findings)))
 
 
-def figures(outcome: Outcome) -> tuple[str, ...]:
+def figures(outcome: CaseOutcome) -> tuple[str, ...]:
     """The text of `COLUMNS`.
 
     What was got, and the difference, have one digit more than the tolerance, two where that many
@@ -94,7 +94,7 @@ def _rounded(value: float, decimals: int) -> str:
     return text.rstrip("0").rstrip(".") if decimals else text
 
 
-def _case(source: Source, outcome: Outcome) -> dict[str, Any]:
+def _case(source: Source, outcome: CaseOutcome) -> dict[str, Any]:
     case = outcome.case
     return {
         "source": source.title,
@@ -111,7 +111,7 @@ def _case(source: Source, outcome: Outcome) -> dict[str, Any]:
     }
 
 
-def _of_source(source: Source, outcomes: Sequence[Outcome]) -> Iterator[Block]:
+def _of_source(source: Source, outcomes: Sequence[CaseOutcome]) -> Iterator[Block]:
     columns = tuple(Column(name, numeric=name not in ("case", "unit")) for name in COLUMNS)
     yield Heading(source.title)
     for kind in by_kind(outcome.case for outcome in outcomes):
@@ -122,7 +122,7 @@ def _of_source(source: Source, outcomes: Sequence[Outcome]) -> Iterator[Block]:
         yield Prose(tuple(reasons), State.WARN)
 
 
-def _row(outcome: Outcome) -> tuple[Cell, ...]:
+def _row(outcome: CaseOutcome) -> tuple[Cell, ...]:
     name, *others = figures(outcome)
     out = None if outcome.within else State.FAIL
     label = name if outcome.within else f"! {name}"

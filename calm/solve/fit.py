@@ -11,6 +11,7 @@ from calm.physics.march import march
 from calm.physics.profile import Profile
 from calm.physics.state import MarchError
 from calm.physics.track import Track
+from calm.solve.mooring import solve_mooring
 from calm.solve.problem import COARSE_STEP, REACH
 from calm.solve.root import root_near
 from calm.solve.solution import Settings
@@ -37,7 +38,52 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
     """
     still_water = water.still()
     refuse_unsupported(line, still_water, standing_lift(line, still_water))
-    still, goal = Profile(still_water), line.anchor_height - water.depth
+    upright = _upright_length(line, still_water, piece, top_depth, settings)
+    shortest = float(line.clamp_at[line.clamp_piece == piece].max(initial=0.0))
+    # a plumb line is exact with long segments
+    coarse = replace(settings, angle_step=max(settings.angle_step, COARSE_STEP))
+
+    def excess(_: None, length: float) -> float:
+        """Depth of the free end of the line as it is solved, below what is asked."""
+        try:
+            solution = solve_mooring(line.with_length(piece, length), still_water, coarse)
+        except NoEquilibrium as refusal:
+            if refusal.status not in (Status.SLACK.label, Status.ABOVE_SURFACE.label):
+                raise
+            return -top_depth
+        return -float(solution.position[0, 2]) - top_depth
+
+    near = settings.tolerance * water.depth
+    if upright is not None and abs(excess(None, upright)) <= near:
+        return upright
+    # part of the line lies on the seabed, which lengthens what stands by nothing
+    room = water.depth - line.anchor_height - top_depth
+    others = float(line.length.sum()) - float(line.length[piece])
+    start = max(room - others, shortest) if upright is None else upright
+    found, fitting, left, _ = root_near(
+        excess, None, start, -1.0, shortest, water.depth, near, 1e-9 * water.depth
+    )
+    if found and abs(left) <= near:
+        return fitting
+    lift = standing_lift(line, water)
+    if float(lift[:piece].sum()) <= 0.0:
+        raise too_heavy(lift)
+    clamped = f" and its own {shortest:.2f} m down to the lowest clamp" if shortest else ""
+    raise Status.NO_EQUILIBRIUM.because(
+        f"No length of {{piece}} puts the top of the line at {top_depth:g} m: the "
+        f"other pieces, {others:.2f} m uncut{clamped}, have {room:.2f} m of water to stand in.",
+        piece,
+    )
+
+
+def _upright_length(
+    line: Line, water: Water, piece: int, top_depth: float, settings: Settings
+) -> float | None:
+    """Return the length of a piece with which the line stands upright from its anchor [m].
+
+    None where there is none; `water` is still.
+    """
+    still, goal = Profile(water), line.anchor_height - water.depth
     room = water.depth - line.anchor_height - top_depth
 
     compiled = runs_compiled(settings)
@@ -65,15 +111,7 @@ def fit_length(line: Line, water: Water, piece: int, top_depth: float, settings:
     except MarchError as error:
         raise Status.NOT_CONVERGED.because(f"The march stopped: {error}.", piece) from error
     if not found or abs(left) > settings.tolerance * water.depth:
-        lift = standing_lift(line, water)
-        if float(lift.sum()) <= 0.0:
-            raise too_heavy(lift)
-        clamped = f" and its own {shortest:.2f} m down to the lowest clamp" if shortest else ""
-        raise Status.NO_EQUILIBRIUM.because(
-            f"No length of {{piece}} puts the top of the line at {top_depth:g} m: the "
-            f"other pieces, {others:.2f} m uncut{clamped}, have {room:.2f} m of water to stand in.",
-            piece,
-        )
+        return None
     return fitting
 
 

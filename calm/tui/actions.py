@@ -6,8 +6,7 @@ from collections.abc import Iterator
 
 from textual.binding import Binding
 
-from calm.tui.keys.action import Action, Place
-from calm.tui.keys.table import ACTIONS
+from calm.tui.key_table import ACTIONS, Action, Place
 
 _SIGNS = {
     "up": "↑",

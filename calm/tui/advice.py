@@ -11,7 +11,7 @@ from math import ceil
 from typing import TYPE_CHECKING
 
 from calm.case import Result
-from calm.case.changes import parse_change
+from calm.case.adjustment import parse_change
 from calm.case.size import NOT_MET, size
 from calm.case.targets import parse_target
 from calm.checks.finding import Finding, State

@@ -16,20 +16,18 @@ from textual.screen import Screen
 from textual.timer import Timer
 
 from calm.errors import CalmError
-from calm.files.editing import Kept, WorkingFile
-from calm.tui import recovery
+from calm.files.editing import KeptWork, WorkingFile
+from calm.tui import saving
+from calm.tui.help_screen import Actions
 from calm.tui.judging import Judging
 from calm.tui.line.builder import BuilderScreen
-from calm.tui.messages import CatalogueRead, Edited, Judged, JudgingFailed
-from calm.tui.painted import Painted
-from calm.tui.palette import Actions
-from calm.tui.plain import PlainSigns, shows_all_signs
+from calm.tui.messages import CatalogueRead, Edited, Judged, JudgingFailed, Workspace
+from calm.tui.painted import Painted, PlainSigns, shows_all_signs
 from calm.tui.saving import Saving
 from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
 from calm.tui.theme import PICTURE_DARK, PICTURE_LIGHT, choose_theme, themes
 from calm.tui.turns import InTurn
-from calm.tui.workspace import Workspace
 
 _AUTOSAVED_AFTER = 0.3  # seconds
 _LOOKED_AT_DISK = 2.0  # seconds between two looks
@@ -65,7 +63,7 @@ class BuildApp(InTurn):
         self,
         session: Session,
         *,
-        kept: Kept | None = None,
+        kept: KeptWork | None = None,
         environ: Mapping[str, str] = os.environ,
     ) -> None:
         super().__init__()
@@ -294,13 +292,13 @@ class BuildApp(InTurn):
             self.keep()  # which removes a copy that is out of date
         self.exit(0)
 
-    def _offer(self, kept: Kept) -> None:
+    def _offer(self, kept: KeptWork) -> None:
         def take(answer: str | None) -> None:
             if answer == "recover":
                 self.session.recover(kept)
                 self.taken_over("Recovered; save it to keep it")
             elif answer == "discard":
-                self.push_screen(recovery.confirmation(kept), throw_away)
+                self.push_screen(saving.confirmation(kept), throw_away)
             else:
                 self._mend(as_judged=True)
 
@@ -311,4 +309,4 @@ class BuildApp(InTurn):
                 self.session.file.discard(kept)
                 self._mend(as_judged=True)
 
-        self.push_screen(recovery.offer(self.session, kept), take)
+        self.push_screen(saving.offer(self.session, kept), take)

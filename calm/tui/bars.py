@@ -12,7 +12,7 @@ from textual.widget import Widget
 from textual.widgets import Static
 
 from calm.tui.actions import shown_key
-from calm.tui.keys.action import Action
+from calm.tui.key_table import Action
 
 _GAP = "  "
 

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from datetime import date
 
 from calm.files.editing import Value
-from calm.files.fields import LENGTH, POSITIVE_LENGTH, Quantity
+from calm.files.fields import LENGTH, POSITIVE_LENGTH, QuantityField
 from calm.files.logbook import LOAD
-from calm.files.times import TimeChoiceError, parse_time
-from calm.units import QuantityError
+from calm.records.times import TimeChoiceError, parse_time
+from calm.units import QuantityError, QuantityRange
 
-COUNT = Quantity("number", at_least=1, at_most=10_000)
+COUNT = QuantityField("number", at_least=1, at_most=10_000)
 _FIT = re.compile(r"fit\b\s*(?:to\b)?\s*(.*)", re.IGNORECASE)
 _AT_LOAD = re.compile(r"(.+?)\s+at\s+(.+)", re.IGNORECASE)
 _UNIT = re.compile(r"[\d.]\s*([^\d.\s].*)$")
@@ -88,7 +88,9 @@ def needed(what: str) -> Check:
     return check
 
 
-def quantity(kind: Quantity, *, optional: bool = False, usual_unit: str | None = None) -> Check:
+def quantity(
+    kind: QuantityRange, *, optional: bool = False, usual_unit: str | None = None
+) -> Check:
     """A number with a unit; a number alone is completed by `usual_unit`, the SI unit by default."""
 
     def check(text: str) -> Reading:
@@ -104,7 +106,9 @@ def quantity(kind: Quantity, *, optional: bool = False, usual_unit: str | None =
     return check
 
 
-def _refused(text: str, error: QuantityError, kind: Quantity, usual_unit: str | None) -> Reading:
+def _refused(
+    text: str, error: QuantityError, kind: QuantityRange, usual_unit: str | None
+) -> Reading:
     offer = error.suggestion
     if offer and error.complaint == "needs a unit":
         if usual_unit:
@@ -125,7 +129,7 @@ def unit_of(text: str) -> str | None:
 
 def number(text: str) -> Reading:
     """A plain number, of a table whose columns carry the units."""
-    return quantity(Quantity("number"))(text)
+    return quantity(QuantityField("number"))(text)
 
 
 def count(text: str) -> Reading:
@@ -148,7 +152,7 @@ def distance(before: str = "") -> Check:
 def length(before: str = "", *, towed: bool = False) -> Check:
     """A length, one with the load it is measured ``at``, or ``fit`` with the depth to reach."""
     plain = quantity(POSITIVE_LENGTH, usual_unit=unit_of(before))
-    depth = quantity(Quantity("length") if towed else LENGTH, usual_unit=unit_of(before))
+    depth = quantity(QuantityField("length") if towed else LENGTH, usual_unit=unit_of(before))
     load = quantity(LOAD, usual_unit="kN")
     what = "the depth its lower end is to reach" if towed else "the depth the top is to reach"
 

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Awaitable, Callable, Iterable, Iterator
+from functools import partial
 
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 from textual.binding import Binding, BindingType
+from textual.command import DiscoveryHit, Hit, Hits, Provider
 from textual.containers import ScrollableContainer
 from textual.screen import Screen
 from textual.widgets import Input, TextArea
 
-from calm.tui.actions import actions_in, shown_keys
-from calm.tui.keys.action import PLACES
-from calm.tui.signs import LOOKS
+from calm.tui.actions import actions_in, shown_key, shown_keys
+from calm.tui.key_table import ACTIONS, Action, Place
+from calm.tui.theme import LOOKS
 
 _SIGNS = "Signs: " + ", ".join(f"{look.sign} {look.word}" for look in LOOKS.values())
 _GROUND = (
@@ -55,3 +57,61 @@ def _section(title: str, rows: Iterable[tuple[str, str]]) -> list[RenderableType
     for keys, meaning in rows:
         table.add_row(Text(shown_keys(keys), style="bold"), Text(meaning))
     return [Text(f"\n{title}", style="bold underline"), table]
+
+
+_PLACES = ("line", "anywhere")
+
+PLACES: dict[Place, str] = {
+    "line": "The line",
+    "anywhere": "Anywhere on the first screen",
+    "verdict": "The verdict, line by line",
+    "cell": "While a value is edited in place",
+    "catalogue": "The catalogue",
+    "water": "The water",
+    "grid": "A table of the water",
+    "choice": "One of some words between arrows",
+    "given": "The form in which density or current is given",
+    "text": "The file as text",
+    "area": "While the text is typed",
+    "form": "A component of your own",
+    "sheet": "Some values asked for together",
+    "question": "A question, answered by the letter in front of each answer",
+    "help": "This help",
+}
+"""The headings of the help, in its order."""
+
+
+class Actions(Provider):
+    """The actions of the first screen."""
+
+    @property
+    def _offered(self) -> list[Action]:
+        from calm.tui.line.builder import BuilderScreen
+
+        if not isinstance(self.screen, BuilderScreen):
+            return []
+        return [each for each in ACTIONS if each.palette and each.place in _PLACES]
+
+    async def discover(self) -> Hits:
+        """All of them, before a word is typed."""
+        for action in self._offered:
+            yield DiscoveryHit(_shown(action), self._run(action), help=action.meaning)
+
+    async def search(self, query: str) -> Hits:
+        """Those whose name or meaning is like the words."""
+        matcher = self.matcher(query)
+        for action in self._offered:
+            score = max(matcher.match(action.title), 0.8 * matcher.match(action.meaning))
+            if score > 0:
+                title = matcher.highlight(_shown(action))
+                yield Hit(score, title, self._run(action), help=action.meaning)
+
+    def _run(self, action: Action) -> Callable[[], Awaitable[bool]]:
+        from calm.tui.line.pane import LinePane
+
+        owner = self.screen.query_one(LinePane) if action.place == "line" else self.screen
+        return partial(self.app.run_action, action.name, owner)
+
+
+def _shown(action: Action) -> str:
+    return f"{action.title}  ({shown_key(action.keys.split(',')[0])})"

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 from textual.app import App
 from textual.timer import Timer
 
-from calm.tui.messages import Judged, JudgingFailed
-from calm.tui.workspace import Workspace
+from calm.tui.messages import Judged, JudgingFailed, Workspace
 
 if TYPE_CHECKING:
     from calm.tui.live import View

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 
 from calm.errors import InputError, UsageError
 from calm.files import Catalogue, read_mooring
-from calm.files.editing import Draft, Kept, NotWritten, WorkingFile
-from calm.files.explain import unknown
+from calm.files.editing import Draft, KeptWork, NotWritten, WorkingFile
+from calm.suggestions import unknown
 from calm.tui.session import Session
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ _GRACE = 3
 
 def open_session(
     path: Path | None, environment: str | None = None, catalogs: Sequence[Path] = ()
-) -> tuple[Session, Kept | None]:
+) -> tuple[Session, KeptWork | None]:
     """The session of a file, and work that an earlier session has kept of it and not saved.
 
     Parameters

@@ -16,14 +16,14 @@ from pathlib import Path
 from calm.case import Mooring, Result, Tow, TowResult
 from calm.case.memory import Memory
 from calm.checks.assess import assessment_of, findings_of, stand_of
-from calm.checks.assessment import Situation, Stand
-from calm.checks.deployed import cut_like
+from calm.checks.assessment import MooringInEnvironment, Situation
 from calm.checks.finding import AS_GIVEN, OWN, Finding
+from calm.checks.situations import cut_like
 from calm.errors import InputError, NoEquilibrium, Problem, internal_failure
 from calm.files import MooringFile, read_mooring
-from calm.files.document import Document, compose
-from calm.files.editing import Draft, Item
+from calm.files.editing import Draft, LineItem
 from calm.files.reader import STAND_IN
+from calm.files.yaml_document import Document, compose
 from calm.tui.found import Row, rows_of
 
 UNNAMED = "unnamed.yaml"
@@ -69,7 +69,7 @@ class View:
     environments: tuple[str, ...] = ()
     rows: tuple[Row, ...] = ()
     complete: bool = False
-    stands: tuple[Stand, ...] = ()
+    stands: tuple[MooringInEnvironment, ...] = ()
     elsewhere: tuple[Problem, ...] = ()
     memory: Memory = field(default_factory=Memory, repr=False, compare=False)
 
@@ -78,7 +78,7 @@ class View:
         return (self.text, self.path, self.environment) == (text, _placed(path), environment)
 
     @cached_property
-    def items(self) -> tuple[Item, ...]:
+    def items(self) -> tuple[LineItem, ...]:
         """The items of the text, as written."""
         return Draft(self.text).items
 

@@ -15,7 +15,7 @@ from textual.scroll_view import ScrollView
 from textual.strip import Strip
 from textual.widgets import Static
 
-from calm.tui.signs import CURSOR, ELLIPSIS
+from calm.tui.theme import CURSOR, ELLIPSIS
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
@@ -139,7 +139,7 @@ class Picture(ScrollView, can_focus=True):
         return tension(result, size.width, size.height)
 
     def _schematic(self, result: Result | TowResult, size: Size) -> list[Text]:
-        from calm.report.schematic.text import schematic_text
+        from calm.report.schematic.in_terminal import schematic_text
 
         text = schematic_text(result.file, result, size.width)
         return [Text(line) for line in text.splitlines()]

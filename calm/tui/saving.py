@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from calm.errors import CalmError
+from calm.files.editing import KeptWork
 from calm.tui.checking import Reading
 from calm.tui.dialogs import Answer, Asked, Question, Sheet
-from calm.tui.recovery import moment
+from calm.tui.messages import Workspace
 from calm.tui.screen import DraftScreen
-from calm.tui.workspace import Workspace
+from calm.tui.session import Session
 
 if TYPE_CHECKING:
     from calm.tui.app import BuildApp
@@ -230,3 +232,35 @@ def _is_writable(text: str) -> Reading:
     except (OSError, ValueError) as error:
         return Reading(tidy, f"cannot be a name: {getattr(error, 'strerror', None) or error}")
     return Reading(tidy)
+
+
+def moment(seconds: float) -> str:
+    """A time [s since 1970] as the clock on the wall shows it, to the minute."""
+    return time.strftime("%Y-%m-%d at %H:%M", time.localtime(seconds))
+
+
+def offer(session: Session, kept: KeptWork) -> Question:
+    """Whether it is to be recovered; it says when it was kept and whether the file is newer."""
+    whose = "" if kept.keeper.is_here else f" on {kept.keeper.host}, where it may still be open"
+    sentences = [f"An earlier run ended before {session.name} was saved. It kept its work"]
+    sentences.append(f"{moment(kept.at)}{whose}.")
+    if session.file.is_of_another(kept):
+        stamp = session.file.stamp
+        sentences.append(
+            "The file is gone since that work was begun: saving writes it again."
+            if stamp is None
+            else f"The file was changed, {moment(stamp[0] / 1e9)}, after that work was begun: "
+            "saving will ask."
+        )
+    answers = [
+        Answer("r", "recover it; undo goes back to the file", "recover"),
+        Answer("k", "keep it for later; go on with the file", "later"),
+        Answer("d", "throw it away", "discard"),
+    ]
+    return Question("Work that was not saved", " ".join(sentences), answers, must=True)
+
+
+def confirmation(kept: KeptWork) -> Question:
+    """Whether it is really to be thrown away: nothing brings it back."""
+    answers = [Answer("y", "yes, throw it away for good", "discard")]
+    return Question("Throw the work away?", f"It was kept {moment(kept.at)}.", answers)

@@ -10,7 +10,7 @@ from textual.screen import Screen
 from textual.widget import Widget
 
 from calm.tui.bars import KeyBar, TitleBar
-from calm.tui.workspace import Workspace
+from calm.tui.messages import Workspace
 
 
 class Part(Protocol):

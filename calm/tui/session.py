@@ -10,7 +10,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from calm.files import Place
-from calm.files.editing import LINE, Draft, History, Item, Kept, Value, WorkingFile, clamps_of
+from calm.files.editing import (
+    LINE,
+    Draft,
+    History,
+    KeptWork,
+    LineItem,
+    Value,
+    WorkingFile,
+    clamps_of,
+)
 from calm.tui.standing import Standing
 
 Location = tuple[str | int, ...]
@@ -94,7 +103,7 @@ class Session:
             for clamp in range(-1, len(item.clamps))
         ]
 
-    def item(self, spot: Place) -> Item:
+    def item(self, spot: Place) -> LineItem:
         """The item, or clamp, of a row."""
         item = self.draft.items[spot.item]
         return item.clamps[spot.clamp] if spot.is_clamp else item
@@ -295,7 +304,7 @@ class Session:
         self.file.unsaved = self.draft.text if self.changed else None
         return self.file
 
-    def recover(self, kept: Kept) -> None:
+    def recover(self, kept: KeptWork) -> None:
         """Go on with work that an earlier session has left; undo leads back to the file."""
         self.file.adopt(kept)
         self.write(kept.text, "recover what was not saved")
@@ -313,5 +322,5 @@ def _listed(spot: Place) -> tuple[Location, int]:
     return (clamps_of(spot.item), spot.clamp) if spot.is_clamp else (LINE, spot.item)
 
 
-def _label(item: Item) -> str:
+def _label(item: LineItem) -> str:
     return item.values.get("label") or item.values.get("use") or "a row"

@@ -18,9 +18,8 @@ from calm.files.editing.retyped import retyped
 from calm.tui.actions import bindings, hints
 from calm.tui.bars import KeyBar
 from calm.tui.dialogs import Asked, Sheet
-from calm.tui.messages import is_elsewhere, mistakes, said
+from calm.tui.messages import Workspace, is_elsewhere, mistakes, said
 from calm.tui.screen import DraftScreen
-from calm.tui.workspace import Workspace
 
 _INDENT = 2
 _LINE_BREAK = re.compile(r"\r\n?|\n")

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from rich.terminal_theme import TerminalTheme
 from textual.theme import Theme
+
+from calm.checks.finding import State
 
 
 def _bars(ground: str, bar: str, lit: str) -> dict[str, str]:
@@ -104,3 +107,45 @@ def choose_theme(environ: Mapping[str, str]) -> str:
     if environ.get("COLORFGBG", "").rpartition(";")[2] in _LIGHT_GROUNDS:
         return LIGHT.name if many else "ansi-light"
     return DARK.name if many else "ansi-dark"
+
+
+@dataclass(frozen=True)
+class Look:
+    """The sign and the word of a state, and the style of rich that goes with them."""
+
+    sign: str
+    word: str
+    style: str
+
+
+LOOKS = {
+    State.FAIL: Look("!", "FAIL", "bold red"),
+    State.WARN: Look("~", "warning", "yellow"),
+    State.UNKNOWN: Look("?", "unknown", "dim"),
+    State.ACCEPTED: Look("·", "accepted", "dim"),
+    State.PASS: Look("✓", "pass", "green"),
+}
+"""As in the reports of the design check."""
+
+ROLES = {
+    "float": "o",
+    "instrument": "▪",
+    "release": "R",
+    "connector": "·",
+    "line": "│",
+    "anchor": "█",
+}
+"""What stands for a component in front of its row."""
+
+UNKNOWN_ROLE = "?"
+UNKNOWN_MARGIN = "?"
+CLAMP = "├"
+CURSOR = "▸"
+MARK = "*"
+FAVOURITE = "★"
+ELLIPSIS = "…"
+
+
+def worst(states: list[State]) -> State | None:
+    """The gravest of some states; None of none."""
+    return max(states, key=lambda state: state.severity, default=None)

@@ -20,7 +20,7 @@ from calm.checks.finding import State
 from calm.files import Place
 from calm.tui.actions import bindings
 from calm.tui.scrolled import Scrolled
-from calm.tui.signs import ELLIPSIS, LOOKS
+from calm.tui.theme import ELLIPSIS, LOOKS
 from calm.tui.verdict_text import Saying, headline, sayings
 
 if TYPE_CHECKING:

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 from calm.checks.finding import AS_GIVEN, OWN, Finding, Rule, State
 from calm.quantities import QUANTITIES
 from calm.tui.messages import mistakes, place_of
-from calm.tui.signs import ELLIPSIS, LOOKS, worst
+from calm.tui.theme import ELLIPSIS, LOOKS, worst
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
-    from calm.checks.assessment import Stand
+    from calm.checks.assessment import MooringInEnvironment
     from calm.files import Place
     from calm.tui.live import View
 
@@ -124,7 +124,7 @@ def _environment(name: str) -> str:
     return "own environment" if name == OWN else name
 
 
-def _stand(stand: Stand) -> Saying:
+def _stand(stand: MooringInEnvironment) -> Saying:
     """How the line does in one environment, in one line."""
     said, result = _judged(stand.findings), stand.result
     figures = ""
@@ -164,8 +164,7 @@ def _figures(
 def _mooring(result: Result, findings: Sequence[Finding], pending: bool) -> Iterator[Saying]:
     """What the line does as given; what is judged shows the worst of its findings."""
     from calm.checks.anchor import anchor_weight
-    from calm.checks.posture import knockdown
-    from calm.checks.surface import reserve
+    from calm.checks.posture import knockdown, reserve
 
     anchor, top = result.anchor, result.top
     pull = f"{_say('tension', anchor.tension)}, {_say('angle', anchor.angle)} off the vertical"

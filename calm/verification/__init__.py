@@ -1,52 +1,44 @@
 """Figures to reproduce, each with its source, its kind and how CALM comes to it: `calm verify`.
 
-One module for each source. Its `SOURCE` holds the cases; figures are inlined, so that nothing is
-read from a file. `calm.verification.case` defines a case.
+A `Source` holds the cases that come from one place; figures are inlined, so that nothing is read
+from a file. `calm.verification.published_case` defines a case.
 """
 
-from calm.verification import (
-    anchor_drop,
-    bourget_marichal,
-    braconnot,
-    calm_paper,
-    catenaries,
-    cdms_1,
-    convergence,
-    drag_curves,
-    elastic_hang,
-    invariants,
-    pode,
-    s1000,
-    sea_water,
-    strumming_factors,
-    towed_cables,
-    uniform_current,
-    villain_guillot,
-    watch_circle,
+from calm.verification.anchor_drop import ANCHOR_DROP
+from calm.verification.cable_papers import BOURGET_MARICHAL, BRACONNOT, VILLAIN_GUILLOT
+from calm.verification.drag_and_sea_water import (
+    CALM_PAPER,
+    DRAG_CURVES,
+    SEA_WATER,
+    STRUMMING_FACTORS,
 )
-from calm.verification.case import Case as Case
-from calm.verification.case import Kind as Kind
-from calm.verification.case import Outcome as Outcome
-from calm.verification.case import Source as Source
+from calm.verification.march_properties import CONVERGENCE, INVARIANTS
+from calm.verification.published_case import Case as Case
+from calm.verification.published_case import CaseOutcome as CaseOutcome
+from calm.verification.published_case import Kind as Kind
+from calm.verification.published_case import Source as Source
+from calm.verification.solved_moorings import CDMS_1, S1000
+from calm.verification.still_water import CATENARIES, ELASTIC_HANG, WATCH_CIRCLE
+from calm.verification.uniform_current import PODE, TOWED_CABLES, UNIFORM_CURRENT
 
 SOURCES: tuple[Source, ...] = (
-    s1000.SOURCE,
-    convergence.SOURCE,
-    invariants.SOURCE,
-    cdms_1.SOURCE,
-    uniform_current.SOURCE,
-    catenaries.SOURCE,
-    elastic_hang.SOURCE,
-    watch_circle.SOURCE,
-    towed_cables.SOURCE,
-    pode.SOURCE,
-    braconnot.SOURCE,
-    bourget_marichal.SOURCE,
-    villain_guillot.SOURCE,
-    drag_curves.SOURCE,
-    strumming_factors.SOURCE,
-    sea_water.SOURCE,
-    anchor_drop.SOURCE,
-    calm_paper.SOURCE,
+    S1000,
+    CONVERGENCE,
+    INVARIANTS,
+    CDMS_1,
+    UNIFORM_CURRENT,
+    CATENARIES,
+    ELASTIC_HANG,
+    WATCH_CIRCLE,
+    TOWED_CABLES,
+    PODE,
+    BRACONNOT,
+    BOURGET_MARICHAL,
+    VILLAIN_GUILLOT,
+    DRAG_CURVES,
+    STRUMMING_FACTORS,
+    SEA_WATER,
+    ANCHOR_DROP,
+    CALM_PAPER,
 )
 """Every source, the solver's own first."""

@@ -1,4 +1,4 @@
-"""Anchor drops: a dynamic program's run of one, and closed forms of the fall."""
+"""Compare anchor drops with a dynamic program's run of one, and closed forms of the fall."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from math import pi, sqrt
 
 import numpy as np
 
-from calm.drop.fall import Course, Fineness, Ship, fall, towed
-from calm.drop.motion import Anchor, State
+from calm.drop.fall import Fineness, Motion, Ship, fall, towed
+from calm.drop.motion import ChainState
 from calm.drop.record import end_tensions
 from calm.physics.hull import Floating, spherical_hull
 from calm.physics.line import Line, Water
 from calm.physics.reference import REFERENCE_DENSITY
 from calm.solve import FallingAnchor, solve_fall
-from calm.verification.case import Case, Kind, Source
-from calm.verification.pieces import GRAVITY, Piece, cable, line_of, sphere_drag
+from calm.verification.case_lines import GRAVITY, LinePiece, cable, line_of, sphere_drag
+from calm.verification.published_case import Case, Kind, Source
 
 _FINE = Fineness(bars=100, steps=100)
 _DENSITY, _DEPTH = 1027.0, 1000.0
@@ -26,7 +26,7 @@ _SEA = Water(
     depth=_DEPTH, level=np.zeros(1), u=np.zeros(1), v=np.zeros(1), w=np.zeros(1),
     density=np.array([_DENSITY]), gravity=GRAVITY,
 )  # fmt: skip
-_DROPPED = Anchor(weight=8896.0, drag=sphere_drag(0.81, 1.0))
+_DROPPED = FallingAnchor(weight=8896.0, drag=sphere_drag(0.81, 1.0))
 
 _INERTIA = (
     "3 % of a time or a tension, 8 % of the fall-back: what leaving out inertia may cost. The "
@@ -35,7 +35,7 @@ _INERTIA = (
 
 
 def _wire_below_a_sphere() -> Line:
-    ball = Piece(
+    ball = LinePiece(
         1.5, False, 1025.0 * GRAVITY * _VOLUME - _DRY, sphere_drag(1.5, 0.3), directional=False,
         volume=_VOLUME,
     )  # fmt: skip
@@ -45,12 +45,12 @@ def _wire_below_a_sphere() -> Line:
 
 
 @cache
-def _start() -> State:
+def _start() -> ChainState:
     return towed(_wire_below_a_sphere(), _SEA, _DROPPED, Ship(0.0, 1.028), _FINE)
 
 
 @cache
-def _fall() -> Course:
+def _fall() -> Motion:
     return fall(_wire_below_a_sphere(), _SEA, _DROPPED, _start(), _FINE)
 
 
@@ -72,11 +72,11 @@ def _pull(bar: int, end: int) -> float:
 def _deep_fall() -> tuple[float, float]:
     """Speed of a plumb line far down [m/s]: that of the chain, and the terminal speed."""
     water = replace(_SEA, depth=3000.0)
-    anchor = Anchor(weight=8896.0, drag=400.0)
+    anchor = FallingAnchor(weight=8896.0, drag=400.0)
     line = replace(_wire_below_a_sphere().with_length(1, 150.0), floating=None)
     start = towed(line, water, anchor, Ship(0.0, 1.0), _FINE)
     last = fall(line, water, anchor, start, _FINE).states[-1]
-    motion = solve_fall(line, water, FallingAnchor(anchor.weight, anchor.drag))
+    motion = solve_fall(line, water, anchor)
     return -float(last.velocity[-1, 2]), -float(motion.velocity[2])
 
 
@@ -84,9 +84,9 @@ def _deep_fall() -> tuple[float, float]:
 def _alone() -> float:
     """Speed of a heavy sphere below a thread of nothing and a cork [m/s]."""
     line = line_of(
-        Piece(0.05, False, 1.0, 1e-3, directional=False), cable(300.0, 1e-6, 1e-6, 1.3, 0.0)
+        LinePiece(0.05, False, 1.0, 1e-3, directional=False), cable(300.0, 1e-6, 1e-6, 1.3, 0.0)
     )
-    anchor = Anchor(weight=10_000.0, drag=100.0)
+    anchor = FallingAnchor(weight=10_000.0, drag=100.0)
     fineness = Fineness(bars=50, steps=50)
     start = towed(line, _SEA, anchor, Ship(0.0, 1.0), fineness)
     return -float(fall(line, _SEA, anchor, start, fineness).states[-1].velocity[-1, 2])
@@ -95,14 +95,14 @@ def _alone() -> float:
 _ALONE = sqrt(10_000.0 / (100.0 * _DENSITY / REFERENCE_DENSITY))
 _THREAD = "Drag of the thread and the cork, and the last of the line's straightening."
 
-SOURCE = Source(
+ANCHOR_DROP = Source(
     "Anchor drop",
     """The example of a deployment that comes with WHOI Cable (J. Gobat & M. Grosenbaugh): 1050 m
 of wire between a sphere of 1.5 m at the surface and an anchor of 8896 N in water, let go at 2 knots
 in 1000 m of still water. Expected is what a program with inertia and added mass finds when the end
 bodies are dragged by |V|V, as CALM's are; WHOI Cable 3.12 drags them axis by axis and finds 233
 to 234 s and 107.9 m, that program with that drag 232.6 s and 108.3 m. The distance streamed is that
-of WHOI Cable's own static solution. Then the terminal speed, against that of `calm check`, and
+of WHOI Cable's own static solution. Then the terminal speed, against that of the steady fall, and
 √(W/K) of a heavy sphere.""",
     (
         Case("streamed behind the ship", 894.8, "m", 0.5, "The chain's bars are 10 m long.",
@@ -115,7 +115,7 @@ of WHOI Cable's own static solution. Then the terminal speed, against that of `c
              lambda: _pull(-1, 1), Kind.INDEPENDENT),
         Case("greatest tension below the float", 7432.0, "N", 0.03 * 7432.0, _INERTIA,
              lambda: _pull(1, 0), Kind.INDEPENDENT),
-        Case("terminal speed less that of the design check", 0.0, "m/s", 2e-3,
+        Case("terminal speed less that of the steady fall", 0.0, "m/s", 2e-3,
              "Both are within 1e-4 of the speed; the line has had 2850 m to become plumb.",
              lambda: _deep_fall()[0] - _deep_fall()[1], Kind.PROPERTY),
         Case("speed of a heavy sphere", _ALONE, "m/s", 0.01, _THREAD, _alone, Kind.CLOSED_FORM),

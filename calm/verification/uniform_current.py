@@ -1,14 +1,35 @@
-"""C1 to C5: a float on a thread, a neutral line, a heavy line, in a uniform current."""
+"""Compare lines and towed cables in a uniform current with closed forms and quadratures.
+
+C1 to C5 are a float on a thread, a neutral line and a heavy line; C7 and C8 a bare cable at its
+critical angle and a cable that tows a body; C6 is Pode's cable functions and their identities.
+"""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache, partial
-from math import hypot
+from math import degrees, hypot, radians
 
+from calm.analytic.pode import CableFunctions, cable_functions
+from calm.analytic.uniform import critical_angle, critical_weight_ratio, tension_ratio
+from calm.physics.friction import Friction
 from calm.physics.line import Line, Water
-from calm.verification.case import Case, Figure, Kind, Source, table
-from calm.verification.ends import Ends, finely
-from calm.verification.pieces import Piece, cable, line_of, point, sphere_drag, stream
+from calm.solve import Settings
+from calm.verification.case_lines import (
+    HALF_DENSITY,
+    Ends,
+    LinePiece,
+    Wake,
+    cable,
+    deep_water,
+    finely,
+    line_of,
+    point,
+    sphere_drag,
+    stream,
+    towed,
+)
+from calm.verification.published_case import PRINTED, Case, CaseColumn, Kind, Source, table
 
 _FLOAT = point(4905.0, sphere_drag(1.0, 0.65))
 _LENGTH = 1000.0
@@ -23,17 +44,24 @@ _SEVEN_DIGITS = (
 
 def float_on_a_thread(speed: float) -> tuple[Line, Water]:
     """C1 at a speed [m/s]."""
-    return line_of(_FLOAT, Piece(100.0, True, 0.0)), stream(110.0, speed)
+    return line_of(_FLOAT, LinePiece(100.0, True, 0.0)), stream(110.0, speed)
 
 
 def ball_on_a_thread() -> tuple[Line, Water]:
     """C2."""
     ball = point(0.337612, sphere_drag(0.04, 1.0))
-    return line_of(ball, Piece(0.5, True, 0.0)), stream(1.0, 0.5, density=1027.0)
+    return line_of(ball, LinePiece(0.5, True, 0.0)), stream(1.0, 0.5, density=1027.0)
 
 
 def float_on_a_rope(weight: float, ct: float, speed: float) -> tuple[Line, Water]:
-    """C3 to C5, of a weight [N/m] and a Ct, at a speed [m/s]."""
+    """C3 to C5, of a weight [N/m] and a Ct, at a speed [m/s].
+
+    Parameters
+    ----------
+    weight : of the rope in water [N/m]
+    ct : on the surface of the rope
+    speed : of the current [m/s]
+    """
     return line_of(_FLOAT, cable(_LENGTH, 0.0127, weight, 1.3, ct)), stream(1010.0, speed)
 
 
@@ -70,26 +98,26 @@ def _identity(speed: float) -> Case:
     )  # fmt: skip
 
 
-def _thread(length: float, force: float, place: float, angle: float) -> list[Figure[Ends]]:
-    """The figures printed of a float on a thread, with their tolerances."""
+def _thread(length: float, force: float, place: float, angle: float) -> list[CaseColumn[Ends]]:
+    """Return the figures printed of a float on a thread, with their tolerances."""
     return [
-        Figure("drag", "N", force, lambda ends: ends.horizontal),
-        Figure("tension", "N", force, lambda ends: ends.tension),
-        Figure("angle from the vertical", "°", angle, lambda ends: ends.lean),
-        Figure("offset", "m", place, lambda ends: ends.x),
-        Figure("drop", "m", place, partial(_drop, length)),
+        CaseColumn("drag", "N", force, lambda ends: ends.horizontal),
+        CaseColumn("tension", "N", force, lambda ends: ends.tension),
+        CaseColumn("angle from the vertical", "°", angle, lambda ends: ends.lean),
+        CaseColumn("offset", "m", place, lambda ends: ends.x),
+        CaseColumn("drop", "m", place, partial(_drop, length)),
     ]
 
 
-_TENSION = Figure[Ends]("tension at the anchor", "N", 1e-6, lambda ends: ends.tension, True)
-_ANGLE = Figure[Ends]("angle at the anchor", "°", 6e-5, lambda ends: ends.lean)
-_OFFSET = Figure[Ends]("offset of the float", "m", 1e-6 * _LENGTH, lambda ends: ends.x)
-_KNOCKDOWN = Figure[Ends]("knockdown", "m", 1e-6 * _LENGTH, partial(_drop, _LENGTH))
-_HEIGHT = Figure[Ends]("height of the float", "m", 1e-6 * _LENGTH, lambda ends: ends.z)
-_HORIZONTAL = Figure[Ends]("anchor, horizontal", "N", 5e-3, lambda ends: ends.horizontal)
-_VERTICAL = Figure[Ends]("anchor, vertical", "N", 5e-3, lambda ends: ends.vertical)
+_TENSION = CaseColumn[Ends]("tension at the anchor", "N", 1e-6, lambda ends: ends.tension, True)
+_ANGLE = CaseColumn[Ends]("angle at the anchor", "°", 6e-5, lambda ends: ends.lean)
+_OFFSET = CaseColumn[Ends]("offset of the float", "m", 1e-6 * _LENGTH, lambda ends: ends.x)
+_KNOCKDOWN = CaseColumn[Ends]("knockdown", "m", 1e-6 * _LENGTH, partial(_drop, _LENGTH))
+_HEIGHT = CaseColumn[Ends]("height of the float", "m", 1e-6 * _LENGTH, lambda ends: ends.z)
+_HORIZONTAL = CaseColumn[Ends]("anchor, horizontal", "N", 5e-3, lambda ends: ends.horizontal)
+_VERTICAL = CaseColumn[Ends]("anchor, vertical", "N", 5e-3, lambda ends: ends.vertical)
 
-SOURCE = Source(
+UNIFORM_CURRENT = Source(
     "Floats and lines in a uniform current",
     """A float of 500 kgf and 1 m (Cx 0.65) on 100 m of line without weight or drag (C1); a ball
 on a thread, the check of the R package *mooring* by D. Kelley, in water of 1027 kg/m³ (C2); the
@@ -164,6 +192,190 @@ against them.""",
             ],
             _SEVEN_DIGITS,
             Kind.INDEPENDENT,
+        ),
+    ),
+)  # fmt: skip
+
+
+_DIAMETER, _WEIGHT, _CN = 0.01, 2.5, 1.5
+
+
+@cache
+def _bare(speed: float) -> Wake:
+    line = line_of(cable(100.0, _DIAMETER, _WEIGHT, _CN, 0.0))
+    return towed(line, deep_water(), speed, Settings())
+
+
+@cache
+def _with_body(speed: float) -> Wake:
+    normal, tangential = HALF_DENSITY * _CN * _DIAMETER, HALF_DENSITY * 0.02 * _DIAMETER
+    line = line_of(
+        LinePiece(300.0, True, -_WEIGHT, normal, tangential), point(-2000.0, HALF_DENSITY * 0.05)
+    )
+    return towed(line, deep_water(), speed)
+
+
+_AT_THE_SHIP = "angle at the ship"
+
+TOWED_CABLES = Source(
+    "Towed cables",
+    """A cable of 10 mm, 2.5 N/m, Cn 1.5, towed bare (C7): it is straight at the critical angle,
+cos φc = √(1 + p²/4) − p/2 with p the weight over the normal drag square to the stream. And 300 m
+of it with a body of 2000 N in water and 0.05 m² of drag area (C8), friction
+½ρ 0.02 D V² cos² φ along the cable: by quadrature of the differential equations (relative error
+1e-10) without CALM. The march of CALM is held against them, at an angle step of 0.1° in C8.""",
+    (
+        *table(
+            [CaseColumn[Wake](_AT_THE_SHIP, "°", 5.5e-5, lambda wake: wake.angle)],
+            [
+                (f"C7 bare cable, {speed} m/s", partial(_bare, speed), (angle,))
+                for speed, angle in ((1.0, 31.7304), (2.0, 16.2243), (3.0, 10.8582), (5.0, 6.5277))
+            ],
+            "Half a unit of the last digit printed, and a tenth: a straight cable is exact "
+            "whatever the angle step.",
+            Kind.CLOSED_FORM,
+        ),
+        *table(
+            [
+                CaseColumn[Wake]("tension at the ship", "N", 1e-6, lambda wake: wake.tension, True),
+                CaseColumn[Wake](_AT_THE_SHIP, "°", 1e-4, lambda wake: wake.angle),
+                CaseColumn[Wake]("body aft of the ship", "m", 3e-4, lambda wake: wake.aft),
+                CaseColumn[Wake]("depth of the body", "m", 3e-4, lambda wake: wake.depth),
+            ],
+            [
+                (f"C8 with a body, {speed} m/s", partial(_with_body, speed), figures)
+                for speed, *figures in (
+                    (1.0, 2676.8181, 50.2681, 121.0705, 268.2631),
+                    (2.0, 2493.0209, 19.5421, 235.7036, 163.5868),
+                    (3.0, 2505.4823, 11.5260, 271.0537, 103.8530),
+                )
+            ],
+            "1e-6 of the length and of the tension, 1e-4° for the angle; the figures are printed "
+            "to four decimals.",
+            Kind.INDEPENDENT,
+        ),
+    ),
+)
+
+
+_TABLE = (
+    (10, 0.00, 60, 1.017122, 0.588029, 0.158486, 0.559210),
+    (10, 0.00, 30, 1.042705, 1.851566, 1.087628, 1.394744),
+    (10, 0.00, 12, 1.090688, 7.217782, 6.201196, 2.961826),
+    (10, 0.02, 60, 1.029050, 0.591480, 0.159706, 0.562411),
+    (10, 0.02, 30, 1.081109, 1.885694, 1.112322, 1.417257),
+    (10, 0.02, 12, 1.250175, 7.740277, 6.695377, 3.114723),
+    (20, 0.00, 45, 1.125686, 1.156392, 0.499797, 1.009646),
+    (20, 0.01, 45, 1.137970, 1.162815, 0.503310, 1.014916),
+    (20, 0.02, 45, 1.150388, 1.169285, 0.506851, 1.020223),
+    (20, 0.03, 45, 1.162942, 1.175803, 0.510421, 1.025567),
+    (20, 0.02, 25, 1.357990, 3.603604, 2.566427, 2.296805),
+    (30, 0.00, 45, 1.364054, 1.467920, 0.677138, 1.261120),
+    (30, 0.02, 60, 1.205823, 0.701770, 0.199734, 0.664372),
+    (30, 0.02, 45, 1.398297, 1.487219, 0.688118, 1.276704),
+    (60, 0.00, 80, 1.357894, 0.240017, 0.023141, 0.238596),
+    (60, 0.02, 70, 2.218338, 0.825827, 0.183732, 0.801214),
+)
+"""φc [degrees], f, φ [degrees], τ, σ, ξ, η."""
+
+_CRITICAL = (
+    (0.05, 12.7578), (0.1, 17.9642), (0.2, 25.1784), (0.5, 38.6683), (1.0, 51.8273),
+    (2.0, 65.5302), (5.0, 78.8965), (10.0, 84.3173),
+)  # fmt: skip
+"""p, φc [degrees]."""
+
+_PULL = 100.0
+"""Of the body that the march tows [N]."""
+
+
+@cache
+def _functions(critical: float, friction: float, angle: float) -> CableFunctions:
+    ratio = float(critical_weight_ratio(radians(critical)))
+    return cable_functions(radians(angle), ratio, friction)
+
+
+@cache
+def _march(critical: float, friction: float, arc: float) -> Wake:
+    """Return a body of 100 N without drag on a cable whose normal drag is 1 N/m at 1 m/s."""
+    weight = float(critical_weight_ratio(radians(critical)))
+    cable = LinePiece(_PULL * arc, True, -weight, 1.0, friction)
+    line = replace(line_of(cable, point(-_PULL, 0.0)), friction=Friction.CONSTANT)
+    return towed(line, deep_water(), 1.0)
+
+
+def _name(critical: float, friction: float, angle: float) -> str:
+    return f"C6 φc {critical}°, f {friction:g}, φ {angle}°"
+
+
+def _identity_missed() -> float:
+    """Return the worst |τ − 1 − p η − f σ| of the table."""
+    misses = []
+    for critical, friction, angle, *_ in _TABLE:
+        tau, sigma, _, eta = _functions(critical, friction, angle)
+        ratio = float(critical_weight_ratio(radians(critical)))
+        misses.append(abs(float(tau - 1.0 - ratio * eta - friction * sigma)))
+    return max(misses)
+
+
+def _tension(critical: float, angle: float, tau: float) -> Case:
+    def got() -> float:
+        ratio = float(critical_weight_ratio(radians(critical)))
+        return float(tension_ratio(radians(angle), radians(90.0), ratio))
+
+    return Case(
+        f"{_name(critical, 0.0, angle)}: τ, closed form", tau, "", 5.5e-7, PRINTED, got,
+        Kind.INDEPENDENT,
+    )  # fmt: skip
+
+
+def _critical_angle(ratio: float) -> float:
+    """[degrees]"""
+    return degrees(float(critical_angle(ratio)))
+
+
+PODE = Source(
+    "Pode's cable functions",
+    """L. Pode's functions of a heavy cable in a uniform stream (David Taylor Model Basin reports
+687 and 717, 1951), constant friction F = f R along it (C6): τ, σ, ξ, η between φ and 90°, as
+evaluated by quadrature to 1e-10 from his integrals, not copied from his tables. They are held
+against `calm.analytic.pode` and τ − 1 = p η + f σ; those with friction against the march of a towed
+body, the tensions without against their closed form. The critical angle,
+cos φc = √(1 + p²/4) − p/2, is E. E. Zajac's, too (Bell System Technical Journal 36, 1957).""",
+    (
+        *table(
+            [
+                CaseColumn[CableFunctions]("τ", "", 5.5e-7, lambda row: float(row.tau)),
+                CaseColumn[CableFunctions]("σ", "", 5.5e-7, lambda row: float(row.sigma)),
+                CaseColumn[CableFunctions]("ξ", "", 5.5e-7, lambda row: float(row.xi)),
+                CaseColumn[CableFunctions]("η", "", 5.5e-7, lambda row: float(row.eta)),
+            ],
+            [(_name(*given), partial(_functions, *given), row)
+             for *given, tau, sigma, xi, eta in _TABLE
+             for row in [(tau, sigma, xi, eta)]],
+            PRINTED,
+            Kind.INDEPENDENT,
+        ),
+        *table(
+            [
+                CaseColumn[Wake]("φ, march", "°", 1e-4, lambda wake: wake.angle),
+                CaseColumn[Wake]("τ, march", "", 2e-6, lambda wake: wake.tension / _PULL),
+                CaseColumn[Wake]("ξ, march", "", 2e-6, lambda wake: wake.aft / _PULL),
+                CaseColumn[Wake]("η, march", "", 2e-6, lambda wake: wake.depth / _PULL),
+            ],
+            [(_name(critical, f, angle), partial(_march, critical, f, sigma),
+              (angle, tau, xi, eta))
+             for critical, f, angle, tau, sigma, xi, eta in _TABLE if f > 0.0],
+            "The cable is cut to σ, printed to 5e-7; the march errs by 1e-7 of its length, some "
+            "1e-6, at an angle step of 0.1°.",
+            Kind.INDEPENDENT,
+        ),
+        *(_tension(critical, angle, tau) for critical, f, angle, tau, *_ in _TABLE if f == 0.0),
+        Case("C6 all rows: greatest |τ − 1 − p η − f σ|", 0.0, "", 1e-11,
+             "Exact; the quadratures go on to 1e-12.", _identity_missed, Kind.PROPERTY),
+        *(
+            Case(f"critical angle, p {ratio:g}", expected, "°", 5.5e-5, PRINTED,
+                 partial(_critical_angle, ratio), Kind.CLOSED_FORM)
+            for ratio, expected in _CRITICAL
         ),
     ),
 )  # fmt: skip

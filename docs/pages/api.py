@@ -13,7 +13,7 @@ _SECTIONS = {
     "Parts of a result": [
         "calm.case.columns.Components", "calm.case.columns.Clamps", "calm.case.columns.Shape",
         "calm.case.result.Top", "calm.case.result.AnchorLoad", "calm.case.result.Accuracy",
-        "calm.case.result.Strumming", "calm.case.band.StrummingBand",
+        "calm.case.result.Strumming", "calm.case.strumming.StrummingBand",
     ],
     "Many profiles": ["calm.solve_profiles", "calm.Profiles"],
     "Errors": [

@@ -8,7 +8,7 @@ from calm.files import Catalogue, Component
 from calm.files.catalogue import Assembly
 from calm.quantities import QUANTITIES
 from calm.report.blocks import Pairs
-from calm.report.catalogue import to_card
+from calm.report.component_cards import to_card
 from pages.markdown import code, plain, table
 
 HEADS = ("id", "component", "net force in water", "breaking load", "Cd × area", "by")

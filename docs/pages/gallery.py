@@ -13,8 +13,8 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 import calm
-from calm.cli.exit_codes import ExitCode
 from calm.cli.main import main
+from calm.cli.streams import ExitCode
 from calm.report.picture import image
 from calm.report.plot import draw
 from calm.report.schematic import schematic_svg

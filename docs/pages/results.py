@@ -11,7 +11,7 @@ from calm.dataset.variables import OF_CLAMP, OF_COMPONENT, OF_ENDS, OF_NODE
 from calm.motion.run import OF_MOTION
 from calm.quantities import QUANTITIES
 from calm.report.csv import HEADER
-from calm.report.netcdf import result_netcdf
+from calm.report.result_netcdf import result_netcdf
 from calm.shipped import shipped_folder
 from pages.markdown import code, plain, table
 

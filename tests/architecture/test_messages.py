@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from calm.batch.statuses import STATUSES
-from calm.cli.exit_codes import ExitCode
+from calm.cli.streams import ExitCode
 from calm.solve.status import Status
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -13,7 +13,7 @@ import pypdfium2
 import pytest
 
 import calm
-from calm.report.check.section import mooring_section
+from calm.report.check_report import mooring_section
 from calm.report.html import report_html, result_html
 from tests.judged import (
     FORMULA,

@@ -8,7 +8,7 @@ import pytest
 
 import calm as package
 from calm import version
-from calm.cli.exit_codes import ExitCode, gravest
+from calm.cli.streams import ExitCode, gravest
 from calm.errors import UsageError
 
 
@@ -151,7 +151,7 @@ def test_full_disk_behind_a_file(calm, write_mooring, monkeypatch):
     def full(*_):
         raise UsageError("cannot write x.json: No space left on device")
 
-    monkeypatch.setattr("calm.report.write.write_file", full)
+    monkeypatch.setattr("calm.report.folder.write_file", full)
     done = calm("run", write_mooring(), "--json", "x.json")
     assert done.code == 2
     assert done.err == "calm: cannot write x.json: No space left on device\n"

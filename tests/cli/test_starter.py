@@ -4,7 +4,7 @@ import os
 import pytest
 from jsonschema import Draft202012Validator
 
-from calm.starts import STARTS
+from calm.templates import TEMPLATES
 from tests.core_yaml import loaded
 
 
@@ -35,7 +35,7 @@ def test_new_is_a_good_design(calm, environment):
     assert min(factors) > 5.0
 
 
-@pytest.mark.parametrize("kind", STARTS)
+@pytest.mark.parametrize("kind", TEMPLATES)
 def test_each_kind_stands_and_no_rule_fails(calm, kind):
     calm("new", kind, "-o", "m.yaml")
     if kind == "tow":

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from calm.files.current_file import read_current_file
-from calm.files.current_terms import Terms
+from calm.records.current_file import read_current_file
+from calm.records.current_terms import Terms
 
 pytestmark = [pytest.mark.peers, pytest.mark.filterwarnings("ignore")]
 

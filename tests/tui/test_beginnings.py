@@ -4,7 +4,7 @@ import pytest
 
 from calm.checks.finding import State
 from calm.files.editing import Draft, EditError
-from calm.starts import STARTS, start
+from calm.templates import TEMPLATES, template
 from calm.tui.launch import open_session
 from calm.tui.line.rows import table_rows
 from calm.tui.live import judge, judge_fully
@@ -14,12 +14,12 @@ from tests.tui.conftest import MOORING
 
 @pytest.mark.parametrize("number", [1, 6])
 def test_an_empty_line_begins_with_a_mooring(drive, number):
-    kind = list(STARTS)[number - 1]
+    kind = list(TEMPLATES)[number - 1]
 
     async def story(driver):
         assert "b   begins with a mooring" in driver.screen
         await driver.press("b", str(number))
-        assert driver.text == start(kind)
+        assert driver.text == template(kind)
         await driver.settle()
         assert driver.view.result is not None
         await driver.press("b")
@@ -127,7 +127,7 @@ def test_a_fitted_rope_shows_what_it_is_cut_to():
 
 
 def test_what_is_complete_stays_so_with_each_start():
-    view = judge_fully(judge(start("slack-surface")))
+    view = judge_fully(judge(template("slack-surface")))
     assert State.FAIL not in {each.state for each in view.findings}
 
 

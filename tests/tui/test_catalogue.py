@@ -3,8 +3,7 @@
 from calm.files.catalogue import Catalogue
 from calm.tui.catalogue.component_list import ComponentList
 from calm.tui.catalogue.component_screen import ComponentScreen
-from calm.tui.catalogue.index import Index
-from calm.tui.catalogue.remembered import Remembered
+from calm.tui.catalogue.index import Index, Remembered
 from calm.tui.field import Field
 from tests.tui.conftest import MOORING
 

@@ -3,8 +3,7 @@
 import pytest
 
 from calm.files import Catalogue
-from calm.tui.catalogue.figures import COLUMNS, wanted
-from calm.tui.catalogue.index import Index
+from calm.tui.catalogue.index import COLUMNS, Index, wanted
 
 INDEX = Index(Catalogue.load())
 

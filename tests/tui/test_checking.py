@@ -2,9 +2,9 @@
 
 import pytest
 
-from calm.files.fields import Quantity
+from calm.files.fields import QuantityField
 from calm.tui import checking
-from calm.tui.catalogue.component_form import defined, form_fields
+from calm.tui.catalogue.component_screen import defined, form_fields
 from calm.tui.catalogue.index import Index
 
 
@@ -56,7 +56,7 @@ def test_counts():
 
 
 def test_a_mass_where_a_force_is_wanted_offers_the_force():
-    reading = checking.quantity(Quantity("force"))("35 kg")
+    reading = checking.quantity(QuantityField("force"))("35 kg")
     assert reading.offer == "35 kgf"
     assert "35 kgf?" in reading.note
 

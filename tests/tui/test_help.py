@@ -5,16 +5,16 @@ import pytest
 from calm.tui.actions import actions_in, shown_key, shown_keys
 from calm.tui.catalogue.component_screen import ComponentScreen
 from calm.tui.catalogue.pane import CataloguePane
-from calm.tui.cycle import Cycle
 from calm.tui.dialogs import LongText, Question, Sheet
-from calm.tui.keys.action import PLACES
+from calm.tui.field import Cycle
+from calm.tui.help_screen import PLACES
 from calm.tui.line.builder import BuilderScreen
 from calm.tui.line.cell_editor import CellEditor
 from calm.tui.line.pane import LinePane
 from calm.tui.text_screen import TextScreen, YamlArea
 from calm.tui.verdict_pane import VerdictPane
 from calm.tui.water.cells import Cells
-from calm.tui.water.form_choice import FormChoice
+from calm.tui.water.form import FormChoice
 from calm.tui.water.screen import WaterScreen
 
 OWNERS = {

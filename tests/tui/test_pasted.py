@@ -2,9 +2,8 @@
 
 import pytest
 
-from calm.files.current_text import NoTableError, copied_table
-from calm.tui.water.columns import check_of
-from calm.tui.water.pasted import NoRows, Rows, UnknownColumns, offered_headings, rows_in
+from calm.records.delimited import NoTableError, copied_table
+from calm.tui.water.pasted import NoRows, Rows, UnknownColumns, check_of, offered_headings, rows_in
 
 COLUMNS = ("depth m", "speed m/s", "toward deg")
 ROWS = (("0", "0.9", "70"), ("50", "1e-3", "60"))
@@ -31,7 +30,7 @@ def test_each_way_to_separate_values(between, heading):
         ("0,1,2\n1,2", "values, the first"),
         ("n/a 0.9 70\n1 2 3", "row 1: `n/a` "),
         ("0\t1\t2\n\n3\tlost\t4\n5\t6\t7", "row 2: `lost` "),
-        ("0;0,9;70", "row 1: `0,9` "),
+        ("0;0,9;70\n1;0.9;70", "row 1: `0,9` "),
         ("0,1,2\nu,v,w", "row 2: `u` "),
     ],
 )

@@ -6,8 +6,8 @@ import pytest
 
 from calm.report.sketch.canvas import Canvas
 from calm.tui.line.table import LineTable
-from calm.tui.plain import plain, shows_all_signs
-from calm.tui.signs import CLAMP, CURSOR, LOOKS, MARK, ROLES, UNKNOWN_ROLE
+from calm.tui.painted import plain, shows_all_signs
+from calm.tui.theme import CLAMP, CURSOR, LOOKS, MARK, ROLES, UNKNOWN_ROLE
 from tests.tui.conftest import MOORING
 from tests.tui.test_terminals import SCREENS
 

@@ -10,7 +10,7 @@ from calm.checks.finding import State
 from calm.files.editing import Draft
 from calm.tui.line.rows import table_rows
 from calm.tui.live import judge, judge_fully
-from calm.tui.signs import ELLIPSIS, LOOKS
+from calm.tui.theme import ELLIPSIS, LOOKS
 from calm.tui.verdict_text import headline, sayings
 from tests.tui.conftest import MOORING
 

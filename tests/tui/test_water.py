@@ -7,7 +7,7 @@ from textual.events import Paste
 
 from calm.tui.field import Field
 from calm.tui.water.cells import Cells
-from calm.tui.water.current_import import _existing, imported
+from calm.tui.water.currents import _existing, imported
 from calm.tui.water.grid import Grid
 from calm.tui.water.screen import WaterScreen
 from tests.tui.conftest import MOORING
@@ -634,7 +634,7 @@ def test_a_file_that_no_library_can_read_is_told(drive, small, monkeypatch):
         def fail(*_):
             raise RuntimeError("out of luck")
 
-        monkeypatch.setattr("calm.tui.water.current_import.imported", fail)
+        monkeypatch.setattr("calm.tui.water.currents.imported", fail)
         await load(driver)
         assert "bad.nc cannot be read: RuntimeError: out of luck" in driver.screen
         assert driver.text == before

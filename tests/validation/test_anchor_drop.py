@@ -9,15 +9,15 @@ import pytest
 import calm
 from calm.assemble import with_axial_clamps
 from calm.case.tow import Tow
-from calm.checks.launch import launch_of
-from calm.drop import drop_plan, planning
+from calm.drop import drop_plan, plan
 from calm.drop.chain import chain_of
 from calm.drop.fall import Fineness, Ship, fall, settle, towed
-from calm.drop.motion import Anchor, State
+from calm.drop.launch import IN_SHORT, launch_of
+from calm.drop.motion import ChainState
 from calm.drop.record import rest_difference
 from calm.errors import UsageError
 from calm.shipped import shipped_folder
-from calm.solve import Towing, solve_tow
+from calm.solve import FallingAnchor, Towing, solve_fall, solve_tow
 from tests.validation import drop_dynamics
 
 COARSE = Fineness(bars=50, steps=50)
@@ -53,7 +53,7 @@ def loaded(tmp_path):
 
 def dropped(mooring, ship=(0.0, 1.0), fineness=COARSE):
     """The start, the fall and the rest of a mooring's line."""
-    anchor = Anchor(mooring.anchor_weight, mooring.file.anchor.kt or 0.0)
+    anchor = FallingAnchor(mooring.anchor_weight, mooring.file.anchor.kt or 0.0)
     line, water = with_axial_clamps(mooring.line, mooring.file.pieces[:-1]), mooring.water
     start = towed(line, water, anchor, Ship(*ship), fineness)
     drop = fall(line, water, anchor, start, fineness)
@@ -117,7 +117,7 @@ def test_masses_and_springs_fall_as_far_and_as_long(loaded, text, way, wire, top
     mooring = loaded(text)
     plan = drop_plan(mooring, ship_speed=abs(way), fineness=COARSE)
     line, water = mooring.line, mooring.water
-    start = towed(line, water, Anchor(8000.0, 1.0), Ship(0.0, way), Fineness(24, 50)).node
+    start = towed(line, water, FallingAnchor(8000.0, 1.0), Ship(0.0, way), Fineness(24, 50)).node
     sea = drop_dynamics.Sea(water.depth, float(water.density[0]), 9.81, current)
     nodes = np.column_stack([-np.sign(way) * start[1:, 1], start[1:, 2]])
     time, back, moved = drop_dynamics.dynamic_drop(
@@ -188,14 +188,30 @@ components:
 """
 
 
-def test_in_deep_water_it_falls_at_the_terminal_speed_of_the_design_check(loaded):
+@pytest.mark.parametrize("name", ["s1000", "chain-and-rope-surface"])
+def test_the_design_check_and_the_plan_tell_of_one_fall(name):
+    """A line that lands before it is plumb, and one whose float is at the surface."""
+    mooring = calm.load(shipped_folder("lines") / f"{name}.yaml")
+    launch, told = launch_of(mooring), drop_plan(mooring, fineness=IN_SHORT)
+    assert told.touchdown_speed == pytest.approx(launch.fall_speed, rel=1e-12)
+    pulls = [pull.tension for pull in told.pulls]
+    given = np.maximum(launch.tension_top, launch.tension_bottom)
+    assert pulls == pytest.approx(given, rel=5e-3)  # the greatest may be between the ends
+    finer = launch_of(mooring, plan.FINE)
+    assert launch.fall_speed == pytest.approx(finer.fall_speed, rel=0.02)
+    assert launch.greatest_tension == pytest.approx(finer.greatest_tension, rel=0.02)
+
+
+def test_in_deep_water_it_falls_at_the_terminal_speed(loaded):
     mooring = loaded(LEAN.format(depth=3000, length=100, current=0.0))
     _, drop, _ = dropped(mooring, fineness=Fineness(50, 200))
-    launch = launch_of(mooring, mooring.solve())
+    anchor = FallingAnchor(mooring.anchor_weight, mooring.anchor_drag)
+    line = with_axial_clamps(mooring.line, mooring.file.pieces[:-1])
+    terminal = -solve_fall(line, mooring.water, anchor).velocity[2]
     last = drop.states[-1]
-    # after 2800 m of fall the line has long been plumb; the design check's own accuracy is 1e-4
-    assert -last.velocity[-1, 2] == pytest.approx(launch.fall_speed, rel=5e-4)
-    assert -last.velocity[0, 2] == pytest.approx(launch.fall_speed, rel=5e-4)
+    # after 2800 m of fall the line has long been plumb; the terminal speed's own accuracy is 1e-4
+    assert -last.velocity[-1, 2] == pytest.approx(terminal, rel=5e-4)
+    assert -last.velocity[0, 2] == pytest.approx(terminal, rel=5e-4)
 
 
 def test_a_heavy_sphere_on_a_thin_line_falls_as_if_alone(loaded):
@@ -256,7 +272,7 @@ def test_the_stated_errors_hold_against_a_finer_chain(loaded):
 def test_streamed_as_far_as_asked(loaded, streamed):
     # at 2 m/s it streams to 60.6 m: nearer it hangs as behind a slower ship, farther it is held
     mooring = loaded(SHORT)
-    line, water, anchor = mooring.line, mooring.water, Anchor(4000.0, 200.0)
+    line, water, anchor = mooring.line, mooring.water, FallingAnchor(4000.0, 200.0)
     start = towed(line, water, anchor, Ship(0.0, 2.0, streamed), FEW)
     assert np.linalg.norm(start.node[0, :2]) == pytest.approx(streamed, abs=0.01)
     assert start.tension.min() > 0.0
@@ -274,7 +290,7 @@ def test_a_line_that_rests_astray_is_cut_finer(loaded, monkeypatch):
     # one shape at rest that misses the equilibrium, and then all of them
     mooring = loaded(SHORT)
     differences = iter([1.0, 1e-3, 1.0, 1.0, 1.0])
-    monkeypatch.setattr(planning, "rest_difference", lambda *_: next(differences))
+    monkeypatch.setattr(plan, "rest_difference", lambda *_: next(differences))
     fine = drop_plan(mooring, fineness=FEW)
     assert len(fine.moments[0].x) == 2 + 2 * FEW.bars
     assert fine.rest_difference == 1e-3
@@ -323,8 +339,10 @@ def test_a_line_held_upright_leans_as_in_its_equilibrium(loaded, text):
     above = np.append(np.cumsum(length[::-1])[::-1], 0.0)
     node = np.zeros((len(above), 3))
     node[:, 2] = line.anchor_height - water.depth + above
-    upright = State(0.0, node, np.full(len(length), 1000.0), np.zeros_like(node))
-    rest = settle(line, water, Anchor(mooring.anchor_weight, 100.0), upright, Fineness(50, 20))
+    upright = ChainState(0.0, node, np.full(len(length), 1000.0), np.zeros_like(node))
+    rest = settle(
+        line, water, FallingAnchor(mooring.anchor_weight, 100.0), upright, Fineness(50, 20)
+    )
     # bars of 2.4 m lie along chords: some 2e-6 of the depth here
     assert rest_difference(mooring.solve(), rest) < 1e-5 * water.depth
 
@@ -333,7 +351,7 @@ def test_a_line_towed_below_the_surface_is_that_of_the_tow(loaded):
     text = LEAN.format(depth=400, length=120, current=0.0).replace("mass: 300 kg", "mass: 560 kg")
     mooring = loaded(text)
     line, water = mooring.line, mooring.water
-    start = towed(line, water, Anchor(8000.0, 400.0), Ship(0.0, 1.5), Fineness(100, 50))
+    start = towed(line, water, FallingAnchor(8000.0, 400.0), Ship(0.0, 1.5), Fineness(100, 50))
     tow = solve_tow(line.reversed(), water, Towing(0.0, 1.5))
     # the tow's free end comes first, as the chain's; its own accuracy is 5e-5 of the line
     assert tow.position[0, 2] < -20.0
@@ -343,7 +361,7 @@ def test_a_line_towed_below_the_surface_is_that_of_the_tow(loaded):
 
 def test_nothing_is_lost_where_the_chain_is_cut_finer(loaded):
     mooring = loaded(LEAN.format(depth=200, length=120, current=0.5))
-    anchor = Anchor(mooring.anchor_weight, 400.0)
+    anchor = FallingAnchor(mooring.anchor_weight, 400.0)
     weights = []
     for bars in (50, 133):
         start = towed(mooring.line, mooring.water, anchor, Ship(-1.0, 0.0), Fineness(bars, 50))

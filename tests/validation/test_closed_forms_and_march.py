@@ -2,7 +2,7 @@
 
 The march is of second order in its angle step: along every line below, at every node looked at, it
 stays within 1e-5 (step/1°)² of the line's length and of the tension. At 1° it comes to 7e-6. The
-order itself is a case of `calm.verification.convergence`.
+order itself is a case of `calm.verification.march_properties`.
 """
 
 from __future__ import annotations

@@ -11,10 +11,10 @@ import pytest
 
 import calm
 from calm.motion import prior
-from calm.motion.doubts import doubts
-from calm.motion.forward import Forward, points
+from calm.motion.line_response import Forward, points
 from calm.motion.matching import labels_of
-from calm.motion.measured import Measured
+from calm.motion.measurements import MooringMeasurements
+from calm.motion.remarks import sensor_remarks
 from calm.motion.study import knockdown
 from calm.motion.task import Task
 from calm.motion.whole_record import estimate_common
@@ -86,7 +86,7 @@ def twin(mooring, seed, used=USED, slip=None):
             pressure[time, column] += np.diff(np.interp(place, *along))[0]
     pressure[random.random(pressure.shape) < 0.05] = np.nan
     flow[random.random(flow.shape) < 0.03] = np.nan
-    measured = Measured(
+    measured = MooringMeasurements(
         time=np.datetime64("2026-01-01", "ns") + np.arange(TIMES) * np.timedelta64(1, "h"),
         label=used,
         point=sensor,
@@ -112,7 +112,7 @@ def recovered(mooring, seed, used=USED, slip=None):
     hidden = [labels.index(label) for label in BETWEEN if label not in used]
     off = np.abs(profiles.clamp_depth[:, hidden] - depth[:, hidden])
     inside = off <= 1.96 * more["clamp_depth_sd"][:, hidden]
-    said = doubts(used, measured.time, more["residual"], knockdown(measured), common)
+    said = sensor_remarks(used, measured.time, more["residual"], knockdown(measured), common)
     return missed, inside, said
 
 

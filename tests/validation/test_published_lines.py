@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from calm.solve import Settings, solve_mooring
-from calm.verification import braconnot, cdms_1, elastic_hang
+from calm.verification import cable_papers, solved_moorings, still_water
 from calm.verification.uniform_current import (
     ball_on_a_thread,
     float_on_a_rope,
@@ -32,11 +32,14 @@ LINES = {
         for name, rope in ROPES.items()
         for speed in (0.3, 0.5, 1.0)
     },
-    "elastic hang": (elastic_hang.LINE, elastic_hang.SEA),
-    "CDMS-1": (cdms_1.mooring(), cdms_1.SEA),
-    "CDMS-1 with tangential drag": (cdms_1.mooring(0.009), cdms_1.SEA),
-    "Braconnot's buoy below the surface": braconnot.buoy(braconnot.BUOY_LIFT, 25.0),
-    "Braconnot's buoy afloat": braconnot.buoy(1000.0, 20.0),
+    "elastic hang": (still_water.HANGING_ROPE, still_water.HANGING_SEA),
+    "CDMS-1": (solved_moorings.cdms_1_mooring(), solved_moorings.CDMS_1_SEA),
+    "CDMS-1 with tangential drag": (
+        solved_moorings.cdms_1_mooring(0.009),
+        solved_moorings.CDMS_1_SEA,
+    ),
+    "Braconnot's buoy below the surface": cable_papers.buoy(cable_papers.BUOY_LIFT, 25.0),
+    "Braconnot's buoy afloat": cable_papers.buoy(1000.0, 20.0),
 }
 
 
@@ -68,7 +71,12 @@ def test_referee_has_the_last_digits_of_the_neutral_line(speed) -> None:
 def test_tangential_drag_hardly_matters_to_cdms_1() -> None:
     """Berteaux's Ct of 0.009, a rough finish: no tension changes by more than 0.01 %."""
     without, rough = (
-        np.linalg.norm(solve_continuous(cdms_1.mooring(ct), cdms_1.SEA).shape.force_bottom, axis=1)
+        np.linalg.norm(
+            solve_continuous(
+                solved_moorings.cdms_1_mooring(ct), solved_moorings.CDMS_1_SEA
+            ).shape.force_bottom,
+            axis=1,
+        )
         for ct in (0.0, 0.009)
     )
     assert rough == pytest.approx(without, rel=1e-4)

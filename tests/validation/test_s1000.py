@@ -1,7 +1,7 @@
 """S1000 along its whole length, against the referee.
 
-The figures known of it are cases of `calm.verification.s1000`; here the referee, which shares
-nothing with CALM, has them too, and judges every other place and tension.
+The figures known of it are cases of `calm.verification.solved_moorings`; here the referee, which
+shares nothing with CALM, has them too, and judges every other place and tension.
 """
 
 from __future__ import annotations
@@ -13,25 +13,27 @@ import numpy as np
 import pytest
 
 from calm.solve import Settings, solve_mooring
-from calm.verification import s1000
-from calm.verification.s1000 import SEA
+from calm.verification import solved_moorings
+from calm.verification.solved_moorings import S1000_SEA
 from tests.validation.agreement import difference
 from tests.validation.closing import solve_continuous
 
-LINE = s1000.mooring()
+LINE = solved_moorings.s1000_mooring()
 
 
 @pytest.fixture(scope="module")
 def referee():
-    return solve_continuous(LINE, SEA)
+    return solve_continuous(LINE, S1000_SEA)
 
 
 def test_referee_has_the_known_digits(referee) -> None:
-    assert referee.depth == pytest.approx(s1000.DEPTH, abs=5e-5)
-    assert referee.shape.top[0, 0] == pytest.approx(s1000.OFFSET, abs=5e-5)
-    assert np.linalg.norm(referee.shape.force_bottom[-1]) == pytest.approx(s1000.TENSION, abs=5e-4)
-    upright = solve_continuous(LINE, SEA.still()).depth
-    assert referee.depth - upright == pytest.approx(s1000.KNOCKDOWN, abs=1e-4)
+    assert referee.depth == pytest.approx(solved_moorings.DEPTH, abs=5e-5)
+    assert referee.shape.top[0, 0] == pytest.approx(solved_moorings.OFFSET, abs=5e-5)
+    assert np.linalg.norm(referee.shape.force_bottom[-1]) == pytest.approx(
+        solved_moorings.TENSION, abs=5e-4
+    )
+    upright = solve_continuous(LINE, S1000_SEA.still()).depth
+    assert referee.depth - upright == pytest.approx(solved_moorings.KNOCKDOWN, abs=1e-4)
 
 
 @pytest.mark.parametrize(
@@ -39,7 +41,7 @@ def test_referee_has_the_known_digits(referee) -> None:
 )
 def test_calm_agrees(referee, degrees, near, close) -> None:
     """The first two rows are what CALM promises; the third holds it to the digits above."""
-    found = difference(solve_mooring(LINE, SEA, Settings(radians(degrees), 1e-9)), referee)
+    found = difference(solve_mooring(LINE, S1000_SEA, Settings(radians(degrees), 1e-9)), referee)
     assert found.place <= near
     assert found.tension <= close
 
@@ -47,7 +49,7 @@ def test_calm_agrees(referee, degrees, near, close) -> None:
 def test_halving_the_angle_step_quarters_the_error(referee) -> None:
     """Second order: ratios of 4, met within a quarter while cuts at levels shift the segments."""
     errors = [
-        difference(solve_mooring(LINE, SEA, Settings(radians(degrees), 1e-9)), referee)
+        difference(solve_mooring(LINE, S1000_SEA, Settings(radians(degrees), 1e-9)), referee)
         for degrees in (2.0, 1.0, 0.5, 0.25)
     ]
     for coarse, fine in pairwise(errors):
@@ -57,7 +59,7 @@ def test_halving_the_angle_step_quarters_the_error(referee) -> None:
 
 def test_the_accuracy_it_states_is_its_error(referee) -> None:
     """A solution estimates its own error; it must not be flattering, nor idle."""
-    solution = solve_mooring(LINE, SEA)
-    worst = difference(solution, referee).place * SEA.depth
+    solution = solve_mooring(LINE, S1000_SEA)
+    worst = difference(solution, referee).place * S1000_SEA.depth
     assert worst <= 1.5 * solution.depth_error
     assert solution.depth_error <= 5.0 * worst

@@ -10,18 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import log, log1p
+from itertools import pairwise
+from math import ceil, log, log1p
 
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.statistics.samples import (
-    WHOLE,
-    annual_maxima,
-    median_step,
-    peaks_over,
-    years_of,
-)
 from calm.batch.statistics.series import Column, Times
 from calm.batch.statistics.tails import (
     CONFIDENCE,
@@ -104,8 +98,8 @@ class Fit:
 
 
 @dataclass(frozen=True)
-class Refusal:
-    """Why there are no return levels by one of the `METHODS`."""
+class LevelsRefused:
+    """Describe why there are no return levels by one of the `METHODS`."""
 
     method: str
     reason: str
@@ -116,7 +110,7 @@ def return_levels(
     values: Column,
     statuses: Mapping[str, int],
     step: np.timedelta64 | None = None,
-) -> tuple[Fit | Refusal, Fit | Refusal]:
+) -> tuple[Fit | LevelsRefused, Fit | LevelsRefused]:
     """Return levels by GEV and by POT, each with 95 % intervals or refused with a reason.
 
     They are refused, too, where profiles with a current were not solved: the line most often
@@ -133,20 +127,20 @@ def return_levels(
     """
     refusal = _censored(statuses) or _unfit(time, values)
     if refusal:
-        return Refusal("gev", refusal), Refusal("pot", refusal)
+        return LevelsRefused("gev", refusal), LevelsRefused("pot", refusal)
     step = median_step(time) if step is None else step
     years = years_of(step, int(np.count_nonzero(np.isfinite(values))))
-    fits: list[Fit | Refusal] = []
+    fits: list[Fit | LevelsRefused] = []
     for method, fit in (("gev", _by_maxima), ("pot", _by_peaks)):
         try:
             fits.append(fit(time, values, step, years))
         except NotFitted as reason:
-            fits.append(Refusal(method, str(reason)))
+            fits.append(LevelsRefused(method, str(reason)))
     return fits[0], fits[1]
 
 
 def _censored(statuses: Mapping[str, int]) -> str:
-    """Why the extremes may be among the profiles that were not solved, or nothing."""
+    """Return why the extremes may be among the profiles that were not solved, or nothing."""
     ended = {ending: 0 for ending in (Ending.NO_EQUILIBRIUM, Ending.NOT_CONVERGED)}
     for status, count in statuses.items():
         if ending_of(status) in ended and status not in IN_WEAK_CURRENT:
@@ -159,7 +153,7 @@ def _censored(statuses: Mapping[str, int]) -> str:
 
 
 def _unfit(time: Times, values: Column) -> str:
-    """Why nothing can be fitted, or nothing."""
+    """Return why nothing can be fitted, or nothing."""
     count = int(np.count_nonzero(np.isfinite(values)))
     if count < 2:
         return f"there are {count} values"
@@ -170,17 +164,19 @@ def _unfit(time: Times, values: Column) -> str:
     return ""
 
 
-def _by_maxima(time: Times, values: Column, step: np.timedelta64, years: float) -> Fit | Refusal:
+def _by_maxima(
+    time: Times, values: Column, step: np.timedelta64, years: float
+) -> Fit | LevelsRefused:
     maxima, count = annual_maxima(time, values, step)
     if len(maxima) < LEAST_MAXIMA:
-        return Refusal(
+        return LevelsRefused(
             "gev",
             f"annual maxima of {LEAST_MAXIMA} whole years are needed; of the {count} year"
             f"{'s' if count != 1 else ''} begun, {len(maxima)} "
             f"{'has' if len(maxima) == 1 else 'have'} {100 * WHOLE:.0f} % of the profiles",
         )
     if maxima.max() == maxima.min():
-        return Refusal("gev", f"the {len(maxima)} annual maxima are all alike")
+        return LevelsRefused("gev", f"the {len(maxima)} annual maxima are all alike")
     tail = fit_maxima(maxima)
     rules = (
         f"maxima of {len(maxima)} years of 365.25 days, counted from the first profile, that have "
@@ -190,9 +186,11 @@ def _by_maxima(time: Times, values: Column, step: np.timedelta64, years: float) 
     return _told("gev", tail, 1.0, rules, growths)
 
 
-def _by_peaks(time: Times, values: Column, step: np.timedelta64, years: float) -> Fit | Refusal:
+def _by_peaks(
+    time: Times, values: Column, step: np.timedelta64, years: float
+) -> Fit | LevelsRefused:
     if years < LEAST_YEARS:
-        return Refusal(
+        return LevelsRefused(
             "pot",
             f"a year of solved profiles is needed; there are {365.25 * years:.0f} days of them",
         )
@@ -203,7 +201,7 @@ def _by_peaks(time: Times, values: Column, step: np.timedelta64, years: float) -
         most = max(most, len(peaks))
         if len(peaks) >= LEAST_PEAKS:
             return _over(percentile, threshold, peaks, years, _gaps(time, values, step))
-    return Refusal(
+    return LevelsRefused(
         "pot",
         f"{LEAST_PEAKS} independent peaks are needed; no threshold from the {THRESHOLDS[0]:.0f} % "
         f"to the {THRESHOLDS[-1]:.0f} % percentile leaves more than {most}",
@@ -212,9 +210,9 @@ def _by_peaks(time: Times, values: Column, step: np.timedelta64, years: float) -
 
 def _over(
     percentile: float, threshold: float, peaks: NDArray[np.float64], years: float, gaps: str
-) -> Fit | Refusal:
+) -> Fit | LevelsRefused:
     if peaks.max() == peaks.min():
-        return Refusal("pot", f"the {len(peaks)} peaks are all alike")
+        return LevelsRefused("pot", f"the {len(peaks)} peaks are all alike")
     tail, rate = fit_excesses(peaks, threshold), len(peaks) / years
     rules = (
         f"{len(peaks)} peaks over the {percentile:.0f} % percentile, the highest from "
@@ -226,7 +224,7 @@ def _over(
 
 
 def _gaps(time: Times, values: Column, step: np.timedelta64) -> str:
-    """What is reported of the share of a record that is missing."""
+    """Return what is reported of the share of a record that is missing."""
     room = 1.0 + float((time[-1] - time[0]) / step)
     missing = 1.0 - int(np.count_nonzero(np.isfinite(values))) / room
     if missing < _FEW_GAPS:
@@ -257,3 +255,78 @@ def _told(method: str, tail: Tail, rate: float, rules: str, growths: dict[int, f
     )
     count = len(tail.values)
     return Fit(method, tail.location, tail.scale, tail.shape, count, rate, rules, levels)
+
+
+WHOLE = 0.9
+"""Share of its profiles that a whole year has at least. Our choice, because five weeks that are
+missing seldom hide the maximum of a year; a season often does."""
+
+YEAR = np.timedelta64(31_557_600, "s")
+"""365.25 days."""
+
+
+def years_of(step: np.timedelta64, count: int) -> float:
+    """Years that some profiles of a record stand for, each as long as the median step."""
+    return count * float(step / YEAR)
+
+
+def median_step(time: Times) -> np.timedelta64:
+    """Median time between profiles, which gaps do not lengthen; nothing of a single profile."""
+    if len(time) < 2:
+        return np.timedelta64(0, "ns")
+    steps = np.diff(time).astype("timedelta64[ns]", copy=False).view(np.int64)
+    middle = len(steps) // 2
+    steps.partition(middle)  # in its place: a record may be long
+    return np.timedelta64(int(steps[middle]), "ns")
+
+
+def annual_maxima(
+    time: Times, values: Column, step: np.timedelta64
+) -> tuple[NDArray[np.float64], int]:
+    """The greatest value of every whole year, and how many years there are, whole or not.
+
+    The years are of 365.25 days from the first profile on; one is whole if it has `WHOLE` of the
+    values that it has room for. The maximum of a whole year with gaps is that of the rest.
+    """
+    years = int((time[-1] - time[0]) // YEAR) + 1
+    starts = np.searchsorted(time, time[0] + np.arange(years + 1) * YEAR)
+    parts = [values[start:stop] for start, stop in pairwise(starts.tolist())]
+    room = WHOLE * float(YEAR / step)
+    whole = [part for part in parts if np.count_nonzero(np.isfinite(part)) >= room]
+    return np.array([np.nanmax(part) for part in whole], np.float64), years
+
+
+def peaks_over(
+    time: Times, values: Column, threshold: float, step: np.timedelta64
+) -> NDArray[np.float64]:
+    """The greatest value of every cluster of exceedances of a threshold.
+
+    The extremal index θ comes from the intervals T between the N exceedances, in steps: with
+    every T ≤ 2, θ = 2 (ΣT)²/((N-1) ΣT²), else θ = 2 (Σ(T-1))²/((N-1) Σ(T-1)(T-2)), 1 at most. The
+    θN - 1 longest intervals part the clusters (Ferro and Segers 2003, eq. 6 and section 3), but
+    never exceedances that follow one another, since in a record of a single storm all intervals
+    are alike. An interval across a gap counts in full, as if nothing had been exceeded in it.
+    """
+    over = np.flatnonzero(values > threshold)
+    if len(over) < 2:
+        return np.asarray(values[over], np.float64)
+    intervals = np.maximum(np.rint(np.diff(time[over]) / step), 1.0)
+    clusters = ceil(extremal_index(intervals) * len(over))
+    longest = np.sort(intervals)[::-1]
+    apart = longest[clusters - 1] if clusters <= len(longest) else 1.0
+    starts = np.concatenate([[0], 1 + np.flatnonzero(intervals > apart)])
+    return np.maximum.reduceat(np.asarray(values[over], np.float64), starts)
+
+
+def extremal_index(intervals: NDArray[np.float64]) -> float:
+    """θ, the share of exceedances that are independent of those before them.
+
+    Parameters
+    ----------
+    intervals : (N - 1,) between exceedances [steps], each 1 or more; the form of the estimate
+        changes where one of them is beyond 2
+    """
+    one, two = (1.0, 2.0) if intervals.max() > 2.0 else (0.0, 0.0)
+    below = float(((intervals - one) * (intervals - two)).sum())
+    estimate = 2.0 * float((intervals - one).sum()) ** 2 / (len(intervals) * below)
+    return min(estimate, 1.0)

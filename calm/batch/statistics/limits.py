@@ -1,19 +1,23 @@
-"""The criteria of the design check as they are counted in every profile of a batch."""
+"""The criteria of the design check in every profile of a batch, and how often each is broken."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import groupby
 
 import numpy as np
+from numpy.typing import NDArray
 
-from calm.batch.statistics.series import Column, Seat, Series
+from calm.batch.statistics.series import Column, ResultColumns, Seat
+from calm.batch.statuses import Ending
 from calm.case import Mooring
-from calm.checks.criterion import AT_SURFACE, Criterion, Judged
+from calm.checks.criterion import AT_SURFACE, Criterion, JudgedPart
 from calm.checks.finding import Rule, State
 from calm.checks.posture import reaches_the_surface
-from calm.checks.rules import RULES
-from calm.files.rules import RULES as TEXTS
+from calm.checks.rules import RULES, equilibrium
+from calm.files.rule_texts import RULES as TEXTS
+from calm.physics.anchor import required_weight
 
 NOT_JUDGED = {
     name: TEXTS[name].unseen
@@ -24,7 +28,7 @@ NOT_JUDGED = {
 
 
 @dataclass(frozen=True)
-class Limit:
+class CountedLimit:
     """A criterion of a rule, and its values in a batch.
 
     Attributes
@@ -55,7 +59,7 @@ class Limit:
 
     @property
     def least(self) -> bool:
-        """Whether values may not fall short of the limit, rather than not pass it."""
+        """Return whether values may not fall short of the limit, rather than not pass it."""
         return self.criterion.least
 
     @property
@@ -63,7 +67,7 @@ class Limit:
         """State of a value that does: fail or warn."""
         return self.criterion.beyond
 
-    def values(self, series: Series) -> Column:
+    def values(self, series: ResultColumns) -> Column:
         """The (n,) values of a batch; NaN where there is nothing to judge."""
         return _VALUES[self.criterion.quantity](series, self.criterion.part, self.mooring)
 
@@ -74,7 +78,7 @@ class Limit:
         return np.asarray(beyond, np.bool_)
 
 
-def limits_of(mooring: Mooring) -> tuple[Limit, ...]:
+def limits_of(mooring: Mooring) -> tuple[CountedLimit, ...]:
     """Every limit of a mooring that can be counted in a batch, rule by rule and down the line.
 
     The tension of a piece is the greatest, or the least, of those at its ends and at the clamps on
@@ -82,46 +86,46 @@ def limits_of(mooring: Mooring) -> tuple[Limit, ...]:
     current takes its float.
     """
     return tuple(
-        Limit(rule, criterion, mooring)
+        CountedLimit(rule, criterion, mooring)
         for rule in RULES.values()
         if rule.criteria is not None
         for criterion in rule.criteria(mooring)
     )
 
 
-def top_offset(series: Series) -> Column:
+def top_offset(series: ResultColumns) -> Column:
     """(n,) horizontal distance of the top of the line from the anchor [m]."""
     offset = series.column("x_top", 0)
     np.hypot(offset, series.column("y_top", 0), out=offset)
     return offset
 
 
-def top_knockdown(series: Series) -> Column:
+def top_knockdown(series: ResultColumns) -> Column:
     """(n,) how much deeper the top of the line is than in still water [m]."""
     return series.column("knockdown", 0)
 
 
-def _seat(part: Judged) -> Seat:
+def _seat(part: JudgedPart) -> Seat:
     return Seat(part.index) if part.clamp is None else Seat(part.clamp, True)
 
 
-def _greatest_tension(series: Series, part: Judged, mooring: Mooring) -> Column:
+def _greatest_tension(series: ResultColumns, part: JudgedPart, mooring: Mooring) -> Column:
     pieces = mooring.file.pieces
     first = sum(len(piece.clamps) for piece in pieces[: part.index])
     clamps = range(first, first + len(pieces[part.index].clamps))
     return series.greatest_tension([_seat(part), *(Seat(clamp, True) for clamp in clamps)])
 
 
-def _least_tension(series: Series, part: Judged, mooring: Mooring) -> Column:
-    """Of the ends of a piece; NaN where all of it lies on the seabed."""
+def _least_tension(series: ResultColumns, part: JudgedPart, mooring: Mooring) -> Column:
+    """Return the least at the ends of a piece; NaN where all of it lies on the seabed."""
     lies = series.depth(_seat(part)) >= mooring.water.depth * (1.0 - _LYING)
     least = series.least_tension(_seat(part))
     least[lies] = np.nan
     return least
 
 
-def _greatest_depth(series: Series, part: Judged, mooring: Mooring) -> Column:
-    """Of both ends of a piece, the lower one being the upper one of the piece below."""
+def _greatest_depth(series: ResultColumns, part: JudgedPart, mooring: Mooring) -> Column:
+    """Return the depth of the deeper end of a piece, whose lower end is the top of the next one."""
     depth = series.depth(_seat(part))
     floats = depth <= (AT_SURFACE if reaches_the_surface(mooring) else -np.inf)
     if part.clamp is None:
@@ -130,17 +134,16 @@ def _greatest_depth(series: Series, part: Judged, mooring: Mooring) -> Column:
     return depth
 
 
-def _required_weight(series: Series, _: Judged, mooring: Mooring) -> Column:
-    """Factor (V + H / friction): see `calm.physics.anchor.required_weight`."""
-    factor, friction = mooring.file.checks.anchor_factor, _friction(mooring)
-    needed = series.ends("anchor_horizontal")
-    np.divide(needed, friction, out=needed)
-    needed += series.ends("anchor_vertical")
-    needed *= factor
-    return needed
+def _required_weight(series: ResultColumns, _: JudgedPart, mooring: Mooring) -> Column:
+    return required_weight(
+        series.ends("anchor_vertical"),
+        series.ends("anchor_horizontal"),
+        mooring.file.checks.anchor_factor,
+        _friction(mooring),
+    )
 
 
-def _slide(series: Series, _: Judged, mooring: Mooring) -> Column:
+def _slide(series: ResultColumns, _: JudgedPart, mooring: Mooring) -> Column:
     slide = series.ends("anchor_vertical")
     slide *= _friction(mooring)
     slide += series.ends("anchor_horizontal")
@@ -152,13 +155,13 @@ def _friction(mooring: Mooring) -> float:
     return mooring.file.checks.anchor_friction if own is None else own
 
 
-def _reserve_left(series: Series, _: Judged, __: Mooring) -> Column:
+def _reserve_left(series: ResultColumns, _: JudgedPart, __: Mooring) -> Column:
     left = series.ends("used_buoyancy")
     np.subtract(1.0, left, out=left)
     return left
 
 
-_VALUES: dict[str, Callable[[Series, Judged, Mooring], Column]] = {
+_VALUES: dict[str, Callable[[ResultColumns, JudgedPart, Mooring], Column]] = {
     "tension": _greatest_tension,
     "tension_bottom": lambda series, part, _: series.column("tension_bottom", part.index),
     "least_tension": _least_tension,
@@ -175,3 +178,122 @@ _VALUES: dict[str, Callable[[Series, Judged, Mooring], Column]] = {
 """The readings of `calm.checks.criterion` over the profiles of a batch."""
 
 _LYING = 1e-6  # of the depth: what is no further above the seabed lies on it
+
+
+@dataclass(frozen=True)
+class Exceedance:
+    """Describe how often a limit is broken: `share` of the `count` profiles in which it can be
+    judged.
+
+    `worst` is the value furthest beyond the limit, or nearest to it, and `time` its time; None
+    where there is no limit or nothing to judge.
+    """
+
+    limit: CountedLimit
+    count: int
+    share: float | None
+    worst: float | None
+    time: np.datetime64 | None
+
+
+@dataclass(frozen=True)
+class RuleShare:
+    """Describe how often a rule fails, or warns, anywhere on the line.
+
+    Attributes
+    ----------
+    judged : profiles in which one of its limits at least is judged
+    fails, warns : share of these in which it fails, or only warns; None where there are none
+    fails_at_most : share in which it fails if it does in every profile that has a current and was
+        not solved, of these and those judged; None where none is judged
+    unknown : limits that are judged in no profile, most often for want of a figure
+    exceedances : of its limits
+    """
+
+    name: str
+    title: str
+    judged: int
+    fails: float | None
+    fails_at_most: float | None
+    warns: float | None
+    unknown: int
+    exceedances: tuple[Exceedance, ...]
+
+
+def equilibrium_share(ended: Mapping[Ending, int]) -> RuleShare:
+    """Return how often the line has no equilibrium; a profile that did not converge is not judged.
+
+    Parameters
+    ----------
+    ended : profiles by how they ended
+    """
+    without = ended[Ending.NO_EQUILIBRIUM]
+    judged = ended[Ending.SOLVED] + without
+    return _rule_share(equilibrium, judged, without, 0, ended[Ending.NOT_CONVERGED], ())
+
+
+def shares_of(
+    series: ResultColumns, limits: Iterable[CountedLimit], unsolved: int
+) -> Iterator[RuleShare]:
+    """Return how often each rule fails, from its limits, which follow one another.
+
+    Parameters
+    ----------
+    unsolved : profiles with a current for which there is no solution to judge
+    """
+    for rule, group in groupby(limits, key=lambda limit: limit.rule):
+        beyond = {state: np.zeros(len(series), np.bool_) for state in (State.FAIL, State.WARN)}
+        judged = np.zeros(len(series), np.bool_)
+        exceedances = tuple(
+            _exceedance(series, limit, beyond[limit.beyond], judged) for limit in group
+        )
+        beyond[State.WARN] &= ~beyond[State.FAIL]
+        yield _rule_share(
+            rule,
+            int(np.count_nonzero(judged)),
+            int(np.count_nonzero(beyond[State.FAIL])),
+            int(np.count_nonzero(beyond[State.WARN])),
+            unsolved,
+            exceedances,
+        )
+
+
+def _rule_share(
+    rule: Rule,
+    judged: int,
+    failed: int,
+    warned: int,
+    unsolved: int,
+    exceedances: tuple[Exceedance, ...],
+) -> RuleShare:
+    """The shares of a rule from numbers of profiles."""
+    return RuleShare(
+        name=rule.name,
+        title=rule.title,
+        judged=judged,
+        fails=failed / judged if judged else None,
+        fails_at_most=(failed + unsolved) / (judged + unsolved) if judged else None,
+        warns=warned / judged if judged else None,
+        unknown=sum(one.count == 0 for one in exceedances),
+        exceedances=exceedances,
+    )
+
+
+def _exceedance(
+    series: ResultColumns, limit: CountedLimit, beyond: NDArray[np.bool_], judged: NDArray[np.bool_]
+) -> Exceedance:
+    """Return how often a limit is broken; adds the profiles beyond it, and those judged, to the
+    others.
+    """
+    if limit.limit is None:
+        return Exceedance(limit, 0, None, None, None)
+    values = limit.values(series)
+    broken, known = limit.broken(values), np.isfinite(values)
+    beyond |= broken
+    judged |= known
+    count = int(np.count_nonzero(known))
+    if not count:
+        return Exceedance(limit, 0, None, None, None)
+    edge = np.fmin.reduce(values) if limit.least else np.fmax.reduce(values)
+    share = int(np.count_nonzero(broken)) / count
+    return Exceedance(limit, count, share, float(edge), series.time[np.argmax(values == edge)])

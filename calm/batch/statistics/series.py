@@ -26,7 +26,7 @@ _FIGURE = np.dtype(np.float32)
 
 
 class Seat(NamedTuple):
-    """Where a part of the line has its column in a result.
+    """Describe where a part of the line has its column in a result.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class Seat(NamedTuple):
     clamped: bool = False
 
 
-class Series:
+class ResultColumns:
     """A batch result over time, n profiles, NaN where a profile was not solved.
 
     A result lies on the disk by profiles; here it is turned once, into a temporary file by
@@ -104,12 +104,12 @@ class Series:
 
     @property
     def seats(self) -> tuple[Seat, ...]:
-        """Of the components, then of the clamps."""
+        """Return the seats of the components, then those of the clamps."""
         components, clamps = len(self.component_label), len(self.clamp_label)
         return (*map(Seat, range(components)), *(Seat(each, True) for each in range(clamps)))
 
     def label(self, seat: Seat) -> str:
-        """What a part is called."""
+        """Return what a part is called."""
         return (self.clamp_label if seat.clamped else self.component_label)[seat.number]
 
     def ends(self, name: str) -> Column:

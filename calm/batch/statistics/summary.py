@@ -8,19 +8,25 @@ from math import hypot
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from calm.batch.result import Stored
-from calm.batch.statistics.distribution import Distribution, distribution_of, envelope_of
-from calm.batch.statistics.extremes import Fit, Refusal, return_levels
-from calm.batch.statistics.judgement import RuleShare, equilibrium_share, shares_of
-from calm.batch.statistics.limits import NOT_JUDGED, limits_of, top_knockdown, top_offset
-from calm.batch.statistics.samples import median_step, years_of
-from calm.batch.statistics.series import Column, Series, Times
+from calm.batch.statistics.extremes import Fit, LevelsRefused, median_step, return_levels, years_of
+from calm.batch.statistics.limits import (
+    NOT_JUDGED,
+    RuleShare,
+    equilibrium_share,
+    limits_of,
+    shares_of,
+    top_knockdown,
+    top_offset,
+)
+from calm.batch.statistics.series import Column, ResultColumns, Times
 from calm.batch.statuses import Ending, endings
 from calm.case import Mooring
-from calm.checks.limits import limits_used
+from calm.checks.criterion import limits_used
 from calm.checks.posture import reaches_the_surface
-from calm.files.checks import LimitKey
+from calm.files.check_limits import LimitKey
 
 WORST = 20
 """Profiles listed as the worst of a response."""
@@ -31,7 +37,7 @@ and the hash of all that the result was computed from."""
 
 
 @dataclass(frozen=True)
-class Part:
+class PartDistributions:
     """A component or a clamp: its distributions, None where nothing is known."""
 
     label: str
@@ -58,11 +64,11 @@ class Response:
     begin: Times
     low: Column
     high: Column
-    return_levels: tuple[Fit | Refusal, Fit | Refusal]
+    return_levels: tuple[Fit | LevelsRefused, Fit | LevelsRefused]
 
 
 @dataclass(frozen=True)
-class Profile:
+class WorstProfile:
     """One profile and its responses; `leaning` is the label of the part that tilts most."""
 
     time: np.datetime64
@@ -101,9 +107,9 @@ class Summary:
     begin: np.datetime64
     end: np.datetime64
     years: float
-    parts: tuple[Part, ...]
+    parts: tuple[PartDistributions, ...]
     responses: tuple[Response, ...]
-    worst: Mapping[str, tuple[Profile, ...]]
+    worst: Mapping[str, tuple[WorstProfile, ...]]
     rules: tuple[RuleShare, ...]
     not_judged: Mapping[str, str]
     source: Mapping[str, str]
@@ -149,7 +155,7 @@ def summarize(
     UsageError
         The dataset is no result of `calm batch`, or cannot be read.
     """
-    with Series(dataset, folder, check, source) as series:
+    with ResultColumns(dataset, folder, check, source) as series:
         ended = endings(series.statuses)
         equilibrium = equilibrium_share(ended)
         unsolved = ended[Ending.NO_EQUILIBRIUM] + ended[Ending.NOT_CONVERGED]
@@ -173,12 +179,12 @@ def summarize(
         )
 
 
-def _parts(series: Series) -> Iterator[Part]:
+def _parts(series: ResultColumns) -> Iterator[PartDistributions]:
     def of(values: Column) -> Distribution | None:
         return distribution_of(values, series.time)
 
     for seat in series.seats:
-        yield Part(
+        yield PartDistributions(
             series.label(seat),
             seat.clamped,
             of(series.knockdown(seat)),
@@ -187,18 +193,18 @@ def _parts(series: Series) -> Iterator[Part]:
         )
 
 
-def _anchor_tension(series: Series) -> Column:
+def _anchor_tension(series: ResultColumns) -> Column:
     return series.column("tension_top", -1)
 
 
-def _greatest_tilt(series: Series) -> Column:
+def _greatest_tilt(series: ResultColumns) -> Column:
     greatest = np.full(len(series), np.nan, np.float32)
     for seat in series.seats:
         np.fmax(greatest, series.tilt(seat), out=greatest)
     return greatest
 
 
-RESPONSES: Mapping[str, Callable[[Series], Column]] = {
+RESPONSES: Mapping[str, Callable[[ResultColumns], Column]] = {
     "knockdown": top_knockdown,
     "anchor_tension": _anchor_tension,
     "tilt": _greatest_tilt,
@@ -211,8 +217,8 @@ RANKED = ("knockdown", "anchor_tension", "tilt")
 
 
 def _responses(
-    series: Series, step: np.timedelta64
-) -> tuple[tuple[Response, ...], Mapping[str, tuple[Profile, ...]]]:
+    series: ResultColumns, step: np.timedelta64
+) -> tuple[tuple[Response, ...], Mapping[str, tuple[WorstProfile, ...]]]:
     """One response in memory at a time."""
     responses, worst = [], {}
     for name, of in RESPONSES.items():
@@ -245,10 +251,10 @@ def _greatest(values: Column) -> list[int]:
     return [int(index) for index in (*above, *alike)]
 
 
-def _profile(series: Series, index: int) -> Profile:
+def _profile(series: ResultColumns, index: int) -> WorstProfile:
     tilts = np.concatenate([series.at("tilt", index), series.at("clamp_tilt", index)])
     most = int(np.nanargmax(tilts))
-    return Profile(
+    return WorstProfile(
         time=series.time[index],
         knockdown=float(series.at("knockdown", index)[0]),
         anchor_tension=float(series.at("tension_top", index)[-1]),
@@ -256,3 +262,74 @@ def _profile(series: Series, index: int) -> Profile:
         offset=hypot(series.at("x_top", index)[0], series.at("y_top", index)[0]),
         leaning=series.label(series.seats[most]),
     )
+
+
+Floats = NDArray[np.float64]
+
+PERCENTILES = (50.0, 90.0, 99.0, 99.9)
+
+SHARES = np.geomspace(1.0, 1e-7, 57)
+"""Shares of the profiles for which an exceedance curve shows the value; eight to a decade."""
+
+MOST_INTERVALS = 1000
+"""Intervals of time into which a series is gathered to be drawn."""
+
+
+@dataclass(frozen=True)
+class Distribution:
+    """Describe how a quantity is distributed over the n profiles in which it is known.
+
+    Attributes
+    ----------
+    count : n
+    mean : each profile counts alike
+    percentiles : of `PERCENTILES`: linear between the order statistics, of which that of rank
+        1 + (n - 1) p is the p quantile (definition 7 of Hyndman and Fan 1996)
+    maximum, time : the greatest value, and when it is first reached
+    share, value : exceedance curve: the value that a share of the profiles reaches or exceeds,
+        the quantile 1 - share, for `SHARES` down to a single profile
+    """
+
+    count: int
+    mean: float
+    percentiles: tuple[float, ...]
+    maximum: float
+    time: np.datetime64
+    share: Floats
+    value: Floats
+
+
+def distribution_of(values: Column, time: Times) -> Distribution | None:
+    """The distribution of (n,) values; NaN is left out, None returned where nothing else is."""
+    known = values[np.isfinite(values)]
+    known.sort()
+    count = len(known)
+    if not count:
+        return None
+    greatest = int(np.argmax(values == known[-1]))  # the first of its like
+    share = np.append(SHARES[SHARES * count > 1.0], 1.0 / count)
+    rank = (count - 1) * np.concatenate([np.array(PERCENTILES) / 100.0, 1.0 - share])
+    rank[-1] = count - 1  # the rarest value is the maximum
+    below = np.floor(rank).astype(np.int64)
+    above = np.minimum(below + 1, count - 1)
+    low, high = known[below].astype(np.float64), known[above].astype(np.float64)
+    quantiles = low + (rank - below) * (high - low)
+    return Distribution(
+        count=count,
+        mean=float(known.mean(dtype=np.float64)),
+        percentiles=tuple(quantiles[: len(PERCENTILES)].tolist()),
+        maximum=float(known[-1]),
+        time=time[greatest],
+        share=share,
+        value=quantiles[len(PERCENTILES) :],
+    )
+
+
+def envelope_of(values: Column, time: Times) -> tuple[Times, Column, Column]:
+    """Return when each of `MOST_INTERVALS` intervals begins, and its least and greatest value.
+
+    The intervals hold the same number of profiles; of a shorter record each profile is one.
+    """
+    count = min(len(values), MOST_INTERVALS)
+    begin = np.unique(np.linspace(0, len(values), count, endpoint=False).astype(np.int64))
+    return time[begin], np.fmin.reduceat(values, begin), np.fmax.reduceat(values, begin)

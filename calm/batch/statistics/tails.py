@@ -197,7 +197,7 @@ def _apart(shape: float) -> float:
 
 
 def _least(loss: Callable[[Any], float], *starts: list[float]) -> tuple[Floats, float]:
-    """Where a loss is least, and how much it is there, from the best of some starts.
+    """Return where a loss is least, and how much it is there, from the best of some starts.
 
     Raises
     ------
@@ -217,7 +217,9 @@ def _least(loss: Callable[[Any], float], *starts: list[float]) -> tuple[Floats, 
 
 
 def _end(excess: Callable[[float], float], estimate: float, step: float) -> float | None:
-    """Where a function that is negative at an estimate turns positive on the side of a step."""
+    """Return where a function that is negative at an estimate turns positive on the side of a
+    step.
+    """
     from scipy.optimize import brentq
 
     within, reach = estimate, abs(step) * _FURTHEST

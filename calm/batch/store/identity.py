@@ -16,7 +16,7 @@ from calm.case import Mooring
 from calm.version import __version__
 
 if TYPE_CHECKING:
-    from calm.batch.records.record import Record
+    from calm.records.record import Record
 
 MOST_TOLD = 5
 """So many differences are reported, and how many more there are."""
@@ -60,12 +60,12 @@ def to_text(identity: Mapping[str, Any]) -> str:
 
 
 def sha256_of(text: str) -> str:
-    """Of a text, in hexadecimal."""
+    """Return the SHA-256 of a text, in hexadecimal."""
     return hashlib.sha256(text.encode("utf-8", "surrogateescape")).hexdigest()
 
 
 def differences(before: Any, now: Any) -> str:
-    """What differs between two identities, in words."""
+    """Return what differs between two identities, in words."""
     found = list(_differing("", before, now))
     listed = "; ".join(found[:MOST_TOLD])
     return f"{listed}; and {len(found) - MOST_TOLD} more" if len(found) > MOST_TOLD else listed

@@ -26,7 +26,7 @@ from calm.batch.store.identity import differences, sha256_of
 from calm.dataset.netcdf import LEVEL, Chunk, chunk_shape
 from calm.dataset.variables import Layout
 from calm.errors import UsageError
-from calm.whole_file import put, settle
+from calm.whole_file import flush_to_disk, put
 
 if TYPE_CHECKING:
     import zarr
@@ -63,12 +63,12 @@ class Store:
 
     @property
     def count(self) -> int:
-        """How many blocks there are."""
+        """Return how many blocks there are."""
         return -(-self.layout.sizes["time"] // self.block)
 
     @cached_property
     def arrays(self) -> Mapping[str, zarr.Array[Any]]:
-        """Those that go with time, by their names."""
+        """Return those that go with time, by their names."""
         import zarr
 
         with zarr.config.set({"array.write_empty_chunks": True}):
@@ -180,8 +180,8 @@ def open_store(folder: Path, layout: Layout, block: int, identity: str) -> Store
     # anew each time: after a power cut it may be there in part
     _lay_out(store)
     if not kept.exists():
-        put(kept, identity.encode(), settled=True)
-        settle([store.work])
+        put(kept, identity.encode(), durable=True)
+        flush_to_disk([store.work])
     return store
 
 

@@ -3,18 +3,17 @@
 from calm.files.editing.changes import EditError
 from calm.files.editing.draft import LINE, Draft, clamps_of
 from calm.files.editing.history import History
-from calm.files.editing.items import Item
-from calm.files.editing.kept_work import Kept
-from calm.files.editing.layout import Value
-from calm.files.editing.working_file import NotWritten, WorkingFile, state_folder
+from calm.files.editing.items import LineItem
+from calm.files.editing.working_file import KeptWork, NotWritten, WorkingFile, state_folder
+from calm.files.editing.writing import Value
 
 __all__ = [
     "LINE",
     "Draft",
     "EditError",
     "History",
-    "Item",
-    "Kept",
+    "KeptWork",
+    "LineItem",
     "NotWritten",
     "Value",
     "WorkingFile",

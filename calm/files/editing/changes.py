@@ -1,55 +1,54 @@
-"""Changes to a text by location, each the patches that make it."""
+"""Changes to a text by location: the patches that make them, and what the text then says."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from difflib import SequenceMatcher
+from typing import Any
+from unicodedata import category
 
 from calm.errors import CalmError
-from calm.files.document import Location
-from calm.files.editing.data import child_of, nested
-from calm.files.editing.items import new_slot, snippet_of, worded_slot
-from calm.files.editing.layout import Layout, Value, Worded
-from calm.files.editing.lists import Items, items_of
-from calm.files.editing.mappings import add_entry, remove_entry, set_scalar, set_value
-from calm.files.editing.spans import Patch
-from calm.files.nodes import Node
+from calm.files.composition import Node
+from calm.files.editing.items import Items, items_of, new_slot, snippet_of, worded_slot
+from calm.files.editing.splicing import Patch, add_entry, remove_entry, set_scalar, set_value
+from calm.files.editing.writing import Value, Worded, WritingStyle
+from calm.files.yaml_document import Location
 
 NAMED = ("components", "environments")
 """Sections that hold definitions by name."""
 
 
 class EditError(CalmError):
-    """A change that cannot be made to the text as it stands."""
+    """Say that a change cannot be made to the text as it stands."""
 
 
 class Page:
-    """A text that ends in a line break, its nodes and its manner."""
+    """Hold a text that ends in a line break, its nodes and how it is written."""
 
-    def __init__(self, text: str, root: Node, layout: Layout) -> None:
+    def __init__(self, text: str, root: Node, style: WritingStyle) -> None:
         self.text = text
         self.root = root
-        self.layout = layout
+        self.style = style
 
     def node(self, location: Location) -> Node | None:
-        """What stands at a location, None where nothing does."""
+        """Return what stands at a location, None where nothing does."""
         node: Node | None = self.root
         for step in location:
-            node = child_of(node, step) if node else None
+            node = _child_of(node, step) if node else None
         return node
 
     def put(self, location: Location, value: Value) -> list[Patch]:
-        """A value at a location, with the mappings that lead to it."""
+        """Put a value at a location, with the mappings that lead to it."""
         outer: Node | None = None
         node = self.root
         for depth, step in enumerate(location):
-            child = child_of(node, step)
+            child = _child_of(node, step)
             if child is None:
                 new = nested(location[depth:], value)
                 if node.kind == "mapping" and (node.keys or outer is None or not depth):
                     name, new_value = next(iter(new.items()))
                     opened = _opens(location[:depth], node)
-                    return add_entry(self.text, node, name, new_value, self.layout, open=opened)
+                    return add_entry(self.text, node, name, new_value, self.style, open=opened)
                 if outer is None or node.kind == "sequence":
                     raise EditError(f"{_shown(location)} cannot be set: there is a list above it")
                 return self._set(outer, location[depth - 1], new)
@@ -62,21 +61,21 @@ class Page:
     ) -> list[Patch]:
         if outer.kind == "mapping":
             at = [key.data for key in outer.keys].index(step)
-            return set_value(self.text, outer, at, value, self.layout, open=open)
+            return set_value(self.text, outer, at, value, self.style, open=open)
         old = outer.children[int(step)]
         if old.kind != "scalar" or not isinstance(value, str):
             raise EditError(f"line {old.line}: only a plain value can be changed here")
         return [set_scalar(old, value, flow=outer.style == "flow")]
 
     def remove(self, location: Location) -> list[Patch]:
-        """A key taken out."""
+        """Take a key out."""
         outer = self.node(location[:-1])
         assert outer is not None
         at = [key.data for key in outer.keys].index(location[-1])
         return remove_entry(self.text, outer, at)
 
     def items(self, location: Location) -> Items:
-        """The items of the list at a location, which has some."""
+        """Return the items of the list at a location, which has some."""
         node = self.node(location)
         assert node is not None
         items = items_of(self.text, node)
@@ -86,7 +85,7 @@ class Page:
         return items
 
     def known(self, location: Location, indices: Iterable[int]) -> list[int]:
-        """Indices of items of a list in its order, each once."""
+        """Return the indices of items of a list in its order, each once."""
         node = self.node(location)
         count = len(node.children) if node is not None and node.kind == "sequence" else 0
         known = sorted(set(indices))
@@ -97,7 +96,7 @@ class Page:
         return known
 
     def copy(self, location: Location, indices: Iterable[int]) -> tuple[str, ...]:
-        """The text of items of a list by themselves, with their comments."""
+        """Return the text of items of a list by themselves, with their comments."""
         known = self.known(location, indices)
         node = self.node(location)
         if not known or node is None:
@@ -106,22 +105,29 @@ class Page:
         return tuple(snippet_of(items.slots[i], node.children[i], items) for i in known)
 
     def add(self, location: Location, index: int, values: Sequence[Value]) -> list[Patch]:
-        """New items in a list, which may not exist yet."""
+        """Put new items into a list, which may not exist yet.
+
+        Parameters
+        ----------
+        location : of the list
+        index : of the first new item
+        values : the items; `Worded` keep their wording
+        """
         node = self.node(location)
         if node is None or not node.children:
             return self.put(location, values)
         items = self.items(location)
         if isinstance(values, Worded):
-            slots = [worded_slot(one, items, self.layout) for one in values.wordings]
+            slots = [worded_slot(one, items, self.style) for one in values.wordings]
         else:
             block = all(child.style == "block" for child in node.children)
-            slots = [new_slot(value, items, self.layout, block=block) for value in values]
+            slots = [new_slot(value, items, self.style, block=block) for value in values]
         for slot in reversed(slots):
             items.insert(index, slot)
         return [items.patch()]
 
     def rows(self, location: Location, rows: Sequence[Sequence[str | None]]) -> list[Patch]:
-        """The rows of a table, those that are there already as they stand."""
+        """Put in the rows of a table; those that are there already stay as they stand."""
         node = self.node(location)
         if node is None or not node.children or not rows or node.kind != "sequence":
             return self.put(location, rows)
@@ -133,14 +139,14 @@ class Page:
             if tag == "equal":
                 continue
             for row in reversed(rows[new_start:new_end]):
-                items.insert(end, new_slot(row, items, self.layout, block=False))
+                items.insert(end, new_slot(row, items, self.style, block=False))
             for index in reversed(range(start, end)):
                 items.remove(index)
         return [items.patch()]
 
 
 def _opens(location: Location, node: Node) -> bool:
-    """Whether definitions are written a key a line: where the others of their section are."""
+    """Return whether definitions are written a key a line, as the others of their section."""
     if location not in [(name,) for name in NAMED]:
         return False
     return not node.children or any(child.style == "block" for child in node.children)
@@ -148,3 +154,92 @@ def _opens(location: Location, node: Node) -> bool:
 
 def _shown(location: Location) -> str:
     return "`" + ".".join(map(str, location)) + "`"
+
+
+def _child_of(node: Node, step: str | int) -> Node | None:
+    """Return what stands below a node under a key or number."""
+    if node.kind == "mapping":
+        named = zip(node.keys, node.children, strict=True)
+        return next((child for key, child in named if key.data == step), None)
+    if node.kind == "sequence" and isinstance(step, int) and 0 <= step < len(node.children):
+        return node.children[step]
+    return None
+
+
+def nested(location: Location, value: Value) -> dict[str, Value]:
+    """Return the mappings that lead to a value."""
+    for step in reversed(location):
+        value = {str(step): value}
+    assert isinstance(value, dict)
+    return value
+
+
+def data_of(value: Value) -> Any:
+    """Return what is read again of a value."""
+    if value is None or isinstance(value, str):
+        return value
+    if isinstance(value, Mapping):
+        return {key: data_of(one) for key, one in value.items()}
+    return [data_of(one) for one in value]
+
+
+def with_value(data: Any, location: Location, value: Value) -> Any:
+    """Return the data with another value at a location; mappings that lead to it are made.
+
+    Parameters
+    ----------
+    data : as `Node.data`
+    location : keys and indices that lead to the value
+    value : Value
+    """
+    if not location:
+        return data_of(value)
+    step, below = location[0], location[1:]
+    if isinstance(data, list) and isinstance(step, int):
+        return [with_value(one, below, value) if i == step else one for i, one in enumerate(data)]
+    base = data if isinstance(data, dict) else {}
+    return {**base, step: with_value(base.get(step), below, value)}
+
+
+def without(data: Any, location: Location) -> Any:
+    """Return the data without a key."""
+    step, below = location[0], location[1:]
+    if isinstance(data, list):
+        return [without(one, below) if i == step else one for i, one in enumerate(data)]
+    if below:
+        return {**data, step: without(data[step], below)}
+    return {key: one for key, one in data.items() if key != step}
+
+
+def has_control(data: Any) -> bool:
+    """Return whether a text of some data has signs that only control how the others are shown."""
+    if isinstance(data, str):
+        return any(category(sign) in ("Cc", "Cf") for sign in data if sign not in "\t\n\r")
+    parts = [*data, *data.values()] if isinstance(data, dict) else data or ()
+    return any(map(has_control, parts))
+
+
+def cells_that_differ(
+    old: Any, new: Sequence[Sequence[str | None]]
+) -> list[tuple[int, int, str]] | None:
+    """Return the row, column and text of each value in which tables of the same shape differ.
+
+    None where they have not the same shape, or a value goes without another in its place.
+    """
+    if _shape(old) != _shape(new):
+        return None
+    cells = [
+        (i, j, text)
+        for i, (before, row) in enumerate(zip(old, new, strict=True))
+        for j, (value, text) in enumerate(zip(before, row, strict=True))
+        if value != text
+    ]
+    texts = [(i, j, text) for i, j, text in cells if text is not None]
+    return texts if len(texts) == len(cells) else None
+
+
+def _shape(rows: Any) -> list[int]:
+    """Return how many values each row has, -1 where it is no row."""
+    if not isinstance(rows, list | tuple):
+        return []
+    return [len(row) if isinstance(row, list | tuple) else -1 for row in rows]

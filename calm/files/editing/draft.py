@@ -8,16 +8,22 @@ from functools import cached_property
 from typing import Any
 
 from calm.errors import InputError, Problem
-from calm.files import document
-from calm.files.composition import compose
-from calm.files.document import Location
-from calm.files.editing.changes import NAMED, EditError, Page
-from calm.files.editing.data import cells_that_differ, data_of, has_control, with_value, without
-from calm.files.editing.items import Item, item_of, read_snippet
-from calm.files.editing.layout import Layout, Value, Worded
-from calm.files.editing.lists import items_of
-from calm.files.editing.spans import Patch, patched
-from calm.files.nodes import Node
+from calm.files import yaml_document
+from calm.files.composition import Node, compose
+from calm.files.editing.changes import (
+    NAMED,
+    EditError,
+    Page,
+    cells_that_differ,
+    data_of,
+    has_control,
+    with_value,
+    without,
+)
+from calm.files.editing.items import LineItem, item_of, items_of, read_snippet
+from calm.files.editing.splicing import Patch, patched
+from calm.files.editing.writing import Value, Worded, WritingStyle
+from calm.files.yaml_document import Location
 
 LINE: Location = ("line",)
 """Where the items of the line stand."""
@@ -42,13 +48,13 @@ line: []                              # top to bottom
 
 
 def clamps_of(item: int) -> Location:
-    """Where the clamps of an item of the line stand."""
+    """Return where the clamps of an item of the line stand."""
     return (*LINE, item, "clamps")
 
 
 @dataclass(frozen=True)
 class Draft:
-    """A mooring or tow file as text.
+    """Represent a mooring or tow file as text.
 
     Every edit returns a new draft. Comments, order, quotes, brackets, indentation, line breaks
     and a byte order mark stay as they are; what is new follows the manner of the file. A comment
@@ -71,7 +77,7 @@ class Draft:
 
     @classmethod
     def empty(cls) -> Draft:
-        """A line of no pieces yet."""
+        """Return a line of no pieces yet."""
         return cls(_EMPTY)
 
     @cached_property
@@ -82,18 +88,18 @@ class Draft:
 
     @cached_property
     def problems(self) -> tuple[Problem, ...]:
-        """Why the text cannot be edited but as text; their `path` is empty."""
+        """Return why the text cannot be edited but as text; the `path` of each is empty."""
         if self._root is not None:
             return ()
         try:
-            document.compose("", self.text)
+            yaml_document.compose("", self.text)
         except InputError as error:
             return error.problems
         raise AssertionError("a text that can be read has nodes")
 
     @cached_property
-    def items(self) -> tuple[Item, ...]:
-        """The items of `line` as written: not expanded, and whatever they say."""
+    def items(self) -> tuple[LineItem, ...]:
+        """Return the items of `line` as written: not expanded, and whatever they say."""
         node = self._line
         if node is None or not node.children:
             return ()
@@ -105,30 +111,33 @@ class Draft:
 
     @property
     def is_tow(self) -> bool:
-        """Whether it says that it is a tow; not where it cannot be read."""
+        """Return whether the text says that it is a tow; False where it cannot be read."""
         return isinstance(self.value(()), dict) and "tow" in self.value(())
 
     def value(self, location: Location) -> Any:
-        """The text, mapping or list at a location; None where nothing is, or with `problems`."""
+        """Return the text, mapping or list at a location; None without, or with `problems`."""
         node = self._page.node(location) if self._root is not None else None
         return node.data if node else None
 
     def text_at(self, location: Location) -> str:
-        """The same where it is a plain value, as it is written; empty elsewhere."""
+        """Return a plain value at a location as it is written; empty where there is none."""
         value = self.value(location)
         return value if isinstance(value, str) else ""
 
     def insert(self, index: int, values: Mapping[str, Value], rows: Location = LINE) -> Draft:
-        """A new item above that of an index, or below the last.
+        """Put a new item above that of an index, or below the last.
 
-        `rows`, here and below, is the list meant: the line, `clamps_of` one of its items, or
-        another list of the file.
+        Parameters
+        ----------
+        index : of the new item
+        values : by key
+        rows : the list meant, here and below: the line, `clamps_of` an item, or another list
         """
         self._stands(rows)
         return self._add(rows, index, [values])
 
     def delete(self, indices: Iterable[int], rows: Location = LINE) -> Draft:
-        """The list without some items."""
+        """Take some items out of a list."""
         known = self._page.known(rows, indices)
         if not known:
             return self
@@ -144,7 +153,14 @@ class Draft:
         return self._changed([items.patch()], with_value(self._data, rows, data))
 
     def move(self, index: int, to: int, rows: Location = LINE) -> Draft:
-        """An item taken to another place, `to` being its index then."""
+        """Take an item to another place.
+
+        Parameters
+        ----------
+        index : of the item
+        to : its index then
+        rows : the list
+        """
         self._page.known(rows, [index, to])
         if index == to:
             return self
@@ -155,27 +171,42 @@ class Draft:
         return self._changed([items.patch()], with_value(self._data, rows, data))
 
     def copy(self, indices: Iterable[int], rows: Location = LINE) -> tuple[str, ...]:
-        """The text of items by themselves, with their comments."""
+        """Return the text of items by themselves, with their comments."""
         return self._page.copy(rows, indices)
 
     def paste(self, index: int, snippets: Iterable[str], rows: Location = LINE) -> Draft:
-        """Items as `copy` gives them above that of an index, or below the last."""
+        """Put items as `copy` gives them above that of an index, or below the last.
+
+        Parameters
+        ----------
+        index : of the first new item
+        snippets : items as `copy` gives them
+        rows : the list
+        """
         self._stands(rows)
         worded = _worded(snippets)
         return self._add(rows, index, worded) if worded else self
 
     def duplicate(self, indices: Iterable[int]) -> Draft:
-        """The same items of the line again, below the last of them."""
+        """Put the same items of the line again, below the last of them."""
         known = self._page.known(LINE, indices)
         return self.paste(known[-1] + 1, self.copy(known)) if known else self
 
     def put(self, index: int, key: str, value: Value | None, rows: Location = LINE) -> Draft:
-        """A value of an item; None takes the key out."""
+        """Give a value to a key of an item.
+
+        Parameters
+        ----------
+        index : of the item
+        key : of the item
+        value : None takes the key out
+        rows : the list
+        """
         self._page.known(rows, [index])
         return self.put_at((*rows, index, key), value)
 
     def put_at(self, location: Location, value: Value | None) -> Draft:
-        """A value anywhere in the file, with the mappings that lead to it.
+        """Put a value anywhere in the file, with the mappings that lead to it.
 
         None takes a key out, and a mapping that is empty then, but for `environment` and the
         named environments.
@@ -197,9 +228,13 @@ class Draft:
     def put_table(
         self, location: Location, columns: Sequence[str], rows: Sequence[Sequence[str | None]]
     ) -> Draft:
-        """A table; the rows that it has already stay as they are written.
+        """Put a table in; the rows that it has already stay as they are written.
 
-        In a table of as many values as before, each stays that does not change.
+        Parameters
+        ----------
+        location : of the table
+        columns : names with units
+        rows : of values; in a table of as many as before, each stays that does not change
         """
         old = self.value(location)
         if not isinstance(old, dict) or set(old) != {"columns", "rows"}:
@@ -217,11 +252,11 @@ class Draft:
         return draft._changed(patches, with_value(draft._data, place, rows))
 
     def put_component(self, id: str, values: Mapping[str, Value]) -> Draft:
-        """A definition of a component used only here, in place of one of that id."""
+        """Define a component used only here, in place of one of that id."""
         return self.put_at((NAMED[0], id), values)
 
     def assemble(self, indices: Iterable[int], id: str) -> Draft:
-        """Items of the line that follow one another made an assembly, used in their place."""
+        """Make items of the line that follow one another an assembly, used in their place."""
         known = self._page.known(LINE, indices)
         if not known or known != list(range(known[0], known[-1] + 1)):
             raise EditError("an assembly is made of pieces that follow one another")
@@ -234,7 +269,7 @@ class Draft:
             self._page.known(LINE, [int(rows[1])])
 
     def _add(self, location: Location, index: int, values: Sequence[Value]) -> Draft:
-        """New items in a list that may not exist yet."""
+        """Put new items into a list that may not exist yet."""
         page = self._page
         node = page.node(location)
         if node is not None and node.kind != "sequence" and node.data is not None:
@@ -247,9 +282,9 @@ class Draft:
         return self._changed(patches, with_value(self._data, location, data))
 
     def _changed(self, patches: Iterable[Patch], data: Any) -> Draft:
-        """The draft with its text patched, which then says `data` and nothing else."""
+        """Return the draft with its text patched, which then says `data` and nothing else."""
         text = patched(self._padded, patches)
-        line_break = self._page.layout.line_break
+        line_break = self._page.style.line_break
         if self._padded != self.text:
             text = text.removesuffix(line_break)
         draft = Draft(text)
@@ -262,13 +297,13 @@ class Draft:
     def _page(self) -> Page:
         if self._root is None:
             raise EditError("the text has mistakes; correct them first")
-        return Page(self._padded, self._root, Layout.of(self.text, self._root))
+        return Page(self._padded, self._root, WritingStyle.of(self.text, self._root))
 
     @cached_property
     def _padded(self) -> str:
-        """The text with a last line break."""
+        """Return the text with a last line break."""
         ends = self.text.endswith("\n")
-        return self.text if ends else self.text + Layout.of(self.text, None).line_break
+        return self.text if ends else self.text + WritingStyle.of(self.text, None).line_break
 
     @property
     def _data(self) -> Any:
@@ -281,7 +316,7 @@ class Draft:
 
 
 def _worded(snippets: Iterable[str]) -> Worded:
-    """Items as `Draft.copy` gives them."""
+    """Read items as `Draft.copy` gives them."""
     wordings = [read_snippet(snippet) for snippet in snippets]
     if None in wordings:
         raise EditError("what is to be pasted is not a list of items")

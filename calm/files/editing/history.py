@@ -6,7 +6,7 @@ from calm.files.editing.draft import Draft
 
 
 class History:
-    """A draft and the states before and after it.
+    """Keep a draft and the states before and after it.
 
     Parameters
     ----------
@@ -23,21 +23,21 @@ class History:
 
     @property
     def changed(self) -> bool:
-        """Whether the draft differs from what was saved."""
+        """Return whether the draft differs from what was saved."""
         return self.draft.text != self._saved
 
     @property
     def saved_text(self) -> str:
-        """What was saved."""
+        """Return what was saved."""
         return self._saved
 
     @property
     def steps(self) -> tuple[str, ...]:
-        """What was done and can be taken back, the last first."""
+        """Return what was done and can be taken back, the last first."""
         return tuple(label for label, _ in reversed(self._done))
 
     def do(self, draft: Draft, label: str) -> None:
-        """A new state, and what it came of; an equal one is none."""
+        """Take a new state, and what it came of; an equal one is none."""
         if draft.text == self.draft.text:
             return
         self._done.append((label, self.draft.text))
@@ -53,7 +53,7 @@ class History:
         return self._go(self._undone, self._done)
 
     def saved(self, text: str | None = None) -> None:
-        """The draft, or another text, is now what is saved."""
+        """Take the draft, or another text, for what is now saved."""
         self._saved = self.draft.text if text is None else text
 
     def _go(self, source: list[tuple[str, str]], target: list[tuple[str, str]]) -> str | None:

@@ -1,22 +1,35 @@
-"""The items of a line as they stand in a file, and pieces of text that hold such items."""
+"""Lists in a text: taken apart into the texts of their items, rearranged, and put together.
+
+An item can be copied as a text by itself, and pasted from one.
+"""
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal, NamedTuple
 
-from calm.files.composition import compose
-from calm.files.editing.layout import Layout, Value, Wording, inline
-from calm.files.editing.lists import Items, Slot
-from calm.files.editing.spans import line_start
-from calm.files.nodes import Node
+from calm.files.composition import Node, compose
+from calm.files.editing.splicing import (
+    Patch,
+    first_on_line,
+    line_end,
+    line_start,
+    own_end,
+    own_start,
+)
+from calm.files.editing.writing import Value, Wording, WritingStyle, inline
 
+_COMMA = re.compile(r"(?:\s|#[^\n]*\n)*,")
+_BEHIND = re.compile(r"[ \t]*(?:#[^\n]*)?(?:\r?\n|\Z)")
+"""What may follow a value on its line: a comment."""
 _LINE_BREAK = re.compile(r"\r\n|\n")
 
 
 @dataclass(frozen=True)
-class Item:
-    """An item of a line, or a clamp of one.
+class LineItem:
+    """Represent an item of a line, or a clamp of one.
 
     Attributes
     ----------
@@ -33,19 +46,26 @@ class Item:
     line: int
     column: int
     values: dict[str, str]
-    clamps: tuple[Item, ...]
+    clamps: tuple[LineItem, ...]
     text: str
 
 
-def item_of(node: Node, text: str, *, lines: str = "") -> Item:
-    """The item that a node of a text is; `lines` where it takes more of the text than its own."""
+def item_of(node: Node, text: str, *, lines: str = "") -> LineItem:
+    """Return the item that a node of a text is.
+
+    Parameters
+    ----------
+    node : of the item
+    text : it stands in
+    lines : its text, where it takes more than the node
+    """
     entries = list(zip(node.keys, node.children, strict=False))
     values = {key.data: child.data or "" for key, child in entries if child.kind == "scalar"}
     clamps = [child for key, child in entries if key.data == "clamps" and child.kind == "sequence"]
     measured = next((child.data for key, child in entries if key.data == "length_at"), None)
     if isinstance(measured, dict):
         values["length_at"] = f"{measured.get('length', '?')} at {measured.get('load', '?')}"
-    return Item(
+    return LineItem(
         line=node.line,
         column=node.column,
         values=values,
@@ -54,28 +74,50 @@ def item_of(node: Node, text: str, *, lines: str = "") -> Item:
     )
 
 
-def new_slot(value: Value, items: Items, layout: Layout, *, block: bool) -> Slot:
-    """A new item for a list, written after its form; `block`: a key a line where that can be."""
+def new_slot(value: Value, items: Items, style: WritingStyle, *, block: bool) -> Slot:
+    """Write a new item for a list, after its form.
+
+    Parameters
+    ----------
+    value : of the item
+    items : those of the list
+    style : of the file
+    block : write a key a line where that can be
+    """
     if items.form == "block":
-        return Slot(layout.item(value, items.column, block=block))
+        return Slot(style.item(value, items.column, block=block))
     if items.form == "rows":
-        return Slot(" " * (items.column - 1) + inline(value), layout.line_break)
+        return Slot(" " * (items.column - 1) + inline(value), style.line_break)
     return Slot(inline(value))
 
 
-def worded_slot(wording: Wording, items: Items, layout: Layout) -> Slot:
-    """An item for a list as it is worded; what stands in brackets in one line loses comments."""
+def worded_slot(wording: Wording, items: Items, style: WritingStyle) -> Slot:
+    """Place an item as it is worded; within brackets in one line it loses its comments.
+
+    Parameters
+    ----------
+    wording : of the item
+    items : those of the list
+    style : of the file
+    """
     if items.form == "block":
-        return Slot(layout.moved(wording.lines, items.column))
+        return Slot(style.moved(wording.lines, items.column))
     if items.form == "rows":
-        above = layout.moved(wording.above, items.column)
-        behind = wording.behind.replace("\n", layout.line_break)
+        above = style.moved(wording.above, items.column)
+        behind = wording.behind.replace("\n", style.line_break)
         return Slot(above + " " * (items.column - 1) + wording.inline, behind)
     return Slot(wording.inline)
 
 
 def snippet_of(slot: Slot, node: Node, items: Items) -> str:
-    """The text of an item by itself, as an item of a block list that begins in column 1."""
+    """Return the text of an item by itself, as an item of a block list that begins in column 1.
+
+    Parameters
+    ----------
+    slot : of the item
+    node : of the item
+    items : those of its list
+    """
     if items.form == "inline":
         return _LINE_BREAK.sub("\n", f"- {slot.value}\n")
     text = slot.text
@@ -88,7 +130,7 @@ def snippet_of(slot: Slot, node: Node, items: Items) -> str:
 
 
 def read_snippet(snippet: str) -> Wording | None:
-    """The item that a text as that of `snippet_of` is; None where it is none."""
+    """Return the item that a text as that of `snippet_of` is; None where it is none."""
     composition = compose(snippet)
     root = composition.root
     if root is None or composition.refusals or (root.kind, root.style) != ("sequence", "block"):
@@ -101,3 +143,148 @@ def read_snippet(snippet: str) -> Wording | None:
     if item.style == "flow" and "\n" not in text:
         return Wording(item.data, snippet, above, text, snippet[item.end :])
     return Wording(item.data, snippet, above, inline(item.data), "\n")
+
+
+class Slot(NamedTuple):
+    """Hold the text of an item up to the end of its value, and what follows it (no comma).
+
+    Where items have lines of their own it is these lines, comments that belong to it included.
+    """
+
+    value: str
+    behind: str = ""
+
+    @property
+    def text(self) -> str:
+        """Return the whole of it."""
+        return self.value + self.behind
+
+
+@dataclass
+class Items:
+    """Hold the items of a list, of which there is at least one, in a text.
+
+    Attributes
+    ----------
+    start, end : int
+        What is rearranged of the text.
+    form : "block", "rows" or "inline"
+        A block list; one in brackets whose items have lines of their own; any other in brackets.
+    column : int
+        Of the dashes, or of the items where there are none, counted from 1.
+    slots : list of Slot
+    gaps : list of str
+        What stands before each item and is not its own (between two `inline` ones their comma).
+    rest : str
+        What follows the last.
+    ends_in_comma : bool
+        There is a comma after the last of the `rows`.
+    """
+
+    start: int
+    end: int
+    form: Literal["block", "rows", "inline"]
+    column: int
+    slots: list[Slot]
+    gaps: list[str]
+    rest: str = ""
+    ends_in_comma: bool = False
+
+    def remove(self, index: int) -> Slot:
+        """Take an item out. What is not its own stays in its place."""
+        slot, gap = self.slots.pop(index), self.gaps.pop(index)
+        last = index == len(self.slots)
+        if self.form != "inline":
+            if last:
+                self.rest = gap + self.rest
+            else:
+                self.gaps[index] = gap + self.gaps[index]
+        elif not last:
+            self.gaps[index] = gap + _comment(self.gaps[index])
+        else:
+            self.rest = _comment(gap) + self.rest
+        return slot
+
+    def insert(self, index: int, slot: Slot) -> None:
+        """Put an item in."""
+        separator = ", " if self.form == "inline" and self.slots else ""
+        self.slots.insert(index, slot)
+        self.gaps.insert(index, separator)
+        if index == 0 and len(self.gaps) > 1:
+            self.gaps[0], self.gaps[1] = self.gaps[1], separator
+
+    def patch(self) -> Patch:
+        """Return what comes in place of the list."""
+        pieces: list[str] = []
+        last = len(self.slots) - 1
+        for i, (gap, slot) in enumerate(zip(self.gaps, self.slots, strict=True)):
+            comma = self.form == "rows" and (i < last or self.ends_in_comma)
+            pieces += gap, slot.value, "," if comma else "", slot.behind
+        return Patch(self.start, self.end, "".join(pieces) + self.rest)
+
+
+def _comment(gap: str) -> str:
+    """Return what stays of a separator whose comma goes."""
+    return gap.replace(",", "", 1) if "#" in gap else ""
+
+
+def items_of(text: str, node: Node) -> Items | None:
+    """Take apart a list in a text that ends in a line break; None where its items are entangled."""
+    if node.style == "block":
+        return _block(text, node)
+    return _rows(text, node) or _inline(text, node)
+
+
+def _block(text: str, node: Node) -> Items | None:
+    dash = re.compile(rf"^[ ]{{{node.column - 1}}}-(?=\s)", re.MULTILINE)
+    if not first_on_line(text, node.start):
+        return None
+    starts, ends = [own_start(text, node.start, 0)], []
+    for child, following in zip(node.children, (*node.children[1:], None), strict=True):
+        ends.append(own_end(text, child.end, node.column))
+        if following is not None:
+            found = dash.search(text, line_end(text, child.end))
+            if found is None:
+                return None
+            starts.append(own_start(text, found.start(), ends[-1], node.column))
+    slots = [Slot(text[start:end]) for start, end in zip(starts, ends, strict=True)]
+    gaps = ["", *(text[end:start] for end, start in zip(ends, starts[1:], strict=False))]
+    return Items(starts[0], ends[-1], "block", node.column, slots, gaps)
+
+
+def _rows(text: str, node: Node) -> Items | None:
+    """Take apart a list in brackets, items on lines of their own; None where it is no such list."""
+    starts: list[int] = []
+    ends: list[int] = []
+    slots: list[Slot] = []
+    gaps: list[str] = []
+    comma = False
+    for child in node.children:
+        if not first_on_line(text, child.start):
+            return None
+        least = ends[-1] if ends else line_end(text, node.start)
+        if line_start(text, child.start) < least:
+            return None
+        start = own_start(text, child.start, least)
+        comma = text.startswith(",", child.end)
+        behind = _BEHIND.match(text, child.end + comma)
+        if behind is None:
+            return None
+        gaps.append(text[ends[-1] : start] if ends else "")
+        slots.append(Slot(text[start : child.end], behind.group()))
+        starts.append(start)
+        ends.append(behind.end())
+    if any(not text.startswith(",", child.end) for child in node.children[:-1]):
+        return None
+    if not first_on_line(text, node.end - 1) or (not comma and _COMMA.match(text, ends[-1])):
+        return None
+    column = node.children[0].column
+    return Items(starts[0], ends[-1], "rows", column, slots, gaps, "", comma)
+
+
+def _inline(text: str, node: Node) -> Items:
+    children = node.children
+    slots = [Slot(text[child.start : child.end]) for child in children]
+    gaps = ["", *(text[one.end : other.start] for one, other in pairwise(children))]
+    start, end = children[0].start, children[-1].end
+    return Items(start, end, "inline", children[0].column, slots, gaps)

@@ -4,16 +4,16 @@ Lengths are in points (1/72 inch); the upper left corner of a graph is its origi
 """
 
 from calm.report.graph.axes import Axes as Axes
+from calm.report.graph.axes import Entry as Entry
 from calm.report.graph.axes import Graph as Graph
-from calm.report.graph.legend import Entry as Entry
-from calm.report.graph.legend import write_legend as write_legend
+from calm.report.graph.axes import Stroke as Stroke
+from calm.report.graph.axes import draw_mark as draw_mark
+from calm.report.graph.axes import write_legend as write_legend
 from calm.report.graph.scale import Scale as Scale
+from calm.report.graph.scale import Tick as Tick
+from calm.report.graph.scale import counts as counts
 from calm.report.graph.scale import covering as covering
-from calm.report.graph.style import Stroke as Stroke
-from calm.report.graph.style import draw_mark as draw_mark
-from calm.report.graph.ticks import Tick as Tick
-from calm.report.graph.ticks import counts as counts
-from calm.report.graph.ticks import decades as decades
-from calm.report.graph.ticks import moments as moments
-from calm.report.graph.ticks import numbers as numbers
-from calm.report.graph.ticks import seconds as seconds
+from calm.report.graph.scale import decades as decades
+from calm.report.graph.scale import moments as moments
+from calm.report.graph.scale import numbers as numbers
+from calm.report.graph.scale import seconds as seconds

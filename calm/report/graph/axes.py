@@ -1,21 +1,42 @@
-"""Axes of a graph, and what is drawn between them."""
+"""Axes of a graph, what is drawn between them, and what its lines and signs mean."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from math import isfinite
+from typing import NamedTuple
 from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from calm.physics.line import Floats
-from calm.report.graph.scale import Scale
-from calm.report.graph.style import Stroke, draw_mark
-from calm.report.graph.ticks import Tick
-from calm.report.schematic.pen import INK, Pen
-from calm.report.schematic.widths import text_width
-from calm.report.vector import within_xml
+from calm.report.graph.scale import Scale, Tick
+from calm.report.picture import within_xml
+from calm.report.schematic.pen import INK, Pen, text_width
+
+
+class Stroke(NamedTuple):
+    """A line's colour and width [pt].
+
+    `dashes` are the lengths [pt] of dashes and gaps, of which an unbroken line has none; a `square`
+    one goes on by half its width at both ends, so that the shortest is seen.
+    """
+
+    colour: str
+    width: float = 1.2
+    dashes: tuple[float, ...] = ()
+    square: bool = False
+
+    def attributes(self) -> dict[str, float | str]:
+        """As a pen takes them."""
+        written: dict[str, float | str] = {"stroke": self.colour, "stroke_width": self.width}
+        if self.dashes:
+            written["stroke_dasharray"] = " ".join(f"{each:g}" for each in self.dashes)
+        if self.square:
+            written["stroke_linecap"] = "square"
+        return written
+
 
 _FONTS = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif"
 _FRAME = Stroke(INK, 0.7)
@@ -203,3 +224,53 @@ def _path(x: Floats, y: Floats) -> str:
             parts.append(f"L{point[0]:.2f} {point[1]:.2f}")
             last = point
     return "".join(parts)
+
+
+_SAMPLE, _GAP = 16.0, 5.0  # points: the line beside a text, and what is between them
+
+
+class Entry(NamedTuple):
+    """A text with its line, or its sign: form, width [pt] and colour."""
+
+    text: str
+    line: Stroke | None = None
+    sign: tuple[str, float, str] | None = None
+
+
+def write_legend(
+    pen: Pen,
+    entries: Sequence[Entry],
+    left: float,
+    top: float,
+    *,
+    width: float,
+    row: float,
+    columns: int,
+    size: float,
+) -> None:
+    """Entries row by row in columns that share a width; a text that is too long is cut short."""
+    across = width / columns
+    for number, entry in enumerate(entries):
+        x, y = left + number % columns * across, top + (number // columns + 0.5) * row
+        if entry.line is not None:
+            pen.line(x, y, x + _SAMPLE, y, **entry.line.attributes())
+        if entry.sign is not None:
+            draw_mark(pen, x + _SAMPLE / 2, y, *entry.sign)
+        room = across - _SAMPLE - 2 * _GAP
+        pen.write(x + _SAMPLE + _GAP, y, " ".join(entry.text.split()), room, size=size)
+
+
+def draw_mark(pen: Pen, x: float, y: float, sign: str, size: float, colour: str) -> None:
+    """A filled sign of some width [pt] at a point: o, s (square), D (diamond) or v (downward)."""
+    half = size / 2
+    if sign == "o":
+        pen.circle(x, y, half, fill=colour)
+    elif sign == "s":
+        pen.box(x, y, size, size, fill=colour)
+    else:
+        corners = {
+            "D": ((0, -1.2), (1.2, 0), (0, 1.2), (-1.2, 0)),
+            "v": ((-1, -0.9), (1, -0.9), (0, 1)),
+        }[sign]
+        points = " ".join(f"{x + half * u:.2f},{y + half * v:.2f}" for u, v in corners)
+        pen.draw("polygon", points=points, fill=colour)

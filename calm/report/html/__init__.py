@@ -8,7 +8,7 @@ from functools import cache
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
-from calm.report.vector import set_apart
+from calm.report.picture import set_apart
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -28,7 +28,7 @@ def report_html(sections: Sequence[Section], leaves: Sequence[str] | None = None
     whole without its script, which sorts and chooses among the checks. `leaves` are the sections
     as `leaf` has them, where they are made already.
     """
-    from calm.report.check.section import check_report
+    from calm.report.check_report import check_report
 
     return page(check_report(sections), leaves)
 

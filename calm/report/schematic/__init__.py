@@ -6,8 +6,20 @@ from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 from calm.quantities import QUANTITIES
-from calm.report.schematic.figures import figure_of
-from calm.report.schematic.layout import (
+from calm.report.schematic.pen import FAINT, INK, SOFT, Pen
+from calm.report.schematic.shown_parts import HEADINGS, Clamped, Row, Schematic, schematic_of
+from calm.report.schematic.symbols import (
+    draw_cable,
+    draw_clamp,
+    draw_helicopter,
+    draw_leader,
+    draw_seabed,
+    draw_ship,
+    draw_surface,
+    draw_water,
+    figure_of,
+)
+from calm.report.schematic.text_layout import (
     FONT,
     LINE,
     LINE_AT,
@@ -19,18 +31,6 @@ from calm.report.schematic.layout import (
     Place,
     indented,
     layout_of,
-)
-from calm.report.schematic.parts import HEADINGS, Clamped, Row, Schematic, schematic_of
-from calm.report.schematic.pen import FAINT, INK, SOFT, Pen
-from calm.report.schematic.scenery import (
-    draw_cable,
-    draw_clamp,
-    draw_helicopter,
-    draw_leader,
-    draw_seabed,
-    draw_ship,
-    draw_surface,
-    draw_water,
 )
 
 if TYPE_CHECKING:

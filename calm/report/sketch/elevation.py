@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import hypot
 from typing import TYPE_CHECKING
@@ -13,24 +13,11 @@ from rich.text import Text
 
 from calm.case import Result
 from calm.quantities import bearing_of, bearing_text, say
-from calm.report.drawing import along
-from calm.report.graph.ticks import number, round_numbers
-from calm.report.labels import Named, named_parts, names, spread
-from calm.report.plot_mooring import plane_of
-from calm.report.plot_tow import levels_of
-from calm.report.schematic.widths import ELLIPSIS
-from calm.report.sketch.canvas import Canvas
-from calm.report.sketch.frame import AXIS, COLUMNS_PER_TICK, Frame, levels
-from calm.report.sketch.parts import (
-    LINE,
-    OTHER,
-    SEABED,
-    SHIP,
-    STILL,
-    SURFACE,
-    header_rows,
-    mark_parts,
-)
+from calm.report.drawing import Named, along, named_parts, names, spread
+from calm.report.graph.scale import number, round_numbers
+from calm.report.plot import levels_of, plane_of
+from calm.report.schematic.pen import ELLIPSIS
+from calm.report.sketch.canvas import AXIS, COLUMNS_PER_TICK, Canvas, Frame, levels
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -39,6 +26,9 @@ if TYPE_CHECKING:
     from calm.case.columns import Shape
 
     Floats = NDArray[np.float64]
+    from calm.case import Result
+    from calm.report.drawing import Named
+
 
 LEAST_SPAN = 0.1
 """Share of the height that distances are drawn to at least: a line that stands looks as it does."""
@@ -209,3 +199,38 @@ def _least(found: list[tuple[str, Named]], wanted: list[float], crowded: int) ->
     around = [i for i, row in enumerate(wanted) if abs(row - wanted[crowded]) <= 2.0 * _FARTHEST]
     middle = sum(around) / len(around)
     return min(around, key=lambda i: (-_NEED.index(found[i][1].role), abs(i - middle)))
+
+
+LINE = "bold cyan"
+STILL = "white"
+OTHER = "magenta"
+"""Of a line in another environment, or of another design, drawn beside."""
+SURFACE, SEABED = "blue", "yellow"
+LIMIT = "red"
+SHIP = ("▲", "bold")
+
+SIGNS = {
+    "anchor": ("▼", "bold"),
+    "float": ("●", "bold yellow"),
+    "release": ("◆", "green"),
+    "instrument": ("■", "red"),
+}
+"""Sign and style of each role, the first where it is and the others beside it."""
+
+_HEADED = 9
+
+
+def header_rows(height: int) -> int:
+    """Rows above a picture for what it says in words; none where it is low."""
+    return int(height >= _HEADED)
+
+
+def mark_parts(
+    frame: Frame, result: Result | TowResult, place: Callable[[Named], tuple[float, float]]
+) -> None:
+    """Mark floats, instruments, releases and the anchor, `place` giving both axes."""
+    parts = named_parts(result)
+    for role, (sign, style) in SIGNS.items():
+        for part in parts:
+            if part.role == role:
+                frame.mark(*place(part), sign, style)

@@ -1,7 +1,9 @@
-"""Tension along a line, and what each piece may bear."""
+"""Sketches beside the elevation: tension, the current by depth, the line from above."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
+from math import hypot
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,18 +12,30 @@ from rich.text import Text
 from calm.case import Result
 from calm.checks.posture import meant_for_the_surface
 from calm.checks.strength import allowable_load
-from calm.quantities import say
-from calm.report.graph.ticks import number, round_numbers
-from calm.report.sketch.canvas import DOWN, Canvas
-from calm.report.sketch.frame import AXIS, COLUMNS_PER_TICK, Frame, levels
-from calm.report.sketch.parts import LIMIT, LINE, header_rows
+from calm.quantities import bearing_of, bearing_text, say
+from calm.report.graph.scale import number, round_numbers
+from calm.report.sketch.canvas import ACROSS, AXIS, COLUMNS_PER_TICK, DOWN, Canvas, Frame, levels
+from calm.report.sketch.elevation import (
+    LIMIT,
+    LINE,
+    OTHER,
+    SEABED,
+    SHIP,
+    STILL,
+    SURFACE,
+    header_rows,
+    mark_parts,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from calm.case import TowResult
+    from calm.physics.line import Water
 
     Floats = NDArray[np.float64]
+    from calm.case.columns import Shape
+
 
 _FARTHEST = 2.5
 """Allowable loads are drawn up to this many times the greatest tension."""
@@ -97,3 +111,122 @@ def _weakest(
         for row in range(first, last + 1):
             least[row] = min(load, least.get(row, load))
     return sorted(least.items())
+
+
+_STYLE = "bold blue"
+_ARROWS = "↑↗→↘↓↙←↖"
+_COLUMNS_PER_TICK = 7
+_DEGREES_FROM = 18
+_SAMPLES = 200
+
+
+def current_profile(water: Water, width: int, height: int) -> list[Text]:
+    """Speed by depth with the directions beside it, from 12 by 6 cells on.
+
+    Depths are on the rows where `elevation` of the same height has them.
+    """
+    canvas = Canvas(width, height)
+    head = header_rows(height)
+    rows = height - head - 2
+    values, foot = levels(0.0, water.depth, rows), number(water.depth)
+    gutter = max(map(len, [foot, *map(number, values)]))
+    beside = 6 if width >= _DEGREES_FROM else 2
+    depths = np.union1d(np.linspace(0.0, water.depth, _SAMPLES), water.level)
+    depths = depths[(depths >= 0.0) & (depths <= water.depth)]
+    velocity, _ = water.at(depths)
+    speeds = np.hypot(velocity[:, 0], velocity[:, 1])
+    fastest = float(speeds.max())
+    right = 1.08 * fastest if fastest > 0.0 else 1.0
+    frame = Frame.within(canvas, head, gutter, (0.0, right), (0.0, water.depth), beside)
+    if head:
+        canvas.text(0, 0, "current, m/s" if fastest > 0.0 else "still water", AXIS)
+    frame.line([(0.0, 0.0), (right, 0.0)], SURFACE)
+    canvas.text(frame.column, height - 2, "▒" * frame.columns, SEABED)
+    frame.scale_down(values, gutter, foot)
+    most = max(frame.columns // _COLUMNS_PER_TICK, 2)
+    frame.scale_across(round_numbers(0.0, right, most), "" if head else "m/s")
+    frame.line(zip(speeds.tolist(), depths.tolist(), strict=True), _STYLE)
+    if beside:
+        for value in values:
+            _, row = frame.cell(0.0, value)
+            (u, v, _), _ = (each[0] for each in water.at(np.array([value])))
+            if np.hypot(u, v) > 0.0:
+                canvas.text(width - beside + 1, row, _direction(u, v, beside), _STYLE)
+    return canvas.rows()
+
+
+def _direction(u: float, v: float, room: int) -> str:
+    """Where it flows to: an arrow, and the degrees where there is room."""
+    arrow = _ARROWS[round(np.degrees(np.arctan2(u, v)) / 45.0) % 8]
+    return arrow if room == 2 else f"{bearing_text(bearing_of(u, v))}{arrow}"
+
+
+_LEAST_SPAN = 1.0
+_MARGIN = 0.06
+
+
+def plan(
+    result: Result | TowResult, width: int, height: int, beside: Sequence[Shape] = ()
+) -> list[Text]:
+    """A line from above with its anchor, or the ship, at zero, from 20 by 6 cells on.
+
+    Shapes `beside` it, of other environments or designs, are dashed.
+    """
+    canvas = Canvas(width, height)
+    head, shape = header_rows(height), result.shape
+    if head:
+        canvas.text(0, 0, _said(result), AXIS)
+    rows = height - head - 2
+    west, east = _range([0.0, *_ends(each.x for each in (shape, *beside))])
+    south, north = _range([0.0, *_ends(each.y for each in (shape, *beside))])
+    gutter = 1
+    for _ in range(2):  # the numbers beside it take room, which changes them
+        columns = width - gutter - 1
+        metres = max((east - west) / (columns * ACROSS), (north - south) / (rows * DOWN))
+        left, right = _centred(west, east, metres * columns * ACROSS)
+        bottom, top = _centred(south, north, metres * rows * DOWN)
+        values = levels(bottom, top, rows)
+        gutter = max(map(len, map(number, values)))
+    columns = width - gutter - 1
+    left, right = _centred(west, east, metres * columns * ACROSS)
+    frame = Frame.within(canvas, head, gutter, (left, right), (top, bottom))
+    canvas.text(gutter, height - 2, "─" * (width - gutter), AXIS)
+    frame.scale_down(values, gutter)
+    frame.scale_across(
+        round_numbers(left, right, max(frame.columns // COLUMNS_PER_TICK, 2)), "m east", "m E"
+    )
+    frame.line([(left, 0.0), (right, 0.0)], STILL, dash=1, gap=3)
+    frame.line([(0.0, bottom), (0.0, top)], STILL, dash=1, gap=3)
+    for other in beside:
+        frame.line(zip(other.x.tolist(), other.y.tolist(), strict=True), OTHER, dash=3, gap=2)
+    frame.line(zip(shape.x.tolist(), shape.y.tolist(), strict=True), LINE)
+    if not isinstance(result, Result):
+        frame.mark(0.0, 0.0, *SHIP)
+    mark_parts(frame, result, lambda part: (part.x, part.y))
+    canvas.text(gutter + 1, head, "N", AXIS)
+    return canvas.rows()
+
+
+def _said(result: Result | TowResult) -> str:
+    if isinstance(result, Result):
+        x, y, what = result.top.x, result.top.y, "top"
+    else:
+        x, y, what = float(result.shape.x[0]), float(result.shape.y[0]), "end"
+    distance = hypot(x, y)
+    towards = f" to {bearing_text(bearing_of(x, y))}" if distance >= 0.05 else ""
+    return f"{what} {say('offset', distance)} off{towards}"
+
+
+def _ends(coordinates: Iterable[Floats]) -> list[float]:
+    return [float(end) for each in coordinates for end in (each.min(), each.max())]
+
+
+def _range(values: list[float]) -> tuple[float, float]:
+    low, high = min(values), max(values)
+    margin = _MARGIN * max(high - low, _LEAST_SPAN)
+    return low - margin, high + margin
+
+
+def _centred(low: float, high: float, span: float) -> tuple[float, float]:
+    middle = (low + high) / 2.0
+    return middle - span / 2.0, middle + span / 2.0

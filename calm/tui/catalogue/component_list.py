@@ -11,10 +11,9 @@ from textual import events
 from textual.message import Message
 from textual.strip import Strip
 
-from calm.tui.catalogue.figures import COLUMNS, Column
-from calm.tui.catalogue.index import Index, Listed
-from calm.tui.listing import Listing
-from calm.tui.signs import CURSOR, FAVOURITE, ROLES
+from calm.tui.catalogue.index import COLUMNS, Column, Index, Listed
+from calm.tui.scrolled import Listing
+from calm.tui.theme import CURSOR, FAVOURITE, ROLES
 
 _LEAD, _FIGURE = 4, 8
 

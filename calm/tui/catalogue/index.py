@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
+import json
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
 
-from calm.errors import InputError
-from calm.files.catalogue import Catalogue
-from calm.files.document import compose
-from calm.files.entries import FAMILY_ROLES, Entry
-from calm.files.section import Section
-from calm.tui.catalogue.figures import Figures, figures_of, wanted
-from calm.tui.catalogue.synonyms import with_synonyms
+from calm import whole_file
+from calm.errors import CalmError, InputError
+from calm.files.catalogue import FAMILY_ROLES, Catalogue, CatalogueEntry
+from calm.files.editing import state_folder
+from calm.files.yaml_document import SourceMapping, compose
+from calm.units import QuantityError, parse_quantity
 
 _ROLES = {"cable": "line", "chain": "line", "anchor": "anchor"}
 _ELSEWHERE = 4
@@ -60,7 +60,7 @@ class Index:
         except InputError:
             return cls(catalogue)
         if isinstance(document.data.get("components"), dict):
-            definitions = Section.of(document, (), document.data).child("components")
+            definitions = SourceMapping.of(document, (), document.data).child("components")
             catalogue = catalogue.under(definitions, [])
         return cls(catalogue)
 
@@ -136,7 +136,7 @@ def _rank(each: Listed, words: Sequence[str]) -> int:
     return _ELSEWHERE
 
 
-def _listed(entry: Entry, shipped: object) -> Listed:
+def _listed(entry: CatalogueEntry, shipped: object) -> Listed:
     fields = entry.section.data
 
     def text(key: str) -> str:
@@ -153,3 +153,195 @@ def _listed(entry: Entry, shipped: object) -> Listed:
         role=role or _ROLES.get(text("kind"), "instrument"),
         own=own,
     )
+
+
+_GROUPS = (
+    ("twin", "double", "dual", "paired", "pair", "two", "tandem"),
+    ("current meter", "rcm", "aquadopp", "s4", "argonaut", "dvs", "rcm4", "rcm5", "rcm8", "rcm11"),
+    ("current profiler", "adcp", "rdcp", "workhorse", "doppler"),
+    ("ctd", "microcat", "seacat", "sbe37", "sbe16", "sbe19", "conductivity"),
+    ("thermistor", "temperature logger", "hobo", "tr", "sbe39", "sbe56"),
+    ("thimble", "termination", "eye", "socket"),
+    ("float", "flotation", "buoy", "buoyancy"),
+    ("anchor", "sinker", "deadweight", "clump"),
+    ("rope", "line", "hawser"),
+    ("wire", "steel rope", "jacketed"),
+    ("dyneema", "spectra", "hmpe", "amsteel"),
+    ("kevlar", "aramid", "parafil"),
+    ("polyester", "dacron"),
+    ("nylon", "polyamide", "perlon"),
+    ("ring", "link", "maillon"),
+    ("glass", "benthos", "vitrovex"),
+    ("release", "releaser"),
+)
+_FOUND = tuple(
+    (re.compile(r"\b(" + "|".join(map(re.escape, group)) + r")s?\b"), " ".join(group))
+    for group in _GROUPS
+)
+
+
+def with_synonyms(text: str) -> str:
+    """A text in small letters, with the synonyms of its words added."""
+    return " ".join([text, *(words for pattern, words in _FOUND if pattern.search(text))])
+
+
+_NAME = "catalogue.json"
+_MOST_RECENT = 40
+
+
+class Remembered:
+    """Ids of components, each list the last one first; a file that cannot be read is none.
+
+    Attributes
+    ----------
+    favourites : marked by the person
+    recent : taken from the catalogue
+    """
+
+    def __init__(self) -> None:
+        self.favourites, self.recent = _read()
+
+    def take(self, id: str) -> None:
+        """Note that one was taken; where it cannot be kept, for this session only."""
+        self.recent = [id, *(each for each in self.recent if each != id)][:_MOST_RECENT]
+        try:
+            self._keep()
+        except OSError:
+            return
+
+    def mark(self, id: str) -> bool:
+        """Mark a favourite, or unmark it; returns whether it is one now.
+
+        Raises
+        ------
+        OSError
+            It could not be kept, and is one in this session only.
+        """
+        is_new = id not in self.favourites
+        self.favourites = [each for each in self.favourites if each != id]
+        if is_new:
+            self.favourites.insert(0, id)
+        self._keep()
+        return is_new
+
+    def _keep(self) -> None:
+        folder = state_folder()
+        folder.mkdir(parents=True, exist_ok=True)
+        content = json.dumps({"favourites": self.favourites, "recent": self.recent}, indent=1)
+        whole_file.put(folder / _NAME, content.encode())
+
+
+def _read() -> tuple[list[str], list[str]]:
+    try:
+        kept = json.loads((state_folder() / _NAME).read_text(encoding="utf-8"))
+        return _ids(kept["favourites"]), _ids(kept["recent"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return [], []
+
+
+def _ids(kept: Iterable[object]) -> list[str]:
+    return [each for each in kept if isinstance(each, str)]
+
+
+@dataclass(frozen=True)
+class Column:
+    """A figure of components: its key, heading, dimension, and the unit it is shown in."""
+
+    key: str
+    heading: str
+    dimension: str
+    unit: str
+    scale: float = 1.0
+    decimals: int = 0
+
+    def shown(self, value: float | None) -> str:
+        """A figure for people; empty where it is not known."""
+        return "" if value is None else f"{value * self.scale:.{self.decimals}f}"
+
+
+COLUMNS = (
+    Column("net", "net N", "force", "N"),
+    Column("breaking", "break kN", "force", "kN", 1e-3, 1),
+    Column("working", "work kN", "force", "kN", 1e-3, 1),
+    Column("depth", "to m", "length", "m"),
+    Column("drag", "drag N", "force", "N", 1.0, 1),
+    Column("mass", "mass kg", "mass", "kg", 1.0, 1),
+)
+"""Net force in water, + up; loads; depth rating; drag across the axis at 1 m/s; mass in air. Of a
+cable or chain per metre, but for its loads."""
+
+
+_ALSO = {
+    "mbl": "breaking",
+    "wll": "working",
+    "swl": "working",
+    "buoyancy": "net",
+    "rating": "depth",
+}
+
+
+_ASKED = re.compile(r"([a-z]+)(<=|>=|<|>)([-+]?[\d.].*)")
+
+
+_HOLDS: dict[str, Callable[[float, float], bool]] = {
+    "<": lambda value, limit: value < limit,
+    "<=": lambda value, limit: value <= limit,
+    ">": lambda value, limit: value > limit,
+    ">=": lambda value, limit: value >= limit,
+}
+
+
+Figures = dict[str, float | None]
+
+
+def figures_of(catalogue: Catalogue, id: str) -> Figures:
+    """The figures of a component or assembly by the keys of `COLUMNS`; SI units."""
+    from calm.assemble.datasheet import datasheet
+
+    try:
+        definition = catalogue.get(id)
+        sheet = datasheet(definition, catalogue)
+    except CalmError:
+        return {}
+    return {
+        "net": None if sheet is None else sheet.net_buoyancy,
+        "breaking": getattr(definition, "breaking_load", None),
+        "working": getattr(definition, "working_load", None),
+        "depth": getattr(definition, "depth_rating", None),
+        "drag": None if sheet is None else sheet.kn,
+        "mass": getattr(definition, "mass", None),
+    }
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """A limit that a figure is to keep: ``breaking>50kN``."""
+
+    key: str
+    relation: str
+    limit: float
+
+    def holds(self, figures: Figures) -> bool:
+        """Whether it is kept; not where the figure is unknown."""
+        value = figures.get(self.key)
+        return value is not None and _HOLDS[self.relation](value, self.limit)
+
+
+def wanted(word: str) -> Wanted | None:
+    """The limit that a word of a search is; None of a plain word.
+
+    A number alone has the unit of its column.
+    """
+    found = _ASKED.fullmatch(word)
+    if found is None:
+        return None
+    key = _ALSO.get(found[1], found[1])
+    column = next((each for each in COLUMNS if each.key == key), None)
+    if column is None:
+        return None
+    for text in (found[3], f"{found[3]} {column.unit}"):
+        try:
+            return Wanted(key, found[2], parse_quantity(text, column.dimension))
+        except QuantityError:
+            continue
+    return None

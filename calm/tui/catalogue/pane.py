@@ -17,9 +17,7 @@ from calm.errors import CalmError
 from calm.files.components import FLEXIBLE_KINDS, RIGID_KINDS
 from calm.tui.actions import bindings
 from calm.tui.catalogue.component_list import ComponentList
-from calm.tui.catalogue.figures import COLUMNS
-from calm.tui.catalogue.index import Index, Listed
-from calm.tui.catalogue.remembered import Remembered
+from calm.tui.catalogue.index import COLUMNS, Index, Listed, Remembered
 from calm.tui.checking import anything, distance, length
 from calm.tui.field import Field
 from calm.tui.scrolled import Entry, ScrolledText
@@ -174,7 +172,7 @@ class CataloguePane(Vertical):
         if chosen is None or self.index is None:
             card.show("No component has all these words.")
             return
-        from calm.report.catalogue import to_card
+        from calm.report.component_cards import to_card
         from calm.report.terminal import shown
 
         try:

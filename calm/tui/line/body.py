@@ -10,9 +10,9 @@ from calm.files import Place
 from calm.tui.catalogue.pane import CataloguePane, Purpose
 from calm.tui.line.pane import LinePane
 from calm.tui.line.table import LineTable
+from calm.tui.messages import Workspace
 from calm.tui.pictures import Pictures
 from calm.tui.verdict_pane import VerdictPane, state_sign, state_word
-from calm.tui.workspace import Workspace
 
 
 class LineBody(Horizontal):

@@ -12,17 +12,17 @@ from calm.files.components import KINDS
 from calm.tui.actions import bindings, hints
 from calm.tui.bars import KeyBar
 from calm.tui.catalogue.pane import CataloguePane
-from calm.tui.keys.action import Place
+from calm.tui.key_table import Place
 from calm.tui.line.advising import Advising
 from calm.tui.line.body import LineBody
 from calm.tui.line.cell_editor import CellEditor
 from calm.tui.line.comparing import Comparing
 from calm.tui.line.pane import LinePane
+from calm.tui.messages import Workspace
 from calm.tui.pictures import Picture, Tab
 from calm.tui.screen import DraftScreen
 from calm.tui.session import Location
 from calm.tui.verdict_pane import VerdictPane
-from calm.tui.workspace import Workspace
 
 if TYPE_CHECKING:
     from calm.tui.line.sheets import Sheets
@@ -169,8 +169,8 @@ class BuilderScreen(DraftScreen):
 
     def action_begin(self) -> None:
         """Begin an empty line with a mooring."""
-        from calm.starts import STARTS, start
-        from calm.tui.line.questions import beginning
+        from calm.templates import TEMPLATES, template
+        from calm.tui.line.mooring_sheet import beginning
 
         session = self.workspace.session
         if session.draft.items:
@@ -179,14 +179,14 @@ class BuilderScreen(DraftScreen):
 
         def take(answer: str | None) -> None:
             if answer is not None:
-                kind = list(STARTS)[int(answer) - 1]
-                self.body.line.attempt(lambda: session.write(start(kind), f"begin with {kind}"))
+                kind = list(TEMPLATES)[int(answer) - 1]
+                self.body.line.attempt(lambda: session.write(template(kind), f"begin with {kind}"))
 
         self.app.push_screen(beginning(), take)
 
     def action_history(self) -> None:
         """Show what was done, and go back to before any of it."""
-        from calm.tui.line.questions import history
+        from calm.tui.line.mooring_sheet import history
 
         steps = self.workspace.session.history
         if not self.part.settle():

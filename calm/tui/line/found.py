@@ -6,8 +6,8 @@ from calm.checks.finding import State
 from calm.files import Place
 from calm.tui.dialogs import Answer, Question
 from calm.tui.line.table import LineTable
+from calm.tui.messages import Workspace
 from calm.tui.verdict_text import Saying, why
-from calm.tui.workspace import Workspace
 
 _GRAVE = (State.FAIL, State.WARN, State.UNKNOWN)
 

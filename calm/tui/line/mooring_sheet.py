@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Any
 
-from calm.files.document import Location
-from calm.files.editing import Draft, EditError
-from calm.files.fields import LENGTH, Quantity
-from calm.tui.checking import anything, day, quantity
-from calm.tui.dialogs import Asked, Sheet
-from calm.tui.line.entries import entered, said
+from calm.case.parts import parts_of
+from calm.files import Flexible, MooringFile, Piece, Place
+from calm.files.editing import Draft, EditError, Value
+from calm.files.fields import LENGTH, POSITIVE_LENGTH, QuantityField
+from calm.files.yaml_document import Location
+from calm.templates import TEMPLATES
+from calm.tui.checking import Reading, anything, day, moment, quantity
+from calm.tui.dialogs import Answer, Asked, Question, Sheet
+from calm.tui.session import Session
 
 _PLACES: dict[str, Location] = {
     "name": ("name",),
@@ -38,8 +42,8 @@ _PLACES: dict[str, Location] = {
 
 _HISTORY: Location = ("document", "history")
 
-LATITUDE = quantity(Quantity("angle", at_least=-90, at_most=90), optional=True)
-LONGITUDE = quantity(Quantity("angle", at_least=-360, at_most=360), optional=True)
+LATITUDE = quantity(QuantityField("angle", at_least=-90, at_most=90), optional=True)
+LONGITUDE = quantity(QuantityField("angle", at_least=-360, at_most=360), optional=True)
 _NAME_AND_PLACE = (
     Asked("name", "Name", check=anything),
     Asked("description", "Description", check=anything),
@@ -48,10 +52,16 @@ _NAME_AND_PLACE = (
 )
 _TOW = (
     Asked(
-        "speed", "Tow speed", check=quantity(Quantity("speed", above=0)), placeholder="e.g. 4 knot"
+        "speed",
+        "Tow speed",
+        check=quantity(QuantityField("speed", above=0)),
+        placeholder="e.g. 4 knot",
     ),
     Asked(
-        "toward", "Towards", check=quantity(Quantity("angle")), placeholder="e.g. 90 deg for east"
+        "toward",
+        "Towards",
+        check=quantity(QuantityField("angle")),
+        placeholder="e.g. 90 deg for east",
     ),
     Asked("height", "Sheave height", check=quantity(LENGTH, optional=True), placeholder="e.g. 3 m"),
 )
@@ -118,3 +128,222 @@ def documented(draft: Draft, texts: Mapping[str, str]) -> Draft:
         return draft
     by = {"date": texts["date"], "by": texts["author"]} if change else {"date": "", "by": ""}
     return entered(draft, _HISTORY, ("revision", revision), by | {"change": change})
+
+
+_DEPLOYED_PLACES: dict[str, Location] = {
+    "date": ("deployed", "date"),
+    "latitude": ("deployed", "position", "latitude"),
+    "longitude": ("deployed", "position", "longitude"),
+    "depth": ("deployed", "depth"),
+}
+_WHOLE = (
+    Asked("date", "Date", check=moment, placeholder="e.g. 2027-06-30 14:05"),
+    Asked("latitude", "Latitude", check=LATITUDE, placeholder="e.g. 48.3 deg, + north"),
+    Asked("longitude", "Longitude", check=LONGITUDE, placeholder="e.g. -5.2 deg, + east"),
+    Asked(
+        "depth",
+        "Depth there",
+        check=quantity(QuantityField("length", above=0), optional=True),
+        placeholder="e.g. 1187 m",
+    ),
+)
+_OF_A_ROW = (
+    ("serial", "Serial number", anything),
+    ("length", "Cut to", quantity(POSITIVE_LENGTH, optional=True)),
+    ("remark", "Remark", anything),
+)
+_COMPARED = "Compared with the design by calm diff."
+_ITEMS: Location = ("deployed", "items")
+_RELEASES: Location = ("releases",)
+
+
+@dataclass(frozen=True)
+class Hung:
+    """What hangs at a row, and is deployed once: its label and designed serial number."""
+
+    label: str
+    serial: str
+    is_cut: bool
+    is_release: bool
+
+
+def hung_at(file: MooringFile | None, spot: Place | None) -> Hung | None:
+    """What hangs at a row of a line; None where that is several things, or not known."""
+    if file is None or spot is None:
+        return None
+    found = [
+        part
+        for piece in file.pieces
+        for part in parts_of([piece])
+        if (part.place.item, part.place.clamp) == (spot.item, spot.clamp)
+    ]
+    if len(found) != 1:
+        return None
+    [part] = found
+    serial = part.equipment.serial
+    return Hung(
+        part.label,
+        serial if isinstance(serial, str) else "",
+        isinstance(part, Piece) and isinstance(part.component, Flexible),
+        part.component.role == "release",
+    )
+
+
+def deployed_sheet(draft: Draft, hung: Hung | None) -> Sheet:
+    """When and where the mooring was deployed, and what hangs at a row, as the file has them."""
+    asked = filled(draft, _WHOLE, _DEPLOYED_PLACES)
+    if hung is None:
+        return Sheet("As deployed", _COMPARED, asked)
+    for key, title, check in _OF_A_ROW:
+        if key != "length" or hung.is_cut:
+            text = said(draft, _ITEMS, ("label", hung.label), key)
+            asked.append(Asked(f"item {key}", title, text, check))
+    if hung.is_release:
+        codes = said(draft, _RELEASES, ("serial", _serial(draft, hung)), "codes")
+        asked.append(Asked("codes", "Codes", codes, placeholder="arm 0A1B, release 0A55"))
+    return Sheet("As deployed", f"{_COMPARED} Below the depth: {hung.label}.", asked)
+
+
+def as_deployed(draft: Draft, hung: Hung | None, texts: Mapping[str, str]) -> Draft:
+    """The file with what was entered."""
+    draft = written(draft, {key: texts[key] for key in _DEPLOYED_PLACES}, _DEPLOYED_PLACES)
+    if hung is None:
+        return draft
+    given = {key: texts[f"item {key}"] for key, _, _ in _OF_A_ROW if f"item {key}" in texts}
+    draft = entered(draft, _ITEMS, ("label", hung.label), given)
+    if hung.is_release:
+        called = "serial", _serial(draft, hung)
+        if texts["codes"] and not called[1]:
+            raise EditError(f"{hung.label} needs its serial number, by which its codes are known")
+        draft = entered(draft, _RELEASES, called, {"codes": texts["codes"]})
+    return draft
+
+
+def _serial(draft: Draft, hung: Hung) -> str:
+    """Of the release as designed, else as deployed."""
+    return hung.serial or said(draft, _ITEMS, ("label", hung.label), "serial")
+
+
+_SEVERAL = "For a count, give one number for each, separated by commas."
+
+
+def equipment_sheet(label: str, values: Mapping[str, Any], *, is_clamp: bool) -> Sheet:
+    """The fields of a row as the file has them.
+
+    Parameters
+    ----------
+    label : of the row
+    values : what the file says of it
+    """
+    asked = [
+        Asked("serial", "Serial number", _said(values, "serial"), _serial_of_equipment, "4711"),
+        Asked("calibrated", "Calibrated", _said(values, "calibrated"), day, "2027-06-30"),
+        Asked("sampling", "Sampling", _said(values, "sampling"), anything, "every 10 min"),
+        Asked("battery_until", "Battery until", _said(values, "battery_until"), day, "2028-06-30"),
+    ]
+    if not is_clamp:
+        made = _said(values, "termination")
+        asked.append(Asked("termination", "Termination", made, anything, "swaged, thimbles"))
+    return Sheet(label, _SEVERAL, asked)
+
+
+def equipment_changes(
+    values: Mapping[str, Any], texts: Mapping[str, str]
+) -> dict[str, Value | None]:
+    """What of the texts differs from what the file says; None takes a key away."""
+    changed: dict[str, Value | None] = {}
+    for key, new in texts.items():
+        if new != _said(values, key):
+            several = key == "serial" and "," in new and "count" in values
+            changed[key] = [one.strip() for one in new.split(",")] if several else new or None
+    return changed
+
+
+def _said(values: Mapping[str, Any], key: str) -> str:
+    value = values.get(key)
+    return ", ".join(map(str, value)) if isinstance(value, list) else str(value or "")
+
+
+def _serial_of_equipment(text: str) -> Reading:
+    numbers = [" ".join(one.split()) for one in text.split(",")]
+    if len(numbers) > 1 and not all(numbers):
+        return Reading("", "a number is blank")
+    return Reading(", ".join(numbers))
+
+
+def said(draft: Draft, rows: Location, called: tuple[str, str], key: str) -> str:
+    """What an entry says under a key, where that is a plain text; else empty.
+
+    Parameters
+    ----------
+    rows : the list
+    called : the key and the text that the entry is known by
+    """
+    index = _index(draft, rows, called)
+    return "" if index is None else draft.text_at((*rows, index, key))
+
+
+def entered(
+    draft: Draft, rows: Location, called: tuple[str, str], texts: Mapping[str, str]
+) -> Draft:
+    """The file with the texts in an entry, which is added where it is not there.
+
+    One in which nothing is left but what it is known by is taken out.
+    """
+    changed = {key: text for key, text in texts.items() if text != said(draft, rows, called, key)}
+    index = _index(draft, rows, called)
+    if index is None:
+        given = dict([called]) | changed
+        return draft.insert(len(draft.value(rows) or ()), given, rows) if changed else draft
+    left = draft.value((*rows, index)).keys() - {key for key, text in changed.items() if not text}
+    if changed and left <= {called[0]} and not any(changed.values()):
+        return draft.delete([index], rows)
+    for key, text in changed.items():
+        draft = draft.put_at((*rows, index, key), text or None)
+    return draft
+
+
+def _index(draft: Draft, rows: Location, called: tuple[str, str]) -> int | None:
+    listed: Any = draft.value(rows)
+    key, name = called
+    for index, entry in enumerate(listed if isinstance(listed, list) else ()):
+        if isinstance(entry, dict) and entry.get(key) == name:
+            return index
+    return None
+
+
+_MOST_STEPS = 9
+
+
+def beginning() -> Question:
+    """Ask with which of the `TEMPLATES` an empty line begins; the answer is its number, from 1."""
+    answers = [
+        Answer(str(number), f"{kind}: {meaning}", str(number))
+        for number, (kind, meaning) in enumerate(TEMPLATES.items(), 1)
+    ]
+    text = "Each stands as given: change depth, current and pieces to yours."
+    return Question("Begin with", text, answers)
+
+
+def history(session: Session) -> Question:
+    """How many steps to take back, the last ones listed; it answers with their number."""
+    steps = session.history.steps
+    answers = [
+        Answer(str(number), f"before: {label}", str(number))
+        for number, label in enumerate(steps[:_MOST_STEPS], 1)
+    ]
+    more = len(steps) - _MOST_STEPS
+    text = f"Go back to before one of the last {len(answers)} changes; U does them again."
+    text += f" {more} are older; u goes back one by one." if more > 0 else ""
+    return Question("What was done", text, answers)
+
+
+def naming(session: Session) -> Sheet:
+    """The id of an assembly that is made of marked pieces."""
+    from calm.tui.catalogue.component_screen import id_check
+
+    own = session.draft.value(("components",))
+    check = id_check(own if isinstance(own, dict) else ())
+    asked = [Asked("id", "Id", check=check, placeholder="e.g. glass-pack-own")]
+    text = "The pieces go into the file's components; `use` of this id stands for them."
+    return Sheet("Make an assembly", text, asked)

@@ -17,13 +17,11 @@ from calm.tui.actions import bindings
 from calm.tui.catalogue.pane import Purpose
 from calm.tui.line.cell_editor import CellEditor
 from calm.tui.line.cells import Cells
-from calm.tui.line.equipment_sheet import equipment_changes, equipment_sheet
 from calm.tui.line.found import Found
-from calm.tui.line.questions import naming
+from calm.tui.line.mooring_sheet import equipment_changes, equipment_sheet, naming
 from calm.tui.line.rows import table_rows
-from calm.tui.line.table import LineTable
-from calm.tui.line.table_row import Column
-from calm.tui.workspace import Workspace
+from calm.tui.line.table import Column, LineTable
+from calm.tui.messages import Workspace
 
 _MIXED = "Pieces are marked, and clamps of other pieces; mark pieces only, or clamps only"
 

@@ -90,7 +90,7 @@ def _bill(result: Result) -> RenderableType:
     from calm.checks.inventory import inventory_of
     from calm.quantities import QUANTITIES
     from calm.report.blocks import Pairs, Part
-    from calm.report.check.inventory import inventory_table
+    from calm.report.check_tables import inventory_table
     from calm.report.terminal import shown
 
     items = inventory_of(result.mooring)

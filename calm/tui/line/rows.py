@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
 from calm.files import Place
-from calm.files.editing import Draft, Item
+from calm.files.editing import Draft, LineItem
 from calm.quantities import QUANTITIES
 from calm.tui.catalogue.index import Index
 from calm.tui.checking import length_text
-from calm.tui.line.table_row import TableRow
-from calm.tui.signs import CLAMP, ROLES, UNKNOWN_MARGIN, UNKNOWN_ROLE, worst
+from calm.tui.line.table import TableRow
+from calm.tui.theme import CLAMP, ROLES, UNKNOWN_MARGIN, UNKNOWN_ROLE, worst
 
 if TYPE_CHECKING:
     from calm.tui.found import Row
@@ -75,7 +75,7 @@ def _figures(draft: Draft, view: View | None) -> dict[Place, Sequence[Row]]:
     return taken
 
 
-def _called(items: Sequence[Item], place: Place) -> tuple[str, str, bool]:
+def _called(items: Sequence[LineItem], place: Place) -> tuple[str, str, bool]:
     """What the file says a row is: component, label, and whether it is clamped."""
     item = items[place.item]
     values = (item.clamps[place.clamp] if place.is_clamp else item).values
@@ -83,7 +83,7 @@ def _called(items: Sequence[Item], place: Place) -> tuple[str, str, bool]:
     return use, values.get("label", use), place.is_clamp
 
 
-def _row(spot: Place, item: Item, found: Sequence[Row], index: Index | None) -> TableRow:
+def _row(spot: Place, item: LineItem, found: Sequence[Row], index: Index | None) -> TableRow:
     values = {key: " ".join(value.split()) for key, value in item.values.items()}  # of one line
     use = values.get("use", "")
     listed = None if index is None else index.get(use)

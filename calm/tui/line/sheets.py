@@ -9,10 +9,12 @@ from textual.app import App
 
 from calm.files.editing import Draft
 from calm.tui.dialogs import Sheet
-from calm.tui.line.deployed_sheet import as_deployed, deployed_sheet, hung_at
 from calm.tui.line.mooring_sheet import (
+    as_deployed,
+    deployed_sheet,
     document_sheet,
     documented,
+    hung_at,
     mooring_sheet,
     tow_sheet,
     written,

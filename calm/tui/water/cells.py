@@ -16,10 +16,9 @@ from textual.reactive import reactive
 from textual.strip import Strip
 
 from calm.tui.actions import bindings
-from calm.tui.listing import Listing
-from calm.tui.signs import CURSOR
-from calm.tui.water.columns import half_way
-from calm.tui.water.pasted import Rows
+from calm.tui.scrolled import Listing
+from calm.tui.theme import CURSOR
+from calm.tui.water.pasted import Rows, half_way
 
 _WIDTH = 14
 _LEAD = 2

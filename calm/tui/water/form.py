@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from textual import events, on
+from textual.binding import BindingType
+from textual.message import Message
 
 from calm.files.definition import DENSITY
 from calm.files.density import USUAL_DENSITY
-from calm.files.document import Location
 from calm.files.editing import Draft, Value
-from calm.files.fields import POSITIVE_LENGTH, Quantity
-from calm.files.tables import SALINITY, TEMPERATURE, speed_and_direction
-from calm.tui.water.columns import named
-from calm.units import QuantityError
+from calm.files.fields import POSITIVE_LENGTH, QuantityField
+from calm.files.yaml_document import Location
+from calm.records.headings import heading
+from calm.records.profile_tables import SALINITY, TEMPERATURE, speed_and_direction
+from calm.tui.actions import bindings
+from calm.tui.field import Cycle
+from calm.units import QuantityError, QuantityRange
 
 CURRENT_FORMS = ("still", "uniform", "table", "file")
 DENSITY_FORMS = ("constant", "table", "temperature and salinity")
@@ -173,12 +180,12 @@ class Water:
         place = {name: self.text("current", name) for name in ("speed", "toward")}
         columns, rows = self.table("current")
         for column, text in zip(columns, rows[0] if rows else (), strict=False):
-            name, unit = named(column)
+            name, unit = heading(column)
             place[name] = f"{text} {unit}".strip()
         speed, u, v = (
-            _read(Quantity("speed"), place.get(name, "")) for name in ("speed", "u", "v")
+            _read(QuantityField("speed"), place.get(name, "")) for name in ("speed", "u", "v")
         )
-        toward = _read(Quantity("angle"), place["toward"])
+        toward = _read(QuantityField("angle"), place["toward"])
         if u is not None and v is not None:
             speed, toward = speed_and_direction(u, v)
         return _CURRENT if speed is None or toward is None else (f"{speed:g}", f"{toward:g}")
@@ -198,7 +205,7 @@ class Water:
         return self.draft.put_at(self.at(key), inherited)
 
 
-def _read(kind: Quantity, text: str) -> float | None:
+def _read(kind: QuantityRange, text: str) -> float | None:
     """A quantity in SI units; None where it cannot be read."""
     try:
         return kind.read(text) if text else None
@@ -216,3 +223,61 @@ def _is_row(row: object, most: int) -> bool:
 
 def _filled(row: Sequence[str | None], count: int) -> tuple[str, ...]:
     return tuple([*(text or "" for text in row), *[""] * count][:count])
+
+
+_TAKE_IT = "Enter takes it"
+
+
+class FormChoice(Cycle):
+    """A name and a form; the arrows show other ones, Enter takes what is shown.
+
+    When it is left without, it shows the form there is again.
+    """
+
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings("given")]
+
+    @dataclass
+    class Taken(Message):
+        """Another form is wanted."""
+
+        choice: FormChoice
+        form: str
+
+    def __init__(self, title: str, forms: tuple[str, ...], *, id: str | None = None) -> None:
+        super().__init__(title, forms, forms[0], id=id)
+        self._given = forms[0]
+
+    def show(self, word: str) -> None:
+        """Show the form there is."""
+        self._given = word
+        super().show(word)
+
+    def action_turn(self, by: int) -> None:
+        """Show the next form."""
+        here = self.words.index(self.word)
+        super().show(self.words[(here + by) % len(self.words)])
+
+    def action_take(self) -> None:
+        """Choose the form shown, and go on."""
+        if self.word != self._given:
+            self.post_message(self.Taken(self, self.word))
+        else:
+            self.screen.focus_next()
+
+    @on(events.Click)
+    def _press(self, event: events.Click) -> None:
+        """The mouse goes on, or takes the form by a press on the words that say so."""
+        event.prevent_default()
+        if self.word != self._given and event.x >= self.render().cell_len - len(_TAKE_IT):
+            self.action_take()
+        else:
+            self.action_turn(1)
+
+    def on_blur(self) -> None:
+        """What was not taken is not there."""
+        self.show(self._given)
+
+    @property
+    def hint(self) -> str:
+        """How the form that is shown is taken, where it is another one."""
+        return _TAKE_IT if self.word != self._given else super().hint

@@ -10,16 +10,16 @@ from textual.app import ComposeResult
 from textual.containers import Vertical
 from textual.message import Message
 
-from calm.files.current_text import CopiedTable, NoTableError, copied_table
+from calm.records.delimited import CopiedTable, NoTableError, copied_table
 from calm.tui.checking import Check, Reading
 from calm.tui.dialogs import Asked, Sheet
 from calm.tui.line.cell_editor import CellEditor
 from calm.tui.water.cells import Cells
-from calm.tui.water.columns import check_of
 from calm.tui.water.pasted import (
     NoRows,
     Rows,
     UnknownColumns,
+    check_of,
     offered_headings,
     previewed,
     rows_in,

@@ -15,11 +15,11 @@ from textual.widget import Widget
 from textual.widgets import Static
 
 from calm.files.editing import Draft, Value
-from calm.files.fields import POSITIVE_LENGTH, Quantity
-from calm.files.tables import DIRECTION, SALINITY, TEMPERATURE, WATER_DENSITY
+from calm.files.fields import POSITIVE_LENGTH, QuantityField
+from calm.records.profile_tables import DIRECTION, SALINITY, TEMPERATURE, WATER_DENSITY
 from calm.tui.checking import needed, quantity
 from calm.tui.field import Field
-from calm.tui.messages import said
+from calm.tui.messages import Workspace, said
 from calm.tui.profile import Profile
 from calm.tui.verdict_pane import state_word
 from calm.tui.water.form import (
@@ -28,20 +28,19 @@ from calm.tui.water.form import (
     DENSITY_FORMS,
     PROFILE_FORMS,
     USUAL_DEPTH,
+    FormChoice,
     Place,
     Water,
 )
-from calm.tui.water.form_choice import FormChoice
 from calm.tui.water.grid import Grid
-from calm.tui.workspace import Workspace
 
 if TYPE_CHECKING:
     from calm.errors import Problem
 
 _DEPTH = quantity(POSITIVE_LENGTH, optional=True)
 _DENSITY = quantity(WATER_DENSITY, optional=True)
-_SPEED = quantity(Quantity("speed", at_least=0))
-_WIND = quantity(Quantity("speed", at_least=0), optional=True)
+_SPEED = quantity(QuantityField("speed", at_least=0))
+_WIND = quantity(QuantityField("speed", at_least=0), optional=True)
 _ANGLE = quantity(DIRECTION)
 _TOWARD = quantity(DIRECTION, optional=True)
 _ELSEWHERE = (

@@ -6,21 +6,27 @@ The text is read as files are: by its headings, their units, and which way a dir
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from calm.errors import Problem
-from calm.files.tables import (
+from calm.files.fields import QuantityField
+from calm.records.headings import heading
+from calm.records.profile_tables import (
+    DIRECTION,
+    SALINITY,
+    TEMPERATURE,
+    WATER_DENSITY,
     CurrentTable,
     DepthTable,
     SeaWater,
-    heading,
     read_current,
     read_profile,
     read_water,
     speed_and_direction,
 )
-from calm.tui.signs import ELLIPSIS
-from calm.tui.water.columns import check_of, dimension_of, named
-from calm.units import DIMENSIONS, QuantityError, unit_factor
+from calm.tui.checking import Check, Reading, number, quantity
+from calm.tui.theme import ELLIPSIS
+from calm.units import DIMENSIONS, QuantityError, QuantityRange, unit_factor
 
 Rows = tuple[tuple[str, ...], ...]
 
@@ -40,7 +46,7 @@ def offered_headings(headings: Sequence[str] | None, columns: Sequence[str]) -> 
     """Headings for what was copied: its own, with units where it gives none; else the table's."""
     if headings is None:
         return list(columns)
-    units = {name: unit for name, unit in map(named, columns)}
+    units = {name: unit for name, unit in map(heading, columns)}
     offered = []
     for column in headings:
         name, unit = heading(column)
@@ -61,7 +67,7 @@ def rows_in(columns: Sequence[str], headings: Sequence[str], rows: Sequence[Sequ
     NoRows
         A row has a value that is none.
     """
-    if [heading(one) for one in headings] == [named(one) for one in columns]:
+    if [heading(one) for one in headings] == [heading(one) for one in columns]:
         return tuple(_as_written(i, row, columns) for i, row in enumerate(rows, 1))
     values = _by_name(columns, headings, rows)
     try:
@@ -106,7 +112,7 @@ def _by_name(
         problems.append((number == 0, f"row {number}: {message}" if number else message))
         return Problem("", 0, 0, message)
 
-    names = {named(column)[0] for column in columns}
+    names = {heading(column)[0] for column in columns}
     kept: list[Problem] = []
     table: CurrentTable | DepthTable | SeaWater | None
     if names & _OF_A_CURRENT:
@@ -138,7 +144,7 @@ def _by_name(
 
 def _column(column: str, values: dict[str, Sequence[float]]) -> list[str]:
     """The values of a column in its unit; each with its own where the column has none."""
-    name, unit = named(column)
+    name, unit = heading(column)
     dimension = dimension_of(name)
     usual = DIMENSIONS[dimension].unit
     try:
@@ -147,3 +153,55 @@ def _column(column: str, values: dict[str, Sequence[float]]) -> list[str]:
         raise UnknownColumns(f"`{column}` {error.complaint}") from None
     plain = [f"{round(value / factor, 9) + 0.0:.9g}" for value in values[name]]
     return plain if unit or not usual else [f"{text} {usual}" for text in plain]
+
+
+_KINDS: dict[str, QuantityRange] = {
+    "depth": QuantityField("length"),
+    "speed": QuantityField("speed", at_least=0),
+    "u": QuantityField("speed"),
+    "v": QuantityField("speed"),
+    "w": QuantityField("speed"),
+    "toward": DIRECTION,
+    "density": WATER_DENSITY,
+    "temperature": TEMPERATURE,
+    "salinity": SALINITY,
+}
+
+
+_TURN = 360.0
+
+
+def dimension_of(name: str) -> str:
+    """The dimension of the quantity that a column holds."""
+    return _KINDS[name].dimension
+
+
+def check_of(column: str) -> Check:
+    """What judges the values of a column: numbers where it gives its unit, else quantities."""
+    name, unit = heading(column)
+    kind = _KINDS.get(name)
+    if kind is None:
+        return number
+    judged = quantity(kind)
+    if not unit:
+        return judged
+
+    def check(text: str) -> Reading:
+        reading = number(text)
+        complaint = judged(f"{reading.text} {unit}").complaint if reading.is_good else ""
+        return replace(reading, complaint=complaint) if complaint else reading
+
+    return check
+
+
+def half_way(column: str, one: float, other: float) -> float:
+    """The value between two of a column; between directions on the shorter way round."""
+    name, unit = heading(column)
+    half = (one + other) / 2
+    if name != "toward":
+        return half
+    try:
+        turn = _TURN / unit_factor(unit or "deg", "angle")
+    except QuantityError:
+        return half
+    return (half + turn / 2) % turn if abs(one - other) > turn / 2 else half

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from calm.analytic.chart import ChartSolution, chart_solve
+from calm.analytic.chart import GIVENS, SIZES, ChartSolution, chart_solve, mirrored
 from calm.analytic.chart_branch import Branch, critical_angle
-from calm.analytic.chart_given import GIVENS, SIZES, mirrored
 from calm.analytic.chart_search import size_of
 from calm.errors import UsageError
 

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from calm.analytic.chart_branch import Branch, critical_angle
-from calm.analytic.chart_curve import curve
+from calm.analytic.chart_branch import Branch, critical_angle, curve
 from calm.analytic.chart_search import roots
 from calm.errors import UsageError
 

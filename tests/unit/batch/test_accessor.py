@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-import calm.report.batch.accessor  # noqa: F401  every dataset has `.calm` from here on
+import calm.report.xarray_accessor  # noqa: F401  every dataset has `.calm` from here on
 from calm.batch.result import open_result
 from calm.errors import UsageError
 from tests.unit.batch.made_result import COMPONENTS, make_result

@@ -7,14 +7,12 @@ from scipy import optimize, stats
 from calm.batch.statistics.extremes import (
     LEAST_PEAKS,
     Fit,
-    Refusal,
-    return_levels,
-)
-from calm.batch.statistics.samples import (
+    LevelsRefused,
     annual_maxima,
     extremal_index,
     median_step,
     peaks_over,
+    return_levels,
 )
 
 HOUR, DAY = np.timedelta64(3600, "s"), np.timedelta64(86400, "s")
@@ -147,7 +145,7 @@ def test_a_moving_maximum_of_two_has_half_as_many_clusters():
 def test_a_short_record_is_refused_with_its_length():
     time, values = daily_peaks(0.5, 0.1, 2.0, 10)
     gev, pot = return_levels(time, values, {})
-    assert isinstance(gev, Refusal) and isinstance(pot, Refusal)
+    assert isinstance(gev, LevelsRefused) and isinstance(pot, LevelsRefused)
     assert "10 whole years" in gev.reason and "of the 1 year begun, 0 have 90 %" in gev.reason
     assert "183 days" in pot.reason
 
@@ -203,7 +201,7 @@ def test_a_fit_at_the_bound_of_the_search_is_refused():
     time = times(4 * 8766)
     values = np.random.default_rng(13).uniform(size=len(time))
     _, pot = return_levels(time, values, {})
-    assert isinstance(pot, Refusal)
+    assert isinstance(pot, LevelsRefused)
     assert "a bound of the search" in pot.reason
 
 
@@ -223,7 +221,7 @@ def test_a_search_that_fails_is_refused(monkeypatch, searches):
     time, values = daily_peaks(12, 0.1, 2.0, 6)
     gev, pot = return_levels(time, values, {})
     for refusal in (gev, pot):
-        assert isinstance(refusal, Refusal)
+        assert isinstance(refusal, LevelsRefused)
         assert "could not be maximised: maximum number of iterations" in refusal.reason
 
 
@@ -237,7 +235,7 @@ def test_no_level_where_the_strongest_currents_have_no_solution():
     true = 10.0 + stats.genpareto.isf(1.0 / 36525.0, 0.1, scale=2.0)
     assert return_levels(time, kept, {})[0].levels[-1].high < 0.8 * true
     for refusal in return_levels(time, kept, ended):
-        assert isinstance(refusal, Refusal)
+        assert isinstance(refusal, LevelsRefused)
         assert "of the profiles with a current 19 without equilibrium" in refusal.reason
 
 

@@ -15,7 +15,7 @@ import pytest
 
 from calm.batch import run as run_module
 from calm.batch import work as work_module
-from calm.batch.run import Outcome, run_batch
+from calm.batch.run import BatchOutcome, run_batch
 from calm.batch.statuses import Ending
 from calm.batch.work import Progress
 from tests.unit.batch.made import MadeRecord, content, made_mooring
@@ -301,14 +301,14 @@ def test_ctrl_c_while_the_record_is_read_through(tmp_path, mooring, record):
         raise KeyboardInterrupt
 
     record.digest = digest
-    assert run_batch(mooring, record, tmp_path / "r.nc") == Outcome({}, False, "interrupted")
+    assert run_batch(mooring, record, tmp_path / "r.nc") == BatchOutcome({}, False, "interrupted")
 
 
 def test_an_event_ends_it_wherever_it_is(tmp_path, mooring, record):
     """While the record is read through, in a block, and as the result is made."""
     output, stop = tmp_path / "r.nc", Event()
     record.digest = lambda check: (stop.set(), check())
-    assert run_batch(mooring, record, output, stop=stop) == Outcome({}, False, "interrupted")
+    assert run_batch(mooring, record, output, stop=stop) == BatchOutcome({}, False, "interrupted")
     del record.digest
     for limit in (0, 16, 40):
         stop.clear()

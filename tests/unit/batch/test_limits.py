@@ -8,12 +8,12 @@ import pytest
 
 import calm
 from calm.batch.statistics.limits import NOT_JUDGED, limits_of
-from calm.batch.statistics.series import Series
+from calm.batch.statistics.series import ResultColumns
 from calm.case import Mooring
 from calm.checks.finding import State
 from calm.checks.posture import reaches_the_surface
 from calm.checks.rules import RULES, STANDING
-from calm.files.checks import Checks, MinimumTensions
+from calm.files.check_limits import Checks, MinimumTensions
 from calm.shipped import shipped_folder
 from tests.unit.batch.made_result import make_result, one_profile
 
@@ -33,7 +33,7 @@ STRICT = Checks.model_construct(
 def judged_here(mooring, result):
     """By rule and component: the gravest state, its value and its limit."""
     found = {}
-    with Series(one_profile(result)) as series:
+    with ResultColumns(one_profile(result)) as series:
         for limit in limits_of(mooring):
             key = (limit.rule.name, limit.component)
             if limit.limit is None:
@@ -121,7 +121,7 @@ def test_a_clamp_bears_on_the_strength_of_its_piece():
     tensions = np.where(np.array(clamps) == piece.clamps[0].label, 9000.0, 1.0)
     made = make_result(1, labels=labels, clamps=clamps, clamp_tension=tensions[None])
     greatest = {}
-    with Series(made) as series:
+    with ResultColumns(made) as series:
         for limit in limits_of(mooring):
             if limit.rule.name == "strength":
                 greatest[limit.component] = float(limit.values(series)[0])
@@ -142,7 +142,7 @@ def test_what_lies_on_the_seabed_is_not_slack():
     labels = tuple(piece.label for piece in mooring.file.pieces)
     slack = next(limit for limit in limits_of(mooring) if limit.rule.name == "slack")
     depth = np.array([[500.0], [mooring.water.depth]]) * np.ones(len(labels))
-    with Series(make_result(2, labels=labels, clamps=(), depth_top=depth)) as series:
+    with ResultColumns(make_result(2, labels=labels, clamps=(), depth_top=depth)) as series:
         values = slack.values(series)
     assert values[0] == 1.0
     assert np.isnan(values[1])

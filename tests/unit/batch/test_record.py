@@ -6,13 +6,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from calm.batch.records.choice import parse_period, shown
-from calm.batch.records.opening import open_record
-from calm.batch.records.record import Record
 from calm.errors import InputError, UsageError
 from calm.files import CurrentTable
-from calm.files.current_file import read_current_file
-from calm.files.current_terms import Terms
+from calm.records.current_file import open_record, read_current_file
+from calm.records.current_terms import Terms
+from calm.records.record import Record, parse_period, time_text
 from tests.unit.batch.records import ARRAYS, COUNT, HERE, SEABED, adcp, glorys, hycom, write
 
 TERMS = Terms(SEABED, HERE)
@@ -82,7 +80,7 @@ def test_the_nearest_column_with_water_is_taken(tmp_path: Path) -> None:
     assert v == pytest.approx(column["vo"].values, abs=0.00031, nan_ok=True)
     assert depth == pytest.approx(column["depth"].values)
     assert w is None
-    assert shown(record.time[0]) == "2026-02-02T16:00"
+    assert time_text(record.time[0]) == "2026-02-02T16:00"
 
 
 @pytest.mark.parametrize("longitude", [-5.2, 354.8])
@@ -132,7 +130,7 @@ def test_times_that_count_from_long_ago(tmp_path: Path) -> None:
         dataset["time"] = ("time", 737_791.0 + np.arange(COUNT), {"units": units})
         dataset.to_netcdf(path, engine="h5netcdf")
         with opened(path) as record:
-            assert shown(record.time[0]) == "2020-12-31T00:00"
+            assert time_text(record.time[0]) == "2020-12-31T00:00"
             assert (np.diff(record.time) == np.timedelta64(1, "D")).all()
 
 
@@ -223,7 +221,7 @@ def test_period_and_every(tmp_path: Path) -> None:
     with opened(path) as record:
         whole = record.profiles(0, COUNT)[1]
     with opened(path, time=parse_period("2026-03-01T00:10/2026-03-01T00:50"), every=2) as record:
-        assert [shown(time)[-5:] for time in record.time] == ["00:10", "00:30", "00:50"]
+        assert [time_text(time)[-5:] for time in record.time] == ["00:10", "00:30", "00:50"]
         assert np.array_equal(record.profiles(0, 3)[1], whole[1:6:2])
         assert np.array_equal(record.profiles(2, 3)[1], whole[5:6])
         assert record.notes[:2] == (
@@ -263,7 +261,7 @@ def test_profiles_out_of_order_are_put_in_it(tmp_path: Path) -> None:
 def test_what_is_compressed_together_is_read_once(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, choice: dict, windows: list[slice]
 ) -> None:
-    from calm.files.current_dataset import CurrentDataset
+    from calm.records.current_dataset import CurrentDataset
 
     path = tmp_path / "packed.nc"
     packing = {"zlib": True, "chunksizes": (4, 5)}

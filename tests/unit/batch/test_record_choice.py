@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from calm.batch.records.choice import parse_period, parse_place
 from calm.errors import UsageError
+from calm.records.record import parse_period, parse_place
 
 
 @pytest.mark.parametrize(

@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from calm.batch.records import csv as record_csv
-from calm.batch.records.opening import open_record
 from calm.errors import InputError
-from calm.files.current_csv import MOST_PROBLEMS
+from calm.records import record_csv
+from calm.records.current_file import open_record
+from calm.records.delimited import MOST_PROBLEMS
 from tests.unit.batch.records import COUNT, SEABED, write
 
 HEAD = "time,depth[m],u[m/s],v[m/s]\n"
@@ -107,7 +107,8 @@ def test_a_negative_speed_is_a_mistake(csv: Path) -> None:
         ("depth[m],u[m/s],v[m/s]\n0,1,1\n", (1, 1, "has no column `time`: it is one profile, for")),
         ("time,depth[m],u[m/s]\n2026-03-01,0,1\n", (1, 1, "a current needs `u` and `v`, or `spee")),
         ("time,depth[m],u[m/s],v[kg]\n2026-03-01,0,1,1\n2026-03-02,0,1,1\n", (1, 22, "`v[kg]` is")),
-        ("a;b\n", (1, 1, "`a;b` is not a header")),
+        ("a;b\n", (1, 1, "has no column `time`: it is one profile, for")),
+        ("time\n", (1, 1, "`time` is not a header such as `time,depth[m],u[m/s],v[m/s]`")),
         (
             HEAD + "2026-03-01,0,1,1\n2026-03-02,0,1,1\n2026-03-01,5,1,1\n",
             (0, 0, "has two profiles of 2026-03-01T00:00; leave one of them out"),

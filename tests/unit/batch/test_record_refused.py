@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from calm.batch.records.opening import open_record
 from calm.errors import InputError
+from calm.records.current_file import open_record
 from tests.unit.batch.records import HERE, SEABED, adcp, adcp_by_distance, curvilinear, glorys
 
 

@@ -8,11 +8,17 @@ import pytest
 
 from calm.batch.result import open_result
 from calm.batch.statistics import series
-from calm.batch.statistics.distribution import MOST_INTERVALS, SHARES, distribution_of, envelope_of
-from calm.batch.statistics.extremes import Fit, Refusal
-from calm.batch.statistics.summary import WORST, summarize
+from calm.batch.statistics.extremes import Fit, LevelsRefused
+from calm.batch.statistics.summary import (
+    MOST_INTERVALS,
+    SHARES,
+    WORST,
+    distribution_of,
+    envelope_of,
+    summarize,
+)
 from calm.errors import UsageError
-from calm.report.batch.document import summary_document
+from calm.report.batch_summary import summary_document
 from tests.unit.batch.made_result import FILE, made_mooring, make_result, stormy
 
 HOUR = np.timedelta64(1, "h")
@@ -169,8 +175,8 @@ def test_a_short_record_says_why_it_has_no_return_levels(mooring):
     summary = summarize(stormy(mooring, 500), mooring)
     for response in summary.responses:
         gev, pot = response.return_levels
-        assert isinstance(gev, Refusal) and "whole years" in gev.reason
-        assert isinstance(pot, Refusal) and "21 days" in pot.reason
+        assert isinstance(gev, LevelsRefused) and "whole years" in gev.reason
+        assert isinstance(pot, LevelsRefused) and "21 days" in pot.reason
 
 
 def test_a_line_without_a_shape_in_still_water_has_no_knockdown(mooring):

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from calm.case.chaos import sobol_indices
 from calm.case.draws import normals_of
+from calm.case.uncertain import sobol_indices
 
 NORMALS = normals_of(1024, 0)
 EXACT = 1e-9

@@ -10,7 +10,7 @@ from calm.case import Mooring
 from calm.checks.criterion import parts_of
 from calm.checks.inventory import inventory_of
 from calm.files import read_mooring
-from calm.report.schematic.levels import levels_of
+from calm.report.schematic.shown_parts import levels_of
 
 FILE = """
 name: lander

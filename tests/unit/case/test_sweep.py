@@ -3,7 +3,7 @@
 import pytest
 
 import calm
-from calm.case.sweep import sensitivity, sweep
+from calm.case.tow import sensitivity, sweep
 from calm.errors import NoEquilibrium, UsageError
 from calm.shipped import shipped_folder
 

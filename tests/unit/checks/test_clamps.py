@@ -6,10 +6,10 @@ import pytest
 
 import calm
 from calm.assemble import axial_drag_of, with_axial_clamps
+from calm.checks.arrangement import clamp_grip
 from calm.checks.assess import check
-from calm.checks.clamps import clamp_grip
-from calm.checks.launch import launch_of
 from calm.checks.recovery import recovery_of
+from calm.drop.launch import launch_of
 from calm.shipped import shipped_folder
 
 FILE = """
@@ -75,7 +75,7 @@ def test_a_grip_comes_before_a_breaking_load(load, figures, limit, state):
 def test_the_fall_and_the_rise_pull_along_the_line(load):
     mooring = load("{use: logger, at: 50 m, label: a}")
     result = mooring.solve()
-    fall, rise = launch_of(mooring, result).fall_speed, recovery_of(mooring, result).rise_speed
+    fall, rise = launch_of(mooring).fall_speed, recovery_of(mooring, result).rise_speed
     end = 0.5 * 1025.0 * 0.8 * pi * 0.1**2 / 4.0
     pulls = [abs(end * fall**2 - 40.0), 40.0 + end * rise**2]
     (found,) = (one for one in check(mooring).findings if one.rule == "clamp-grip")
@@ -86,25 +86,27 @@ def test_the_fall_and_the_rise_pull_along_the_line(load):
 def test_clamps_in_the_fall_and_the_rise_have_their_drag_along_the_line(load):
     """Many loggers on a plumb line in still water: all that drags is known."""
     loggers = ", ".join(f"{{use: logger, at: {at} m}}" for at in range(10, 400, 10))
-    mooring = load(loggers, **{"speed: 0.5 m/s": "speed: 0 m/s"})
+    changes = {"speed: 0.5 m/s": "speed: 0 m/s", "depth: 500 m": "depth: 5000 m"}
+    mooring = load(loggers, **changes)
     result = mooring.solve()
     end, ball = 0.5 * 1025.0 * 0.8 * pi * 0.1**2 / 4.0, 0.5 * 1025.0 * 0.5 * pi / 4.0
     net = 3000.0 - 39 * 40.0 - 400.0 - 300.0
     drag = ball + 39 * end + 9.0
     assert recovery_of(mooring, result).rise_speed == pytest.approx((net / drag) ** 0.5, rel=1e-4)
     falls = ((20_000.0 - net) / (drag + 600.0)) ** 0.5
-    assert launch_of(mooring, result).fall_speed == pytest.approx(falls, rel=1e-4)
+    assert launch_of(mooring).fall_speed == pytest.approx(falls, rel=1e-4)
 
 
-def test_a_fall_that_is_not_steady_in_the_current_is_that_in_still_water():
-    """Loggers fall faster than the wire that they are on: the line doubles back."""
+def test_loggers_on_a_wire_below_a_buoy_fall_with_it_taut():
+    """Free, they would fall faster than their wire; the drag of the buoy keeps the line taut."""
     mooring = calm.load(shipped_folder("lines") / "taut-nylon-surface.yaml")
-    launch = launch_of(mooring, mooring.solve())
-    assert launch.in_still_water and launch.tangles
-    assert launch.drift == (0.0, 0.0)
-    speed = next(one for one in check(mooring).findings if one.rule == "launch-speed")
+    launch = launch_of(mooring)
+    assert launch.tangles == ()
+    assert launch.greatest_tension.min() > 5000.0
+    assessment = check(mooring)
+    speed = next(one for one in assessment.findings if one.rule == "launch-speed")
     assert speed.value == launch.fall_speed
-    assert "in still water: in the current it finds no steady motion" in speed.message
+    assert not any(one.rule == "tangling" for one in assessment.findings)
 
 
 def test_what_has_no_axis_has_its_one_drag(load):

@@ -1,18 +1,21 @@
-"""The launch of a line by hand: without friction along it, every drag is K V²."""
+"""The launch of a line by hand: without friction along it, every drag is K V².
+
+The water is so deep that the line has long come plumb when its anchor lands.
+"""
 
 from math import pi, sqrt
 
 import pytest
 
 import calm
-from calm.checks.launch import launch_of
+from calm.drop.launch import launch_of
 from calm.errors import NoEquilibrium
 from calm.shipped import shipped_folder
 
 FILE = """
 name: By hand
 environment:
-  depth: 500 m
+  depth: 5000 m
   current: {speed: 0.2 m/s, toward: 90 deg}
 line:
   - {use: ball, label: top}
@@ -26,6 +29,8 @@ components:
   thin: {kind: cable, diameter: 10 mm, weight: 1 N/m}
   block: {kind: anchor, weight: 5 kN, kt: 400 N/(m/s)^2}
 """
+PLUMB = 1e-3
+"""Relative: what is left of the lean, and drag with the speed below 1 mm/s."""
 NET = 5000.0 - (2000.0 - 200.0 - 200.0 - 100.0)
 
 
@@ -35,7 +40,7 @@ def launched(tmp_path):
         path = tmp_path / "m.yaml"
         path.write_text(text.replace("CT", ct))
         mooring = calm.load(path)
-        return launch_of(mooring, mooring.solve())
+        return launch_of(mooring)
 
     return of
 
@@ -43,12 +48,12 @@ def launched(tmp_path):
 def test_speed_and_tensions(launched):
     launch = launched()
     squared = NET / 650.0
-    assert launch.fall_speed == pytest.approx(sqrt(squared), rel=1e-8)
-    assert launch.anchor_tension == pytest.approx(5000.0 - 400.0 * squared)
-    assert launch.drift == pytest.approx((0.2, 0.0))
+    assert launch.fall_speed == pytest.approx(sqrt(squared), rel=PLUMB)
+    assert launch.anchor_tension == pytest.approx(5000.0 - 400.0 * squared, rel=PLUMB)
+    assert launch.drift == pytest.approx((0.2, 0.0), abs=PLUMB)
     below = 2000.0 + 200.0 * squared
     lower = [below, below - 200.0, below - 400.0 + 50.0 * squared, below - 500.0 + 50.0 * squared]
-    assert launch.tension_top == pytest.approx([0.0, *lower[:-1]])
+    assert launch.tension_top == pytest.approx([0.0, *lower[:-1]], abs=1e-6)
     assert launch.tension_bottom == pytest.approx(lower)
     assert launch.anchor_drag_known
     assert launch.tangles == ()
@@ -56,14 +61,14 @@ def test_speed_and_tensions(launched):
 
 def test_the_band_of_the_drag_of_the_anchor(launched):
     slow, fast = launched().fall_speed_band
-    assert (slow, fast) == pytest.approx((sqrt(NET / 1050.0), sqrt(NET / 450.0)), rel=1e-8)
+    assert (slow, fast) == pytest.approx((sqrt(NET / 1050.0), sqrt(NET / 450.0)), rel=PLUMB)
 
 
 def test_the_band_of_the_friction_along_the_line(launched):
     launch = launched(FILE.replace("kt: 400 N/(m/s)^2", "kt: 0 N/(m/s)^2"), ct="0.01")
     friction = 512.5 * pi * 0.01 * 0.01 * 300.0
     speeds = [sqrt(NET / (250.0 + times * friction)) for times in (1.0, 2.0, 0.5)]
-    assert [launch.fall_speed, *launch.fall_speed_band] == pytest.approx(speeds, rel=1e-8)
+    assert [launch.fall_speed, *launch.fall_speed_band] == pytest.approx(speeds, rel=PLUMB)
 
 
 def test_an_anchor_of_unknown_drag_is_a_cube_and_judged_as_if_it_had_none(launched):
@@ -71,8 +76,8 @@ def test_an_anchor_of_unknown_drag_is_a_cube_and_judged_as_if_it_had_none(launch
     volume = 5000.0 / ((7850.0 - 1025.0) * 9.80665)
     squared = NET / (250.0 + 0.5 * 1025.0 * 1.05 * volume ** (2 / 3))
     assert not launch.anchor_drag_known
-    assert launch.fall_speed == pytest.approx(sqrt(squared), rel=1e-8)
-    assert launch.greatest_speed == pytest.approx(sqrt(NET / 250.0), rel=1e-8)
+    assert launch.fall_speed == pytest.approx(sqrt(squared), rel=PLUMB)
+    assert launch.greatest_speed == pytest.approx(sqrt(NET / 250.0), rel=PLUMB)
     assert launch.greatest_tension[-1] == pytest.approx(5100.0)
     assert launched().greatest_speed == launched().fall_speed
 
@@ -85,14 +90,16 @@ def test_components_are_named_figures(launched):
     assert rows[2]["tension_bottom"] == launch.tension_bottom[2]
 
 
-def test_a_float_at_the_surface_stays_there():
+def test_a_float_at_the_surface_is_drawn_over_the_anchor():
+    """The anchor lands while the float is still on its way: its drag holds the line taut."""
     mooring = calm.load(shipped_folder("lines") / "chain-and-rope-surface.yaml")
-    launch = launch_of(mooring, mooring.solve())
-    assert launch.tension_top[0] == launch.tension_bottom[0] == 0.0
-    assert launch.tension_top[1] == 0.0
+    launch = launch_of(mooring)
+    assert launch.tangles == ()
+    assert launch.greatest_tension.min() > 0.7 * mooring.anchor_weight
+    assert launch.anchor_tension < mooring.anchor_weight
     drag = mooring.file.anchor.kt * launch.fall_speed**2
-    # but for the density there, 2 % above that of the coefficient, and a slow current
-    assert mooring.anchor_weight - launch.anchor_tension == pytest.approx(drag, rel=0.03)
+    # it moves sideways as well
+    assert mooring.anchor_weight - launch.anchor_tension == pytest.approx(drag, rel=0.1)
 
 
 def test_a_fall_that_nothing_limits_has_no_speed(launched):

@@ -3,7 +3,7 @@
 import pytest
 
 import calm
-from calm.checks.limits import limits_used
+from calm.checks.criterion import limits_used
 
 LINE = """
 environment: {{depth: 100 m}}

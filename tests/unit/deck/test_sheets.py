@@ -6,8 +6,8 @@ import pytest
 
 import calm
 from calm.deck import Deck, deck_of
+from calm.deck.deck_items import Order
 from calm.deck.hardware import spares_of
-from calm.deck.order import Order
 from calm.deck.shipping import total_of
 
 MOORING = """\

@@ -9,8 +9,8 @@ import yaml
 
 from calm.case import load
 from calm.errors import InputError, UsageError
-from calm.exchange.cbl.expressions import constant
-from calm.exchange.importing import Options, import_file
+from calm.exchange.cable_formulas import constant
+from calm.exchange.importing import ImportOptions, import_file
 
 PROBLEMS = Path(__file__).parent / "problems"
 
@@ -40,7 +40,7 @@ End
 def imported(tmp_path, text, name="m.cbl", **options):
     path = tmp_path / name
     path.write_text(text)
-    return import_file(path, tmp_path / "m.yaml", options=Options(**options))
+    return import_file(path, tmp_path / "m.yaml", options=ImportOptions(**options))
 
 
 def solved(tmp_path, made):

@@ -11,8 +11,8 @@ from scipy.io import savemat
 from calm.case import load
 from calm.errors import InputError
 from calm.exchange.importing import import_file
-from calm.exchange.mdd.octave import read_octave_text
-from calm.exchange.mdd.reading import read_mdd
+from calm.exchange.mat_file import read_octave_text
+from calm.exchange.mdd_reader import read_mdd
 from tests.unit.exchange.mat_files import (
     HEIGHT,
     NAMES,
@@ -254,6 +254,16 @@ def test_a_clamp_in_two_places_is_pointed_out(tmp_path):
     assert "`ZCO` has it at 20 m" in made.guessed[0].what
 
 
+def test_a_chain_that_floats_is_a_cable(tmp_path):
+    """As from the other programs: a chain of CALM has a weight."""
+    lifts = mooring()["B"].copy()
+    lifts[0, 5] = 4.0
+    chain = read(tmp_path, mooring(B=lifts)).items[5].component
+    assert (chain.name, chain.kind) == ("1/2 chain", "cable")
+    assert chain.figures["buoyancy"] == pytest.approx(4.0 * KILOGRAM)
+    assert "weight" not in chain.figures
+
+
 def test_a_tow_leads_from_the_ship_to_the_body(tmp_path):
     made = imported(tmp_path, tow())
     assert "tow: {speed: 1 m/s, toward: 36.8698976 deg}" in made.text
@@ -380,7 +390,7 @@ def test_octaves_own_format_and_bombs_are_refused_by_name(tmp_path, monkeypatch)
     path.write_bytes(b"Octave-1-L" + bytes(400))
     with pytest.raises(InputError, match="Octave's binary format"):
         import_file(path, tmp_path / "design.yaml")
-    monkeypatch.setattr("calm.exchange.mdd.matfile.LARGEST", 1_000_000)
+    monkeypatch.setattr("calm.exchange.mat_file.LARGEST", 1_000_000)
     path.write_bytes(gzip.compress(b"# name: z\n# type: matrix\n" + bytes(2_000_000)))
     with pytest.raises(InputError, match="more than 1 MB once it is decompressed"):
         import_file(path, tmp_path / "design.yaml", format="mdd")

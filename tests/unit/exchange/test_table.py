@@ -7,8 +7,8 @@ import pytest
 
 from calm.case import load
 from calm.errors import InputError
-from calm.exchange.importing import Options, import_file
-from calm.exchange.table.cells import number
+from calm.exchange.importing import ImportOptions, import_file
+from calm.exchange.list_headings import number
 
 SITE = """\
 environment:
@@ -53,7 +53,7 @@ def read(tmp_path, site):
         content = text if isinstance(text, bytes) else text.encode()
         path.write_bytes(b"\xfe\xff" + content if bom else content)
         return import_file(
-            path, tmp_path / "m.yaml", environment=environment, options=Options(**options)
+            path, tmp_path / "m.yaml", environment=environment, options=ImportOptions(**options)
         )
 
     return read

@@ -6,21 +6,19 @@ import pytest
 
 from calm.errors import Problem
 from calm.files import Anchor, Body, Cable, Chain, Cylinder, Sphere
-from calm.files.catalogue import Assembly, define
+from calm.files.catalogue import Assembly, CatalogueEntry, define
 from calm.files.components import Component
 from calm.files.definition import CATALOGUE_DENSITY
-from calm.files.document import Document
-from calm.files.entries import Entry
-from calm.files.section import Section
+from calm.files.yaml_document import Document, SourceMapping
 from calm.physics.reference import REFERENCE_DENSITY
 
 G = 9.80665
 
 
 def parse(fields: dict[str, Any], family: str | None = None) -> tuple[Any, list[str]]:
-    section = Section.of(Document("file.yaml", {}), (), fields)
+    section = SourceMapping.of(Document("file.yaml", {}), (), fields)
     problems: list[Problem] = []
-    component = define(Entry("it", family, section), section, problems)
+    component = define(CatalogueEntry("it", family, section), section, problems)
     return component, [problem.message for problem in problems]
 
 

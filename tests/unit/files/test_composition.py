@@ -7,8 +7,7 @@ from collections.abc import Iterator
 import pytest
 import yaml
 
-from calm.files.composition import compose
-from calm.files.nodes import Composition, Node
+from calm.files.composition import Composition, Node, compose
 from tests.property.test_editing import FILES
 
 SIGNS = (

@@ -7,10 +7,10 @@ import pytest
 
 from calm.errors import InputError
 from calm.files import CurrentTable, MooringFile
-from calm.files.current_csv import MOST_PROBLEMS
-from calm.files.current_file import read_current_file
-from calm.files.current_terms import Terms
-from calm.files.times import TimeChoiceError
+from calm.records.current_file import read_current_file
+from calm.records.current_terms import Terms
+from calm.records.delimited import MOST_PROBLEMS
+from calm.records.times import TimeChoiceError
 
 from .conftest import GOOD, Place
 
@@ -128,9 +128,10 @@ def test_column_of_a_record_with_a_mistake(csv: Path) -> None:
         ("", (0, 0, "is empty")),
         ("depth[m],u[m/s],v[m/s]\n", (1, 1, "the table has no rows")),
         (
-            "depth[m];u[m/s];v[m/s]\n0;1;1\n",
-            (1, 1, "`depth[m];u[m/s];v[m/s]` is not a header such as `depth[m],u[m/s],v[m/s]`"),
+            "depth[m]\n0\n",
+            (1, 1, "`depth[m]` is not a header such as `depth[m],u[m/s],v[m/s]`"),
         ),
+        ("0,1,1\n", (1, 1, "there is no header; did you mean `depth[m],u[m/s],v[m/s]`?")),
         (
             "time,depth[m],u[m/s],v[m/s]\nnoon,0,1,1\n",
             (2, 1, "`noon` is not a time; write 2026-03-01T06:00"),

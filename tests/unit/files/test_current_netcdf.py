@@ -10,9 +10,9 @@ import xarray as xr
 
 from calm.errors import InputError
 from calm.files import CurrentTable, MooringFile
-from calm.files.current_file import read_current_file
-from calm.files.current_terms import Terms
-from calm.files.times import TimeChoiceError
+from calm.records.current_file import read_current_file
+from calm.records.current_terms import Terms
+from calm.records.times import TimeChoiceError
 
 from .conftest import GOOD
 

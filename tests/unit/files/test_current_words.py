@@ -10,8 +10,8 @@ import pytest
 import xarray as xr
 
 from calm.errors import InputError
-from calm.files.current_file import read_current_file
-from calm.files.current_terms import Terms
+from calm.records.current_file import read_current_file
+from calm.records.current_terms import Terms
 
 WRITTEN = Path(__file__).parent / "written"
 """Files that MHKiT 1.1.2 wrote: velocities (dir, range, time) of a Signature looking up, at 60 dbar

@@ -8,9 +8,8 @@ import pytest
 
 from calm.errors import Problem
 from calm.files import DepthTable, Environment, MooringFile, SeaWater, mooring_schema
-from calm.files.document import read_document
 from calm.files.environment import read_environment
-from calm.files.section import Section
+from calm.files.yaml_document import SourceMapping, read_document
 from tests.core_yaml import loaded
 
 from .conftest import GOOD, Place
@@ -37,7 +36,7 @@ def towed(tmp_path: Path) -> Towed:
         path.write_text(text)
         document = read_document(path)
         problems: list[Problem] = []
-        section = Section.of(document, (), document.data)
+        section = SourceMapping.of(document, (), document.data)
         environment = read_environment(section, None, problems, [], towed=True)
         return environment, [problem.message for problem in problems]
 

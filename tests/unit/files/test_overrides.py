@@ -2,7 +2,7 @@
 
 import pytest
 
-from calm.files.overrides import contradicted
+from calm.files.components import contradicted
 
 DRAG = {"kn", "kt", "drag_area", "cd", "drag_measurements", "made_of"}
 

@@ -7,7 +7,6 @@ import jsonschema
 import pytest
 
 from calm.files import MooringFile, mooring_schema
-from calm.files.schema_words import EXAMPLES, MEANINGS
 from tests.core_yaml import loaded
 
 from . import test_strumming, test_tow
@@ -192,9 +191,3 @@ def test_every_key_has_a_meaning_and_an_example_that_is_accepted() -> None:
         if not jsonschema.Draft202012Validator({"$defs": schema["$defs"], **form}).is_valid(example)
     }
     assert not refused
-
-
-def test_no_word_is_said_of_a_key_that_does_not_exist() -> None:
-    known = keys(mooring_schema())
-    names = {name.rpartition(".")[2] for name in known} | set(known)
-    assert not (MEANINGS.keys() | EXAMPLES.keys()) - names

@@ -13,7 +13,7 @@ from calm.files import (
     Strumming,
     StrummingFactor,
 )
-from calm.files.strumming import AmplitudeName
+from calm.files.strumming_keys import AmplitudeName
 from calm.physics.friction import Friction
 from calm.physics.strumming import AMPLIFICATIONS
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import pytest
 
 from calm.errors import Problem
-from calm.files.tables import (
+from calm.records.profile_tables import (
     CurrentTable,
     DepthTable,
     SeaWater,

@@ -9,9 +9,8 @@ from scipy.stats import t as student
 
 from calm.errors import UsageError
 from calm.locate import Sound, Survey, locate
-from calm.locate.geometry import mirrored
-from calm.locate.model import Model
-from calm.locate.outliers import BY_CHANCE, FLOOR, _judged, least_squares_of, scatter
+from calm.locate.range_model import BY_CHANCE, FLOOR, RangeModel, _judged, least_squares_of, scatter
+from calm.locate.survey_warnings import mirrored
 from calm.physics.ellipsoid import FLATTENING, SEMI_MAJOR, Frame
 
 LATITUDE, LONGITUDE, DEPTH, TRANSDUCER = 48.3, -5.2, 2000.0, 5.0
@@ -221,7 +220,7 @@ def test_there_and_back():
 def test_a_given_depth_is_one_below_the_curved_surface():
     """At 10 km the surface is d²/2R, 7.8 m, below the plane that touches it."""
     ships = survey(ROUND, 1500.0)
-    model = Model(ships, ONE, HERE, np.zeros((12, 3)), DEPTH)
+    model = RangeModel(ships, ONE, HERE, np.zeros((12, 3)), DEPTH)
     place = model.place(np.array([10e3, 0.0]))
     assert place[2] == pytest.approx(-DEPTH - 10e3**2 / (2.0 * SEMI_MAJOR), abs=0.05)
     assert HERE.position(place)[2] == pytest.approx(DEPTH, abs=0.01)
@@ -250,7 +249,7 @@ def test_a_range_is_judged_by_its_residual_as_the_others_give_it(beyond, is_out)
         errors = np.where(np.arange(count) == odd, error, 0.0)
         found = survey(bearing, distance, errors)
         ships = HERE.place(found.latitude, found.longitude, np.full(count, TRANSDUCER))
-        model = Model(found, ONE, HERE, ships, None)
+        model = RangeModel(found, ONE, HERE, ships, None)
         x = least_squares_of(model, ANCHOR, used)
         return _judged(model, x, used), model.jacobian(ANCHOR)
 

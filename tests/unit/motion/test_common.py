@@ -8,7 +8,7 @@ import pytest
 
 import calm.motion.whole_record as module
 from calm.motion import prior
-from calm.motion.measured import Measured
+from calm.motion.measurements import MooringMeasurements
 from calm.motion.whole_record import _alike, _scale, estimate_common
 
 STILL = np.array([50.0, 100.0, 180.0])  # of three points; the first and the last have sensors
@@ -43,7 +43,7 @@ def record(seed, factor, datum, wrong, memory=0.0):
     depth += prior.NOISE * random.standard_normal(depth.shape)
     depth[7, 0] += 40.0  # an outlier, and what was not measured
     depth[[20, 90], [0, 1]] = np.nan
-    return Measured(
+    return MooringMeasurements(
         np.datetime64("2026-03-01", "ns") + np.arange(TIMES) * np.timedelta64(1, "h"), ("a", "c"),
         SENSORS, depth, np.tile([20.0, 60.0], (TIMES, 1)), np.full(2, -1), np.full(2, -1), u,
         0.0 * u, np.ones(u.shape, np.int8),

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import calm.motion.estimate as module
+from calm.motion.common_unknowns import Common
 from calm.motion.estimate import _tried, estimated
-from calm.motion.measured import Measured
-from calm.motion.moment import Moments
-from calm.motion.posterior import Linear, posterior, settled
-from calm.motion.unknowns import Common
+from calm.motion.line_response import LineResponse
+from calm.motion.measurements import MooringMeasurements
+from calm.motion.posterior import Linear, best_state, posterior
 
 STILL = np.array([50.0, 100.0, 180.0])  # of three points; the first and the last have sensors
 GAIN = np.array([[30.0, 20.0, 8.0], [12.0, 14.0, 9.0], [1.0, 4.0, 6.0]])
@@ -32,7 +32,7 @@ def at_times(depth, flag=None, u=None):
     """So many times of three levels, the lowest of which hangs at the point in the middle."""
     n = len(depth)
     u = np.tile(U, (n, 1)) if u is None else u
-    return Measured(
+    return MooringMeasurements(
         np.datetime64("2026-03-01", "ns") + np.arange(n) * np.timedelta64(1, "h"), ("a", "c"),
         SENSORS, depth, np.tile([20.0, 60.0, np.nan], (n, 1)), np.array([-1, -1, 1]),
         np.full(3, -1), u, 0.0 * u, np.ones(u.shape, np.int8) if flag is None else flag,
@@ -65,8 +65,8 @@ def test_the_estimate_is_that_of_all_likely_explanations_by_their_odds(monkeypat
     flag = np.ones((5, 3), np.int8)
     flag[1] = 1, 3, 4
     one = at_times(base + off, flag)
-    moments = Moments(one, SimpleNamespace(depths=linear, still=STILL), {})
-    begun = settled(moments, known)
+    moments = LineResponse(one, SimpleNamespace(depths=linear, still=STILL), {})
+    begun = best_state(moments, known)
     first, level = begun.found, moments.levels(begun.found.depth)
     tables = [(np.zeros(5), first, ())]
     odds_of_spike = np.full(5, np.log(1e-5))
@@ -122,7 +122,7 @@ def test_without_sensors_the_currents_are_all_that_is_known():
         common(), offset=none, moved=none, since=none.astype("M8[ns]"), elsewhere=none,
         covariance=np.array([[1.5**2]]),
     )  # fmt: skip
-    moments = Moments(one, SimpleNamespace(depths=linear, still=STILL), {})
+    moments = LineResponse(one, SimpleNamespace(depths=linear, still=STILL), {})
     result = estimated(moments, known)
     assert result.depth == pytest.approx(linear(None, np.tile(U, (2, 1)), 0.0) + known.datum)
     assert (result.doubt == 0.0).all()
@@ -137,7 +137,7 @@ def test_the_state_of_another_reading_is_that_of_gauss_and_newton(weaker):
     tried = np.array([0])
     read = (there + 0.2 * (there - STILL))[SENSORS] + known.datum + known.offset
     one = at_times(read[None], u=weaker * U[None])
-    part = Moments(one, SimpleNamespace(depths=square, still=STILL), {})
+    part = LineResponse(one, SimpleNamespace(depths=square, still=STILL), {})
     way = part.way(part.levels(there[None]), known)
     slope = 2.0 * GAIN * U**2
     at = Linear(np.zeros((1, 3)), here[None], slope[None], np.zeros((1, 3, 0)))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from calm.motion import prior
-from calm.motion.filled import filled, gap_errors
+from calm.motion.line_response import filled, gap_errors
 
 LEVEL = np.array([0.0, 100.0, 200.0, 300.0])
 

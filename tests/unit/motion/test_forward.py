@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import calm
-from calm.motion.forward import Forward, points
+from calm.motion.line_response import Forward, points
 
 MOORING = """\
 name: Small

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from calm.motion import prior
-from calm.motion.estimate import _odds, _sets
-from calm.motion.mixture import Mixture
-from calm.motion.moment import Way
+from calm.motion.estimate import Mixture, _odds, _sets
+from calm.motion.line_response import ReadCurrents
 from calm.motion.posterior import Posterior
 
 GROUP = np.array([0, 1])
@@ -16,7 +15,7 @@ GROUP = np.array([0, 1])
 
 def way(u):
     u = np.full((2, 2), u)
-    return Way(np.tile([10.0, 90.0], (2, 1)), u, 0.5 * u, np.zeros((2, 2, 2)))
+    return ReadCurrents(np.tile([10.0, 90.0], (2, 1)), u, 0.5 * u, np.zeros((2, 2, 2)))
 
 
 def found(evidence, depth, variance, current, logs):
@@ -33,7 +32,9 @@ def test_mean_and_deviation_are_those_of_all_explanations_by_their_weights():
     mixture = Mixture(SimpleNamespace(group=GROUP, groups=2), way(0.4), first)
     one = np.array([1])  # a second explanation of the second time only, and one that fails
     other = found([-1.5], [110.0, 151.0], 4.0, -0.3, [0.3, -0.2])
-    mixture.add(one, Way(*(x[:1] for x in vars(way(0.8)).values())), other, np.array([0.2]), (1,))
+    mixture.add(
+        one, ReadCurrents(*(x[:1] for x in vars(way(0.8)).values())), other, np.array([0.2]), (1,)
+    )
     lost = found([np.nan, np.nan], [np.nan, np.nan], np.nan, np.nan, [np.nan, np.nan])
     mixture.add(np.arange(2), way(0.1), lost, np.zeros(2), (0,))
     assert mixture.best == pytest.approx([-1.0, -1.3])

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from calm.motion import prior
-from calm.motion.measured import Measured
-from calm.motion.moment import Moments
+from calm.motion.common_unknowns import Common
+from calm.motion.line_response import LineResponse
+from calm.motion.measurements import MooringMeasurements
 from calm.motion.posterior import Linear, between, posterior
-from calm.motion.unknowns import Common
 
 STILL = np.array([50.0, 100.0, 180.0])  # of three points; the first and the last have sensors
 THERE = np.array([80.0, 120.0, 185.0])
@@ -23,7 +23,7 @@ SINCE = "2026-02-28"  # it has moved before the time
 
 
 def given(tide=None):
-    one = Measured(
+    one = MooringMeasurements(
         np.array(["2026-03-01"], "M8[ns]"), ("a", "c"), np.array([0, 2]), READ[None],
         np.zeros((1, 2)), np.array([-1, -1]), np.array([-1, -1]), np.zeros((1, 2)),
         np.zeros((1, 2)), np.zeros((1, 2), np.int8), tide,
@@ -126,13 +126,13 @@ def test_the_errors_of_the_currents_are_those_of_the_table():
     one = replace(given()[0], u=np.array([[0.3, 0.4]]), v=np.array([[0.4, np.nan]]),
                   flag=np.array([[3, 1]], np.int8))  # fmt: skip
     common = replace(given()[2], scale=2.0, gap=np.array([[0.11, 0.12], [0.13, 0.14]]))
-    way = Moments(one, SimpleNamespace(), {}).way(np.array([[10.0, 90.0]]), common)
+    way = LineResponse(one, SimpleNamespace(), {}).way(np.array([[10.0, 90.0]]), common)
     whole, shear = prior.CURRENT**2, prior.SHEAR**2
     own = [prior.LEVEL[3] ** 2 + (prior.STEADY / 0.5) ** 2, 0.14**2]
     expected = whole + shear * np.array([[1.0, -1.0], [-1.0, 1.0]]) + np.diag(own)
     assert way.spread[0] == pytest.approx(4.0 * expected)
     assert way.u.tolist() == [[0.3, 0.3]] and way.v.tolist() == [[0.4, 0.4]]
-    other = Moments(one, SimpleNamespace(), {}).way(np.array([[10.0, 90.0]]), common, (0,))
+    other = LineResponse(one, SimpleNamespace(), {}).way(np.array([[10.0, 90.0]]), common, (0,))
     assert np.isnan(other.u).all()  # nothing is left to take it from
 
 
@@ -142,7 +142,7 @@ def test_of_several_levels_the_shear_is_linear_and_the_worst_gap_counts():
                   level_point=np.full(3, -1), level_sensor=np.full(3, -1),
                   level_depth=np.array([[20.0, 20.0, 90.0]]))  # fmt: skip
     gap = np.array([[0.11, 0.12, 0.15], [0.13, 0.14, 0.16], [0.17, 0.18, 0.19]])
-    moments, common = Moments(one, SimpleNamespace(), {}), replace(given()[2], gap=gap)
+    moments, common = LineResponse(one, SimpleNamespace(), {}), replace(given()[2], gap=gap)
     level = moments.levels(np.zeros((1, 3)))
     assert (np.diff(level) > 0.0).all() and level[0] == pytest.approx([20.0, 20.0, 90.0], abs=1e-5)
     own = prior.LEVEL[1] ** 2 + (prior.STEADY / speed[0]) ** 2
@@ -157,7 +157,7 @@ def test_a_current_meter_hangs_at_its_pressure_and_else_where_the_line_has_it():
     one = replace(given()[0], depth=np.array([[93.0, np.nan]]), u=np.zeros((1, 3)),
                   level_point=np.array([0, 2, 1]), level_sensor=np.array([0, 1, -1]),
                   level_depth=np.full((1, 3), np.nan))  # fmt: skip
-    level = Moments(one, SimpleNamespace(), {}).levels(THERE[None])
+    level = LineResponse(one, SimpleNamespace(), {}).levels(THERE[None])
     assert level[0] == pytest.approx([93.0, THERE[2], THERE[1]], abs=1e-5)
 
 
@@ -168,7 +168,7 @@ def test_slopes_are_those_of_the_line():
     def line(factor):
         return SimpleNamespace(depths=lambda level, u, v: 100.0 + factor * (u + 2.0 * v) @ gain.T)
 
-    moments = Moments(one, line(1.0), {"cable_drag": line(np.exp(0.05))})
+    moments = LineResponse(one, line(1.0), {"cable_drag": line(np.exp(0.05))})
     way = moments.way(np.array([[10.0, 90.0]]), given()[2])
     logs = np.array([[0.1, -0.1]])
     there = moments.depths(way, logs)

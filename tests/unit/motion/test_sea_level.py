@@ -5,7 +5,7 @@ import pytest
 import xarray
 
 from calm.errors import InputError
-from calm.motion.sea_level import read_sea_level
+from calm.motion.sensors import read_sea_level
 
 TIME = np.array(["2026-03-01T00", "2026-03-01T01", "2026-03-01T02"], "M8[ns]")
 
@@ -48,9 +48,17 @@ FAR = "time,level[m]\n" + "".join(
     ("name", "text", "said"),
     [
         ("a.csv", "time,level\n2026-03-01T00:00,1\n", "needs a unit"),
-        ("b.csv", "time,level[dbar]\n2026-03-01T00:00,1\n", "is not a unit for it"),
+        (
+            "b.csv",
+            "time,level[dbar]\n2026-03-01T00:00,1\n",
+            "`level[dbar]` is a pressure; a length",
+        ),
         ("c.csv", "time,a[m],b[m]\n2026-03-01T00:00,1,2\n", "has several columns"),
-        ("d.csv", "time,level[m]\nyesterday,1\n2026-03-01T00:00,x\n", "`x` is not a number"),
+        (
+            "d.csv",
+            "time,level[m]\nyesterday,1\n2026-03-01T00:00,x\n",
+            "3:18: `level: x` is not a length",
+        ),
         ("e.csv", None, "no such file"),
         ("f.csv", FAR, "is 9999 m at 2026-03-01T02:00:00: no height"),
     ],

@@ -7,8 +7,7 @@ import pytest
 from scipy.stats import multivariate_normal
 
 from calm.motion import prior
-from calm.motion.slipped import Evidence, first_time, fits, placed
-from calm.motion.unknowns import Common
+from calm.motion.common_unknowns import Common, Evidence, first_time, fits, hanging_sensors
 
 TIMES, SENSORS = 12, 3
 RANDOM = np.random.default_rng(3)
@@ -114,7 +113,7 @@ def test_all_ways_the_sensors_may_hang_count_by_their_densities():
     given = evidence(left)
     mean = np.array([0.02, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
     covariance = np.diag([*BEFORE, 0.0, 0.0, 0.0])
-    found = placed(
+    found = hanging_sensors(
         given.normal(seen), given.pulls(seen, left).sum(axis=0), mean, covariance, first, TIMES, 1.0
     )
     slopes, wide = seen.reshape(-1, 8), prior.ELSEWHERE**2
@@ -151,7 +150,9 @@ def test_errors_that_repeat_make_it_less_sure_where_a_sensor_hangs():
     given = evidence(left)
     law = given.normal(seen), given.pulls(seen, left).sum(axis=0)
     before = np.zeros(8), np.diag([*BEFORE, 0.0, 0.0, 0.0])
-    sure, less = (placed(*law, *before, first, TIMES, alike).elsewhere[1] for alike in (1.0, 5.0))
+    sure, less = (
+        hanging_sensors(*law, *before, first, TIMES, alike).elsewhere[1] for alike in (1.0, 5.0)
+    )
     assert sure > 0.9 > 0.3 > less
 
 

@@ -9,7 +9,8 @@ import xarray
 
 import calm.motion.study as module
 from calm.errors import UsageError
-from calm.motion.measured import Measured
+from calm.motion.common_unknowns import Common
+from calm.motion.measurements import MooringMeasurements
 from calm.motion.study import (
     cross_validated,
     intervals,
@@ -20,7 +21,6 @@ from calm.motion.study import (
     several,
 )
 from calm.motion.task import Task, without
-from calm.motion.unknowns import Common
 
 TIMES = 40
 STILL = np.array([60.0, 150.0, 250.0])  # three clamps with a sensor each
@@ -34,7 +34,7 @@ OFFSET = np.array([0.5, 0.3, -0.4])
 
 def measured():
     u = np.full((TIMES, 1), 0.3)
-    return Measured(
+    return MooringMeasurements(
         np.datetime64("2026-03-01", "ns") + np.arange(TIMES) * np.timedelta64(1, "h"),
         ("a", "b", "c"), np.arange(3), READ, np.full((TIMES, 1), 20.0), np.array([-1]),
         np.array([-1]), u, 0.0 * u, np.ones(u.shape, np.int8),
@@ -134,9 +134,9 @@ def test_used_sensors_are_judged_without_their_offsets_and_hidden_ones_too(line)
     expected = judge_hidden(measured(), used, "b", estimated[:, 1], np.full(TIMES, 0.4), STILL)
     assert study.held_out == (expected,)
     assert study.false == {"20.0 m": used.time[[3]]}
-    assert len(study.doubts) == 1 and "20.0 m" in study.doubts[0]
+    assert len(study.remarks) == 1 and "20.0 m" in study.remarks[0]
     far = replace(task, common=replace(task.common, datum=10.0))
-    assert "all sensors: +10.0 m off alike" in judged(far, measured(), result).doubts[-1]
+    assert "all sensors: +10.0 m off alike" in judged(far, measured(), result).remarks[-1]
 
 
 def test_each_sensor_is_hidden_in_turn_beside_those_that_are_anyway(line, monkeypatch):

@@ -8,11 +8,11 @@ import pytest
 
 import calm.motion.task as module
 from calm.batch.statuses import STATUSES
+from calm.motion.common_unknowns import Common
 from calm.motion.estimate import Estimate
-from calm.motion.measured import Measured
-from calm.motion.moment import Way
+from calm.motion.line_response import ReadCurrents
+from calm.motion.measurements import MooringMeasurements
 from calm.motion.task import MeasuredRecord, Task, plain, without
-from calm.motion.unknowns import Common
 
 STILL = np.array([60.0, 150.0, 40.0, 250.0])  # two clamps, then two components
 U = np.array([[0.3, 0.4], [0.5, 0.2], [np.nan, np.nan], [0.1, 0.1]])
@@ -50,7 +50,7 @@ class Line:
 
 
 def measured(**more):
-    one = Measured(
+    one = MooringMeasurements(
         np.datetime64("2026-03-01", "ns") + np.arange(4) * np.timedelta64(1, "h"), ("a", "d"),
         np.array([0, 3]), READ, np.array([[20.0, np.nan]] * 4), np.array([-1, 0]),
         np.array([-1, 0]), U, V, np.ones((4, 2), np.int8),
@@ -75,7 +75,7 @@ def test_a_block_has_the_estimated_depths_and_what_is_known_besides(monkeypatch)
         sea,
         np.array([1.1, 0.9, 1.0, 1.2]),
         np.full((4, 2), 0.01),
-        Way(np.full((4, 2), 7.0), U, V, np.zeros((4, 2, 2))),
+        ReadCurrents(np.full((4, 2), 7.0), U, V, np.zeros((4, 2, 2))),
     )
     asked = []
     monkeypatch.setattr(module, "estimated", lambda *asked_of: asked.append(asked_of) or found)

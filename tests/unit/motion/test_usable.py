@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from calm.errors import UsageError
+from calm.motion.matching import plausible, unusable
 from calm.motion.sensors import Sensor
-from calm.motion.usable import plausible, unusable
 
 SEABED = 300.0
 

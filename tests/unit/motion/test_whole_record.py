@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_t, norm
 
-from calm.motion.forward import with_factors
-from calm.motion.measured import Measured
+from calm.motion.line_response import with_factors
+from calm.motion.measurements import MooringMeasurements
 from calm.motion.whole_record import MOST_TIMES, SCALES, _alike, _chosen, _scale
 from calm.physics.line import Line
 
@@ -57,7 +57,7 @@ def test_times_with_a_current_and_a_pressure_are_taken_evenly():
     depth = np.full((count, 2), np.nan)
     depth[:, 1] = 50.0
     u[0], depth[-1] = np.nan, np.nan
-    one = Measured(
+    one = MooringMeasurements(
         np.arange(count).astype("M8[s]"), ("a", "b"), np.array([0, 1]), depth, u,
         np.array([-1]), np.array([-1]), u, 0.0 * u, np.ones(u.shape, np.int8),
     )  # fmt: skip

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from calm.case import TowResult
-from calm.case.band import StrummingBand
+from calm.case.strumming import StrummingBand
 from calm.files import Place
-from calm.files.strumming import BourgetMarichalKeys
+from calm.files.strumming_keys import BourgetMarichalKeys
 
 NAN = float("nan")
 

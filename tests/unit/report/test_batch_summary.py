@@ -13,13 +13,11 @@ from rich.console import Console
 import calm
 from calm.batch.statistics.summary import RANKED, RESPONSES, summarize
 from calm.case import Mooring
-from calm.report import write
-from calm.report.batch.brief import summary_part
-from calm.report.batch.document import summary_document
-from calm.report.batch.files import summary_paths, write_summary
-from calm.report.batch.labels import percent
-from calm.report.batch.page import summary_html
-from calm.report.document import to_json
+from calm.report import folder
+from calm.report.batch_brief import summary_part
+from calm.report.batch_page import summary_html, summary_paths, write_summary
+from calm.report.batch_summary import percent, summary_document
+from calm.report.result_json import to_json
 from calm.report.terminal import shown
 from calm.shipped import shipped_folder
 from tests.judged import hostile_file
@@ -243,7 +241,7 @@ def test_a_full_disk_leaves_no_part_of_a_file(made, mooring, tmp_path, monkeypat
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(write.os, "replace", full)
+    monkeypatch.setattr(folder.os, "replace", full)
     with pytest.raises(OSError, match="No space left"):
         write_summary(result, mooring)
     assert [path.name for path in tmp_path.iterdir()] == [result.name]

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
-from calm.analytic.chart_curve import curve
+from calm.analytic.chart_branch import curve
 from calm.errors import UsageError
 from calm.report.chart import CHART_FORMATS, chart_picture, draw_chart
 from calm.report.picture import check_format

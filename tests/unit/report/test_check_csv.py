@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from calm.report.check.csv import CHECKS_HEADER, INVENTORY_HEADER, checks_csv, inventory_csv
+from calm.report.check_documents import CHECKS_HEADER, INVENTORY_HEADER, checks_csv, inventory_csv
 from tests.judged import FORMULA, LINES, LONG, RIGHT_TO_LEFT, SCRIPT, judged, judged_hostile
 
 
@@ -24,7 +24,7 @@ def test_a_row_for_every_finding(assessment):
     assert tuple(rows[0]) == CHECKS_HEADER
     for row, finding in zip(rows, findings, strict=True):
         assert (row["rule"], row["state"]) == (finding.rule, finding.state.value)
-        assert row["value"] == ("" if finding.value is None else repr(float(finding.value)))
+        assert row["value"] == ("" if finding.value is None else f"{finding.value:.12g}")
 
 
 def test_values_have_their_unit(assessment):
@@ -39,7 +39,9 @@ def test_a_row_for_every_piece_and_clamp(assessment):
     assert [row["label"] for row in rows] == [item.label for item in assessment.inventory]
     anchor = rows[-1]
     assert anchor["role"] == "anchor"
-    assert float(anchor["wet_weight[N]"]) == assessment.inventory[-1].wet_weight
+    assert float(anchor["wet_weight[N]"]) == pytest.approx(
+        assessment.inventory[-1].wet_weight, rel=1e-11
+    )
 
 
 def test_negative_numbers_stay_numbers(assessment):

@@ -14,11 +14,11 @@ import pytest
 import calm
 from calm.checks.finding import State
 from calm.errors import UsageError
-from calm.report.check.figures import check_figure
-from calm.report.check.section import mooring_section
+from calm.report.check_figures import check_figure
+from calm.report.check_report import mooring_section
 from calm.report.html import report_html, result_html
+from calm.report.picture import set_apart
 from calm.report.provenance import input_hash
-from calm.report.vector import set_apart
 from tests.judged import (
     FORMULA,
     LINES,
@@ -236,8 +236,8 @@ PROGRAM = """
 import hashlib, sys
 from pathlib import Path
 from tests.judged import judged
-from calm.report.check.figures import check_figure
-from calm.report.check.section import mooring_section
+from calm.report.check_figures import check_figure
+from calm.report.check_report import mooring_section
 from calm.report.html import report_html
 from calm.report.pdf import report_pdf
 sections = [mooring_section(judged(Path(sys.argv[1]), "ebb"))]

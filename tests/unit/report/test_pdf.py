@@ -5,7 +5,7 @@ import pytest
 
 import calm
 from calm.report.blocks import Part, Prose, Report, Section
-from calm.report.check.section import mooring_section
+from calm.report.check_report import mooring_section
 from calm.report.pdf import pdf_leaf, printed, report_pdf, result_pdf
 from tests.judged import FORMULA, LINES, judged, judged_hostile
 

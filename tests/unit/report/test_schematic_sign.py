@@ -1,8 +1,8 @@
 import pytest
 
 from calm.files import Body, Catalogue, Cylinder, Sphere
-from calm.report.schematic.figures import figure_of
 from calm.report.schematic.sign import LINES, Symbol, sign_of
+from calm.report.schematic.symbols import figure_of
 
 CATALOGUE = Catalogue.shipped()
 

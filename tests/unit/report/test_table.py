@@ -4,10 +4,8 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from calm.case.band import StrummingBand
-from calm.case.result import Strumming
-from calm.report.line import Mark, safety_mark, tilt_mark
-from calm.report.sheet import result_part
+from calm.case.strumming import Strumming, StrummingBand
+from calm.report.sheet import Mark, result_part, safety_mark, tilt_mark
 from calm.report.terminal import shown
 
 GOLDEN = Path(__file__).parent / "golden"

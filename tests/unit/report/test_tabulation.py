@@ -5,9 +5,9 @@ import io
 import pytest
 from rich.console import Console
 
-from calm.case.sweep import Variation
+from calm.case.tow import Variation
 from calm.errors import NoEquilibrium
-from calm.report.plot_sweep import draw_sweep
+from calm.report.plot import draw_sweep
 from calm.report.tabulation import (
     by_coefficient,
     by_speed,
@@ -82,7 +82,7 @@ def test_csv(swept):
         "frequency[Hz]"
     )
     assert failed == "Survey,0.5144,grounded,,,,,,"
-    assert converged == "Survey,1.0289,converged,120.0,140.0,3000.4,35.26,1500.0,3.559"
+    assert converged == "Survey,1.0289,converged,120,140,3000.4,35.26,1500,3.559"
 
 
 def test_coefficients(make_tow_result):

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from calm.case.band import StrummingBand
+from calm.case.strumming import StrummingBand
 from calm.report.csv import to_csv
 from calm.report.notebook import to_html
 from calm.report.plot import draw, picture

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from calm.errors import UsageError
-from calm.report.write import check_destination, write_file
+from calm.report.folder import check_destination, write_file
 
 
 def test_writes_whole_and_leaves_nothing_else(tmp_path):

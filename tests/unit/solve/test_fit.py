@@ -1,5 +1,7 @@
 """Cutting a piece to fit: the top then stands where it was wanted, stretch included."""
 
+from dataclasses import replace
+
 import pytest
 
 from calm.errors import NoEquilibrium
@@ -53,3 +55,12 @@ def test_a_line_too_heavy_to_stand_says_so():
     heavy = line(rigid(1.0, 300.0), rigid(0.8, -400.0), rope(0.0, weight=0.1))
     with pytest.raises(NoEquilibrium, match="Too little buoyancy"):
         fit_length(heavy, water(500), 2, 120.0, Settings())
+
+
+@pytest.mark.parametrize("height", [0.0, 0.5])
+def test_chain_that_lies_on_the_seabed_lengthens_nothing(height):
+    uncut = line(rigid(0.8, 1500.0), rope(0.0, weight=0.5), rope(40.0, weight=70.0))
+    uncut = replace(uncut, anchor_height=height)
+    length = fit_length(uncut, water(200), 1, 50.0, Settings())
+    # by hand: what is left of the buoyancy below the rope lifts so much chain off the seabed
+    assert 0.8 + length + (1500.0 - 0.5 * length) / 70.0 == pytest.approx(150.0, abs=1e-4)

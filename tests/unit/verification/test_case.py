@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from calm.verification.case import Figure, Kind, table
+from calm.verification.published_case import CaseColumn, Kind, table
 from tests.unit.verification.fakes import BAD, GOOD, case, failing
 
 
@@ -34,8 +34,8 @@ def test_words_choose_by_title_and_name_in_any_case():
 
 def test_a_table_gives_a_case_for_every_cell():
     figures = [
-        Figure("x", "m", 0.1, lambda answer: answer[0]),
-        Figure("T", "N", 0.02, lambda answer: answer[1], relative=True),
+        CaseColumn("x", "m", 0.1, lambda answer: answer[0]),
+        CaseColumn("T", "N", 0.02, lambda answer: answer[1], relative=True),
     ]
     rows = [
         ("slow", lambda: (1.0, 100.0), (1.05, 100.0)),
@@ -52,6 +52,8 @@ def test_a_table_gives_a_case_for_every_cell():
 def test_a_row_needs_a_figure_for_every_column():
     with pytest.raises(ValueError, match="shorter"):
         table(
-            [Figure("x", "m", 0.1, float), Figure("y", "m", 0.1, float)], [("a", float, (1,))], "",
+            [CaseColumn("x", "m", 0.1, float), CaseColumn("y", "m", 0.1, float)],
+            [("a", float, (1,))],
+            "",
             Kind.PUBLISHED,
-        )  # fmt: skip
+        )

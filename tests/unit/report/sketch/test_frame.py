@@ -1,9 +1,8 @@
 import pytest
 
-from calm.report.graph.ticks import number
-from calm.report.graph.ticks import round_numbers as ticks
-from calm.report.sketch.canvas import Canvas
-from calm.report.sketch.frame import Frame, Scale, levels
+from calm.report.graph.scale import number
+from calm.report.graph.scale import round_numbers as ticks
+from calm.report.sketch.canvas import Canvas, Frame, Scale, levels
 
 
 def frame(width: int = 12, height: int = 7) -> Frame:

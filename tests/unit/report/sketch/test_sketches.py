@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from calm.report.sketch import current_profile, elevation, plan, tension
-from calm.report.sketch.parts import SIGNS
+from calm.report.sketch.elevation import SIGNS
 
 ALL = (
     "a-frame-sheared-tow",

@@ -1,1 +1,0 @@
-"""Records of current: NetCDF, zarr and CSV as profiles over time."""

@@ -1,0 +1,242 @@
+"""Every piece and clamp of a mooring as the deck has it: where it hangs, when it goes over."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from itertools import groupby
+from math import inf, isnan
+from typing import TYPE_CHECKING
+
+from calm.case.columns import ClampRow, ComponentRow, rows_down
+from calm.files import Flexible
+
+if TYPE_CHECKING:
+    from calm.case import Result
+    from calm.case.columns import ClampRow, ComponentRow
+    from calm.files import Clamp, Piece
+    from calm.files.logbook import DeployedItem
+
+    pass
+    from calm.checks.recovery import Recovery
+    from calm.files import Place
+
+
+@dataclass(frozen=True)
+class Hung:
+    """A piece, or an instrument clamped on one.
+
+    Attributes
+    ----------
+    part : as read
+    index : of the piece, of a clamp that of the piece it is on
+    on : label of the piece that a clamp is on; None of a piece
+    at : of a clamp, from the upper end of that piece, unstretched [m]
+    of_length : of a clamp, the unstretched length of that piece [m]
+    cut_length, stretched : of a piece [m]; of a clamp None
+    depth, height : of the upper end, of a clamp of its place [m]
+    tilt : from the vertical [degrees]
+    serial : as designed
+    deployed_serial, remark : as deployed; the serial number of the design where none is given
+    """
+
+    part: Piece | Clamp
+    index: int
+    on: str | None
+    at: float | None
+    of_length: float | None
+    cut_length: float | None
+    stretched: float | None
+    depth: float
+    height: float
+    tilt: float
+    serial: str | None
+    deployed_serial: str | None
+    remark: str | None
+
+    @property
+    def label(self) -> str:
+        """What people call it."""
+        return self.part.label
+
+    @property
+    def name(self) -> str:
+        """Name of the component; its id where it has none."""
+        return self.part.component.name or self.part.use
+
+    @property
+    def is_rigid(self) -> bool:
+        """Whether it is no cable or chain."""
+        return not isinstance(self.part.component, Flexible)
+
+    @property
+    def role(self) -> str:
+        """What it is for."""
+        return self.part.component.role
+
+
+def hung_of(result: Result) -> tuple[Hung, ...]:
+    """Down the line to the anchor, the clamps of a piece after it, down that piece."""
+    deployed = result.file.deployed
+    items = {item.label: item for item in deployed.items} if deployed else {}
+    bottom = result.mooring.water.depth
+    found: list[Hung] = []
+    for row, clamps in rows_down(result):
+        found.append(_hung(row.part, row, row, items, bottom))
+        found += (_hung(clamp.part, row, clamp, items, bottom) for clamp in clamps)
+    return tuple(found)
+
+
+def depth_of(row: ComponentRow | ClampRow) -> float:
+    """Of the upper end of a piece, or of the place of a clamp [m]."""
+    return row.depth if isinstance(row, ClampRow) else row.depth_top
+
+
+def _hung(
+    part: Piece | Clamp,
+    piece: ComponentRow,
+    row: ComponentRow | ClampRow,
+    items: Mapping[str, DeployedItem],
+    bottom: float,
+) -> Hung:
+    item = items.get(part.label)
+    clamp = row.part if isinstance(row, ClampRow) else None
+    depth = depth_of(row)
+    return Hung(
+        part=part,
+        index=piece.index,
+        on=None if clamp is None else piece.label,
+        at=None if clamp is None else clamp.at,
+        of_length=None if clamp is None else piece.cut_length,
+        cut_length=piece.cut_length if clamp is None else None,
+        stretched=piece.length if clamp is None else None,
+        depth=depth,
+        height=bottom - depth,
+        tilt=row.tilt,
+        serial=part.serial,
+        deployed_serial=(item.serial if item else None) or part.serial,
+        remark=item.remark if item else None,
+    )
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """A depth [m] and the environment in which it is."""
+
+    depth: float
+    environment: str
+
+
+@dataclass(frozen=True)
+class Posted:
+    """An instrument or a release.
+
+    Attributes
+    ----------
+    hung : where it hangs in the environment of the sheets
+    still : depth in still water [m]; None where that has no unique shape
+    shallowest, deepest : over all environments
+    greatest_tilt : over all environments [degrees]
+    """
+
+    hung: Hung
+    still: float | None
+    shallowest: Extreme
+    deepest: Extreme
+    greatest_tilt: float
+
+
+def posted(parts: Sequence[Hung], results: Sequence[tuple[str, Result]]) -> tuple[Posted, ...]:
+    """The instruments and releases, down the line.
+
+    Parameters
+    ----------
+    results : of each environment by its name, that of the sheets first
+    """
+    rows = [(name, _rows(result)) for name, result in results]
+    found = []
+    for one in parts:
+        if one.role not in ("instrument", "release"):
+            continue
+        there = [(name, places[one.part.place]) for name, places in rows]
+        depths = [Extreme(depth_of(row), name) for name, row in there]
+        knockdown = there[0][1].knockdown
+        still = None if knockdown != knockdown else one.depth - knockdown
+        found.append(
+            Posted(
+                one,
+                still,
+                min(depths, key=lambda each: each.depth),
+                max(depths, key=lambda each: each.depth),
+                max(row.tilt for _, row in there),
+            )
+        )
+    return tuple(found)
+
+
+def _rows(result: Result) -> dict[Place, ComponentRow | ClampRow]:
+    every: list[ComponentRow | ClampRow] = [*result.components, *result.clamps]
+    return {row.place: row for row in every}
+
+
+class Order(StrEnum):
+    """Which end goes over the side last."""
+
+    ANCHOR_LAST = "anchor-last"
+    ANCHOR_FIRST = "anchor-first"
+
+
+@dataclass(frozen=True)
+class Surfacing:
+    """A piece or clamp as it comes up.
+
+    Attributes
+    ----------
+    hung : which
+    time : after the release [s]; None of what does not come up by itself
+    hangs_at : depth of its upper end when all is up that comes up [m]; None where not known
+    by_itself : whether it is buoyant enough to come up without what is above it
+    """
+
+    hung: Hung
+    time: float | None
+    hangs_at: float | None
+    by_itself: bool
+
+
+def over_the_side(parts: Sequence[Hung], order: Order) -> tuple[Hung, ...]:
+    """The pieces in the order in which they go over the side, each with its clamps after it.
+
+    Anchor first, a piece goes with its lower end ahead, and so its lowest clamp comes first.
+    """
+    if order is Order.ANCHOR_LAST:
+        return tuple(parts)
+    groups = [[*group] for _, group in groupby(parts, key=lambda one: one.index)]
+    return tuple(each for piece, *clamps in reversed(groups) for each in (piece, *reversed(clamps)))
+
+
+def surfacing(parts: Sequence[Hung], recovery: Recovery | None) -> tuple[Surfacing, ...]:
+    """What comes up, the first first; what hangs below, and what stays, comes after it in order.
+
+    Without a solved rise there are no times, and the order is that of the line.
+    """
+    released = parts[-1].index - 1 if recovery is None else recovery.released
+    rising = [one for one in parts if one.index <= released]
+    if recovery is None:
+        return tuple(Surfacing(one, None, None, False) for one in rising)
+    found = [_surfacing(one, recovery) for one in rising]
+    times = [inf if one.time is None else one.time for one in found]
+    # stable: what comes up with a piece stays after it
+    return tuple(found[i] for i in sorted(range(len(found)), key=times.__getitem__))
+
+
+def _surfacing(one: Hung, recovery: Recovery) -> Surfacing:
+    time = float(recovery.arrival[one.index])
+    hangs_at = float(recovery.hangs_at[one.index])
+    return Surfacing(
+        one,
+        None if isnan(time) else time,
+        None if isnan(hangs_at) else hangs_at,
+        one.index in recovery.order and one.on is None,
+    )

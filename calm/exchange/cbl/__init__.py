@@ -1,1 +1,0 @@
-"""WHOI Cable: its problem files, read and written."""

@@ -1,0 +1,265 @@
+"""Write a design as a mooring file, with a comment for every guess in its line."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import dataclass, field
+from textwrap import wrap
+
+from calm.exchange.design import (
+    Design,
+    FigureOrWord,
+    ImportedComponent,
+    ImportedPiece,
+    ImportedWater,
+    Remark,
+    one_line,
+)
+from calm.exchange.part_names import ids_of
+from calm.files import Catalogue
+from calm.files.components import FLEXIBLE_KINDS
+from calm.units import KILOGRAM_FORCE
+
+_WIDTH = 100
+_PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9 ./()-]*\Z")
+_WORDS_OF_YAML = {"y", "n", "yes", "no", "on", "off", "true", "false", "null"}
+_UNITS = {
+    "diameter": "m", "length": "m", "volume": "m^3", "drag_area": "m^2", "wind_area": "m^2",
+    "kn": "N/(m/s)^2", "kt": "N/(m/s)^2", "k_surface": "N/(m/s)^2", "lift": "N/(m/s)^2",
+    "stiffness": "kN", "breaking_load": "kN", "working_load": "kN", "density": "kg/m^3",
+    "depth_rating": "m",
+}  # fmt: skip
+_FORCES = {"buoyancy", "weight"}
+
+
+@dataclass
+class Written:
+    """Hold the text of a mooring file, and what was guessed in it."""
+
+    text: str
+    guessed: list[Remark]
+
+
+@dataclass
+class _Page:
+    """Hold the lines so far, and the guesses in their comments."""
+
+    lines: list[str] = field(default_factory=list)
+    guessed: list[Remark] = field(default_factory=list)
+
+    def add(self, line: str = "", guess: str = "", where: str = "", comment: str = "") -> None:
+        if guess:
+            guess = one_line(guess)
+            self.guessed.append(Remark(where, guess))
+            line += f"  # guessed: {guess}"
+        elif comment:
+            line += f"  # {comment}"
+        self.lines.append(line)
+
+    def remark(self, text: str, indent: str = "") -> None:
+        self.lines += [f"{indent}# {line}" for line in wrap(text, _WIDTH - len(indent) - 2)]
+
+
+def mooring_text(
+    design: Design, source: str, environment: list[str] | None = None, version: str = ""
+) -> Written:
+    """Return the mooring file of a design.
+
+    Parameters
+    ----------
+    source : name of the file it comes from
+    environment : the lines of the `environment` key, in place of those of the design
+    """
+    page = _Page()
+    by = f" by CALM {version}" if version else ""
+    page.remark(
+        f"Imported from {one_line(source)}, a design of {design.program},{by} with its own figures."
+    )
+    for note in design.notes:
+        page.remark(one_line(note))
+    if design.dropped:
+        page.add("# Left out:")
+        for remark in design.dropped:
+            page.remark(f"- {one_line(str(remark))}")
+    page.add()
+    page.add(f"name: {quoted(design.name)}")
+    if design.description:
+        page.add(f"description: {quoted(design.description)}")
+    page.add()
+    if design.tow is not None:
+        height = f", height: {_number(design.tow.height)} m" if design.tow.height else ""
+        toward = f"toward: {_number(design.tow.toward)} deg"
+        page.add(f"tow: {{speed: {_number(design.tow.speed)} m/s, {toward}{height}}}")
+        page.add()
+    if environment is not None:
+        page.lines += environment
+        page.add()
+    elif design.water is not None:
+        _write_water(page, design.water)
+    ids = ids_of(design.components(), Catalogue.load().ids())
+    page.add("line:" + (" # from the ship down" if design.tow else " # top to bottom"))
+    for item in _counted(design.items):
+        _write_item(page, item, ids)
+    page.add()
+    _write_solver(page, design)
+    own = {ids[id(each)]: each for each in design.components() if not each.entry}
+    if own:
+        page.add("components:")
+    for id_, component in own.items():
+        _write_component(page, component, id_, design.in_kilograms)
+    return Written("\n".join(page.lines) + "\n", page.guessed)
+
+
+def _number(value: float) -> str:
+    """Return a number as people write it, with nine digits at most."""
+    return f"{value:.9g}"
+
+
+def quoted(text: str) -> str:
+    """Return a text as YAML has it, plain where it can be."""
+    text = one_line(text)
+    if _PLAIN.match(text) and text == text.strip() and text.lower() not in _WORDS_OF_YAML:
+        return text
+    return json.dumps(text, ensure_ascii=False)
+
+
+def _write_water(page: _Page, water: ImportedWater) -> None:
+    page.add("environment:")
+    if water.depth is not None:
+        _keyed(page, "depth", f"{_number(water.depth)} m", water)
+    if isinstance(water.density, tuple):
+        page.add("  density:")
+        page.add("    columns: [depth m, density kg/m^3]")
+        page.add("    rows:")
+        for depth, density in water.density:
+            page.add(f"      - [{_number(depth)}, {_number(density)}]")
+    elif water.density is not None:
+        _keyed(page, "density", f"{_number(water.density)} kg/m^3", water)
+    if water.gravity is not None:
+        _keyed(page, "gravity", f"{_number(water.gravity)} m/s^2", water)
+    if water.current:
+        up = any(row[3] for row in water.current)
+        guess = water.guesses.get("current", "")
+        page.add("  current:", guess, "environment.current")
+        page.add("    columns: [depth m, u m/s, v m/s" + (", w m/s]" if up else "]"))
+        page.add("    rows:")
+        for row in water.current:
+            values = row if up else row[:3]
+            page.add(f"      - [{', '.join(_number(value) for value in values)}]")
+    elif "current" in water.guesses:
+        _keyed(page, "current", "{speed: 0 m/s, toward: 0 deg}", water)
+    if water.wind is not None:
+        speed, toward = water.wind
+        page.add(f"  wind: {{speed: {_number(speed)} m/s, toward: {_number(toward)} deg}}")
+    page.add()
+
+
+def _keyed(page: _Page, key: str, value: str, water: ImportedWater) -> None:
+    page.add(f"  {key}: {value}", water.guesses.get(key, ""), f"environment.{key}")
+
+
+def _counted(items: list[ImportedPiece]) -> list[ImportedPiece]:
+    """Equal items that follow each other as one with a count."""
+    counted: list[ImportedPiece] = []
+    for item in items:
+        last = counted[-1] if counted else None
+        if last is not None and _bare(last) and _bare(item) and _same(last, item):
+            last = counted[-1] = ImportedPiece(
+                last.component, last.length, count=last.count + item.count
+            )
+        else:
+            counted.append(item)
+    return counted
+
+
+def _bare(item: ImportedPiece) -> bool:
+    return not (item.clamps or item.guess or item.label)
+
+
+def _same(one: ImportedPiece, other: ImportedPiece) -> bool:
+    alike = one.component.identity() == other.component.identity()
+    return alike and one.length == other.length and one.component.entry == other.component.entry
+
+
+def _write_item(page: _Page, item: ImportedPiece, ids: dict[int, str]) -> None:
+    use = ids[id(item.component)]
+    pairs = [f"use: {use}"]
+    if item.length is not None:
+        pairs.append(f"length: {_number(item.length)} m")
+    if item.count > 1:
+        pairs.append(f"count: {item.count}")
+    if item.label:
+        pairs.append(f"label: {quoted(item.label)}")
+    where = f"line.{item.label or use}"
+    if not item.clamps:
+        page.add(f"  - {{{', '.join(pairs)}}}", item.guess, where)
+        return
+    page.add(f"  - {pairs[0]}", item.guess, where)
+    for pair in pairs[1:]:
+        page.add(f"    {pair}")
+    page.add("    clamps:")
+    for clamp in item.clamps:
+        clamped = ids[id(clamp.component)]
+        line = f"      - {{use: {clamped}, at: {_number(clamp.at)} m}}"
+        page.add(line, clamp.guess, f"{where}.clamps.{clamped}")
+
+
+def _write_solver(page: _Page, design: Design) -> None:
+    if not design.solver:
+        return
+    page.add("solver:")
+    for key, (value, comment) in design.solver.items():
+        shown = _number(value) if isinstance(value, float) else value
+        page.add(f"  {key}: {shown}", comment=comment)
+    page.add()
+
+
+def _write_component(
+    page: _Page, component: ImportedComponent, id_: str, in_kilograms: bool
+) -> None:
+    page.add(f"  {id_}:")
+    if component.comment:
+        page.remark(one_line(component.comment), "    ")
+    page.add(f"    kind: {component.kind}")
+    name = one_line(component.name)
+    if name and name != id_:
+        page.add(f"    name: {quoted(name)}")
+    per_metre = component.kind in FLEXIBLE_KINDS
+    for key, value in component.figures.items():
+        text = figure_text(key, value, per_metre=per_metre, in_kilograms=in_kilograms)
+        guess = component.guesses.get(key, "")
+        page.add(f"    {key}: {text}", guess, f"components.{id_}.{key}")
+    if component.hull:
+        guess = component.guesses.get("hull", "")
+        page.add("    hull:", guess, f"components.{id_}.hull")
+        page.add("      displacement:")
+        for draft, volume, area in component.hull:
+            row = f"[{_number(draft)} m, {_number(volume)} m^3, {_number(area)} m^2]"
+            page.add(f"        - {row}")
+
+
+def figure_text(key: str, value: FigureOrWord, *, per_metre: bool, in_kilograms: bool) -> str:
+    """Return a figure of a component as the mooring file has it.
+
+    Parameters
+    ----------
+    key : field of the component
+    value : in SI
+    per_metre : whether forces and masses are those of a metre
+    in_kilograms : whether forces are shown in kilograms-force
+    """
+    if isinstance(value, str):
+        return quoted(value)
+    if key in _FORCES:
+        unit = "kgf" if in_kilograms else "N"
+        shown = _number(value / KILOGRAM_FORCE if in_kilograms else value)
+        return f"{shown} {unit}{'/m' if per_metre else ''}"
+    if key == "mass":
+        return f"{_number(value)} kg{'/m' if per_metre else ''}"
+    unit = _UNITS.get(key, "")
+    if unit == "kN":
+        value /= 1000.0
+    if key == "diameter" and value < 0.1:
+        value, unit = value * 1000.0, "mm"
+    return f"{_number(value)} {unit}".rstrip()

@@ -1,0 +1,374 @@
+"""Read the rows of a list in SI, each with how it was interpreted, and make components of them."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+
+from calm.exchange.design import FigureOrWord, ImportedComponent, Remark
+from calm.exchange.list_headings import WORDS, ListColumn, ListHeadings, SheetRows, number
+from calm.exchange.mdd_elements import MODULI
+from calm.exchange.part_names import is_anchor, is_chain, is_connector, is_line, is_release, role_of
+from calm.physics.reference import REFERENCE_DENSITY
+from calm.units import KILOGRAM_FORCE
+
+_TOTAL = re.compile(r"^(sub-?)?(total|totaux|sum|somme|ensemble)\b", re.I)
+_LINE_KINDS = re.compile(r"\b(cable|c[âa]ble|chain|cha[iî]ne|line|wire|rope|cordage)s?\b", re.I)
+_ANCHOR_KINDS = re.compile(r"\banchors?\b|\bancre|\blest\b", re.I)
+_ENOUGH = {"length", "buoyancy", "weight"}  # one of them makes a piece
+_MOST = 1000  # of one row's count
+_FULL = 5.0  # times its diameter: a metre of line shows no larger area
+_SPREAD = ("buoyancy", "mass", "area", "drag_area", "tangential_area")  # along a line
+_USUAL = {"cable": 1.3, "chain": 2.75, "sphere": 0.5, "cylinder": 1.2}
+_COEFFICIENT = {"cable": "cn", "chain": "cn", "sphere": "cx", "cylinder": "cn"}
+_ROLES = ("float", "instrument", "release", "connector")
+_ROUND = 1.5  # times its diameter: a float no longer is a sphere
+_HALF_DENSITY = 0.5 * REFERENCE_DENSITY
+
+
+@dataclass(eq=False)
+class ListRow:
+    """Hold a row: its name, its figures, what was guessed in it, and its count.
+
+    `metre` names the figures of a line that are per metre; `line` says whether it is a cable or
+    chain, and `hint` where a library says that its figures might be.
+    """
+
+    place: int
+    name: str
+    label: str = ""
+    kind: str = ""
+    role: str = ""
+    figures: dict[str, float] = field(default_factory=dict)
+    guesses: dict[str, str] = field(default_factory=dict)
+    metre: set[str] = field(default_factory=set)
+    line: bool | None = None
+    hint: str = ""
+    count: int = 1
+
+    @property
+    def where(self) -> str:
+        """The name by which problems call it."""
+        return f"row {self.place}, {self.name}"
+
+    @property
+    def is_anchor(self) -> bool:
+        """Tell whether it is the anchor."""
+        return bool(_ANCHOR_KINDS.search(f"{self.kind} {self.role}")) or is_anchor(self.name)
+
+    @property
+    def is_line(self) -> bool:
+        """Tell whether it is a cable or a chain."""
+        if self.line is not None:
+            return self.line
+        if self.kind:
+            return bool(_LINE_KINDS.search(self.kind))
+        return is_line(self.name)
+
+
+def rows_of(
+    cells: SheetRows,
+    headings: ListHeadings,
+    problems: list[str],
+    dropped: list[Remark],
+    *,
+    bare: Callable[[str], bool] = lambda name: False,
+) -> list[ListRow]:
+    """Return the rows below the headings; sums and rows without figures go to `dropped`.
+
+    Parameters
+    ----------
+    bare : whether a name alone makes a piece, since a library has its figures
+    """
+    rows: list[ListRow] = []
+    known = headings.columns
+    for place, each in enumerate(cells[headings.row + 1 :], headings.row + 2):
+        name = _cell(each, known["name"])
+        if not name:
+            continue
+        if _TOTAL.match(name):
+            dropped.append(Remark(f"row {place}", f"`{name}`, a sum"))
+            continue
+        mistakes: list[str] = []
+        row = _row(each, place, name, known, mistakes)
+        if not (bare(name) or _ENOUGH & row.figures.keys() or row.is_anchor):
+            dropped.append(Remark(f"row {place}", f"`{name}`, without length and weight"))
+            continue
+        problems += mistakes
+        rows.append(row)
+    return rows
+
+
+def names_in(cells: SheetRows) -> list[ListRow]:
+    """Return the rows of a sheet that holds names alone: the words of the column that has most."""
+    counts: dict[int, int] = {}
+    for row in cells:
+        for index, cell in enumerate(row):
+            counts[index] = counts.get(index, 0) + bool(re.search(r"[^\W\d]{2}", cell))
+    best = max(counts, key=lambda index: counts[index], default=0)
+    return [
+        ListRow(place, row[best])
+        for place, row in enumerate(cells, 1)
+        if best < len(row) and row[best] and not _TOTAL.match(row[best])
+    ]
+
+
+def _cell(row: list[str], column: ListColumn | None) -> str:
+    if column is None or column.index >= len(row):
+        return ""
+    return row[column.index].strip().removeprefix("'")
+
+
+def _row(
+    cells: list[str], place: int, name: str, known: dict[str, ListColumn], mistakes: list[str]
+) -> ListRow:
+    words = {what: _cell(cells, known.get(what)) for what in WORDS}
+    row = ListRow(place, name, words["label"], words["kind"], words["role"])
+    for what, column in known.items():
+        if what in WORDS:
+            continue
+        value, reading = number(_cell(cells, column))
+        if value is None:
+            if reading and what != "material":
+                mistakes.append(f"{row.where}: {column.heading}: {reading}")
+            continue
+        scale = KILOGRAM_FORCE if column.by_mass else 1.0
+        figure = value * column.factor * scale
+        if not math.isfinite(figure):
+            mistakes.append(f"{row.where}: {column.heading} is {value:g}")
+            continue
+        row.figures[what] = figure
+        if column.per_metre:
+            row.metre.add(what)
+        if reading:
+            row.guesses[what] = reading
+    count = row.figures.pop("count", 1.0)
+    if not 1.0 <= round(count) <= _MOST:
+        mistakes.append(f"{row.where}: {count:.12g} of them")
+    else:
+        row.count = round(count)
+    return row
+
+
+def weights_as_buoyancy(rows: Iterable[ListRow], guessed: list[Remark]) -> None:
+    """Give every row its net force as buoyancy, positive up.
+
+    Weights are positive down; where they are negative for what sinks by its name, positive up.
+    """
+    rows = list(rows)
+    sinking = [
+        row.figures["weight"]
+        for row in rows
+        if row.figures.get("weight")
+        and (is_connector(row.name) or is_release(row.name) or row.is_line or row.is_anchor)
+    ]
+    upward = 2 * sum(weight < 0.0 for weight in sinking) > len(sinking)
+    if upward:
+        guessed.append(Remark("weights", "negative for parts that sink: read as buoyancy"))
+    for row in rows:
+        if "weight" not in row.figures:
+            continue
+        weight, guess = row.figures.pop("weight"), row.guesses.pop("weight", "")
+        if row.figures.get("buoyancy"):
+            continue
+        row.figures["buoyancy"] = weight if upward else 0.0 - weight
+        if "weight" in row.metre:
+            row.metre.add("buoyancy")
+        if guess:
+            row.guesses["buoyancy"] = guess
+
+
+def count_lines(rows: Iterable[ListRow], known: dict[str, ListColumn]) -> None:
+    """Make figures of lines per metre, where the list gives them of the whole length."""
+    lines = [row for row in rows if row.is_line and row.figures.get("length", 0.0) > 0.0]
+    for what in _SPREAD:
+        column = known.get(what) or (known.get("weight") if what == "buoyancy" else None)
+        listed = [row for row in lines if what in row.figures and what not in row.metre]
+        if column is None or not listed:
+            continue
+        per_metre = not column.whole and (
+            _within_a_metre(listed, what) if "area" in what else _same_for_all(listed, what)
+        )
+        for row in listed:
+            if not per_metre:
+                row.figures[what] /= row.figures["length"]
+            row.metre.add(what)
+            if what == "buoyancy" and not column.whole:
+                row.guesses.setdefault(
+                    what,
+                    "read as that of a metre: it is the same at different lengths"
+                    if per_metre
+                    else "the weight in the list is read as that of the whole length",
+                )
+
+
+def _within_a_metre(lines: list[ListRow], what: str) -> bool:
+    """Return whether the figures of every line could be those of a metre."""
+    return all(row.figures[what] <= _FULL * row.figures.get("diameter", 0.0) for row in lines)
+
+
+def _same_for_all(lines: list[ListRow], what: str) -> bool:
+    """Return whether lines of one name have one weight, per metre then, at different lengths."""
+    seen: dict[str, tuple[float, float]] = {}
+    for row in lines:
+        length, value = seen.setdefault(row.name, (row.figures["length"], row.figures[what]))
+        if abs(length - row.figures["length"]) > 0.05 * length and value:
+            return abs(value - row.figures[what]) < 0.01 * abs(value)
+    return False
+
+
+def component_of(row: ListRow, problems: list[str], *, anchor: bool) -> ImportedComponent:
+    """Return the definition of a row; what it lacks is added to `problems`.
+
+    Parameters
+    ----------
+    row : in SI
+    problems : of the list, to which those of the row are added
+    anchor : whether it is the anchor
+    """
+    for what in ("length", "diameter", "width", "cd", "area", "drag_area", "mass", "stiffness"):
+        if row.figures.get(what, 0.0) < 0.0:
+            problems.append(f"{row.where}: its {what.replace('_', ' ')} is negative")
+    if anchor:
+        return _anchor(row)
+    return _line(row, problems) if row.is_line else _rigid(row, problems)
+
+
+def _anchor(row: ListRow) -> ImportedComponent:
+    figures, guesses = row.figures, dict(row.guesses)
+    kept: dict[str, FigureOrWord] = {}
+    if figures.get("buoyancy"):
+        kept["weight"] = abs(figures["buoyancy"])
+    elif figures.get("mass"):
+        kept["mass"] = figures["mass"]
+        guesses["mass"] = "taken for steel: the list gives no weight in water"
+    kept["length"] = figures.get("length", 0.0)
+    return ImportedComponent(row.name, "anchor", kept, _of(guesses, kept))
+
+
+def _rigid(row: ListRow, problems: list[str]) -> ImportedComponent:
+    figures, guesses = row.figures, dict(row.guesses)
+    if "buoyancy" not in figures:
+        problems.append(f"{row.where}: its weight in water or its buoyancy is missing{row.hint}")
+    lift, length = figures.get("buoyancy", 0.0), figures.get("length", 0.0)
+    kind, across = _shape(row)
+    kept: dict[str, FigureOrWord]
+    if "drag_area" in figures and figures.get("tangential_area") is not None:
+        normal, along = figures["drag_area"], figures["tangential_area"]
+        kind, kept = "body", {"length": length}
+        kept |= {"kn": _HALF_DENSITY * normal, "kt": _HALF_DENSITY * along}
+        guesses["kn"] = guesses.get("drag_area", "")
+    elif "drag_area" in figures or "area" in figures:
+        of = "drag_area" if "drag_area" in figures else "area"
+        coefficient = 1.0 if of == "drag_area" else figures.get("cd", 1.0)
+        kind, kept = "body", {"length": length, "drag_area": figures[of], "cd": coefficient}
+        guesses["drag_area"] = guesses.get(of, "")
+        if of == "area" and "cd" not in figures:
+            guesses["cd"] = "the list gives an area and no coefficient"
+    elif kind == "body":
+        kept = {"length": length, "drag_area": 0.0, "cd": 1.0}
+        guesses["drag_area"] = "the list gives no size: it has no drag"
+    else:
+        kept = {"diameter": across, "length": length or across}
+        kept |= _coefficient(row, kind, guesses)
+    kept["buoyancy"] = lift
+    _keep(row, kept, lift, ("breaking_load",))
+    kept["role"] = row.role if row.role in _ROLES else role_of(row.name, lift)
+    return ImportedComponent(row.name, kind, kept, _of(guesses, kept))
+
+
+def _shape(row: ListRow) -> tuple[str, float]:
+    """Return the kind of a rigid piece by its size, and its diameter [m].
+
+    Where a list has widths and diameters, a diameter is that of a sphere. Elsewhere a float that is
+    hardly longer than wide is a sphere.
+    """
+    figures = row.figures
+    width, diameter = figures.get("width", 0.0), figures.get("diameter", 0.0)
+    length, lift = figures.get("length", 0.0), figures.get("buoyancy", 0.0)
+    if "width" in figures and "diameter" in figures:
+        round_, across = diameter > 0.0, diameter or width
+    else:
+        across = diameter or width
+        round_ = (lift > 0.0 or row.kind == "sphere") and length <= _ROUND * across
+    if across <= 0.0 or (not round_ and length <= 0.0):
+        return "body", 0.0
+    return "sphere" if round_ else "cylinder", across
+
+
+def _line(row: ListRow, problems: list[str]) -> ImportedComponent:
+    figures, guesses = row.figures, dict(row.guesses)
+    if figures.get("length", 0.0) <= 0.0:
+        problems.append(f"{row.where}: a line needs its length")
+    across = figures.get("diameter", 0.0) or figures.get("width", 0.0)
+    kind = "chain" if is_chain(f"{row.name} {row.kind}") else "cable"
+    if across <= 0.0:
+        across = _size_in(row.name)
+        if across <= 0.0:
+            problems.append(f"{row.where}: its diameter is missing")
+            across = 0.01
+        guesses["diameter"] = "from its name"
+    kept: dict[str, FigureOrWord] = {"diameter": across}
+    lift = figures.get("buoyancy")
+    if lift is None:
+        problems.append(f"{row.where}: its weight in water is missing{row.hint}")
+        lift = 0.0
+    if lift > 0.0:
+        kind = "cable"
+    if "drag_area" in figures:
+        along = figures.get("tangential_area", 0.0)
+        kept |= {"cn": figures["drag_area"] / across, "ct": along / (math.pi * across)}
+    elif "area" in figures:
+        coefficient = _coefficient(row, kind, guesses)["cn"]
+        kept["cn"] = float(coefficient) * figures["area"] / across
+    else:
+        kept |= _coefficient(row, kind, guesses)
+    if lift > 0.0:
+        kept["buoyancy"] = lift
+    else:
+        kept["weight"] = 0.0 - lift
+        if "buoyancy" in guesses:
+            guesses["weight"] = guesses["buoyancy"]
+    _keep(row, kept, lift, ("stiffness", "breaking_load"))
+    material = figures.get("material", 0.0)
+    if "stiffness" not in kept and material in range(1, len(MODULI) + 1):
+        kept["stiffness"] = MODULI[round(material) - 1] * math.pi / 4.0 * across**2
+    return ImportedComponent(row.name, kind, kept, _of(guesses, kept))
+
+
+def _coefficient(row: ListRow, kind: str, guesses: dict[str, str]) -> dict[str, FigureOrWord]:
+    """Return the drag coefficient of the list, or the usual one of the kind as a guess."""
+    key = _COEFFICIENT[kind]
+    guesses[key] = row.guesses.get("cd", "")
+    if "cd" not in row.figures:
+        guesses[key] = f"the usual one of a {kind}"
+    return {key: row.figures.get("cd", _USUAL[kind])}
+
+
+def _keep(row: ListRow, kept: dict[str, FigureOrWord], lift: float, names: tuple[str, ...]) -> None:
+    """Take over further figures; a mass lighter than the piece is in water is left out."""
+    mass = row.figures.get("mass", 0.0)
+    if mass > 0.0 and mass * KILOGRAM_FORCE >= max(-lift, 0.0):
+        kept["mass"] = mass
+    for name in names:
+        if row.figures.get(name, 0.0) > 0.0:
+            kept[name] = row.figures[name]
+
+
+def _of(guesses: dict[str, str], kept: dict[str, FigureOrWord]) -> dict[str, str]:
+    """Return the guesses for the figures that are kept."""
+    return {key: text for key, text in guesses.items() if key in kept and text}
+
+
+def _size_in(name: str) -> float:
+    """Return a diameter in a name such as `8 mm wire` or `3/8" chain` [m]; 0 without one."""
+    found = re.search(r"(\d+(?:[.,]\d+)?)\s*mm\b", name, re.I)
+    if found:
+        return float(found[1].replace(",", ".")) / 1000.0
+    found = re.search(r"(?:(\d+)[ -])?(\d+)/(\d+)", name)
+    if found and int(found[3]):
+        return (int(found[1] or 0) + int(found[2]) / int(found[3])) * 0.0254
+    found = re.search(r"(\d+(?:[.,]\d+)?)\s*(?:\"|''|in\b|inch)", name, re.I)
+    return float(found[1].replace(",", ".")) * 0.0254 if found else 0.0

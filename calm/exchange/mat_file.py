@@ -1,0 +1,372 @@
+"""Read the variables of a `.mat` file, whatever program and version wrote it.
+
+Nothing in such a file is executed or unpickled: MATLAB 4 and 5 are read by scipy, HDF5 (MATLAB 7.3
+and Octave) by h5py, Octave's text, compressed or not, by the reader below.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+import zlib
+from collections.abc import Collection, Iterator
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.exchange.design import refused
+from calm.whole_file import read_content
+
+LARGEST = 200_000_000
+"""Bytes of a file."""
+
+_GZIP = b"\x1f\x8b"
+_OCTAVE_BINARY = b"Octave-1-"
+_HEAD = 70_000  # bytes by which a compressed file is recognised
+_CELL = "<cell-element>"
+_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+_TEXTS = ("char", "string", "sq_string")
+_DEEPEST = 4  # cells in cells
+MatValue: TypeAlias = "NDArray[Any] | str | list[MatValue]"
+"""A variable: numbers or characters, a text, or the elements of a cell array."""
+
+_MOST = 20_000_000
+"""Most elements of a variable."""
+
+RealArray = NDArray[np.float64]
+
+
+def read_variables(path: Path, wanted: Collection[str]) -> dict[str, MatValue]:
+    """Return the wanted variables that a file has.
+
+    Raises
+    ------
+    InputError
+        The file is no `.mat` file, or a damaged one.
+    """
+    content = _inflated(read_content(path, largest=LARGEST), LARGEST + 1)
+    if len(content) > LARGEST:
+        raise refused(path, f"holds more than {LARGEST // 1_000_000} MB once it is decompressed")
+    if content.startswith(_OCTAVE_BINARY):
+        raise refused(path, "is in Octave's binary format; save it there with -v7, -hdf5 or -text")
+    try:
+        if _is_octave_text(content):
+            text = content.decode("utf-8", "replace")
+            found = read_octave_text(text)
+        elif _is_hdf5(content):
+            found = _read_hdf5(content, wanted)
+        else:
+            found = _matlab(content, wanted)
+    except MemoryError:
+        raise
+    except Exception as error:  # the readers fail in many ways on a damaged file
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise refused(
+            path, f"is not a MATLAB or Octave file, or a damaged one ({reason})"
+        ) from None
+    return {name: value for name, value in found.items() if name in wanted}
+
+
+def is_mat(content: bytes) -> bool:
+    """Return whether a file looks like one of MATLAB or Octave, by its first bytes."""
+    content = _inflated(content, _HEAD)
+    if _is_octave_text(content) or content.startswith((b"MATLAB 5.0", _OCTAVE_BINARY)):
+        return True
+    return _is_hdf5(content) or _is_version_4(content)
+
+
+def _inflated(content: bytes, most: int) -> bytes:
+    """Return the first bytes of what is compressed, as far as it is whole; else all as it is."""
+    if not content.startswith(_GZIP):
+        return content
+    try:
+        return zlib.decompressobj(wbits=31).decompress(content, most)
+    except zlib.error:
+        return content
+
+
+def _is_version_4(content: bytes) -> bool:
+    """Return whether its first header has a type, rows, columns and the length of a name."""
+    for order in ("<", ">"):
+        head = np.frombuffer(content[:20], f"{order}i4") if len(content) > 20 else np.zeros(0)
+        if head.size == 5 and 0 <= head[0] < 5000 and 1 < head[4] < 64 and head[3] in (0, 1):
+            name = content[20 : 20 + int(head[4])]
+            return name.endswith(b"\0") and name[:-1].replace(b"_", b"a").isalnum()
+    return False
+
+
+def _matlab(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
+    from scipy.io import loadmat, whosmat
+
+    names = [name for name, shape, _ in whosmat(io.BytesIO(content)) if _fits(name, shape)]
+    chosen = [name for name in names if name in wanted]
+    found = loadmat(io.BytesIO(content), variable_names=chosen, struct_as_record=True)
+    return {name: found[name] for name in chosen if name in found}
+
+
+def _is_octave_text(content: bytes) -> bool:
+    """Return whether a file begins as Octave writes its text files."""
+    start = content[:4096]
+    return b"\0" not in start and start.lstrip().startswith(b"#") and b"# name:" in content[:65536]
+
+
+def read_octave_text(text: str) -> dict[str, MatValue]:
+    """Every variable that can be read; the others are left out.
+
+    Raises
+    ------
+    ValueError
+        A matrix has fewer numbers than its header says, or a header cannot be read.
+    """
+    variables: dict[str, MatValue] = {}
+    cell: list[MatValue] | None = None
+    for name, header, rows in _blocks(text.splitlines()):
+        kind = header.get("type", "").removeprefix("global ").strip()
+        value = _value(name, kind, header, rows)
+        if name == _CELL:
+            if cell is not None and value is not None:
+                cell.append(value)
+        elif kind == "cell":
+            cell = variables[name] = []
+        else:
+            cell = None
+            if value is not None:
+                variables[name] = value
+    return variables
+
+
+def _blocks(lines: list[str]) -> Iterator[tuple[str, dict[str, str], list[str]]]:
+    """Each variable: name, header and the lines below the header."""
+    name, header, rows = "", dict[str, str](), list[str]()
+    for line in lines:
+        key, value = _header(line)
+        if key == "name":
+            if name:
+                yield name, header, rows
+            name, header, rows = value, {}, []
+        elif key and key not in ("length", "base, limit, increment"):
+            header.setdefault(key, value)
+        elif name:
+            rows.append(line)
+    if name:
+        yield name, header, rows
+
+
+def _header(line: str) -> tuple[str, str]:
+    """Key and value of a line such as ``# rows: 3``, with or without its colon."""
+    if not line.lstrip().startswith("#"):
+        return "", ""
+    body = line.lstrip()[1:].strip()
+    key, colon, value = body.partition(":")
+    if not colon:
+        key, _, value = body.partition(" ")
+    return key.strip().lower(), value.strip()
+
+
+def _value(name: str, kind: str, header: dict[str, str], rows: list[str]) -> MatValue | None:
+    if kind in ("string", "sq_string"):
+        return _texts(rows)
+    if kind == "cell" or not kind:
+        return None
+    try:
+        numbers = [float(word) for row in rows if not row.lstrip().startswith("#")
+                   for word in row.replace(",", " ").split()]  # fmt: skip
+    except ValueError:
+        return None  # a structure, or complex numbers: none of those that matter here
+    if kind.endswith("range") and len(numbers) == 3:
+        return _spread(name, *numbers)
+    if "scalar" in kind or kind == "bool":
+        return np.array(numbers[:1]).reshape(1, -1)
+    if "ndims" in header:
+        dims, values = int(float(header["ndims"])), numbers
+        shape = [int(size) for size in values[:dims]]
+        return _shaped(name, np.array(values[dims:]), shape, order="F")
+    lines = [row for row in rows if row.strip() and not row.lstrip().startswith("#")]
+    stated = [_whole(header.get(key, "")) for key in ("rows", "columns")]
+    array = np.array(numbers)
+    if None not in stated:
+        shape = [size for size in stated if size is not None]
+        if shape[0] * shape[1] == array.size:
+            return array.reshape(shape)
+    if lines and array.size % len(lines) == 0:  # the header was edited: the lines count
+        return array.reshape(len(lines), -1)
+    return _shaped(name, array, [size or 0 for size in stated], order="C")
+
+
+def _spread(name: str, first: float, last: float, step: float) -> MatValue:
+    """Return the numbers of a range, the last included where a step ends at it.
+
+    Parameters
+    ----------
+    name : of the variable
+    first, last : numbers of the range
+    step : between two numbers
+
+    Raises
+    ------
+    ValueError
+        The range does not end.
+    """
+    count = (last - first) / step * (1 + 1e-12) + 1 if step else 0.0
+    if not 0.0 <= count <= _MOST:
+        raise ValueError(f"the range `{name}` has {count:g} numbers")
+    return first + step * np.arange(int(count))
+
+
+def _whole(text: str) -> int | None:
+    return int(text) if text.isdigit() else None
+
+
+def _shaped(name: str, array: MatValue, shape: list[int], *, order: str) -> MatValue:
+    assert isinstance(array, np.ndarray)
+    if int(np.prod(shape)) != array.size:
+        size = "×".join(str(length) for length in shape)
+        raise ValueError(f"`{name}` should be {size} but has {array.size} numbers")
+    return array.reshape(shape, order="F" if order == "F" else "C")
+
+
+def _texts(rows: list[str]) -> list[MatValue]:
+    """Return the rows of a character matrix: each line after its length."""
+    texts: list[MatValue] = []
+    for i, row in enumerate(rows):
+        if _header(row)[0] == "length":
+            behind = rows[i + 1] if i + 1 < len(rows) else ""
+            texts.append("" if _header(behind)[0] == "length" else behind.rstrip())
+    return texts
+
+
+def _is_hdf5(content: bytes) -> bool:
+    """Return whether a file is HDF5, by its first bytes or those after MATLAB's header."""
+    return _SIGNATURE in (content[:8], content[512:520])
+
+
+def _read_hdf5(content: bytes, wanted: Collection[str]) -> dict[str, MatValue]:
+    """Return the wanted variables that a file has; links to other files are not followed.
+
+    Raises
+    ------
+    ValueError, OSError
+        The file is damaged, or a variable refers to another file.
+    """
+    import h5py
+
+    found: dict[str, MatValue] = {}
+    with h5py.File(io.BytesIO(content), "r") as file:
+        for name in wanted:
+            if isinstance(file.get(name, getlink=True), h5py.HardLink):
+                found[name] = _variable(file, file[name], 0)
+    return found
+
+
+def _variable(file: Any, node: Any, depth: int) -> MatValue:
+    """Return a dataset, as MATLAB writes it, or one of Octave's, which are in groups."""
+    import h5py
+
+    if depth > _DEEPEST:
+        raise ValueError("cells are nested too deeply")
+    if not isinstance(node, h5py.Group):
+        return _values(file, node, _text_of(node.attrs.get("MATLAB_class", "")), depth)
+    hard = [isinstance(node.get(key, getlink=True), h5py.HardLink) for key in ("type", "value")]
+    if not all(hard) or not isinstance(node["type"], h5py.Dataset):
+        return np.zeros((0, 0))  # a structure
+    kind, value = _text_of(node["type"][()]), node["value"]
+    if not isinstance(value, h5py.Group):
+        return _values(file, value, kind.removeprefix("global ").strip(), depth)
+    elements = [key for key in value if key.startswith("_") and key[1:].isdigit()]
+    return [_variable(file, value[key], depth + 1) for key in sorted(elements, key=_number)]
+
+
+def _number(key: str) -> int:
+    return int(key[1:])
+
+
+def _values(file: Any, node: Any, kind: str, depth: int) -> MatValue:
+    """Return the values of a dataset; HDF5 has the dimensions in reverse order."""
+    import h5py
+
+    if not isinstance(node, h5py.Dataset) or node.is_virtual or node.external:
+        raise ValueError("a variable refers to another file")
+    if node.attrs.get("MATLAB_empty", 0) or node.attrs.get("OCTAVE_EMPTY_MATRIX", 0):
+        return np.zeros((0, 0))
+    _fits(node.name, node.shape)
+    value = node[()]
+    if node.dtype == h5py.ref_dtype:
+        return [_variable(file, file[each], depth + 1) for each in np.asarray(value).ravel()]
+    if node.dtype.names == ("base", "limit", "increment"):
+        return _spread(node.name, *(float(value[name]) for name in node.dtype.names))
+    array = np.asarray(value).T
+    if kind in _TEXTS:
+        rows = np.atleast_2d(array)
+        if array.dtype.kind == "i":
+            return [_utf_8(row) for row in rows]
+        return ["".join(chr(int(code)) for code in row).rstrip() for row in rows]
+    return array
+
+
+def _utf_8(row: np.ndarray[Any, np.dtype[Any]]) -> str:
+    """Return a text of Octave, which writes bytes."""
+    return row.astype(np.uint8).tobytes().decode("utf-8", "replace").rstrip()
+
+
+def _text_of(value: object) -> str:
+    return value.decode("ascii", "replace") if isinstance(value, bytes) else str(value)
+
+
+def numbers(value: MatValue | None) -> RealArray:
+    """Return a variable as numbers; an empty array where there is none.
+
+    Raises
+    ------
+    ValueError
+        It holds no real numbers.
+    """
+    if value is None:
+        return np.zeros((0, 0))
+    if isinstance(value, np.ndarray) and value.dtype.kind in "biuf":
+        return np.asarray(value, np.float64)
+    if isinstance(value, list) and not value:
+        return np.zeros((0, 0))
+    raise ValueError("holds no real numbers")
+
+
+def _fits(name: str, shape: tuple[int, ...]) -> bool:
+    """Return whether a variable of a shape may be read at all.
+
+    Raises
+    ------
+    ValueError
+        It may not.
+    """
+    if math.prod(shape) > _MOST:
+        raise ValueError(f"`{name}` has {math.prod(shape)} elements")
+    return True
+
+
+def names(value: MatValue | None) -> list[str]:
+    """Return a variable as texts: a character matrix, a cell array, or codes of characters."""
+    if value is None:
+        return []
+    if isinstance(value, str):
+        return [value.strip()]
+    if isinstance(value, list):
+        return [" ".join(names(each)) for each in value]
+    if value.dtype.kind == "U":
+        if value.ndim == 2 and value.size and np.char.str_len(value).max() <= 1:
+            return ["".join(row).strip() for row in value]
+        return [str(row).strip() for row in value.ravel()]
+    if value.dtype.kind == "O":
+        return [" ".join(names(_inner(each))) for each in value.ravel(order="F")]
+    if value.dtype.kind not in "iuf":
+        return []
+    rows = np.atleast_2d(value)
+    return ["".join(_sign(code) for code in row).strip() for row in rows]
+
+
+def _inner(value: object) -> MatValue:
+    return value if isinstance(value, (np.ndarray, str, list)) else str(value)
+
+
+def _sign(code: float) -> str:
+    return chr(int(code)) if np.isfinite(code) and 32 <= code < 0x110000 else ""

@@ -1,1 +1,0 @@
-"""Mooring Design & Dynamics: its `.mat` files, read and written."""

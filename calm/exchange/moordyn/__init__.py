@@ -1,1 +1,0 @@
-"""MoorDyn and MoorPy: single lines of their input files, read and written."""

@@ -1,0 +1,359 @@
+"""Read a single line of a MoorDyn or MoorPy file as a design."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from calm.exchange.design import (
+    MOST_PIECES,
+    Design,
+    FigureOrWord,
+    ImportedComponent,
+    ImportedPiece,
+    ImportedWater,
+    Remark,
+    refused,
+    refused_at,
+)
+from calm.exchange.part_names import is_chain
+from calm.files.definition import CATALOGUE_DENSITY, STANDARD_GRAVITY
+from calm.whole_file import read_text
+
+_FIXED, _FREE = ("fix", "anchor"), ("free", "connect", "point")
+_CURRENTS = "current_profile.txt"
+_NEAR, _NEAR_AT_LEAST = 0.05, 2.0
+"""Share of the depth, and metres: an upper end so near the surface hangs under a float."""
+
+_NOTE = "cn and ct are its Cd and CdAx, defined alike. See `calm docs import-moordyn`."
+
+_SECTIONS = (
+    ("types", r"line (types|dictionary)"),
+    ("points", r"(node|connection|point) properties|^points?( list)?$|connections"),
+    ("lines", r"line properties|^lines?( list)?$"),
+    ("bodies", r"bod(y|ies)"),
+    ("rods", r"^rods?\b(?!.*types)"),
+    ("rod types", r"rod (types|dictionary)"),
+    ("options", r"options"),
+    ("outputs", r"outputs?"),
+)
+_COLUMNS = {
+    "typename": "name", "name": "name", "linetype": "type", "type": "attachment",
+    "attachment": "attachment", "diam": "diameter", "mass/m": "mass", "massden": "mass",
+    "massdeninair": "mass", "massperlength": "mass", "mass/length": "mass", "ea": "ea",
+    "cd": "cd", "cdn": "cd", "cdax": "cdt", "cdt": "cdt", "id": "id", "node": "id", "line": "id",
+    "x": "x", "y": "y", "z": "z", "m": "mass", "mass": "mass", "v": "volume", "volume": "volume",
+    "cda": "cda", "fx": "fx", "fy": "fy", "fz": "fz", "unstrlen": "length", "nodeanch": "a",
+    "nodefair": "b", "nodea": "a", "nodeb": "b", "attacha": "a", "attachb": "b",
+}  # fmt: skip
+
+
+def read_moordyn(path: Path) -> Design:
+    """Read a file with one line, of one or several lengths, from an anchor up.
+
+    Raises
+    ------
+    InputError
+        It cannot be read, or holds a platform, a body, a rod or several lines.
+    """
+    sections = _read_sections(path)
+    for name in ("bodies", "rods"):
+        for row in sections.rows.get(name, []):
+            raise row.refuse(
+                f"{name}: CALM has single moorings, without bodies and rods of MoorDyn"
+            )
+    points = {row.words.get("id", ""): row for row in sections.rows.get("points", [])}
+    lines = sections.rows.get("lines", [])
+    if not points or not lines:
+        raise refused(path, f"has {len(points)} points and {len(lines)} lines")
+    if len(lines) > MOST_PIECES:
+        raise refused(path, f"has {len(lines)} lines; more than {MOST_PIECES} are not read")
+    legs = _from_the_anchor(points, lines, path)
+    design = Design("MoorDyn", path.stem, [], _water(sections, points, path), notes=[_NOTE])
+    assert design.water is not None
+    gravity = design.water.gravity
+    assert gravity is not None
+    types = {row.words.get("name", ""): row for row in sections.rows.get("types", [])}
+    anchor, items = legs[0][0], []
+    for point, line in legs:
+        if point is not anchor and (at_point := _point(point, design)) is not None:
+            items.append(at_point)
+        kind = types.get(line.words.get("type", ""))
+        if kind is None:
+            raise line.refuse(f"line type `{line.words.get('type')}` is defined nowhere")
+        length = line.number("length")
+        if length <= 0.0:
+            raise line.refuse("a line has no length")
+        items.append(ImportedPiece(_cable(kind, gravity), length))
+    design.items = [_upper_end(_last(points, legs), items, design), *items[::-1]]
+    design.items.append(ImportedPiece(_anchor(anchor, design.water)))
+    what = "damping, stiffness in bending, added mass"
+    design.dropped.append(Remark("line types", what))
+    return design
+
+
+def _from_the_anchor(
+    points: dict[str, SectionRow], lines: list[SectionRow], path: Path
+) -> list[tuple[SectionRow, SectionRow]]:
+    """Return the lines in order from the anchor up, each with the point at its lower end."""
+    at: dict[str, list[SectionRow]] = {}
+    for line in lines:
+        for end in ("a", "b"):
+            name = line.words.get(end, "")
+            if name not in points:
+                raise line.refuse(f"its end `{name}` is not a point of the file")
+            at.setdefault(name, []).append(line)
+    if any(len(each) > 2 for each in at.values()):
+        raise refused(path, "more than two lines meet in a point: CALM has single lines")
+    ends = [name for name, each in at.items() if len(each) == 1]
+    if len(ends) != 2:
+        raise refused(
+            path, f"holds {max(len(ends) // 2, 1)} lines or a ring; CALM has single lines"
+        )
+    ends.sort(key=lambda name: points[name].number("z"))
+    lower = points[ends[0]]
+    if not _is(lower, _FIXED):
+        raise lower.refuse("the lower end is not fixed: it is not an anchor")
+    legs: list[tuple[SectionRow, SectionRow]] = []
+    here, left = ends[0], list(lines)
+    while met := [each for each in left if here in _ends(each)]:
+        legs.append((points[here], met[0]))
+        left.remove(met[0])
+        a, b = _ends(met[0])
+        here = b if here == a else a
+    if left:
+        raise left[0].refuse("lines that do not hang together; CALM has single lines")
+    return legs
+
+
+def _ends(line: SectionRow) -> tuple[str, str]:
+    return line.words["a"], line.words["b"]
+
+
+def _last(points: dict[str, SectionRow], legs: list[tuple[SectionRow, SectionRow]]) -> SectionRow:
+    point, line = legs[-1]
+    a, b = _ends(line)
+    return points[b] if points[a] is point else points[a]
+
+
+def _is(point: SectionRow, words: tuple[str, ...]) -> bool:
+    return point.words.get("attachment", "").lower().startswith(words)
+
+
+def _water(sections: MoorDynSections, points: dict[str, SectionRow], path: Path) -> ImportedWater:
+    options = sections.options
+    lowest = min(point.number("z") for point in points.values())
+    depth = _option(options, "wtrdpth", "depth", default=-lowest)
+    if depth <= 0.0:
+        raise refused(path, "gives no depth of the water (`WtrDpth`)")
+    water = ImportedWater(depth)
+    water.density = _option(options, "wtrdnsty", "rhow", "rho", default=CATALOGUE_DENSITY)
+    water.gravity = _option(options, "g", "gravity", default=STANDARD_GRAVITY)  # its own
+    beside = path.with_name(_CURRENTS)
+    if options.get("currents", "0") not in ("0", "none") and beside.is_file():
+        water.current = _currents(beside)
+    return water
+
+
+def _option(options: dict[str, str], *names: str, default: float) -> float:
+    for name in names:
+        try:
+            return abs(float(options[name]))
+        except (KeyError, ValueError):
+            continue
+    return default
+
+
+def _currents(path: Path) -> tuple[tuple[float, float, float, float], ...]:
+    from calm.whole_file import read_text
+
+    rows = []
+    for line in read_text(path).splitlines():
+        try:
+            z, u, v, w = (float(word) for word in line.split()[:4])
+        except ValueError:
+            continue  # its head
+        if z <= 0.0:
+            rows.append((0.0 - z, u, v, w))
+    return tuple(sorted(rows))
+
+
+def _cable(kind: SectionRow, gravity: float) -> ImportedComponent:
+    """Return a line type; its weight in water follows from its mass and the water it displaces."""
+    across = kind.number("diameter")
+    if across <= 0.0:
+        raise kind.refuse("a line type has no diameter")
+    mass = kind.number("mass")
+    volume = math.pi / 4.0 * across**2
+    wet = (mass - CATALOGUE_DENSITY * volume) * gravity
+    figures: dict[str, FigureOrWord] = {
+        "diameter": across, "cn": kind.number("cd", 0.0), "ct": kind.number("cdt", 0.0),
+    }  # fmt: skip
+    name = kind.words["name"]
+    component = ImportedComponent.of_line(name, wet, figures, chain=is_chain(name))
+    component.figures["mass"] = mass
+    stiffness = kind.number("ea", 0.0)
+    if stiffness > 0.0:
+        component.figures["stiffness"] = stiffness
+    return component
+
+
+def _point(point: SectionRow, design: Design) -> ImportedPiece | None:
+    """Return what is at the joint of two lengths; None where it has neither weight nor drag."""
+    if not _is(point, _FREE):
+        raise point.refuse("a joint between two lengths is held: CALM has lines that hang free")
+    figures = _figures(point)
+    if not any(figures[key] for key in ("mass", "volume", "drag_area")):
+        return None
+    lifts = CATALOGUE_DENSITY * float(figures["volume"]) > float(figures["mass"])
+    figures["role"] = "float" if lifts else "instrument"
+    return ImportedPiece(ImportedComponent(f"point {point.words['id']}", "body", figures))
+
+
+def _figures(point: SectionRow) -> dict[str, FigureOrWord]:
+    for key in ("fx", "fy", "fz"):
+        if point.number(key, 0.0) != 0.0:
+            raise point.refuse(f"`{key}` pulls at the line from outside")
+    return {
+        "length": 0.0, "drag_area": point.number("cda", 0.0), "cd": 1.0,
+        "mass": point.number("mass", 0.0), "volume": point.number("volume", 0.0),
+    }  # fmt: skip
+
+
+def _upper_end(top: SectionRow, items: list[ImportedPiece], design: Design) -> ImportedPiece:
+    """Return the float: a free point, or a guess for one that is held at the surface."""
+    assert design.water is not None and design.water.depth is not None
+    if _is(top, _FREE):
+        figures = _figures(top)
+        if CATALOGUE_DENSITY * float(figures["volume"]) <= float(figures["mass"]):
+            raise top.refuse("the upper end is free, and does not float")
+        return ImportedPiece(
+            ImportedComponent(f"point {top.words['id']}", "body", {**figures, "role": "float"})
+        )
+    depth = 0.0 - top.number("z")
+    if depth > max(_NEAR * design.water.depth, _NEAR_AT_LEAST):
+        raise top.refuse(
+            f"the upper end is held {depth:g} m deep: a platform's; CALM has lines under a float"
+        )
+    figures = _figures(top)
+    if CATALOGUE_DENSITY * float(figures["volume"]) > float(figures["mass"]):
+        guess = {"volume": "the file holds the upper end; here a float of its point, free to move"}
+        figures["role"] = "float"
+        return ImportedPiece(ImportedComponent(f"point {top.words['id']}", "body", figures, guess))
+    gravity = design.water.gravity or STANDARD_GRAVITY
+    lift = 1.5 * sum(_weight(item, gravity) for item in items) + 1e4
+    volume = lift / (CATALOGUE_DENSITY * gravity)
+    across = (6.0 * volume / math.pi) ** (1.0 / 3.0)
+    component = ImportedComponent(
+        "float", "sphere",
+        {"diameter": across, "buoyancy": lift, "cx": 0.0, "role": "float"},
+        {"buoyancy": "the file holds the upper end; here a float without drag, free to move"},
+    )  # fmt: skip
+    return ImportedPiece(component)
+
+
+def _weight(item: ImportedPiece, gravity: float) -> float:
+    """Weight in water [N] under a gravity [m/s²]; 0 of what floats."""
+    figure = item.component.number
+    if item.length is None:
+        return max((figure("mass") - CATALOGUE_DENSITY * figure("volume")) * gravity, 0.0)
+    return figure("weight") * item.length
+
+
+def _anchor(point: SectionRow, water: ImportedWater) -> ImportedComponent:
+    assert water.depth is not None
+    height = water.depth + point.number("z")
+    return ImportedComponent("anchor", "anchor", {"length": height} if height > 1e-6 else {})
+
+
+@dataclass(frozen=True)
+class SectionRow:
+    """Hold a row of a table: its words by heading, and its place in the file."""
+
+    path: str
+    line: int
+    words: dict[str, str]
+
+    def number(self, key: str, default: float | None = None) -> float:
+        """Return a word as a number.
+
+        Raises
+        ------
+        InputError
+            It is missing, or no number.
+        """
+        text = self.words.get(key)
+        if text is None and default is not None:
+            return default
+        try:
+            value = float((text or "").split("|")[0])
+        except ValueError:
+            raise self.refuse(f"`{key}` is `{text or ''}`, no number") from None
+        if abs(value) > 1e15 or value != value:
+            raise self.refuse(f"`{key}` is {value:g}")
+        return value
+
+    def refuse(self, message: str) -> Exception:
+        """Return a problem in this row."""
+        return refused_at(self.path, self.line, 1, message)
+
+
+@dataclass
+class MoorDynSections:
+    """Hold the tables of a file, and its options."""
+
+    rows: dict[str, list[SectionRow]] = field(default_factory=dict)
+    options: dict[str, str] = field(default_factory=dict)
+
+
+def is_moordyn(content: bytes) -> bool:
+    """Return whether a file has the sections that each such file must have."""
+    text = content.decode("latin-1").lower()
+    found = {_section(line) for line in text.splitlines() if line.strip().startswith("---")}
+    return b"\0" not in content and {"types", "lines"} <= found
+
+
+def _read_sections(path: Path) -> MoorDynSections:
+    """Read a file.
+
+    Raises
+    ------
+    InputError
+        A table has a row with too few words.
+    """
+    sections, current, headings, skip = MoorDynSections(), "", list[str](), 0
+    for number, text in enumerate(read_text(path).splitlines(), 1):
+        line = text.split("#")[0] if not text.lstrip().startswith("(") else text
+        if line.strip().startswith("---"):
+            current, headings, skip = _section(line.lower()) or "", [], 2
+        elif not line.strip() or not current or current == "outputs":
+            continue
+        elif current == "options":
+            words = line.split()
+            if len(words) >= 2:
+                sections.options.setdefault(words[1].lower(), words[0])
+        elif skip:
+            skip -= 1
+            if skip == 1:
+                headings = [_heading(word, current) for word in line.split()]
+        else:
+            words = line.split()
+            if len(words) < min(len(headings), 4):
+                raise refused_at(str(path), number, 1, f"the row has {len(words)} words")
+            kept = dict(zip(headings, words, strict=False))
+            sections.rows.setdefault(current, []).append(SectionRow(str(path), number, kept))
+    return sections
+
+
+def _section(line: str) -> str | None:
+    title = line.strip().strip("-").strip()
+    return next((name for name, pattern in _SECTIONS if re.search(pattern, title)), None)
+
+
+def _heading(word: str, section: str) -> str:
+    plain = word.lower().strip("()#*")
+    if section == "types" and plain in ("linetype", "type", "name", "typename"):
+        return "name"
+    return _COLUMNS.get(plain, plain)

@@ -1,1 +1,0 @@
-"""Lists of pieces in CSV files and spreadsheets, those of moords among them."""

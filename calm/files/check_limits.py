@@ -1,0 +1,372 @@
+"""`checks:` of a mooring file: the limits of the design check, and the findings that it accepts.
+
+Each limit has its default and the source of that; each finding accepted has a reason.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from datetime import date as calendar_date
+from fnmatch import fnmatchcase
+from functools import cache
+from typing import Annotated
+
+from pydantic import AfterValidator, Field, WithJsonSchema, model_validator
+from pydantic.fields import FieldInfo
+
+from calm.errors import Problem
+from calm.files.fields import LENGTH, POSITIVE_LENGTH, Model, QuantityField, Text, quantity_of
+from calm.files.rule_texts import ACCEPTABLE
+from calm.files.yaml_document import SourceMapping
+from calm.suggestions import shown, unknown
+
+_FACTOR = QuantityField("number", above=0)
+_SAFETY = QuantityField("number", at_least=1)
+"""At least 1: a smaller factor would pass what breaks, or an anchor that is lifted."""
+_SHARE = QuantityField("number", at_least=0, at_most=1)
+_SPEED = QuantityField("speed", at_least=0)
+_LEAST_TENSION = QuantityField("force", at_least=0)
+
+THIS_PROGRAM = "a default of this program"
+THE_DESIGN = "the design"
+
+
+@dataclass(frozen=True)
+class Limit:
+    """Annotate a key of `checks:` with who gives its default.
+
+    Attributes
+    ----------
+    source : of the default; of one that is judged only where it is given, the design
+    default : [SI, degrees] where the model has None: it is judged all the same
+    """
+
+    source: str = THIS_PROGRAM
+    default: float | None = None
+
+
+_UFC = "UFC 4-159-03, table 3-7: 3 on new breaking strength of chain and wire"
+_PRACTICE = "oceanographic practice: a third to a fifth of the breaking load"
+_DEWEY = "Dewey, Mooring Design & Dynamics: weight in water ≥ 1.5 (V + H/0.6)"
+_NO_FIGURE = "practice of mooring groups, 50 to 100 kgf above the release; no figure is published"
+_URI = "URI GSO mooring program"
+
+
+class SafetyFactors(Model):
+    """Least breaking load over tension."""
+
+    steel: Annotated[float, _SAFETY, Limit(_UFC)] = Field(
+        default=3.0, description="of steel and everything that is not rope", examples=[3]
+    )
+    synthetic: Annotated[float, _SAFETY, Limit(_PRACTICE)] = Field(
+        default=5.0, description="of synthetic rope", examples=[5]
+    )
+    surface: Annotated[float, _SAFETY, Limit(_PRACTICE)] = Field(
+        default=5.0, description="of all pieces of a surface mooring", examples=[5]
+    )
+
+
+class MinimumTensions(Model):
+    """Least tension above the release [N]."""
+
+    wire: Annotated[float, _LEAST_TENSION, Limit(_NO_FIGURE)] = Field(
+        default=500.0, description="in wire", examples=["500 N"]
+    )
+    rope: Annotated[float, _LEAST_TENSION, Limit(_NO_FIGURE)] = Field(
+        default=300.0, description="in synthetic rope", examples=["300 N"]
+    )
+
+
+class Checks(Model):
+    """Limits of the design check, and what of its findings is accepted.
+
+    A limit without a default is judged only when given.
+    """
+
+    safety_factor: SafetyFactors = Field(
+        default_factory=SafetyFactors,
+        description="least breaking load over tension, by the material of a piece",
+        examples=[{"steel": 3, "synthetic": 5}],
+    )
+    anchor_factor: Annotated[float, _SAFETY, Limit(_DEWEY)] = Field(
+        default=1.5,
+        description="required weight of the anchor: factor × (vertical + horizontal / friction)",
+        examples=[1.5],
+    )
+    anchor_friction: Annotated[float, _FACTOR, Limit(_DEWEY)] = Field(
+        default=0.6, description="of an anchor on the seabed, where it gives none", examples=[0.6]
+    )
+    minimum_tension: MinimumTensions = Field(
+        default_factory=MinimumTensions,
+        description="above the release",
+        examples=[{"wire": "500 N", "rope": "300 N"}],
+    )
+    backup_margin: Annotated[float, _SHARE, Limit(_URI)] = Field(
+        default=0.1,
+        description="of the weight lifted, left in buoyancy after any break",
+        examples=[0.1],
+    )
+    minimum_rise_speed: Annotated[float, _SPEED, Limit()] = Field(
+        default=0.3,
+        description="of what comes up once the release has opened",
+        examples=["0.3 m/s"],
+    )
+    launch_safety_factor: Annotated[float, _SAFETY, Limit(_URI)] = Field(
+        default=2.0,
+        description="breaking load over tension, as the line falls behind its anchor",
+        examples=[2],
+    )
+    launch_working_factor: Annotated[float, _FACTOR, Limit()] = Field(
+        default=1.0, description="working load over tension there", examples=[1]
+    )
+    minimum_reserve: Annotated[float, _SHARE, Limit()] = Field(
+        default=0.3,
+        description="share of a surface float's buoyancy that must be left",
+        examples=[0.3],
+    )
+    rating_margin: Annotated[float, LENGTH, Limit()] = Field(
+        default=100.0, description="depth that must be left to a depth rating", examples=["100 m"]
+    )
+    maximum_knockdown: Annotated[float | None, POSITIVE_LENGTH, Limit(THE_DESIGN)] = Field(
+        default=None, description="most that the top may be pushed down", examples=["50 m"]
+    )
+    maximum_excursion: Annotated[float | None, POSITIVE_LENGTH, Limit(THE_DESIGN)] = Field(
+        default=None, description="most that the top may go to the side", examples=["200 m"]
+    )
+    maximum_tilt: Annotated[
+        float | None,
+        QuantityField("angle", above=0, at_most=90),
+        Limit(THE_DESIGN),
+    ] = Field(default=None, description="most that a piece may lean", examples=["30 deg"])
+    minimum_top_depth: Annotated[
+        float | None,
+        LENGTH,
+        Limit(THIS_PROGRAM, default=10.0),
+    ] = Field(
+        default=None,
+        description="least depth of the top of a sub-surface line, at low water too",
+        examples=["10 m"],
+    )
+    accept: tuple[AcceptKeys, ...] = Field(
+        default=(),
+        description="findings that this design accepts, each with its reason",
+        examples=[[{"rule": "strength", "component": "glass *", "reason": "hung on chain"}]],
+    )
+
+
+@dataclass(frozen=True)
+class LimitKey:
+    """Represent a key of `checks:`, such as ``safety_factor.steel``.
+
+    Attributes
+    ----------
+    name : dotted
+    dimension : of `calm.units`
+    value : in use [SI, degrees]; None where it is not judged
+    default : None where there is none
+    source : of the default
+    """
+
+    name: str
+    dimension: str
+    value: float | None
+    default: float | None
+    source: str
+
+    @property
+    def departs(self) -> bool:
+        """Return whether the design has another limit than the default."""
+        return self.default is not None and self.value != self.default
+
+
+def limit_keys(checks: Checks) -> Iterator[LimitKey]:
+    """Return every limit of `checks:`, those that are not given with their default."""
+    yield from _limit_keys(checks, "")
+
+
+def _limit_keys(model: Model, prefix: str) -> Iterator[LimitKey]:
+    for name, default in _defaults(type(model)):
+        value = getattr(model, name)
+        if isinstance(value, Model):
+            yield from _limit_keys(value, f"{prefix}{name}.")
+        elif default is not None:
+            used = default.value if value is None else value
+            own = prefix or used != default.value
+            yield replace(default, name=prefix + name, value=used) if own else default
+
+
+@cache
+def _defaults(model: type[Model]) -> tuple[tuple[str, LimitKey | None], ...]:
+    """Return for each field the limit that it is unless given; None of one that is no limit."""
+    return tuple((name, _default(name, field)) for name, field in model.model_fields.items())
+
+
+def _default(name: str, field: FieldInfo) -> LimitKey | None:
+    limit = next((one for one in field.metadata if isinstance(one, Limit)), None)
+    quantity = quantity_of(field)
+    if limit is None or quantity is None:
+        return None
+    default = limit.default if field.default is None else field.default
+    return LimitKey(name, quantity.dimension, default, default, limit.source)
+
+
+def _day(text: str) -> str:
+    try:
+        if calendar_date.fromisoformat(text).isoformat() == text:
+            return text
+    except ValueError:
+        pass
+    raise ValueError(f"`{shown(text)}` is not a day of the calendar; write it as 2027-06-30")
+
+
+def _said(text: str) -> str:
+    if not text.strip():
+        raise ValueError("`reason` is blank")
+    if not any(sign.isalnum() for sign in text):
+        raise ValueError(f"`reason: {shown(text)}` gives no reason; say it in words")
+    return text.strip()
+
+
+Day = Annotated[
+    Text,
+    AfterValidator(_day),
+    WithJsonSchema({"type": "string", "pattern": r"^\d{4}-\d{2}-\d{2}$"}),
+]
+"""A day such as 2027-06-30; such texts sort by date."""
+
+Reason = Annotated[Text, AfterValidator(_said)]
+
+
+class AcceptKeys(Model):
+    """An item of `checks: accept:`."""
+
+    rule: Annotated[Text, WithJsonSchema({"enum": list(ACCEPTABLE)})] = Field(
+        description="of the design check", examples=["knockdown"]
+    )
+    reason: Reason = Field(
+        description="why the finding is accepted",
+        examples=["the maker gives no load; hung on chain"],
+    )
+    component: Text | None = Field(
+        default=None,
+        description="label of the line, or a pattern of labels; all when absent",
+        examples=["glass *"],
+    )
+    by: Text | None = Field(default=None, description="who accepts it", examples=["A. Martin"])
+    date: Day | None = Field(
+        default=None, description="day, e.g. 2026-11-20", examples=["2026-11-22"]
+    )
+    until: Day | None = Field(
+        default=None, description="last day on which it counts", examples=["2027-12-31"]
+    )
+
+    @model_validator(mode="after")
+    def _ends_after_it_begins(self) -> AcceptKeys:
+        if self.date is not None and self.until is not None and self.until < self.date:
+            raise ValueError(f"the `accept` ends on {self.until}, before its `date`, {self.date}")
+        return self
+
+
+@dataclass(frozen=True)
+class Accept:
+    """Hold what is accepted of a mooring.
+
+    Attributes
+    ----------
+    rule : its id
+    component : as written, a label or a pattern of labels; None for every finding of the rule
+    labels : of the pieces and clamps that it stands for; None as above
+    reason : why
+    by, date : who accepted it, and when; None where it is not said
+    until : the last day on which it counts; None where it does not end
+    line : of the mooring file
+    """
+
+    rule: str
+    component: str | None
+    labels: tuple[str, ...] | None
+    reason: str
+    by: str | None
+    date: str | None
+    until: str | None
+    line: int
+
+    def covers(self, rule: str, component: str | None) -> bool:
+        """Return whether it is of that rule and component."""
+        return self.rule == rule and (self.labels is None or component in self.labels)
+
+    def counts_on(self, day: calendar_date) -> bool:
+        """Return whether it has not ended before that day, and is not dated after it."""
+        begun = self.date is None or self.date <= day.isoformat()
+        return begun and (self.until is None or day.isoformat() <= self.until)
+
+
+def read_accepts(
+    keys: Sequence[AcceptKeys],
+    labels: Sequence[str] | None,
+    top: SourceMapping,
+    problems: list[Problem],
+) -> tuple[Accept, ...]:
+    """Return what a mooring file accepts, the most specific first.
+
+    Parameters
+    ----------
+    labels : of the line; None where the line has mistakes of its own
+    top : the mooring file
+    """
+    found = [
+        accept
+        for number, one in enumerate(keys)
+        if (accept := _accept(one, number, labels, top, problems)) is not None
+    ]
+    return tuple(sorted(found, key=lambda one: _breadth(one, labels or ())))
+
+
+def _accept(
+    keys: AcceptKeys,
+    number: int,
+    labels: Sequence[str] | None,
+    top: SourceMapping,
+    problems: list[Problem],
+) -> Accept | None:
+    def wrong(key: str, message: str) -> None:
+        problems.append(top.problem(("checks", "accept", number, key), message))
+
+    if keys.rule not in ACCEPTABLE:
+        rule = shown(keys.rule)
+        wrong("rule", unknown(f"no rule that can be accepted is called `{rule}`", rule, ACCEPTABLE))
+    covered = None
+    if keys.component is not None and labels is not None:
+        covered = tuple(matching(keys.component, labels))
+        if not covered:
+            wrong("component", _nothing_called(keys.component, labels))
+    line = top.problem(("checks", "accept", number), "").line
+    return Accept(
+        keys.rule, keys.component, covered, keys.reason, keys.by, keys.date, keys.until, line
+    )
+
+
+def matching(component: str, labels: Iterable[str]) -> list[str]:
+    """Return the labels that a label or a pattern of labels stands for.
+
+    A text that is a label is that label alone, whatever signs it has. Otherwise ``*`` stands for
+    any signs, ``?`` for one, ``[ab]`` for a or b; capitals count.
+    """
+    labels = list(labels)
+    if component in labels:
+        return [component]
+    return [label for label in labels if fnmatchcase(label, component)]
+
+
+def _nothing_called(component: str, labels: Sequence[str]) -> str:
+    text = shown(component)
+    message = f"no piece or clamp is called `{text}`"
+    if any(label.startswith(f"{component} ") for label in labels):
+        return f"{message}; did you mean `{text} *`?"
+    return unknown(message, component, labels)
+
+
+def _breadth(accept: Accept, labels: Sequence[str]) -> int:
+    """Return 0 for a label, 1 for a pattern, 2 for every component."""
+    return 2 if accept.component is None else int(accept.component not in labels)

@@ -1,0 +1,282 @@
+"""What differs between two moorings as read: piece by piece, and in all that is around the line."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any
+
+from pydantic import BaseModel
+
+from calm.files.alignment import Alignment, Known, align, own_labels
+from calm.files.fields import QuantityField
+from calm.files.flexible import Flexible
+from calm.files.mooring_file import Clamp, MooringFile, Piece
+from calm.quantities import bearing_of
+from calm.records.profile_tables import CurrentTable, DepthTable
+from calm.units import DIMENSIONS, with_unit
+
+Value = float | str | None
+
+
+@dataclass(frozen=True)
+class ComparedValue:
+    """Hold a value of a file [SI, degrees] or a text, and how people read it.
+
+    `table` is what a text sums up, since two that differ may come to the same.
+    """
+
+    value: Value
+    text: str
+    table: CurrentTable | DepthTable | None = None
+
+
+NOTHING = ComparedValue(None, "-")
+
+
+def _text(text: str) -> ComparedValue:
+    return ComparedValue(text, text)
+
+
+@dataclass(frozen=True)
+class Change:
+    """Hold a value that differs: ``label.field`` or ``environment.depth``, before and after."""
+
+    where: str
+    before: ComparedValue
+    after: ComparedValue
+
+
+@dataclass(frozen=True)
+class Differences:
+    """Hold what differs between two files.
+
+    Attributes
+    ----------
+    changed : around the line, then down it
+    moved : parts that are elsewhere in the line, and below which part
+    removed, added : labels of pieces and clamps
+    pairs : of the same pieces and of the same clamps, in the order of the first line
+    """
+
+    changed: tuple[Change, ...]
+    moved: tuple[Change, ...]
+    removed: tuple[str, ...]
+    added: tuple[str, ...]
+    pairs: tuple[tuple[Piece | Clamp, Piece | Clamp], ...]
+
+    @property
+    def any(self) -> bool:
+        """Return whether there are any."""
+        return bool(self.changed or self.moved or self.removed or self.added)
+
+
+_OF_THE_SOURCE = frozenset({"kind", "source", "sources", "searched", "prefer", "date"})
+"""Fields of a definition that say where its figures come from."""
+
+_DIMENSIONS = {
+    **dict.fromkeys(("length", "at", "depth", "fit_top_depth", "fit_body_depth"), "length"),
+    "measured_load": "force",
+    "gravity": "acceleration",
+    "density": "density",
+    "maximum_speed": "speed",
+}
+"""Of fields that no model annotates with theirs."""
+
+
+def differences(before: MooringFile, after: MooringFile) -> Differences:
+    """Compare two files of the same kind."""
+    lines = [*before.pieces], [*after.pieces]
+    pieces = align(*map(_known_pieces, lines))
+    partner = dict(pieces.pairs)
+    clamps = [[(p.index, clamp) for p in line for clamp in p.clamps] for line in lines]
+    known = [_known_clamps(clamps[0], partner), _known_clamps(clamps[1], None)]
+    aligned = align(*known)
+    changed = [*_changes("", _around(before), _around(after))]
+    names = [own_labels([piece.label for piece in line]) for line in lines]
+    for i, j in pieces.pairs:
+        label = lines[0][i].label
+        changed += _of_part(lines[0][i], lines[1][j], names[0][i], names[1][j], label)
+    names = [[one.label for one in each] for each in known]
+    for i, j in aligned.pairs:
+        (above, first), (below, second) = clamps[0][i], clamps[1][j]
+        changed += _of_part(first, second, names[0][i], names[1][j], first.label)
+        if partner.get(above) != below:
+            on = _text(lines[0][above].label), _text(lines[1][below].label)
+            changed.append(Change(f"{first.label}.on", *on))
+    return Differences(
+        changed=tuple(changed),
+        moved=tuple(_moves(pieces, *lines)),
+        removed=(
+            *(lines[0][i].label for i in pieces.removed),
+            *(clamps[0][i][1].label for i in aligned.removed),
+        ),
+        added=(
+            *(lines[1][j].label for j in pieces.added),
+            *(clamps[1][j][1].label for j in aligned.added),
+        ),
+        pairs=(
+            *((lines[0][i], lines[1][j]) for i, j in pieces.pairs),
+            *((clamps[0][i][1], clamps[1][j][1]) for i, j in aligned.pairs),
+        ),
+    )
+
+
+def _known_pieces(pieces: Sequence[Piece]) -> list[Known]:
+    labels = own_labels([piece.label for piece in pieces])
+    return [
+        Known(label, ((label, *_content(piece), piece.length), piece.use, piece.component.role))
+        for label, piece in zip(labels, pieces, strict=True)
+    ]
+
+
+def _known_clamps(
+    clamps: Sequence[tuple[int, Clamp]], partner: Mapping[int, int] | None
+) -> list[Known]:
+    """Clamps are alike on pieces that are the same; `partner` leads to the piece in the other."""
+    labels = own_labels([clamp.label for _, clamp in clamps])
+    known = []
+    for label, (index, clamp) in zip(labels, clamps, strict=True):
+        on = index if partner is None else partner.get(index, -1)
+        own = label, *_content(clamp)
+        known.append(Known(label, ((on, *own, clamp.at), (on, *own), (on, clamp.use), own)))
+    return known
+
+
+def _content(part: Piece | Clamp) -> tuple[str, str]:
+    return part.use, part.component.model_dump_json()
+
+
+def _moves(
+    alignment: Alignment, before: Sequence[Piece], after: Sequence[Piece]
+) -> Iterator[Change]:
+    for i, j in sorted(alignment.moved):
+        places = [
+            f"below {line[place - 1].label}" if place else "on top"
+            for line, place in ((before, i), (after, j))
+        ]
+        yield Change(before[i].label, *map(_text, places))
+
+
+def _of_part(
+    before: Piece | Clamp, after: Piece | Clamp, name: str, other: str, label: str
+) -> Iterator[Change]:
+    first, second = _part_figures(before, name), _part_figures(after, other)
+    if before.use == after.use:
+        first |= _figures(before.component, _OF_THE_SOURCE)
+        second |= _figures(after.component, _OF_THE_SOURCE)
+    yield from _changes(f"{label}.", first, second)
+
+
+def _part_figures(part: Piece | Clamp, name: str) -> dict[str, ComparedValue]:
+    """Return what the line says of a part, its definition left out."""
+    found = {"use": _figure("use", part.use), "label": _figure("label", name)}
+    if isinstance(part, Clamp):
+        found["at"] = _figure("at", part.at)
+    elif isinstance(part.component, Flexible):
+        fits = part.length is None
+        found["length"] = _figure("length", "fit" if fits else part.length)
+        for key in ("fit_top_depth", "fit_body_depth"):
+            found[key.removeprefix("fit_")] = _figure(key, getattr(part, key))
+        found["measured_load"] = _figure("measured_load", part.measured_load)
+    return found | _figures(part.equipment)
+
+
+def _around(file: MooringFile) -> dict[str, ComparedValue]:
+    """Return all that is not the line."""
+    parts: dict[str, Any] = {
+        "position": file.position,
+        "tow": file.tow,
+        "solver": file.solver,
+        "checks": file.checks,
+        "uncertainty": file.uncertainty,
+        "document": file.document,
+        "deployed": file.deployed,
+    }
+    found = {"name": _figure("name", file.name)}
+    found["description"] = _figure("description", file.description or None)
+    around = _figures(file.environment, frozenset({"position"}))  # it follows from the file's own
+    found |= {f"environment.{key}": one for key, one in around.items()}
+    for name, part in parts.items():
+        if part is not None:
+            found |= {f"{name}.{key}": one for key, one in _figures(part).items()}
+    for name, overlay in file.variants.items():
+        given = overlay if isinstance(overlay, dict) else {"": overlay}
+        found |= {f"environments.{name}.{key}": _text(_said(one)) for key, one in given.items()}
+    found["releases"] = _figure("releases", file.releases or None)
+    return found
+
+
+def _figures(part: Any, left_out: frozenset[str] = frozenset()) -> dict[str, ComparedValue]:
+    """Return the fields of a model, dotted where it holds others."""
+    found: dict[str, ComparedValue] = {}
+    if isinstance(part, BaseModel):
+        model = type(part).model_fields
+        given = {name: (getattr(part, name), model[name].metadata) for name in model}
+    else:
+        given = {field.name: (getattr(part, field.name), []) for field in fields(part)}
+    for name, (value, metadata) in given.items():
+        if name in left_out:
+            continue
+        if isinstance(value, BaseModel):
+            found |= {f"{name}.{key}": one for key, one in _figures(value).items()}
+            continue
+        quantity = next((one for one in metadata if isinstance(one, QuantityField)), None)
+        dimension = quantity.dimension if quantity else _DIMENSIONS.get(name)
+        found[name] = _figure(name, value, dimension)
+    return found
+
+
+def _figure(name: str, value: Any, dimension: str | None = None) -> ComparedValue:
+    if value is None or value == ():
+        return NOTHING
+    if isinstance(value, CurrentTable):
+        return _of_current(value)
+    if isinstance(value, DepthTable):
+        text = f"{min(value.value):g} to {max(value.value):g}, {len(value.depth)} levels"
+        return ComparedValue(text, text, value)
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        number = math.degrees(value) if name == "angle_step" else float(value)
+        dimension = dimension or _DIMENSIONS.get(name)
+        unit = "" if dimension is None else DIMENSIONS[dimension].unit
+        return ComparedValue(number if math.isfinite(number) else None, with_unit(number, unit))
+    return _text(_said(value))
+
+
+def _of_current(table: CurrentTable) -> ComparedValue:
+    speeds = [math.hypot(u, v) for u, v in zip(table.u, table.v, strict=True)]
+    fastest = max(range(len(speeds)), key=speeds.__getitem__)
+    toward = bearing_of(table.u[fastest], table.v[fastest])
+    text = f"at most {speeds[fastest]:.3g} m/s at {table.depth[fastest]:g} m"
+    if speeds[fastest] > 0.0:
+        text += f" toward {toward:.0f}°"
+    text += f", {len(speeds)} level{'s' * (len(speeds) != 1)}"
+    return ComparedValue(text, text, table)
+
+
+def _said(value: Any) -> str:
+    """Return a value that is neither a number nor None, in words."""
+    if isinstance(value, BaseModel):
+        given = {name: one for name, one in value if one is not None and one != ()}
+        return ", ".join(f"{name}: {_said(one)}" for name, one in given.items())
+    if isinstance(value, list | tuple):
+        return "; ".join(map(_said, value))
+    if isinstance(value, dict):
+        return ", ".join(f"{key}: {_said(one)}" for key, one in value.items())
+    if is_dataclass(value):
+        named = ((each.name, getattr(value, each.name)) for each in fields(value))
+        return ", ".join(f"{name}: {_said(one)}" for name, one in named if one is not None)
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def _changes(
+    prefix: str, before: Mapping[str, ComparedValue], after: Mapping[str, ComparedValue]
+) -> Iterator[Change]:
+    for name in dict.fromkeys((*before, *after)):
+        pair = before.get(name, NOTHING), after.get(name, NOTHING)
+        if pair[0] != pair[1]:
+            if pair[0].text == pair[1].text:
+                text = f"{pair[1].text}, other figures"
+                pair = pair[0], ComparedValue(text, text, pair[1].table)
+            yield Change(prefix + name, *pair)

@@ -1,0 +1,362 @@
+"""The `line` of a mooring file: items expanded into pieces, overrides applied, labels resolved."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import replace
+
+from calm.errors import Problem
+from calm.files.catalogue import Assembly, Catalogue, CatalogueEntry, define
+from calm.files.check_limits import LimitKey
+from calm.files.components import Cable, Component, contradicted
+from calm.files.definition import IN_AIR
+from calm.files.fields import LENGTH, POSITIVE_LENGTH, QuantityField, quantity_of
+from calm.files.flexible import Flexible, strain_under
+from calm.files.logbook import EQUIPMENT_KEYS, LengthAt, check_serials, read_equipment
+from calm.files.mistakes import validate
+from calm.files.mooring_file import Clamp, Piece, Place, placed
+from calm.files.rigid import Rigid
+from calm.files.yaml_document import SourceMapping
+from calm.suggestions import about_quantity, shown, unknown
+from calm.units import QuantityError
+
+MOST_PIECES = 10_000
+"""Pieces a line may have, after assemblies and counts are expanded."""
+
+_COUNT = QuantityField("number", at_least=1, at_most=MOST_PIECES)
+_ITEM_KEYS = EQUIPMENT_KEYS | {
+    *("use", "label", "count", "length", "length_at", "top_depth", "body_depth", "clamps")
+}
+_ASSEMBLY_KEYS = frozenset({"use", "label", "count"})
+_CLAMP_KEYS = EQUIPMENT_KEYS | {"use", "label", "at"}
+_WORDS = {"at": "place", "top_depth": "top depth", "body_depth": "body depth"}
+_LIMITS = (
+    *("breaking_load", "working_load", "opening_load", "grip"),
+    *("depth_rating", "max_tilt", "warn_tilt"),
+)
+"""Limits by which a component is judged, each looser the greater it is."""
+
+
+class LineReader:
+    """Expand line items; mistakes go to `problems`, what is worth knowing to `notices`.
+
+    `towed` and `in_air` show which keys and figures the line may have.
+    """
+
+    def __init__(
+        self,
+        catalogue: Catalogue,
+        problems: list[Problem],
+        notices: list[str],
+        *,
+        towed: bool = False,
+        in_air: bool = False,
+    ) -> None:
+        self._catalogue = catalogue
+        self._problems = problems
+        self._notices = notices
+        self.looser: list[LimitKey] = []
+        self._towed = towed
+        self._in_air = in_air
+        self._defined: dict[str, Component | Assembly | None] = {}
+        self._assemblies: dict[str, tuple[Piece, ...]] = {}
+        self._open: list[str] = []
+
+    def check(self, ids: Iterable[str]) -> None:
+        """Check definitions, used in the line or not."""
+        for id in ids:
+            entry = self._catalogue.entry(id)
+            if entry is not None:
+                definition = self._defined[id] = self._define(entry, entry.section)
+                if isinstance(definition, Assembly):
+                    self._assembly(entry, entry.section)
+
+    def read(self, section: SourceMapping, key: str) -> tuple[Piece, ...]:
+        """Read the items of the list under a key; those with mistakes are left out."""
+        pieces: list[Piece] = []
+        items = self._items(section, key)
+        for number, item in enumerate(items, 1):
+            pieces += self._item(item)
+            if max(number, len(pieces)) > MOST_PIECES:
+                self._refuse(item, (), f"the line has more than {MOST_PIECES} pieces")
+                return ()
+        return tuple(pieces)
+
+    def _items(self, section: SourceMapping, key: str) -> list[SourceMapping]:
+        """Return the items of a list, each a mapping."""
+        found = section.data[key]
+        if not isinstance(found, (list, tuple)):
+            self._refuse(section, (key,), f"`{key}` must be a list of items")
+            return []
+        items = []
+        for i, item in enumerate(found[: MOST_PIECES + 1]):
+            if isinstance(item, dict):
+                items.append(SourceMapping.of(section.document, (*section.location, key, i), item))
+            else:
+                message = f"`{shown(item)}` is not an item; write `{{use: {shown(item) or '…'}}}`"
+                self._refuse(section, (key, i), message)
+        return items
+
+    def _item(self, item: SourceMapping) -> tuple[Piece, ...]:
+        count = self._count(item)
+        check_serials(item, count, self._problems)
+        entry = self._entry(item)
+        definition = self._definition(entry, item, _ITEM_KEYS) if entry else None
+        if entry is None or definition is None:
+            self._clamps(item, None)
+            return ()
+        if isinstance(definition, Assembly):
+            once = self._assembly(entry, item)
+        else:
+            once = (self._piece(definition, item),)
+        if len(once) * count > MOST_PIECES:
+            message = f"{count} times makes more than {MOST_PIECES} pieces"
+            self._refuse(item, ("count",), message)
+            return ()
+        number = item.location[-1]
+        assert isinstance(number, int)  # its place in a list
+        first = 0 if isinstance(definition, Assembly) else -1
+        return tuple(
+            placed(piece, Place(number, repeat, part))
+            for repeat in range(count)
+            for part, piece in enumerate(once, first)
+        )
+
+    def _piece(self, component: Component, item: SourceMapping) -> Piece:
+        length: float | None
+        load = 0.0
+        if not isinstance(component, Flexible):
+            length = component.length
+        elif item.data.get("length") == "fit":
+            length = None
+        elif "length_at" in item.data:
+            length, load = self._measured(item, component)
+        else:
+            need = "a cable or chain needs it"
+            length = self._quantity(item, "length", POSITIVE_LENGTH, need) or math.nan
+        if "length_at" in item.data and not isinstance(component, Flexible):
+            message = "`length_at` is for cables and chains; this is as long as its definition says"
+            self._refuse(item, ("length_at",), message, key=True)
+        elif "length" in item.data and "length_at" in item.data:
+            message = "gives both `length` and `length_at`; one says how long it is cut"
+            self._refuse(item, ("length_at",), message, key=True)
+        fit_depth = self._fit_depth(item, fits=length is None)
+        clamps = self._clamps(item, length)
+        place = item.problem((), "")
+        use = item.data["use"]
+        self._tell_of_mass(use, component)
+        return Piece(
+            index=0,
+            use=use,
+            label=self._label(item),
+            component=component,
+            length=length,
+            fit_top_depth=None if self._towed else fit_depth,
+            clamps=clamps,
+            line=place.line,
+            column=place.column,
+            place=Place(0),
+            fit_body_depth=fit_depth if self._towed else None,
+            equipment=read_equipment(item, self._problems),
+            measured_load=load,
+        )
+
+    def _measured(self, item: SourceMapping, component: Flexible) -> tuple[float, float]:
+        """Return the unstretched length of what is measured under a load [m], and that load [N]."""
+        if not isinstance(item.data["length_at"], dict):
+            example = "{load: 2 kN, length: 480 m}"
+            self._refuse(item, ("length_at",), f"`length_at` must be as `{example}`")
+            return math.nan, 0.0
+        measured = validate(LengthAt, item.child("length_at"), self._problems)
+        if measured is None:
+            return math.nan, 0.0
+        breaking = component.breaking_load
+        if breaking is not None and measured.load > breaking:
+            message = f"`load` is above the breaking load of {breaking:g} N"
+            self._refuse(item, ("length_at", "load"), message)
+        return measured.length / (1.0 + strain_under(component, measured.load)), measured.load
+
+    def _fit_depth(self, item: SourceMapping, *, fits: bool) -> float | None:
+        """Return the depth to cut a piece to: of the line's top, in a tow of its own lower end."""
+        key, foreign, home = ("top_depth", "body_depth", "tows")
+        if self._towed:
+            key, foreign, home = ("body_depth", "top_depth", "moorings")
+        if foreign in item.data:
+            message = f"`{foreign}` belongs to {home}; here it is `{key}`"
+            self._refuse(item, (foreign,), message, key=True)
+        if fits and (key in item.data or foreign not in item.data):
+            # depths are counted from the water, above which a tow in air may end
+            kind = QuantityField("length") if self._in_air else LENGTH
+            return self._quantity(item, key, kind, "`length: fit` needs it")
+        if key in item.data:
+            self._refuse(item, (key,), f"`{key}` goes with `length: fit`", key=True)
+        return None
+
+    def _tell_of_mass(self, use: str, component: Component) -> None:
+        """Notice that in air a net force in water has to do where it is all that is known."""
+        if self._in_air and component.mass is None and component.displaced_volume is None:
+            notice = f"{use}: no mass is known; its net force in water is taken for that in air"
+            if notice not in self._notices:
+                self._notices.append(notice)
+
+    def _clamps(self, item: SourceMapping, length: float | None) -> tuple[Clamp, ...]:
+        """Return the clamps of an item, none beyond its length where that is known."""
+        clamps: list[Clamp] = []
+        for clamp in self._items(item, "clamps") if "clamps" in item.data else ():
+            entry = self._entry(clamp)
+            component = self._definition(entry, clamp, _CLAMP_KEYS) if entry else None
+            at = self._quantity(clamp, "at", LENGTH, "the distance from the top of the piece")
+            if at is not None and length is not None and at > length:
+                message = f"`at: {shown(clamp.data['at'])}` is beyond the piece, {length:g} m long"
+                self._refuse(clamp, ("at",), message)
+            if isinstance(component, Rigid) and at is not None:
+                self._tell_of_mass(clamp.data["use"], component)
+                where = Place(0, clamp=len(clamps))
+                own = read_equipment(clamp, self._problems)
+                label = self._label(clamp)
+                clamps.append(Clamp(clamp.data["use"], label, component, at, where, own))
+            elif component is not None and at is not None:
+                message = f"a component of kind {component.kind} cannot be clamped on a line"
+                self._refuse(clamp, ("use",), message)
+        return tuple(clamps)
+
+    def _assembly(self, entry: CatalogueEntry, item: SourceMapping) -> tuple[Piece, ...]:
+        """Return the pieces of an assembly, all at the place of the item that uses it."""
+        if entry.id in self._open:
+            self._refuse(item, ("use",), f"assembly `{entry.id}` contains itself")
+            return ()
+        if entry.id not in self._assemblies:
+            self._open.append(entry.id)
+            self._assemblies[entry.id] = self.read(entry.section, "parts")
+            self._open.pop()
+        place = item.problem((), "")
+        prefix = f"{self._label(item)} " if "label" in item.data else ""
+        return tuple(
+            replace(piece, label=prefix + piece.label, line=place.line, column=place.column)
+            for piece in self._assemblies[entry.id]
+        )
+
+    def _entry(self, item: SourceMapping) -> CatalogueEntry | None:
+        """Return the catalogue entry that an item uses."""
+        use = item.data.get("use")
+        if not isinstance(use, str):
+            message = "`use` must be the id of a component" if "use" in item.data else None
+            lacks = "" if message else "no component chosen"
+            self._refuse(item, ("use",), message or "`use` is missing", lacks=lacks)
+            return None
+        entry = self._catalogue.entry(use)
+        if entry is None:
+            near = self._catalogue.nearest(use)
+            offer = f"; did you mean {near}?" if near else " (`calm catalog list` shows all)"
+            self._refuse(item, ("use",), f"`use: {shown(use)}`: no such component{offer}")
+            return None
+        hidden = self._catalogue.hidden(use)
+        if hidden:
+            notice = f"{use}: defined in {entry.place}, which hides that of {hidden.place}"
+            if notice not in self._notices:
+                self._notices.append(notice)
+        return entry
+
+    def _definition(
+        self, entry: CatalogueEntry, item: SourceMapping, item_keys: frozenset[str]
+    ) -> Component | Assembly | None:
+        """Return what an item uses, the item's overrides applied."""
+        if entry.id not in self._defined:
+            self._defined[entry.id] = self._define(entry, entry.section)
+        definition = self._defined[entry.id]
+        if isinstance(definition, Assembly):
+            for key in item.data.keys() - _ASSEMBLY_KEYS:
+                message = unknown(f"`{key}` cannot be set on an assembly", key, _ASSEMBLY_KEYS)
+                self._refuse(item, (key,), message, key=True)
+            return definition
+        own_keys = item_keys
+        if not isinstance(definition, Flexible):
+            own_keys = item_keys - {"length"}
+        overriding = {key: value for key, value in item.data.items() if key not in own_keys}
+        if definition is None or not overriding:
+            return definition
+        if "kind" in overriding:
+            message = "`kind` cannot be overridden; define a component of your own"
+            self._refuse(item, ("kind",), message, key=True)
+            return None
+        void = contradicted(definition.kind, entry.section.data.keys(), overriding.keys())
+        override = SourceMapping.of(item.document, item.location, overriding)
+        section = override.over(entry.section, dropping=void)
+        hinted = item_keys if isinstance(definition, Cable) else item_keys - {"termination"}
+        component = self._define(entry, section, also_allowed=hinted)
+        if isinstance(component, Assembly) or component is None:
+            return None
+        self._keep_looser_limits(entry, item, definition, component)
+        force_stays = component.net_buoyancy == definition.net_buoyancy
+        if "mass" in overriding and force_stays and not self._in_air:
+            self._notices.append(
+                f"line {item.problem((), '').line}: `mass` of {entry.id} is overridden, its net "
+                "force in water is not; override that too if it changes"
+            )
+        return component
+
+    def _keep_looser_limits(
+        self,
+        entry: CatalogueEntry,
+        item: SourceMapping,
+        definition: Component,
+        component: Component,
+    ) -> None:
+        """Keep what the line lets a component bear beyond its own definition."""
+        for key in _LIMITS:
+            before, after = (getattr(each, key) for each in (definition, component))
+            quantity = quantity_of(type(definition).model_fields[key])
+            if quantity and before is not None and after is not None and after > before:
+                name, source = f"{key} of {self._label(item)}", f"the definition of {entry.id}"
+                self.looser.append(LimitKey(name, quantity.dimension, after, before, source))
+
+    def _define(
+        self, entry: CatalogueEntry, section: SourceMapping, *, also_allowed: Iterable[str] = ()
+    ) -> Component | Assembly | None:
+        context = IN_AIR if self._in_air else None
+        return define(entry, section, self._problems, also_allowed=also_allowed, context=context)
+
+    def _count(self, item: SourceMapping) -> int:
+        text = item.data.get("count", "1")
+        try:
+            count = _COUNT.read(text)
+            if count != int(count):
+                raise QuantityError("must be a whole number")
+        except QuantityError as error:
+            self._refuse(item, ("count",), about_quantity("count", text, error))
+            return 1
+        return int(count)
+
+    def _quantity(
+        self, item: SourceMapping, key: str, kind: QuantityField, need: str
+    ) -> float | None:
+        if item.data.get(key) is None:
+            there = key in item.data
+            message = f"`{key}` has no value" if there else f"`{key}` is missing: {need}"
+            place = (key,) if there else ()
+            label = item.data.get("label") or item.data.get("use") or "a piece"
+            self._refuse(item, place, message, lacks=f"no {_WORDS.get(key, key)} on {shown(label)}")
+            return None
+        try:
+            return kind.read(item.data[key])
+        except QuantityError as error:
+            self._refuse(item, (key,), about_quantity(key, item.data[key], error))
+            return None
+
+    def _label(self, item: SourceMapping) -> str:
+        label = item.data.get("label", item.data["use"])
+        if not isinstance(label, str):
+            self._refuse(item, ("label",), "`label` must be plain text")
+        return str(label)
+
+    def _refuse(
+        self,
+        section: SourceMapping,
+        location: tuple[str | int, ...],
+        message: str,
+        *,
+        key: bool = False,
+        lacks: str = "",
+    ) -> None:
+        self._problems.append(section.problem(location, message, key=key, lacks=lacks))

@@ -1,0 +1,273 @@
+"""A mooring file as read: the expanded line, its environment and settings, in SI and degrees.
+
+Every piece and clamp has its own place in the line, and a label that no other has.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Annotated, Any, Literal, Protocol
+
+from pydantic import AfterValidator, Field
+
+from calm.files.check_limits import Accept, Checks, LimitKey
+from calm.files.components import Anchor, Component
+from calm.files.environment import Environment, Position
+from calm.files.fields import LENGTH, Model, QuantityField
+from calm.files.logbook import NO_EQUIPMENT, Deployed, DocumentKeys, Equipment, ReleaseKeys
+from calm.files.strumming_keys import Strumming
+from calm.files.uncertainty import Uncertainty
+
+
+class TowKeys(Model):
+    """What tows the line: speed over ground [m/s], where to [degrees], height above water [m]."""
+
+    speed: Annotated[float, QuantityField("speed", above=0)] = Field(
+        description="of the ship over the ground", examples=["0.5 m/s"]
+    )
+    toward: Annotated[float, QuantityField("angle")] = Field(
+        description="course, clockwise from north", examples=["90 deg"]
+    )
+    height: Annotated[float, LENGTH] = Field(
+        default=0.0, description="of the tow point above the water, e.g. 4 m", examples=["4 m"]
+    )
+
+
+class Solver(Model):
+    """How the line is solved; `angle_step` in radians, `tolerance` as a share of the depth."""
+
+    angle_step: Annotated[
+        float, QuantityField("angle", above=0, at_most=10), AfterValidator(math.radians)
+    ] = Field(
+        default=math.radians(1),
+        description="how much a cable may turn from one segment to the next, e.g. 1 deg",
+        examples=["1 deg"],
+    )
+    tolerance: Annotated[float, QuantityField("number", above=0, at_most=2e-4)] = Field(
+        default=1e-7,
+        description="of the depth of the anchor, as a share of the water depth",
+        examples=[1e-07],
+    )
+    drag: Literal["constant", "reynolds"] = Field(
+        default="constant",
+        description="constant coefficients, or by Reynolds number for what is `surface: smooth`",
+        examples=["reynolds"],
+    )
+    friction: Literal["berteaux", "hoerner", "constant"] = Field(
+        default="berteaux", description="law of friction along cables", examples=["berteaux"]
+    )
+    strumming: Strumming = Field(
+        default=None,
+        description="how much vibration raises the Cn of cables",
+        examples=[{"factor": 1.5}],
+    )
+    buoy_drag: Literal["immersed", "full"] = Field(
+        default="immersed",
+        description="of a float at the surface: at its draft, or fully immersed",
+        examples=["immersed"],
+    )
+    seabed_friction: Annotated[float, QuantityField("number", at_least=0)] = Field(
+        default=0.0, description="of line that lies on the seabed", examples=[0.3]
+    )
+
+
+@dataclass(frozen=True, order=True)
+class Place:
+    """Where a piece or a clamp stands in the line as read, by which it is known from there on.
+
+    A row of the file is the place of what it gives: `Place(3)` its fourth item, whatever the count
+    of that, `Place(3, clamp=0)` the first clamp of it.
+
+    Attributes
+    ----------
+    item : of the `line:` of the file, from 0
+    repeat : which of the `count` of the item, from 0
+    part : which piece of an assembly, from 0; -1 where the item is a component
+    clamp : which clamp of the piece, from 0; -1 where the piece itself is meant
+    """
+
+    item: int
+    repeat: int = 0
+    part: int = -1
+    clamp: int = -1
+
+    @property
+    def is_clamp(self) -> bool:
+        """Return whether it is that of a clamp."""
+        return self.clamp >= 0
+
+    @property
+    def row(self) -> Place:
+        """Return the row of the file that gives it: of what stands in an assembly, its item."""
+        return Place(self.item) if self.part >= 0 else Place(self.item, clamp=self.clamp)
+
+
+class LinePart(Protocol):
+    """Represent a piece or a clamp, or what was found for one."""
+
+    @property
+    def place(self) -> Place:
+        """Return which one it is."""
+
+    @property
+    def label(self) -> str:
+        """Return what people call it."""
+
+
+@dataclass(frozen=True)
+class Clamp:
+    """Represent an instrument fixed to a piece, `at` metres (unstretched) from the piece's top."""
+
+    use: str
+    label: str
+    component: Component
+    at: float
+    place: Place
+    equipment: Equipment = NO_EQUIPMENT
+
+    @property
+    def serial(self) -> str | None:
+        """Return the serial number of this instrument, where the file gives it."""
+        return _serial(self.equipment)
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Represent one piece of the expanded line.
+
+    Attributes
+    ----------
+    index : int
+        Position in the line, 0 at the top (in a tow, at the ship).
+    use, label : str
+        Id of the component; the label is unique in the line.
+    component : Component
+        Its definition with the overrides of the line applied.
+    length : float or None
+        Unstretched length [m]; None where it is to be cut to fit.
+    fit_top_depth : float or None
+        Depth wanted for the top of the line in still water [m], on the piece cut to fit.
+    clamps : tuple of Clamp
+    line, column : int
+        The item in the mooring file, counted from 1.
+    place : Place
+    fit_body_depth : float or None
+        Depth wanted for the lower end of the piece at the tow's speed [m], where it is cut to fit.
+    equipment : Equipment
+        What the file says of this individual piece.
+    measured_load : float
+        Load under which its length is measured [N], `length` being without load all the same.
+    """
+
+    index: int
+    use: str
+    label: str
+    component: Component
+    length: float | None
+    fit_top_depth: float | None
+    clamps: tuple[Clamp, ...]
+    line: int
+    column: int
+    place: Place
+    fit_body_depth: float | None = None
+    equipment: Equipment = NO_EQUIPMENT
+    measured_load: float = 0.0
+
+    @property
+    def serial(self) -> str | None:
+        """Return the serial number of this piece, where the file gives it."""
+        return _serial(self.equipment)
+
+
+def _serial(equipment: Equipment) -> str | None:
+    assert not isinstance(equipment.serial, tuple)  # one was chosen as the item was expanded
+    return equipment.serial
+
+
+@dataclass(frozen=True)
+class MooringFile:
+    """Hold a mooring file with everything in it resolved.
+
+    `pieces` lead from the top of a mooring to its anchor; in a tow, where `tow` is not None, from
+    the ship to the towed body. `notices` say what a person may want to know: a catalogue entry
+    hidden by a nearer one, levels dropped from a measured current. `variants` are the environments
+    it gives besides its own, by name, as they are written, `accepts` what it accepts of the design
+    check, `uncertainty` how uncertain its inputs are, `looser` the limits of components that its
+    line sets beyond those of their definitions. `document` is what its title block says, `releases`
+    the codes of the releases, `deployed` what went over the side.
+    """
+
+    path: str
+    name: str
+    description: str
+    position: Position | None
+    tow: TowKeys | None
+    environment: Environment
+    pieces: tuple[Piece, ...]
+    solver: Solver
+    checks: Checks
+    notices: tuple[str, ...]
+    variants: Mapping[str, Any] = field(default_factory=dict, hash=False)
+    accepts: tuple[Accept, ...] = ()
+    uncertainty: Uncertainty = field(default_factory=Uncertainty)
+    looser: tuple[LimitKey, ...] = ()
+    document: DocumentKeys | None = None
+    releases: tuple[ReleaseKeys, ...] = field(default=(), hash=False)
+    deployed: Deployed | None = None
+
+    @property
+    def release(self) -> int | None:
+        """Return the index of the lowest release in line, or None: what is above it comes up."""
+        releases = [piece.index for piece in self.pieces if piece.component.role == "release"]
+        return releases[-1] if releases else None
+
+    @property
+    def anchor(self) -> Anchor:
+        """Return the last piece of a mooring's line."""
+        anchor = self.pieces[-1].component
+        assert isinstance(anchor, Anchor)
+        return anchor
+
+
+def placed(piece: Piece, place: Place) -> Piece:
+    """Put a piece, with its clamps and the serial numbers there, at a place of the line."""
+    clamps = tuple(
+        replace(
+            clamp,
+            place=replace(place, clamp=number),
+            equipment=clamp.equipment.of(place.repeat),
+        )
+        for number, clamp in enumerate(piece.clamps)
+    )
+    return replace(piece, place=place, clamps=clamps, equipment=piece.equipment.of(place.repeat))
+
+
+def numbered(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
+    """Give the pieces their index, and number labels that occur more than once down the line."""
+    pieces = tuple(pieces)
+    labels = [[piece.label, *(clamp.label for clamp in piece.clamps)] for piece in pieces]
+    total = Counter(label for group in labels for label in group)
+    seen: Counter[str] = Counter()
+
+    def numbered_label(text: str) -> str:
+        if total[text] == 1:
+            return text
+        seen[text] += 1
+        while f"{text} {seen[text]}" in total:
+            seen[text] += 1
+        return f"{text} {seen[text]}"
+
+    return tuple(
+        replace(
+            piece,
+            index=index,
+            label=numbered_label(piece.label),
+            clamps=tuple(
+                replace(clamp, label=numbered_label(clamp.label)) for clamp in piece.clamps
+            ),
+        )
+        for index, piece in enumerate(pieces)
+    )

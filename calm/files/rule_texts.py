@@ -1,0 +1,277 @@
+"""The rules of the design check: what each is called, what it judges, by what limit, from whom.
+
+Findings, reports, the manual and `checks: accept:` all read this table; the functions that judge
+are in `calm.checks`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class RuleText:
+    """Hold a rule in words.
+
+    Attributes
+    ----------
+    title : for people
+    quantity : of `calm.quantities`, whose unit its values and limits have; "" without figures
+    judges : what is judged
+    limit : and by what
+    source : of the rule and its limit as it is by default
+    unseen : why no profile of a batch can be judged by it, where none can
+    figures : of a component, without which the rule does not know
+    """
+
+    title: str
+    quantity: str
+    judges: str
+    limit: str
+    source: str
+    unseen: str = ""
+    figures: tuple[str, ...] = ()
+
+
+_ONCE = "judged once of a mooring, by `calm check`"
+
+RULES = {
+    "equilibrium": RuleText(
+        "Equilibrium",
+        "",
+        "found where there is none: its status and advice",
+        "",
+        "A mooring that does not stand cannot be judged",
+    ),
+    "strength": RuleText(
+        "Strength",
+        "tension",
+        "greatest tension of every piece",
+        "the lesser of its working load and its breaking load over `safety_factor`: 3 steel, "
+        "5 synthetic, 5 anything in a surface mooring",
+        "The lesser of working load and breaking load over a factor: UFC 4-159-03 table 3-7 (3, "
+        "chain and wire), oceanographic practice MBL/3 to MBL/5",
+        figures=("working_load", "breaking_load"),
+    ),
+    "release-load": RuleText(
+        "Load of the release",
+        "tension",
+        "greatest tension of every release, and the pull below it as it opens",
+        "what its loads allow as under `strength`, and its `opening_load`; without one, the same",
+        "The maker's static load, and the greatest under which it opens",
+        figures=("working_load", "opening_load"),
+    ),
+    "clamp-grip": RuleText(
+        "Grip of the clamps",
+        "tension",
+        "weight in water and drag of what is clamped, in the current, the fall and the rise",
+        "its `grip`, else its `breaking_load`; reported where neither is given",
+        "The maker's figures of the clamp",
+        "the result does not hold the current at each clamp",
+        figures=("grip",),
+    ),
+    "strength-steps": RuleText(
+        "Strength steps",
+        "tension",
+        "every piece, compared with the cables above and below it",
+        "half of their strength: a warning",
+        "A default of this program: half the strength of the cables on both its sides",
+        "the strengths of pieces side by side do not change with the current",
+    ),
+    "tilt": RuleText(
+        "Tilt",
+        "tilt",
+        "every instrument, release and clamp",
+        "its own `max_tilt`, and `maximum_tilt` where given; a warning from its `warn_tilt`",
+        "The maker's limit: RCM 27° (BODC), single-point Doppler 30°, ADCP 15 to 20°, release 45°, "
+        "sediment trap 10°",
+        figures=("max_tilt",),
+    ),
+    "depth-rating": RuleText(
+        "Depth rating",
+        "depth",
+        "depth in the current",
+        "`depth_rating` less `rating_margin`, 100 m, or half of a rating below 200 m",
+        "The maker's rating, less a margin for a stronger current than expected",
+        figures=("depth_rating",),
+    ),
+    "top-depth": RuleText(
+        "Depth of the top",
+        "depth",
+        "least depth of the top of a sub-surface line, at low water too",
+        "`minimum_top_depth`: a failure; where it is not given, 10 m: a warning",
+        "A default of this program: clear of waves, hulls and nets",
+    ),
+    "knockdown": RuleText(
+        "Knockdown",
+        "knockdown",
+        "of the top",
+        "`maximum_knockdown`, where given",
+        "The design's own `maximum_knockdown`",
+    ),
+    "excursion": RuleText(
+        "Excursion",
+        "offset",
+        "horizontal offset of the top",
+        "`maximum_excursion`, where given",
+        "The design's own `maximum_excursion`",
+    ),
+    "anchor-weight": RuleText(
+        "Anchor weight",
+        "tension",
+        "weight in water",
+        "`anchor_factor` × (V + H / friction), 1.5 and 0.6",
+        "Dewey, Mooring Design & Dynamics: weight in water ≥ 1.5 (V + H/0.6)",
+        figures=("weight", "density"),
+    ),
+    "anchor-uplift": RuleText(
+        "Anchor uplift",
+        "tension",
+        "V",
+        "weight in water / 1.5",
+        "The vertical part of that rule: V ≤ weight in water / 1.5",
+        figures=("weight", "density"),
+    ),
+    "anchor-sliding": RuleText(
+        "Anchor sliding",
+        "tension",
+        "H",
+        "friction × (weight in water / 1.5 − V)",
+        "The horizontal part of that rule: H ≤ friction (weight in water / 1.5 - V), friction "
+        "0.6 of a "
+        "deadweight",
+        figures=("weight", "density"),
+    ),
+    "slack": RuleText(
+        "Least tension",
+        "tension",
+        "least tension of every wire and rope above the release that does not lie on the seabed",
+        "`minimum_tension`: 500 N wire, 300 N rope; `slack: allowed` on a piece exempts it",
+        "Practice of mooring groups, 50 to 100 kgf above the release; no figure is published",
+    ),
+    "reserve": RuleText(
+        "Reserve of buoyancy",
+        "used_buoyancy",
+        "share of the surface float's buoyancy that is left",
+        "`minimum_reserve`, 0.3",
+        "Dewey: a float that uses all its buoyancy goes under; the share kept is for waves",
+    ),
+    "freeboard": RuleText(
+        "Freeboard",
+        "freeboard",
+        "of the surface float",
+        "above 0",
+        "A float at the surface stands out of the water",
+        "the result does not hold how the float lies in the water",
+    ),
+    "watch-circle": RuleText(
+        "Watch circle",
+        "offset",
+        "√(L² − depth²) with the line as stretched",
+        "`maximum_excursion`; reported where that is not given",
+        "Worst case √(L² - depth²), against the design's own `maximum_excursion`",
+        "the result does not hold the stretched length of the line",
+    ),
+    "scope": RuleText(
+        "Scope",
+        "scope",
+        "cut length over depth",
+        "none: it is reported",
+        "Reported, not judged",
+        "it is reported, and has no limit",
+    ),
+    "as-deployed": RuleText(
+        "As deployed",
+        "depth",
+        "how far the depth and the lengths of `deployed` bring the top of the upright line from "
+        "where it was designed to be",
+        "the error of a sounding, 1 m and 2.3 % of the depth: a warning",
+        "IHO S-44, order 2: the error of a sounding, 95 %",
+        _ONCE,
+    ),
+    "figures": RuleText(
+        "Figures of components",
+        "",
+        "figures of pieces and clamps that are impossible for their size and material: lift, "
+        "mass, stiffness, strength, depth rating; a cable without drag",
+        "a warning",
+        "The rules of `calm catalog check`",
+        _ONCE,
+    ),
+    "release-present": RuleText(
+        "Release",
+        "",
+        "whether a piece of a sub-surface line has `role: release`",
+        "unknown where none has",
+        "Defaults of this program: a line to be recovered names its release",
+        _ONCE,
+    ),
+    "swivel": RuleText(
+        "Swivel",
+        "",
+        "steel wire that ends at a float with no chain or rope between",
+        "a swivel between them, or wire that its name, material or note calls torque-balanced: "
+        "a warning",
+        "A default of this program: wire that twists under load kinks when the load goes",
+        _ONCE,
+    ),
+    "metals": RuleText(
+        "Dissimilar metals",
+        "potential",
+        "pieces that touch, clamps and what they are on, where both give a metal as `material`",
+        "0.2 V apart in sea water: a warning",
+        "Galvanic series in sea water (Professional Boatbuilder 100, 2006); 0.15 to 0.2 V in harsh "
+        "surroundings (Pantaenius)",
+        _ONCE,
+    ),
+    "backup": RuleText(
+        "Back-up buoyancy",
+        "tension",
+        "net buoyancy of the part that still holds the release after the worst break that is "
+        "judged (below)",
+        "`backup_margin`, 0.1 of the weight lifted, and 250 N",
+        "URI GSO mooring program: if any one link breaks, everything above the release still "
+        "floats",
+        _ONCE,
+    ),
+    "launch-strength": RuleText(
+        "Strength in the launch",
+        "tension",
+        "tension of every piece as the line falls behind its anchor",
+        "the lesser of `launch_working_factor`, 1, times its working load and its breaking load "
+        "over `launch_safety_factor`, 2",
+        "Anchor-last launch at terminal speed (URI GSO program); the working load, and breaking "
+        "load over 2",
+        _ONCE,
+        figures=("working_load", "breaking_load"),
+    ),
+    "launch-speed": RuleText(
+        "Speed at touchdown",
+        "speed",
+        "speed of the anchor at touchdown",
+        "2.5 m/s: a warning",
+        "A default of this program: faster, an anchor may bury itself or break what stands on it",
+        _ONCE,
+        figures=("kt",),
+    ),
+    "recovery": RuleText(
+        "Rise",
+        "speed",
+        "speed of the rise without the anchor",
+        "`minimum_rise_speed`, 0.3 m/s; a warning below 0.7 m/s",
+        "Defaults of this program: below 0.3 m/s a rise is in doubt, below 0.7 m/s it takes long",
+        _ONCE,
+    ),
+    "tangling": RuleText(
+        "Tangling",
+        "",
+        "whether a part overtakes the parts ahead in the fall or the rise",
+        "a warning",
+        "A default of this program: no part overtakes the parts ahead",
+        _ONCE,
+    ),
+}
+"""Every rule by its id, in the order in which a design is reported."""
+
+ACCEPTABLE = tuple(name for name in RULES if name != "equilibrium")
+"""The rules of `checks: accept:`; of a mooring that does not stand nothing is known to accept."""

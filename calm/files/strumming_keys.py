@@ -1,0 +1,165 @@
+"""The `strumming:` of a file's solver: how the vibration of cables raises their Cn.
+
+===================================== ==========================================
+written                               read as
+===================================== ==========================================
+`none`                                None
+`{factor: 1.5}`                       `StrummingFactor`
+`{cn: 1.85}`                          `ConstantCn`
+`bourget-marichal`, or a mapping with `BourgetMarichalKeys`
+that as its `model`
+`vandiver`, `blevins`, `skop-griffin` `AmplitudeModel`
+===================================== ==========================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Literal, cast, get_args
+
+from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag, ValidationInfo
+
+from calm.files.fields import COEFFICIENT, Model, QuantityField
+from calm.physics.strumming import BourgetMarichal
+from calm.suggestions import nearest, not_among, shown
+from calm.units import QuantityError
+
+_NUMBER = QuantityField("number")
+_FACTOR = QuantityField("number", above=0)
+_RESTING_CN = QuantityField("number", above=0, at_most=BourgetMarichal.ceiling)
+
+AmplitudeName = Literal["vandiver", "blevins", "skop-griffin"]
+_Name = Literal["none", "bourget-marichal", AmplitudeName]
+
+
+class StrummingFactor(Model):
+    """The Cn of every cable, multiplied."""
+
+    factor: Annotated[float, _FACTOR] = Field(
+        description="what the Cn of every cable is multiplied by, e.g. 1.5", examples=[1.5]
+    )
+
+
+class ConstantCn(Model):
+    """One Cn for every cable, whatever its own: the habit for towed cables, 1.8 to 1.9."""
+
+    cn: Annotated[float, COEFFICIENT] = Field(
+        description="drag coefficient across the axis", examples=[1.2]
+    )
+
+
+class BourgetMarichalKeys(Model):
+    """The towed cable of Bourget & Marichal: a/D = a1 + b1 φ + c1 φ² (φ in degrees), Cn c0 at rest.
+
+    The figures left out are those of `calm.physics.strumming.BourgetMarichal`.
+    """
+
+    model_config = ConfigDict(json_schema_extra={"required": ["model"]})
+
+    model: Literal["bourget-marichal"] = Field(
+        default="bourget-marichal", description="the law", examples=["bourget-marichal"]
+    )
+    a1: Annotated[float, _NUMBER] = Field(
+        default=BourgetMarichal.a1,
+        description="amplitude over diameter of the cable's vibration where φ is 0",
+        examples=[0.45],
+    )
+    b1: Annotated[float, _NUMBER] = Field(
+        default=BourgetMarichal.b1, description="what φ adds to `a1`, per degree", examples=[0.01]
+    )
+    c1: Annotated[float, _NUMBER] = Field(
+        default=BourgetMarichal.c1,
+        description="what φ² adds to `a1`, per square degree",
+        examples=[0.0],
+    )
+    c0: Annotated[float, _RESTING_CN] = Field(
+        default=BourgetMarichal.rest, description="Cn of the cable at rest", examples=[1.2]
+    )
+    strouhal: Annotated[float, _FACTOR] = Field(
+        default=BourgetMarichal.strouhal,
+        description="frequency of the cable times diameter over the speed across it",
+        examples=[0.2],
+    )
+
+
+@dataclass(frozen=True)
+class AmplitudeModel:
+    """The law, by name, that raises Cn with the amplitude at which each segment vibrates."""
+
+    name: Annotated[AmplitudeName, Field(description="the law", examples=["vandiver"])]
+
+
+_FORMS: Mapping[str, type[Model]] = {
+    "factor": StrummingFactor,
+    "cn": ConstantCn,
+    "model": BourgetMarichalKeys,
+}
+"""The mappings a person may write, by the key that each must have."""
+
+
+def _forms_in(value: dict[str, object]) -> list[str]:
+    """Return the keys of `_FORMS` that a mapping has, misspelt or not."""
+    exact = [form for form in _FORMS if form in value]
+    return exact or [form for key in value if (form := nearest(key, _FORMS))]
+
+
+def _written_out(value: object, info: ValidationInfo) -> object:
+    """Write a name out as what it stands for; leave a mapping that is one of the forms."""
+    if value is None:
+        raise QuantityError("has no value")
+    law = value.get("model") if isinstance(value, dict) else value
+    if law == "bourget-marichal" and info.context and not info.context["towed"]:
+        raise ValueError(
+            "`bourget-marichal` is for towed cables; "
+            f"a mooring takes one of {', '.join(get_args(AmplitudeName))}"
+        )
+    if isinstance(value, dict):
+        return _one_form(value)
+    if value == "none":
+        return None
+    if value == "bourget-marichal":
+        return BourgetMarichalKeys()
+    if value in get_args(AmplitudeName):
+        return AmplitudeModel(cast(AmplitudeName, value))
+    text = shown(value)
+    try:
+        offer = f"{{factor: {_FACTOR.read(text):g}}}"
+    except QuantityError:
+        offer = None
+    raise ValueError(not_among("strumming", text, get_args(_Name), offer))
+
+
+def _one_form(value: dict[str, object]) -> dict[str, object]:
+    forms = _forms_in(value)
+    if not forms:
+        raise ValueError("`strumming` needs `factor`, `cn`, or `model: bourget-marichal`")
+    if len(forms) > 1:
+        given = " and ".join(f"`{form}`" for form in forms)
+        raise ValueError(f"`strumming` gives {given}; one of them is needed")
+    law = value.get("model")
+    if law in get_args(AmplitudeName):
+        raise ValueError(f"`{law}` has no figures to give; write `strumming: {law}`")
+    return value
+
+
+def _form(value: object) -> str:
+    """Return the name of the class to read a value as; messages find its keys by that."""
+    if isinstance(value, dict):
+        return _FORMS[_forms_in(value)[0]].__name__
+    return type(value).__name__
+
+
+Strumming = Annotated[
+    Annotated[StrummingFactor, Tag("StrummingFactor")]
+    | Annotated[ConstantCn, Tag("ConstantCn")]
+    | Annotated[BourgetMarichalKeys, Tag("BourgetMarichalKeys")]
+    | Annotated[AmplitudeModel, Tag("AmplitudeModel")]
+    | Annotated[None, Tag("NoneType")],
+    Discriminator(_form),
+    BeforeValidator(
+        _written_out,
+        json_schema_input_type=_Name | StrummingFactor | ConstantCn | BourgetMarichalKeys,
+    ),
+]
+"""The type of the field; None is no strumming."""

@@ -1,0 +1,183 @@
+"""Ranges as they should be from a place, the place that most agree on, and those that do not.
+
+A fit that outliers hardly move comes first; then each doubtful range is judged by the others
+(Student's test, all of them together at 1 %).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+
+from calm.locate.ranges import Survey
+from calm.locate.sound import Sound
+from calm.physics.ellipsoid import Frame
+from calm.physics.line import Booleans, Floats
+
+
+@dataclass(frozen=True)
+class RangeModel:
+    """Ranges from a place: the unknowns are east, north and, where it is not given, the depth."""
+
+    survey: Survey
+    sound: Sound
+    frame: Frame
+    ships: Floats
+    depth: float | None
+
+    @property
+    def unknowns(self) -> int:
+        return 2 if self.depth is not None else 3
+
+    def place(self, x: Floats) -> Floats:
+        """Return (3,) of the unknowns; a given depth is one below the curved surface."""
+        if self.depth is None:
+            return x
+        # the surface is that much below the plane of the frame
+        sagging = self.frame.position(np.array([x[0], x[1], 0.0]))[2]
+        return np.array([x[0], x[1], sagging - self.depth])
+
+    def mean_speed(self, x: Floats) -> float:
+        below = self.frame.position(self.place(x))[2]
+        return self.sound.mean(self.survey.transducer, max(below, self.survey.transducer))
+
+    def measured(self, x: Floats) -> Floats:
+        """Return (n,) ranges [m], of times by the speed of sound on the way to the place."""
+        if not self.survey.timed:
+            return self.survey.measured
+        ranges: Floats = 0.5 * self.survey.measured * self.mean_speed(x)
+        return ranges
+
+    def residuals(self, x: Floats) -> Floats:
+        computed: Floats = np.linalg.norm(self.ships - self.place(x), axis=1)
+        found: Floats = self.measured(x) - computed
+        return found
+
+    def jacobian(self, x: Floats) -> Floats:
+        """Return (n, unknowns) of the residuals."""
+        step = 0.01
+        columns = []
+        for i in range(self.unknowns):
+            ahead, behind = x.copy(), x.copy()
+            ahead[i] += step
+            behind[i] -= step
+            columns.append((self.residuals(ahead) - self.residuals(behind)) / (2.0 * step))
+        return np.stack(columns, axis=1)
+
+
+BY_CHANCE = 0.01
+"""Of a survey without an outlier: how often one is called so."""
+FLOOR = 0.02
+"""Scatter that no range is better than, to tell what does not belong [m]."""
+
+
+def fitted(model: RangeModel) -> tuple[Floats, Booleans]:
+    """Return the unknowns, and which ranges belong."""
+    x = _sturdy(model)
+    residuals = np.abs(model.residuals(x))
+    used = residuals <= 5.0 * scatter(residuals, model.unknowns)
+    if used.sum() < model.unknowns:
+        used[np.argsort(residuals)[: model.unknowns]] = True
+    for _ in range(2 * len(used)):
+        x = least_squares_of(model, x, used)
+        changed = _judged(model, x, used)
+        if (changed == used).all():
+            break
+        used = changed
+    return x, used
+
+
+def _sturdy(model: RangeModel) -> Floats:
+    """Return the unknowns by a fit that outliers hardly move, from several sides."""
+    from scipy.optimize import least_squares
+
+    found = []
+    for start in _starts(model):
+        x, scale = start, 0.1 * float(np.median(model.measured(start)))
+        for _ in range(4):
+            fit = least_squares(
+                model.residuals, x, model.jacobian, loss="cauchy", f_scale=scale, x_scale="jac",
+                max_nfev=200,
+            )  # fmt: skip
+            x = _below(model, fit.x)
+            scale = 2.0 * scatter(np.abs(model.residuals(x)), model.unknowns)
+        found.append((float(np.log1p((model.residuals(x) / FLOOR) ** 2).sum()), x))
+    return min(found, key=lambda each: each[0])[1]
+
+
+def _starts(model: RangeModel) -> list[Floats]:
+    middle = model.ships.mean(axis=0)
+    _, _, axes = np.linalg.svd((model.ships - middle)[:, :2], full_matrices=True)
+    reach = float(np.median(model.measured(np.array([0.0, 0.0, -1000.0])[: model.unknowns])))
+    starts = []
+    for side in (np.zeros(2), axes[1], -axes[1], axes[0], -axes[0]):
+        start = np.array([*(middle[:2] + 0.7 * reach * side), -0.7 * reach])
+        starts.append(start[: model.unknowns])
+    return starts
+
+
+def _below(model: RangeModel, x: Floats) -> Floats:
+    """Return the same place below the ship, where a fit has found its mirror image above."""
+    if model.depth is None:
+        level = float(model.ships[:, 2].mean())
+        x = np.array([x[0], x[1], min(x[2], 2.0 * level - x[2])])
+    return x
+
+
+def scatter(residuals: Floats, unknowns: int) -> float:
+    """Return the standard deviation of most of the residuals, by their median [m]."""
+    count = len(residuals)
+    freedom = max(count - unknowns, 1)
+    return max(1.4826 * float(np.median(residuals)) * sqrt(count / freedom), FLOOR)
+
+
+def least_squares_of(model: RangeModel, x: Floats, used: Booleans) -> Floats:
+    """Return the unknowns that fit the ranges in use best, from a guess.
+
+    Parameters
+    ----------
+    model : of the ranges
+    x : a guess of the unknowns
+    used : (n,) which ranges count
+    """
+    from scipy.optimize import least_squares
+
+    fit = least_squares(
+        lambda x: model.residuals(x)[used], x, lambda x: model.jacobian(x)[used], x_scale="jac",
+        xtol=1e-12, ftol=1e-14, gtol=1e-14, max_nfev=200,
+    )  # fmt: skip
+    return _below(model, fit.x)
+
+
+def _judged(model: RangeModel, x: Floats, used: Booleans) -> Booleans:
+    """Return the ranges that belong: the worst of them out, or what fits the others in.
+
+    A range is judged by its residual over its standard error as the others give it.
+    """
+    from scipy.stats import t as student
+
+    residuals, jacobian = model.residuals(x), model.jacobian(x)
+    freedom = int(used.sum()) - model.unknowns
+    if freedom < 2:
+        return used
+    inverse = np.linalg.pinv(jacobian[used].T @ jacobian[used])
+    leverage = np.einsum("ij,jk,ik->i", jacobian, inverse, jacobian)
+    square = float(residuals[used] @ residuals[used])
+    kept = np.maximum(1.0 - leverage, 1e-9)
+    without = np.where(used, square - residuals**2 / kept, square)
+    free = np.where(used, freedom - 1, freedom)
+    variance = np.maximum(without / free, FLOOR**2)
+    spread = np.sqrt(variance * np.where(used, kept, 1.0 + leverage))
+    ratio = np.abs(residuals) / spread
+    limit = student.ppf(1.0 - 0.5 * BY_CHANCE / len(used), free)
+    changed = used.copy()
+    back = ~used & (ratio < limit)
+    if back.any():
+        changed[np.argmin(np.where(back, ratio, np.inf))] = True
+        return changed
+    worst = int(np.argmax(np.where(used, ratio, 0.0)))
+    if ratio[worst] > limit[worst] and freedom > 2:
+        changed[worst] = False
+    return changed

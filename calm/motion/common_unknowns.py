@@ -1,0 +1,269 @@
+"""What is common to a whole record: factors on the line, the datum, and where its sensors hang.
+
+The normal prior of an offset, a metre, cannot believe in a clamp that sits ten metres lower: it
+would bend the factors and the datum instead. So every way the sensors may hang is a normal prior of
+its own: all as the file says, or one or two of them elsewhere, throughout or from the time on at
+which their record says so most clearly. The pressures weigh these ways, and the mean and the
+covariance of the mixture are taken. Where two sensors cannot tell which of them it is, the
+covariance is as wide as that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import chain, combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.motion import prior
+from calm.physics.line import Floats, Integers
+
+REACH = 5.0
+"""Between a sensor and the points by which the slope of the line at it is known, at least [m]."""
+
+
+@dataclass(frozen=True)
+class Common:
+    """Hold what is common to the whole record, as far as it is known.
+
+    The q columns of the covariance are the logarithms of the factors, the datum [m], the offsets
+    of the sensors [m], and how far down the line they have moved [m].
+
+    Attributes
+    ----------
+    factors : names of the estimated factors and their values
+    datum : what is added to the depths of the line [m]
+    offset : (s,) of the sensors [m]
+    moved : (s,) how far below its place in the file a sensor hangs, along the line at rest [m]
+    since : (s,) the first time at which it does; NaT where it never does
+    elsewhere : (s,) probability that it does
+    covariance : (q, q)
+    scale : of the errors of the currents, on those of `calm.motion.prior`
+    gap : (g, g) error of the logarithm of the factor on a group of levels whose currents are taken
+        from the others, another group left out besides; see `calm.motion.line_response.gap_errors`
+    """
+
+    factors: Mapping[str, float]
+    datum: float
+    offset: Floats
+    moved: Floats
+    since: NDArray[np.datetime64]
+    elsewhere: Floats
+    covariance: Floats
+    scale: float
+    gap: Floats
+
+    @property
+    def value(self) -> Floats:
+        """Return (q,) as the columns of the covariance stand."""
+        logs = np.log(list(self.factors.values()))
+        return np.concatenate([logs, [self.datum], self.offset, self.moved])
+
+    def fall(
+        self, time: NDArray[np.datetime64], depth: Floats, still: Floats, point: Integers
+    ) -> Floats:
+        """Return (n, s) change of the depth of each sensor with how far it has moved; 0 before it
+        has.
+
+        Parameters
+        ----------
+        time : (n,)
+        depth, still : (n, p), (p,) of the points, at these times and in still water [m]
+        point : (s,) where the sensors are by the file
+        """
+        result = np.zeros((len(time), len(point)))
+        for j, (one, since) in enumerate(zip(point.tolist(), self.since, strict=True)):
+            if np.isnat(since):
+                continue
+            below = still - still[one]
+            upper = int(np.where(below <= -REACH, below, -np.inf).argmax())
+            lower = int(np.where(below >= REACH, below, np.inf).argmin())
+            upper = upper if below[upper] <= -REACH else one
+            lower = lower if below[lower] >= REACH else one
+            apart = still[lower] - still[upper]
+            share = (depth[:, lower] - depth[:, upper]) / apart if apart > 0.0 else 1.0
+            result[:, j] = np.where(time >= since, share, 0.0)
+        return result
+
+
+FEWEST = 4
+"""Readings of a sensor before and after its clamp slips, at least."""
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Hold what each time says of the common unknowns x, by the linear law left = seen (x - 0).
+
+    Attributes
+    ----------
+    left : (n, s) measured less computed depths where the unknowns are 0 [m]; 0 of no reading
+    seen : (n, s, q) their slopes with the unknowns; no moves are among these
+    inverse : (n, s, s) of the covariance of `left` beside the unknowns
+    weight : (n,) what a time counts
+    known : (n, s) whether there is a reading
+    """
+
+    left: Floats
+    seen: Floats
+    inverse: Floats
+    weight: Floats
+    known: NDArray[np.bool_]
+
+    def pulls(self, seen: Floats, left: Floats) -> Floats:
+        """Return (n, q) slopes of the logarithm of the likelihood of each time."""
+        pull: Floats = np.einsum("n,nsq,nst,nt->nq", self.weight, seen, self.inverse, left)
+        return pull
+
+    def normal(self, seen: Floats) -> Floats:
+        """Return (q, q) the information of all times."""
+        heavy = self.weight[:, None, None] * self.inverse
+        matrix: Floats = np.einsum("nsq,nsr->qr", seen, heavy @ seen)
+        return matrix
+
+
+def first_time(evidence: Evidence, fall: Floats, mean: Floats, covariance: Floats) -> Integers:
+    """Return (s,) the time from which on each sensor most likely hangs elsewhere, if it does.
+
+    0 is throughout; -1 where it has too few readings. Each is weighed beside all that is known
+    beforehand.
+
+    Parameters
+    ----------
+    fall : (n, s) change of the depth of each sensor with how far it has moved
+    mean, covariance : (q,), (q, q) of the unknowns beforehand, without moves
+    """
+    count = len(fall)
+    if not count:
+        return np.full(fall.shape[1], -1)
+    before = np.linalg.inv(covariance)
+    inverse = np.linalg.inv(evidence.normal(evidence.seen) + before)
+    pull = evidence.pulls(evidence.seen, evidence.left).sum(axis=0)
+    left = evidence.left - evidence.seen @ (inverse @ (pull + before @ mean))
+    heavy = evidence.weight[:, None, None] * evidence.inverse
+    own = _from_there_on(fall * (heavy @ left[:, :, None])[:, :, 0])
+    cross = _from_there_on(evidence.seen.transpose(0, 2, 1) @ (heavy * fall[:, None, :]))
+    alone = _from_there_on(fall**2 * np.einsum("nss->ns", heavy))
+    size = np.maximum(alone - np.einsum("nqs,qr,nrs->ns", cross, inverse, cross), 0.0)
+    wide = prior.ELSEWHERE**2
+    gain = 0.5 * own**2 / (size + 1.0 / wide) - 0.5 * np.log1p(wide * size)
+    gain[1:] += np.log(prior.SLIPPED / count)
+    gain[0] += np.log(prior.MISPLACED)
+    after = _from_there_on(evidence.known.astype(float))
+    can = (after >= FEWEST) & (after[:1] - after >= FEWEST)
+    can[0] = after[0] >= FEWEST
+    first: Integers = np.where(can.any(axis=0), np.where(can, gain, -np.inf).argmax(axis=0), -1)
+    return first
+
+
+def fits(
+    evidence: Evidence, fall: Floats, mean: Floats, covariance: Floats
+) -> Iterator[tuple[bool, Floats, float]]:
+    """Yield the best fits where no sensor hangs elsewhere, and then where one does.
+
+    A slip that is taken for errors of the currents makes these so large, and the times that show
+    it so light, that it is never found: so the errors are sought beside each of these.
+
+    Parameters
+    ----------
+    fall, mean, covariance : as of `first_time`
+
+    Yields
+    ------
+    Whether one does; (n, s) what is left [m]; the logarithm of how likely this is besides.
+    """
+    count, _, fixed = evidence.seen.shape
+    first = first_time(evidence, fall, mean, covariance)
+    for sensor in (None, *np.flatnonzero(first >= 0).tolist()):
+        seen, spread, odds = evidence.seen, covariance, 0.0
+        if sensor is not None:
+            move = np.zeros((*fall.shape, 1))
+            move[first[sensor] :, sensor, 0] = fall[first[sensor] :, sensor]
+            seen = np.concatenate([seen, move], axis=2)
+            spread = np.pad(spread, (0, 1))
+            spread[fixed, fixed] = prior.ELSEWHERE**2
+            odds = np.log(prior.SLIPPED / count if first[sensor] else prior.MISPLACED)
+        before = np.linalg.inv(spread)
+        matrix, pull = evidence.normal(seen) + before, evidence.pulls(seen, evidence.left)
+        found = np.linalg.solve(matrix, pull.sum(axis=0) + before[:, :fixed] @ mean)
+        off = found - np.pad(mean, (0, len(found) - fixed))
+        odds -= 0.5 * (off @ before @ off + np.linalg.slogdet(matrix @ spread)[1])
+        rest = np.where(evidence.known, evidence.left - seen @ found, 0.0)
+        yield sensor is not None, rest, float(odds)
+
+
+@dataclass(frozen=True)
+class HangingSensors:
+    """The common unknowns over all ways the sensors may hang.
+
+    Attributes
+    ----------
+    mean, covariance : (q,), (q, q), moves included
+    elsewhere : (s,) see `calm.motion.common_unknowns.Common`
+    """
+
+    mean: Floats
+    covariance: Floats
+    elsewhere: Floats
+
+
+def hanging_sensors(
+    normal: Floats, pull: Floats, mean: Floats, covariance: Floats, first: Integers,
+    times: int, alike: float,
+) -> HangingSensors:  # fmt: skip
+    """Return the mixture over all ways the sensors may hang.
+
+    Parameters
+    ----------
+    normal, pull : (q, q), (q,) information of the record on the unknowns, moves included
+    mean, covariance : (q,), (q, q) beforehand, where every sensor hangs as the file says
+    first : (s,) of `first_time`
+    times : number of times at which a clamp may slip
+    alike : by how much less than `normal` says the record tells where a sensor hangs
+    """
+    sensors, count = len(first), len(mean)
+    offset, moved = count - 2 * sensors, count - sensors
+    told = []
+    for way in _ways(np.flatnonzero(first >= 0)):
+        spread = covariance.copy()
+        chance = 0.0
+        for sensor in way:
+            spread[moved + sensor, moved + sensor] = prior.ELSEWHERE**2
+            if first[sensor]:
+                chance += np.log(prior.SLIPPED / times)
+            else:  # its zero may be wrong as well as its place
+                spread[offset + sensor, offset + sensor] += prior.ELSEWHERE**2
+                chance += np.log(prior.MISPLACED)
+        free = np.flatnonzero(np.diag(spread) > 0.0)
+        part = np.ix_(free, free)
+        before = np.linalg.inv(spread[part])
+        centre = before @ mean[free]
+        known = np.linalg.inv(normal[part] / alike + before)
+        drawn = pull[free] / alike + centre
+        log = chance + 0.5 * (drawn @ known @ drawn - mean[free] @ centre)
+        log += 0.5 * (np.linalg.slogdet(known)[1] + np.linalg.slogdet(before)[1])
+        found, whole = np.zeros(count), np.zeros((count, count))
+        whole[part] = np.linalg.inv(normal[part] + before)
+        found[free] = whole[part] @ (pull[free] + centre)
+        told.append((log, way, found, whole))
+    weights = np.exp([log - max(one[0] for one in told) for log, *_ in told])
+    weights /= weights.sum()
+    centre = np.sum([w * one[2] for w, one in zip(weights, told, strict=True)], axis=0)
+    spread, elsewhere = np.zeros((count, count)), np.zeros(sensors)
+    for weight, (_, way, found, whole) in zip(weights, told, strict=True):
+        off = found - centre
+        spread += weight * (whole + np.outer(off, off))
+        elsewhere[list(way)] += weight
+    return HangingSensors(centre, spread, elsewhere)
+
+
+def _ways(sensors: Integers) -> Iterator[tuple[int, ...]]:
+    """Yield the sensors that hang elsewhere: none of them, one or two."""
+    return chain.from_iterable(combinations(sensors.tolist(), size) for size in range(3))
+
+
+def _from_there_on(values: Floats) -> Floats:
+    """Sums over the first axis from each place to the end."""
+    sums: Floats = np.cumsum(values[::-1], axis=0)[::-1]
+    return sums

@@ -1,0 +1,259 @@
+"""What was measured, on common times: currents at levels, depths of sensors.
+
+The times are those of the currents; sensors are interpolated to them over gaps that are not long.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.errors import UsageError
+from calm.motion.currents import CurrentMeasurements
+from calm.motion.sensors import Sensor
+from calm.physics.line import Floats, Integers
+from calm.records.cf_files import MISSING
+from calm.suggestions import unknown
+
+MOST_GROUPS = 8
+"""So many levels have errors of their own; of more, neighbours share theirs."""
+
+FREE = -1
+"""In place of a point or a sensor, where a level has none."""
+
+
+@dataclass(frozen=True)
+class MooringMeasurements:
+    """n times, s sensors, k levels.
+
+    Attributes
+    ----------
+    time : (n,) to the nanosecond, rising
+    label : (s,) of the used sensors
+    point : (s,) where they are, see `calm.motion.line_response`
+    depth : (n, s) below the surface by their pressures [m]; NaN where not measured, or flagged
+    level_depth : (n, k) [m]; NaN for levels that hang on the line
+    level_point, level_sensor : (k,) the point that a level hangs at, and the used sensor there;
+        `FREE` without
+    u, v : (n, k) current [m/s], NaN where not measured
+    flag : (n, k) quality flags of the current; 0 where it has none
+    tide : (n,) height of the sea surface above its mean [m]; None where not known
+    false : (n,) whether a current that cannot be was left out; None where none was
+    """
+
+    time: NDArray[np.datetime64]
+    label: tuple[str, ...]
+    point: Integers
+    depth: Floats
+    level_depth: Floats
+    level_point: Integers
+    level_sensor: Integers
+    u: Floats
+    v: Floats
+    flag: NDArray[np.int8]
+    tide: Floats | None = None
+    false: NDArray[np.bool_] | None = None
+
+    @property
+    def group(self) -> Integers:
+        """Return (k,) which levels share their error: each has its own where they are few."""
+        count = len(self.level_point)
+        return np.arange(count) * min(count, MOST_GROUPS) // max(count, 1)
+
+    def at(self, times: slice | Integers) -> MooringMeasurements:
+        """Return what was measured at some of the times."""
+        return replace(
+            self,
+            time=self.time[times],
+            depth=self.depth[times],
+            level_depth=self.level_depth[times],
+            u=self.u[times],
+            v=self.v[times],
+            flag=self.flag[times],
+            tide=None if self.tide is None else self.tide[times],
+            false=None if self.false is None else self.false[times],
+        )
+
+
+def level_names(measured: MooringMeasurements, labels: Sequence[str]) -> tuple[str, ...]:
+    """Return what each level of the currents is called: its part of the line, or its mean depth."""
+    names = []
+    for k, point in enumerate(measured.level_point.tolist()):
+        depth = measured.level_depth[:, k]
+        known = depth[np.isfinite(depth)]
+        at = f"{known.mean():.1f} m" if known.size else f"level {k + 1}"
+        names.append(at if point == FREE else labels[point])
+    return tuple(names)
+
+
+Times = NDArray[np.datetime64]
+
+
+def common_times(currents: Sequence[CurrentMeasurements], sensors: Sequence[Sensor]) -> Times:
+    """Return those of the first current; of the others, and then of the sensors, what is far from
+    these.
+
+    Far is more than half of the median step of what is there already; of readings less than a
+    quarter apart, as those of a burst, the first is taken.
+    """
+    times = currents[0].time
+    others: list[CurrentMeasurements | Sensor] = [*currents[1:], *sensors]
+    for other in others:
+        step = np.median(np.diff(times)) if len(times) > 1 else np.timedelta64(1, "h")
+        after = np.clip(np.searchsorted(times, other.time), 0, len(times) - 1)
+        before = np.maximum(after - 1, 0)
+        apart = np.minimum(np.abs(times[after] - other.time), np.abs(times[before] - other.time))
+        times = np.unique(np.concatenate([times, _sparse(other.time[apart > step / 2], step / 4)]))
+    return times
+
+
+def _sparse(times: Times, step: np.timedelta64) -> Times:
+    """Return those of rising times that are further than a step from the last one taken."""
+    taken: list[np.datetime64] = []
+    at = 0
+    while at < len(times):
+        taken.append(times[at])
+        at = int(np.searchsorted(times, times[at] + step, "right"))
+    return np.array(taken, "M8[ns]")
+
+
+def interpolated(time: Times, value: Floats, wanted: Times, gap: np.timedelta64) -> Floats:
+    """Return values (n,) at other times, linear between known neighbours no further apart than the
+    gap.
+
+    Parameters
+    ----------
+    time : (m,) rising
+    value : (m,) at these
+    wanted : (n,) other times
+    gap : between known neighbours, at most
+    """
+    known = np.isfinite(value)
+    if not known.any():
+        return np.full(len(wanted), np.nan)
+    x = time[known].astype("M8[ns]").astype(np.int64)
+    y, at = value[known], wanted.astype("M8[ns]").astype(np.int64)
+    result = np.interp(at, x, y)
+    after = np.searchsorted(x, at)
+    inside = (after < len(x)) & (after > 0)
+    upper, lower = np.clip(after, 0, len(x) - 1), np.clip(after - 1, 0, len(x) - 1)
+    near = inside & (x[upper] - x[lower] <= gap.astype("m8[ns]").astype(np.int64))
+    near |= x[upper] == at
+    return np.where(near, result, np.nan)
+
+
+def measured_at(one: Sensor, wanted: Times, gap: np.timedelta64) -> Floats:
+    """Return depths of a sensor at other times; where it has a reading of its own, that one or
+    none.
+
+    Parameters
+    ----------
+    one : the sensor
+    wanted : (n,) other times
+    gap : between known neighbours, at most
+    """
+    result = interpolated(one.time, one.depth, wanted, gap)
+    at = np.minimum(np.searchsorted(one.time, wanted), len(one.time) - 1)
+    own: Floats = np.where(one.time[at] == wanted, one.depth[at], result)
+    return own
+
+
+def joined(
+    currents: Sequence[CurrentMeasurements],
+    sensors: Sequence[Sensor],
+    points: Sequence[int],
+    labels: Sequence[str],
+    still: Floats,
+    gap: np.timedelta64,
+    sea_level: tuple[Times, Floats] | None = None,
+) -> MooringMeasurements:
+    """Return all that was measured, on common times; levels and sensors from the top down.
+
+    Parameters
+    ----------
+    points : where each sensor is
+    labels : of all points
+    still : (p,) their depths in still water [m]
+    sea_level : times, and height of the sea surface above its mean [m]
+
+    Raises
+    ------
+    UsageError
+        A current's label is that of no part; no time has both a current and a pressure.
+    """
+    time = common_times(currents, sensors)
+    order = np.argsort([still[point] for point in points], kind="stable")
+    sensors, point = [sensors[i] for i in order], np.array([points[i] for i in order], np.int64)
+    depth = np.stack([measured_at(one, time, gap) for one in sensors], axis=1)
+    columns: list[tuple[float, int, Floats, Floats, Floats, NDArray[np.int8]]] = []
+    for one in currents:
+        for k, label in enumerate(one.label):
+            where = FREE
+            if label:
+                if label not in labels:
+                    what = f"{one.source}: no part of the line is called `{label}`"
+                    raise UsageError(unknown(what, label, labels))
+                where = list(labels).index(label)
+            at = interpolated(one.time, one.depth[:, k], time, gap)
+            u = interpolated(one.time, one.u[:, k], time, gap)
+            v = interpolated(one.time, one.v[:, k], time, gap)
+            place = float(still[where]) if label else _mean(at)
+            columns.append((place, where, at, u, v, _nearest(one, k, time)))
+    columns.sort(key=lambda column: column[0])
+    level_point = np.array([column[1] for column in columns], np.int64)
+    used = point.tolist()
+    tide = None
+    if sea_level is not None:
+        tide = interpolated(*sea_level, time, gap)
+        if not np.isfinite(tide).any():
+            raise UsageError("--sea-level: it covers no time of the currents")
+        tide = np.nan_to_num(tide - np.nanmean(tide))
+    measured = MooringMeasurements(
+        time,
+        tuple(one.label or labels[where] for one, where in zip(sensors, used, strict=True)),
+        point,
+        depth,
+        np.stack([column[2] for column in columns], axis=1),
+        level_point,
+        np.array([used.index(at) if at in used else FREE for at in level_point.tolist()], np.int64),
+        np.stack([column[3] for column in columns], axis=1),
+        np.stack([column[4] for column in columns], axis=1),
+        np.stack([column[5] for column in columns], axis=1),
+        tide,
+        _false(currents, time),
+    )
+    _refuse_apart(measured)
+    return measured
+
+
+def _false(currents: Sequence[CurrentMeasurements], time: Times) -> NDArray[np.bool_] | None:
+    when = [one.time[one.false] for one in currents if one.false is not None]
+    return np.isin(time, np.concatenate(when)) if when else None
+
+
+def _mean(depth: Floats) -> float:
+    known = depth[np.isfinite(depth)]
+    return float(known.mean()) if known.size else float("inf")
+
+
+def _nearest(one: CurrentMeasurements, k: int, time: Times) -> NDArray[np.int8]:
+    """Return the worse of the flags on either side of each time; 9 outside of the record."""
+    after = np.searchsorted(one.time, time)
+    upper, lower = np.minimum(after, len(one.time) - 1), np.maximum(after - 1, 0)
+    exact = one.time[upper] == time
+    flags = np.maximum(one.flag[upper, k], one.flag[lower, k])
+    flags = np.where(exact, one.flag[upper, k], flags)
+    outside = (after == len(one.time)) | ((after == 0) & ~exact)
+    return np.where(outside, MISSING, flags).astype(np.int8)
+
+
+def _refuse_apart(measured: MooringMeasurements) -> None:
+    known = np.isfinite(measured.u) & np.isfinite(measured.v)
+    if not (known.any(axis=1) & np.isfinite(measured.depth).any(axis=1)).any():
+        raise UsageError(
+            "no time has both a current and a pressure: the currents have none, or the two "
+            "records are of different times, or further apart than --gap"
+        )

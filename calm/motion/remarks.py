@@ -1,0 +1,177 @@
+"""Remarks on sensors and currents that measured depths show to be doubtful."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.motion import prior
+from calm.motion.common_unknowns import Common
+from calm.physics.line import Floats
+
+Times = NDArray[np.datetime64]
+
+LEAST = 1.5
+"""A step or a drift that is named [m], at least."""
+CLEAR = 6.0
+"""And so many standard errors."""
+SHARE = 0.6
+"""Share of the variance of the residuals that it explains, at least."""
+FEWEST = 8
+"""Times on either side of a step."""
+FALSE = 0.5
+"""Probability from which the current of a level is named as false."""
+CERTAIN, LIKELY = 0.95, 0.5
+"""Probabilities that a sensor hangs elsewhere from which it is named alone, and named at all."""
+FAR_OFFSET = 2.5
+"""Offsets of a sensor, or of all alike, that are named, in deviations of what is expected."""
+AIR = 10.1
+"""What the weight of the air adds to depths by pressure [m]: 1013 hPa."""
+
+
+def sensor_remarks(
+    labels: Sequence[str],
+    time: Times,
+    residual: Floats,
+    down: Floats,
+    common: Common,
+) -> list[str]:
+    """Return sentences on sensors that drift, clamps that slipped, offsets that are too large.
+
+    They are looked for in the calmer half of the times, where the currents explain little.
+
+    Parameters
+    ----------
+    time : (n,)
+    residual : (n, s) measured less estimated depths [m]
+    down : (n,) knockdown [m]
+    common : offsets of the sensors, and how far they have moved
+    """
+    throughout = np.isin(common.since, time[:1])
+    said = []
+    known = np.isfinite(down)
+    calm = known & (down <= (np.median(down[known]) if known.any() else 0.0))
+    changes = []
+    for j, label in enumerate(labels):
+        mine = calm & np.isfinite(residual[:, j])
+        found = _change(time[mine], residual[mine, j])
+        if found is not None:
+            changes.append((abs(found[0]), label, found))
+    if changes:
+        # what one sensor does wrong shows in the others the other way round
+        _, label, (size, kind, when) = max(changes)
+        among = _or_another(label, labels, common)
+        if kind == "step":
+            said.append(
+                f"{label}: steps by {size:+.1f} m about {np.datetime_as_string(when, 'm')}: a "
+                f"clamp that slipped{among}"
+            )
+        else:
+            j = labels.index(label)
+            slipped = ""
+            if not throughout[j] and common.elsewhere[j] > LIKELY:
+                slipped = (
+                    f", or its clamp slipped by {common.moved[j]:+.1f} m about "
+                    f"{np.datetime_as_string(common.since[j], 'm')}"
+                )
+            said.append(f"{label}: drifts by {size:+.1f} m over the record{slipped}{among}")
+    for j, label in enumerate(labels):
+        offset = common.offset[j] + common.moved[j] * throughout[j]
+        if abs(offset) > FAR_OFFSET * prior.OFFSET:
+            said.append(
+                f"{label}: {offset:+.1f} m off throughout: its zero, or a length or a place on the "
+                f"line that is wrong{_or_another(label, labels, common)}"
+            )
+        elif (
+            not throughout[j]
+            and common.elsewhere[j] > LIKELY
+            and not any(one.startswith(f"{label}: ") for one in said)
+        ):
+            said.append(
+                f"{label}: hangs {abs(common.moved[j]):.1f} m {_way(common.moved[j])} its place "
+                f"from {np.datetime_as_string(common.since[j], 'm')} on: a clamp that slipped"
+            )
+    return said
+
+
+def _or_another(label: str, labels: Sequence[str], common: Common) -> str:
+    """Return which other sensor it may be as well, as far as the pressures can tell."""
+    if common.elsewhere[labels.index(label)] > CERTAIN:
+        return ""
+    pairs = zip(labels, common.elsewhere, strict=True)
+    others = [other for other, chance in pairs if chance > 1.0 - CERTAIN and other != label]
+    if not others and len(labels) == 2:
+        others = [other for other in labels if other != label]
+    named = ", ".join(others)
+    return f", or {named} the other way: they cannot tell" if named else ""
+
+
+def _way(moved: float) -> str:
+    return "below" if moved > 0.0 else "above"
+
+
+def _change(time: Times, residual: Floats) -> tuple[float, str, np.datetime64] | None:
+    """Return a step or a drift: its size [m], which, and when; None where there is none that is
+    clear.
+    """
+    count = len(residual)
+    if count < 2 * FEWEST:
+        return None
+    whole = float(((residual - residual.mean()) ** 2).sum())
+    hours = (time - time[0]) / np.timedelta64(1, "h")
+    rate, start = np.polyfit(hours, residual, 1)
+    left_by_drift = float(((residual - rate * hours - start) ** 2).sum())
+    total = np.cumsum(residual)
+    at = np.arange(FEWEST, count - FEWEST + 1)
+    before, after = total[at - 1] / at, (total[-1] - total[at - 1]) / (count - at)
+    gained = (after - before) ** 2 * at * (count - at) / count
+    best = int(np.argmax(gained))
+    left_by_step = whole - float(gained[best])
+    step = left_by_step <= left_by_drift
+    left = left_by_step if step else left_by_drift
+    size = float(after[best] - before[best]) if step else float(rate * hours[-1])
+    error = np.sqrt(left / count) * np.sqrt(12.0 / count)
+    if abs(size) < max(LEAST, CLEAR * error) or left > (1.0 - SHARE) * whole:
+        return None
+    return size, "step" if step else "drift", time[at[best] - 1]
+
+
+def false_current_times(names: Sequence[str], time: Times, doubt: Floats) -> dict[str, Times]:
+    """Return the times at which the current of a level is more likely false than not, by its name.
+
+    Parameters
+    ----------
+    time : (n,)
+    doubt : (n, k) probability that the current of a level is false
+    """
+    hit = doubt > FALSE
+    return {name: time[hit[:, k]] for k, name in enumerate(names) if hit[:, k].any()}
+
+
+def current_remarks(false: Mapping[str, Times], count: int) -> list[str]:
+    """Return a sentence on each level whose current looks false at some of so many times."""
+    return [
+        f"current at {name}: its direction or speed looks false at {len(when)} of {count} times, "
+        f"first at {np.datetime_as_string(when[0], 'm')}"
+        for name, when in false.items()
+    ]
+
+
+def datum_remarks(common: Common, seabed: float) -> list[str]:
+    """Return a sentence where all sensors are off alike: by the weight of the air, or by much.
+
+    Parameters
+    ----------
+    seabed : depth of the water [m]
+    """
+    at = len(common.factors)
+    spread = float(np.sqrt(common.covariance[at, at]))
+    alike = common.datum + float(common.offset.mean())
+    said = f"all sensors: {common.datum:+.1f} m off alike"
+    if common.datum > 2.0 * spread and abs(alike - AIR) < 2.0 * max(spread, prior.NOISE):
+        return [f"{said}: as if the pressures included that of the air, 10.13 dbar; take it off"]
+    if abs(common.datum) > FAR_OFFSET * prior.DATUM * seabed:
+        return [f"{said}: the depth of the water, a length, or the zero of the pressures is wrong"]
+    return []

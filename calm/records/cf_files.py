@@ -1,0 +1,339 @@
+"""Datasets by the CF conventions as they stand in files: opening, values, units, flags, labels.
+
+NetCDF 3 and 4 and zarr are opened by xarray, their times undecoded, their values read when asked
+for. What is wrong with a file is an `UnreadableError` inside, an `InputError` outside `reading`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from math import inf
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.errors import CalmError, InputError, Problem
+from calm.records.times import ZONES_OF_UTC, TimeChoiceError
+from calm.units import QuantityError, unit_factor
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    Floats = NDArray[np.float64]
+
+_TIME_NAMES = ("time", "TIME", "Time", "time_counter", "ocean_time", "MT")
+_CALENDARS = ("standard", "gregorian", "proleptic_gregorian")
+_FIRST, _LAST = "1678-01-01", "2262-01-01"
+_AT_ONCE = 50_000
+_ZONE = re.compile(r" since .*\d\s*([A-Za-z]{2,}(/[A-Za-z_]+)?)\s*$")
+_ZONED = ("time_zone", "timezone", "tz")
+
+_MOST_LISTED = 24
+_NORTH_NAMED = re.compile(
+    r"(?i)[ _](true|t|magnetic)$|\s*\(?clockwise from ((true|magnetic) )?north\)?$"
+)
+_LABELS = ("instrument", "label", "instrument_label", "labels", "instruments")
+_HEIGHTS = ("hab", "height_above_bottom", "height_above_seabed", "DIST_SEABED")
+_DEPTHS = ("nominal_depth", "NOMINAL_DEPTH", "InstrDepth", "DEPTH", "depth", "instrument_depth")
+
+
+MISSING = 9
+_ENDINGS = ("_qc", "_QC", "_quality_control", "_flag")
+
+
+_ZARR = ("zarr.json", ".zgroup", ".zmetadata")
+
+
+class UnreadableError(Exception):
+    """The file does not hold a current that can be understood; the text says why."""
+
+
+def is_zarr(path: Path) -> bool:
+    """Return whether a folder is a zarr store."""
+    return any((path / name).is_file() for name in _ZARR)
+
+
+def is_netcdf(path: Path) -> bool:
+    """Return whether a file is NetCDF, by its first bytes."""
+    with path.open("rb") as file:
+        signature = file.read(4)
+    return signature == b"\x89HDF" or signature[:3] == b"CDF"
+
+
+@contextmanager
+def reading(path: Path) -> Iterator[None]:
+    """Turn what is wrong with a file into an InputError."""
+    try:
+        yield
+    except (CalmError, TimeChoiceError):
+        raise
+    except UnreadableError as error:
+        raise InputError([Problem(str(path), 0, 0, str(error))]) from None
+    # Damaged files leave the libraries by exceptions of many kinds.
+    except Exception as error:
+        kind = "zarr" if path.is_dir() else "NetCDF"
+        reason = str(error).partition("\n")[0]
+        message = f"cannot be read as {kind}: {reason}"
+        raise InputError([Problem(str(path), 0, 0, message)]) from None
+
+
+def open_current(path: Path) -> xr.Dataset:
+    """Return the dataset of a file, its values read as they are asked for, its times undecoded."""
+    import cf_xarray  # noqa: F401  (gives datasets their `cf`)
+    import xarray as xr
+
+    if path.is_dir():
+        return xr.open_dataset(
+            path, engine="zarr", decode_times=False, cache=False, consolidated=False
+        )
+    with path.open("rb") as file:
+        engine = "scipy" if file.read(3) == b"CDF" else "h5netcdf"
+    return xr.open_dataset(path, engine=engine, decode_times=False, cache=False)
+
+
+def holdings(dataset: xr.Dataset) -> str:
+    """Return the variables of a dataset with their dimensions, units and standard names."""
+    listed = []
+    for name, variable in dataset.variables.items():
+        sizes = ", ".join(f"{dim} {size}" for dim, size in variable.sizes.items())
+        words = [f"{name} ({sizes})" if sizes else str(name)]
+        if "units" in variable.attrs:
+            words.append(f"[{variable.attrs['units']}]")
+        if "standard_name" in variable.attrs:
+            words.append(str(variable.attrs["standard_name"]))
+        listed.append(" ".join(words)[:120])
+    hidden = len(listed) - _MOST_LISTED
+    more = [f"and {hidden} more"] if hidden > 0 else []
+    return "; ".join([*listed[:_MOST_LISTED], *more]) or "nothing"
+
+
+def factor_of(variable: xr.DataArray, dimension: str) -> float:
+    """Return what turns a variable into SI (angles: degrees).
+
+    Raises
+    ------
+    UnreadableError
+        It has no unit, or that of something else.
+    """
+    unit = str(variable.attrs.get("units", ""))
+    plain = _NORTH_NAMED.sub("", unit.strip())
+    if not plain:
+        raise UnreadableError(f"`{variable.name}` has no `units`")
+    if plain.istitle() and len(plain) > 1:  # `Meter`
+        plain = plain.lower()
+    try:
+        return unit_factor(plain, dimension)
+    except QuantityError as error:
+        message = f"`{variable.name}`: its unit, `{unit}`, {error.complaint}"
+        raise UnreadableError(message) from None
+
+
+def first_present(dataset: xr.Dataset, names: Iterable[str]) -> list[str]:
+    """Return those of the names that the dataset has, each once."""
+    return [name for name in dict.fromkeys(names) if name in dataset.variables]
+
+
+def known_values(variable: xr.DataArray) -> NDArray[np.float64]:
+    """Return the values of a variable as it stands in its file, NaN outside its valid range.
+
+    `valid_range`, or `valid_min` and `valid_max`, are those of the NetCDF User Guide: of packed
+    values where they are of the packed kind.
+    """
+    values = np.array(variable.values, np.float64)
+    low, high = _valid_range(variable)
+    if low > -inf or high < inf:
+        values[(values < low) | (values > high)] = np.nan
+    return values
+
+
+def _valid_range(variable: xr.DataArray) -> tuple[float, float]:
+    """Return the least and the greatest valid value, unpacked."""
+    attributes = variable.attrs
+    low, high = attributes.get("valid_min"), attributes.get("valid_max")
+    both = attributes.get("valid_range")
+    if both is not None and len(both) == 2:
+        low, high = both
+    least = _unpacked(low, variable, -inf)
+    greatest = _unpacked(high, variable, inf)
+    return min(least, greatest), max(least, greatest)
+
+
+def _unpacked(limit: Any, variable: xr.DataArray, absent: float) -> float:
+    try:
+        value = float(absent if limit is None else limit)
+    except (TypeError, ValueError):  # a text that is no number limits nothing
+        return absent
+    packed = np.dtype(variable.encoding.get("dtype", np.float64))
+    if limit is None or not (packed.kind in "iu" and np.asarray(limit).dtype.kind in "iu"):
+        return value
+    scale, offset = (
+        float(variable.encoding.get(name, default))
+        for name, default in (("scale_factor", 1.0), ("add_offset", 0.0))
+    )
+    return value * scale + offset
+
+
+def flag_variable(dataset: xr.Dataset, name: str) -> xr.DataArray | None:
+    """Return the flags of a variable: its ancillary variable, or the one called after it."""
+    beside = str(dataset[name].attrs.get("ancillary_variables", "")).split()
+    named = [*beside, *(f"{name}{ending}" for ending in _ENDINGS)]
+    for other in named:
+        if other not in dataset.variables or not _tells_flags(dataset[other]):
+            continue
+        if set(dataset[other].dims) <= set(dataset[name].dims):
+            return dataset[other]
+    return None
+
+
+def _tells_flags(variable: xr.DataArray) -> bool:
+    standard_name = str(variable.attrs.get("standard_name", ""))
+    return (
+        "status_flag" in standard_name
+        or "flag_values" in variable.attrs
+        or variable.dtype.kind in "iu"
+    )
+
+
+def flags_of(variable: xr.DataArray) -> NDArray[np.int8]:
+    """Return the flags as numbers; one without a value is 9, missing."""
+    values = np.asarray(variable.values)
+    if values.dtype.kind in "SU":
+        values = np.where(values.astype(str) == "", "9", values.astype(str)).astype(float)
+    numbers = np.asarray(values, np.float64)
+    return np.where(np.isfinite(numbers), numbers, MISSING).astype(np.int8)
+
+
+def labels_along(dataset: xr.Dataset, dimension: str) -> tuple[str, ...] | None:
+    """Return the labels of what a dimension counts; None where it has none."""
+    for name in (*_LABELS, dimension):
+        if name not in dataset.variables or dataset[name].dims != (dimension,):
+            continue
+        values = np.asarray(dataset[name].values)
+        if values.dtype.kind in "SUO":
+            texts = [one.decode() if isinstance(one, bytes) else str(one) for one in values]
+            return tuple(text.strip() for text in texts)
+    return None
+
+
+def places_along(dataset: xr.Dataset, dimension: str | None, seabed: float) -> Floats | None:
+    """Return the nominal depths of what a dimension counts [m]; of the one instrument without it.
+
+    Heights above the bottom are counted from `seabed` [m].
+
+    Parameters
+    ----------
+    dataset : of instruments
+    dimension : what counts these; None for one instrument
+    seabed : depth of the water, for heights above it [m]
+    """
+    dims = () if dimension is None else (dimension,)
+    for names, sign, start in ((_HEIGHTS, -1.0, seabed), (_DEPTHS, 1.0, 0.0)):
+        for name in names:
+            if name in dataset.variables and dataset[name].dims == dims:
+                try:
+                    factor = factor_of(dataset[name], "length")
+                except UnreadableError:
+                    continue
+                values = np.atleast_1d(known_values(dataset[name])) * factor
+                return start + sign * values
+    return None
+
+
+def find_times(dataset: xr.Dataset, velocity: str) -> str | None:
+    """Return the name of the variable with the times of a velocity; None where it has none.
+
+    Its dimension, if it has one, is one of the velocity's.
+    """
+    axes, coordinates = dataset.cf.axes, dataset.cf.coordinates
+    units = {name: str(one.attrs.get("units", "")) for name, one in dataset.variables.items()}
+    since = [name for name, unit in units.items() if " since " in unit]
+    names = [*axes.get("T", []), *coordinates.get("time", []), *_TIME_NAMES, *map(str, since)]
+    dims = set(dataset[velocity].dims)
+    fitting = [name for name in first_present(dataset, names) if set(dataset[name].dims) <= dims]
+    # a dimension of times before a single date, such as that of a forecast
+    return min(fitting, key=lambda name: not dataset[name].dims, default=None)
+
+
+def read_times(dataset: xr.Dataset, name: str) -> NDArray[np.datetime64]:
+    """Return its times to the nanosecond, one-dimensional, in the order of the file.
+
+    Raises
+    ------
+    UnreadableError
+        They are no times, are missing, or follow a calendar that has other days than the real one.
+    """
+    times = dataset[name]
+    calendar = str(times.attrs.get("calendar", "standard")).lower()
+    if calendar not in _CALENDARS:
+        raise UnreadableError(
+            f"the times in `{name}` follow the calendar `{calendar}`, whose days are not those of "
+            f"real dates; {', '.join(_CALENDARS)} can be read"
+        )
+    if times.ndim > 1:
+        raise UnreadableError(f"the times in `{name}` have {times.ndim} dimensions")
+    read = np.empty(times.size, "datetime64[ns]")
+    for start in range(0, times.size, _AT_ONCE):
+        piece = slice(start, start + _AT_ONCE)
+        read[piece] = _decoded(times[piece] if times.ndim else times)
+    missing = int(np.isnat(read).sum())
+    if missing:
+        raise UnreadableError(f"{missing} of the {read.size} times in `{name}` have no value")
+    return read
+
+
+def zone_notices(dataset: xr.Dataset, name: str) -> list[str]:
+    """Return what is said where the attributes of the times name another zone than UTC."""
+    attributes = dataset[name].attrs
+    zones = [str(attributes.get(one, "")) for one in _ZONED]
+    zone = next((one for one in zones if one and one.strip().upper() not in ZONES_OF_UTC), None)
+    if zone is None and "local time" in str(attributes.get("long_name", "")).lower():
+        zone = str(attributes["long_name"])
+    return [f"`{name}` says `{zone}`; its times are taken as they stand"] if zone else []
+
+
+def _decoded(times: xr.DataArray) -> NDArray[Any]:
+    import warnings
+
+    import xarray as xr
+
+    if times.dtype.kind == "f" and not times.notnull().any():
+        return np.array("NaT", "datetime64[ns]")  # to xarray, no numbers at all are no times
+    unit = str(times.attrs.get("units", ""))
+    zone = _ZONE.search(unit)
+    if zone is not None and zone[1].upper() not in ZONES_OF_UTC:
+        raise UnreadableError(
+            f"the times in `{times.name}` are `{unit}`: what `{zone[1]}` is ahead of UTC is not "
+            "known for sure; write the offset in hours, such as `+01:00`, or use UTC"
+        )
+    refusal = UnreadableError(
+        f"the times in `{times.name}` cannot be read: their unit, `{unit}`, is none of seconds, "
+        "minutes, hours or days since a date"
+    )
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of years without their zeros, `1-1-1`
+            whole = xr.decode_cf(times.to_dataset(name="times"))["times"]
+            decoded: NDArray[Any] = whole.values.ravel()
+    except (ValueError, OverflowError):
+        raise refusal from None
+    if decoded.dtype.kind != "M":
+        raise _no_date(times) if decoded.dtype.kind == "O" else refusal
+    known = decoded[~np.isnat(decoded)]
+    first, last = np.datetime64(_FIRST), np.datetime64(_LAST)
+    if known.size and not first <= known.min() <= known.max() < last:
+        raise UnreadableError(f"the times in `{times.name}` are not all between {first} and {last}")
+    return decoded
+
+
+def _no_date(times: xr.DataArray) -> UnreadableError:
+    """Return what is said where the unit of times is understood, but not all of their values."""
+    values = times.values.ravel()
+    worst = values[np.nanargmax(np.abs(values - np.nanmedian(values)))]
+    return UnreadableError(
+        f"`{times.name}` has {worst:.10g} among its times, in `{times.attrs['units']}`: no date "
+        f"between {_FIRST} and {_LAST}"
+    )

@@ -1,0 +1,338 @@
+"""A dataset of currents as arrays of depth, u, v and w: one profile or many, read as asked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.errors import InputError, Problem
+from calm.records.cf_files import (
+    UnreadableError,
+    factor_of,
+    find_times,
+    flag_variable,
+    flags_of,
+    holdings,
+    known_values,
+    open_current,
+    read_times,
+    reading,
+    zone_notices,
+)
+from calm.records.current_terms import Terms
+from calm.records.level_depths import LevelDepths, find_levels
+from calm.records.record import RULES, Levels, Period, Record, choose_profiles, part
+from calm.records.velocity import Velocity, find_velocity, refuse_ragged, with_components
+from calm.records.water_column import choose_column, is_regular
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+AHEAD = 16_000_000
+"""Bytes that are read together where a file has compressed them together."""
+
+FLAGS = "the quality flags of the current are ignored"
+
+
+@dataclass(frozen=True)
+class CurrentArrays:
+    """Currents of n profiles as they stand in a file, gaps as NaN, levels in the file's order.
+
+    Attributes
+    ----------
+    depth : (k,), or (n, k) where levels move [m], positive down
+    u, v : (n, k) to the east and to the north [m/s]; inf where the file has a negative speed or
+        a direction outside -360 to 360°
+    w : (n, k) upwards [m/s], None where the file has none
+    """
+
+    depth: NDArray[np.float64]
+    u: NDArray[np.float64]
+    v: NDArray[np.float64]
+    w: NDArray[np.float64] | None
+
+
+@dataclass(frozen=True)
+class CurrentDataset:
+    """A dataset whose current, levels, times and place have been found.
+
+    Attributes
+    ----------
+    times : (n,) in the order of the file; None for a profile without a time
+    notices : what a person should know before trusting it
+    turned : angle by which a current relative to magnetic north was turned
+    rules : what was understood beyond doubt, and how
+    source : names of the variables, and the place
+    """
+
+    times: NDArray[np.datetime64] | None
+    notices: tuple[str, ...]
+    turned: tuple[str, ...]
+    rules: tuple[str, ...]
+    source: dict[str, str]
+    _parts: tuple[tuple[xr.DataArray, float], ...]
+    _flags: tuple[xr.DataArray, ...]
+    _turn: float | None
+    _declination: float
+    _levels: LevelDepths
+    _time: str | None
+
+    @property
+    def moves(self) -> bool:
+        """Return whether the levels move with time."""
+        return self._levels.vary_in(self._time)
+
+    @property
+    def chunk(self) -> int:
+        """Return how many times the file decompresses together; 1 where it does not compress."""
+        variable = self._parts[0][0]
+        chunks: dict[str | None, int] = variable.encoding.get("preferred_chunks", {})
+        return chunks.get(self._time, 1)
+
+    @property
+    def size(self) -> int:
+        """Bytes of one profile as it is read."""
+        variable = self._parts[0][0]
+        levels: int = variable.size // max(variable.sizes.get(self._time, 1), 1)
+        return 8 * levels * (len(self._parts) + self.moves)
+
+    def read(self, index: slice | NDArray[np.intp]) -> CurrentArrays:
+        """Return the profiles of some times, by their index.
+
+        All profiles where there is no time.
+        """
+        first, second, *up = (
+            self._values(variable, index) * factor for variable, factor in self._parts
+        )
+        if self._turn is not None:
+            angle = np.radians(second + self._turn)
+            impossible = (first < 0.0) | (np.abs(second) > 360.0)
+            first, second = first * np.sin(angle), first * np.cos(angle)
+            first[impossible] = second[impossible] = np.inf  # to be refused by whoever asked
+        if self._declination:
+            angle = np.radians(self._declination)
+            with np.errstate(invalid="ignore"):  # of what is infinite
+                first, second = (
+                    first * np.cos(angle) + second * np.sin(angle),
+                    second * np.cos(angle) - first * np.sin(angle),
+                )
+        depth = self._levels.depths(self._time, index)
+        return CurrentArrays(depth, first, second, up[0] if up else None)
+
+    def flags(self, index: slice | NDArray[np.intp]) -> NDArray[np.int8] | None:
+        """Return (n, k) the worse quality flags of both components at some times; None without
+        flags.
+        """
+        if self._time is None or not self._flags:
+            return None
+        first = self._parts[0][0].isel({self._time: index}).transpose(self._time, ...)
+        worst = np.zeros(first.shape, np.int8)
+        for variable in self._flags:
+            own = variable.broadcast_like(self._parts[0][0]).isel({self._time: index})
+            worst = np.maximum(worst, flags_of(own.transpose(*first.dims)))
+        return worst.reshape(len(worst), -1)
+
+    def _values(self, variable: xr.DataArray, index: Any) -> NDArray[np.float64]:
+        """Return times by levels, contiguous, so that equal values give equal results in any
+        company.
+        """
+        if self._time is None:
+            return known_values(variable).reshape(1, -1)
+        values = known_values(variable.isel({self._time: index}).transpose(self._time, ...))
+        return values.reshape(len(values), -1)
+
+
+def understand(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
+    """Return what a dataset holds, without reading its currents.
+
+    Parameters
+    ----------
+    dataset : as it stands in the file, its times undecoded
+    terms : how its currents are to be taken
+
+    Raises
+    ------
+    UnreadableError
+        It holds no current that can be understood: why, and what it holds.
+    """
+    try:
+        return _understood(dataset, terms)
+    except UnreadableError as error:
+        raise UnreadableError(f"{error}; it holds {holdings(dataset)}") from None
+
+
+def _understood(dataset: xr.Dataset, terms: Terms) -> CurrentDataset:
+    dataset = with_components(dataset)
+    velocity = find_velocity(dataset, regular=is_regular(dataset))
+    refuse_ragged(dataset, velocity.names[0])
+    turned = _turned(velocity, terms.declination)
+    name_of_time = find_times(dataset, velocity.names[0])
+    times = None if name_of_time is None else read_times(dataset, name_of_time)
+    time = _dimension(dataset, name_of_time)
+    column = choose_column(dataset, velocity.names, time, terms.place)
+    level, dataset = _single_levels(dataset.isel(column.index), velocity, time)
+    levels = find_levels(dataset, level, time, terms.water_depth)
+    source = {"velocity": ", ".join(velocity.all_names), "levels": str(levels.variable.name)}
+    if name_of_time is not None:
+        source["time"] = name_of_time
+    if column.place is not None:
+        source |= zip(
+            ("latitude", "longitude"), (f"{degrees:.6g}" for degrees in column.place), strict=True
+        )
+    notices = [*column.notes]
+    if name_of_time is not None:
+        notices += zone_notices(dataset, name_of_time)
+    flags = (flag_variable(dataset, name) for name in velocity.names)
+    flags_beside = tuple(one for one in flags if one is not None)
+    if flags_beside:
+        notices.append(FLAGS)
+    return CurrentDataset(
+        times=times,
+        notices=tuple(notices),
+        turned=turned,
+        rules=(*velocity.notes, *levels.notes),
+        source=source,
+        _parts=tuple(_parts(dataset, velocity)),
+        _flags=flags_beside,
+        _turn=velocity.turn,
+        _declination=terms.declination or 0.0,
+        _levels=levels,
+        _time=time,
+    )
+
+
+def _turned(velocity: Velocity, declination: float | None) -> tuple[str, ...]:
+    """Return what is reported of a current that is relative to magnetic north."""
+    counted = velocity.names if velocity.turn is None else velocity.names[1:]
+    which = " and ".join(f"`{name}`" for name in counted)
+    if velocity.magnetic and declination is None:
+        raise UnreadableError(
+            f"{which} are relative to magnetic north; give the `declination` there, positive "
+            "to the "
+            "east (beside `file:`, or `--declination`)"
+        )
+    if declination is not None and not velocity.magnetic:
+        raise UnreadableError(
+            f"{which} are not said to be relative to magnetic north, so no `declination` is "
+            "applied; "
+            "leave it out"
+        )
+    if declination is None:
+        return ()
+    return (f"{which} were relative to magnetic north, turned by {declination:g}°",)
+
+
+def _dimension(dataset: xr.Dataset, time: str | None) -> str | None:
+    """Return the dimension of the times, None where they have none."""
+    return None if time is None else next(map(str, dataset[time].dims), None)
+
+
+def _single_levels(
+    dataset: xr.Dataset, velocity: Velocity, time: str | None
+) -> tuple[str | None, xr.Dataset]:
+    """Return the dimension of the levels, and the dataset without dimensions of one value."""
+    name = velocity.names[0]
+    single = [dim for dim, size in dataset.sizes.items() if size == 1 and dim != time]
+    dataset = dataset.isel(dict.fromkeys(single, 0))
+    for other in velocity.all_names[1:]:
+        if set(dataset[other].dims) != set(dataset[name].dims):
+            raise UnreadableError(
+                f"`{name}` and `{other}` have different dimensions: "
+                f"{_spread(dataset[name])}; {_spread(dataset[other])}"
+            )
+    levels = [str(dim) for dim in dataset[name].dims if dim != time]
+    if len(levels) > 1:
+        raise UnreadableError(
+            f"`{name}` is not a single profile, but spreads over {_spread(dataset[name])}"
+        )
+    return (levels[0] if levels else None), dataset
+
+
+def _parts(dataset: xr.Dataset, velocity: Velocity) -> list[tuple[xr.DataArray, float]]:
+    """Return the variables of the current, each with its factor to SI (angles: degrees)."""
+    dimensions = ("speed", "speed" if velocity.turn is None else "angle", "speed")
+    return [
+        (dataset[name], factor_of(dataset[name], dimension))
+        for name, dimension in zip(velocity.all_names, dimensions, strict=False)
+    ]
+
+
+def _spread(variable: xr.DataArray) -> str:
+    return ", ".join(f"{name} ({size})" for name, size in variable.sizes.items())
+
+
+class ArrayRecord(Record):
+    """A record whose profiles are found as `calm run` finds that of one time.
+
+    Parameters and errors are those of `open_record`.
+    """
+
+    def __init__(self, path: Path, terms: Terms, period: Period | None, every: int) -> None:
+        self._path = path
+        with reading(path):
+            self._dataset = open_current(path)
+        try:
+            with reading(path):
+                self._current = understand(self._dataset, terms)
+            times = self._current.times
+            if times is None:
+                message = "has no times: it is one profile, for `calm run`"
+                raise InputError([Problem(str(path), 0, 0, message)])
+            self._index, chosen = choose_profiles(times, period, every, path)
+        except BaseException:
+            self._dataset.close()
+            raise
+        self.time = times[self._index]
+        self.notes = (
+            *chosen,
+            *self._current.notices,
+            *self._current.turned,
+            *self._current.rules,
+            *RULES,
+        )
+        self.source = {"file": path.name, **self._current.source}
+        self._ahead: tuple[int, int, CurrentArrays] | None = None
+
+    def profiles(self, start: int, stop: int) -> Levels:
+        """See `Record`."""
+        first, _, arrays = self._window(start, stop)
+        mine = slice(start - first, stop - first)
+        depth = arrays.depth[mine] if self._current.moves else arrays.depth
+        w = None if arrays.w is None else arrays.w[mine]
+        return depth, arrays.u[mine], arrays.v[mine], w
+
+    def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
+        """See `Record`."""
+        with reading(self._path):
+            return self._current.flags(part(self._index, start, stop))
+
+    def _window(self, start: int, stop: int) -> tuple[int, int, CurrentArrays]:
+        """Return the profiles around those wanted that are decompressed with them, and which they
+        are.
+        """
+        if self._ahead is not None and self._ahead[0] <= start and stop <= self._ahead[1]:
+            return self._ahead
+        self._ahead = None
+        end = min(max(stop, self._end_of_chunk(start)), self.count)
+        with reading(self._path):
+            arrays = self._current.read(part(self._index, start, end))
+        window = start, end, arrays
+        if end > stop:
+            self._ahead = window
+        return window
+
+    def _end_of_chunk(self, start: int) -> int:
+        """Return the profile after those that a file has compressed together with one."""
+        chunk = self._current.chunk
+        if isinstance(self._index, slice):
+            position = self._index.start + start * self._index.step
+            chunk = -(-(chunk - position % chunk) // int(self._index.step))
+        return start + min(chunk, AHEAD // max(self._current.size, 1))
+
+    def close(self) -> None:
+        """See `Record`."""
+        self._dataset.close()

@@ -1,0 +1,151 @@
+"""A current from a file of measurements or of a model: NetCDF by its first bytes, zarr, or CSV."""
+
+from __future__ import annotations
+
+from datetime import UTC
+from pathlib import Path
+
+import numpy as np
+
+from calm.errors import InputError, Problem
+from calm.records.cf_files import UnreadableError, is_netcdf, is_zarr, open_current, reading
+from calm.records.current_csv import read_current_csv
+from calm.records.current_dataset import ArrayRecord, CurrentArrays, understand
+from calm.records.current_terms import Terms, too_deep, too_fast
+from calm.records.profile_tables import CurrentTable
+from calm.records.record import Period, Record
+from calm.records.record_csv import CsvRecord
+from calm.records.times import TimeChoiceError, choose_time
+from calm.records.water_column import Place
+
+
+def read_current_file(path: Path, time: str | None, terms: Terms) -> tuple[CurrentTable, list[str]]:
+    """Return the profile of a file at a time, and what to report about it.
+
+    Parameters
+    ----------
+    path : CSV, NetCDF or zarr
+    time : in ISO 8601; None where there is only one
+    terms : how the current is to be taken
+
+    Raises
+    ------
+    InputError
+        With the mistakes of the file.
+    TimeChoiceError
+        The time is not in the file, or is needed to choose one of several.
+    """
+    if holds_arrays(path):
+        return read_current_netcdf(path, time, terms)
+    return read_current_csv(path, time, terms)
+
+
+def open_record(
+    path: Path,
+    *,
+    seabed: float,
+    at: Place | None = None,
+    declination: float | None = None,
+    time: Period | None = None,
+    every: int = 1,
+) -> Record:
+    """Return a record in NetCDF, in zarr, or in CSV.
+
+    Parameters
+    ----------
+    seabed : depth of the water [m], where heights above the seabed begin
+    at : latitude and longitude whose column is wanted, where there are several
+    declination : turns what the record says is relative to magnetic north [degrees], east positive
+    time : first and last time, see `parse_period`
+    every : take one profile in so many
+
+    Raises
+    ------
+    InputError
+        It cannot be understood: why, and what it holds.
+    UsageError
+        No profile of it is asked for.
+    """
+    if not path.exists():
+        raise InputError([Problem(str(path), 0, 0, "no such file")])
+    if not (path.is_file() or path.is_dir()):
+        raise InputError([Problem(str(path), 0, 0, "is not a regular file")])
+    terms = Terms(water_depth=seabed, place=at, declination=declination)
+    if holds_arrays(path):
+        return ArrayRecord(path, terms, time, every)
+    return CsvRecord(path, terms, time, every)
+
+
+def holds_arrays(path: Path) -> bool:
+    """Return whether a file is NetCDF or a folder zarr; any other file is taken as CSV.
+
+    Raises
+    ------
+    InputError
+        It is a folder of something else.
+    """
+    if not path.is_dir():
+        return is_netcdf(path)
+    if not is_zarr(path):
+        message = "is a folder, and not a zarr store; join its files into one first"
+        raise InputError([Problem(str(path), 0, 0, message)])
+    return True
+
+
+def read_current_netcdf(
+    path: Path, time: str | None, terms: Terms
+) -> tuple[CurrentTable, list[str]]:
+    """Return the profile of a time, and notices; `time` may be None where there is only one.
+
+    Parameters
+    ----------
+    path : NetCDF or zarr
+    time : in ISO 8601; None where there is only one
+    terms : how the current is to be taken
+
+    Raises
+    ------
+    InputError
+        The file holds no current profile that can be understood.
+    TimeChoiceError
+        The time is not in the file.
+    """
+    with reading(path), open_current(path) as dataset:
+        current = understand(dataset, terms)
+        notices = [*current.notices, *current.turned]
+        index = 0
+        if current.times is not None:
+            seconds = current.times.astype("datetime64[us]").tolist()
+            moments = [moment.replace(tzinfo=UTC) for moment in seconds]
+            index, notice = choose_time(moments, time)
+            notices = [*([notice] if notice else []), *notices]
+        elif time is not None:
+            raise TimeChoiceError("the file has no times")
+        return _profile(current.read(slice(index, index + 1)), terms, notices), notices
+
+
+def _profile(arrays: CurrentArrays, terms: Terms, notices: list[str]) -> CurrentTable:
+    """Return the levels in water that have a value, by depth."""
+    depth, u, v = (values.ravel() for values in (arrays.depth, arrays.u, arrays.v))
+    w = np.zeros_like(u) if arrays.w is None else arrays.w.ravel()
+    known = ~np.isnan(u + v + w) & np.isfinite(depth)
+    below = known & (depth >= 0)
+    _tell(notices, int(np.sum(~known)), "without a value")
+    _tell(notices, int(np.sum(known & ~below)), "above the surface")
+    if not below.any():
+        raise UnreadableError("no level below the surface has a value")
+    for level, east, north, up in zip(*(one[below] for one in (depth, u, v, w)), strict=True):
+        if reason := too_deep(level):
+            raise UnreadableError(f"its {reason}")
+        if reason := too_fast(east, north, up, terms.maximum_speed):
+            raise UnreadableError(f"its current at {level:g} m, {reason}")
+    order = np.argsort(depth[below])
+    depth, u, v, w = (values[below][order] for values in (depth, u, v, w))
+    if np.any(np.diff(depth) == 0):
+        raise UnreadableError("two levels have the same depth")
+    return CurrentTable(*(tuple(values.tolist()) for values in (depth, u, v, w)))
+
+
+def _tell(notices: list[str], count: int, what: str) -> None:
+    if count:
+        notices.append(f"{count} level{'s' * (count > 1)} {what} left out of the current")

@@ -1,0 +1,350 @@
+"""Tables in text: the sign between their cells, quotes, decimal commas, and where a cell stands.
+
+Cells are between tabs, semicolons, commas or blanks, whichever parts the lines alike; a cell may be
+in quotation marks. Empty lines and lines after ``#`` are left out.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import chain, islice
+from pathlib import Path
+
+from calm.errors import InputError, Problem
+from calm.suggestions import shown
+from calm.whole_file import read_text
+
+LARGEST_CSV = 50_000_000
+"""Largest table that is read whole [bytes]."""
+
+MOST_PROBLEMS = 20
+"""Most mistakes shown of one file; a wrong unit makes thousands of the same."""
+
+GAPS = frozenset({"", "nan", "na", "n/a", "-", "none", "null"})
+"""Cells, in small letters, that say that nothing was measured."""
+
+NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+_SAMPLE = 200  # lines that tell how a table is written
+_LONGEST_CELL = 10  # lines of one cell in quotation marks
+_SEPARATORS = {"\t": "tab", ";": "semicolon", ",": "comma", " ": "blank"}
+_QUOTED = r'"(?:[^"]|"")*"'
+_CELLS = {
+    sign: re.compile(rf"( *)({_QUOTED}(?= *(?:{sign}|$))|[^{sign}]*)( *)({sign}|$)")
+    for sign in "\t;,"
+}
+_WORDS = re.compile(rf"{_QUOTED}(?=\s|$)|\S+")
+_FINISHED = re.compile(rf'(?:\s*(?:{_QUOTED}[^,;\t]*|[^",;\t\s][^,;\t]*|)(?:[,;\t]|$))*')
+_POINT = re.compile(r"[-+]?\d*\.\d+([eE][-+]?\d+)?(\s*[^\d\s.,:-].*)?")
+_COMMA = re.compile(r"([-+]?\d*),(\d+)((?:[eE][-+]?\d+)?(?:\s*[^\d\s.,:-].*)?)")
+
+NumberedLine = tuple[int, str]
+"""The number of a line, from 1, and its text."""
+
+
+class NoTableError(ValueError):
+    """Say why a text is no table: which line is wrong, and how."""
+
+
+@dataclass(frozen=True)
+class Dialect:
+    """Know the signs of a table in text.
+
+    Attributes
+    ----------
+    separator : a tab, a semicolon or a comma; a blank stands for any run of blanks
+    decimal : a point or a comma
+    """
+
+    separator: str
+    decimal: str = "."
+
+    def cells(self, line: str) -> list[str]:
+        """Return the cells of a line without blanks and quotation marks, decimals with a point."""
+        found = [text for _, text in self._placed(line)]
+        return [self.with_point(text) for text in found] if self.decimal == "," else found
+
+    def column(self, line: str, cell: int) -> int:
+        """Return where a cell begins in its line, counted from 1; 1 where there is none."""
+        placed = self._placed(line)
+        return placed[cell][0] + 1 if cell < len(placed) else 1
+
+    def with_point(self, cell: str) -> str:
+        """Return a number with a decimal comma as one with a point, and any other cell as it is."""
+        found = _COMMA.fullmatch(cell) if self.decimal == "," else None
+        return f"{found[1]}.{found[2]}{found[3]}" if found else cell
+
+    @property
+    def name(self) -> str:
+        """Return what the separator is called."""
+        return _SEPARATORS[self.separator]
+
+    def _placed(self, line: str) -> list[tuple[int, str]]:
+        """Return the cells of a line, each after its place in it."""
+        if self.separator == " ":
+            return [(one.start(), _unquoted(one[0])) for one in _WORDS.finditer(line)]
+        pattern, at, found = _CELLS[self.separator], 0, []
+        while True:
+            match = pattern.match(line, at)
+            assert match is not None  # a cell may be empty
+            found.append((match.end(1), _unquoted(match[2].strip())))
+            at = match.end()
+            if not match[4]:
+                return found
+
+
+@dataclass(frozen=True)
+class CellRow:
+    """Hold a line of a table as cells.
+
+    Attributes
+    ----------
+    number : of the line
+    line : as it stands
+    cells : without `skipped` ones before them
+    dialect : of the table
+    """
+
+    number: int
+    line: str
+    cells: Sequence[str]
+    dialect: Dialect
+    skipped: int = 0
+
+    def column(self, cell: int) -> int:
+        """Return where a cell begins in the line, counted from 1."""
+        return self.dialect.column(self.line, cell + self.skipped)
+
+    def mixed_decimals(self, path: Path) -> list[Problem]:
+        """Return a mistake for each number with a point in a table of decimal commas."""
+        if self.dialect.decimal != ",":
+            return []
+        return [
+            Problem(
+                str(path), self.number, self.column(j - self.skipped),
+                f"`{shown(cell)}` has a decimal point, and the numbers before it have commas",
+            )
+            for j, cell in enumerate(Dialect(self.dialect.separator).cells(self.line))
+            if _POINT.fullmatch(cell)
+        ]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class TextTable:
+    """Hold a table of a file: its header, and the rows below it as they come.
+
+    `rows` is read once where a file is read as it is needed.
+    """
+
+    path: Path
+    header: CellRow
+    rows: Iterable[CellRow]
+
+
+@dataclass(frozen=True)
+class CopiedTable:
+    """Hold the cells of a text that was copied.
+
+    Attributes
+    ----------
+    headings : of the columns; None where the first line is one of numbers
+    rows : cells without the blanks around them, as many in each as there are columns
+    """
+
+    headings: tuple[str, ...] | None
+    rows: tuple[tuple[str, ...], ...]
+
+
+def read_table(path: Path, example: str) -> TextTable:
+    """Return the table of a file.
+
+    Parameters
+    ----------
+    path : of UTF-8 text
+    example : of a header, for messages
+
+    Raises
+    ------
+    InputError
+        It cannot be read, is empty, or has no header.
+    """
+    text = read_text(path, largest=LARGEST_CSV)
+    header, lines = table_lines(path, enumerate(text.splitlines(), 1), example)
+    return TextTable(path, header, [row_below(header, *line) for line in lines])
+
+
+def table_lines(
+    path: Path, lines: Iterable[NumberedLine], example: str
+) -> tuple[CellRow, Iterator[NumberedLine]]:
+    """Return the header of a table and the lines below it, which are read as they are needed.
+
+    A first column without a heading numbers the rows, as R and pandas do, and is skipped.
+
+    Parameters
+    ----------
+    path : of its file
+    lines : all lines of the file
+    example : of a header, for messages
+
+    Raises
+    ------
+    InputError
+        There is no line, or no header.
+    """
+    lines = _content(lines)
+    sample = list(islice(lines, _SAMPLE))
+    if not sample:
+        raise InputError([Problem(str(path), 0, 0, "is empty")])
+    dialect = dialect_of([line for _, line in sample])
+    number, line = sample[0]
+    cells = dialect.cells(line)
+    if len(cells) > 1 and not cells[-1]:
+        message = f"the line ends in a {dialect.name}; take it off every line"
+        raise InputError([Problem(str(path), number, len(line.rstrip(" ")), message)])
+    if all(NUMBER.fullmatch(cell) for cell in cells):
+        message = f"there is no header; did you mean `{example}`?"
+        raise InputError([Problem(str(path), number, 1, message)])
+    if len(cells) < 2:
+        message = f"`{shown(line[:40])}` is not a header such as `{example}`"
+        raise InputError([Problem(str(path), number, 1, message)])
+    skipped = int(not cells[0])
+    header = CellRow(number, line, cells[skipped:], dialect, skipped)
+    return header, chain(sample[1:], lines)
+
+
+def row_below(header: CellRow, number: int, line: str) -> CellRow:
+    """Return a line below a header as cells.
+
+    Between blanks, a time may be a date and a clock, which are two words.
+
+    Parameters
+    ----------
+    header : of the table
+    number : of the line
+    line : as it stands
+    """
+    dialect, skipped = header.dialect, header.skipped
+    cells = dialect.cells(line)
+    if dialect.separator == " " and len(cells) == len(header.cells) + skipped + 1:
+        cells[skipped : skipped + 2] = [f"{cells[skipped]} {cells[skipped + 1]}"]
+    return CellRow(number, line, cells[skipped:], dialect, skipped)
+
+
+def copied_table(text: str) -> CopiedTable:
+    """Return the table of a text that was copied from a spreadsheet, a file or a page.
+
+    A first line without a number is its headings. `calm.records.profile_tables` reads what it
+    holds.
+
+    Raises
+    ------
+    NoTableError
+        There are no rows, or rows of different length.
+    """
+    lines = list(_content(enumerate(text.splitlines(), 1)))
+    dialect = dialect_of([line.strip(" ") for _, line in lines])
+    cells = [(number, tuple(dialect.cells(line.strip(" ")))) for number, line in lines]
+    if not cells:
+        raise NoTableError("there are no numbers in it")
+    first = cells[0][1]
+    headings = None if any(map(_begins_with_number, first)) else first
+    rows = cells[headings is not None :]
+    if not rows:
+        raise NoTableError("there are no numbers in it")
+    for number, row in rows:
+        if len(row) != len(first):
+            raise NoTableError(
+                f"line {number} has {len(row)} value{'s' * (len(row) != 1)}, the first {len(first)}"
+            )
+    return CopiedTable(headings, tuple(row for _, row in rows))
+
+
+def cells_in(text: str) -> list[list[str]]:
+    """Return the cells of a text that need not begin with its headings, decimals as they stand."""
+    lines = [line for _, line in _content(enumerate(text.splitlines(), 1))]
+    dialect = Dialect(dialect_of(lines[:_SAMPLE], words=True).separator)
+    return [dialect.cells(line) for line in lines]
+
+
+def dialect_of(lines: Sequence[str], *, words: bool = False) -> Dialect:
+    """Return how a table is written, by the sign that parts most of its lines into as many cells.
+
+    Numbers have decimal commas where some have a comma that is none of thousands, and none has a
+    point.
+
+    Parameters
+    ----------
+    lines : without empty ones and comments
+    words : whether cells are of several words, so that no blank parts them
+    """
+    best, most = ",", 0
+    for separator in _SEPARATORS:
+        counts = Counter(len(Dialect(separator).cells(line)) for line in lines)
+        alike = max((times for count, times in counts.items() if count > 1), default=0)
+        if alike > most and not (separator == " " and (most or words)):
+            best, most = separator, alike
+    plain = Dialect(best)
+    cells = [cell for line in lines for cell in plain.cells(line)]
+    if any(_POINT.fullmatch(cell) for cell in cells):
+        return plain
+    commas = [found for cell in cells if (found := _COMMA.fullmatch(cell))]
+    sure = any(len(one[2]) != 3 or not one[1].strip("+-0") for one in commas)
+    return Dialect(best, "," if sure else ".")
+
+
+def no_number(cell: str) -> str | None:
+    """Return what is wrong with a cell that is to be a plain number; None where it is one."""
+    if NUMBER.fullmatch(cell):
+        return None
+    pointed = Dialect(";", ",").with_point(cell)
+    if NUMBER.fullmatch(pointed):
+        return f"has a decimal comma; did you mean `{pointed}`?"
+    return "is no number"
+
+
+def abridged(problems: list[Problem]) -> list[Problem]:
+    """Return the first mistakes in the order of the file, and how many more there are."""
+    ordered = sorted(dict.fromkeys(problems), key=lambda one: (one.line, one.column))
+    hidden = len(ordered) - MOST_PROBLEMS
+    if hidden <= 0:
+        return ordered
+    more = Problem(problems[0].path, 0, 0, f"and {hidden} more mistakes")
+    return [*ordered[:MOST_PROBLEMS], more]
+
+
+def _content(lines: Iterable[NumberedLine]) -> Iterator[NumberedLine]:
+    """Return those of the lines that are neither blank nor a comment, cells of several lines in
+    one.
+    """
+    begun: list[NumberedLine] = []
+    for number, line in lines:
+        if not begun and (not line.strip() or line.lstrip().startswith("#")):
+            continue
+        if not begun and '"' not in line:
+            yield number, line
+            continue
+        begun.append((number, line))
+        whole = " ".join(text.strip(" ") for _, text in begun) if begun[1:] else line
+        if _FINISHED.fullmatch(whole):
+            yield begun[0][0], whole
+            begun = []
+        elif len(begun) == _LONGEST_CELL:
+            yield from begun
+            begun = []
+    yield from begun
+
+
+def _unquoted(cell: str) -> str:
+    if len(cell) > 1 and cell[0] == cell[-1] == '"':
+        return " ".join(cell[1:-1].replace('""', '"').split())
+    return cell
+
+
+def _begins_with_number(cell: str) -> bool:
+    """Return whether a cell is a number, with a unit behind it or not."""
+    cell = Dialect(";", ",").with_point(cell)
+    number = NUMBER.match(cell)
+    rest = cell[number.end() :] if number else "?"
+    return not rest or rest[0].isspace() or rest[0].isalpha() or rest[0] in "°%"

@@ -1,0 +1,353 @@
+"""Tables of quantities: named columns, each with its unit, and rows of numbers."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+from calm.errors import Problem
+from calm.quantities import bearing_of
+from calm.records.current_terms import Terms, too_deep, too_fast
+from calm.records.headings import column_unit, heading, magnetic_columns
+from calm.suggestions import about_quantity, shown, unknown
+from calm.units import QuantityError, QuantityRange
+
+Report = Callable[[Sequence[str | int], str], Problem]
+"""Makes a problem of a message, at ``("columns", j)`` or ``("rows", i, j)``."""
+
+_AS_THEY_STAND = Terms()
+_BARE_NUMBER = re.compile(r"[-+.,/\deE ]*")
+
+TEMPERATURE = QuantityRange("temperature", at_least=-6, at_most=40)
+SALINITY = QuantityRange("salinity", at_least=0, at_most=42)
+"""Temperatures and salinities are limited to those that TEOS-10 is valid for."""
+
+WATER_DENSITY = QuantityRange("density", at_least=900, at_most=1350)
+"""From fresh water under a glacier to the brines at the bottom of the Red Sea."""
+
+DENSITY = QuantityRange("density", above=0)
+
+DIRECTION = QuantityRange("angle", at_least=-360, at_most=360)
+
+_DEPTH = QuantityRange("length")
+_SPEED = QuantityRange("speed")
+_CURRENT = {
+    "depth": _DEPTH,
+    "u": _SPEED,
+    "v": _SPEED,
+    "w": _SPEED,
+    "speed": _SPEED,
+    "toward": DIRECTION,
+    "from": DIRECTION,
+}
+_NO_WAY = ("direction", "dir", "heading", "bearing")
+_WATER = {
+    "depth": _DEPTH,
+    "density": DENSITY,
+    "temperature": TEMPERATURE,
+    "salinity": SALINITY,
+}
+
+
+@dataclass(frozen=True)
+class CurrentTable:
+    """Hold a current: east, north and upward speeds [m/s] at increasing depths [m]."""
+
+    depth: tuple[float, ...]
+    u: tuple[float, ...]
+    v: tuple[float, ...]
+    w: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class DepthTable:
+    """Hold a quantity at increasing depths [m]; linear between them, constant beyond."""
+
+    depth: tuple[float, ...]
+    value: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class SeaWater:
+    """Hold the temperature in situ [°C] and the practical salinity of sea water."""
+
+    temperature: DepthTable
+    salinity: DepthTable
+
+
+def read_current(
+    columns: Sequence[str],
+    rows: Sequence[Sequence[str | None]],
+    report: Report,
+    problems: list[Problem],
+    terms: Terms = _AS_THEY_STAND,
+) -> CurrentTable | None:
+    """Read a current from a table; None, with its mistakes in `problems`, if it has any.
+
+    Parameters
+    ----------
+    columns : sequence of str
+        Names with their unit, ``"depth m"`` or ``"depth[m]"``; without, each value has its own.
+        `depth`, with `u` and `v`, or `speed` and `toward` or `from`, and optionally `w`. A unit
+        such as ``"deg magnetic"`` says that a column is relative to magnetic north.
+    rows : sequence of rows
+        Numbers, or quantities with a unit, as text.
+    terms : the declination that turns what is relative to magnetic north, the greatest speed
+    """
+    before = len(problems)
+    plain, turned = _from_magnetic_north(columns, terms, report, problems)
+    values = _read_columns(plain, rows, _CURRENT, report, problems)
+    given = values.keys()
+    if len(given) == len(columns):
+        ways = [given & {"u", "v"}, given & {"speed", "toward", "from"}]
+        if all(ways) or given >= {"toward", "from"}:
+            message = "give `u` and `v`, or `speed` and `toward`, not both"
+            if not ways[0]:
+                message = "give `toward`, where the current flows to, or `from`, not both"
+            problems.append(report(("columns",), message))
+        elif not (
+            given >= {"u", "v"} or given >= {"speed", "toward"} or given >= {"speed", "from"}
+        ):
+            message = "a current needs `u` and `v`, or `speed` and `toward`; the columns are "
+            problems.append(report(("columns",), message + ", ".join(given)))
+    for i, speed in enumerate(values.get("speed", ())):
+        if speed < 0:
+            place = ("rows", i, list(values).index("speed"))
+            problems.append(report(place, f"`speed` {speed:g} m/s is negative; turn `toward`"))
+    _check_depths(values, report, problems)
+    if len(problems) > before:
+        return None
+    if "u" in values:
+        flows = (
+            turned_by(turned, *flow) if turned else flow
+            for flow in zip(values["u"], values["v"], strict=True)
+        )
+    else:
+        way, turn = ("from", 180.0 + turned) if "from" in values else ("toward", turned)
+        directions = [direction + turn for direction in values[way]]
+        flows = (components(*flow) for flow in zip(values["speed"], directions, strict=True))
+    u, v = map(list, zip(*flows, strict=True))
+    w = values.get("w", [0.0] * len(u))
+    for i, flow in enumerate(zip(u, v, w, strict=True)):
+        if reason := too_fast(*flow, terms.maximum_speed):
+            place = ("rows", i, list(values).index("u" if "u" in values else "speed"))
+            problems.append(report(place, reason))
+    if len(problems) > before:
+        return None
+    return CurrentTable(tuple(values["depth"]), tuple(u), tuple(v), tuple(w))
+
+
+def turned_notices(columns: Sequence[str], terms: Terms) -> tuple[str, ...]:
+    """Return what is reported of a current whose columns counted from magnetic north."""
+    if terms.declination is None:
+        return ()
+    which = " and ".join(f"`{name}`" for name in sorted(magnetic_columns(columns)[1]))
+    return (f"{which} were relative to magnetic north, turned by {terms.declination:g}°",)
+
+
+def _from_magnetic_north(
+    columns: Sequence[str], terms: Terms, report: Report, problems: list[Problem]
+) -> tuple[list[str], float]:
+    """Return the columns without the word for their north, and their turn [degrees]."""
+    plain, magnetic = magnetic_columns(columns)
+    if not magnetic:
+        if terms.declination is not None:
+            message = (
+                "no column is relative to magnetic north, such as `toward[deg magnetic]`, so no "
+            )
+            problems.append(
+                report(("columns",), message + "`declination` is applied; leave it out")
+            )
+        return plain, 0.0
+    first = next(
+        j for j, (one, other) in enumerate(zip(columns, plain, strict=True)) if one != other
+    )
+    if magnetic in ({"u"}, {"v"}):
+        one = next(iter(magnetic))
+        message = f"`{one}` is relative to magnetic north, `{'v' if one == 'u' else 'u'}` is not"
+        problems.append(report(("columns", first), message))
+    if terms.declination is None:
+        message = (
+            f"`{shown(columns[first])}` is relative to magnetic north; give the `declination` "
+            "there, "
+            "positive to the east (beside `file:`, or `--declination`)"
+        )
+        problems.append(report(("columns", first), message))
+    return plain, terms.declination or 0.0
+
+
+def read_water(
+    columns: Sequence[str],
+    rows: Sequence[Sequence[str | None]],
+    report: Report,
+    problems: list[Problem],
+    density: QuantityRange = WATER_DENSITY,
+) -> DepthTable | SeaWater | None:
+    """Read densities [kg/m³], or sea water, from a table as that of `read_current`.
+
+    Its columns are `depth`, and `density` or `temperature` and `salinity`; `density` is the
+    plausible range of the fluid.
+
+    Parameters
+    ----------
+    columns, rows, report : as for `read_current`
+    problems : to add to
+    density : the plausible range of the fluid
+    """
+    before = len(problems)
+    values = _read_columns(columns, rows, {**_WATER, "density": density}, report, problems)
+    given = values.keys() - {"depth"}
+    if len(values) == len(columns) and given not in ({"density"}, {"temperature", "salinity"}):
+        message = "needs `density`, or `temperature` and `salinity`; the columns are "
+        problems.append(report(("columns",), f"a density {message}{', '.join(values)}"))
+    _check_depths(values, report, problems)
+    if len(problems) > before:
+        return None
+    tables = {name: DepthTable(tuple(values["depth"]), tuple(values[name])) for name in given}
+    return tables["density"] if "density" in given else SeaWater(**tables)
+
+
+def read_profile(
+    name: str,
+    columns: Sequence[str],
+    rows: Sequence[Sequence[str | None]],
+    report: Report,
+    problems: list[Problem],
+) -> DepthTable | None:
+    """Read `temperature` [°C] or `salinity` by depth from a table as that of `read_current`.
+
+    Parameters
+    ----------
+    name : `temperature` or `salinity`
+    columns, rows, report : as for `read_current`
+    problems : to add to
+    """
+    before = len(problems)
+    known = {"depth": _DEPTH, name: _WATER[name]}
+    values = _read_columns(columns, rows, known, report, problems)
+    if len(values) == len(columns) and name not in values:
+        problems.append(report(("columns",), f"the table has no `{name}` column"))
+    _check_depths(values, report, problems)
+    if len(problems) > before:
+        return None
+    return DepthTable(tuple(values["depth"]), tuple(values[name]))
+
+
+def components(speed: float, toward: float) -> tuple[float, float]:
+    """Return the east and north parts of a speed that flows toward a direction [deg from north]."""
+    angle = math.radians(toward)
+    return speed * math.sin(angle), speed * math.cos(angle)
+
+
+def turned_by(angle: float, u: float, v: float) -> tuple[float, float]:
+    """Return a flow u to the east, v to the north, turned clockwise by an angle [degrees].
+
+    Parameters
+    ----------
+    angle : clockwise [degrees]
+    u, v : to the east and to the north [m/s]
+    """
+    sine, cosine = math.sin(math.radians(angle)), math.cos(math.radians(angle))
+    return u * cosine + v * sine, v * cosine - u * sine
+
+
+def speed_and_direction(u: float, v: float) -> tuple[float, float]:
+    """Return the speed and direction [deg from north, 0 to 360] of a flow by its parts."""
+    return math.hypot(u, v), bearing_of(u, v)
+
+
+def _read_columns(
+    columns: Sequence[str],
+    rows: Sequence[Sequence[str | None]],
+    known: Mapping[str, QuantityRange],
+    report: Report,
+    problems: list[Problem],
+) -> dict[str, list[float]]:
+    """Return the known columns by name, in SI, NaN where a value is wrong."""
+    units = _read_headings(columns, known, report, problems)
+    if len(units) == len(columns) and "depth" not in units:
+        problems.append(report(("columns",), "the table has no `depth` column"))
+    values: dict[str, list[float]] = {name: [] for name in units}
+    if not rows:
+        problems.append(report(("rows",), "the table has no rows"))
+    for i, row in enumerate(rows):
+        for name in units:
+            values[name].append(math.nan)
+        if len(row) != len(columns):
+            hint = "; a decimal comma? (write 0.8, not 0,8)" if len(row) > len(columns) else ""
+            message = f"the row has {len(row)} values, {len(columns)} are needed{hint}"
+            problems.append(report(("rows", i), message))
+        elif len(units) == len(columns):
+            for j, (name, unit) in enumerate(units.items()):
+                try:
+                    values[name][i] = _read_cell(row[j], unit, known[name])
+                except QuantityError as error:
+                    problems.append(report(("rows", i, j), about_quantity(name, row[j], error)))
+    return values
+
+
+def _read_headings(
+    columns: Sequence[str],
+    known: Mapping[str, QuantityRange],
+    report: Report,
+    problems: list[Problem],
+) -> dict[str, str]:
+    """Return the unit of each known column by its name, empty where the column gives none."""
+    units: dict[str, str] = {}
+    for j, column in enumerate(columns):
+        name, unit = heading(column)
+        name = name.lower() if name.lower() in known else name
+        if name.lower() in _NO_WAY and "toward" in known:
+            message = (
+                f"`{shown(column)}` does not say which way: call it `toward` where the current "
+                "flows to, or `from` where it comes from"
+            )
+            problems.append(report(("columns", j), message))
+        elif name not in known:
+            message = unknown(f"no column is called `{shown(name)}`", name, known)
+            problems.append(report(("columns", j), message))
+        elif name in units:
+            problems.append(report(("columns", j), f"column `{name}` is given twice"))
+        else:
+            try:
+                if unit:
+                    column_unit(column, unit, [known[name].dimension])
+            except QuantityError as error:
+                problems.append(report(("columns", j), str(error)))
+            else:
+                units[name] = unit
+    return units
+
+
+def _read_cell(text: str | None, unit: str, quantity: QuantityRange) -> float:
+    if text is not None and unit and _BARE_NUMBER.fullmatch(text):
+        text = f"{text} {unit}"
+    return quantity.read(text)
+
+
+def _check_depths(
+    values: Mapping[str, list[float]], report: Report, problems: list[Problem]
+) -> None:
+    """Depths must not be negative and must increase from row to row."""
+    if "depth" not in values:
+        return
+    column = list(values).index("depth")
+    depths = values["depth"]
+    if len(depths) > 1 and all(depth <= 0 for depth in depths) and any(depths):
+        message = "the depths count upwards; depth is positive down, so leave the sign out"
+        first = next(i for i, depth in enumerate(depths) if depth < 0)
+        problems.append(report(("rows", first, column), message))
+        return
+    previous = -math.inf
+    for i, depth in enumerate(depths):
+        if depth < 0:
+            problems.append(report(("rows", i, column), f"depth {depth:g} m is above the surface"))
+        elif reason := too_deep(depth):
+            problems.append(report(("rows", i, column), reason))
+        elif depth <= previous:
+            word = "repeats" if depth == previous else "comes after"
+            message = f"depth {depth:g} m {word} {previous:g} m; depths must increase"
+            problems.append(report(("rows", i, column), message))
+        previous = depth

@@ -1,0 +1,258 @@
+"""Records of currents in NetCDF, zarr or CSV: many profiles, read as they are needed."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.errors import InputError, Problem, UsageError
+from calm.physics.line import Floats
+from calm.records.times import TimeChoiceError, parse_time
+from calm.records.water_column import Place
+
+Times = NDArray[np.datetime64]
+Index = slice | NDArray[np.intp]
+
+Period = tuple[np.datetime64 | None, np.datetime64 | None]
+"""First and last time, both included; None where it is open."""
+
+REACH = "1678-01-01", "2261-12-31T23:59:59.999999"
+"""The times that a record can have."""
+
+_PART_OF_A_DATE = re.compile(r"\d{4}(-\d\d(-\d\d)?)?")
+
+Levels = tuple[Floats, Floats, Floats, Floats | None]
+"""Depth, u, v and w of some profiles, as `solve_profiles` takes them."""
+
+RULES = (
+    "levels where the current or their depth has no value are left out of their profile",
+    "levels above the surface are left out",
+    "levels below the seabed are used where they have a value: the current at the seabed lies "
+    "between",
+    "between levels the current is linear in depth, beyond the first and the last it is constant",
+)
+"""What holds in every record."""
+
+DIGEST_BLOCK = 8192
+"""Profiles that are read at a time for a digest, which depends on it."""
+
+
+class Record(ABC):
+    """The profiles of a record that were asked for, in the order of time.
+
+    Reading is for one thread at a time. A record is closed by `close`, or by a `with` statement.
+
+    Attributes
+    ----------
+    time : (n,) to the nanosecond, rising
+    notes : the rules by which it was read, and what to know before trusting it
+    source : its file, its variables and its place, by name
+    """
+
+    time: NDArray[np.datetime64]
+    notes: tuple[str, ...]
+    source: dict[str, str]
+
+    @property
+    def count(self) -> int:
+        """Number of profiles."""
+        return len(self.time)
+
+    @abstractmethod
+    def profiles(self, start: int, stop: int) -> Levels:
+        """Return depth (k,) or (m, k) [m], and u, v, w (m, k) [m/s] of some profiles, NaN in gaps.
+
+        The depths are positive down, in any order; `w` is None where the record has none.
+
+        Raises
+        ------
+        InputError
+            The file is damaged there.
+        """
+
+    def flags(self, start: int, stop: int) -> NDArray[np.int8] | None:
+        """Return (m, k) quality flags of the currents of some profiles; None where it has none."""
+        return None
+
+    @abstractmethod
+    def close(self) -> None:
+        """Leave the file."""
+
+    def digest(self, check: Callable[[], None] = lambda: None) -> str:
+        """SHA-256 of the times, depths and currents as they are read; the name does not count.
+
+        Parameters
+        ----------
+        check : called before each part is read
+        """
+        digest = hashlib.sha256()
+        digest.update(np.ascontiguousarray(self.time, "<M8[ns]").view("<i8").data)
+        for start in range(0, self.count, DIGEST_BLOCK):
+            check()
+            for values in self.profiles(start, min(start + DIGEST_BLOCK, self.count)):
+                if values is not None:
+                    digest.update(str(values.shape).encode())
+                    digest.update(np.ascontiguousarray(values, "<f8").data)
+        return digest.hexdigest()
+
+    def __enter__(self) -> Record:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+
+def parse_period(text: str) -> Period:
+    """Return a period ``A/B`` of ISO times; a year, a month or a day as B counts whole.
+
+    Either end may be left out, or be two points: ``2026-03/``, ``../2026-03-31``.
+
+    Raises
+    ------
+    UsageError
+        The text is none, or ends before it begins.
+    """
+    first, slash, last = text.partition("/")
+    if not slash:
+        raise UsageError(f"`{text[:40]}` is not a period; write 2026-03-01/2026-03-31T12:00")
+    start, stop = _end(first, whole=False), _end(last, whole=True)
+    if start is not None and stop is not None and stop < start:
+        raise UsageError(f"the period `{text[:60]}` ends before it begins")
+    return start, stop
+
+
+def parse_place(text: str) -> Place:
+    """Return a place ``LAT,LON`` [degrees north, degrees east], longitudes from −180 or from 0.
+
+    Raises
+    ------
+    UsageError
+        The text is none, or no place on the earth.
+    """
+    parts = text.split(",")
+    try:
+        latitude, longitude = (float(part) for part in parts)
+    except ValueError:
+        raise UsageError(f"`{text[:40]}` is not a place; write 48.3,-5.2") from None
+    if not (-90 <= latitude <= 90 and -360 <= longitude <= 360):
+        raise UsageError(f"`{text[:40]}` is not a place; latitude comes first, then longitude")
+    return latitude, longitude
+
+
+def choose_profiles(
+    times: Times, period: Period | None, every: int, path: Path
+) -> tuple[Index, tuple[str, ...]]:
+    """Return the indices of the profiles wanted, in the order of time, and what to report about it.
+
+    Parameters
+    ----------
+    times : (n,) in the order of the file
+    period : first and last time wanted; None for all
+    every : take one in so many
+    path : of the record, for messages
+
+    Raises
+    ------
+    InputError
+        The record has no times, or a time twice.
+    UsageError
+        No profile is in the period, or `every` is not positive.
+    """
+    if every < 1:
+        raise UsageError(f"every {every} profiles: at least one is needed")
+    if not len(times):
+        raise InputError([Problem(str(path), 0, 0, "has no times")])
+    notes = []
+    order: NDArray[np.intp] | None = None
+    if not _rises(times):
+        order = np.argsort(times, kind="stable")
+        notes.append("the profiles were not in the order of time, and have been sorted")
+        times = times[order]
+    _refuse_repeats(times, path)
+    first, last = 0, len(times)
+    if period is not None:
+        start, stop = period
+        first = 0 if start is None else int(np.searchsorted(times, start, "left"))
+        last = last if stop is None else int(np.searchsorted(times, stop, "right"))
+        if first >= last:
+            raise UsageError(
+                f"{path} has no profile in this period: it is from {time_text(times[0])} to "
+                f"{time_text(times[-1])}"
+            )
+        if last - first < len(times):
+            notes.append(f"{last - first} of the {len(times)} profiles are in the period asked for")
+    chosen = slice(first, last, every)
+    if every > 1:
+        notes.append(f"one profile in {every} is taken, from the first on")
+    return (chosen if order is None else order[chosen]), tuple(notes)
+
+
+def part(index: Index, start: int, stop: int) -> Index:
+    """Return the indices of some of the chosen profiles.
+
+    Parameters
+    ----------
+    index : of the chosen profiles
+    start, stop : which of these
+    """
+    if not isinstance(index, slice):
+        return index[start:stop]
+    return slice(index.start + start * index.step, index.start + stop * index.step, index.step)
+
+
+def time_text(time: np.datetime64) -> str:
+    """Return a time as a person reads it."""
+    text: str = np.datetime_as_string(time.astype("datetime64[s]"))
+    return text.removesuffix(":00")
+
+
+def _end(text: str, *, whole: bool) -> np.datetime64 | None:
+    """One end of a period [ns]."""
+    text = text.strip()
+    if text in ("", ".."):
+        return None
+    try:
+        if _PART_OF_A_DATE.fullmatch(text):
+            date: Any = np.datetime64(text)  # of a year, a month or a day
+            if whole:
+                return _in_reach((date + 1).astype("M8[us]")) - np.timedelta64(1, "ns")
+            return _in_reach(date.astype("M8[us]"))
+        return _in_reach(np.datetime64(parse_time(text).replace(tzinfo=None), "us"))
+    except TimeChoiceError as error:
+        raise UsageError(str(error)) from None
+    except ValueError:
+        raise UsageError(f"`{text}` is not a date") from None
+
+
+def _in_reach(moment: np.datetime64) -> np.datetime64:
+    """Return a time to the nanosecond; one before or after those of any record as the first or
+    last.
+    """
+    first, last = (np.datetime64(end, "us") for end in REACH)
+    near: Any = min(max(moment, first), last)
+    return np.datetime64(near, "ns")
+
+
+def _rises(times: Times) -> bool:
+    return bool(np.all(times[1:] >= times[:-1]))
+
+
+def _refuse_repeats(times: Times, path: Path) -> None:
+    again = np.flatnonzero(times[1:] == times[:-1])
+    if len(again):
+        more = f", and {len(again) - 1} more times" if len(again) > 1 else ""
+        message = f"has two profiles of {time_text(times[again[0]])}{more}; leave one of them out"
+        raise InputError([Problem(str(path), 0, 0, message)])

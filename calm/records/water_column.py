@@ -1,0 +1,272 @@
+"""Which column of a grid of currents: the nearest to a place that has water."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.records.cf_files import UnreadableError, first_present
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Place = tuple[float, float]
+"""Latitude and longitude [degrees north, degrees east]."""
+
+REACH = 8
+"""Columns to each side of the nearest among which one with water is looked for."""
+
+FAR = 5.0
+"""Distance beyond which the place of a record of a single place is reported [km]."""
+
+_EARTH = 6371.0
+_LATITUDES = ("lat", "latitude", "LATITUDE", "nav_lat", "Latitude", "LAT")
+_LONGITUDES = ("lon", "longitude", "LONGITUDE", "nav_lon", "Longitude", "LON")
+
+
+@dataclass(frozen=True)
+class GridColumn:
+    """A column of water in a dataset.
+
+    Attributes
+    ----------
+    index : of every horizontal dimension
+    place : where it is, None where the file does not say
+    notes : how it was found
+    """
+
+    index: dict[str, int]
+    place: Place | None
+    notes: tuple[str, ...] = ()
+
+
+def is_regular(dataset: xr.Dataset) -> bool:
+    """Return whether latitude and longitude are axes of their own, so that x is east and y is
+    north.
+    """
+    latitudes, longitudes = (
+        {dataset[name].dims for name in _named(dataset, *which)}
+        for which in (("latitude", _LATITUDES), ("longitude", _LONGITUDES))
+    )
+    alone = all(len(dims) == 1 for dims in latitudes | longitudes)
+    return bool(latitudes and longitudes) and alone and latitudes != longitudes
+
+
+def choose_column(
+    dataset: xr.Dataset, velocity: tuple[str, str], time: str | None, wanted: Place | None
+) -> GridColumn:
+    """Return the column of a place; the only one where there is but one.
+
+    Parameters
+    ----------
+    velocity : the two variables that must have a value in it
+    time : dimension of the times
+
+    Raises
+    ------
+    UnreadableError
+        There are several and no place is given, the place is outside the grid, or no column near
+        it has water.
+    """
+    dims = dataset[velocity[0]].dims
+    pair = _positions(dataset, set(dims) - {time})
+    if pair is None:
+        return GridColumn({}, None, _drift(dataset, time, wanted))
+    latitude, longitude = pair
+    horizontal = [str(dim) for dim in dims if dim in latitude.dims or dim in longitude.dims]
+    if not all(set(horizontal) <= set(dataset[name].dims) for name in velocity):
+        names = " and ".join(f"`{name}`" for name in velocity)
+        raise UnreadableError(f"{names} are on different points of a staggered grid")
+    count = int(np.prod([dataset.sizes[dim] for dim in horizontal]))
+    if count == 1:
+        place = latitude.values.item(), _signed(longitude.values.item())
+        return GridColumn({dim: 0 for dim in horizontal}, place, _far(place, wanted))
+    if wanted is None:
+        raise UnreadableError(
+            f"it has {count} columns, {_span(latitude.values, longitude.values)}: say which by "
+            "`--at LAT,LON`, or by the `position` of the mooring file"
+        )
+    box = _box(latitude, longitude, horizontal, wanted)
+    near = dataset[list(velocity)].isel(box)
+    where = (near[str(latitude.name)], near[str(longitude.name)])
+    shape = [near.sizes[dim] for dim in horizontal]
+    # each axis of a regular grid spread over the box
+    lat, lon = (
+        np.broadcast_to(_spread(one, horizontal), shape).astype(np.float64) for one in where
+    )
+    distance = _distance(lat, lon, wanted)
+    nearest = np.unravel_index(np.nanargmin(distance), distance.shape)
+    if len(horizontal) > 1 and distance[nearest] > _spacing(lat, lon, nearest):
+        raise UnreadableError(
+            f"{written(wanted)} is outside its grid, {_span(latitude.values, longitude.values)}"
+        )
+    wet = _wet(near, velocity, time, horizontal)
+    if not wet.any():
+        raise UnreadableError(
+            f"no column of {distance.size} around {written(wanted)} has a current"
+        )
+    chosen = np.unravel_index(np.nanargmin(np.where(wet, distance, np.inf)), distance.shape)
+    place = float(lat[chosen]), _signed(float(lon[chosen]))
+    index = {dim: int(box[dim][i]) for dim, i in zip(horizontal, chosen, strict=True)}
+    dry = "" if chosen == nearest else " that has a current"
+    note = (
+        f"the column nearest to {written(wanted)}{dry} is that at {written(place)}, "
+        f"{distance[chosen]:.1f} km away"
+    )
+    return GridColumn(index, place, (note,))
+
+
+def written(place: Place) -> str:
+    """Return a place as a person reads it."""
+    latitude, longitude = place[0], _signed(place[1])
+    return (
+        f"{abs(latitude):.6g}° {'S' if latitude < 0 else 'N'} "
+        f"{abs(longitude):.6g}° {'W' if longitude < 0 else 'E'}"
+    )
+
+
+def _named(dataset: xr.Dataset, coordinate: str, usual: tuple[str, ...]) -> list[str]:
+    return first_present(dataset, [*dataset.cf.coordinates.get(coordinate, []), *usual])
+
+
+def _positions(dataset: xr.Dataset, dims: set[Any]) -> tuple[xr.DataArray, xr.DataArray] | None:
+    """Return latitude and longitude of the columns that the dimensions span."""
+    found = []
+    for coordinate, usual in (("latitude", _LATITUDES), ("longitude", _LONGITUDES)):
+        fitting = [
+            name
+            for name in _named(dataset, coordinate, usual)
+            if dataset[name].dtype.kind in "fiu"
+            and (dataset[name].size == 1 or set(dataset[name].dims) <= dims)
+        ]
+        if not fitting:
+            return None
+        # the one that varies, before a nominal position
+        found.append(dataset[max(fitting, key=lambda name: dataset[name].size)])
+    return found[0], found[1]
+
+
+def _box(
+    latitude: xr.DataArray, longitude: xr.DataArray, horizontal: list[str], wanted: Place
+) -> dict[str, NDArray[Any]]:
+    """Return the part of the grid around the place: indices by dimension."""
+    if len(horizontal) == 1:  # a list of places, in any order
+        return {horizontal[0]: np.arange(latitude.sizes[horizontal[0]])}
+    north = np.abs(latitude.values - wanted[0])
+    east = np.abs(_turned(longitude.values - wanted[1]))
+    centre: dict[str, int] = {}
+    if latitude.dims == longitude.dims:
+        away = north**2 + (east * np.cos(np.radians(wanted[0]))) ** 2
+        place = np.unravel_index(np.nanargmin(away), away.shape)
+        centre = {str(dim): int(i) for dim, i in zip(latitude.dims, place, strict=True)}
+    else:
+        for one, away in ((latitude, north), (longitude, east)):
+            centre |= {str(dim): int(np.nanargmin(away)) for dim in one.dims}
+    sizes = {**latitude.sizes, **longitude.sizes}
+    box = {dim: np.arange(max(i - REACH, 0), min(i + REACH + 1, sizes[dim]))
+           for dim, i in centre.items()}  # fmt: skip
+    if _goes_round(longitude):
+        dim = str(longitude.dims[0])
+        box[dim] = np.arange(centre[dim] - REACH, centre[dim] + REACH + 1) % sizes[dim]
+    return box
+
+
+def _goes_round(longitude: xr.DataArray) -> bool:
+    """Return whether an axis of longitudes, in even steps, goes all round the earth."""
+    if longitude.ndim != 1 or longitude.size <= 2 * REACH:
+        return False
+    steps = np.diff(longitude.values.astype(np.float64))
+    even = bool(np.allclose(steps, steps[0], rtol=1e-3))
+    return even and abs(abs(steps[0]) * longitude.size - 360.0) < 0.5 * abs(steps[0])
+
+
+def _spread(values: xr.DataArray, horizontal: list[str]) -> NDArray[Any]:
+    """Return values with an axis for every horizontal dimension, of length 1 where it is new."""
+    missing = [dim for dim in horizontal if dim not in values.dims]
+    values = values.isel({dim: 0 for dim in values.dims if dim not in horizontal})
+    return values.expand_dims(missing).transpose(*horizontal).values
+
+
+def _wet(
+    near: xr.Dataset, velocity: tuple[str, str], time: str | None, horizontal: list[str]
+) -> NDArray[Any]:
+    """Return which columns have a current other than zero, which some models have on land.
+
+    The first time, the middle and the last are asked: one may be a gap.
+    """
+    if time in near.dims:
+        count = near.sizes[time]
+        near = near.isel({time: sorted({0, count // 2, count - 1})})
+    near = near[list(velocity)].load()
+    first, second = (near[name] for name in velocity)
+    moving = first.notnull() & second.notnull() & ((first != 0) | (second != 0))
+    others = [dim for dim in moving.dims if dim not in horizontal]
+    return np.asarray(moving.any(others).transpose(*horizontal).values)
+
+
+def _distance(latitude: NDArray[Any], longitude: NDArray[Any], place: Place) -> NDArray[Any]:
+    """Return Along great circles [km]."""
+    first, second = np.radians(latitude), np.radians(place[0])
+    east = np.radians(longitude - place[1])
+    chord = (
+        np.sin((first - second) / 2) ** 2 + np.cos(first) * np.cos(second) * np.sin(east / 2) ** 2
+    )
+    return np.asarray(2 * _EARTH * np.arcsin(np.sqrt(np.clip(chord, 0, 1))))
+
+
+def _spacing(latitude: NDArray[Any], longitude: NDArray[Any], at: tuple[Any, ...]) -> float:
+    """Return distance from a column to the farthest of those next to it [km]."""
+    around = tuple(slice(max(i - 1, 0), i + 2) for i in at)
+    place = float(latitude[at]), float(longitude[at])
+    return float(np.nanmax(_distance(latitude[around], longitude[around], place)))
+
+
+def _drift(dataset: xr.Dataset, time: str | None, wanted: Place | None) -> tuple[str, ...]:
+    """Return what to report about a record whose place changes with time, such as that of a
+    drifter.
+    """
+    found = []
+    for which in (("latitude", _LATITUDES), ("longitude", _LONGITUDES)):
+        moving = [name for name in _named(dataset, *which) if dataset[name].dims == (time,)]
+        if not moving:
+            return ()
+        found.append(np.asarray(dataset[moving[0]].values, np.float64))
+    known = np.isfinite(found[0]) & np.isfinite(found[1])
+    if not known.any():
+        return ()
+    latitude, longitude = (values[known] for values in found)
+    first = float(latitude[0]), float(longitude[0])
+    away = float(_distance(latitude, longitude, first).max())
+    moved = (
+        (f"its place changes with time, by up to {away:.0f} km; all profiles are taken",)
+        if away > FAR
+        else ()
+    )
+    return (*moved, *_far(first, wanted))
+
+
+def _far(place: Place, wanted: Place | None) -> tuple[str, ...]:
+    if wanted is None:
+        return ()
+    distance = float(_distance(np.array(place[0]), np.array(place[1]), wanted))
+    if not distance > FAR:
+        return ()
+    return (f"its only place, {written(place)}, is {distance:.0f} km from {written(wanted)}",)
+
+
+def _span(latitude: NDArray[Any], longitude: NDArray[Any]) -> str:
+    south, north = float(np.nanmin(latitude)), float(np.nanmax(latitude))
+    west, east = float(np.nanmin(longitude)), float(np.nanmax(longitude))
+    return f"{written((south, west))} to {written((north, east))}"
+
+
+def _turned(degrees: Any) -> Any:
+    return (degrees + 180.0) % 360.0 - 180.0
+
+
+def _signed(longitude: float) -> float:
+    """Return a longitude between −180° and 180°; as it stands where it is there already."""
+    return longitude if -180.0 <= longitude <= 180.0 else float(_turned(longitude))

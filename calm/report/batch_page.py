@@ -1,0 +1,309 @@
+"""The statistics of a batch as a page with its tables, and the files beside its result."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from calm.batch.result import stored_result
+from calm.batch.statistics.extremes import EXTRAPOLATION, METHODS, Fit, Level
+from calm.batch.statistics.summary import PERCENTILES, WORST, Summary, summarize
+from calm.case import Mooring
+from calm.checks.finding import State
+from calm.quantities import QUANTITIES
+from calm.report.batch_figures import exceedance_figure, parts_figure, series_figure
+from calm.report.batch_summary import (
+    DEFINITIONS,
+    QUANTITY,
+    TITLES,
+    extent,
+    grouped,
+    left_out,
+    percent,
+    refusals,
+    standing,
+    summary_document,
+    when,
+)
+from calm.report.blocks import (
+    Block,
+    Cell,
+    Column,
+    Figure,
+    Listing,
+    Part,
+    Prose,
+    Report,
+    Section,
+    Table,
+)
+from calm.report.check_summary import limits_table as limits_used_table
+from calm.report.html import page
+from calm.report.provenance import UNSEEN, date, versions
+from calm.report.result_json import to_json
+from calm.report.sheet import figure_cell, quantity_column
+from calm.whole_file import put
+
+if TYPE_CHECKING:
+    from calm.batch.statistics.limits import Exceedance, RuleShare
+    from calm.batch.statistics.summary import Distribution, Summary
+
+
+def summary_html(summary: Summary) -> str:
+    """The page of a summary, which needs no other file and no network."""
+    return page(summary_report(summary))
+
+
+def summary_report(summary: Summary) -> Report:
+    """How often limits are broken, drawings, distributions, worst profiles, return levels."""
+    moving = [part for part in summary.parts if part.clamped] or list(summary.parts[:-1])
+    parts = (
+        Part("Result", tuple(_result(summary))),
+        Part(
+            "Through time", (Figure("Least and greatest in each interval", series_figure(summary)),)
+        ),
+        Part(
+            "How often",
+            (
+                Figure("Responses of the line", exceedance_figure(summary)),
+                Figure("Clamped instruments, or components", parts_figure(moving)),
+                *_left_out(summary),
+            ),
+        ),
+        Part("Return levels", (*levels_tables(summary), Prose((_EXTRAPOLATED,)))),
+        Part("Worst profiles", tuple(worst_tables(summary))),
+        Part(
+            "Limits",
+            (
+                limits_table(summary),
+                _not_judged(summary),
+                limits_used_table([(summary.name, summary.limits_used)]),
+            ),
+        ),
+        Part("Distributions", (*_left_out(summary), *statistics_tables(summary))),
+        Part("What is not judged", (Prose(UNSEEN, State.UNKNOWN),)),
+        Part("Inputs", tuple(_inputs(summary))),
+    )
+    section = Section(summary.name, parts)
+    return Report(summary.name, extent(summary), (), (section,), date())
+
+
+def _result(summary: Summary) -> Iterator[Block]:
+    lost = summary.count - summary.solved
+    yield Prose((f"{standing(summary)}.",), State.WARN if lost else None)
+    yield rules_table(summary)
+    yield from _left_out(summary)
+    yield Prose(DEFINITIONS)
+
+
+def _left_out(summary: Summary) -> Iterator[Prose]:
+    if summary.unsolved:
+        yield Prose((left_out(summary),), State.WARN)
+
+
+def _not_judged(summary: Summary) -> Prose:
+    reasons = (f"Not judged: {name}, {reason}." for name, reason in summary.not_judged.items())
+    return Prose(tuple(reasons))
+
+
+def _inputs(summary: Summary) -> Iterator[Block]:
+    for name, text in summary.source.items():
+        yield Listing(name.replace("_", " ").capitalize(), text)
+    made_by = ", ".join(f"{name} {number}" for name, number in versions())
+    yield Prose((f"Gathered with {made_by}",))
+
+
+_EXTRAPOLATED = (
+    f"No level is given for more than {EXTRAPOLATION:.0f} times the length of the record. A level "
+    "says how the mooring would answer to currents like those of the record: not to what the "
+    "record is too short to hold or lost in its gaps, nor to a current field that changes. A "
+    "fitted tail knows no bounds: a tilt beyond 90° or a knockdown below the seabed says that the "
+    "record does not reach so far."
+)
+
+
+def rules_table(summary: Summary) -> Table:
+    """How often each rule fails or warns anywhere on the line."""
+    rows = [
+        (
+            Cell(rule.title),
+            Cell(grouped(rule.judged)),
+            _share(rule.fails, State.FAIL),
+            _share(rule.fails_at_most, State.FAIL),
+            _share(rule.warns, State.WARN),
+            Cell(str(len(rule.exceedances))),
+            Cell(str(rule.unknown), state=State.UNKNOWN if rule.unknown else None),
+        )
+        for rule in summary.rules
+    ]
+    columns = (
+        Column("rule"),
+        Column("judged in", "profiles", numeric=True),
+        Column("fails", "% of them", numeric=True),
+        Column("at most", "%", numeric=True),
+        Column("warns", "% of them", numeric=True),
+        Column("limits", numeric=True),
+        Column("of them unknown", numeric=True),
+    )
+    note = (
+        "At most: if the rule fails, too, in every profile that has a current and was not solved. "
+        "A limit that is judged in no profile is unknown."
+    )
+    return Table("How often a rule fails", columns, tuple(rows), note)
+
+
+def limits_table(summary: Summary) -> Table:
+    """How often every limit is broken, and the worst of it."""
+    rows = [_limit(rule, one) for rule in summary.rules for one in rule.exceedances]
+    columns = (
+        Column("state", share=0.0),
+        Column("rule"),
+        Column("component"),
+        Column("limit", numeric=True),
+        Column("broken in", "% of profiles", numeric=True),
+        Column("worst value", numeric=True),
+        Column("when", share=0.0),
+    )
+    note = (
+        "Strength: at the ends of a piece and at the clamps on it. Least tension: at the ends of a "
+        "piece. Anchor sliding: H + friction × V against friction × weight in water / factor."
+    )
+    return Table("Limits", columns, tuple(rows), note, sortable=True)
+
+
+def statistics_tables(summary: Summary) -> Iterator[Table]:
+    """Of each quantity the mean, the percentiles and the maximum of every part."""
+    for name in ("knockdown", "tilt", "tension"):
+        figures = ("mean", *(f"{percentile:g} %" for percentile in PERCENTILES), "maximum")
+        numbers = (Column(figure, numeric=True) for figure in figures)
+        columns = (Column("component"), *numbers, Column("maximum reached", share=0.0))
+        rows = tuple(
+            (
+                Cell(part.label, indented=part.clamped),
+                *_figures(name, getattr(part, name)),
+            )
+            for part in summary.parts
+        )
+        quantity = QUANTITIES[name]
+        yield Table(quantity.label.capitalize(), columns, rows)
+
+
+def worst_tables(summary: Summary) -> Iterator[Table | Prose]:
+    """The worst profiles by each response, with the others beside it."""
+    for name, profiles in summary.worst.items():
+        if not profiles:
+            yield Prose((f"The {TITLES[name]} is not known in any profile.",), State.UNKNOWN)
+            continue
+        heads = (replace(quantity_column(QUANTITY[one]), heading=TITLES[one]) for one in TITLES)
+        columns = (Column("time", share=0.0), *heads, Column("tilts most"))
+        rows = tuple(
+            (
+                Cell(when(profile.time)),
+                *(figure_cell(QUANTITY[one], getattr(profile, one)) for one in TITLES),
+                Cell(profile.leaning),
+            )
+            for profile in profiles
+        )
+        count = f"{len(profiles)} profiles" if len(profiles) < WORST else f"{WORST} worst profiles"
+        yield Table(f"The {count} by {TITLES[name]}", columns, rows)
+
+
+def levels_tables(summary: Summary) -> Iterator[Table | Prose]:
+    """Return levels with their intervals, and why others are not given."""
+    for response in summary.responses:
+        name = QUANTITY[response.name]
+        title = TITLES[response.name].capitalize()
+        fits = [fit for fit in response.return_levels if isinstance(fit, Fit)]
+        if fits:
+            columns = (
+                Column("method"),
+                Column("return period", "years", numeric=True),
+                replace(quantity_column(name), heading="level"),
+                replace(quantity_column(name), heading="95 % interval"),
+            )
+            rows = tuple(_level(name, fit, level) for fit in fits for level in fit.levels)
+            yield Table(title, columns, rows, " ".join(f"{_rules(fit)}." for fit in fits))
+    for reason in refusals(summary):
+        yield Prose((f"{reason[0].upper()}{reason[1:]}.",), State.UNKNOWN)
+
+
+def _share(share: float | None, state: State) -> Cell:
+    return Cell(percent(share), state=state if share else None)
+
+
+def _limit(rule: RuleShare, one: Exceedance) -> tuple[Cell, ...]:
+    limit, quantity = one.limit, QUANTITIES[one.limit.quantity]
+    state = State.UNKNOWN if one.share is None else limit.beyond if one.share else State.PASS
+    bound = "≥" if limit.least else "≤"
+    return (
+        Cell(state.value, state=state),
+        Cell(rule.title),
+        Cell(limit.component),
+        Cell("-" if limit.limit is None else f"{bound} {quantity.say(limit.limit)}"),
+        Cell(percent(one.share)),
+        Cell("-" if one.worst is None else quantity.say(one.worst)),
+        Cell(when(one.time)),
+    )
+
+
+def _figures(name: str, one: Distribution | None) -> Iterator[Cell]:
+    if one is None:
+        yield from (Cell("-") for _ in range(len(PERCENTILES) + 3))
+        return
+    yield from (figure_cell(name, value) for value in (one.mean, *one.percentiles, one.maximum))
+    yield Cell(when(one.time))
+
+
+def _level(name: str, fit: Fit, level: Level) -> tuple[Cell, ...]:
+    ends = (
+        "not set" if end is None else QUANTITIES[name].format(end)
+        for end in (level.low, level.high)
+    )
+    return (
+        Cell(METHODS[fit.method]),
+        Cell(str(level.period)),
+        figure_cell(name, level.level),
+        Cell(" – ".join(ends)),
+    )
+
+
+def _rules(fit: Fit) -> str:
+    fitted = f"location {fit.location:.4g}, scale {fit.scale:.4g}, shape {fit.shape:.3f}"
+    return f"{METHODS[fit.method]}: {fitted}; {fit.rules}"
+
+
+def write_summary(
+    result: Path, mooring: Mooring, check: Callable[[], None] = lambda: None
+) -> Summary:
+    """Gather what a finished result says, and write it beside it, as JSON and as a page.
+
+    The result is only read: this can be done, and done again, at any time after it is finished.
+
+    Parameters
+    ----------
+    result : the .nc file or .zarr folder; RESULT.nc has RESULT.summary.json, RESULT.summary.html,
+        which would be those of a RESULT.zarr beside it too: the later summary takes their place
+    mooring : that it was solved for
+    check : called now and then while the result is read; what it raises ends that
+
+    Raises
+    ------
+    OSError
+        A file cannot be written, or there is no room for a temporary one as large as the result
+        is without compression.
+    UsageError
+        The result cannot be read.
+    """
+    with stored_result(result) as stored:
+        summary = summarize(stored, mooring, result.parent, check, result)
+    document, page = summary_paths(result)
+    put(document, to_json([summary_document(summary)]).encode())
+    put(page, summary_html(summary).encode())
+    return summary
+
+
+def summary_paths(result: Path) -> tuple[Path, Path]:
+    """Where the summary of a result stands: its JSON and its page."""
+    return result.with_suffix(".summary.json"), result.with_suffix(".summary.html")

@@ -1,0 +1,227 @@
+"""The statistics of a batch as JSON, with names, times and shares in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.batch.statistics.extremes import Fit, LevelsRefused
+from calm.batch.statistics.summary import PERCENTILES, Summary
+from calm.report.check_documents import limit_document
+
+if TYPE_CHECKING:
+    from calm.batch.statistics.limits import Exceedance, RuleShare
+    from calm.batch.statistics.summary import (
+        Distribution,
+        PartDistributions,
+        Response,
+        Summary,
+        WorstProfile,
+    )
+
+
+def summary_document(summary: Summary) -> dict[str, Any]:
+    """The JSON object of a summary: SI and degrees, times in UTC, shares of 1; null is unknown.
+
+    Returns
+    -------
+    dict
+        `profiles`, how many and how they ended; `components` and `clamps` with their
+        distributions; `rules` and `limits`, how often each is broken, and `limits_used`, by which
+        they judge; `responses` of the line as a whole with their exceedance curves and return
+        levels; `worst` profiles of each response.
+    """
+    from calm.version import __version__
+
+    parts = [(part.clamped, _part(part)) for part in summary.parts]
+    return {
+        "calm": __version__,
+        "name": summary.name,
+        **summary.source,
+        "profiles": {
+            "count": summary.count,
+            **{ending.name.lower(): count for ending, count in summary.endings.items()},
+            "statuses": dict(summary.statuses),
+            "begin": _time(summary.begin),
+            "end": _time(summary.end),
+            "years": summary.years,
+        },
+        "components": [said for clamped, said in parts if not clamped],
+        "clamps": [said for clamped, said in parts if clamped],
+        "rules": [_rule(rule) for rule in summary.rules],
+        "limits": [_limit(rule, one) for rule in summary.rules for one in rule.exceedances],
+        "limits_used": [limit_document(key) for key in summary.limits_used],
+        "not_judged": dict(summary.not_judged),
+        "responses": {response.name: _response(response) for response in summary.responses},
+        "worst": {
+            name: [_profile(profile) for profile in profiles]
+            for name, profiles in summary.worst.items()
+        },
+    }
+
+
+def _part(part: PartDistributions) -> dict[str, Any]:
+    return {
+        "label": part.label,
+        "knockdown": _distribution(part.knockdown),
+        "tilt": _distribution(part.tilt),
+        "tension": _distribution(part.tension),
+    }
+
+
+def _distribution(one: Distribution | None) -> dict[str, Any] | None:
+    if one is None:
+        return None
+    percentiles = zip(PERCENTILES, one.percentiles, strict=True)
+    return {
+        "count": one.count,
+        "mean": one.mean,
+        **{f"p{percentile:g}": value for percentile, value in percentiles},
+        "maximum": one.maximum,
+        "time": _time(one.time),
+    }
+
+
+def _response(response: Response) -> dict[str, Any]:
+    one = response.distribution
+    return {
+        "distribution": _distribution(one),
+        "exceedance": None
+        if one is None
+        else {"share": one.share.tolist(), "value": one.value.tolist()},
+        "return_levels": {fit.method: _fit(fit) for fit in response.return_levels},
+    }
+
+
+def _fit(fit: Fit | LevelsRefused) -> dict[str, Any]:
+    said = asdict(fit)
+    del said["method"]
+    return {"refused": said["reason"]} if isinstance(fit, LevelsRefused) else said
+
+
+def _rule(rule: RuleShare) -> dict[str, Any]:
+    return {
+        "rule": rule.name,
+        "judged": rule.judged,
+        "fails": rule.fails,
+        "fails_at_most": rule.fails_at_most,
+        "warns": rule.warns,
+        "limits": len(rule.exceedances),
+        "unknown": rule.unknown,
+    }
+
+
+def _limit(rule: RuleShare, one: Exceedance) -> dict[str, Any]:
+    limit = one.limit
+    return {
+        "rule": rule.name,
+        "component": limit.component,
+        "quantity": limit.quantity,
+        "limit": limit.limit,
+        "bound": "at least" if limit.least else "at most",
+        "beyond": limit.beyond.value,
+        "judged": one.count,
+        "share": one.share,
+        "worst": one.worst,
+        "time": _time(one.time),
+    }
+
+
+def _profile(profile: WorstProfile) -> dict[str, Any]:
+    return asdict(profile) | {"time": _time(profile.time)}
+
+
+def _time(time: np.datetime64 | None) -> str | None:
+    return None if time is None else f"{np.datetime_as_string(time, unit='s')}Z"
+
+
+TITLES = {
+    "knockdown": "knockdown of the top",
+    "anchor_tension": "tension at the anchor",
+    "tilt": "greatest tilt",
+    "offset": "offset of the top",
+}
+"""Of the responses, by their names."""
+
+QUANTITY = {
+    "knockdown": "knockdown",
+    "anchor_tension": "tension",
+    "tilt": "tilt",
+    "offset": "offset",
+}
+"""Of a response, in `calm.quantities`."""
+
+METHODS_IN_SHORT = {"gev": "GEV", "pot": "POT"}
+
+DEFINITIONS = (
+    "Every profile counts alike: a share of the profiles is a share of the time where the record "
+    "is even. Means, percentiles, maxima and exceedance curves are of the profiles solved. A rule "
+    "fails in a share of the profiles in which it is judged; at most in that share which counts as "
+    "failing every profile with a current that was not solved.",
+    "Percentiles: linear between the order statistics; the value of rank 1 + (n - 1) p of n is "
+    "the p quantile. Tension of a component: the greater of those at its ends. Knockdown and "
+    "depth of a component: of its upper end.",
+)
+"""What must be known to read the figures."""
+
+
+def when(time: np.datetime64 | NDArray[np.datetime64] | None) -> str:
+    """A time to the minute, in words; a dash where there is none."""
+    return "-" if time is None else str(np.datetime_as_string(time, unit="m")).replace("T", " ")
+
+
+def percent(share: float | None) -> str:
+    """A share in percent; one above zero is not written as 0."""
+    if share is None:
+        return "-"
+    if 0.0 < share < 5e-5:
+        return "<0.01"
+    return f"{100.0 * share:.2f}"
+
+
+def grouped(count: int) -> str:
+    """A number of profiles, its thousands apart."""
+    return f"{count:,}".replace(",", "\u00a0")
+
+
+def extent(summary: Summary) -> str:
+    """How many profiles there are, and from when to when."""
+    return (
+        f"{grouped(summary.count)} profiles, {when(summary.begin)} to {when(summary.end)}, "
+        f"{summary.years:.2f} years solved"
+    )
+
+
+def standing(summary: Summary) -> str:
+    """How the profiles ended, by their status."""
+    ended = (f"{grouped(count)} {status}" for status, count in summary.statuses.items())
+    return ", ".join(ended)
+
+
+def left_out(summary: Summary) -> str:
+    """How many profiles with a current were not solved, and what that does to figures, if any."""
+    if not summary.unsolved:
+        return ""
+    with_current = summary.solved + summary.unsolved
+    return (
+        f"{grouped(summary.unsolved)} of {grouped(with_current)} profiles with a current "
+        f"({percent(summary.unsolved / with_current)} %) were not solved. They are in none of the "
+        "means, percentiles, maxima and curves; where they are the strongest currents, these are "
+        "too low."
+    )
+
+
+def refusals(summary: Summary) -> Iterator[str]:
+    """Why there are no return levels: each reason once, with the responses that it holds for."""
+    reasons: dict[str, list[str]] = {}
+    for response in summary.responses:
+        for fit in response.return_levels:
+            if isinstance(fit, LevelsRefused):
+                said = f"no return levels by {METHODS_IN_SHORT[fit.method]}: {fit.reason}"
+                reasons.setdefault(said, []).append(TITLES[response.name])
+    for said, of in reasons.items():
+        yield said if len(of) == len(summary.responses) else f"{', '.join(of)}: {said}"

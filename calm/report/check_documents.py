@@ -1,0 +1,244 @@
+"""The design check as JSON, and its findings and pieces as CSV."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+from calm.checks.finding import Finding, worst_state
+from calm.checks.inventory import total_of
+from calm.checks.rules import RULES
+from calm.quantities import QUANTITIES
+from calm.records.csv_writer import table_csv
+
+if TYPE_CHECKING:
+    from calm.checks.assessment import Assessment, Situation
+    from calm.checks.backup import Loss
+    from calm.checks.finding import Finding
+    from calm.files.check_limits import LimitKey
+
+
+def check_document(assessments: Sequence[Assessment]) -> dict[str, Any]:
+    """The JSON object of a design check; what could not be solved is null.
+
+    Returns
+    -------
+    dict
+        `state`, the worst there is; what is `accepted`, and why; `findings`, and as `tighter` those
+        of other situations that leave less margin; of each mooring by its name `launch`,
+        `recovery`, `backup`, `inventory` and its `totals`, and its `document` where files give any;
+        and `situations`, what was solved of each mooring in each environment.
+    """
+    from calm.version import __version__
+
+    documents = {
+        each.name: each.mooring.file.document.to_dict()
+        for each in assessments
+        if each.mooring.file.document is not None
+    }
+    return {
+        "calm": __version__,
+        **({"document": documents} if documents else {}),
+        "state": worst_state(each.state for each in assessments),
+        "accepted": [
+            _accepted(each.name, finding)
+            for each in assessments
+            for finding in each.accepted_findings()
+        ],
+        "limits": [
+            {"mooring": each.name} | limit_document(key)
+            for each in assessments
+            for key in each.limits
+        ],
+        "findings": [
+            _finding(each, finding) for each in assessments for finding in each.all_findings()
+        ],
+        "tighter": [
+            _finding(each, finding) for each in assessments for finding in each.tighter_findings()
+        ],
+        "situations": {
+            each.name: [
+                {"environment": stand.environment, **_situation(situation)}
+                for stand in each.stands
+                for situation in stand.situations
+            ]
+            for each in assessments
+        },
+        "launch": {each.name: _launch(each) for each in assessments},
+        "recovery": {each.name: _recovery(each) for each in assessments},
+        "backup": {each.name: [asdict(one) for one in each.backup] for each in assessments},
+        "losses": {each.name: [_loss(one) for one in each.losses] for each in assessments},
+        "inventory": {each.name: [asdict(one) for one in each.inventory] for each in assessments},
+        "totals": {each.name: asdict(total_of(each.inventory)) for each in assessments},
+    }
+
+
+def limit_document(key: LimitKey) -> dict[str, Any]:
+    """The JSON object of a limit as used."""
+    return {
+        "name": key.name,
+        "value": key.value,
+        "default": key.default,
+        "source": key.source,
+        "departs": key.departs,
+    }
+
+
+def _finding(assessment: Assessment, finding: Finding) -> dict[str, Any]:
+    """With its probability, null where it has no limit, if those were counted."""
+    counted = {"probability": finding.probability} if assessment.draws else {}
+    return finding.to_dict() | counted
+
+
+def _accepted(mooring: str, finding: Finding) -> dict[str, Any]:
+    accept = finding.accept
+    assert accept is not None
+    return {
+        "mooring": mooring,
+        "rule": finding.rule,
+        "component": finding.component,
+        "reason": accept.reason,
+        "by": accept.by,
+        "date": accept.date,
+        "until": accept.until,
+    }
+
+
+def _loss(loss: Loss) -> dict[str, Any]:
+    values = asdict(loss)
+    del values["place"]
+    return values
+
+
+def _situation(situation: Situation) -> dict[str, Any]:
+    said: dict[str, Any] = {"situation": situation.name}
+    if situation.failure is not None:
+        return said | situation.failure.to_dict()
+    result = situation.result
+    assert result is not None
+    return said | {
+        "status": result.status,
+        "type": result.type,
+        "top_depth": result.top.depth,
+        "knockdown": result.top.knockdown,
+        "anchor_vertical": result.anchor.vertical,
+        "anchor_horizontal": result.anchor.horizontal,
+        "required_weight": result.anchor.required_weight,
+        "accuracy": asdict(result.accuracy),
+        "warnings": list(result.warnings),
+    }
+
+
+def _launch(assessment: Assessment) -> dict[str, Any] | None:
+    launch = assessment.launch
+    if launch is None:
+        return None
+    return {
+        "fall_speed": launch.fall_speed,
+        "fall_speed_band": list(launch.fall_speed_band),
+        "anchor_tension": launch.anchor_tension,
+        "anchor_drag_known": launch.anchor_drag_known,
+        "greatest_speed": launch.greatest_speed,
+        "drift": list(launch.drift),
+        "components": launch.components(),
+    }
+
+
+def _recovery(assessment: Assessment) -> dict[str, Any] | None:
+    recovery = assessment.recovery
+    if recovery is None:
+        return None
+    return {
+        "released": recovery.released,
+        "rise_speed": recovery.rise_speed,
+        "time_to_surface": recovery.time_to_surface,
+        "net_buoyancy": recovery.net_buoyancy,
+        "order": list(recovery.order),
+        "components": recovery.components(),
+    }
+
+
+CHECKS_HEADER = (
+    "mooring",
+    "environment",
+    "situation",
+    "rule",
+    "component",
+    "state",
+    "value",
+    "limit",
+    "margin",
+    "unit",
+    "message",
+    "remedy",
+    "source",
+    "reason",
+    "probability",
+)
+"""First row of `checks_csv`; value, limit and margin are in the unit of their row."""
+
+INVENTORY_HEADER = (
+    "mooring",
+    "index",
+    "label",
+    "use",
+    "name",
+    "role",
+    "kind",
+    "clamped_on",
+    QUANTITIES["cut_length"].header,
+    *(QUANTITIES[name].header for name in ("dry_mass", "wet_weight", "lift_mass", "at")),
+)
+"""First row of `inventory_csv`; weights in water are positive downward."""
+
+
+def checks_csv(assessments: Sequence[Assessment]) -> str:
+    """A row for every finding, of one mooring after the other; what is unknown is left empty."""
+    findings = (finding for each in assessments for finding in each.all_findings())
+    return table_csv(CHECKS_HEADER, map(_finding_row, findings))
+
+
+def inventory_csv(assessments: Sequence[Assessment]) -> str:
+    """A row for every piece and clamp, from the top of each mooring to its anchor."""
+    return table_csv(INVENTORY_HEADER, (row for each in assessments for row in _items(each)))
+
+
+def _finding_row(finding: Finding) -> Sequence[object]:
+    quantity = QUANTITIES.get(RULES[finding.rule].quantity)
+    return (
+        finding.mooring,
+        finding.environment,
+        finding.situation,
+        finding.rule,
+        finding.component,
+        finding.state.value,
+        finding.value,
+        finding.limit,
+        finding.margin,
+        quantity.unit if quantity else None,
+        finding.message,
+        finding.remedy,
+        finding.source,
+        None if finding.accept is None else finding.accept.reason,
+        finding.probability,
+    )
+
+
+def _items(assessment: Assessment) -> Iterator[Sequence[object]]:
+    for item in assessment.inventory:
+        yield (
+            assessment.name,
+            item.index,
+            item.label,
+            item.use,
+            item.name,
+            item.role,
+            item.kind,
+            item.clamped_on,
+            item.cut_length,
+            item.dry_mass,
+            item.wet_weight,
+            item.lift_mass,
+            item.at,
+        )

@@ -1,0 +1,226 @@
+"""A mooring drawn in all of its environments: elevation, current, tension, plan, and breaks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import ceil
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calm.checks.posture import meant_for_the_surface
+from calm.checks.strength import allowable_load
+from calm.quantities import QUANTITIES
+from calm.report.drawing import NAMED_ROLES, SEABED_COLOUR, SIGNS, WATER_COLOUR, along, named_parts
+from calm.report.graph import (
+    Entry,
+    Graph,
+    Scale,
+    Stroke,
+    counts,
+    covering,
+    numbers,
+    write_legend,
+)
+from calm.report.plot import plane_of
+
+if TYPE_CHECKING:
+    from calm.case import Result
+    from calm.checks.assessment import Assessment
+    from calm.checks.backup import Break
+
+    Solved = Sequence[tuple[str, Result]]
+
+Floats = NDArray[np.float64]
+
+_SIZE = 7.0  # points, of the letters
+_WIDTH, _HEIGHT = 533.0, 576.0  # points: an A4 page between its margins
+_LEGEND_ROW, _LEGEND_COLUMNS = 13.5, 4
+_LEAST_SPAN = 0.1  # of the depth: a line that hardly leans is not drawn as if it did
+_FURTHEST_LIMIT = 4.0  # times the greatest tension; what is beyond is drawn at the edge
+_COLOURS = ("#0b3c5d", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#a6761d", "#332288")
+_DASHES: tuple[tuple[float, ...], ...] = ((), (7.0, 2.5), (1.8, 1.8))
+_STILL = Stroke("grey", 1.0, (3.0, 2.0))
+_LIMIT = Stroke("#b3261e", 2.0, square=True)
+_UNJUDGED, _ENOUGH, _SHORT = "#b8bec4", "#8fb3cf", "#d98880"
+
+
+def check_figure(assessment: Assessment) -> str:
+    """The figure as SVG: five panels that share one legend, a line of its own for each environment.
+
+    The elevation and the current are of one depth axis; an elevation lies in the plane of its own
+    excursion. Tension is drawn over the distance along the line, with the load that each piece may
+    bear. The breaks are drawn where the mooring has a release. The panels keep their size: the
+    graph grows by the rows of the legend.
+    """
+    solved = [(stand.environment, stand.result) for stand in assessment.stands if stand.result]
+    entries = _legend(solved)
+    legend = ceil(len(entries) / _LEGEND_COLUMNS) * _LEGEND_ROW
+    title = f"{assessment.name}: elevation, current, tension, plan and breaks"
+    graph = Graph(_WIDTH, _HEIGHT + legend, title, _SIZE)
+    write_legend(
+        graph.pen, entries, 6.0, 3.0,
+        width=_WIDTH - 12.0, row=_LEGEND_ROW, columns=_LEGEND_COLUMNS, size=_SIZE,
+    )  # fmt: skip
+    top, lower = legend + 11.0, legend + 372.0
+    depths = _depths(solved)
+    _draw_elevation(graph, (42.0, top, 187.0, 310.0), solved, depths)
+    _draw_current(graph, (240.0, top, 72.0, 310.0), solved, depths)
+    _draw_tension(graph, (361.0, top, 165.0, 310.0), solved)
+    _draw_plan(graph, (42.0, lower, 187.0, 173.0), solved)
+    if assessment.backup:
+        _draw_breaks(graph, (288.0, lower, 238.0, 173.0), assessment.backup)
+    return graph.svg()
+
+
+Place = tuple[float, float, float, float]
+"""Left and upper edge, width and height of axes [pt]."""
+
+
+def _legend(solved: Solved) -> list[Entry]:
+    """An entry for each environment, and for what else the panels show."""
+    entries = [Entry(name, line=_stroke(number)) for number, (name, _) in enumerate(solved)]
+    _, first = solved[0]
+    if first.still_shape is not None:
+        entries.append(Entry("still water", line=_STILL))
+    there = {part.role for part in named_parts(first)}
+    entries += [Entry(role, sign=SIGNS[role]) for role in NAMED_ROLES if role in there]
+    return [*entries, Entry("limit", line=_LIMIT)]
+
+
+def _stroke(number: int) -> Stroke:
+    """Colour and dashes of an environment: no two of the first twenty-one are alike."""
+    dashes = _DASHES[number // len(_COLOURS) % len(_DASHES)]
+    return Stroke(_COLOURS[number % len(_COLOURS)], 1.2, dashes)
+
+
+def _depths(solved: Solved) -> Scale:
+    """Of the elevation and the current: from below the seabed to above the surface."""
+    depth = max(result.mooring.water.depth for _, result in solved)
+    highest = min(float(result.shape.depth.min()) for _, result in solved)
+    return Scale(1.03 * depth, min(-0.03 * depth, highest))
+
+
+def _draw_elevation(graph: Graph, place: Place, solved: Solved, depths: Scale) -> None:
+    _, first = solved[0]
+    depth = depths.low / 1.03
+    offsets = [along(one.shape.x, one.shape.y, plane_of(one)) for _, one in solved]
+    start, end = (float(each) for each in _span([0.0], *offsets))
+    span = max(end - start, _LEAST_SPAN * depth)
+    axes = graph.axes(*place, Scale(start - 0.08 * span, start + 1.08 * span), depths)
+    axes.strip(depth, depths.low, SEABED_COLOUR)
+    axes.level(0.0, Stroke(WATER_COLOUR, 1.0))
+    plane, still = plane_of(first), first.still_shape
+    if still is not None:
+        axes.line(along(still.x, still.y, plane), still.depth, _STILL)
+    for number, ((_, result), offset) in enumerate(zip(solved, offsets, strict=True)):
+        axes.line(offset, result.shape.depth, _stroke(number))
+    for part in named_parts(first):
+        axes.mark(float(along(part.x, part.y, plane)), part.depth, *SIGNS[part.role])
+    axes.frame(
+        numbers(axes.across.low, axes.across.high, 5), numbers(depths.low, depths.high, 9),
+        below=QUANTITIES["offset"].label, beside=QUANTITIES["depth"].label,
+    )  # fmt: skip
+
+
+def _span(*values: Sequence[float] | Floats) -> tuple[float, float]:
+    """The least and the greatest of all of them."""
+    return min(float(np.min(each)) for each in values), max(float(np.max(each)) for each in values)
+
+
+def _draw_current(graph: Graph, place: Place, solved: Solved, depths: Scale) -> None:
+    profiles = []
+    for _, result in solved:
+        water = result.mooring.water
+        depth = np.union1d(np.linspace(0.0, water.depth, 60), water.level)
+        depth = depth[(depth >= 0.0) & (depth <= water.depth)]
+        u, v = (np.interp(depth, water.level, speed) for speed in (water.u, water.v))
+        profiles.append((np.hypot(u, v), depth))
+    fastest = max(float(speed.max()) for speed, _ in profiles)
+    axes = graph.axes(*place, Scale(0.0, 1.05 * fastest or 1.0), depths)
+    for number, (speed, depth) in enumerate(profiles):
+        axes.line(speed, depth, _stroke(number))
+    axes.frame(
+        numbers(0.0, axes.across.high, 3), numbers(depths.low, depths.high, 9),
+        below=f"current [{QUANTITIES['speed'].display_unit}]", numbered=(True, False),
+    )  # fmt: skip
+
+
+def _draw_tension(graph: Graph, place: Place, solved: Solved) -> None:
+    """Tension over the stretched length, and what the pieces may bear, where that is known."""
+    greatest = max(float(result.shape.tension.max()) for _, result in solved)
+    _, first = solved[0]
+    ends = np.concatenate([[0.0], np.cumsum(first.components.length[:-1])])
+    factors, surface = first.file.checks.safety_factor, meant_for_the_surface(first)
+    loads = [
+        allowable_load(piece.component, factors, surface) or np.nan
+        for piece in first.file.pieces[:-1]
+    ]
+    edge = min(np.nanmax([*loads, greatest]), _FURTHEST_LIMIT * greatest)
+    distances = [_distance(result) for _, result in solved]
+    furthest = max(float(each[-1]) for each in (ends, *distances))
+    axes = graph.axes(*place, Scale(0.0, 1.04 * edge), Scale(1.02 * furthest, -0.02 * furthest))
+    for number, ((_, result), distance) in enumerate(zip(solved, distances, strict=True)):
+        axes.line(result.shape.tension, distance, _stroke(number))
+    axes.lines([np.minimum(loads, edge)] * 2, [ends[:-1], ends[1:]], _LIMIT)
+    axes.frame(
+        numbers(0.0, axes.across.high, 4), numbers(axes.up.low, axes.up.high, 9),
+        below=QUANTITIES["tension"].label, beside="distance along the line [m]",
+    )  # fmt: skip
+
+
+def _distance(result: Result) -> Floats:
+    """(k,) stretched length from the free end to each node [m]."""
+    shape = result.shape
+    steps = np.sqrt(np.diff(shape.x) ** 2 + np.diff(shape.y) ** 2 + np.diff(shape.depth) ** 2)
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def _draw_plan(graph: Graph, place: Place, solved: Solved) -> None:
+    """Both axes to one scale: the one whose range needs less is drawn wider."""
+    _, _, width, height = place
+    across, up = (
+        covering([0.0], *(getattr(result.shape, name) for _, result in solved)) for name in "xy"
+    )
+    scale = max((across.high - across.low) / width, (up.high - up.low) / height)
+    axes = graph.axes(*place, _widened(across, scale * width), _widened(up, scale * height))
+    for number, (_, result) in enumerate(solved):
+        stroke = _stroke(number)
+        axes.line(result.shape.x, result.shape.y, stroke)
+        axes.mark(result.top.x, result.top.y, "o", 3.5, stroke.colour)
+    axes.mark(0.0, 0.0, "v", 5.0, "black")
+    axes.frame(
+        numbers(axes.across.low, axes.across.high, 5), numbers(axes.up.low, axes.up.high, 6),
+        below=QUANTITIES["x"].label, beside=QUANTITIES["y"].label,
+    )  # fmt: skip
+
+
+def _widened(scale: Scale, extent: float) -> Scale:
+    """So far from edge to edge about the same middle."""
+    middle = (scale.low + scale.high) / 2
+    return Scale(middle - extent / 2, middle + extent / 2)
+
+
+def _draw_breaks(graph: Graph, place: Place, backup: Sequence[Break]) -> None:
+    """What is left to lift after each break, and what is required; grey where it is not judged."""
+    number = np.array([each.break_after for each in backup], dtype=np.float64)
+    required = np.array([each.required for each in backup])
+    margins = np.array([each.margin for each in backup])
+    axes = graph.axes(
+        *place, covering(number - 0.5, number + 0.5), covering([0.0], margins, required)
+    )
+    axes.bars(number, margins, 0.8, [_colour(each) for each in backup])
+    axes.lines([number - 0.5, number + 0.5], [required] * 2, _LIMIT)
+    axes.level(0.0, Stroke("black", 0.6))
+    axes.frame(
+        counts(backup[0].break_after, backup[-1].break_after, 8),
+        numbers(axes.up.low, axes.up.high, 6),
+        below="break below piece no.", beside="back-up buoyancy left [N]",
+    )  # fmt: skip
+
+
+def _colour(one: Break) -> str:
+    if not one.judged:
+        return _UNJUDGED
+    return _ENOUGH if one.margin >= one.required else _SHORT

@@ -1,0 +1,190 @@
+"""A mooring's part of a design check, what it concludes, and the whole report of several."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from calm.checks.finding import State
+from calm.report.blocks import (
+    ON_THE_WAY,
+    Block,
+    Figure,
+    Part,
+    Prose,
+    Report,
+    Section,
+    Signatures,
+)
+from calm.report.check_figures import check_figure
+from calm.report.check_summary import (
+    accepted_table,
+    failures,
+    limits_table,
+    matrix_tables,
+    rules_tables,
+    unknown_table,
+    verdict_prose,
+    worst_by_rule,
+    worst_table,
+)
+from calm.report.check_tables import (
+    breaks_table,
+    checks_table,
+    deck_table,
+    handling_summary,
+    handling_table,
+    inventory_table,
+    likelihood_tables,
+    results_table,
+)
+from calm.report.differences import comparison_part
+from calm.report.provenance import (
+    UNSEEN,
+    current_listing,
+    date,
+    document_part,
+    environments_table,
+    file_listing,
+    origin,
+)
+from calm.report.sheet import sheet
+
+if TYPE_CHECKING:
+    from calm.checks.assessment import Assessment
+    from calm.checks.comparison import Comparison
+
+
+def mooring_section(assessment: Assessment, against: Comparison | None = None) -> Section:
+    """All that the report says of one mooring; it draws, so it takes some tenths of a second.
+
+    `against` is the mooring compared with the design that it came from.
+    """
+    columns = (*(stand.environment for stand in assessment.stands), ON_THE_WAY)
+    worst = worst_by_rule(assessment)
+    compared = () if against is None else (comparison_part(against),)
+    parts = (
+        *document_part(assessment.mooring.file),
+        *compared,
+        Part("Judgement", tuple(_judgement(assessment, columns))),
+        Part("The line", tuple(_line(assessment))),
+        Part("Shape, tension and breaks", tuple(_drawn(assessment))),
+        Part("Checks", tuple(_checks(assessment))),
+        Part("Launch, recovery, breaks", tuple(_on_the_way(assessment))),
+        Part(
+            "Inventory",
+            (inventory_table(assessment.inventory), deck_table(assessment.inventory)),
+        ),
+        Part("Inputs", tuple(_inputs(assessment))),
+    )
+    return Section(
+        assessment.name,
+        parts,
+        columns,
+        worst,
+        tuple(assessment.all_findings()),
+        tuple(assessment.accepted_findings()),
+        assessment.limits,
+    )
+
+
+def check_report(sections: Sequence[Section]) -> Report:
+    """The report of a design check: the summary, a section for each mooring, the signatures."""
+    count = len(sections)
+    environments = {column for each in sections for column in each.columns} - {ON_THE_WAY}
+    moorings = sections[0].name if count == 1 else f"{count} moorings"
+    in_all = f"{len(environments)} environment{'s' if len(environments) != 1 else ''}"
+    return Report(
+        title="Design check",
+        subtitle=f"{moorings}, {in_all}",
+        front=(
+            Part("Summary", tuple(_summary(sections))),
+            Part("Limits", (limits_table([(each.name, each.limits) for each in sections]),)),
+            Part("What is not judged", (Prose(UNSEEN, State.UNKNOWN),)),
+            Part("Signatures", (Signatures(("Designed by", "Checked by", "Approved by")),)),
+        ),
+        sections=tuple(sections),
+        date=date(),
+    )
+
+
+def _summary(sections: Sequence[Section]) -> Iterator[Block]:
+    yield verdict_prose(finding for each in sections for finding in each.findings)
+    accepted = accepted_table([(each.name, each.accepted) for each in sections])
+    if accepted is not None:
+        yield accepted
+    yield from matrix_tables(sections)
+    if len(sections) > 1:
+        yield from likelihood_tables([(each.name, each.findings) for each in sections])
+    yield failures(sections)
+    yield worst_table(sections)
+
+
+def _judgement(assessment: Assessment, columns: Sequence[str]) -> Iterator[Block]:
+    description = assessment.mooring.file.description
+    if description:
+        yield Prose((description,))
+    yield from rules_tables(columns, worst_by_rule(assessment))
+    yield from likelihood_tables([(assessment.name, [*assessment.all_findings()])])
+    yield results_table(assessment.stands)
+
+
+def _line(assessment: Assessment) -> Iterator[Block]:
+    """The schematic and the table of the line in the first environment that it stands in."""
+    from calm.report.schematic import schematic_svg
+
+    stand = next((stand for stand in assessment.stands if stand.result is not None), None)
+    result = stand.result if stand else None
+    title = f"Schematic, environment: {stand.environment}" if stand else "Schematic"
+    yield Figure(title, schematic_svg(assessment.mooring.file, result), tall=True)
+    if stand is not None and result is not None:
+        said = sheet(result, places=True)
+        yield replace(said.table, title=f"Table of the line, environment: {stand.environment}")
+        yield from (*said.summary, Prose((said.convergence,)))
+
+
+def _drawn(assessment: Assessment) -> Iterator[Block]:
+    if all(stand.result is None for stand in assessment.stands):
+        yield Prose(("The mooring has no equilibrium in any environment.",), State.FAIL)
+        return
+    title = "Elevation, current, tension, plan and breaks"
+    yield Figure(title, check_figure(assessment))
+    yield Prose((_FIGURE_NOTE,))
+
+
+def _checks(assessment: Assessment) -> Iterator[Block]:
+    findings = [*assessment.all_findings()]
+    unknown = unknown_table(findings)
+    if unknown is not None:
+        yield unknown
+    yield from checks_table(findings)
+
+
+def _on_the_way(assessment: Assessment) -> Iterator[Block]:
+    if assessment.launch is not None or assessment.recovery is not None:
+        yield handling_summary(assessment)
+        yield handling_table(assessment)
+    else:
+        yield Prose(("Neither the launch nor the recovery could be solved.",), State.UNKNOWN)
+    if assessment.backup:
+        yield breaks_table(assessment.backup)
+
+
+def _inputs(assessment: Assessment) -> Iterator[Block]:
+    names = [stand.environment for stand in assessment.stands]
+    waters = [stand.mooring.water for stand in assessment.stands]
+    yield environments_table(names, waters)
+    yield file_listing(assessment.mooring.file)
+    for name, water in zip(names, waters, strict=True):
+        yield current_listing(name, water)
+    yield origin([stand.mooring.file for stand in assessment.stands])
+
+
+_FIGURE_NOTE = (
+    "Elevations: each in the vertical plane of its own excursion; marks and the line in still "
+    "water: of the first environment. Limit: over the tension, the load that a piece may bear "
+    "(its working load, or its breaking load over the safety factor; what lies beyond four times "
+    "the tension is drawn at the edge); over the breaks, the buoyancy required. "
+    "Grey: breaks that are not judged."
+)

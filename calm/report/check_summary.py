@@ -1,0 +1,348 @@
+"""The worst of many findings: of a rule in an environment, of a mooring, of a whole check."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from calm.checks.criterion import said
+from calm.checks.finding import AS_GIVEN, Finding, State, worst_state
+from calm.checks.rules import RULES
+from calm.files.check_limits import LimitKey
+from calm.quantities import QUANTITIES
+from calm.report.blocks import (
+    ON_THE_WAY,
+    Cell,
+    Column,
+    Prose,
+    Section,
+    Table,
+    Worst,
+)
+
+if TYPE_CHECKING:
+    from calm.checks.assessment import Assessment
+
+_ABREAST = 5
+"""Environments beside each other in a table; more of them take another table."""
+
+
+def _rank(finding: Finding) -> tuple[int, float]:
+    return finding.rank
+
+
+def say_in_unit(finding: Finding, value: float | None) -> str:
+    """A value, limit or margin of a finding with its unit; nothing where it is unknown."""
+    return "" if value is None else QUANTITIES[RULES[finding.rule].quantity].say(value)
+
+
+def margin_of(finding: Finding) -> str:
+    """The margin with its sign and unit."""
+    text = say_in_unit(finding, finding.margin)
+    return text if not text or text.startswith("-") else f"+{text}"
+
+
+def place_of(finding: Finding) -> str:
+    """The environment, and what was changed in it."""
+    if finding.situation == AS_GIVEN:
+        return finding.environment
+    return f"{finding.environment}, {finding.situation}"
+
+
+def worst_by_rule(assessment: Assessment) -> tuple[Worst, ...]:
+    """The worst finding of each rule in each column of the summary."""
+    columns = [
+        (stand.environment, (*stand.findings, *stand.tighter)) for stand in assessment.stands
+    ]
+    columns.append((ON_THE_WAY, assessment.findings))
+    return tuple(
+        Worst(column, min(group, key=_rank), unknown_count(group))
+        for column, findings in columns
+        for group in _groups(findings, lambda each: each.rule)
+    )
+
+
+def worst_by_part(findings: Iterable[Finding]) -> list[Finding]:
+    """The worst finding of each rule on each component, the gravest first."""
+    groups = _groups(findings, lambda each: (each.rule, each.place))
+    return sorted((min(group, key=_rank) for group in groups), key=_rank)
+
+
+def rules_tables(columns: Sequence[str], found: Sequence[Worst]) -> Iterator[Table]:
+    """Rules by environments: state, margin and component of the worst finding of each."""
+    cells = {(each.column, each.finding.rule): each for each in found}
+    for beside in abreast(columns):
+        rules = [
+            rule for rule in RULES.values() if any((one, rule.name) in cells for one in beside)
+        ]
+        rows = tuple(
+            (Cell(rule.title), *(_judged(cells.get((one, rule.name))) for one in beside))
+            for rule in rules
+        )
+        yield Table("Rules by environment", _headed("rule", beside), rows, _RULES_NOTE)
+
+
+def matrix_tables(sections: Sequence[Section]) -> Iterator[Table]:
+    """Moorings by environments: the worst state in each, the rule that makes it, and its margin."""
+    every = dict.fromkeys(column for section in sections for column in section.columns)
+    every.pop(ON_THE_WAY, None)
+    for beside in abreast([*every, ON_THE_WAY]):
+        rows = tuple(
+            (Cell(section.name), *(_of_column(section, column) for column in beside))
+            for section in sections
+        )
+        yield Table("Moorings by environment", _headed("mooring", beside), rows, _MATRIX_NOTE)
+
+
+def worst_table(sections: Sequence[Section]) -> Table:
+    """Each rule with the worst of all its findings, and in how many moorings it fails or warns."""
+    found: dict[str, list[tuple[Section, Finding]]] = {}
+    missing: Counter[str] = Counter()
+    for section in sections:
+        for each in section.worst:
+            found.setdefault(each.finding.rule, []).append((section, each.finding))
+            missing[each.finding.rule] += each.unknown
+    rows = []
+    for rule in RULES.values():
+        if rule.name not in found:
+            continue
+        section, finding = min(found[rule.name], key=lambda pair: pair[1].rank)
+        rows.append(
+            (
+                Cell(finding.state.value, state=finding.state),
+                Cell(rule.title),
+                Cell(say_in_unit(finding, finding.value)),
+                Cell(say_in_unit(finding, finding.limit)),
+                Cell(margin_of(finding)),
+                Cell(section.name, finding.component or ""),
+                Cell(place_of(finding)),
+                Cell(_moorings(found[rule.name], State.FAIL)),
+                Cell(_moorings(found[rule.name], State.WARN)),
+                Cell(str(missing[rule.name])),
+            )
+        )
+    columns = (
+        Column("state", share=0.0),
+        Column("rule"),
+        Column("value", numeric=True),
+        Column("limit", numeric=True),
+        Column("margin", numeric=True),
+        Column("mooring, component"),
+        Column("environment"),
+        Column("moorings that fail", numeric=True),
+        Column("that warn", numeric=True),
+        Column("figures unknown", numeric=True),
+    )
+    return Table("Worst finding of each rule", columns, tuple(rows), sortable=True)
+
+
+def failures(sections: Sequence[Section]) -> Table | Prose:
+    """Every rule that a mooring fails, with its worst finding and the remedy."""
+    rows = []
+    for section in sections:
+        failed = (each.finding for each in section.worst if each.finding.state is State.FAIL)
+        for group in _groups(failed, lambda each: each.rule):
+            finding, others = min(group, key=_rank), len(group) - 1
+            rows.append(
+                (
+                    Cell(section.name),
+                    Cell(RULES[finding.rule].title),
+                    Cell(place_of(finding), f"and {others} more" if others else ""),
+                    Cell(finding.message, finding.remedy or ""),
+                )
+            )
+    if not rows:
+        return Prose(("No rule fails.",), State.PASS)
+    columns = (
+        Column("mooring"),
+        Column("rule"),
+        Column("environment"),
+        Column("finding and remedy", share=2.5),
+    )
+    return Table("Failures", columns, tuple(rows))
+
+
+_RULES_NOTE = "Under each state: the least margin, the component that has it, and what is unknown."
+_MATRIX_NOTE = (
+    "Under each state: the rule that makes it, its least margin, and how many are unknown."
+)
+
+
+def _headed(first: str, columns: Sequence[str]) -> tuple[Column, ...]:
+    return (Column(first), *map(Column, columns))
+
+
+def _judged(worst: Worst | None) -> Cell:
+    if worst is None:
+        return Cell("–")
+    finding = worst.finding
+    detail = " ".join(filter(None, (margin_of(finding), finding.component)))
+    return Cell(finding.state.value, _with_unknown(detail, worst.unknown), finding.state)
+
+
+def _of_column(section: Section, column: str) -> Cell:
+    here = [each for each in section.worst if each.column == column]
+    if not here:
+        return Cell("–")
+    finding = min((each.finding for each in here), key=_rank)
+    detail = f"{RULES[finding.rule].title} {margin_of(finding)}".rstrip()
+    missing = sum(each.unknown for each in here)
+    return Cell(finding.state.value, _with_unknown(detail, missing), finding.state)
+
+
+def _with_unknown(detail: str, count: int) -> str:
+    """The detail, and how many findings are unknown."""
+    return "; ".join(filter(None, (detail, f"{count} unknown" if count else "")))
+
+
+def unknown_count(findings: Iterable[Finding]) -> int:
+    """How many of the findings are unknown."""
+    return sum(finding.state is State.UNKNOWN for finding in findings)
+
+
+def _moorings(found: Sequence[tuple[Section, Finding]], state: State) -> str:
+    return str(len({section.name for section, finding in found if finding.state is state}))
+
+
+def abreast(columns: Sequence[str]) -> Iterator[Sequence[str]]:
+    """The columns in groups of about the same size that fit the width of a page."""
+    groups = math.ceil(len(columns) / _ABREAST)
+    size = math.ceil(len(columns) / groups)
+    for start in range(0, len(columns), size):
+        yield columns[start : start + size]
+
+
+def _groups(findings: Iterable[Finding], key: Callable[[Finding], Hashable]) -> list[list[Finding]]:
+    groups: dict[Hashable, list[Finding]] = {}
+    for finding in findings:
+        groups.setdefault(key(finding), []).append(finding)
+    return list(groups.values())
+
+
+SIGNS = {
+    State.FAIL: "!",
+    State.UNKNOWN: "?",
+    State.WARN: "~",
+    State.ACCEPTED: "◦",
+    State.PASS: "✓",
+}
+"""What stands before a verdict."""
+
+
+def verdict_of(findings: Iterable[Finding]) -> tuple[State, str]:
+    """The worst state of one or several moorings, and the verdict in words.
+
+    A missing figure of a component is counted once.
+    """
+    by_mooring: dict[str, list[Finding]] = {}
+    for finding in findings:
+        by_mooring.setdefault(finding.mooring, []).append(finding)
+    counts = Counter(one.state for each in by_mooring.values() for one in worst_by_part(each))
+    state = worst_state(counts)
+    words = [
+        _counted(counts[State.FAIL], "failure") if counts[State.FAIL] else "nothing fails",
+        _counted(counts[State.UNKNOWN], "figure") + " unknown" if counts[State.UNKNOWN] else "",
+        _counted(counts[State.WARN], "warning") if counts[State.WARN] else "",
+        f"{counts[State.ACCEPTED]} accepted" if counts[State.ACCEPTED] else "",
+    ]
+    return state, ", ".join(word for word in words if word)
+
+
+def verdict_prose(findings: Iterable[Finding]) -> Prose:
+    """The verdict with its sign, such as ``? nothing fails, 34 figures unknown``."""
+    state, words = verdict_of(findings)
+    return Prose((f"{SIGNS[state]} {words}",), state)
+
+
+def accepted_table(moorings: Sequence[tuple[str, Sequence[Finding]]]) -> Table | None:
+    """What is accepted of each mooring, with its reason; None where nothing is."""
+    rows = tuple(
+        (
+            Cell(State.ACCEPTED.value, state=State.ACCEPTED),
+            Cell(name),
+            Cell(RULES[finding.rule].title, finding.component or "whole line"),
+            Cell(finding.message),
+            Cell(accept.reason),
+            Cell(accept.by or "-", accept.date or ""),
+            Cell(accept.until or "for good"),
+        )
+        for name, findings in moorings
+        for finding in findings
+        if (accept := finding.accept) is not None
+    )
+    if not rows:
+        return None
+    columns = (
+        Column("state", share=0.0),
+        Column("mooring"),
+        Column("rule, component"),
+        Column("finding", share=1.5),
+        Column("reason", share=1.5),
+        Column("by, on"),
+        Column("until", share=0.0),
+    )
+    return Table("Accepted with a reason", columns, rows)
+
+
+def limits_table(moorings: Sequence[tuple[str, Sequence[LimitKey]]]) -> Table:
+    """The limits as used, with their defaults and the sources of those; departures come first."""
+    rows = [
+        (
+            Cell("departs" if key.departs else "", state=State.WARN if key.departs else None),
+            Cell(name),
+            Cell(key.name),
+            Cell(said(key, key.value)),
+            Cell(said(key, key.default)),
+            Cell(key.source),
+        )
+        for name, keys in moorings
+        for key in sorted(keys, key=lambda key: not key.departs)
+    ]
+    columns = (
+        Column("", share=0.0),
+        Column("mooring"),
+        Column("limit"),
+        Column("as used", numeric=True),
+        Column("default", numeric=True),
+        Column("source of the default", share=2.0),
+    )
+    note = "A limit that departs from its default is the design's own; no source stands for it."
+    return Table("Limits as used", columns, tuple(rows), note)
+
+
+def unknown_table(findings: Iterable[Finding]) -> Table | None:
+    """What is unknown, piece by piece, and which figure would settle it; None where nothing is."""
+    parts: dict[str, list[Finding]] = {}
+    for finding in worst_by_part(findings):
+        if finding.state is State.UNKNOWN:
+            parts.setdefault(finding.component or "whole line", []).append(finding)
+    if not parts:
+        return None
+    rows = tuple(
+        (
+            Cell(label),
+            Cell(", ".join(RULES[one.rule].title for one in found)),
+            Cell(" ".join(dict.fromkeys(one.remedy for one in found if one.remedy))),
+            Cell(
+                ", ".join(
+                    f"{say_in_unit(one, one.value)} ({place_of(one)})"
+                    for one in found
+                    if one.value is not None
+                )
+            ),
+        )
+        for label, found in parts.items()
+    )
+    columns = (
+        Column("component"),
+        Column("not judged by"),
+        Column("what would settle it", share=1.5),
+        Column("what it bears or stands there", share=1.5),
+    )
+    return Table("Unknown, piece by piece", columns, rows, sortable=True)
+
+
+def _counted(count: int, word: str) -> str:
+    return f"{count} {word}{'s' * (count != 1)}"

@@ -1,0 +1,223 @@
+"""Components of the catalogue as a list, as cards and as JSON, and what they lack."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+from pydantic import BaseModel
+
+from calm.assemble.datasheet import Datasheet, datasheet
+from calm.files import Flexible
+from calm.quantities import QUANTITIES
+from calm.report.blocks import Cell, Column, Heading, Pairs, Part, Table
+
+if TYPE_CHECKING:
+    from calm.checks.catalogue import CatalogueFinding
+    from calm.checks.missing import MissingFigures
+    from calm.files import Catalogue, Component
+    from calm.files.catalogue import Assembly
+
+    Definition = Component | Assembly
+
+
+_PER_METRE = ("mass", "weight", "buoyancy", "net_buoyancy")
+_FIRST = ("name", "kind", "role")
+_LAST = ("note", "source", "sources", "searched", "date")
+_ELSEWHERE = ("prefer",)
+_AUTHOR = re.compile(r"[,;] (?![^()]*\))")
+"""What ends the name of who printed a figure: a comma that is not in brackets."""
+_HEADING_OF_OTHERS = "other"
+
+
+def to_list(catalogue: Catalogue, definitions: Mapping[str, Definition]) -> Part:
+    """One line for each definition, under the name of its family."""
+    columns = (
+        Column("id"),
+        Column("name"),
+        Column("net force\nin water", numeric=True),
+        Column("breaking\nload", numeric=True),
+    )
+    rows: list[tuple[Cell, ...]] = []
+    last = None
+    for identifier, definition in definitions.items():
+        family = _family(catalogue, identifier) or _HEADING_OF_OTHERS
+        if family != last:
+            rows += [(Cell(),), (Cell(family.upper()),)]
+            last = family
+        net = _say(definition, "net_buoyancy") if definition.kind != "assembly" else ""
+        breaking = "" if definition.breaking_load is None else _say(definition, "breaking_load")
+        name = definition.name or ""
+        if definition.prefer is not None:
+            name += f" (use {definition.prefer})"
+        rows.append(tuple(map(Cell, (identifier, name, net, breaking))))
+    return Part("", (Table("", columns, tuple(rows), dense=True),))
+
+
+def to_card(identifier: str, definition: Definition, catalogue: Catalogue | None = None) -> Part:
+    """Every figure that a definition gives, in the units people read, and where it comes from.
+
+    What follows from the figures comes after them, then, where several definitions of the catalogue
+    describe the same thing, how far they are apart and which to use.
+    """
+    following = _following(datasheet(definition, catalogue), _per_metre(definition))
+    pairs = Pairs((*_figures(definition), *following))
+    same = [] if catalogue is None else catalogue.same_thing(identifier)
+    if catalogue is None or len(same) < 2:
+        return Part("", (Heading(identifier), pairs))
+    return Part("", (Heading(identifier), pairs, _comparison(catalogue, same)))
+
+
+def to_documents(
+    catalogue: Catalogue, definitions: Mapping[str, Definition]
+) -> list[dict[str, Any]]:
+    """An object each: `id`, `family` and every field, SI or degrees, None if absent.
+
+    `derived` has what follows from the figures, `same_thing` the ids that describe the same, the
+    one to use first.
+    """
+    return [
+        {"id": identifier, "family": _family(catalogue, identifier)}
+        | definition.model_dump(mode="json")
+        | {
+            "derived": asdict(sheet) if (sheet := datasheet(definition, catalogue)) else None,
+            "same_thing": catalogue.same_thing(identifier),
+        }
+        for identifier, definition in definitions.items()
+    ]
+
+
+def _family(catalogue: Catalogue, identifier: str) -> str | None:
+    entry = catalogue.entry(identifier)
+    return entry.family if entry else None
+
+
+def _figures(definition: Definition) -> Iterator[tuple[str, str]]:
+    placed = (*_FIRST, *_LAST, *_ELSEWHERE)
+    fields = [name for name in type(definition).model_fields if name not in placed]
+    for name in (*_FIRST, *fields, *_LAST):
+        if getattr(definition, name) is not None:
+            yield _heading(name), _say(definition, name)
+
+
+def _following(sheet: Datasheet | None, per_metre: str) -> Iterator[tuple[str, str]]:
+    """What follows from the figures, for people."""
+    if sheet is None:
+        return
+    yield _heading("net_buoyancy"), _text("net_buoyancy", sheet.net_buoyancy) + per_metre
+    if sheet.kn is None or sheet.cd_area is None:
+        return
+    for name, value in (("kn", sheet.kn), ("kt", sheet.kt)):
+        yield f"{QUANTITIES[name].symbol}", f"{_text(name, value)}{per_metre and ' per metre'}"
+    across = QUANTITIES["force"].figure(sheet.kn) + per_metre
+    along = QUANTITIES["force"].figure(sheet.kt or 0.0) + per_metre
+    yield "drag at 1 m/s", f"{across} across, {along} along"
+    yield "Cd × area", QUANTITIES["cd_area"].figure(sheet.cd_area) + per_metre
+
+
+def _comparison(catalogue: Catalogue, same: Sequence[str]) -> Table:
+    """The definitions of one thing beside one another, and how far they are apart."""
+    columns = (
+        Column("the same thing", share=0.0),
+        Column("", share=0.0),
+        Column("net force in water", numeric=True),
+        Column("Cd × area", numeric=True),
+        Column("by"),
+    )
+    rows, sheets = [], []
+    for identifier in same:
+        definition = catalogue.get(identifier)
+        sheet = datasheet(definition, catalogue)
+        if sheet is None:
+            continue
+        sheets.append(sheet)
+        texts = (
+            identifier,
+            "use this" if identifier == same[0] else "",
+            _text("net_buoyancy", sheet.net_buoyancy) + _per_metre(definition),
+            "" if sheet.cd_area is None else _text("cd_area", sheet.cd_area),
+            _AUTHOR.split(definition.source or "", maxsplit=1)[0],
+        )
+        rows.append(tuple(map(Cell, texts)))
+    nets = [sheet.net_buoyancy for sheet in sheets]
+    areas = [sheet.cd_area for sheet in sheets if sheet.cd_area is not None]
+    for word, extreme in (("least", min), ("most", max)):
+        area = _text("cd_area", extreme(areas)) if areas else ""
+        rows.append(tuple(map(Cell, (word, "", _text("net_buoyancy", extreme(nets)), area, ""))))
+    return Table("", columns, tuple(rows))
+
+
+def _per_metre(definition: Definition) -> str:
+    return "/m" if isinstance(definition, Flexible) else ""
+
+
+def _heading(name: str) -> str:
+    return QUANTITIES[name].heading if name in QUANTITIES else name.replace("_", " ")
+
+
+def _say(definition: Definition, name: str) -> str:
+    value = getattr(definition, name)
+    if name == "searched":
+        return ", ".join(_heading(each) for each in value) + " (not printed by the sources seen)"
+    if name == "sources":
+        return "\n".join(f"{_heading(each)}: {text}" for each, text in value.items())
+    if isinstance(value, tuple):
+        return "\n".join(_text(name, member) for member in value)
+    return _text(name, value) + (_per_metre(definition) if name in _PER_METRE else "")
+
+
+def _text(name: str, value: Any) -> str:
+    """A field in one line for people, quantities with their unit, what is nested in brackets."""
+    if isinstance(value, float) and name in QUANTITIES:
+        return QUANTITIES[name].figure(value)
+    if isinstance(value, BaseModel):
+        value = value.model_dump(exclude_none=True)
+    if isinstance(value, Mapping):
+        return ", ".join(f"{_heading(key)} {_text(key, member)}" for key, member in value.items())
+    if isinstance(value, tuple | list):
+        return f"({'; '.join(_text(name, member) for member in value)})"
+    return str(value)
+
+
+def in_words(missing: MissingFigures) -> str:
+    """What a component lacks, what was searched for in vain last."""
+    sought = [_missing_heading(name) for name in missing.figures if name in missing.searched]
+    open_yet = [_missing_heading(name) for name in missing.figures if name not in missing.searched]
+    parts = [f"gives no {', '.join(open_yet)}"] if open_yet else []
+    parts += [f"searched for and not found: {', '.join(sought)}"] if sought else []
+    return "; ".join(parts)
+
+
+def summarised(missing: Sequence[MissingFigures]) -> str:
+    """How many components lack which figure."""
+    counts = Counter(name for each in missing for name in each.figures)
+    figures = ", ".join(f"{_heading(name)} {count}" for name, count in counts.most_common())
+    return f"{len(missing)} of them lack figures: {figures}"
+
+
+def to_objects(
+    findings: Sequence[CatalogueFinding], missing: Sequence[MissingFigures]
+) -> list[dict[str, Any]]:
+    """Findings, then what is missing: `id`, `finding`, `message`, `missing` and `searched`."""
+    wrong = [
+        {"id": each.id, "finding": True, "message": each.message, "missing": [], "searched": []}
+        for each in findings
+    ]
+    lacking = [
+        {
+            "id": each.id,
+            "finding": False,
+            "message": in_words(each),
+            "missing": list(each.figures),
+            "searched": list(each.searched),
+        }
+        for each in missing
+    ]
+    return wrong + lacking
+
+
+def _missing_heading(name: str) -> str:
+    return QUANTITIES[name].heading if name in QUANTITIES else name

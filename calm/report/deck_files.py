@@ -1,0 +1,181 @@
+"""The deck of one mooring: its pages, and its sheets as files that a spreadsheet opens."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from calm.checks.finding import State
+from calm.drop import DropPlan
+from calm.records.csv_writer import table_csv
+from calm.report.blocks import PageBreak, Part, Plate, Prose, Report, Section
+from calm.report.deck_lists import (
+    cutting_part,
+    hardware_part,
+    instruments_part,
+    lifts_part,
+    shipping_part,
+)
+from calm.report.deck_logs import deployment_part, recovery_part
+from calm.report.diagram import diagram_pages
+from calm.report.drop_sheet import drop_part
+from calm.report.provenance import date, document_part, origin
+
+if TYPE_CHECKING:
+    from calm.deck import Deck
+    from calm.report.diagram_layout import Paper
+
+Rows = Iterable[Sequence[object]]
+
+
+def deck_csvs(deck: Deck) -> dict[str, str]:
+    """The content of each file by its name: UTF-8, SI units in the header, empty where unknown."""
+    return {
+        "deployment.csv": table_csv(_DEPLOYMENT, _deployment(deck)),
+        "recovery.csv": table_csv(_RECOVERY, _recovery(deck)),
+        "cutting.csv": table_csv(_CUTTING, _cutting(deck)),
+        "hardware.csv": table_csv(_HARDWARE, _hardware(deck)),
+        "shipping.csv": table_csv(_SHIPPING, _shipping(deck)),
+        "lifts.csv": table_csv(_LIFTS, _lifts(deck)),
+        "instruments.csv": table_csv(_INSTRUMENTS, _instruments(deck)),
+    }
+
+
+_DEPLOYMENT = (
+    "number", "index", "label", "use", "name", "serial", "clamped_on", "at[m]", "cut_length[m]",
+    "depth[m]", "height[m]", "time_over", "remarks", "checked",
+)  # fmt: skip
+
+
+def _deployment(deck: Deck) -> Rows:
+    for number, one in enumerate(deck.deployment, 1):
+        yield (
+            number, one.index, one.label, one.part.use, one.name, one.serial, one.on, one.at,
+            one.cut_length, one.depth, one.height, None, None, None,
+        )  # fmt: skip
+
+
+_RECOVERY = (
+    "number", "index", "label", "use", "name", "serial", "clamped_on", "expected[s]", "hangs_at[m]",
+    "seen", "on_deck", "condition", "remarks",
+)  # fmt: skip
+
+
+def _recovery(deck: Deck) -> Rows:
+    for number, one in enumerate(deck.recovery, 1):
+        hung = one.hung
+        yield (
+            number, hung.index, hung.label, hung.part.use, hung.name, hung.deployed_serial, hung.on,
+            one.time, one.hangs_at, None, None, None, hung.remark,
+        )  # fmt: skip
+
+
+_CUTTING = (
+    "label", "use", "cut_length[m]", "at_load[N]", "marks[m]", "unstretched_length[m]",
+    "tolerance[m]", "top_deeper_by_half_percent[m]", "termination", "over_the_side",
+    "onto_the_drum",
+)  # fmt: skip
+
+
+def _cutting(deck: Deck) -> Rows:
+    for cut in deck.cuts:
+        marks = ";".join(f"{mark.label.replace(';', ',')}@{mark.at:.3f}" for mark in cut.marks)
+        yield (
+            cut.hung.label, cut.hung.part.use, cut.length, cut.load, marks, cut.unstretched,
+            cut.tolerance, cut.effect, cut.termination, cut.over, cut.onto,
+        )  # fmt: skip
+
+
+_HARDWARE = ("kind", "use", "name", "count", "length[m]", "spares", "total", "basis")
+
+
+def _hardware(deck: Deck) -> Rows:
+    for one in deck.hardware:
+        yield (
+            one.kind, one.use, one.name, one.count, one.length, one.spares, one.total, one.basis
+        )  # fmt: skip
+
+
+_SHIPPING = (
+    "use", "name", "count", "length[m]", "mass[kg]", "volume[m^3]", "missing_masses",
+    "missing_volumes",
+)  # fmt: skip
+
+
+def _shipping(deck: Deck) -> Rows:
+    for one in deck.freight:
+        unknown = one.missing_masses == one.count, one.missing_volumes == one.count
+        yield (
+            one.use, one.name, one.count, one.length, None if unknown[0] else one.mass,
+            None if unknown[1] else one.volume, one.missing_masses, one.missing_volumes,
+        )  # fmt: skip
+
+
+_LIFTS = ("stage", "index", "label", "lift_mass[kg]", "lift_weight[N]", "hanging[N]")
+
+
+def _lifts(deck: Deck) -> Rows:
+    for stage, lifts in (
+        (f"deployment, {deck.order}", deck.lifts.deployment),
+        ("recovery", deck.lifts.recovery),
+    ):
+        for one in lifts:
+            yield stage, one.index, one.label, one.mass, one.weight, one.hanging
+
+
+_INSTRUMENTS = (
+    "label", "use", "name", "serial", "clamped_on", "depth[m]", "still_depth[m]",
+    "least_depth[m]", "least_in", "greatest_depth[m]", "greatest_in", "greatest_tilt[deg]",
+    "warn_tilt[deg]", "max_tilt[deg]", "sampling", "battery_until", "calibrated",
+)  # fmt: skip
+
+
+def _instruments(deck: Deck) -> Rows:
+    for one in deck.instruments:
+        hung, component = one.hung, one.hung.part.component
+        equipment = hung.part.equipment
+        yield (
+            hung.label, hung.part.use, hung.name, hung.serial, hung.on, hung.depth, one.still,
+            one.shallowest.depth, one.shallowest.environment, one.deepest.depth,
+            one.deepest.environment, one.greatest_tilt, component.warn_tilt, component.max_tilt,
+            equipment.sampling, equipment.battery_until, equipment.calibrated,
+        )  # fmt: skip
+
+
+def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report:
+    """Diagram, logs, lists and plans; `notes` is what else is to be said on the first sheet."""
+    parts: list[Part] = [*document_part(deck.file)]
+    said = (*deck.notes, *notes)
+    if said:
+        parts.append(Part("To be known", (Prose(said, State.WARN),)))
+    parts.append(Part("Inputs", (origin([deck.file]),)))
+    parts += (Part(part.title, (*part.blocks, PageBreak())) for part in _sheets(deck))
+    subtitle = f"{deck.order}, environment: {deck.environment}"
+    section = Section(deck.file.name, tuple(parts))
+    return Report(deck.file.name, subtitle, (), (section,), date(), plates(deck, paper))
+
+
+def diagram_report(deck: Deck, paper: Paper) -> Report:
+    """The diagram alone."""
+    return Report(deck.file.name, "mooring diagram", (), (), date(), plates(deck, paper))
+
+
+def plates(deck: Deck, paper: Paper) -> tuple[Plate, ...]:
+    """The pages of the diagram."""
+    pages = diagram_pages(deck, paper)
+    return tuple(
+        Plate(f"Mooring diagram, {number} of {len(pages)}", svg)
+        for number, svg in enumerate(pages, 1)
+    )
+
+
+def _sheets(deck: Deck) -> Iterator[Part]:
+    yield deployment_part(deck)
+    yield recovery_part(deck)
+    yield cutting_part(deck)
+    yield hardware_part(deck)
+    yield shipping_part(deck)
+    yield lifts_part(deck)
+    yield instruments_part(deck)
+    if isinstance(deck.plan, DropPlan):
+        yield drop_part(deck.plan)

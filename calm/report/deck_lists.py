@@ -1,0 +1,265 @@
+"""Cutting list, hardware bill, shipping list, lifts and instrument sheet."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from calm.deck.cutting import LENGTH_ERROR
+from calm.deck.shipping import total_of
+from calm.quantities import QUANTITIES, say
+from calm.report.blocks import Block, Cell, Column, Note, Part, Prose, Table
+from calm.report.sheet import figure_cell
+
+if TYPE_CHECKING:
+    from calm.deck import Deck
+    from calm.deck.deck_items import Extreme, Posted
+    from calm.deck.shipping import Freight, Lift
+
+_SHARE = f"{LENGTH_ERROR:.1%}".replace("%", " %")
+_SPARES = (
+    "Spares: a tenth, rounded up, at least one; of shackles, pins and thimbles at least two. A "
+    "default of this program."
+)
+_IMPLIED = (
+    "A shackle is taken to have a bolt, nut and cotter pin unless its name or note says screw pin; "
+    "a termination with a thimble to have one at each end. Where metals touch that corrode each "
+    "other (those of which calm check warns), there is an isolator at each contact and an anode on "
+    "each piece of the baser metal. Nothing else that the line does not list is counted."
+)
+
+
+def cutting_part(deck: Deck) -> Part:
+    """Lengths, marks, and how exactly they have to be."""
+    rows: list[tuple[Cell, ...]] = []
+    for cut in deck.cuts:
+        load = "without load" if cut.load == 0.0 else f"at {say('tension', cut.load)}"
+        effect = "-" if cut.effect is None else f"{cut.effect:+.2f}"
+        rows.append(
+            (
+                Cell(cut.hung.label, cut.hung.name),
+                Cell(f"{cut.length:.2f}", load),
+                Cell(f"± {cut.tolerance:.2f}"),
+                Cell(effect),
+                Cell(cut.termination or ""),
+                Cell(str(cut.over)),
+                Cell(str(cut.onto)),
+                Cell(),
+                Cell("☐"),
+            )
+        )
+        rows += [
+            (Cell(mark.label, indented=True), Cell(f"{mark.at:.2f}", "mark"),
+             *[Cell()] * 6, Cell("☐"))
+            for mark in cut.marks
+        ]  # fmt: skip
+    columns = (
+        Column("wire or rope, marks below", share=1.6),
+        Column("cut length, or\nfrom upper end", "m", numeric=True),
+        Column("tolerance", "m", numeric=True),
+        Column("depth of\nthe top", "m", numeric=True),
+        Column("terminations", share=1.0),
+        Column("over\nthe side", numeric=True),
+        Column("onto\nthe drum", numeric=True),
+        Column("drum", share=0.5),
+        Column("done", share=0.0),
+    )
+    note = (
+        f"Tolerance: {_SHARE} of the length. Depth of the top: how it changes where this alone is "
+        f"longer by {_SHARE}, in the environment {deck.environment}. Marks are measured from the "
+        "upper end, under the load at which the length is. Onto the drum: what goes over the side "
+        "last is spooled first."
+    )
+    table = Table("Wires and ropes", columns, tuple(rows), note, by_hand=True)
+    return Part("Cutting and marking list", (table,))
+
+
+def hardware_part(deck: Deck) -> Part:
+    """The hardware with its spares."""
+    rows: list[tuple[Cell, ...]] = []
+    kind = ""
+    for stock in deck.hardware:
+        if stock.kind != kind:
+            kind = stock.kind
+            rows.append((Cell(kind),))
+        length = "" if stock.length is None else f"{stock.length:.2f}"
+        rows.append(
+            (
+                Cell(stock.name, stock.basis),
+                Cell(stock.use),
+                Cell(str(stock.count)),
+                Cell(length),
+                Cell(str(stock.spares)),
+                Cell(str(stock.total)),
+                Cell("☐"),
+            )
+        )
+    columns = (
+        Column("hardware", share=1.6),
+        Column("id"),
+        Column("in the line", numeric=True),
+        Column("length", "m", numeric=True),
+        Column("spares", numeric=True),
+        Column("to bring", numeric=True),
+        Column("packed", share=0.0),
+    )
+    table = Table("Hardware", columns, tuple(rows), _SPARES)
+    blocks: tuple[Block, ...] = (table,)
+    if not deck.hardware:
+        blocks = (Prose(("The line lists no hardware.",)),)
+    return Part("Hardware bill", (*blocks, Note((_IMPLIED,))))
+
+
+def shipping_part(deck: Deck) -> Part:
+    """All that is shipped, and what the sums lack."""
+    rows = [_freight(one) for one in deck.freight]
+    rows.append(_freight(total_of(deck.freight)))
+    columns = (
+        Column("component", share=1.6),
+        Column("id"),
+        Column("pieces", numeric=True),
+        Column("length", "m", numeric=True),
+        Column("mass in air", "kg", numeric=True),
+        Column("volume", "l", numeric=True),
+        Column("packed in", share=0.8),
+    )
+    note = (
+        "Volume: of the things themselves, without packing: of a sphere, a cylinder and a cable by "
+        "its size, else what it displaces. ≥: a lower bound, since figures are missing. Spares are "
+        "not in it."
+    )
+    return Part("Shipping list", (Table("Shipped", columns, tuple(rows), note, totals=1),))
+
+
+def _freight(one: Freight) -> tuple[Cell, ...]:
+    length = "" if one.length is None else f"{one.length:.1f}"
+    return (
+        Cell(one.name),
+        Cell(one.use),
+        Cell(str(one.count)),
+        Cell(length),
+        _at_least("dry_mass", one.mass, one.missing_masses, one.count),
+        _at_least("volume", one.volume, one.missing_volumes, one.count),
+        Cell(),
+    )
+
+
+def _at_least(name: str, value: float, missing: int, count: int) -> Cell:
+    if missing == count:
+        return Cell("unknown")
+    text = QUANTITIES[name].format(value)
+    return Cell(f"≥ {text}", f"{missing} unknown") if missing else Cell(text)
+
+
+def lifts_part(deck: Deck) -> Part:
+    """The stages of deployment and recovery."""
+    lifts = deck.lifts
+    said = []
+    if lifts.heaviest is not None:
+        heaviest = lifts.heaviest
+        said.append(
+            f"Heaviest single lift: {heaviest.label}, {say('lift_mass', heaviest.mass)} in air, "
+            f"{say('wet_weight', heaviest.weight)} in water."
+        )
+    if lifts.unknown:
+        shown = ", ".join(lifts.unknown[:6]) + (" …" if len(lifts.unknown) > 6 else "")
+        said.append(f"A lower bound: the mass in air is not known of {shown}.")
+    greatest = max(
+        (one for one in lifts.deployment if one.hanging is not None),
+        key=lambda one: one.hanging or 0.0,
+        default=None,
+    )
+    if greatest is not None and (greatest.hanging or 0.0) > 0.0:
+        said.append(
+            f"Most hangs from the ship with {greatest.label} over the side: "
+            f"{say('wet_weight', greatest.hanging)} in water."
+        )
+    note = (
+        "In air: the piece with what is clamped on it, as the crane lifts it; cables are paid out. "
+        "Hanging: the weight in water of all that is over the side, where it hangs straight down "
+        "from the ship; below 0 it floats. Neither drag nor the swell is in it."
+    )
+    return Part(
+        "Lifts",
+        (
+            Prose(tuple(said)),
+            _stages("Deployment, in the order over the side", lifts.deployment),
+            _stages("Recovery, from the top to the release", lifts.recovery),
+            Note((note,)),
+        ),
+    )
+
+
+def _stages(title: str, lifts: Iterable[Lift]) -> Table:
+    rows = tuple(
+        (
+            Cell(str(one.index)),
+            Cell(one.label),
+            figure_cell("lift_mass", one.mass),
+            figure_cell("wet_weight", one.weight),
+            figure_cell("wet_weight", one.hanging),
+        )
+        for one in lifts
+    )
+    columns = (
+        Column("no.", numeric=True),
+        Column("at the rail", share=2.0),
+        Column("lift in\nair", "kg", numeric=True),
+        Column("lift in\nwater", "N", numeric=True),
+        Column("hanging\nin water", "N", numeric=True),
+    )
+    return Table(title, columns, rows)
+
+
+def instruments_part(deck: Deck) -> Part:
+    """Every instrument and release: where it hangs, and what the file says of it."""
+    several = len(deck.environments) > 1
+    rows = tuple(_posted(one, several) for one in deck.instruments)
+    columns = (
+        Column("instrument", share=1.4),
+        Column("serial number", share=0.8),
+        Column("depth", "m", numeric=True),
+        Column("still\nwater", "m", numeric=True),
+        *(
+            (Column("least", "m", numeric=True), Column("greatest", "m", numeric=True))
+            if several
+            else ()
+        ),
+        Column("tilt", "°", numeric=True),
+        Column("limit", "°", numeric=True),
+        Column("sampling", share=0.9),
+        Column("battery\nuntil", share=0.0),
+        Column("calibrated", share=0.0),
+    )
+    note = f"Depth: in the environment {deck.environment}."
+    if several:
+        note += (
+            f" Least and greatest depth, and tilt: of {len(deck.environments)} environments, "
+            "which one below it."
+        )
+    table = Table("Instruments and releases", columns, rows, note)
+    return Part("Instrument sheet", (table,))
+
+
+def _posted(one: Posted, several: bool) -> tuple[Cell, ...]:
+    component, equipment = one.hung.part.component, one.hung.part.equipment
+    limits = [
+        "-" if limit is None else QUANTITIES["tilt"].format(limit)
+        for limit in (component.warn_tilt, component.max_tilt)
+    ]
+    return (
+        Cell(one.hung.label, one.hung.name, indented=one.hung.on is not None),
+        Cell(one.hung.serial or ""),
+        figure_cell("depth", one.hung.depth),
+        figure_cell("depth", one.still),
+        *((_extreme(one.shallowest), _extreme(one.deepest)) if several else ()),
+        figure_cell("tilt", one.greatest_tilt),
+        Cell(limits[1], "" if limits[0] == "-" else f"warn {limits[0]}"),
+        Cell(equipment.sampling or ""),
+        Cell(equipment.battery_until or ""),
+        Cell(equipment.calibrated or ""),
+    )
+
+
+def _extreme(extreme: Extreme) -> Cell:
+    return Cell(QUANTITIES["depth"].format(extreme.depth), extreme.environment)

@@ -1,0 +1,222 @@
+"""The deployment log and the recovery log, with boxes to fill in."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from calm.deck.deck_items import Order
+from calm.drop import DropPlan
+from calm.quantities import QUANTITIES, say
+from calm.report.blocks import Block, Cell, Column, Pairs, Part, Prose, Table
+from calm.report.drop_sheet import whereabouts
+from calm.report.provenance import position_text, title_pairs
+
+if TYPE_CHECKING:
+    from calm.deck import Deck
+    from calm.deck.deck_items import Hung
+
+_BOX = Cell("☐")
+_SOUNDINGS = 6
+
+
+def deployment_part(deck: Deck) -> Part:
+    """What is done before, the order over the side, and where the anchor went."""
+    last = deck.order is Order.ANCHOR_LAST
+    blocks: tuple[Block, ...] = (
+        *(() if deck.file.document else (Pairs(tuple(title_pairs(deck.file))),)),
+        Prose(
+            (
+                "Anchor last: the top goes over the side first."
+                if last
+                else "Anchor first: the lower end goes over the side first.",
+            )
+        ),
+        _releases(deck),
+        _over_the_side(deck),
+        _positions(deck),
+        _soundings(),
+    )
+    return Part("Deployment log", blocks)
+
+
+def recovery_part(deck: Deck) -> Part:
+    """What is done at the release, and the order in which the line comes up."""
+    rise = deck.rise
+    said = []
+    if rise is None:
+        said.append("The rise of the line is not known; the order is that of the line.")
+    elif rise.time_to_surface is None:
+        said.append("Freed, the line does not rise by itself; the order is that of the line.")
+    elif rise.time_to_surface == 0.0:
+        said.append(
+            "Its float is at the surface; what comes up from below is listed with its time."
+        )
+    else:
+        first = rise.time_to_surface / 60.0
+        said.append(
+            f"Freed, the line rises with {say('speed', rise.rise_speed)}; the first float is "
+            f"expected after {first:.0f} min."
+        )
+        if rise.tangles:
+            said.append("It may double back in the rise: the order may be another.")
+        if rise.in_still_water:
+            said.append("The rise is that in still water.")
+    blocks = (Prose(tuple(said)), _events(_AT_THE_RELEASE), _surfacing(deck))
+    return Part("Recovery log", blocks)
+
+
+_AT_THE_RELEASE = (
+    "On station", "Release enabled, range", "Release command sent", "Release confirmed",
+    "First float seen, bearing", "All floats counted", "Hooked", "All on board",
+)  # fmt: skip
+
+
+def placed(one: Hung, deck: Deck) -> str:
+    """Where a clamp sits: from the upper end of its piece, anchor first from the lower end too."""
+    if one.on is None or one.at is None:
+        return ""
+    text = f"{one.at:.2f} m from the upper end"
+    if deck.order is Order.ANCHOR_FIRST and one.of_length is not None:
+        text += f", {one.of_length - one.at:.2f} m from the lower end"
+    return text
+
+
+def _releases(deck: Deck) -> Table:
+    rows = [
+        (Cell(release.serial or ""), Cell("\n".join(release.code_lines)), *[_BOX] * 3, Cell())
+        for release in deck.file.releases
+    ]
+    known = {release.serial for release in deck.file.releases}
+    rows += [
+        (Cell(one.serial or "", one.label), Cell(), *[_BOX] * 3, Cell())
+        for one in deck.parts
+        if one.role == "release" and (one.serial is None or one.serial not in known)
+    ]
+    columns = (
+        Column("release, serial number"),
+        Column("codes"),
+        Column("tested in\nthe laboratory", share=0.0),
+        Column("tested\nat depth", share=0.0),
+        Column("armed,\non deck", share=0.0),
+        Column("battery, remarks"),
+    )
+    return Table("Releases", columns, tuple(rows), by_hand=True)
+
+
+def _over_the_side(deck: Deck) -> Table:
+    rows = []
+    for number, one in enumerate(deck.deployment, 1):
+        length = "" if one.cut_length is None or one.is_rigid else f"{one.cut_length:.2f}"
+        rows.append(
+            (
+                Cell(str(number)),
+                Cell(one.label, one.name, indented=one.on is not None),
+                Cell(placed(one, deck) or length),
+                Cell(one.serial or ""),
+                Cell(),
+                Cell(),
+                _BOX,
+            )
+        )
+    columns = (
+        Column("no.", numeric=True),
+        Column("piece", share=1.6),
+        Column("length cut, or place on its wire", "m"),
+        Column("serial number", share=0.7),
+        Column("time over", "UTC", share=0.7),
+        Column("remarks"),
+        Column("checked", share=0.0),
+    )
+    return Table("Order over the side", columns, tuple(rows), by_hand=True)
+
+
+def _positions(deck: Deck) -> Table:
+    file = deck.file
+    target = "" if file.position is None else position_text(file.position)
+    depth = QUANTITIES["depth"].say(file.environment.depth)
+    plan = deck.plan
+    start = let_go = ""
+    if isinstance(plan, DropPlan):
+        start, let_go = whereabouts(plan, plan.start), whereabouts(plan, plan.let_go)
+    rows = (
+        (Cell("Target"), Cell(), Cell(target), Cell(depth), Cell()),
+        (Cell("Fall-back target"), Cell(), Cell(), Cell(), Cell()),
+        (Cell("First piece over"), Cell(start), Cell(), Cell(), Cell()),
+        (Cell("Anchor let go"), Cell(let_go), Cell(), Cell(), Cell()),
+        (Cell("Anchor on the bottom, ranged"), Cell(), Cell(), Cell(), Cell()),
+    )
+    columns = (
+        Column(""),
+        Column("planned, from the target"),
+        Column("position", share=1.5),
+        Column("depth", share=0.8),
+        Column("time", "UTC", share=0.8),
+    )
+    return Table("Positions", columns, rows, by_hand=True)
+
+
+def _soundings() -> Table:
+    columns = (
+        Column("sounding", share=0.0),
+        Column("time", "UTC"),
+        Column("position", share=2.0),
+        Column("depth as read", "m"),
+        Column("correction", "m"),
+        Column("depth", "m"),
+    )
+    rows = tuple(
+        (Cell(str(number)), *[Cell()] * (len(columns) - 1)) for number in range(1, _SOUNDINGS + 1)
+    )
+    return Table("Soundings", columns, rows, by_hand=True)
+
+
+def _events(events: tuple[str, ...]) -> Table:
+    columns = (
+        Column("event"),
+        Column("time", "UTC", share=0.7),
+        Column("position"),
+        Column("remarks", share=1.5),
+    )
+    rows = tuple((Cell(one), *[Cell()] * 3) for one in events)
+    return Table("At the release", columns, rows, by_hand=True)
+
+
+def _surfacing(deck: Deck) -> Table:
+    rows = []
+    for number, one in enumerate(deck.recovery, 1):
+        hung = one.hung
+        if one.time is not None:
+            expected = f"{one.time / 60.0:.1f} min"
+        elif one.hangs_at is not None:
+            expected = f"hangs at {say('depth', one.hangs_at)}"
+        else:
+            expected = ""
+        rows.append(
+            (
+                Cell(str(number)),
+                Cell(hung.label, hung.name, indented=hung.on is not None),
+                Cell(hung.deployed_serial or ""),
+                Cell(expected, "by itself" if one.by_itself else ""),
+                Cell(),
+                Cell(),
+                *[_BOX] * 3,
+                Cell(hung.remark or ""),
+            )
+        )
+    columns = (
+        Column("no.", numeric=True),
+        Column("piece", share=1.7),
+        Column("serial number", share=0.8),
+        Column("expected after\nthe release", share=1.3),
+        Column("seen", "UTC", share=0.6),
+        Column("on deck", "UTC", share=0.6),
+        Column("whole", share=0.0),
+        Column("fouled", share=0.0),
+        Column("runs", share=0.0),
+        Column("remarks", share=1.2),
+    )
+    note = (
+        "By itself: what is buoyant enough; the rest comes with it, or hangs below when all is up. "
+        "The order is that of surfacing, not of hauling."
+    )
+    return Table("Order of surfacing", columns, tuple(rows), note, by_hand=True)

@@ -1,0 +1,278 @@
+"""The plan of an anchor drop as a sheet: what to do, what to expect, and how it falls."""
+
+from __future__ import annotations
+
+from math import ceil
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from calm.checks.finding import State
+from calm.drop.plan import DRAG_BAND
+from calm.quantities import QUANTITIES, bearing_text, say
+from calm.report.blocks import Block, Cell, Column, Figure, Note, Pairs, Part, Prose, Table
+from calm.report.picture import figure_svg
+from calm.report.provenance import position_text
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from calm.drop import DropPlan
+
+_ROWS = 11
+"""Of the table of the fall."""
+_DEEPER = 0.5
+"""By how much deeper than at rest a float has to come to be listed [m]."""
+
+
+def drop_part(plan: DropPlan) -> Part:
+    """The sheet."""
+    blocks: list[Block] = [
+        _instructions(plan),
+        *([Prose(plan.warnings, state=State.WARN)] if plan.warnings else []),
+        Pairs(_figures(plan)),
+        Figure("Anchor drop", drop_figure(plan)),
+        _fall_table(plan),
+        *_depth_blocks(plan),
+        Note(_notes(plan)),
+    ]
+    return Part("Anchor drop plan", tuple(blocks))
+
+
+def _instructions(plan: DropPlan) -> Prose:
+    """What the ship does."""
+    beyond = "beyond" if plan.tow_past >= 0.0 else "before"
+    behind = "before" if plan.run_in >= 0.0 else "beyond"
+    return Prose(
+        (
+            f"Steam towards {bearing_text(plan.course)} at {say('speed', plan.ship_speed)} over "
+            f"the ground. Put the float over the side {_metres(abs(plan.run_in))} {behind} the "
+            "target and pay out the line as fast as the ship steams; that takes some "
+            f"{_minutes(plan.run_time)}.",
+            f"Let the anchor go {_metres(abs(plan.tow_past))} {beyond} the target, "
+            f"with the float {_metres(plan.streamed)} behind it.",
+        )
+    )
+
+
+def _figures(plan: DropPlan) -> tuple[tuple[str, str], ...]:
+    early, late = plan.fall_time_band
+    near, far = plan.fall_back_band
+    given = (
+        "as given"
+        if plan.drag_known
+        else "of a cube of its volume, since the file gives it no `kt`"
+    )
+    side = "right" if plan.aside >= 0.0 else "left"
+    return (
+        (
+            "Fall time",
+            f"{plan.fall_time:.0f} s ± {_error(plan.time_error)} s; {early:.0f} to {late:.0f} s "
+            f"with the anchor's drag {DRAG_BAND:g} times less and more",
+        ),
+        (
+            "Fall-back, towards the float",
+            f"{plan.fall_back:.0f} m ± {_error(plan.distance_error)} m; {near:.0f} to {far:.0f} m "
+            "with the same",
+        ),
+        (
+            "Aside of that direction",
+            f"{abs(plan.aside):.0f} m to the {side}, seen from where it is let go",
+        ),
+        (
+            "Float behind the ship when let go",
+            f"{plan.streamed:.0f} m, towards {bearing_text(plan.astern)}",
+        ),
+        ("Let go, from the target", whereabouts(plan, plan.let_go)),
+        ("Start of the run, from the target", whereabouts(plan, plan.start)),
+        ("Speed at touchdown", say("speed", plan.touchdown_speed)),
+        ("Greatest tension in the fall", _greatest(plan)),
+        ("Drag of the anchor at 1 m/s", f"{plan.anchor_drag:.0f} N, {given}"),
+    )
+
+
+def _greatest(plan: DropPlan) -> str:
+    pull = max(plan.pulls, key=lambda each: each.tension)
+    return f"{say('tension', pull.tension)} in {pull.part.label}, after {pull.time:.0f} s"
+
+
+def _fall_table(plan: DropPlan) -> Table:
+    path = plan.path
+    depths = np.linspace(path.anchor_depth[0], path.anchor_depth[-1], _ROWS)
+    deepest = np.maximum.accumulate(path.anchor_depth)
+    columns = [
+        np.interp(depths, deepest, column)
+        for column in (
+            path.time,
+            path.anchor_speed,
+            path.anchor_x,
+            path.anchor_tension,
+            path.float_x,
+            path.float_depth,
+        )
+    ]
+    rows = tuple(
+        tuple(
+            Cell(text)
+            for text in (
+                f"{depth:.0f}",
+                f"{time:.0f}",
+                f"{speed:.2f}" if number else "-",
+                f"{x:.0f}",
+                f"{tension:.0f}" if number else "-",
+                f"{float_x:.0f}",
+                f"{max(float_depth, 0.0):.0f}",
+            )
+        )
+        for number, (depth, time, speed, x, tension, float_x, float_depth) in enumerate(
+            zip(depths, *columns, strict=True)
+        )
+    )
+    heads = (
+        ("anchor depth", "m"),
+        ("time", "s"),
+        ("speed", "m/s"),
+        ("towards float", "m"),
+        ("tension at anchor", "N"),
+        ("float at", "m"),
+        ("float depth", "m"),
+    )
+    return Table(
+        "The fall",
+        tuple(Column(head, unit, numeric=True) for head, unit in heads),
+        rows,
+        "Distances are from where the anchor is let go, towards the float.",
+    )
+
+
+def _depth_blocks(plan: DropPlan) -> list[Block]:
+    listed = [
+        each
+        for each in plan.depths
+        if each.part.component.role != "float" or each.beyond or each.greatest > each.rest + _DEEPER
+    ]
+    blocks: list[Block] = []
+    if listed:
+        depth = QUANTITIES["depth"]
+        rows = tuple(
+            (
+                Cell(each.label),
+                Cell(depth.format(each.greatest), state=State.FAIL if each.beyond else None),
+                Cell(f"{each.time:.0f}"),
+                Cell(depth.format(each.rest)),
+                Cell(depth.format(each.rating)),
+            )
+            for each in listed
+        )
+        blocks.append(
+            Table(
+                "Depths in the drop",
+                (
+                    Column("piece or clamp"),
+                    Column("greatest depth", "m", numeric=True),
+                    Column("after", "s", numeric=True),
+                    Column("at rest", "m", numeric=True),
+                    Column("rated to", "m", numeric=True),
+                ),
+                rows,
+            )
+        )
+    return blocks
+
+
+def _notes(plan: DropPlan) -> tuple[str, ...]:
+    notes = [
+        "The line is a chain without inertia: what it does in the first 20 s, and the jerk at the "
+        "touchdown, are not in these figures; nor is what waves do.",
+        "± is twice what bars and what steps of twice the length change, together; the current and "
+        "the drag of the anchor are known less well.",
+    ]
+    if plan.rest_difference is not None:
+        notes.append(
+            f"The line comes to rest {plan.rest_difference:.2f} m at most from its equilibrium."
+        )
+    return tuple(notes)
+
+
+def _metres(distance: float) -> str:
+    return f"{distance:.0f} m"
+
+
+def _minutes(seconds: float) -> str:
+    return f"{seconds / 60.0:.0f} min" if seconds >= 90.0 else f"{seconds:.0f} s"
+
+
+def _error(value: float) -> str:
+    return f"{max(ceil(value), 1)}"
+
+
+def whereabouts(plan: DropPlan, place: tuple[float, float]) -> str:
+    """A place east and north of the target [m], in words, with its position where that is known."""
+    east, north = place
+    position = plan.position(place)
+    return (
+        f"{abs(north):.0f} m {'north' if north >= 0.0 else 'south'}, "
+        f"{abs(east):.0f} m {'east' if east >= 0.0 else 'west'}"
+        + ("" if position is None else f"; {position_text(position)}")
+    )
+
+
+_WIDTH, _HEIGHT = 7.4, 4.2  # inches: an A4 page between its margins
+_FONT_SIZE = 7.5  # points
+_WATER, _SEABED = "#2b7bba", "#b8a07e"
+_DASHES = ("-", (0, (6, 2)), (0, (4, 2, 1, 2)), (0, (1, 1.5)), (0, (2, 1)), "-")
+
+
+def drop_figure(plan: DropPlan) -> str:
+    """The figure as SVG.
+
+    Left, to one scale, the path of the anchor and the line at moments, each with its own dashes and
+    named where it ends: it reads in black and white too. Right the fall speed over depth.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(_WIDTH, _HEIGHT))
+    figure.subplots_adjust(0.08, 0.11, 0.985, 0.97, wspace=0.06)
+    shapes, speed = figure.subplots(1, 2, sharey=True, width_ratios=(3.2, 1.0))
+    _draw_shapes(shapes, plan)
+    _draw_speed(speed, plan)
+    for axes in (shapes, speed):
+        axes.tick_params(labelsize=_FONT_SIZE)
+        axes.grid(alpha=0.3, linewidth=0.5)
+    return figure_svg(figure)
+
+
+def _draw_shapes(axes: Axes, plan: DropPlan) -> None:
+    depth = plan.mooring.water.depth
+    axes.axhline(0.0, color=_WATER, linewidth=1.0)
+    axes.axhspan(depth, 1.06 * depth, color=_SEABED)
+    shades = np.linspace(0.65, 0.0, len(plan.moments))
+    for moment, dashes, shade in zip(plan.moments, _DASHES, shades, strict=False):
+        axes.plot(
+            moment.x, moment.depth, color=str(shade), linestyle=dashes, linewidth=1.1,
+            label=moment.name,
+        )  # fmt: skip
+        axes.plot(moment.x[0], moment.depth[0], "o", color=str(shade), markersize=3.5)
+    axes.plot(plan.path.anchor_x, plan.path.anchor_depth, color="#d55e00", linewidth=1.4,
+              label="path of the anchor")  # fmt: skip
+    axes.plot(plan.fall_back, depth, "v", color="#d55e00", markersize=6, clip_on=False)
+    axes.set_xlabel("distance from where the anchor is let go, towards the float [m]",
+                    fontsize=_FONT_SIZE)  # fmt: skip
+    axes.set_ylabel("depth [m]", fontsize=_FONT_SIZE)
+    axes.set_ylim(1.06 * depth, -0.04 * depth)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.legend(fontsize=_FONT_SIZE, loc="lower right", framealpha=0.9)
+
+
+def _draw_speed(axes: Axes, plan: DropPlan) -> None:
+    path = plan.path
+    axes.plot(path.anchor_speed[1:], path.anchor_depth[1:], color="#111111", linewidth=1.2)
+    axes.set_xlim(0.0, 1.1 * float(np.max(path.anchor_speed[path.time > 0.02 * path.time[-1]])))
+    axes.set_xlabel("fall speed [m/s]", fontsize=_FONT_SIZE)
+    for share in (0.25, 0.5, 0.75):
+        time = share * path.time[-1]
+        at = float(np.interp(time, path.time, path.anchor_depth))
+        value = float(np.interp(time, path.time, path.anchor_speed))
+        axes.plot(value, at, "o", color="#111111", markersize=3)
+        axes.annotate(f"{time:.0f} s", (value, at), textcoords="offset points", xytext=(-4, 4),
+                      ha="right", fontsize=_FONT_SIZE)  # fmt: skip

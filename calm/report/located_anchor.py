@@ -1,0 +1,165 @@
+"""A located anchor as blocks, and the plot that ships use: circles and the place."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from calm.checks.finding import State
+from calm.report.blocks import Block, Cell, Column, Note, Pairs, Part, Prose, Table
+from calm.report.provenance import degrees_text
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from calm.locate import Located
+
+_FONT_SIZE = 8.0
+_CIRCLE, _LEFT_OUT, _PLACE = "#2b7bba", "#999999", "#c0392b"
+_ROUND = np.linspace(0.0, 2.0 * np.pi, 1441)
+
+
+def located_part(located: Located, water_depth: float) -> Part:
+    """The place, how well it is known, and the residual of every range.
+
+    Parameters
+    ----------
+    water_depth : at the anchor [m]
+    """
+    blocks: list[Block] = [Pairs(_figures(located, water_depth))]
+    if located.warnings:
+        blocks.append(Prose(located.warnings, state=State.WARN))
+    outliers = [
+        line for line, used in zip(located.survey.line, located.used, strict=True) if not used
+    ]
+    if outliers:
+        lines = ", ".join(map(str, outliers))
+        several = "lines" if len(outliers) > 1 else "line"
+        blocks.append(Prose((f"Not used, they do not fit the others: {several} {lines}.",)))
+    blocks += [_residuals(located), Note(_notes(located))]
+    return Part("Place of the anchor", tuple(blocks))
+
+
+def _figures(located: Located, water_depth: float) -> tuple[tuple[str, str], ...]:
+    major, minor, bearing = located.ellipse
+    known = np.isfinite(major)
+    latitude = degrees_text(located.latitude, "NS", 1)
+    longitude = degrees_text(located.longitude, "EW", 1)
+    pairs = [
+        ("Latitude, longitude", f"{located.latitude:.6f}, {located.longitude:.6f}"),
+        ("", f"{latitude}  {longitude}"),
+        (
+            "Within, with 95 %",
+            f"{major:.1f} m by {minor:.1f} m, the longer towards {round(bearing) % 180:03d}°"
+            if known
+            else "unknown",
+        ),
+        ("Depth", f"{water_depth:.1f} m{_interval(located)}"),
+        ("Ranges in use", f"{int(located.used.sum())} of {len(located.used)}"),
+        ("Scatter", f"{located.rms:.2f} m" if np.isfinite(located.rms) else "unknown"),
+    ]
+    if located.survey.timed:
+        pairs.append(("Speed of sound", f"{located.sound_speed:.1f} m/s, harmonic mean"))
+    return tuple(pairs)
+
+
+def _interval(located: Located) -> str:
+    if located.depth_given:
+        return ", as given"
+    return f" ± {located.depth_95:.1f} m with 95 %" if np.isfinite(located.depth_95) else ""
+
+
+def _residuals(located: Located) -> Table:
+    """A row for each range, in the order of the file."""
+    survey = located.survey
+    decimals = 4 if survey.timed else 1
+    rows = tuple(
+        (
+            Cell(str(line)),
+            Cell(f"{survey.latitude[i]:.5f}"),
+            Cell(f"{survey.longitude[i]:.5f}"),
+            Cell(f"{survey.measured[i]:.{decimals}f}"),
+            Cell(f"{located.residuals[i]:+.2f}", state=None if located.used[i] else State.FAIL),
+            Cell("" if located.used[i] else "not used"),
+        )
+        for i, line in enumerate(survey.line)
+    )
+    columns = (
+        Column("line", numeric=True),
+        Column("latitude", "°", numeric=True),
+        Column("longitude", "°", numeric=True),
+        Column("time", "s", numeric=True) if survey.timed else Column("range", "m", numeric=True),
+        Column("residual", "m", numeric=True),
+        Column("", share=0.0),
+    )
+    return Table("Ranges", columns, rows, "Residual: measured less computed.")
+
+
+def _notes(located: Located) -> tuple[str, ...]:
+    notes = [
+        "Rays are taken as straight, and the ship's surface as that of the ellipsoid WGS 84.",
+    ]
+    if located.survey.timed:
+        notes.append("Times are taken as those there and back, without any delay of what answers.")
+    return tuple(notes)
+
+
+def located_figure(located: Located) -> Figure:
+    """Where each range meets the depth of what answers, as a circle about the ship.
+
+    Left all of the survey, right the place itself with its ellipse of 95 %. What is not used is
+    grey and dashed, and carries the number of its line.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9.6, 4.9))
+    figure.subplots_adjust(0.075, 0.1, 0.985, 0.93, wspace=0.22)
+    whole, near = figure.subplots(1, 2)
+    frame, survey = located.survey.frame, located.survey
+    ships = frame.place(
+        survey.latitude, survey.longitude, np.full(len(survey.line), survey.transducer)
+    )
+    ships = ships - located.place
+    ranges = located.residuals + np.linalg.norm(ships, axis=1)
+    across = np.sqrt(np.maximum(ranges**2 - ships[:, 2] ** 2, 0.0))
+    for axes in (whole, near):
+        _draw_circles(axes, located, ships, across)
+        axes.set_aspect("equal")
+        axes.tick_params(labelsize=_FONT_SIZE)
+        axes.grid(alpha=0.3, linewidth=0.5)
+        axes.set_xlabel("east of the anchor [m]", fontsize=_FONT_SIZE)
+        axes.set_ylabel("north of the anchor [m]", fontsize=_FONT_SIZE)
+    reach = 1.15 * float(np.abs(ships[:, :2]).max())
+    for line, (x, y, _) in zip(survey.line, ships.tolist(), strict=True):
+        whole.plot(x, y, "^", color="#111111", markersize=4)
+        whole.annotate(str(line), (x, y), textcoords="offset points", xytext=(4, 3),
+                       fontsize=_FONT_SIZE - 1.0)  # fmt: skip
+    whole.set_title("all ranges, numbered by line of the file", fontsize=_FONT_SIZE)
+    _draw_ellipse(near, located)
+    scatter = float(np.abs(located.residuals[located.used]).max())
+    close = max(3.0 * np.nan_to_num(located.horizontal_95), 3.0 * scatter, 1.0)
+    near.set_title("the place, with its ellipse of 95 %", fontsize=_FONT_SIZE)
+    for axes, half in ((whole, max(reach, 2.0 * close)), (near, close)):
+        axes.plot(0.0, 0.0, "+", color=_PLACE, markersize=10, markeredgewidth=1.6)
+        axes.set_xlim(-half, half)
+        axes.set_ylim(-half, half)
+    return figure
+
+
+def _draw_circles(axes: Axes, located: Located, ships: np.ndarray, across: np.ndarray) -> None:
+    for (x, y, _), radius, used in zip(ships, across, located.used, strict=True):
+        axes.plot(
+            x + radius * np.cos(_ROUND), y + radius * np.sin(_ROUND),
+            color=_CIRCLE if used else _LEFT_OUT, linewidth=0.8, linestyle="-" if used else "--",
+        )  # fmt: skip
+
+
+def _draw_ellipse(axes: Axes, located: Located) -> None:
+    major, minor, bearing = located.ellipse
+    if not np.isfinite(major):
+        return
+    east, north = np.sin(np.radians(bearing)), np.cos(np.radians(bearing))
+    along, aside = major * np.cos(_ROUND), minor * np.sin(_ROUND)
+    axes.fill(along * east + aside * north, along * north - aside * east, color=_PLACE, alpha=0.25)

@@ -1,0 +1,188 @@
+"""What was found of a mooring's motion as a page and a PDF, with its drawings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from calm.checks.finding import State
+from calm.report.blocks import Block, Figure, Note, Part, Prose, Report, Section
+from calm.report.html import page
+from calm.report.motion_tables import PLAIN, factors_table, held_out_table, sensors_table
+from calm.report.pdf import printed
+from calm.report.picture import figure_svg
+from calm.report.provenance import date
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from matplotlib.axes import Axes
+    from numpy import datetime64
+    from numpy.typing import NDArray
+
+    from calm.motion.study import SensorSeries, Study
+    from calm.physics.line import Floats
+
+_DEPTHS = "Depths over time"
+_FALSE = "Times at which a current is more likely false than not"
+_LEGEND = (
+    "Black: measured. Blue: estimated, with its band of 95 %. Orange: by the currents alone. A "
+    "hidden sensor was not used."
+)
+_NOTHING = "Nothing in the residuals is clearly a drift, a slipped clamp or a wrong length."
+
+
+def motion_files(
+    study: Study,
+    series: Sequence[SensorSeries],
+    time: NDArray[datetime64],
+    factor: Floats,
+    name: str,
+    notes: Sequence[str],
+) -> dict[str, bytes]:
+    """The files of the report, by name: ``motion.html`` and ``motion.pdf``.
+
+    Parameters
+    ----------
+    series : of the sensors
+    time, factor : (n,) the factor on the current over time
+    notes : what was said of the input
+    """
+    report = motion_report(study, series, time, factor, name, notes)
+    return {"motion.html": page(report).encode(), "motion.pdf": printed(report)}
+
+
+def motion_report(
+    study: Study,
+    series: Sequence[SensorSeries],
+    time: NDArray[datetime64],
+    factor: Floats,
+    name: str,
+    notes: Sequence[str],
+) -> Report:
+    """Factors, agreement, what to doubt, depths, scatter and residuals."""
+    shown = sorted(series, key=lambda one: not one.hidden)[:MOST_PANELS]
+    shown = [one for one in series if any(one is each for each in shown)]
+    doubts = Prose(study.remarks, State.WARN) if study.remarks else Prose((_NOTHING,))
+    marks = (Figure(_FALSE, false_figure(time, study.false)),) if study.false else ()
+    held: tuple[Block, ...] = (held_out_table(study.held_out),) if study.held_out else ()
+    factors = factors_table(study.factors, study.task.common.datum)
+    parts = (
+        Part("What to doubt", (doubts, *marks)),
+        Part("Factors", (factors, Figure("Over time", factor_figure(time, factor)))),
+        Part("Measured against computed", (sensors_table(study), *held, Note((PLAIN,)))),
+        Part("Inputs", (Prose(tuple(notes) or ("Nothing was left out.",)),)),
+        Part("Depths", (Figure(_DEPTHS, depth_figure(shown), tall=True), Note((_LEGEND,)))),
+        Part("Scatter", (Figure("Computed against measured depths", scatter_figure(shown)),)),
+        Part("Residuals", (Figure("Measured less estimated", residual_figure(shown), tall=True),)),
+    )
+    span = f"{str(time[0])[:16]} to {str(time[-1])[:16]}, {len(time)} times"
+    return Report(f"{name}: where it was", span, (), (Section(name, parts),), date())
+
+
+_WIDTH = 7.4  # inches: an A4 page between its margins
+_FONT_SIZE = 7.0  # points
+_MEASURED: dict[str, Any] = {"color": "#111111", "linewidth": 0.8}
+_ESTIMATED: dict[str, Any] = {"color": "#0b3c5d", "linewidth": 0.9}
+_ALONE: dict[str, Any] = {"color": "#d55e00", "linewidth": 0.7, "linestyle": "--"}
+MOST_PANELS = 12
+"""Sensors that are drawn; of more, those that are hidden come first."""
+
+
+def depth_figure(series: Sequence[SensorSeries]) -> str:
+    """Depths of each sensor over time: measured, estimated with its band, by the currents alone."""
+    figure, panels = _panels(series)
+    for axes, one in zip(panels, series, strict=True):
+        time = one.time.astype("datetime64[s]")
+        low, high = one.estimated - 1.96 * one.spread, one.estimated + 1.96 * one.spread
+        axes.fill_between(time, low, high, color="#9ecae1", linewidth=0.0)
+        if one.plain is not None:
+            axes.plot(time, one.plain, **_ALONE)
+        axes.plot(time, one.estimated, **_ESTIMATED)
+        axes.plot(time, one.measured, **_MEASURED)
+        axes.invert_yaxis()
+        _name(axes, one, "depth [m]")
+    return figure_svg(figure)
+
+
+def residual_figure(series: Sequence[SensorSeries]) -> str:
+    """Measured less estimated depths of each sensor over time."""
+    figure, panels = _panels(series)
+    for axes, one in zip(panels, series, strict=True):
+        axes.plot(one.time.astype("datetime64[s]"), one.measured - one.estimated, **_MEASURED)
+        axes.axhline(0.0, color="#999999", linewidth=0.5)
+        _name(axes, one, "residual [m]")
+    return figure_svg(figure)
+
+
+def scatter_figure(series: Sequence[SensorSeries]) -> str:
+    """Estimated against measured depths, a panel for each sensor."""
+    from matplotlib.figure import Figure
+
+    columns = min(len(series), 4)
+    rows = -(-len(series) // columns)
+    figure = Figure(figsize=(_WIDTH, 1.9 * rows))
+    figure.subplots_adjust(0.08, 0.1 / rows + 0.06, 0.99, 0.95, hspace=0.5, wspace=0.35)
+    grid = figure.subplots(rows, columns, squeeze=False)
+    for axes in grid.flat[len(series) :]:
+        axes.set_axis_off()
+    for axes, one in zip(grid.flat, series, strict=False):
+        if one.plain is not None:
+            axes.plot(one.measured, one.plain, ".", color=_ALONE["color"], markersize=1.5)
+        axes.plot(one.measured, one.estimated, ".", color=_ESTIMATED["color"], markersize=1.5)
+        known = one.measured[np.isfinite(one.measured)]
+        if known.size:
+            axes.plot([known.min(), known.max()], [known.min(), known.max()], "k-", linewidth=0.5)
+        _name(axes, one, "computed [m]")
+        axes.set_xlabel("measured [m]", fontsize=_FONT_SIZE)
+    return figure_svg(figure)
+
+
+def factor_figure(time: Any, factor: Any) -> str:
+    """The factor on the current over time."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(_WIDTH, 1.6))
+    figure.subplots_adjust(0.1, 0.16, 0.99, 0.97)
+    axes = figure.subplots()
+    axes.plot(time.astype("datetime64[s]"), factor, **_ESTIMATED)
+    axes.axhline(1.0, color="#999999", linewidth=0.5)
+    axes.set_ylabel("factor on the current", fontsize=_FONT_SIZE)
+    axes.tick_params(labelsize=_FONT_SIZE)
+    return figure_svg(figure)
+
+
+def false_figure(time: Any, false: Mapping[str, Any]) -> str:
+    """A row of marks for each level whose current looks false at some of the times (n,)."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(_WIDTH, 0.2 * len(false) + 0.5))
+    figure.subplots_adjust(0.2, 0.3 / (0.2 * len(false) + 0.5), 0.99, 0.97)
+    axes = figure.subplots()
+    for row, when in enumerate(false.values()):
+        axes.plot(when.astype("datetime64[s]"), np.full(len(when), row), "|", color="#d55e00")
+    axes.set_yticks(range(len(false)), list(false), parse_math=False)
+    axes.set(xlim=tuple(time[[0, -1]].astype("datetime64[s]")), ylim=(len(false) - 0.5, -0.5))
+    axes.tick_params(labelsize=_FONT_SIZE)
+    return figure_svg(figure)
+
+
+def _panels(series: Sequence[SensorSeries]) -> tuple[Any, Any]:
+    from matplotlib.figure import Figure
+
+    count = len(series)
+    figure = Figure(figsize=(_WIDTH, 1.25 * count + 0.4))
+    figure.subplots_adjust(0.1, 0.25 / (1.25 * count + 0.4), 0.99, 0.98, hspace=0.25)
+    return figure, figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
+
+
+def _name(axes: Axes, one: SensorSeries, quantity: str) -> None:
+    text = axes.set_title(
+        f"{one.label}{', hidden' if one.hidden else ''}", fontsize=_FONT_SIZE, loc="left", pad=2
+    )
+    text.set_parse_math(False)
+    axes.set_ylabel(quantity, fontsize=_FONT_SIZE)
+    axes.tick_params(labelsize=_FONT_SIZE)
+    axes.grid(alpha=0.3)

@@ -1,0 +1,168 @@
+"""What was found of a mooring's motion, in tables and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+from calm.checks.finding import State
+from calm.report.blocks import Block, Cell, Column, Heading, Part, Prose, Table
+
+if TYPE_CHECKING:
+    from calm.motion.agreement import Agreement
+    from calm.motion.study import HeldOut, Study
+
+TITLES = {
+    "cable_drag": "drag of cables and chains",
+    "rigid_drag": "drag of floats and instruments",
+    "buoyancy": "net force of the floats",
+    "length": "length of cables and chains",
+}
+
+PLAIN = (
+    "Alone: by the currents with nothing fitted. Estimated: with the pressures of all sensors that "
+    "are used. rms is that of the difference less its mean over the calm times, the tenth with the "
+    "least knockdown."
+)
+
+
+def motion_part(study: Study, name: str) -> Part:
+    """Factors, sensors, sensors that were hidden, and what to doubt."""
+    blocks: list[Block] = [
+        Heading(name),
+        factors_table(study.factors, study.task.common.datum),
+        sensors_table(study),
+        Prose((PLAIN,)),
+    ]
+    if study.held_out:
+        blocks.append(held_out_table(study.held_out))
+    if study.remarks:
+        blocks.append(Prose(study.remarks, State.WARN))
+    return Part("", tuple(blocks))
+
+
+def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: float) -> Table:
+    """The common factors with their intervals."""
+    columns = (Column("factor for the whole record"), Column("value", numeric=True),
+               Column("95 % interval", numeric=True))  # fmt: skip
+    rows = [
+        (Cell(TITLES[name]), Cell(f"{value:.3f}"), Cell(f"{low:.3f}–{high:.3f}"))
+        for name, (value, low, high) in factors.items()
+    ]
+    note = f"All depths are shifted by {datum:+.1f} m, the datum that the pressures have in common."
+    return Table("", columns, tuple(rows), note)
+
+
+def sensors_table(study: Study) -> Table:
+    """How the sensors that are used agree with the currents alone, and with what is estimated."""
+    columns = (
+        Column("sensor"),
+        Column("times", numeric=True),
+        Column("alone: bias", "m", numeric=True),
+        Column("rms", "m", numeric=True),
+        Column("r", numeric=True),
+        Column("slope", numeric=True),
+        Column("estimated: rms", "m", numeric=True),
+    )
+    rows = [
+        (
+            Cell(label),
+            Cell(str(one.count)),
+            *(Cell(metres(value)) for value in (one.bias, one.rms)),
+            *(Cell(share(value)) for value in (one.r, one.slope)),
+            Cell(metres(study.fit[label].rms)),
+        )
+        for label, one in study.plain.items()
+    ]
+    return Table("", columns, tuple(rows))
+
+
+def held_out_table(held_out: Sequence[HeldOut]) -> Table:
+    """How well the depths of hidden sensors were estimated."""
+    columns = (
+        Column("hidden sensor"),
+        Column("times", numeric=True),
+        Column("bias", "m", numeric=True),
+        Column("rms", "m", numeric=True),
+        Column("interpolated: rms", "m", numeric=True),
+        Column("within 95 % band", "%", numeric=True),
+    )
+    rows = [
+        (
+            Cell(one.label),
+            Cell(str(one.count)),
+            *(Cell(metres(value)) for value in (one.bias, one.rms, one.linear_rms)),
+            Cell(f"{100.0 * one.coverage:.0f}" if isfinite(one.coverage) else "-"),
+        )
+        for one in held_out
+    ]
+    return Table("", columns, tuple(rows))
+
+
+def metres(value: float) -> str:
+    """A difference of depths."""
+    return f"{value:.2f}" if isfinite(value) else "-"
+
+
+def share(value: float) -> str:
+    """A correlation or a slope."""
+    return f"{value:.3f}" if isfinite(value) else "-"
+
+
+def motion_document(study: Study, name: str) -> dict[str, Any]:
+    """The JSON object: factors with their intervals of 95 %, and how well depths agree [m].
+
+    `sensors` has for each sensor that was used the agreement of what is estimated, and as `plain`
+    that of the currents alone; `held_out` those that were hidden.
+    """
+    from calm.version import __version__
+
+    return {
+        "calm": __version__,
+        "name": name,
+        "factors": factors_document(study.factors),
+        "datum": study.task.common.datum,
+        "sensors": [
+            {
+                "label": label,
+                **_agreement(fit),
+                "offset": float(offset),
+                "plain": _agreement(study.plain[label]),
+            }
+            for (label, fit), offset in zip(
+                study.fit.items(), study.task.common.offset, strict=True
+            )
+        ],
+        "held_out": held_out_document(study.held_out),
+        "doubts": list(study.remarks),
+    }
+
+
+def factors_document(factors: Mapping[str, tuple[float, float, float]]) -> dict[str, Any]:
+    """Each factor with its value and the ends of its interval."""
+    return {
+        name: {"value": value, "low": low, "high": high}
+        for name, (value, low, high) in factors.items()
+    }
+
+
+def held_out_document(held_out: Sequence[HeldOut]) -> list[dict[str, Any]]:
+    """The hidden sensors."""
+    return [
+        {
+            "label": one.label,
+            "n": one.count,
+            "bias": one.bias,
+            "rms": one.rms,
+            "linear_rms": one.linear_rms,
+            "coverage_95": one.coverage,
+        }
+        for one in held_out
+    ]
+
+
+def _agreement(one: Agreement) -> dict[str, Any]:
+    said = asdict(one)
+    return {"n": said.pop("count"), **said}

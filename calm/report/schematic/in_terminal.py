@@ -1,0 +1,198 @@
+"""The schematic of a line for a terminal: a row of text for each part, without colour."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rich.cells import cell_len, set_cell_size
+from rich.text import Text
+
+from calm.quantities import QUANTITIES
+from calm.report.schematic.pen import ELLIPSIS
+from calm.report.schematic.shown_parts import HEADINGS, Row, Schematic, schematic_of
+from calm.report.schematic.sign import BALLS, LINES, Sign, Symbol
+from calm.report.signs import encodable
+
+if TYPE_CHECKING:
+    from rich.console import Console, ConsoleOptions, RenderResult
+
+    from calm.case import Result, TowResult
+    from calm.files import MooringFile
+
+_SYMBOLS = {
+    Symbol.SPHERE: "(   )",
+    Symbol.BALL: "(o)",
+    Symbol.GLASS: "(o)",
+    Symbol.FOAM: "[===]",
+    Symbol.STREAMLINED: "<===<",
+    Symbol.BUOY: r"\___/",
+    Symbol.CURRENT_METER: " [|]>",
+    Symbol.ADCP: "[:]",
+    Symbol.CTD: "[#]",
+    Symbol.TRAP: r"\_/",
+    Symbol.INSTRUMENT: "[ ]",
+    Symbol.RELEASE: "[R]",
+    Symbol.RELEASE_PAIR: "[R|R]",
+    Symbol.SHACKLE: "U",
+    Symbol.SWIVEL: "8",
+    Symbol.LINK: "O",
+    Symbol.CHAIN: "§",
+    Symbol.WIRE: "│",
+    Symbol.ROPE: "┊",
+    Symbol.WHEELS: "[#####]",
+    Symbol.BLOCK: "/###\\",
+    Symbol.BODY: "[x]",
+}
+_PACK = "(ooo)"
+_LOOKS = {(False, False): ":", (True, False): "^", (False, True): "v", (True, True): "X"}
+_SHIP, _HELICOPTER = r"\__|__/", "---+---"
+_CLAMP, _SEA, _SEABED = "├─", "~", "▒"
+# Every sign of the picture that not all terminals have, and the one that stands for it.
+_ASCII = str.maketrans("│┊├─▒§×–·°…", "|:|-#%x-, .")
+_SIGNS = "".join(map(chr, _ASCII))
+
+_LINE_AT = 3
+_PICTURE = 10
+_ART = _PICTURE + 1
+_INDENT = "  "
+_LEAST_LABEL, _LEAST_NAME = 12, 14
+
+
+def schematic_text(
+    file: MooringFile,
+    result: Result | TowResult | None = None,
+    width: int = 80,
+    *,
+    ascii_only: bool = False,
+) -> str:
+    """A line in order from the top, not to scale, with the columns of `schematic_svg`.
+
+    Parameters
+    ----------
+    file : MooringFile
+        The line as read.
+    result : Result or TowResult, optional
+        Its solution, which shows depths under load and in the current; see `schematic_svg`.
+    width : int
+        Of the terminal [cells]; labels and names are cut to fit, from some 55 cells on.
+    ascii_only : bool
+        Draw with plain signs; labels keep their letters.
+    """
+    schematic = schematic_of(file, result)
+    lines = [
+        _cut(schematic.title, width),
+        _cut(schematic.subtitle, width),
+        "",
+        *_table(schematic, width),
+        "",
+        *textwrap.wrap(schematic.note, width),
+    ]
+    text = "\n".join(line.rstrip() for line in lines)
+    return text.translate(_ASCII) if ascii_only else text
+
+
+def can_carry(encoding: str | None) -> bool:
+    """Whether an output of this encoding has all signs of the picture."""
+    return encodable(encoding, _SIGNS)
+
+
+@dataclass(frozen=True)
+class TerminalSchematic:
+    """The schematic as a rich console prints it, as wide as that is."""
+
+    file: MooringFile
+    result: Result | TowResult | None
+    ascii_only: bool
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        """The text, not wrapped."""
+        text = schematic_text(self.file, self.result, options.max_width, ascii_only=self.ascii_only)
+        yield Text(text, no_wrap=True, overflow="ignore")
+
+
+def _table(schematic: Schematic, width: int) -> Iterator[str]:
+    """Headings and rows, the columns as wide as their texts need and the terminal allows."""
+    drawn = list(_drawn(schematic))
+    rows = [row for _, row in drawn if row is not None]
+    figures = []
+    for number, quantity in enumerate(schematic.columns):
+        words = (*HEADINGS[quantity], *(row.cells[number] for row in rows))
+        figures.append(max(map(cell_len, words)))
+    room = width - _ART - sum(figures) - 2 * len(figures) - 1
+    label, name = _shares(
+        max(cell_len(row.label) for row in rows), max(cell_len(row.name) for row in rows), room
+    )
+
+    def line(art: str, row: Row) -> str:
+        texts = f"{_padded(row.label, label)} {_padded(row.name, name)}"
+        cells = zip(row.cells, figures, strict=True)
+        return f"{art:{_ART}}{texts}" + "".join(f"  {cell:>{wide}}" for cell, wide in cells)
+
+    heads = [(*HEADINGS[name], QUANTITIES[name].display_unit) for name in schematic.columns]
+    for words in zip(*heads, strict=True):
+        yield line("", Row("", "", words))
+    for art, drawn_row in drawn:
+        yield art if drawn_row is None else line(art, drawn_row)
+
+
+def _shares(label: int, name: int, room: int) -> tuple[int, int]:
+    """Widths of labels and names: what they need; labels first, which tell parts apart."""
+    label = min(label, max(room - min(name, _LEAST_NAME), _LEAST_LABEL))
+    return label, max(min(name, room - label), 0)
+
+
+def _drawn(schematic: Schematic) -> Iterator[tuple[str, Row | None]]:
+    """The picture from the top, a line each with its row of text."""
+    if schematic.towed_by is not None:
+        yield (_SHIP if schematic.sea else _HELICOPTER), schematic.towed_by
+        if schematic.sea is not None:
+            yield _at_sea(_SYMBOLS[Symbol.WIRE]), schematic.sea
+    elif not schematic.surface and schematic.sea is not None:
+        yield _at_sea(_SEA), schematic.sea
+        yield "", None
+    for number, part in enumerate(schematic.parts):
+        afloat = schematic.surface and number == 0
+        art = (_at_sea if afloat else _on_line)(_art(part.sign))
+        yield art, part.rows[0]
+        for row in part.rows[1:]:
+            yield "", row
+        for clamp in part.clamps:
+            row = Row(_INDENT + clamp.row.label, clamp.row.name, clamp.row.cells)
+            yield " " * _LINE_AT + _CLAMP + _art(clamp.sign).strip(), row
+        if part.sign.symbol in LINES and not part.clamps:
+            yield art, None
+    if schematic.seabed is not None:
+        if schematic.towed_by is not None:
+            yield "", None
+        yield _SEABED * _PICTURE, schematic.seabed
+
+
+def _art(sign: Sign) -> str:
+    """A symbol, an ADCP in its middle with the way it looks."""
+    art = _PACK if sign.symbol in BALLS and sign.count > 1 else _SYMBOLS[sign.symbol]
+    if not sign.sounding:
+        return art
+    middle = len(art) // 2
+    return f"{art[:middle]}{_LOOKS[sign.up, sign.down]}{art[middle + 1 :]}"
+
+
+def _on_line(art: str) -> str:
+    return art.center(2 * _LINE_AT + 1)
+
+
+def _at_sea(art: str) -> str:
+    return art.center(2 * _LINE_AT + 1, _SEA).ljust(_PICTURE, _SEA)
+
+
+def _padded(text: str, width: int) -> str:
+    return set_cell_size(_cut(text, width), width)
+
+
+def _cut(text: str, width: int) -> str:
+    """The text, or its beginning with an ellipsis."""
+    if cell_len(text) <= width:
+        return text
+    return set_cell_size(text, width - 1).rstrip() + ELLIPSIS

@@ -1,0 +1,317 @@
+"""What a schematic shows of a line: its parts from the top, their rows of text, their lengths."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import accumulate
+from typing import TYPE_CHECKING
+
+from calm.files import Place, Rigid
+from calm.quantities import QUANTITIES, say
+from calm.report.drawing import alike, together
+from calm.report.schematic.sign import BALLS, Sign, Symbol, sign_of
+from calm.report.sheet import place_text
+from calm.report.signs import printable
+
+if TYPE_CHECKING:
+    from calm.case import Result, TowResult
+    from calm.files import Clamp, MooringFile, Piece
+
+HEADINGS = {
+    "cut_length": ("cut", "length"),
+    "depth": ("", "depth"),
+    "height": ("above", "seabed"),
+}
+"""The quantities beside each part, with the two lines of their headings."""
+
+_JOINED = (*BALLS, Symbol.SHACKLE, Symbol.SWIVEL, Symbol.LINK)
+
+
+@dataclass(frozen=True)
+class Row:
+    """The text beside a part: its label, its component's name, a cell for each column."""
+
+    label: str
+    name: str
+    cells: tuple[str, ...]
+    strong: bool = False
+
+
+@dataclass(frozen=True)
+class Clamped:
+    """An instrument clamped on a part."""
+
+    sign: Sign
+    row: Row
+
+
+@dataclass(frozen=True)
+class Part:
+    """What is drawn as one: a piece, a run of balls or of connectors, or two releases in a row.
+
+    Attributes
+    ----------
+    sign : Sign
+        What is drawn.
+    labels : tuple of str
+        Of its pieces.
+    rows : tuple of Row
+        One; of two releases, one each.
+    clamps : tuple of Clamped
+        Down the piece.
+    length : float
+        Cut length of a piece [m], NaN where unknown.
+    """
+
+    sign: Sign
+    labels: tuple[str, ...]
+    rows: tuple[Row, ...]
+    clamps: tuple[Clamped, ...]
+    length: float
+
+
+@dataclass(frozen=True)
+class Schematic:
+    """A line as it is drawn, from the top of a mooring, or from the ship down.
+
+    Attributes
+    ----------
+    title, subtitle, note : str
+        Its name; water and place, or speed; how to read the figures.
+    columns : tuple of str
+        Those quantities of `HEADINGS` that are known.
+    parts : tuple of Part
+    surface : bool
+        Whether the first part floats at the surface.
+    towed_by : Row or None
+        The text at the ship or the helicopter.
+    sea : Row or None
+        The text at the sea surface; None in air.
+    seabed : Row or None
+        The text at the seabed; None where its depth is unknown.
+    """
+
+    title: str
+    subtitle: str
+    note: str
+    columns: tuple[str, ...]
+    parts: tuple[Part, ...]
+    surface: bool
+    towed_by: Row | None
+    sea: Row | None
+    seabed: Row | None
+
+
+def schematic_of(file: MooringFile, result: Result | TowResult | None = None) -> Schematic:
+    """What the schematic of a line shows.
+
+    Parameters
+    ----------
+    file : MooringFile
+        The line as read.
+    result : Result or TowResult, optional
+        Its solution, which shows depths under load and in the current.
+    """
+    levels = levels_of(file, result)
+    bottom = file.environment.depth
+    cells = _Cells(bottom)
+    pieces = list(zip(file.pieces, levels.lengths, levels.depths, strict=True))
+    parts = [_part(cells, levels, *piece) for piece in pieces]
+    sea = Row("sea surface", "", cells.at(0.0))
+    return Schematic(
+        title=one_line(file.name),
+        subtitle=_subtitle(file),
+        note=levels.note,
+        columns=cells.columns,
+        parts=tuple(_joined(parts, file.pieces)),
+        surface=levels.surface,
+        towed_by=_towed_by(file, cells),
+        sea=sea if file.environment.fluid == "water" else None,
+        seabed=None if bottom is None else Row("seabed", "", cells.at(bottom)),
+    )
+
+
+def one_line(text: str) -> str:
+    """A text in one line, what XML or a terminal cannot carry replaced by a mark."""
+    return printable(" ".join(text.split()))
+
+
+class _Cells:
+    """Writes the figures of a row; heights only where the depth of the seabed [m] is known."""
+
+    def __init__(self, bottom: float | None) -> None:
+        self._bottom = bottom
+        self.columns = tuple(name for name in HEADINGS if name != "height" or bottom is not None)
+
+    def at(self, depth: float) -> tuple[str, ...]:
+        """Of a place that has no length."""
+        return ("", *self.of(math.nan, depth)[1:])
+
+    def clamped(self, at: float, depth: float) -> tuple[str, ...]:
+        """Of a clamp: how far down its piece it sits, in place of a length."""
+        return (place_text(at), *self.of(math.nan, depth)[1:])
+
+    def of(self, length: float, depth: float) -> tuple[str, ...]:
+        """Of a piece."""
+        height = math.nan if self._bottom is None else self._bottom - depth
+        figures = {"cut_length": length, "depth": depth, "height": height}
+        return tuple(QUANTITIES[name].format(figures[name]) for name in self.columns)
+
+
+def _part(cells: _Cells, levels: Levels, piece: Piece, length: float, depth: float) -> Part:
+    sign = sign_of(piece.use, piece.label, piece.component)
+    if levels.surface and piece.index == 0 and sign.symbol is not Symbol.SPHERE:
+        sign = replace(sign, symbol=Symbol.BUOY)
+    clamps = tuple(
+        Clamped(
+            sign_of(clamp.use, clamp.label, clamp.component),
+            _row(clamp, cells.clamped(clamp.at, levels.clamps[clamp.place])),
+        )
+        for clamp in sorted(piece.clamps, key=lambda clamp: clamp.at)
+    )
+    row = _row(piece, cells.of(length, depth))
+    return Part(sign, (row.label,), (row,), clamps, length)
+
+
+def _row(of: Piece | Clamp, cells: tuple[str, ...]) -> Row:
+    name = one_line(of.component.name or of.use)
+    return Row(one_line(of.label), name, cells, strong=of.component.role == "instrument")
+
+
+def _joined(parts: list[Part], pieces: Sequence[Piece]) -> Iterator[Part]:
+    """The parts, those that are drawn as one made one."""
+    run: list[Part] = []
+    for part, piece in zip(parts, pieces, strict=True):
+        if run and not _goes_with(run, part, pieces[piece.index - 1], piece):
+            yield _as_one(run)
+            run = []
+        run.append(part)
+    yield _as_one(run)
+
+
+def _goes_with(run: list[Part], part: Part, above: Piece, piece: Piece) -> bool:
+    if part.clamps or run[-1].clamps or part.sign != run[-1].sign:
+        return False
+    if part.sign.symbol is Symbol.RELEASE:
+        return len(run) == 1
+    same = above.use == piece.use and above.component == piece.component
+    return part.sign.symbol in _JOINED and same and alike(run[-1].labels[0], part.labels[0])
+
+
+def _as_one(run: list[Part]) -> Part:
+    first = run[0]
+    if len(run) == 1:
+        return first
+    labels = tuple(label for part in run for label in part.labels)
+    if first.sign.symbol is Symbol.RELEASE:
+        pair = replace(first.sign, symbol=Symbol.RELEASE_PAIR)
+        return replace(first, sign=pair, labels=labels, rows=tuple(part.rows[0] for part in run))
+    length, *others = first.rows[0].cells
+    row = replace(
+        first.rows[0], label=together(list(labels)), cells=(f"{len(run)} × {length}", *others)
+    )
+    sign = replace(first.sign, count=len(run) * first.sign.count)
+    return replace(first, sign=sign, labels=labels, rows=(row,))
+
+
+def _subtitle(file: MooringFile) -> str:
+    """Water and place of a mooring; speed of a tow."""
+    said = []
+    if file.tow is not None:
+        said.append(f"towed at {say('speed', file.tow.speed)} towards {file.tow.toward:.0f}°")
+    if file.environment.depth is not None:
+        said.append(f"{say('depth', file.environment.depth)} of water")
+    if file.position is not None:
+        latitude, longitude = file.position.latitude, file.position.longitude
+        said.append(f"{abs(latitude):.4f}° {'N' if latitude >= 0.0 else 'S'}")
+        said.append(f"{abs(longitude):.4f}° {'E' if longitude >= 0.0 else 'W'}")
+    return " · ".join(said)
+
+
+def _towed_by(file: MooringFile, cells: _Cells) -> Row | None:
+    if file.tow is None:
+        return None
+    name = "ship" if file.environment.fluid == "water" else "helicopter"
+    return Row(name, "", cells.at(-file.tow.height))
+
+
+_NOT_TO_SCALE = "Not to scale. Depth and height: of the upper end,"
+_SOLVED = f"{_NOT_TO_SCALE} as solved in the current."
+_UPRIGHT = f"{_NOT_TO_SCALE} upright and unstretched."
+_UNKNOWN = "Not to scale. Depths are known once the line is solved."
+
+
+@dataclass(frozen=True)
+class Levels:
+    """Where the pieces are; NaN where that is unknown.
+
+    Attributes
+    ----------
+    lengths, depths : tuple of float
+        Cut length of each piece, and depth of its upper end [m].
+    clamps : mapping
+        Depth of each clamped instrument [m].
+    surface : bool
+        Whether the first piece floats at the surface.
+    note : str
+        What the depths are.
+    """
+
+    lengths: tuple[float, ...]
+    depths: tuple[float, ...]
+    clamps: Mapping[Place, float]
+    surface: bool
+    note: str
+
+
+def levels_of(file: MooringFile, result: Result | TowResult | None) -> Levels:
+    """Levels as solved; else of the upright, unstretched line.
+
+    Without a result they are unknown in a tow, and where the line reaches the surface.
+    """
+    if result is not None:
+        return Levels(
+            tuple(float(length) for length in result.components.cut_length),
+            tuple(float(depth) for depth in result.components.depth_top),
+            {clamp.place: clamp.depth for clamp in result.clamps},
+            result.type == "surface",
+            _SOLVED,
+        )
+    lengths = _cut_lengths(file)
+    depths = _upright(file, lengths)
+    surface = file.tow is None and (depths[0] <= 0.0 or _has_a_hull(file))
+    if surface:
+        depths = (math.nan,) * len(depths)
+    clamps = {
+        clamp.place: depth + clamp.at
+        for piece, depth in zip(file.pieces, depths, strict=True)
+        for clamp in piece.clamps
+    }
+    note = _UNKNOWN if math.isnan(depths[0]) else _UPRIGHT
+    return Levels(lengths, depths, clamps, surface, note)
+
+
+def _cut_lengths(file: MooringFile) -> tuple[float, ...]:
+    """As the file gives them; of a piece cut to fit, what is left for it."""
+    known = sum(piece.length for piece in file.pieces if piece.length is not None)
+    rest = math.nan
+    for piece in file.pieces:
+        if piece.fit_top_depth is not None and file.environment.depth is not None:
+            rest = file.environment.depth - piece.fit_top_depth - known
+    return tuple(rest if piece.length is None else piece.length for piece in file.pieces)
+
+
+def _upright(file: MooringFile, lengths: tuple[float, ...]) -> tuple[float, ...]:
+    """Depths of the upper ends above an anchor on the seabed."""
+    if file.tow is not None or file.environment.depth is None:
+        return (math.nan,) * len(lengths)
+    heights = list(accumulate(reversed(lengths)))
+    return tuple(file.environment.depth - height for height in reversed(heights))
+
+
+def _has_a_hull(file: MooringFile) -> bool:
+    """Whether the first piece is made to float at the surface."""
+    top = file.pieces[0].component
+    return isinstance(top, Rigid) and not (top.hull is None and top.wind_area is None)

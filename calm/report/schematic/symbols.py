@@ -1,0 +1,318 @@
+"""The symbols of a schematic as SVG, each about an origin through which the line runs upright."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from calm.report.schematic.pen import FAINT, INK, Pen
+from calm.report.schematic.sign import BALLS, Sign, Symbol
+
+# Fills differ in lightness too, so that they can be told apart without colour.
+_FLOAT, _GLASS, _INSTRUMENT, _RELEASE = "#f4b13e", "#ffe6a3", "#d6e4f0", "#7fb69c"
+_STEEL, _CONCRETE, _DARK = "#97a2ab", "#d3d5d6", "#46515b"
+
+_MOST_BALLS, _MOST_WHEELS, _MOST_CONNECTORS = 14, 6, 3
+_BALL, _BALL_PITCH, _BALL_ASIDE = 6.5, 8.0, 5.5
+_WHEEL = 7.0
+_BEAM = 11.0
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A symbol as it is drawn.
+
+    Attributes
+    ----------
+    height, reach : float
+        Its height, and how far it reaches to the right of the line.
+    draw : callable
+        Draws it about the origin of a pen.
+    """
+
+    height: float
+    reach: float
+    draw: Callable[[Pen], None]
+
+
+def figure_of(sign: Sign) -> Figure:
+    """The figure of a sign that is no cable or chain."""
+    if sign.symbol in BALLS:
+        figure = _pack(sign)
+    elif sign.symbol is Symbol.WHEELS:
+        figure = _wheels(min(sign.count, _MOST_WHEELS))
+    elif sign.symbol in _CONNECTORS and sign.count > 1:
+        figure = _row(_FIGURES[sign.symbol], min(sign.count, _MOST_CONNECTORS))
+    else:
+        figure = _FIGURES[sign.symbol]
+    return _sounding(figure, sign) if sign.sounding else figure
+
+
+def _sounding(figure: Figure, sign: Sign) -> Figure:
+    """A figure with its ADCP: the sound that goes up or down, or its transducers alone."""
+    shift = _BEAM / 2 * (sign.up - sign.down)
+
+    def draw(pen: Pen) -> None:
+        for way in [-1.0] * sign.up + [1.0] * sign.down:
+            start = shift + way * figure.height / 2
+            for slope in (-1.0, -0.35, 0.35, 1.0):
+                pen.line(4.0 * slope, start, 12.0 * slope, start + way * _BEAM,
+                         stroke_dasharray="2.5 1.5", stroke_width=0.9)  # fmt: skip
+        figure.draw(pen.group(0.0, shift))
+        for x in (-4.5, 0.0, 4.5):
+            pen.circle(x, shift, 1.9, fill=_DARK, stroke="none")
+
+    return Figure(figure.height + _BEAM * (sign.up + sign.down), figure.reach, draw)
+
+
+def _row(figure: Figure, count: int) -> Figure:
+    """The same figure several times, one below the other."""
+
+    def draw(pen: Pen) -> None:
+        for number in range(count):
+            figure.draw(pen.group(0.0, (number - (count - 1) / 2) * figure.height))
+
+    return Figure(count * figure.height, figure.reach, draw)
+
+
+def _pack(sign: Sign) -> Figure:
+    """Balls in turn left and right of their chain."""
+    count = min(sign.count, _MOST_BALLS)
+    fill = _GLASS if sign.symbol is Symbol.GLASS else _FLOAT
+
+    def draw(pen: Pen) -> None:
+        for number in range(count):
+            x = 0.0 if count == 1 else (_BALL_ASIDE if number % 2 else -_BALL_ASIDE)
+            y = (number - (count - 1) / 2) * _BALL_PITCH
+            pen.circle(x, y, _BALL, fill=fill)
+            pen.line(x - _BALL, y, x + _BALL, y)
+            if sign.symbol is Symbol.GLASS:
+                pen.line(x, y - _BALL, x, y + _BALL, stroke_width=0.7)
+
+    height = 2 * _BALL + (count - 1) * _BALL_PITCH + 3.0
+    return Figure(height, _BALL if count == 1 else _BALL + _BALL_ASIDE, draw)
+
+
+def _wheels(count: int) -> Figure:
+    """Railway wheels or rotors, one on the other, on their rod."""
+    height = count * _WHEEL + 8.0
+
+    def draw(pen: Pen) -> None:
+        pen.box(0.0, -height / 2 + 5.0, 5.0, 10.0, fill=_DARK)
+        for number in range(count):
+            y = height / 2 - (number + 0.5) * _WHEEL
+            pen.box(0.0, y - 1.7, 28.0, 3.6, fill=_STEEL)
+            pen.box(0.0, y + 1.7, 42.0, 3.6, fill=_STEEL, rx=1.0)
+
+    return Figure(height, 21.0, draw)
+
+
+def _sphere(pen: Pen) -> None:
+    pen.circle(0.0, 0.0, 17.0, fill=_FLOAT)
+    pen.path("M-17 0Q0 7 17 0", fill="none", stroke_width=0.9)
+
+
+def _foam(pen: Pen) -> None:
+    pen.box(0.0, 0.0, 36.0, 32.0, rx=9.0, fill=_FLOAT)
+    for y in (-5.5, 5.5):
+        pen.line(-18.0, y, 18.0, y, stroke_width=0.9)
+
+
+def _streamlined(pen: Pen) -> None:
+    pen.path("M14 0L27 -10L27 10Z", fill=_DARK)
+    pen.path("M-25 0C-25 -9 -14 -12 -4 -12C8 -12 16 -6 21 0C16 6 8 12 -4 12C-14 12 -25 9 -25 0Z",
+             fill=_FLOAT)  # fmt: skip
+
+
+def _buoy(pen: Pen) -> None:
+    """A hull half in the water, which is at the origin, with a mast."""
+    pen.path("M-7 -9L-3 -31M7 -9L3 -31M-5 -20L5 -20", fill="none")
+    pen.box(0.0, -33.0, 10.0, 4.0, fill=_DARK)
+    pen.circle(0.0, -37.5, 2.4, fill=_FLOAT)
+    pen.path("M-32 -9L32 -9L27 5Q0 17 -27 5Z", fill=_FLOAT)
+
+
+def _current_meter(pen: Pen) -> None:
+    pen.box(0.0, 0.0, 12.0, 26.0, rx=2.5, fill=_INSTRUMENT)
+    pen.path("M6 -4L20 -11L25 -11L25 11L20 11L6 4Z", fill=_INSTRUMENT)
+    pen.line(0.0, -9.0, 0.0, 9.0, stroke_width=0.8)
+
+
+def _adcp(pen: Pen) -> None:
+    pen.box(0.0, 0.0, 15.0, 20.0, fill=_INSTRUMENT)
+    pen.path("M-7.5 -10L-11 -15L11 -15L7.5 -10Z", fill=_INSTRUMENT)
+    pen.path("M-7.5 10L-11 15L11 15L7.5 10Z", fill=_INSTRUMENT)
+
+
+def _ctd(pen: Pen) -> None:
+    pen.box(0.0, 0.0, 18.0, 28.0, fill="white", stroke_width=0.9)
+    pen.box(0.0, 2.0, 8.0, 20.0, rx=2.0, fill=_INSTRUMENT)
+    pen.box(0.0, -10.5, 4.0, 5.0, fill=_DARK)
+
+
+def _trap(pen: Pen) -> None:
+    pen.path("M-19 -19L19 -19L5 8L-5 8Z", fill=_INSTRUMENT)
+    for x in (-10.0, 0.0, 10.0):
+        pen.line(x, -19.0, 0.45 * x, -9.0, stroke_width=0.8)
+    for x in (-9.0, -3.0, 3.0, 9.0):
+        pen.box(x, 15.0, 4.0, 8.0, rx=1.5, fill="white", stroke_width=0.9)
+    pen.box(0.0, 9.5, 26.0, 3.0, fill=_DARK)
+
+
+def _instrument(pen: Pen) -> None:
+    pen.box(0.0, 0.0, 13.0, 28.0, rx=3.0, fill=_INSTRUMENT)
+    pen.line(-6.5, -7.0, 6.5, -7.0, stroke_width=0.9)
+
+
+def _release(pen: Pen) -> None:
+    pen.box(0.0, -4.0, 12.0, 28.0, rx=2.5, fill=_RELEASE)
+    pen.line(-6.0, -11.0, 6.0, -11.0, stroke_width=0.9)
+    pen.path("M0 10L0 13A3.2 3.2 0 1 1 -3.2 16", fill="none", stroke_width=1.8)
+
+
+def _release_pair(pen: Pen) -> None:
+    pen.box(0.0, -18.0, 30.0, 3.0, fill=_DARK)
+    pen.box(0.0, 18.0, 30.0, 3.0, fill=_DARK)
+    for x in (-9.0, 9.0):
+        pen.line(x, -17.0, x, 17.0)
+        pen.box(x, -2.0, 11.0, 26.0, rx=2.5, fill=_RELEASE)
+        pen.line(x - 5.5, -9.0, x + 5.5, -9.0, stroke_width=0.9)
+
+
+def _shackle(pen: Pen) -> None:
+    pen.path("M-4 -4.5L-4 1A4 4 0 0 0 4 1L4 -4.5", fill="white", stroke_width=1.8)
+    pen.line(-6.0, -4.0, 6.0, -4.0, stroke_width=2.0)
+
+
+def _swivel(pen: Pen) -> None:
+    pen.circle(0.0, -5.0, 3.4, fill="white", stroke_width=1.6)
+    pen.circle(0.0, 5.0, 3.4, fill="white", stroke_width=1.6)
+    pen.box(0.0, 0.0, 11.0, 4.0, fill=_STEEL)
+
+
+def _link(pen: Pen) -> None:
+    pen.draw("ellipse", cx=0.0, cy=0.0, rx=3.6, ry=5.0, fill="white", stroke_width=1.8)
+
+
+def _block(pen: Pen) -> None:
+    pen.path("M-17 -8L17 -8L21 12L-21 12Z", fill=_CONCRETE)
+    pen.path("M-4 -8A4 4 0 0 1 4 -8", fill="none", stroke_width=2.0)
+    for x, y in ((-10.0, -2.0), (-3.0, 5.0), (5.0, -3.0), (11.0, 4.0), (-13.0, 7.0), (3.0, 9.0)):
+        pen.circle(x, y, 0.9, fill=INK, stroke="none")
+
+
+def _body(pen: Pen) -> None:
+    pen.box(0.0, 0.0, 28.0, 24.0, rx=2.0, fill=_INSTRUMENT)
+    pen.path("M-14 -12L14 12M14 -12L-14 12", fill="none", stroke_width=0.7)
+
+
+_CONNECTORS = (Symbol.SHACKLE, Symbol.SWIVEL, Symbol.LINK)
+_FIGURES = {
+    Symbol.SPHERE: Figure(36.0, 17.0, _sphere),
+    Symbol.FOAM: Figure(34.0, 18.0, _foam),
+    Symbol.STREAMLINED: Figure(28.0, 27.0, _streamlined),
+    Symbol.BUOY: Figure(26.0, 32.0, _buoy),
+    Symbol.CURRENT_METER: Figure(29.0, 25.0, _current_meter),
+    Symbol.ADCP: Figure(32.0, 11.0, _adcp),
+    Symbol.CTD: Figure(30.0, 9.0, _ctd),
+    Symbol.TRAP: Figure(42.0, 19.0, _trap),
+    Symbol.INSTRUMENT: Figure(30.0, 6.5, _instrument),
+    Symbol.RELEASE: Figure(40.0, 6.0, _release),
+    Symbol.RELEASE_PAIR: Figure(40.0, 15.0, _release_pair),
+    Symbol.SHACKLE: Figure(12.0, 6.0, _shackle),
+    Symbol.SWIVEL: Figure(18.0, 5.5, _swivel),
+    Symbol.LINK: Figure(11.0, 3.6, _link),
+    Symbol.BLOCK: Figure(24.0, 19.0, _block),
+    Symbol.BODY: Figure(26.0, 14.0, _body),
+}
+
+
+_WATER, _SURFACE, _SAND, _HULL = "#eff6fb", "#2f7fb5", "#e3d6b8", "#5b6b7a"
+_ROPE = "#f3e7c4"
+_STRAND = 4.6
+_SEABED = 22.0
+_LINK = 7.0
+_WAVE = 9.0
+
+
+def draw_cable(pen: Pen, symbol: Symbol, x: float, top: float, bottom: float) -> None:
+    """A wire as a solid line, a rope as a laid one, a chain by its links."""
+    if symbol is Symbol.WIRE:
+        pen.line(x, top, x, bottom, stroke_width=2.4)
+    elif symbol is Symbol.ROPE:
+        pen.line(x, top, x, bottom, stroke_width=5.6)
+        pen.line(x, top, x, bottom, stroke=_ROPE, stroke_width=3.6)
+        count = max(1, round((bottom - top) / _STRAND))
+        pitch = (bottom - top) / count
+        strands = (f"M{x - 1.8:g} {top + n * pitch + 3.8:.2f}l3.6 -3" for n in range(count))
+        pen.path("".join(strands), fill="none", stroke_width=1.1)
+    else:
+        _draw_chain(pen, x, top, bottom)
+
+
+def _draw_chain(pen: Pen, x: float, top: float, bottom: float) -> None:
+    """Links in turn seen from the front and from the side."""
+    count = max(3, round((bottom - top) / _LINK))
+    pitch = (bottom - top) / count
+    for number in range(count):
+        y = top + (number + 0.5) * pitch
+        if number % 2:
+            pen.line(x, y - 0.75 * pitch, x, y + 0.75 * pitch, stroke_width=2.4)
+    for number in range(0, count, 2):
+        y = top + (number + 0.5) * pitch
+        pen.draw("ellipse", cx=x, cy=y, rx=3.2, ry=0.62 * pitch, fill="none", stroke_width=1.7)
+
+
+def draw_water(pen: Pen, width: float, top: float, bottom: float) -> None:
+    """The water behind the line."""
+    height = bottom - top
+    pen.box(width / 2, (top + bottom) / 2, width, height, fill=_WATER, stroke="none")
+
+
+def draw_surface(pen: Pen, width: float, y: float) -> None:
+    """The waves of the sea surface."""
+    waves = int(width / _WAVE / 2)
+    step = width / waves / 2
+    path = f"M0 {y:g}" + f"q{step / 2:.3g} -4 {step:.3g} 0t{step:.3g} 0" * waves
+    pen.path(path, fill="none", stroke=_SURFACE, stroke_width=1.3)
+
+
+def draw_seabed(pen: Pen, width: float, y: float) -> None:
+    """The seabed, hatched."""
+    pen.box(width / 2, y + _SEABED / 2, width, _SEABED, fill=_SAND, stroke="none")
+    for number in range(int(width / 10)):
+        x = 10.0 * number + 9.0
+        pen.line(x, y, x - 7.0, y + 8.0, stroke_width=0.7)
+    pen.line(0.0, y, width, y, stroke_width=1.6)
+
+
+def draw_ship(pen: Pen) -> None:
+    """A ship that tows from its A-frame, whose sheave is at the origin; 26 above the water."""
+    pen.path("M-62 16L-14 16L-12 32Q-36 36 -56 32Z", fill=_HULL)
+    pen.path("M-50 16L-50 3L-30 3L-30 16Z", fill="white")
+    pen.path("M-46 7L-34 7", stroke_width=2.2)
+    pen.path("M-42 3L-42 -8M-45 -4L-39 -4", fill="none")
+    pen.path("M-16 16L0 0M-24 16L0 0", fill="none", stroke_width=1.8)
+    pen.circle(0.0, 0.0, 3.0, fill="white", stroke_width=1.6)
+
+
+def draw_helicopter(pen: Pen) -> None:
+    """A helicopter whose hook is at the origin."""
+    pen.path("M-40 -26L-8 -22L-8 -17L-40 -23Z", fill=_HULL)
+    pen.path("M-40 -33L-40 -19", fill="none", stroke_width=2.0)
+    pen.path("M-14 -24Q-8 -31 4 -31Q20 -30 22 -19Q20 -11 8 -9L-6 -9Q-14 -11 -14 -24Z", fill=_HULL)
+    pen.path("M8 -27Q17 -26 18 -19L8 -19Z", fill="white", stroke_width=0.9)
+    pen.path("M2 -31L2 -37M-30 -37L34 -37", fill="none", stroke_width=2.0)
+    pen.path("M-12 -3L16 -3M-5 -9L-6 -3M9 -9L10 -3", fill="none")
+    pen.line(0.0, -9.0, 0.0, 0.0)
+
+
+def draw_leader(pen: Pen, start: float, end: float, y: float) -> None:
+    """A thin line from a symbol to its text."""
+    pen.line(start, y, end, y, stroke=FAINT, stroke_width=0.8)
+
+
+def draw_clamp(pen: Pen, reach: float) -> None:
+    """What holds an instrument beside the line, which is at the origin."""
+    for y in (-3.5, 3.5):
+        pen.line(0.0, y, reach, y, stroke=INK, stroke_width=1.6)

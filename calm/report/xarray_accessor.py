@@ -1,0 +1,77 @@
+"""A batch result in xarray: `dataset.calm`, from when this module is imported."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import xarray as xr
+
+from calm.batch.result import place_of
+
+if TYPE_CHECKING:
+    import numpy as np
+    from matplotlib.figure import Figure
+
+
+@xr.register_dataset_accessor("calm")  # type: ignore[no-untyped-call]
+class BatchAccessor:
+    """What a batch result gives for a part of the line, by its label in the mooring file.
+
+    ``top`` is the first component, even where another part is labelled so. Nothing is loaded
+    before it is asked for.
+
+    >>> dataset.calm.knockdown("adcp").max()  # doctest: +SKIP
+    """
+
+    def __init__(self, dataset: xr.Dataset) -> None:
+        self._dataset = dataset
+
+    def depth(self, label: str) -> xr.DataArray:
+        """(time) depth of a clamp, or of the upper end of a component [m].
+
+        Raises
+        ------
+        UsageError
+            No part of the line is called so, here and below.
+        """
+        prefix, index = place_of(self._dataset, label)
+        return self._named("clamp_depth" if prefix else "depth_top", prefix, index, "depth", label)
+
+    def knockdown(self, label: str) -> xr.DataArray:
+        """(time) how much deeper than in still water [m]."""
+        prefix, index = place_of(self._dataset, label)
+        return self._named(f"{prefix}knockdown", prefix, index, "knockdown", label)
+
+    def tilt(self, label: str) -> xr.DataArray:
+        """(time) of a component, or of the line at a clamp, from the vertical [degrees]."""
+        prefix, index = place_of(self._dataset, label)
+        return self._named(f"{prefix}tilt", prefix, index, "tilt", label)
+
+    def tension(self, label: str) -> xr.DataArray:
+        """(time) at a clamp, or the greater of those at both ends of a component [N]."""
+        prefix, index = place_of(self._dataset, label)
+        if prefix:
+            return self._named("clamp_tension", prefix, index, "tension", label)
+        upper = self._named("tension_top", prefix, index, "tension", label)
+        lower = self._named("tension_bottom", prefix, index, "tension", label)
+        greater: xr.DataArray = upper.where(upper >= lower, lower)
+        return greater
+
+    def plot_shape(self, *, time: str | np.datetime64) -> Figure:
+        """Draw the line at the time of the profile nearest to one.
+
+        Raises
+        ------
+        UsageError
+            The profile has no equilibrium.
+        """
+        from calm.report.batch_figures import draw_shape
+
+        return draw_shape(self._dataset, time)
+
+    def _named(
+        self, variable: str, prefix: str, index: int, quantity: str, label: str
+    ) -> xr.DataArray:
+        dimension = "clamp" if prefix else "component"
+        column = self._dataset[variable].isel({dimension: index}, drop=True).rename(quantity)
+        return column.assign_attrs(column.attrs | {"long_name": f"{quantity} of {label}"})

@@ -1,0 +1,282 @@
+"""Compare two moorings that others have solved: S1000, and CDMS-1 of Berteaux's manual (C16).
+
+S1000 is 1000 m of stretchy cable in a sheared current; two other programs have solved CDMS-1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache, partial
+from math import atan2, degrees, log2, pi, radians
+
+import numpy as np
+
+from calm.physics.line import Floats, Integers, Line, Water
+from calm.solve import Settings, Solution, solve_mooring
+from calm.verification.case_lines import (
+    GRAVITY,
+    HALF_DENSITY,
+    LinePiece,
+    cable,
+    line_of,
+    point,
+    profile,
+    sphere_drag,
+)
+from calm.verification.published_case import Case, CaseColumn, Kind, Source, table
+
+S1000_SEA = profile(1100.0, [(0.0, 1.0), (200.0, 0.6), (500.0, 0.2), (1100.0, 0.05)])
+
+DEPTH, OFFSET, TENSION, KNOCKDOWN = 131.4256, 237.3218, 2068.154, 32.1756
+"""Of the float [m], of the float [m], at the anchor [N], of the float [m]."""
+
+_FINEST = 0.02
+
+
+def s1000_mooring(parts: int = 1) -> Line:
+    """Return the line, its cable in equal parts."""
+    part = cable(1000.0 / parts, 0.01, 2.0, 1.3, 0.01, 1.0 / 4e6)
+    return line_of(point(4000.0, HALF_DENSITY * 0.6), *[part] * parts)
+
+
+@cache
+def solved_s1000(degrees: float) -> Solution:
+    """Return the mooring at an angle step [degrees]."""
+    return solve_mooring(s1000_mooring(), S1000_SEA, Settings(radians(degrees), tolerance=1e-9))
+
+
+@cache
+def _still() -> Solution:
+    return solve_mooring(s1000_mooring(), S1000_SEA.still(), Settings(tolerance=1e-9))
+
+
+def float_depth(solution: Solution) -> float:
+    """Return the depth of the float [m]."""
+    return -float(solution.position[0, 2])
+
+
+def _figures(place: float, tension: float) -> tuple[CaseColumn[Solution], ...]:
+    return (
+        CaseColumn("depth of the float", "m", place, float_depth),
+        CaseColumn("offset of the float", "m", place, lambda s: float(s.position[0, 0])),
+        CaseColumn("tension at the anchor", "N", tension, lambda s: float(s.tension[-1])),
+        CaseColumn("knockdown", "m", place, lambda s: float_depth(s) - float_depth(_still())),
+    )
+
+
+def _order(coarse: float, fine: float) -> float:
+    """Order at which the depth of the float comes to the known one."""
+    errors = [abs(float_depth(solved_s1000(degrees)) - DEPTH) for degrees in (coarse, fine)]
+    return log2(errors[0] / errors[1]) / log2(coarse / fine)
+
+
+_EXPECTED = DEPTH, OFFSET, TENSION, KNOCKDOWN
+
+S1000 = Source(
+    "S1000",
+    """The reference case of accuracy and speed, `lines/s1000.yaml`: a float of 4000 N and 0.6 m² of
+drag area on 1000 m of cable, 10 mm, 2 N/m, Cn 1.3, Ct 0.01, EA 4 MN, in 1100 m of water that flows
+at 1.0, 0.6, 0.2 and 0.05 m/s at 0, 200, 500 and 1100 m. Its figures come from an initial-value
+integration of the differential equations with bracketing; the tests hold a second independent
+integration against them.""",
+    (
+        *table(
+            _figures(5e-5 * 1100.0, 2e-4 * TENSION),
+            [("S1000 at 1°", lambda: solved_s1000(1.0), _EXPECTED)],
+            "What CALM promises at its default angle step: 5e-5 of the water depth, 2e-4 of the "
+            "tension.",
+            Kind.INDEPENDENT,
+        ),
+        *table(
+            _figures(1e-4, 1e-3),
+            [("S1000 at 0.02°", lambda: solved_s1000(_FINEST), _EXPECTED)],
+            "One unit of the last digit printed: half for its rounding, half for the march.",
+            Kind.INDEPENDENT,
+        ),
+        Case("S1000 order of convergence, 2° to 0.5°", 2.0, "", 0.25,
+             "Second order, stirred by cuts at the levels of the profile, which shift the "
+             "segments.",
+             lambda: _order(2.0, 0.5), Kind.PROPERTY),
+    ),
+    picture="verification-s1000",
+)  # fmt: skip
+
+
+_SEABED = 525.0
+_STILL = np.zeros(3)
+CDMS_1_SEA = Water(
+    depth=_SEABED, level=np.array([0.0, 200.0, _SEABED]), u=np.array([1.5, 0.6, 0.1]), v=_STILL,
+    w=_STILL, density=np.array([1024.0, 1025.0, 1026.0]), gravity=GRAVITY,
+)  # fmt: skip
+_FIRST_KEVLAR, _THIRD_METER, _FIRST_GLASS = 3, 6, 8
+
+
+@dataclass(frozen=True)
+class SolvedCdms1:
+    """Hold the mooring as CALM finds it; forces are in kilograms-force of the case's gravity.
+
+    Attributes
+    ----------
+    offset, height : (k+1,) of every node downstream of the anchor and above the seabed [m]
+    tension : (k+1,) at the nodes [kgf]
+    centre : (n, 2) offset and height of the middle of each piece [m]
+    last : (n,) node at the lower end of each piece
+    stretched : (n,) length of each piece under load [m]
+    horizontal, vertical : pull on the anchor [kgf]
+    """
+
+    offset: Floats
+    height: Floats
+    tension: Floats
+    centre: Floats
+    last: Integers
+    stretched: Floats
+    horizontal: float
+    vertical: float
+
+    @property
+    def nodes_of_tensions(self) -> tuple[int, int, int]:
+        """The nodes of printed tensions: below the sphere and the third meter, at the anchor."""
+        return int(self.last[0]), int(self.last[_THIRD_METER]), int(self.last[-1])
+
+    @property
+    def lean(self) -> float:
+        """Angle of the pull on the anchor from the vertical [degrees]."""
+        return degrees(atan2(self.horizontal, self.vertical))
+
+
+def _sphere(diameter: float, lift: float, cx: float) -> LinePiece:
+    drag = sphere_drag(diameter, cx)
+    return LinePiece(diameter, False, lift * GRAVITY, drag, directional=False)
+
+
+def _rope(length: float, diameter: float, weight: float, modulus: float, ct: float) -> LinePiece:
+    compliance = 1.0 / (modulus * pi / 4.0 * diameter**2) if modulus else 0.0
+    return cable(length, diameter, weight * GRAVITY, 1.3, ct, compliance)
+
+
+def cdms_1_mooring(ct: float = 0.0) -> Line:
+    """Return the line, its cables with a Ct on their surface."""
+    meter = LinePiece(2.0, False, -20.0 * GRAVITY, HALF_DENSITY * 1.2 * 0.2 * 2.0)
+    kevlar = [_rope(length, 0.007, 0.009, 6.9e10, ct) for length in (98.0, 98.0, 212.9)]
+    return line_of(
+        _sphere(1.2, 682.0, 0.5),
+        _rope(10.0, 0.007, 0.12, 1.38e11, ct),
+        meter, kevlar[0], meter, kevlar[1], meter, kevlar[2],
+        *[_sphere(0.51, 23.0, 0.95)] * 10,
+        meter,  # the release has the meters' figures
+        _rope(4.8, 0.022, 2.33, 0.0, ct),
+        anchor_height=0.55,
+    )  # fmt: skip
+
+
+@cache
+def solved_cdms_1() -> SolvedCdms1:
+    """CALM's answer at its default settings."""
+    solution = solve_mooring(cdms_1_mooring(), CDMS_1_SEA)
+    offset, height = solution.position[:, 0], _SEABED + solution.position[:, 2]
+    first, last = solution.piece_nodes.T
+    place = np.column_stack([offset, height])
+    segment = np.linalg.norm(np.diff(solution.position, axis=0), axis=1)
+    horizontal, _, vertical = (solution.force[-1] / GRAVITY).tolist()
+    return SolvedCdms1(
+        offset=offset,
+        height=height,
+        tension=solution.tension / GRAVITY,
+        centre=(place[first] + place[last]) / 2.0,
+        last=last,
+        stretched=np.add.reduceat(segment, first),
+        horizontal=horizontal,
+        vertical=vertical,
+    )
+
+
+_HEIGHT = CaseColumn[SolvedCdms1]("height of the sphere", "m", 1.0, lambda a: float(a.centre[0, 1]))
+_OFFSET = CaseColumn[SolvedCdms1]("offset of the sphere", "m", 0.2, lambda a: float(a.centre[0, 0]))
+_PLACES = ("below the sphere", "below the third meter", "at the anchor")
+
+
+def _tension(number: int, answer: SolvedCdms1) -> float:
+    return float(answer.tension[answer.nodes_of_tensions[number]])
+
+
+def _tensions(share: float) -> list[CaseColumn[SolvedCdms1]]:
+    return [
+        CaseColumn(f"tension {place}", "kgf", share, partial(_tension, number), True)
+        for number, place in enumerate(_PLACES)
+    ]
+
+
+PROGRAMS = {
+    "SSMOOR": (432.4, 71.0, 682.9, 620.4, 812.8),
+    "MD&D": (432.07, 75.5, 682.9, 631.7, 827.2),
+    "independent": (431.82, 76.81, 682.9, 621.3, 815.06),
+}
+"""Height and offset of the sphere [m]; tension below it, below the third meter, at the anchor
+[kgf], as printed."""
+
+_PROGRAM = (
+    "Heights 1 m and tensions 2 %: the two programs carry 1 to 4 % of their own and disagree with "
+    "each other by as much."
+)
+_RANGE = "The programs' range, with half a unit of their last digit."
+
+CDMS_1 = Source(
+    "CDMS-1",
+    """An intermediate mooring of the user manual of Berteaux's CDMS package (C16), with the answers
+of Berteaux's SSMOOR and of R. Dewey's *Mooring Design & Dynamics* (MD&D), both printed in the MD&D
+users guide. A sphere of 1.2 m; 10 m of wire; three current meters, 98 m of Kevlar below the first
+and the second and 212.9 m below the third; ten glass balls; a release; 4.8 m of chain; the anchor.
+525 m of water, 1.5, 0.6 and 0.1 m/s at heights of 525, 325 and 0 m.
+
+**Why the programs differ.** MD&D's tensions are 2 % above SSMOOR's from the third meter down. The
+gap is the downward part of the normal drag: on an inclined line a drag normal to the line has a
+component that pushes it down and takes tension off its lower part. SSMOOR has it, CALM has it; the
+drag law of the MD&D version that solved the case (Cd cos³ θ and 0.01 π θ/90°, both along the
+current) has not. The users guide puts the gap down to |U|Uᵢ against Uᵢ², which cannot differ in a
+current of one direction. An independent solution with rigid links and segments of 0.25 to 1 m
+gives 815.1 kgf at the anchor with normal drag, 826.6 with MD&D's law: each within 0.3 % of the
+program it stands for. SSMOOR's offset is 4 to 6 m shorter than everyone else's. CALM takes normal
+drag and no tangential drag here; it agrees with the independent solution to 0.1 m in height and
+0.2 % in tension.""",
+    (
+        *(
+            case
+            for name in ("SSMOOR", "MD&D")
+            for case in table(
+                [_HEIGHT, *_tensions(0.02)],
+                [(f"C16 {name}", solved_cdms_1, (PROGRAMS[name][0], *PROGRAMS[name][2:]))],
+                _PROGRAM,
+                Kind.PUBLISHED,
+            )
+        ),
+        Case("C16 both programs: offset of the sphere", 74.0, "m", 3.0,
+             "71.0 m to 77.0 m: from SSMOOR's 71.0 past MD&D's 75.5 to the independent 76.8.",
+             lambda: _OFFSET.of(solved_cdms_1()), Kind.PUBLISHED),
+        Case("C16 both programs: angle at the anchor", 9.3, "°", 0.25, f"9.1° to 9.5°. {_RANGE}",
+             lambda: solved_cdms_1().lean, Kind.PUBLISHED),
+        *table(
+            [replace(_HEIGHT, tolerance=0.1), _OFFSET, *_tensions(0.002)],
+            [("C16 independent solution", solved_cdms_1, PROGRAMS["independent"])],
+            "Heights 0.1 m, offset 0.2 m, tensions 0.2 %: the figures printed for the mooring fix "
+            "it no better.",
+            Kind.INDEPENDENT,
+        ),
+        *(
+            Case(f"C16 independent solution: {name}", kgf, "kgf", 0.002 * kgf,
+                 "0.2 %: the figures printed for the mooring fix it no better.", got,
+                 Kind.INDEPENDENT)
+            for name, kgf, got in (
+                ("anchor, horizontal", 131.6, lambda: solved_cdms_1().horizontal),
+                ("anchor, vertical", 804.4, lambda: solved_cdms_1().vertical),
+            )
+        ),
+        Case("C16 printed: height of the first glass ball", 12.03, "m", 0.01,
+             "The centimetre it is printed to; the line below it hardly leans.",
+             lambda: float(solved_cdms_1().centre[_FIRST_GLASS, 1]), Kind.PUBLISHED),
+        Case("C16 printed: 98 m of Kevlar under load", 98.24, "m", 0.011,
+             "The centimetre it is printed to, and 2 % of the stretch for its tension.",
+             lambda: float(solved_cdms_1().stretched[_FIRST_KEVLAR]), Kind.PUBLISHED),
+    ),
+    picture="verification-cdms-1",
+)  # fmt: skip

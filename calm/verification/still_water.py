@@ -1,0 +1,237 @@
+"""Compare lines in still water: catenaries (C12 to C14), a stretched rope, a slack mooring.
+
+The rope (C15) hangs from its load and its own weight; the slack mooring (C22) has a watch circle.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from math import inf
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from calm.analytic.catenary import Catenary, between
+from calm.errors import NoEquilibrium
+from calm.physics.line import Line
+from calm.solve import Solution, solve_mooring
+from calm.verification.case_lines import (
+    FINE,
+    Ends,
+    LinePiece,
+    cable,
+    ends_of,
+    line_of,
+    point,
+    stream,
+)
+from calm.verification.published_case import PRINTED, Case, CaseColumn, Kind, Source, table
+
+_MARCH = (
+    "1e-6 of the line's length or of the pull; the float pulls with the printed forces, and the "
+    "march errs by less than that at an angle step of 0.1°."
+)
+
+_SUSPENDED = 15677.747, 26291.876
+_TAUT = 86912.281, 77703.619
+_TOUCHDOWN = 0.763277, 3.424639
+_DEPTH = 2.65
+_BUOYANCY = 10.0
+"""More than the touchdown case needs, so that the float lies at the surface [N]."""
+
+
+@cache
+def _suspended() -> Catenary:
+    return between(400.0, 300.0, 520.0, 50.0, 5e6)
+
+
+@cache
+def _taut() -> Catenary:
+    return between(400.0, 300.0, 490.0, 50.0, 5e6)
+
+
+@cache
+def _touchdown() -> Catenary:
+    return between(5.3, _DEPTH, 6.98, 1.036, 560e3, seabed=True)
+
+
+@cache
+def _level() -> Catenary:
+    return between(300.0, 0.0, 330.0, 20.0, inf)
+
+
+def _number(field: ArrayLike) -> float:
+    return float(np.asarray(field))
+
+
+def _sag() -> float:
+    _, z = _level().position(165.0)
+    return -float(z)
+
+
+def _pulled(pull: tuple[float, float], length: float, weight: float, stiffness: float) -> Line:
+    """Return a line without drag below a float that pulls sideways and up at 1 m/s."""
+    horizontal, vertical = pull
+    return line_of(
+        point(vertical, horizontal), LinePiece(length, True, -weight, compliance=1.0 / stiffness)
+    )
+
+
+@cache
+def _march(pull: tuple[float, float], length: float) -> Solution:
+    return solve_mooring(_pulled(pull, length, 50.0, 5e6), stream(600.0, 1.0), FINE)
+
+
+@cache
+def _march_to_the_seabed() -> Solution:
+    line = _pulled((_TOUCHDOWN[0], _BUOYANCY), 6.98, 1.036, 560e3)
+    return solve_mooring(line, stream(_DEPTH, 1.0), FINE)
+
+
+def _pulls(force: float) -> tuple[CaseColumn[Catenary], ...]:
+    return (
+        CaseColumn("horizontal pull", "N", force, lambda line: _number(line.horizontal)),
+        CaseColumn("vertical pull at the top", "N", force, lambda line: _number(line.vertical)),
+        CaseColumn("tension at the top", "N", force, lambda line: float(line.tension_top)),
+    )
+
+
+_LOWER_END = CaseColumn[Catenary](
+    "vertical pull at the lower end", "N", 5.5e-4, lambda line: float(line.vertical_bottom)
+)
+_GROUNDED = CaseColumn[Catenary](
+    "length on the seabed", "m", 5.5e-7, lambda line: float(line.grounded)
+)
+_SPAN = (
+    CaseColumn[Solution]("distance of the ends, march", "m", 5e-4, lambda line: ends_of(line).x),
+    CaseColumn[Solution]("height of the ends, march", "m", 5e-4, lambda line: ends_of(line).z),
+)
+_LANDED = (
+    CaseColumn[Solution]("distance of the ends, march", "m", 7e-6, lambda line: ends_of(line).x),
+    CaseColumn[Solution](
+        "vertical pull, march", "N", 3.4e-6, lambda line: line.buoyancy_used * _BUOYANCY
+    ),
+    CaseColumn[Solution](
+        "length on the seabed, march", "m", 7e-6, lambda line: line.grounded_length
+    ),
+    CaseColumn[Solution](
+        "tension at the anchor, march", "N", 8e-7, lambda line: float(line.tension[-1])
+    ),
+)
+
+CATENARIES = Source(
+    "Catenaries",
+    """The elastic catenary of M. Irvine, *Cable Structures* (1981), on four sets of figures (C12 to
+C14): ends 400 m apart and 300 m above each other, 50 N/m, EA 5 MN, once 520 m long and once
+stretched from 490 m; a line that comes down on a seabed without friction (the inputs are the
+public example of the Python package *pycatenary*: 5.3 m by 2.65 m, 6.98 m of 1.036 N/m, EA
+560 kN); a level span of 300 m, 330 m of inextensible line, 20 N/m. The figures are roots of the
+closed forms with residuals below 1e-12. They are held against `calm.analytic.catenary` and, where
+the line can be moored, against the march.""",
+    (
+        *table(
+            [*_pulls(5.5e-4), _LOWER_END],
+            [("C12 suspended", _suspended, (*_SUSPENDED, 30611.346, 291.876))],
+            PRINTED,
+            Kind.CLOSED_FORM,
+        ),
+        *table(
+            _pulls(5.5e-4),
+            [("C12 taut", _taut, (*_TAUT, 116583.005))],
+            PRINTED,
+            Kind.CLOSED_FORM,
+        ),
+        *table(
+            [*_pulls(5.5e-7), _GROUNDED],
+            [("C13 touchdown", _touchdown, (*_TOUCHDOWN, 3.508667, 3.674364))],
+            PRINTED,
+            Kind.CLOSED_FORM,
+        ),
+        *(
+            Case(f"C14 level span: {name}", expected, unit, 5.5e-7, PRINTED, got, Kind.CLOSED_FORM)
+            for name, expected, unit, got in (
+                ("horizontal pull", 3929.783686, "N", lambda: _number(_level().horizontal)),
+                ("greatest tension", 5131.588430, "N", lambda: float(_level().tension_top)),
+                ("sag", 60.090237, "m", _sag),
+            )
+        ),
+        *table(
+            _SPAN,
+            [
+                ("C12 suspended", lambda: _march(_SUSPENDED, 520.0), (400.0, 300.0)),
+                ("C12 taut", lambda: _march(_TAUT, 490.0), (400.0, 300.0)),
+            ],
+            _MARCH,
+            Kind.CLOSED_FORM,
+        ),
+        *table(
+            _LANDED,
+            [("C13 touchdown", _march_to_the_seabed, (5.3, 3.424639, 3.674364, 0.763277))],
+            _MARCH,
+            Kind.CLOSED_FORM,
+        ),
+    ),
+)  # fmt: skip
+
+
+_LENGTH, _WEIGHT, _LOAD, _STIFFNESS = 1000.0, 0.3, 2000.0, 97_817.4
+
+_WHY = (
+    "Half a unit of the last digit printed, and a tenth. Tension falls linearly along a hanging "
+    "rope, so the stretch of a segment at its mean tension is exact whatever the angle step."
+)
+
+
+HANGING_ROPE = line_of(
+    point(_LOAD + _WEIGHT * _LENGTH, 0.0),
+    LinePiece(_LENGTH, True, -_WEIGHT, compliance=1.0 / _STIFFNESS),
+)
+HANGING_SEA = stream(1100.0, 0.0)
+
+
+@cache
+def _hanging() -> Ends:
+    return ends_of(solve_mooring(HANGING_ROPE, HANGING_SEA))
+
+
+ELASTIC_HANG = Source(
+    "Elastic hang",
+    """A 19 mm nylon rope of 1000 m in still water (C15), 0.3 N/m, 2000 N at its lower end,
+EA 97 817.4 N (3.45e8 Pa on its section, the modulus of R. Dewey's *Mooring Design & Dynamics*):
+its elongation is (2000 L + 0.3 L²/2)/EA.""",
+    (
+        Case("C15 elongation", 21.97973, "m", 5.5e-6, _WHY, lambda: _hanging().z - _LENGTH,
+             Kind.CLOSED_FORM),
+        Case("C15 tension at the lower end", _LOAD, "N", 1e-6, "Rounding.",
+             lambda: _hanging().tension, Kind.CLOSED_FORM),
+    ),
+)  # fmt: skip
+
+
+_SLACK_DEPTH, _SCOPE = 540.0, 2.0
+
+
+def _radius() -> float:
+    """Return the radius reported with the refusal of a line that has no unique shape [m]."""
+    rope = cable(_SCOPE * _SLACK_DEPTH, 0.02, 1.0, 1.3, 0.0)
+    try:
+        solve_mooring(line_of(point(20_000.0, 100.0), rope), stream(_SLACK_DEPTH, 0.0))
+    except NoEquilibrium as refusal:
+        radius = re.search(r"radius of (\d+) m", refusal.message)
+        if refusal.status == "slack" and radius:
+            return float(radius[1])
+        raise
+    raise AssertionError("a slack line in still water was given a shape")
+
+
+WATCH_CIRCLE = Source(
+    "Watch circle",
+    """A surface mooring of scope 2 in 540 m of water without current (C22) is slack and has no
+unique shape: CALM refuses it with the status `slack` and reports the radius of its watch circle, at
+most depth · √(scope² − 1). PacIOOS publishes 934 m, 1.73 times the depth, for that mooring.""",
+    (
+        Case("C22 radius", 934.0, "m", 0.002 * 934.0,
+             "0.2 %: 1.73 is √3 to three digits.", _radius, Kind.PUBLISHED),
+    ),
+)  # fmt: skip
