@@ -40,6 +40,8 @@ from calm.solve.problem import (
 )
 from calm.solve.root import bracketed_root, root_near
 
+OF_A_PART = 0.01
+"""Miss of a part of a line, which is light and slack, as a share of that of the whole."""
 NEARLY_LINEAR = 5e-3
 """Miss, as a share of the span, below which a secant through a far larger one finds the root."""
 COARSEST_BRACKET = 1e-7
@@ -308,6 +310,8 @@ def close_near(search: Search, root: Root, cuts: int, record: int) -> Closed:
         small = (4.0 if cuts == CHOSEN else 0.5) * limits.allowed
     if root.unknown.sought != BELOW:
         small = min(small, limits.share_allowed * abs(root.slope))
+    if limits.near > 0.0 and root.unknown.stages < len(problem.course.stages):
+        small *= OF_A_PART
     found = near_root(search, root, limits.angle_step, cuts, True, record, small, NARROWEST_BRACKET)
     left = problem.work.left
     if isnan(found.miss):

@@ -242,7 +242,7 @@ runpy.run_module("calm", run_name="__main__")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.thorough
 def test_signals_leave_what_can_be_resumed(write_mooring, folder, number):
-    (folder / "long.csv").write_text(still_water(4_000))
+    (folder / "long.csv").write_text(still_water(100_000))
     file = write_mooring()
     command = [sys.executable, "-c", IN_SMALL_BLOCKS, "batch", file, "--currents", "long.csv",
                "-o", "r.nc", "--workers", "1"]  # fmt: skip
@@ -258,7 +258,7 @@ def test_signals_leave_what_can_be_resumed(write_mooring, folder, number):
     told = process.communicate(timeout=600)[1]
     assert process.returncode == 75, told
     # a block of these takes a while; how far it comes is for the machine to say
-    assert re.search(r"interrupted; \d[\d ]* of 4 000 profiles are done", told)
+    assert re.search(r"interrupted; \d[\d ]* of 100 000 profiles are done", told)
 
 
 @pytest.mark.slow  # it compiles the kernel anew
@@ -415,7 +415,7 @@ def test_a_terminal_has_a_bar_and_others_a_line_now_and_then(monkeypatch, capsys
         teller = ProgressTeller()
         for second in range(100):
             clock[0] = float(second)
-            teller(Progress(second, 100, 0, ended(), 0))
+            teller(Progress(second, 100, 0, ended()))
         teller.clear()
         told = capsys.readouterr().err
         if terminal:
