@@ -403,7 +403,7 @@ def test_progress_has_rate_remaining_time_and_failures():
     assert state(many, 1.0) == (
         "10 of 10 profiles, 3 without equilibrium, 2 not converged, 1 without data"
     )
-    assert state(Progress(0, 10, 0, ended(), 0), 0.0) == "0 of 10 profiles"
+    assert state(Progress(0, 10, 0, ended()), 0.0) == "0 of 10 profiles"
     assert [duration(seconds) for seconds in (5, 600, 7230)] == ["5 s", "10 min", "2 h 00 min"]
 
 
