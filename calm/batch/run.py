@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING, TypeVar
 from calm.batch.compiling import compile_kernel
 from calm.batch.dataset import layout_of
 from calm.batch.profiles import Batch
-from calm.batch.result import readable, statuses_of, stored_result
 from calm.batch.shape import nodes_of
 from calm.batch.statuses import Ending, endings
-from calm.batch.store.finish import (
+from calm.batch.store.finished import (
     ENDINGS,
     clear,
     finish,
@@ -27,6 +26,7 @@ from calm.batch.store.finish import (
 )
 from calm.batch.store.identity import identity_of, to_text
 from calm.batch.store.store import open_store
+from calm.batch.stored_result import readable, statuses_of, stored_result
 from calm.batch.threads import Stopped, go_on, processors
 from calm.batch.work import Progress, Work
 from calm.case import Mooring

@@ -98,7 +98,7 @@ class Asked:
     placeholder: str = ""
 
 
-class Sheet(ModalScreen[dict[str, str] | None]):
+class InputSheet(ModalScreen[dict[str, str] | None]):
     """Some texts, entered together; Esc leaves all as it was."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("sheet")]

@@ -13,9 +13,9 @@ import calm
 from calm.batch import run as run_module
 from calm.batch.compiling import compile_kernel
 from calm.batch.profiles import Batch
-from calm.batch.result import open_result
 from calm.batch.run import LARGEST_BLOCK, run_batch
 from calm.batch.statuses import STATUSES, Ending
+from calm.batch.stored_result import open_result
 from calm.batch.threads import in_threads
 from calm.errors import UsageError
 from tests.unit.batch.made import MOORING, MadeRecord, content, made_mooring

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 _LEAST = (20, 6)
 
 
-class Profile(Widget):
+class ProfilePicture(Widget):
     """Speed and direction over depth, of the environment that the line was judged in."""
 
     DEFAULT_CSS = """
