@@ -14,8 +14,8 @@ from calm.quantities import QUANTITIES
 from calm.report.batch_summary import QUANTITY, TITLES, when
 from calm.report.drawing import LINE_STYLE, WATER_COLOUR, WIDTH, along, set_span
 from calm.report.graph import (
-    LegendEntry,
     Graph,
+    LegendEntry,
     Scale,
     Stroke,
     covering,

@@ -14,8 +14,8 @@ from calm.checks.strength import allowable_load
 from calm.quantities import QUANTITIES
 from calm.report.drawing import NAMED_ROLES, SEABED_COLOUR, SIGNS, WATER_COLOUR, along, named_parts
 from calm.report.graph import (
-    LegendEntry,
     Graph,
+    LegendEntry,
     Scale,
     Stroke,
     counts,

@@ -103,7 +103,8 @@ class InputSheet(ModalScreen[dict[str, str] | None]):
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("sheet")]
     DEFAULT_CSS = (
-        "Sheet {" + _FRAME + " & Field > Input { width: 1fr; } & .field-note { display: none; }"
+        "InputSheet {" + _FRAME + " & Field > Input { width: 1fr; }"
+        " & .field-note { display: none; }"
         "& #sheet-note { height: auto; min-height: 1; color: $text-muted; margin-top: 1; }"
         "& #sheet-note.-wrong { color: $text-error; } }"
     )

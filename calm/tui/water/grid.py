@@ -35,7 +35,7 @@ class Grid(Vertical):
 
     DEFAULT_CSS = """
     Grid { height: auto; min-height: 3; max-height: 16; layers: table over; }
-    Grid Cells { height: auto; min-height: 3; max-height: 16; }
+    Grid GridCells { height: auto; min-height: 3; max-height: 16; }
     """
 
     @dataclass

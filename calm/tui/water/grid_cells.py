@@ -34,7 +34,7 @@ class GridCells(RowList, can_focus=True):
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("grid")]
     COMPONENT_CLASSES: ClassVar[set[str]] = {"cells--heading", "cells--row", "cells--cursor"}
     DEFAULT_CSS = """
-    Cells {
+    GridCells {
         height: 1fr; width: 1fr; overflow-x: hidden; scrollbar-size-vertical: 1;
         & > .cells--heading { text-style: dim; }
         & > .cells--cursor { text-style: reverse bold; }

@@ -303,7 +303,7 @@ class WaterPane(Horizontal):
         """Where the value of a form begins; below it, where it has none."""
         key = "-".join(place)
         if form == "table":
-            return self.query_one(f"#{key}-table Cells")
+            return self.query_one(f"#{key}-table GridCells")
         if form == DENSITY_FORMS[2]:
             return self.query_one("#density-temperature-form")
         where = {"uniform": "current-speed", "still": "wind-speed"}.get(form, key)
