@@ -14,7 +14,7 @@ from pathlib import Path
 from textual.widgets import Input
 
 from calm.tui.app import BuildApp
-from calm.tui.launch import open_session
+from calm.tui.start import open_session
 
 IMAGES = Path(__file__).with_name("images")
 LINES = Path(__file__).resolve().parents[1] / "lines"

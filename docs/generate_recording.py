@@ -14,7 +14,7 @@ from pathlib import Path
 
 from calm.shipped import shipped_folder
 from calm.tui.app import BuildApp
-from calm.tui.launch import open_session
+from calm.tui.start import open_session
 
 TARGET = Path(__file__).resolve().parent / "images" / "builder.svg"
 SIZE = (118, 34)

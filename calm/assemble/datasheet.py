@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from calm.assemble.line import drag_of
+from calm.assemble.line_arrays import drag_of
 from calm.files import Anchor, Catalogue, Component, Flexible
 from calm.files.catalogue import Assembly
 from calm.files.definition import CATALOGUE_DENSITY

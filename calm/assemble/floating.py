@@ -7,7 +7,7 @@ from math import cbrt, pi, sqrt
 
 import numpy as np
 
-from calm.assemble.line import drag_of, net_buoyancy
+from calm.assemble.line_arrays import drag_of, net_buoyancy
 from calm.files import Cylinder, Environment, Piece, Rigid, Sphere
 from calm.files.components import RigidComponent
 from calm.files.definition import CATALOGUE_DENSITY

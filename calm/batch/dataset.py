@@ -22,7 +22,7 @@ from calm.dataset.variables import (
     OF_NODE,
     PIECES,
     Attributes,
-    Layout,
+    ResultLayout,
     Variable,
     labels,
     numbers,
@@ -39,7 +39,7 @@ _TIME_UNITS = (("seconds", 10**9), ("milliseconds", 10**6), ("nanoseconds", 1))
 
 
 def arrays_of(
-    layout: Layout, time: NDArray[np.datetime64], profiles: Profiles, shape: ShapeNodes | None
+    layout: ResultLayout, time: NDArray[np.datetime64], profiles: Profiles, shape: ShapeNodes | None
 ) -> dict[str, NDArray[Any]]:
     """The values of some profiles, by the names of the variables that go with time.
 
@@ -56,7 +56,7 @@ def arrays_of(
 
 
 def laid_out(
-    layout: Layout, time: NDArray[np.datetime64], columns: Mapping[str, NDArray[Any]]
+    layout: ResultLayout, time: NDArray[np.datetime64], columns: Mapping[str, NDArray[Any]]
 ) -> dict[str, NDArray[Any]]:
     """The values of some times, by name, as the variables of a layout that go with time."""
     unit = str(layout.variables[0].attributes["units"]).partition(" ")[0]
@@ -68,7 +68,7 @@ def laid_out(
     }
 
 
-def layout_of(mooring: Mooring, record: Record, shape: ShapeNodes | None) -> Layout:
+def layout_of(mooring: Mooring, record: Record, shape: ShapeNodes | None) -> ResultLayout:
     """Lay out the result of a mooring in the profiles of a record."""
     pieces = mooring.file.pieces
     clamps = [clamp.label for clamp in clamps_down(pieces)]
@@ -111,7 +111,7 @@ def layout_of(mooring: Mooring, record: Record, shape: ShapeNodes | None) -> Lay
     if len(of_station) > 1:
         attributes["featureType"] = "timeSeriesProfile"
     known = {name: value for name, value in attributes.items() if value}
-    return Layout(sizes, tuple(variables), known)
+    return ResultLayout(sizes, tuple(variables), known)
 
 
 def _nodes(shape: ShapeNodes) -> list[Variable]:

@@ -10,13 +10,7 @@ from pathlib import Path
 from threading import Event, Timer
 from typing import TYPE_CHECKING, TypeVar
 
-from calm.batch.compiling import compile_solver
-from calm.batch.dataset import layout_of
-from calm.batch.profiles import Batch
-from calm.batch.result import readable, statuses_of, stored_result
-from calm.batch.shape import nodes_of
-from calm.batch.statuses import Ending, endings
-from calm.batch.store.finish import (
+from calm.batch.store.finished import (
     ENDINGS,
     clear,
     finish,
@@ -25,6 +19,13 @@ from calm.batch.store.finish import (
     locked,
     store_folder,
 )
+from calm.batch.stored_result import readable, statuses_of, stored_result
+
+from calm.batch.compiling import compile_solver
+from calm.batch.dataset import layout_of
+from calm.batch.profiles import Batch
+from calm.batch.shape import nodes_of
+from calm.batch.statuses import Ending, endings
 from calm.batch.store.identity import identity_of, to_text
 from calm.batch.store.store import open_store
 from calm.batch.threads import Stopped, go_on, processors

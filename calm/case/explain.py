@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from calm.case.attribution import FAIR, Attribution, SolverPart, attribute, with_drag
-from calm.case.columns import ColumnTable
 from calm.case.mooring import Mooring
 from calm.case.parts import TOP, clamps_in, one_part
+from calm.case.result_tables import ColumnTable
 from calm.case.targets import Figures, figures_of
 from calm.errors import NoEquilibrium, UsageError
 from calm.files import Place

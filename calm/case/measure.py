@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from calm.case.columns import ClampRow, Clamps, ComponentRow, Components, Shape
 from calm.case.parts import clamps_down, clamps_in
 from calm.case.result import Accuracy, AnchorLoad, Result, Top
+from calm.case.result_tables import ClampRow, Clamps, ComponentRow, Components, Shape
 from calm.case.strumming import strumming_of
 from calm.case.warnings import warnings_of
 from calm.files import Clamp, Piece

@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from calm.case.columns import Clamps, Components, Shape
+from calm.case.result_tables import Clamps, Components, Shape
 from calm.case.strumming import Strumming, StrummingBand, mooring_band
 from calm.files import Clamp, Piece
 

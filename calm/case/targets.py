@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from math import hypot
 from typing import TYPE_CHECKING, Any
 
-from calm.case.columns import ClampRow, ComponentRow
 from calm.case.parts import TOP, one_part, parts_of
+from calm.case.result_tables import ClampRow, ComponentRow
 from calm.errors import UsageError
 from calm.files import Piece, Place
 from calm.suggestions import unknown

@@ -9,11 +9,11 @@ from math import atan2, degrees, hypot
 from typing import Any
 
 from calm.assemble import assemble_line, assemble_water
-from calm.case.columns import Clamps, Components, Shape
 from calm.case.measure import clamps_of, components_of, shape_of
 from calm.case.memory import Forgetful, Memory
 from calm.case.parts import naming_the_piece
 from calm.case.result import Accuracy, Solved, document_of, known
+from calm.case.result_tables import Clamps, Components, Shape
 from calm.case.strumming import Strumming, StrummingBand, strumming_of, tow_band
 from calm.case.warnings import tow_warnings_of
 from calm.errors import NoEquilibrium, UsageError

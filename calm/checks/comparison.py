@@ -9,7 +9,7 @@ from math import hypot
 from typing import Any
 
 from calm.case import Mooring, Result, Tow, TowResult
-from calm.case.columns import ClampRow, ComponentRow
+from calm.case.result_tables import ClampRow, ComponentRow
 from calm.checks.assess import check
 from calm.checks.assessment import Assessment
 from calm.checks.finding import State

@@ -6,14 +6,22 @@ from collections.abc import Iterator
 from itertools import chain
 from typing import TYPE_CHECKING
 
-from calm.checks import anchor, arrangement, catalogue, handling, posture, situations, strength
+from calm.checks import (
+    anchor_rules,
+    arrangement,
+    catalogue_rules,
+    handling,
+    posture,
+    situations,
+    strength,
+)
 from calm.checks.finding import AS_GIVEN, Rule, State, Verdict, rule, verdict_on
 from calm.files.rule_texts import RULES as TEXTS
 
 if TYPE_CHECKING:
     from calm.errors import NoEquilibrium
 
-_MODULES = (anchor, arrangement, catalogue, handling, posture, situations, strength)
+_MODULES = (anchor_rules, arrangement, catalogue_rules, handling, posture, situations, strength)
 
 
 @rule("equilibrium")

@@ -73,7 +73,7 @@ def build(
         return _serve(file, environment, catalog or [], port, allow_host or [], 60.0 * idle_timeout)
     if not _has_terminal():
         raise UsageError(_NO_TERMINAL)
-    from calm.tui.launch import build
+    from calm.tui.start import build
 
     return ExitCode(build(file, environment, catalog or []))
 
@@ -97,8 +97,8 @@ def _serve(
         raise UsageError(f"--port: {port} is not a port; give one from 1024 to 65535")
     if find_spec("textual_serve") is None:
         raise UsageError(_NO_BROWSER)
-    from calm.tui.launch import open_session
     from calm.tui.serve import serve
+    from calm.tui.start import open_session
 
     open_session(file, environment, catalogs)  # what cannot be opened is reported here
     words = [] if file is None else [str(file.absolute())]

@@ -120,7 +120,7 @@ def check(file: Path | None = None, /, *, json: bool = False) -> ExitCode:
         As JSON: a list of objects with `id`, `finding` (true or false), `message`, `missing` and
         `searched`.
     """
-    from calm.checks.catalogue import check_catalogue
+    from calm.checks.catalogue_rules import check_catalogue
     from calm.checks.missing import missing_figures
     from calm.files import Catalogue
     from calm.report.component_cards import in_words, summarised, to_objects

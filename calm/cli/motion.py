@@ -110,13 +110,13 @@ def motion(
         A catalogue of your own; its components hide others of the same id. Repeatable.
     """
     import numpy as np
+    from calm.batch.stored_result import open_result, readable
+    from calm.motion.correction import run_motion
 
     from calm.batch.compiling import compile_solver
     from calm.batch.profiles import Batch
-    from calm.batch.result import open_result, readable
     from calm.motion.instrument_file import read_instruments, write_depths
     from calm.motion.matching import labels_of
-    from calm.motion.run import run_motion
     from calm.motion.study import cross_validated, judged, prepare, series_of, several
     from calm.motion.task import MeasuredRecord
     from calm.report.folder import check_folder, write_report
@@ -245,8 +245,8 @@ def read_measured(
 ) -> tuple[MooringMeasurements, list[str], dict[str, str]]:
     """What was measured, on common times; what is said of it, and its source."""
     import numpy as np
+    from calm.motion.measured_currents import read_currents
 
-    from calm.motion.currents import read_currents
     from calm.motion.line_response import Forward
     from calm.motion.matching import (
         instruments_of,

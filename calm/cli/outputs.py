@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     from calm.case import Result, TowResult
     from calm.case.explain import Explanation
     from calm.case.uncertain import Uncertain
-    from calm.report.blocks import Part
+    from calm.report.blocks import ReportPart
     from calm.report.schematic.in_terminal import TerminalSchematic
 
-    Shows = Part | TerminalSchematic
+    Shows = ReportPart | TerminalSchematic
 
 OutputPath = Annotated[Path | None, Parameter(allow_leading_hyphen=True)]
 """Type of an option that takes a path, or - for the standard output."""
@@ -101,7 +101,7 @@ class FileOutcome:
 
             parts.append(explanation_part(self.explanation))
         if self.uncertain is not None:
-            from calm.report.uncertain import uncertainty_part
+            from calm.report.uncertainty import uncertainty_part
 
             parts.append(uncertainty_part(self.uncertain))
         return parts
@@ -200,7 +200,7 @@ class Outputs:
             if path != STDOUT:
                 check_destination(path)
 
-    def write_answer(self, document: Callable[[], dict[str, Any]], part: Part | None) -> None:
+    def write_answer(self, document: Callable[[], dict[str, Any]], part: ReportPart | None) -> None:
         """Write what a command without files answers: `json`, and the part unless that is shown.
 
         Parameters

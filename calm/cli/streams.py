@@ -64,7 +64,7 @@ def show_parts(*parts: Shows) -> None:
     """Write to the standard output as the terminal allows, a blank line between two things."""
     from rich.console import Console
 
-    from calm.report.blocks import Part
+    from calm.report.blocks import ReportPart
     from calm.report.signs import encodable
     from calm.report.terminal import shown
 
@@ -76,7 +76,7 @@ def show_parts(*parts: Shows) -> None:
     for number, part in enumerate(parts):
         if number:
             console.print()
-        console.print(shown(part, plain=plain) if isinstance(part, Part) else part)
+        console.print(shown(part, plain=plain) if isinstance(part, ReportPart) else part)
     # Tables are padded to full width, which only clutters a text that is kept.
     show(re.sub(" +$", "", text.getvalue(), flags=re.MULTILINE))
 

@@ -97,10 +97,10 @@ def verify_field(outputs: Outputs) -> ExitCode:
     from calm.case import Mooring
     from calm.checks.finding import State
     from calm.cli.motion import fitted, parse_gap, read_measured
+    from calm.motion.correction import estimate_in_memory
     from calm.motion.line_response import Forward
-    from calm.motion.run import estimate_in_memory
     from calm.motion.study import intervals, judge_hidden, prepare
-    from calm.report.blocks import Heading, Part, Prose
+    from calm.report.blocks import Heading, Prose, ReportPart
     from calm.report.motion_tables import (
         factors_document,
         factors_table,
@@ -141,7 +141,7 @@ def verify_field(outputs: Outputs) -> ExitCode:
         "ratio": ratio,
         "within": good,
     }
-    part = Part(
+    part = ReportPart(
         "",
         (
             Heading("dune2, Denmark Strait: depths at hidden sensors"),

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from calm.dataset.variables import Layout, Variable
+from calm.dataset.variables import ResultLayout, Variable
 
 if TYPE_CHECKING:
     import h5netcdf
@@ -30,7 +30,7 @@ _LONG = 4096  # all attributes of a variable have 64 kB unless they are strings
 _ZEROS = bytes(1 << 20)
 
 
-def netcdf_of(layout: Layout, block: int = 0) -> bytes:
+def netcdf_of(layout: ResultLayout, block: int = 0) -> bytes:
     """The file of a layout; what goes with time is laid out, in chunks of a block, and empty.
 
     The chunks are shuffled and deflated, as `filters.Shuffle` and `Zlib` of `numcodecs` do it.
@@ -48,7 +48,7 @@ def netcdf_of(layout: Layout, block: int = 0) -> bytes:
 
 
 def write_netcdf(
-    layout: Layout, block: int, chunks: Sequence[Chunk], path: Path, check: Callable[[], None]
+    layout: ResultLayout, block: int, chunks: Sequence[Chunk], path: Path, check: Callable[[], None]
 ) -> None:
     """Write a file with all its chunks, which are copied as they stand; in the memory of one.
 
@@ -85,13 +85,13 @@ def _take_room(handle: int, size: int) -> None:
         os.write(handle, _ZEROS[:missing])
 
 
-def chunk_shape(layout: Layout, variable: Variable, block: int) -> tuple[int, ...]:
+def chunk_shape(layout: ResultLayout, variable: Variable, block: int) -> tuple[int, ...]:
     """Return the shape of the chunks of a variable that goes with time; the last is whole, too."""
     length = min(block, layout.sizes["time"])
     return length, *(layout.sizes[name] for name in variable.dimensions[1:])
 
 
-def _define(file: h5netcdf.File, layout: Layout, variable: Variable, block: int) -> None:
+def _define(file: h5netcdf.File, layout: ResultLayout, variable: Variable, block: int) -> None:
     import h5py
 
     kind = np.dtype(variable.dtype)

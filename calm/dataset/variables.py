@@ -76,7 +76,7 @@ class Variable:
 
 
 @dataclass(frozen=True)
-class Layout:
+class ResultLayout:
     """A result before its variables that go with time are known.
 
     Attributes

@@ -14,7 +14,7 @@ from calm.solve import expect_many
 
 if TYPE_CHECKING:
     from calm.case import Result
-    from calm.deck.deck_items import Hung
+    from calm.deck.deck_items import DeckItem
 
 LENGTH_ERROR = 0.005
 """Error of a length, as a share of it: the tolerance, and the error whose effect is reported."""
@@ -51,7 +51,7 @@ class Cut:
     over, onto : its number over the side, and onto the drum, which is the other way round
     """
 
-    hung: Hung
+    hung: DeckItem
     length: float
     load: float
     unstretched: float
@@ -63,7 +63,7 @@ class Cut:
     onto: int
 
 
-def cuts_of(result: Result, parts: Sequence[Hung], order: Order) -> tuple[Cut, ...]:
+def cuts_of(result: Result, parts: Sequence[DeckItem], order: Order) -> tuple[Cut, ...]:
     """All that is cut and marked, down the line."""
     cables = [one for one in parts if _is_cut(one)]
     count = len(cables)
@@ -74,7 +74,7 @@ def cuts_of(result: Result, parts: Sequence[Hung], order: Order) -> tuple[Cut, .
     )
 
 
-def _is_cut(one: Hung) -> bool:
+def _is_cut(one: DeckItem) -> bool:
     part = one.part
     if not isinstance(part, Piece):
         return False
@@ -83,7 +83,7 @@ def _is_cut(one: Hung) -> bool:
     )
 
 
-def _cut(result: Result, one: Hung, over: int, count: int) -> Cut:
+def _cut(result: Result, one: DeckItem, over: int, count: int) -> Cut:
     piece = one.part
     assert isinstance(piece, Piece) and isinstance(piece.component, Flexible)
     assert one.cut_length is not None

@@ -9,12 +9,12 @@ from itertools import groupby
 from math import inf, isnan
 from typing import TYPE_CHECKING
 
-from calm.case.columns import ClampRow, ComponentRow, rows_down
+from calm.case.result_tables import ClampRow, ComponentRow, rows_down
 from calm.files import Flexible
 
 if TYPE_CHECKING:
     from calm.case import Result
-    from calm.case.columns import ClampRow, ComponentRow
+    from calm.case.result_tables import ClampRow, ComponentRow
     from calm.files import Clamp, Piece
     from calm.files.logbook import DeployedItem
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Hung:
+class DeckItem:
     """A piece, or an instrument clamped on one.
 
     Attributes
@@ -76,12 +76,12 @@ class Hung:
         return self.part.component.role
 
 
-def hung_of(result: Result) -> tuple[Hung, ...]:
+def hung_of(result: Result) -> tuple[DeckItem, ...]:
     """Down the line to the anchor, the clamps of a piece after it, down that piece."""
     deployed = result.file.deployed
     items = {item.label: item for item in deployed.items} if deployed else {}
     bottom = result.mooring.water.depth
-    found: list[Hung] = []
+    found: list[DeckItem] = []
     for row, clamps in rows_down(result):
         found.append(_hung(row.part, row, row, items, bottom))
         found += (_hung(clamp.part, row, clamp, items, bottom) for clamp in clamps)
@@ -99,11 +99,11 @@ def _hung(
     row: ComponentRow | ClampRow,
     items: Mapping[str, DeployedItem],
     bottom: float,
-) -> Hung:
+) -> DeckItem:
     item = items.get(part.label)
     clamp = row.part if isinstance(row, ClampRow) else None
     depth = depth_of(row)
-    return Hung(
+    return DeckItem(
         part=part,
         index=piece.index,
         on=None if clamp is None else piece.label,
@@ -140,14 +140,14 @@ class Posted:
     greatest_tilt : over all environments [degrees]
     """
 
-    hung: Hung
+    hung: DeckItem
     still: float | None
     shallowest: Extreme
     deepest: Extreme
     greatest_tilt: float
 
 
-def posted(parts: Sequence[Hung], results: Sequence[tuple[str, Result]]) -> tuple[Posted, ...]:
+def posted(parts: Sequence[DeckItem], results: Sequence[tuple[str, Result]]) -> tuple[Posted, ...]:
     """The instruments and releases, down the line.
 
     Parameters
@@ -199,13 +199,13 @@ class Surfacing:
     by_itself : whether it is buoyant enough to come up without what is above it
     """
 
-    hung: Hung
+    hung: DeckItem
     time: float | None
     hangs_at: float | None
     by_itself: bool
 
 
-def over_the_side(parts: Sequence[Hung], order: Order) -> tuple[Hung, ...]:
+def over_the_side(parts: Sequence[DeckItem], order: Order) -> tuple[DeckItem, ...]:
     """The pieces in the order in which they go over the side, each with its clamps after it.
 
     Anchor first, a piece goes with its lower end ahead, and so its lowest clamp comes first.
@@ -216,7 +216,7 @@ def over_the_side(parts: Sequence[Hung], order: Order) -> tuple[Hung, ...]:
     return tuple(each for piece, *clamps in reversed(groups) for each in (piece, *reversed(clamps)))
 
 
-def surfacing(parts: Sequence[Hung], recovery: Recovery | None) -> tuple[Surfacing, ...]:
+def surfacing(parts: Sequence[DeckItem], recovery: Recovery | None) -> tuple[Surfacing, ...]:
     """What comes up, the first first; what hangs below, and what stays, comes after it in order.
 
     Without a solved rise there are no times, and the order is that of the line.
@@ -231,7 +231,7 @@ def surfacing(parts: Sequence[Hung], recovery: Recovery | None) -> tuple[Surfaci
     return tuple(found[i] for i in sorted(range(len(found)), key=times.__getitem__))
 
 
-def _surfacing(one: Hung, recovery: Recovery) -> Surfacing:
+def _surfacing(one: DeckItem, recovery: Recovery) -> Surfacing:
     time = float(recovery.arrival[one.index])
     hangs_at = float(recovery.hangs_at[one.index])
     return Surfacing(

@@ -13,7 +13,7 @@ from calm.checks.arrangement import unlike_metals
 from calm.files import Cable, Chain, Piece
 
 if TYPE_CHECKING:
-    from calm.deck.deck_items import Hung
+    from calm.deck.deck_items import DeckItem
     from calm.files import Component
 
 SPARE_SHARE = 0.1
@@ -64,14 +64,14 @@ class Stock:
         return self.count + self.spares
 
 
-def hardware_of(parts: Sequence[Hung]) -> tuple[Stock, ...]:
+def hardware_of(parts: Sequence[DeckItem]) -> tuple[Stock, ...]:
     """The connectors of a line, the chains, and what belongs to them.
 
     A shackle has a bolt with nut and cotter pin, unless its definition says that its pin is screwed
     in. A termination that names a thimble has one at each end. Where metals that corrode each other
     touch, an isolator is between them and an anode at the baser one.
     """
-    groups: dict[tuple[str, str], list[Hung]] = {}
+    groups: dict[tuple[str, str], list[DeckItem]] = {}
     for one in parts:
         kind = _kind(one)
         if kind is not None:
@@ -94,7 +94,7 @@ def kind_of(words: str) -> str | None:
     return next(found, None)
 
 
-def _kind(one: Hung) -> str | None:
+def _kind(one: DeckItem) -> str | None:
     component = one.part.component
     if isinstance(component, Chain):
         return _CHAIN
@@ -106,7 +106,7 @@ def _kind(one: Hung) -> str | None:
     return kind if kind in ("anodes", "isolators", "thimbles", "cotter pins") else None
 
 
-def _stock(kind: str, use: str, group: Sequence[Hung]) -> Stock:
+def _stock(kind: str, use: str, group: Sequence[DeckItem]) -> Stock:
     lengths = [one.cut_length for one in group if one.cut_length is not None]
     count = len(group)
     return Stock(
@@ -119,7 +119,7 @@ def _stock(kind: str, use: str, group: Sequence[Hung]) -> Stock:
     )
 
 
-def _pins(groups: dict[tuple[str, str], list[Hung]]) -> Iterator[Stock]:
+def _pins(groups: dict[tuple[str, str], list[DeckItem]]) -> Iterator[Stock]:
     for (kind, use), group in groups.items():
         if kind != "shackles":
             continue
@@ -141,7 +141,7 @@ def _is_bolted(component: Component) -> bool:
     return "screw" not in f"{component.name or ''} {component.note or ''}".lower()
 
 
-def _against_corrosion(parts: Sequence[Hung]) -> Iterator[Stock]:
+def _against_corrosion(parts: Sequence[DeckItem]) -> Iterator[Stock]:
     """By what there is of unlike metals: `calm check` warns of the same contacts."""
     pieces = [one.part for one in parts if isinstance(one.part, Piece)]
     contacts = [(base, noble) for base, noble, _ in unlike_metals(pieces)]
@@ -158,7 +158,7 @@ def _against_corrosion(parts: Sequence[Hung]) -> Iterator[Stock]:
         )  # fmt: skip
 
 
-def _thimbles(parts: Sequence[Hung]) -> Iterator[Stock]:
+def _thimbles(parts: Sequence[DeckItem]) -> Iterator[Stock]:
     ends: dict[tuple[str, str], int] = {}
     for one in parts:
         part = one.part

@@ -12,7 +12,7 @@ from calm.checks.inventory import inventory_of
 from calm.checks.recovery import recovery_of
 from calm.deck.cutting import Cut, cuts_of
 from calm.deck.deck_items import (
-    Hung,
+    DeckItem,
     Order,
     Posted,
     Surfacing,
@@ -58,8 +58,8 @@ class Deck:
     result: Result
     environment: str
     order: Order
-    parts: tuple[Hung, ...]
-    deployment: tuple[Hung, ...]
+    parts: tuple[DeckItem, ...]
+    deployment: tuple[DeckItem, ...]
     recovery: tuple[Surfacing, ...]
     rise: Recovery | None
     cuts: tuple[Cut, ...]

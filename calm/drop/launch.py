@@ -16,8 +16,8 @@ from calm.assemble import with_axial_clamps
 from calm.case import Mooring
 from calm.drop.chain import chain_of
 from calm.drop.fall import Fineness, Motion, Ship, fall, nothing_limits, towed
+from calm.drop.fall_record import greatest_tensions, piece_tensions
 from calm.drop.motion import Mover, NoStep
-from calm.drop.record import greatest_tensions, piece_tensions
 from calm.errors import UsageError
 from calm.physics.line import Floats, Line, Water
 from calm.physics.track import head_count

@@ -10,15 +10,7 @@ import numpy as np
 
 from calm.case import Mooring, Result
 from calm.drop.fall import Fineness, Motion, fall, settle, towed
-from calm.drop.launch import (
-    SHIP_SPEED,
-    course_into_current,
-    falling_anchor,
-    falling_line,
-    ship_of,
-)
-from calm.drop.motion import ChainState
-from calm.drop.record import (
+from calm.drop.fall_record import (
     DepthReached,
     FallPath,
     Pull,
@@ -29,6 +21,14 @@ from calm.drop.record import (
     pulls_of,
     rest_difference,
 )
+from calm.drop.launch import (
+    SHIP_SPEED,
+    course_into_current,
+    falling_anchor,
+    falling_line,
+    ship_of,
+)
+from calm.drop.motion import ChainState
 from calm.errors import NoEquilibrium
 from calm.files import Position
 from calm.physics.ellipsoid import Frame

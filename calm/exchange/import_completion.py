@@ -10,7 +10,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from calm.assemble.line import drag_of
+from calm.assemble.line_arrays import drag_of
 from calm.case import Mooring, load
 from calm.errors import CalmError
 from calm.exchange.design import Design, ImportedComponent, one_line, refused

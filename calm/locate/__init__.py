@@ -1,7 +1,7 @@
 """Where an anchor stands, from acoustic ranges that a ship took about it."""
 
-from calm.locate.fit import Located as Located
-from calm.locate.fit import locate as locate
+from calm.locate.range_fit import Located as Located
+from calm.locate.range_fit import locate as locate
 from calm.locate.ranges import Survey as Survey
 from calm.locate.ranges import read_ranges as read_ranges
 from calm.locate.sound import Sound as Sound

@@ -10,7 +10,7 @@ import numpy as np
 from calm.errors import UsageError
 from calm.files import MooringFile, read_mooring
 from calm.files.editing import Draft, EditError, WorkingFile
-from calm.locate.fit import Located
+from calm.locate.range_fit import Located
 from calm.physics.ellipsoid import Frame
 from calm.physics.line import Floats
 from calm.quantities import bearing_of, bearing_text

@@ -116,7 +116,7 @@ def write_depths(
     Parameters
     ----------
     instruments : the file that is copied
-    result : of `calm.motion.run.run_motion`
+    result : of `calm.motion.correction.run_motion`
     labels : of the points of the result
     gap : between neighbours of a depth, at most
     output : the copy

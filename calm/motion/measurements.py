@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calm.errors import UsageError
-from calm.motion.currents import CurrentMeasurements
+from calm.motion.measured_currents import CurrentMeasurements
 from calm.motion.sensors import Sensor
 from calm.physics.line import Floats, Integers
 from calm.records.cf_files import MISSING

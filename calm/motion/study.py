@@ -21,11 +21,11 @@ from calm.motion.agreement import (
     linear,
     rms,
 )
+from calm.motion.correction import estimate_in_memory
 from calm.motion.line_response import Forward
 from calm.motion.matching import labels_of
 from calm.motion.measurements import MooringMeasurements, level_names
 from calm.motion.remarks import current_remarks, datum_remarks, false_current_times, sensor_remarks
-from calm.motion.run import estimate_in_memory
 from calm.motion.task import Task, without
 from calm.motion.whole_record import estimate_common
 from calm.physics.line import Floats
@@ -121,7 +121,7 @@ def judged(task: Task, measured: MooringMeasurements, result: Dataset) -> Study:
     Parameters
     ----------
     measured : with the sensors that were hidden
-    result : of `calm.motion.run.run_motion`
+    result : of `calm.motion.correction.run_motion`
     """
     used = task.measured
     residual = np.asarray(result["residual"].values, np.float64)
@@ -272,7 +272,7 @@ def series_of(
     ----------
     measured : with the sensors that were hidden
     used : labels of those that were not
-    result : of `calm.motion.run.run_motion`
+    result : of `calm.motion.correction.run_motion`
     """
     found = []
     for j, label in enumerate(measured.label):

@@ -19,7 +19,7 @@ from calm.report.batch_summary import (
     standing,
     when,
 )
-from calm.report.blocks import Block, Cell, Column, Heading, Part, Prose, Span, Table
+from calm.report.blocks import Block, Cell, Column, Heading, Prose, ReportPart, Span, Table
 
 if TYPE_CHECKING:
     from calm.batch.statistics.limits import RuleShare
@@ -30,7 +30,7 @@ _PERIODS = (10, 50, 100)
 _ALL = "All percentiles, limits and profiles are in the JSON and on the page."
 
 
-def summary_part(summary: Summary) -> Part:
+def summary_part(summary: Summary) -> ReportPart:
     """What a summary says; it fits 80 columns, where long labels wrap.
 
     Components and clamps with the 99 % percentile and the maximum of each quantity, how often
@@ -50,7 +50,7 @@ def summary_part(summary: Summary) -> Part:
         *([Prose(missing, State.WARN)] if missing else []),
         Prose(((Span(_ALL, quiet=True),),)),
     )
-    return Part("", blocks)
+    return ReportPart("", blocks)
 
 
 def _parts(summary: Summary) -> Table:

@@ -14,8 +14,8 @@ from calm.quantities import QUANTITIES
 from calm.report.batch_summary import QUANTITY, TITLES, when
 from calm.report.drawing import LINE_STYLE, WATER_COLOUR, WIDTH, along, set_span
 from calm.report.graph import (
-    Entry,
     Graph,
+    LegendEntry,
     Scale,
     Stroke,
     covering,
@@ -138,7 +138,7 @@ def _shares(title: str, panels: Sequence[_Shares], tall: float) -> str:
             beside="" if column else "reached or passed in [% of profiles]",
             grid=True, numbered=(True, not column),
         )  # fmt: skip
-        named = [Entry(each.label, line=each.stroke) for each in panel.curves if each.label]
+        named = [LegendEntry(each.label, line=each.stroke) for each in panel.curves if each.label]
         write_legend(
             graph.pen, named, left + 0.6 * wide, top + 4.0,
             width=0.4 * wide, row=10.0, columns=1, size=_SIZE,

@@ -7,9 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from calm.batch.result import stored_result
 from calm.batch.statistics.extremes import EXTRAPOLATION, METHODS, Fit, Level
 from calm.batch.statistics.summary import PERCENTILES, WORST, Summary, summarize
+from calm.batch.stored_result import stored_result
 from calm.case import Mooring
 from calm.checks.finding import State
 from calm.quantities import QUANTITIES
@@ -33,9 +33,9 @@ from calm.report.blocks import (
     Column,
     Figure,
     Listing,
-    Part,
     Prose,
     Report,
+    ReportPart,
     Section,
     Table,
 )
@@ -60,11 +60,11 @@ def summary_report(summary: Summary) -> Report:
     """How often limits are broken, drawings, distributions, worst profiles, return levels."""
     moving = [part for part in summary.parts if part.clamped] or list(summary.parts[:-1])
     parts = (
-        Part("Result", tuple(_result(summary))),
-        Part(
+        ReportPart("Result", tuple(_result(summary))),
+        ReportPart(
             "Through time", (Figure("Least and greatest in each interval", series_figure(summary)),)
         ),
-        Part(
+        ReportPart(
             "How often",
             (
                 Figure("Responses of the line", exceedance_figure(summary)),
@@ -72,9 +72,9 @@ def summary_report(summary: Summary) -> Report:
                 *_left_out(summary),
             ),
         ),
-        Part("Return levels", (*levels_tables(summary), Prose((_EXTRAPOLATED,)))),
-        Part("Worst profiles", tuple(worst_tables(summary))),
-        Part(
+        ReportPart("Return levels", (*levels_tables(summary), Prose((_EXTRAPOLATED,)))),
+        ReportPart("Worst profiles", tuple(worst_tables(summary))),
+        ReportPart(
             "Limits",
             (
                 limits_table(summary),
@@ -82,9 +82,9 @@ def summary_report(summary: Summary) -> Report:
                 limits_used_table([(summary.name, summary.limits_used)]),
             ),
         ),
-        Part("Distributions", (*_left_out(summary), *statistics_tables(summary))),
-        Part("What is not judged", (Prose(UNSEEN, State.UNKNOWN),)),
-        Part("Inputs", tuple(_inputs(summary))),
+        ReportPart("Distributions", (*_left_out(summary), *statistics_tables(summary))),
+        ReportPart("What is not judged", (Prose(UNSEEN, State.UNKNOWN),)),
+        ReportPart("Inputs", tuple(_inputs(summary))),
     )
     section = Section(summary.name, parts)
     return Report(summary.name, extent(summary), (), (section,), date())

@@ -154,7 +154,7 @@ Block = Table | Pairs | Figure | Prose | Note | Heading | Listing | Signatures |
 
 
 @dataclass(frozen=True)
-class Part:
+class ReportPart:
     """Blocks under a heading; what a command shows of one thing is a part of its own."""
 
     title: str
@@ -189,7 +189,7 @@ class Section:
     """
 
     name: str
-    parts: tuple[Part, ...]
+    parts: tuple[ReportPart, ...]
     columns: tuple[str, ...] = ()
     worst: tuple[Worst, ...] = ()
     findings: tuple[Finding, ...] = ()
@@ -212,7 +212,7 @@ class Report:
 
     title: str
     subtitle: str
-    front: tuple[Part, ...]
+    front: tuple[ReportPart, ...]
     sections: tuple[Section, ...]
     date: str | None = None
     plates: tuple[Plate, ...] = ()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from calm.report.blocks import Cell, Column, Note, Part, Table
+from calm.report.blocks import Cell, Column, Note, ReportPart, Table
 
 if TYPE_CHECKING:
     from calm.analytic.chart import ChartAnswer, ChartSolution
@@ -35,7 +35,7 @@ def answer_document(answer: ChartAnswer) -> dict[str, Any]:
     return document
 
 
-def answer_part(answer: ChartAnswer) -> Part:
+def answer_part(answer: ChartAnswer) -> ReportPart:
     """A column for each cable."""
     figures = [_figures(solution) for solution in answer.solutions]
     several = len(figures) > 1
@@ -57,7 +57,7 @@ def answer_part(answer: ChartAnswer) -> Part:
     if any(min(cable["phi_a"], cable["phi_b"]) < 0.0 for cable in figures):
         notes.append("A negative angle: the cable goes down there, beyond the level of that end.")
     title = f"Uniform current, K = {answer.k:.6g}"
-    return Part(title, (Table("", columns, rows), Note(tuple(notes))))
+    return ReportPart(title, (Table("", columns, rows), Note(tuple(notes))))
 
 
 def _figures(solution: ChartSolution) -> dict[str, float]:

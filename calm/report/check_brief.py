@@ -17,8 +17,8 @@ from calm.report.blocks import (
     Heading,
     Line,
     Note,
-    Part,
     Prose,
+    ReportPart,
     Span,
     Table,
 )
@@ -47,7 +47,7 @@ _LACKING = 60
 """Most components named that lack a figure."""
 
 
-def check_part(assessments: Sequence[Assessment]) -> Part:
+def check_part(assessments: Sequence[Assessment]) -> ReportPart:
     """Everything that a design check says in short.
 
     Moorings by environments with the worst state in each; of each rule the finding with the worst
@@ -71,7 +71,7 @@ def check_part(assessments: Sequence[Assessment]) -> Part:
         *likely,
         *reported,
     )
-    return Part("", (*blocks, Note(UNSEEN[:1])))
+    return ReportPart("", (*blocks, Note(UNSEEN[:1])))
 
 
 def _verdict(findings: Sequence[Finding]) -> Prose:

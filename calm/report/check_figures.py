@@ -14,8 +14,8 @@ from calm.checks.strength import allowable_load
 from calm.quantities import QUANTITIES
 from calm.report.drawing import NAMED_ROLES, SEABED_COLOUR, SIGNS, WATER_COLOUR, along, named_parts
 from calm.report.graph import (
-    Entry,
     Graph,
+    LegendEntry,
     Scale,
     Stroke,
     counts,
@@ -78,15 +78,15 @@ Place = tuple[float, float, float, float]
 """Left and upper edge, width and height of axes [pt]."""
 
 
-def _legend(solved: Solved) -> list[Entry]:
+def _legend(solved: Solved) -> list[LegendEntry]:
     """An entry for each environment, and for what else the panels show."""
-    entries = [Entry(name, line=_stroke(number)) for number, (name, _) in enumerate(solved)]
+    entries = [LegendEntry(name, line=_stroke(number)) for number, (name, _) in enumerate(solved)]
     _, first = solved[0]
     if first.still_shape is not None:
-        entries.append(Entry("still water", line=_STILL))
+        entries.append(LegendEntry("still water", line=_STILL))
     there = {part.role for part in named_parts(first)}
-    entries += [Entry(role, sign=SIGNS[role]) for role in NAMED_ROLES if role in there]
-    return [*entries, Entry("limit", line=_LIMIT)]
+    entries += [LegendEntry(role, sign=SIGNS[role]) for role in NAMED_ROLES if role in there]
+    return [*entries, LegendEntry("limit", line=_LIMIT)]
 
 
 def _stroke(number: int) -> Stroke:

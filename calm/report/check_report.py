@@ -11,9 +11,9 @@ from calm.report.blocks import (
     ON_THE_WAY,
     Block,
     Figure,
-    Part,
     Prose,
     Report,
+    ReportPart,
     Section,
     Signatures,
 )
@@ -67,16 +67,16 @@ def mooring_section(assessment: Assessment, against: Comparison | None = None) -
     parts = (
         *document_part(assessment.mooring.file),
         *compared,
-        Part("Judgement", tuple(_judgement(assessment, columns))),
-        Part("The line", tuple(_line(assessment))),
-        Part("Shape, tension and breaks", tuple(_drawn(assessment))),
-        Part("Checks", tuple(_checks(assessment))),
-        Part("Launch, recovery, breaks", tuple(_on_the_way(assessment))),
-        Part(
+        ReportPart("Judgement", tuple(_judgement(assessment, columns))),
+        ReportPart("The line", tuple(_line(assessment))),
+        ReportPart("Shape, tension and breaks", tuple(_drawn(assessment))),
+        ReportPart("Checks", tuple(_checks(assessment))),
+        ReportPart("Launch, recovery, breaks", tuple(_on_the_way(assessment))),
+        ReportPart(
             "Inventory",
             (inventory_table(assessment.inventory), deck_table(assessment.inventory)),
         ),
-        Part("Inputs", tuple(_inputs(assessment))),
+        ReportPart("Inputs", tuple(_inputs(assessment))),
     )
     return Section(
         assessment.name,
@@ -99,10 +99,10 @@ def check_report(sections: Sequence[Section]) -> Report:
         title="Design check",
         subtitle=f"{moorings}, {in_all}",
         front=(
-            Part("Summary", tuple(_summary(sections))),
-            Part("Limits", (limits_table([(each.name, each.limits) for each in sections]),)),
-            Part("What is not judged", (Prose(UNSEEN, State.UNKNOWN),)),
-            Part("Signatures", (Signatures(("Designed by", "Checked by", "Approved by")),)),
+            ReportPart("Summary", tuple(_summary(sections))),
+            ReportPart("Limits", (limits_table([(each.name, each.limits) for each in sections]),)),
+            ReportPart("What is not judged", (Prose(UNSEEN, State.UNKNOWN),)),
+            ReportPart("Signatures", (Signatures(("Designed by", "Checked by", "Approved by")),)),
         ),
         sections=tuple(sections),
         date=date(),

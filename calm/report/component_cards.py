@@ -13,10 +13,10 @@ from pydantic import BaseModel
 from calm.assemble.datasheet import Datasheet, datasheet
 from calm.files import Flexible
 from calm.quantities import QUANTITIES
-from calm.report.blocks import Cell, Column, Heading, Pairs, Part, Table
+from calm.report.blocks import Cell, Column, Heading, Pairs, ReportPart, Table
 
 if TYPE_CHECKING:
-    from calm.checks.catalogue import CatalogueFinding
+    from calm.checks.catalogue_rules import CatalogueFinding
     from calm.checks.missing import MissingFigures
     from calm.files import Catalogue, Component
     from calm.files.catalogue import Assembly
@@ -33,7 +33,7 @@ _AUTHOR = re.compile(r"[,;] (?![^()]*\))")
 _HEADING_OF_OTHERS = "other"
 
 
-def to_list(catalogue: Catalogue, definitions: Mapping[str, Definition]) -> Part:
+def to_list(catalogue: Catalogue, definitions: Mapping[str, Definition]) -> ReportPart:
     """One line for each definition, under the name of its family."""
     columns = (
         Column("id"),
@@ -54,10 +54,12 @@ def to_list(catalogue: Catalogue, definitions: Mapping[str, Definition]) -> Part
         if definition.prefer is not None:
             name += f" (use {definition.prefer})"
         rows.append(tuple(map(Cell, (identifier, name, net, breaking))))
-    return Part("", (Table("", columns, tuple(rows), dense=True),))
+    return ReportPart("", (Table("", columns, tuple(rows), dense=True),))
 
 
-def to_card(identifier: str, definition: Definition, catalogue: Catalogue | None = None) -> Part:
+def to_card(
+    identifier: str, definition: Definition, catalogue: Catalogue | None = None
+) -> ReportPart:
     """Every figure that a definition gives, in the units people read, and where it comes from.
 
     What follows from the figures comes after them, then, where several definitions of the catalogue
@@ -67,8 +69,8 @@ def to_card(identifier: str, definition: Definition, catalogue: Catalogue | None
     pairs = Pairs((*_figures(definition), *following))
     same = [] if catalogue is None else catalogue.same_thing(identifier)
     if catalogue is None or len(same) < 2:
-        return Part("", (Heading(identifier), pairs))
-    return Part("", (Heading(identifier), pairs, _comparison(catalogue, same)))
+        return ReportPart("", (Heading(identifier), pairs))
+    return ReportPart("", (Heading(identifier), pairs, _comparison(catalogue, same)))
 
 
 def to_documents(

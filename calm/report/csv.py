@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from calm.case.columns import Components, rows_down
+from calm.case.result_tables import Components, rows_down
 from calm.quantities import QUANTITIES
 from calm.records.csv_writer import table_csv
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
-    from calm.case.columns import ClampRow, ComponentRow
+    from calm.case.result_tables import ClampRow, ComponentRow
 
 _WORDS = ("mooring", "part", "index", "use", "label")
 _WITHIN = {"tension", "least_tension", "reynolds"}

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from calm.checks.finding import State
 from calm.drop import DropPlan
 from calm.records.csv_writer import table_csv
-from calm.report.blocks import PageBreak, Part, Plate, Prose, Report, Section
+from calm.report.blocks import PageBreak, Plate, Prose, Report, ReportPart, Section
 from calm.report.deck_lists import (
     cutting_part,
     hardware_part,
@@ -144,12 +144,12 @@ def _instruments(deck: Deck) -> Rows:
 
 def deck_report(deck: Deck, paper: Paper, notes: tuple[str, ...] = ()) -> Report:
     """Diagram, logs, lists and plans; `notes` is what else is to be said on the first sheet."""
-    parts: list[Part] = [*document_part(deck.file)]
+    parts: list[ReportPart] = [*document_part(deck.file)]
     said = (*deck.notes, *notes)
     if said:
-        parts.append(Part("To be known", (Prose(said, State.WARN),)))
-    parts.append(Part("Inputs", (origin([deck.file]),)))
-    parts += (Part(part.title, (*part.blocks, PageBreak())) for part in _sheets(deck))
+        parts.append(ReportPart("To be known", (Prose(said, State.WARN),)))
+    parts.append(ReportPart("Inputs", (origin([deck.file]),)))
+    parts += (ReportPart(part.title, (*part.blocks, PageBreak())) for part in _sheets(deck))
     subtitle = f"{deck.order}, environment: {deck.environment}"
     section = Section(deck.file.name, tuple(parts))
     return Report(deck.file.name, subtitle, (), (section,), date(), plates(deck, paper))
@@ -169,7 +169,7 @@ def plates(deck: Deck, paper: Paper) -> tuple[Plate, ...]:
     )
 
 
-def _sheets(deck: Deck) -> Iterator[Part]:
+def _sheets(deck: Deck) -> Iterator[ReportPart]:
     yield deployment_part(deck)
     yield recovery_part(deck)
     yield cutting_part(deck)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from calm.deck.cutting import LENGTH_ERROR
 from calm.deck.shipping import total_of
 from calm.quantities import QUANTITIES, say
-from calm.report.blocks import Block, Cell, Column, Note, Part, Prose, Table
+from calm.report.blocks import Block, Cell, Column, Note, Prose, ReportPart, Table
 from calm.report.sheet import figure_cell
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ _IMPLIED = (
 )
 
 
-def cutting_part(deck: Deck) -> Part:
+def cutting_part(deck: Deck) -> ReportPart:
     """Lengths, marks, and how exactly they have to be."""
     rows: list[tuple[Cell, ...]] = []
     for cut in deck.cuts:
@@ -71,10 +71,10 @@ def cutting_part(deck: Deck) -> Part:
         "last is spooled first."
     )
     table = Table("Wires and ropes", columns, tuple(rows), note, by_hand=True)
-    return Part("Cutting and marking list", (table,))
+    return ReportPart("Cutting and marking list", (table,))
 
 
-def hardware_part(deck: Deck) -> Part:
+def hardware_part(deck: Deck) -> ReportPart:
     """The hardware with its spares."""
     rows: list[tuple[Cell, ...]] = []
     kind = ""
@@ -107,10 +107,10 @@ def hardware_part(deck: Deck) -> Part:
     blocks: tuple[Block, ...] = (table,)
     if not deck.hardware:
         blocks = (Prose(("The line lists no hardware.",)),)
-    return Part("Hardware bill", (*blocks, Note((_IMPLIED,))))
+    return ReportPart("Hardware bill", (*blocks, Note((_IMPLIED,))))
 
 
-def shipping_part(deck: Deck) -> Part:
+def shipping_part(deck: Deck) -> ReportPart:
     """All that is shipped, and what the sums lack."""
     rows = [_freight(one) for one in deck.freight]
     rows.append(_freight(total_of(deck.freight)))
@@ -128,7 +128,7 @@ def shipping_part(deck: Deck) -> Part:
         "its size, else what it displaces. ≥: a lower bound, since figures are missing. Spares are "
         "not in it."
     )
-    return Part("Shipping list", (Table("Shipped", columns, tuple(rows), note, totals=1),))
+    return ReportPart("Shipping list", (Table("Shipped", columns, tuple(rows), note, totals=1),))
 
 
 def _freight(one: Freight) -> tuple[Cell, ...]:
@@ -151,7 +151,7 @@ def _at_least(name: str, value: float, missing: int, count: int) -> Cell:
     return Cell(f"≥ {text}", f"{missing} unknown") if missing else Cell(text)
 
 
-def lifts_part(deck: Deck) -> Part:
+def lifts_part(deck: Deck) -> ReportPart:
     """The stages of deployment and recovery."""
     lifts = deck.lifts
     said = []
@@ -179,7 +179,7 @@ def lifts_part(deck: Deck) -> Part:
         "Hanging: the weight in water of all that is over the side, where it hangs straight down "
         "from the ship; below 0 it floats. Neither drag nor the swell is in it."
     )
-    return Part(
+    return ReportPart(
         "Lifts",
         (
             Prose(tuple(said)),
@@ -211,7 +211,7 @@ def _stages(title: str, lifts: Iterable[Lift]) -> Table:
     return Table(title, columns, rows)
 
 
-def instruments_part(deck: Deck) -> Part:
+def instruments_part(deck: Deck) -> ReportPart:
     """Every instrument and release: where it hangs, and what the file says of it."""
     several = len(deck.environments) > 1
     rows = tuple(_posted(one, several) for one in deck.instruments)
@@ -238,7 +238,7 @@ def instruments_part(deck: Deck) -> Part:
             "which one below it."
         )
     table = Table("Instruments and releases", columns, rows, note)
-    return Part("Instrument sheet", (table,))
+    return ReportPart("Instrument sheet", (table,))
 
 
 def _posted(one: Posted, several: bool) -> tuple[Cell, ...]:

@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING
 from calm.deck.deck_items import Order
 from calm.drop import DropPlan
 from calm.quantities import QUANTITIES, say
-from calm.report.blocks import Block, Cell, Column, Pairs, Part, Prose, Table
+from calm.report.blocks import Block, Cell, Column, Pairs, Prose, ReportPart, Table
 from calm.report.drop_sheet import whereabouts
 from calm.report.provenance import position_text, title_pairs
 
 if TYPE_CHECKING:
     from calm.deck import Deck
-    from calm.deck.deck_items import Hung
+    from calm.deck.deck_items import DeckItem
 
 _BOX = Cell("☐")
 _SOUNDINGS = 6
 
 
-def deployment_part(deck: Deck) -> Part:
+def deployment_part(deck: Deck) -> ReportPart:
     """What is done before, the order over the side, and where the anchor went."""
     last = deck.order is Order.ANCHOR_LAST
     blocks: tuple[Block, ...] = (
@@ -36,10 +36,10 @@ def deployment_part(deck: Deck) -> Part:
         _positions(deck),
         _soundings(),
     )
-    return Part("Deployment log", blocks)
+    return ReportPart("Deployment log", blocks)
 
 
-def recovery_part(deck: Deck) -> Part:
+def recovery_part(deck: Deck) -> ReportPart:
     """What is done at the release, and the order in which the line comes up."""
     rise = deck.rise
     said = []
@@ -62,7 +62,7 @@ def recovery_part(deck: Deck) -> Part:
         if rise.in_still_water:
             said.append("The rise is that in still water.")
     blocks = (Prose(tuple(said)), _events(_AT_THE_RELEASE), _surfacing(deck))
-    return Part("Recovery log", blocks)
+    return ReportPart("Recovery log", blocks)
 
 
 _AT_THE_RELEASE = (
@@ -71,7 +71,7 @@ _AT_THE_RELEASE = (
 )  # fmt: skip
 
 
-def placed(one: Hung, deck: Deck) -> str:
+def placed(one: DeckItem, deck: Deck) -> str:
     """Where a clamp sits: from the upper end of its piece, anchor first from the lower end too."""
     if one.on is None or one.at is None:
         return ""

@@ -22,7 +22,7 @@ from calm.report.diagram_layout import (
     SYMBOL_SCALE,
     ColumnOf,
     Paper,
-    Placed,
+    PlacedEntry,
     columns_of,
     entries_of,
 )
@@ -213,7 +213,7 @@ def _continued(page: Pen, x: float, top: float, left: float, words: str) -> None
 def _entry(
     page: Pen,
     pen: Pen,
-    placed: Placed,
+    placed: PlacedEntry,
     x: float,
     left: float,
     rights: Sequence[float],

@@ -19,7 +19,7 @@ from calm.report.sheet import place_text
 
 if TYPE_CHECKING:
     from calm.deck import Deck
-    from calm.deck.deck_items import Hung
+    from calm.deck.deck_items import DeckItem
 
     pass
 
@@ -28,7 +28,7 @@ _SIZED = re.compile(r"(shackle|ring|swivel|link)(?:-[a-z]+)?-(\d+)\b.*")
 
 
 @dataclass(frozen=True)
-class Entry:
+class DiagramEntry:
     """A row of the diagram.
 
     Attributes
@@ -52,10 +52,10 @@ class Entry:
     strong: bool = False
 
 
-def entries_of(deck: Deck) -> tuple[Entry, ...]:
+def entries_of(deck: Deck) -> tuple[DiagramEntry, ...]:
     """Down the line; connectors that follow one another make one junction."""
     own = _own_labels(deck.parts)
-    found: list[Entry] = []
+    found: list[DiagramEntry] = []
     for joins, group in groupby(deck.parts, key=_is_connector):
         parts = [*group]
         if joins:
@@ -65,7 +65,7 @@ def entries_of(deck: Deck) -> tuple[Entry, ...]:
     return tuple(found)
 
 
-def _own_labels(parts: Sequence[Hung]) -> dict[int, str]:
+def _own_labels(parts: Sequence[DeckItem]) -> dict[int, str]:
     """Of each part, by its identity: its label where a person gave it, else nothing."""
     labels = own_labels([one.label for one in parts])
     return {
@@ -74,12 +74,12 @@ def _own_labels(parts: Sequence[Hung]) -> dict[int, str]:
     }
 
 
-def _is_connector(one: Hung) -> bool:
+def _is_connector(one: DeckItem) -> bool:
     clamps = getattr(one.part, "clamps", ())
     return one.role == "connector" and one.on is None and one.is_rigid and not clamps
 
 
-def _pieces(parts: Sequence[Hung]) -> Iterator[Entry]:
+def _pieces(parts: Sequence[DeckItem]) -> Iterator[DiagramEntry]:
     cable: Symbol | None = None
     for one in parts:
         sign = sign_of(one.part.use, one.label, one.part.component)
@@ -88,7 +88,7 @@ def _pieces(parts: Sequence[Hung]) -> Iterator[Entry]:
         name = one_line(one.name)
         serial = "" if one.serial is None else f"no. {one_line(one.serial)}"
         label = one_line(one.label)
-        yield Entry(
+        yield DiagramEntry(
             sign=sign,
             cable=cable,
             label=label,
@@ -99,7 +99,7 @@ def _pieces(parts: Sequence[Hung]) -> Iterator[Entry]:
         )
 
 
-def _junction(parts: Sequence[Hung], own: dict[int, str]) -> Entry:
+def _junction(parts: Sequence[DeckItem], own: dict[int, str]) -> DiagramEntry:
     words = [_said(one, own[id(one)]) for one in parts]
     joined = " – ".join(
         word if count == 1 else f"{count} × {word}"
@@ -115,7 +115,7 @@ def _junction(parts: Sequence[Hung], own: dict[int, str]) -> Entry:
     figures = {"cut_length": lengths[0], "length": lengths[1],
                "depth": first.depth, "height": first.height}  # fmt: skip
     texts = [QUANTITIES[name].format(value) for name, value in figures.items()]
-    return Entry(
+    return DiagramEntry(
         sign=swivel,
         cable=None,
         label=joined,
@@ -125,7 +125,7 @@ def _junction(parts: Sequence[Hung], own: dict[int, str]) -> Entry:
     )
 
 
-def _said(one: Hung, own: str) -> str:
+def _said(one: DeckItem, own: str) -> str:
     """A connector as people write it, 13 shackle, with its own label and serial number."""
     sized = _SIZED.fullmatch(one.part.use)
     hardware = f"{sized[2]} {sized[1]}" if sized else one_line(one.name)
@@ -133,7 +133,7 @@ def _said(one: Hung, own: str) -> str:
     return text if one.serial is None else f"{text} no. {one_line(one.serial)}"
 
 
-def _cells(one: Hung) -> tuple[str, str, str, str]:
+def _cells(one: DeckItem) -> tuple[str, str, str, str]:
     depth, height = (QUANTITIES["depth"].format(value) for value in (one.depth, one.height))
     if one.on is not None:
         return place_text(one.at or 0.0), "", depth, height
@@ -194,10 +194,10 @@ class Paper(StrEnum):
 
 
 @dataclass(frozen=True)
-class Placed:
+class PlacedEntry:
     """An entry on its column: from where to where, and its texts in lines."""
 
-    entry: Entry
+    entry: DiagramEntry
     top: float
     height: float
     label: tuple[str, ...]
@@ -215,7 +215,7 @@ class ColumnOf:
     end : where the entries end
     """
 
-    entries: tuple[Placed, ...]
+    entries: tuple[PlacedEntry, ...]
     above: str
     below: str
     end: float
@@ -226,7 +226,7 @@ def text_width_of(paper: Paper) -> float:
     return paper.column_width - PICTURE - sum(FIGURES) - _PAD
 
 
-def columns_of(entries: Sequence[Entry], paper: Paper, foot: float) -> tuple[ColumnOf, ...]:
+def columns_of(entries: Sequence[DiagramEntry], paper: Paper, foot: float) -> tuple[ColumnOf, ...]:
     """The columns in reading order; `foot` is the height of the title block [pt]."""
     room = paper.size[1] - MARGIN - foot - MARGIN - HEAD - 2 * CONTINUED - _SEA - _SEABED
     measured = [_measured(entry, paper) for entry in entries]
@@ -236,7 +236,7 @@ def columns_of(entries: Sequence[Entry], paper: Paper, foot: float) -> tuple[Col
         top = MARGIN + HEAD + (CONTINUED if above else _SEA)
         placed = []
         for one in group:
-            placed.append(Placed(one.entry, top, one.height, one.label, one.name))
+            placed.append(PlacedEntry(one.entry, top, one.height, one.label, one.name))
             top += one.height
         last = group[-1] is measured[-1]
         below = "" if last else next(marks)
@@ -245,7 +245,7 @@ def columns_of(entries: Sequence[Entry], paper: Paper, foot: float) -> tuple[Col
     return tuple(found)
 
 
-def _measured(entry: Entry, paper: Paper) -> Placed:
+def _measured(entry: DiagramEntry, paper: Paper) -> PlacedEntry:
     room = text_width_of(paper) - (INDENT if entry.clamped else 0.0)
     label = tuple(wrapped(entry.label, room, FONT, bold=entry.strong))
     name = tuple(wrapped(entry.name, room, FONT))
@@ -256,10 +256,10 @@ def _measured(entry: Entry, paper: Paper) -> Placed:
         height = max(height, _LEAST_CABLE)
     else:
         height = max(height, SYMBOL_SCALE * figure_of(entry.sign).height + 4.0)
-    return Placed(entry, 0.0, height, label, name)
+    return PlacedEntry(entry, 0.0, height, label, name)
 
 
-def _broken(entries: Sequence[Placed], room: float) -> Iterator[list[Placed]]:
+def _broken(entries: Sequence[PlacedEntry], room: float) -> Iterator[list[PlacedEntry]]:
     """Groups that fit a column, parted at a junction near its end where there is one."""
     rest = [*entries]
     while rest:
@@ -273,7 +273,7 @@ def _broken(entries: Sequence[Placed], room: float) -> Iterator[list[Placed]]:
         rest = rest[fits:]
 
 
-def _break(rest: Sequence[Placed], fits: int, room: float) -> int:
+def _break(rest: Sequence[PlacedEntry], fits: int, room: float) -> int:
     """Before which entry to part: a junction, else a piece, else a clamp, as low as can be."""
     height = sum(one.height for one in rest[:fits])
     best = fits, 3

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
 from calm.quantities import QUANTITIES, Quantity
-from calm.report.blocks import Block, Cell, Column, Part, Prose, Table
+from calm.report.blocks import Block, Cell, Column, Prose, ReportPart, Table
 from calm.report.check_summary import SIGNS
 
 if TYPE_CHECKING:
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
     from calm.files.file_differences import Change
 
 
-def comparison_part(comparison: Comparison) -> Part:
+def comparison_part(comparison: Comparison) -> ReportPart:
     """The differences, then the figures side by side."""
     before, after = comparison.names
-    return Part(f"{before} → {after}", tuple(_blocks(comparison)))
+    return ReportPart(f"{before} → {after}", tuple(_blocks(comparison)))
 
 
 def _blocks(comparison: Comparison) -> Iterator[Block]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from calm.case.columns import rows_down
+from calm.case.result_tables import rows_down
 from calm.quantities import QUANTITIES
 
 if TYPE_CHECKING:

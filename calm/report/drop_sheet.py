@@ -10,7 +10,7 @@ import numpy as np
 from calm.checks.finding import State
 from calm.drop.plan import DRAG_BAND
 from calm.quantities import QUANTITIES, bearing_text, say
-from calm.report.blocks import Block, Cell, Column, Figure, Note, Pairs, Part, Prose, Table
+from calm.report.blocks import Block, Cell, Column, Figure, Note, Pairs, Prose, ReportPart, Table
 from calm.report.picture import figure_svg
 from calm.report.provenance import position_text
 
@@ -25,7 +25,7 @@ _DEEPER = 0.5
 """By how much deeper than at rest a float has to come to be listed [m]."""
 
 
-def drop_part(plan: DropPlan) -> Part:
+def drop_part(plan: DropPlan) -> ReportPart:
     """The sheet."""
     blocks: list[Block] = [
         _instructions(plan),
@@ -36,7 +36,7 @@ def drop_part(plan: DropPlan) -> Part:
         *_depth_blocks(plan),
         Note(_notes(plan)),
     ]
-    return Part("Anchor drop plan", tuple(blocks))
+    return ReportPart("Anchor drop plan", tuple(blocks))
 
 
 def _instructions(plan: DropPlan) -> Prose:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
 from calm.quantities import QUANTITIES
-from calm.report.blocks import Block, Cell, Column, Part, Prose, Span, Table
+from calm.report.blocks import Block, Cell, Column, Prose, ReportPart, Span, Table
 
 if TYPE_CHECKING:
     from calm.case.explain import Causes, Explanation
@@ -52,7 +52,7 @@ _COLUMNS = {
 _ANCHOR = ("tension", "vertical", "horizontal", "required_weight")
 
 
-def explanation_part(explanation: Explanation) -> Part:
+def explanation_part(explanation: Explanation) -> ReportPart:
     """The shares of the drags and what a change would do.
 
     Drags that cause next to nothing share a row; a JSON document has each of them. It fits 80
@@ -73,7 +73,7 @@ def explanation_part(explanation: Explanation) -> Part:
         told = tuple(f"{change.name}: {change.failure}" for change in failures)
         blocks.append(Prose(told, State.WARN))
     lines = (_SHARES, _CHANGES) if explanation.causes is not None else (_CHANGES,)
-    return Part(title, (*blocks, Prose(tuple((Span(line, quiet=True),) for line in lines))))
+    return ReportPart(title, (*blocks, Prose(tuple((Span(line, quiet=True),) for line in lines))))
 
 
 def _causes(explanation: Explanation, causes: Causes) -> Table:

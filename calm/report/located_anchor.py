@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from calm.checks.finding import State
-from calm.report.blocks import Block, Cell, Column, Note, Pairs, Part, Prose, Table
+from calm.report.blocks import Block, Cell, Column, Note, Pairs, Prose, ReportPart, Table
 from calm.report.provenance import degrees_text
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ _CIRCLE, _LEFT_OUT, _PLACE = "#2b7bba", "#999999", "#c0392b"
 _ROUND = np.linspace(0.0, 2.0 * np.pi, 1441)
 
 
-def located_part(located: Located, water_depth: float) -> Part:
+def located_part(located: Located, water_depth: float) -> ReportPart:
     """The place, how well it is known, and the residual of every range.
 
     Parameters
@@ -39,7 +39,7 @@ def located_part(located: Located, water_depth: float) -> Part:
         several = "lines" if len(outliers) > 1 else "line"
         blocks.append(Prose((f"Not used, they do not fit the others: {several} {lines}.",)))
     blocks += [_residuals(located), Note(_notes(located))]
-    return Part("Place of the anchor", tuple(blocks))
+    return ReportPart("Place of the anchor", tuple(blocks))
 
 
 def _figures(located: Located, water_depth: float) -> tuple[tuple[str, str], ...]:

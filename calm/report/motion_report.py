@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from calm.checks.finding import State
-from calm.report.blocks import Block, Figure, Note, Part, Prose, Report, Section
+from calm.report.blocks import Block, Figure, Note, Prose, Report, ReportPart, Section
 from calm.report.html import page
 from calm.report.motion_tables import PLAIN, factors_table, held_out_table, sensors_table
 from calm.report.pdf import printed
@@ -70,13 +70,15 @@ def motion_report(
     held: tuple[Block, ...] = (held_out_table(study.held_out),) if study.held_out else ()
     factors = factors_table(study.factors, study.task.common.datum)
     parts = (
-        Part("What to doubt", (doubts, *marks)),
-        Part("Factors", (factors, Figure("Over time", factor_figure(time, factor)))),
-        Part("Measured against computed", (sensors_table(study), *held, Note((PLAIN,)))),
-        Part("Inputs", (Prose(tuple(notes) or ("Nothing was left out.",)),)),
-        Part("Depths", (Figure(_DEPTHS, depth_figure(shown), tall=True), Note((_LEGEND,)))),
-        Part("Scatter", (Figure("Computed against measured depths", scatter_figure(shown)),)),
-        Part("Residuals", (Figure("Measured less estimated", residual_figure(shown), tall=True),)),
+        ReportPart("What to doubt", (doubts, *marks)),
+        ReportPart("Factors", (factors, Figure("Over time", factor_figure(time, factor)))),
+        ReportPart("Measured against computed", (sensors_table(study), *held, Note((PLAIN,)))),
+        ReportPart("Inputs", (Prose(tuple(notes) or ("Nothing was left out.",)),)),
+        ReportPart("Depths", (Figure(_DEPTHS, depth_figure(shown), tall=True), Note((_LEGEND,)))),
+        ReportPart("Scatter", (Figure("Computed against measured depths", scatter_figure(shown)),)),
+        ReportPart(
+            "Residuals", (Figure("Measured less estimated", residual_figure(shown), tall=True),)
+        ),
     )
     span = f"{str(time[0])[:16]} to {str(time[-1])[:16]}, {len(time)} times"
     return Report(f"{name}: where it was", span, (), (Section(name, parts),), date())

@@ -8,7 +8,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from calm.checks.finding import State
-from calm.report.blocks import Block, Cell, Column, Heading, Part, Prose, Table
+from calm.report.blocks import Block, Cell, Column, Heading, Prose, ReportPart, Table
 
 if TYPE_CHECKING:
     from calm.motion.agreement import Agreement
@@ -28,7 +28,7 @@ PLAIN = (
 )
 
 
-def motion_part(study: Study, name: str) -> Part:
+def motion_part(study: Study, name: str) -> ReportPart:
     """Factors, sensors, sensors that were hidden, and what to doubt."""
     blocks: list[Block] = [
         Heading(name),
@@ -40,7 +40,7 @@ def motion_part(study: Study, name: str) -> Part:
         blocks.append(held_out_table(study.held_out))
     if study.remarks:
         blocks.append(Prose(study.remarks, State.WARN))
-    return Part("", tuple(blocks))
+    return ReportPart("", tuple(blocks))
 
 
 def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: float) -> Table:

@@ -7,7 +7,7 @@ from html import escape
 from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
-from calm.report.blocks import Block, Cell, Column, Line, Note, Part, Prose, Table
+from calm.report.blocks import Block, Cell, Column, Line, Note, Prose, ReportPart, Table
 from calm.report.sheet import result_part
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ def to_html(result: Result | TowResult) -> str:
     return fragment(result_part(result))
 
 
-def fragment(part: Part) -> str:
+def fragment(part: ReportPart) -> str:
     """A part of tables and sentences, every text escaped."""
     return f"<div><p><b>{escape(part.title)}</b></p>{''.join(map(_block, part.blocks))}</div>"
 

@@ -19,7 +19,7 @@ from pydantic import BaseModel
 from calm.errors import InputError, UsageError
 from calm.files import MooringFile
 from calm.quantities import QUANTITIES, bearing_of, say
-from calm.report.blocks import Block, Cell, Column, Listing, Pairs, Part, Prose, Table
+from calm.report.blocks import Block, Cell, Column, Listing, Pairs, Prose, ReportPart, Table
 from calm.whole_file import read_text
 
 if TYPE_CHECKING:
@@ -165,7 +165,7 @@ def origin(files: Sequence[MooringFile]) -> Prose:
     return Prose((f"SHA-256 of the inputs: {input_hash(files)}", f"Computed with {made_by}"))
 
 
-def document_part(file: MooringFile) -> tuple[Part, ...]:
+def document_part(file: MooringFile) -> tuple[ReportPart, ...]:
     """The title block and the history of revisions; nothing where a file gives no document."""
     if file.document is None:
         return ()
@@ -182,7 +182,7 @@ def document_part(file: MooringFile) -> tuple[Part, ...]:
             Column("change", share=3.0),
         )
         blocks.append(Table("History", columns, rows))
-    return (Part("Document", tuple(blocks)),)
+    return (ReportPart("Document", tuple(blocks)),)
 
 
 def title_pairs(file: MooringFile) -> list[tuple[str, str]]:

@@ -19,7 +19,7 @@ from calm.dataset.variables import (
     OF_NODE,
     PIECES,
     Attributes,
-    Layout,
+    ResultLayout,
     labels,
     numbers,
     origin,
@@ -84,7 +84,7 @@ def result_netcdf(result: Result | TowResult) -> bytes:
         "notes": "\n".join(result.warnings),
     }
     known = {name: value for name, value in attributes.items() if value}
-    return netcdf_of(Layout(sizes, tuple(variables), known))
+    return netcdf_of(ResultLayout(sizes, tuple(variables), known))
 
 
 def _ends(result: Result | TowResult) -> dict[str, float]:

@@ -9,7 +9,7 @@ from calm.case import TowResult
 from calm.checks.criterion import limits_used
 from calm.checks.finding import State
 from calm.checks.posture import reaches_the_surface
-from calm.report.blocks import Figure, Part, Prose, Report, Section
+from calm.report.blocks import Figure, Prose, Report, ReportPart, Section
 from calm.report.check_summary import limits_table
 from calm.report.picture import figure_svg
 from calm.report.plot import draw
@@ -23,7 +23,7 @@ from calm.report.provenance import (
     origin,
 )
 from calm.report.sheet import sheet
-from calm.report.uncertain import uncertainty_part
+from calm.report.uncertainty import uncertainty_part
 
 if TYPE_CHECKING:
     from calm.case import Result
@@ -41,14 +41,14 @@ def result_report(result: Result | TowResult, uncertain: Uncertain | None = None
     described = (Prose((file.description,)),) if file.description else ()
     parts = (
         *document_part(file),
-        Part("Result", (*described, *said.summary, Prose((said.convergence,)))),
-        Part("The line", (Figure("Schematic", schematic_svg(file, result), tall=True),
+        ReportPart("Result", (*described, *said.summary, Prose((said.convergence,)))),
+        ReportPart("The line", (Figure("Schematic", schematic_svg(file, result), tall=True),
                           replace(said.table, title="Table of the line"))),
-        Part("Shape", (Figure("Elevation, current and plan", drawing),)),
+        ReportPart("Shape", (Figure("Elevation, current and plan", drawing),)),
         *(() if uncertain is None else (uncertainty_part(uncertain),)),
         *_limits(result),
-        Part("What is not judged", (Prose(UNSEEN, State.UNKNOWN),)),
-        Part(
+        ReportPart("What is not judged", (Prose(UNSEEN, State.UNKNOWN),)),
+        ReportPart(
             "Inputs",
             (
                 environments_table([environment], [water]),
@@ -62,9 +62,9 @@ def result_report(result: Result | TowResult, uncertain: Uncertain | None = None
     return Report(result.name, subtitle, (), (Section(result.name, parts),), date())
 
 
-def _limits(result: Result | TowResult) -> tuple[Part, ...]:
+def _limits(result: Result | TowResult) -> tuple[ReportPart, ...]:
     """The limits of the margins in a mooring's table; a tow has none."""
     if isinstance(result, TowResult):
         return ()
     keys = limits_used(result.file, reaches_the_surface(result.mooring))
-    return (Part("Limits", (limits_table([(result.name, keys)]),)),)
+    return (ReportPart("Limits", (limits_table([(result.name, keys)]),)),)

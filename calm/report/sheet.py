@@ -9,18 +9,18 @@ from enum import StrEnum
 from typing import TYPE_CHECKING
 
 from calm.case import Result, TowResult
-from calm.case.columns import rows_down
+from calm.case.result_tables import rows_down
 from calm.checks.finding import State
 from calm.checks.posture import meant_for_the_surface
 from calm.checks.strength import safety_factor
 from calm.files.strumming_keys import BourgetMarichalKeys
 from calm.quantities import QUANTITIES, say
-from calm.report.blocks import Cell, Column, Line, Note, Part, Prose, Span, Table
+from calm.report.blocks import Cell, Column, Line, Note, Prose, ReportPart, Span, Table
 from calm.solve import Status
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
-    from calm.case.columns import ClampRow, ComponentRow
+    from calm.case.result_tables import ClampRow, ComponentRow
     from calm.case.strumming import StrummingBand
     from calm.files import Component
 
@@ -64,14 +64,14 @@ def sheet(result: Result | TowResult, *, places: bool = False) -> Sheet:
     return _mooring(result, places)
 
 
-def result_part(result: Result | TowResult) -> Part:
+def result_part(result: Result | TowResult) -> ReportPart:
     """A result in short: it fits 80 columns, where long labels wrap.
 
     A figure beyond its limit carries ``!`` and one near it ``~``, so that nothing hangs on colour.
     """
     said = sheet(result)
     note = Note((said.table.note, said.convergence))
-    return Part(said.title, (replace(said.table, note=""), *said.summary, note))
+    return ReportPart(said.title, (replace(said.table, note=""), *said.summary, note))
 
 
 def _summary(result: Result | TowResult, *lines: Line) -> tuple[Prose, ...]:
@@ -109,7 +109,7 @@ def _mooring_summary(result: Result) -> tuple[Prose, ...]:
         pull += f"; {say('grounded_length', anchor.grounded_length)} of line on the seabed"
     needed = say("required_weight", anchor.required_weight)
     weighs = f"{say('required_weight', anchor.weight)} in water, {needed} needed"
-    mark = Mark.BEYOND if anchor.weight < anchor.required_weight else Mark.NONE
+    mark = FigureMark.BEYOND if anchor.weight < anchor.required_weight else FigureMark.NONE
     hull = f"Hull: draft {say('draft', top.draft)}, freeboard {say('freeboard', top.freeboard)}"
     return _summary(
         result,
@@ -209,7 +209,7 @@ _SHORT = {
 _MARKED = ("tilt", "safety_factor")
 
 
-class Mark(StrEnum):
+class FigureMark(StrEnum):
     """The sign after a figure: legible without colour."""
 
     NONE = ""
@@ -222,7 +222,7 @@ class Mark(StrEnum):
         return _STATES[self]
 
 
-_STATES = {Mark.NONE: None, Mark.NEAR: State.WARN, Mark.BEYOND: State.FAIL}
+_STATES = {FigureMark.NONE: None, FigureMark.NEAR: State.WARN, FigureMark.BEYOND: State.FAIL}
 
 
 def line_table(
@@ -256,21 +256,21 @@ def quantity_column(name: str) -> Column:
     )
 
 
-def figure_cell(name: str, value: float | None, mark: Mark = Mark.NONE) -> Cell:
+def figure_cell(name: str, value: float | None, mark: FigureMark = FigureMark.NONE) -> Cell:
     """A value of a quantity under its `quantity_column`."""
     return Cell(QUANTITIES[name].format(value), state=mark.state, mark=mark)
 
 
-def tilt_mark(component: Component, tilt: float) -> Mark:
+def tilt_mark(component: Component, tilt: float) -> FigureMark:
     """Mark of a tilt [deg]: beyond `max_tilt` the component is not to be trusted."""
     if component.max_tilt is not None and tilt > component.max_tilt:
-        return Mark.BEYOND
+        return FigureMark.BEYOND
     if component.warn_tilt is not None and tilt > component.warn_tilt:
-        return Mark.NEAR
-    return Mark.NONE
+        return FigureMark.NEAR
+    return FigureMark.NONE
 
 
-def safety_mark(result: Result | TowResult, record: ComponentRow) -> Mark:
+def safety_mark(result: Result | TowResult, record: ComponentRow) -> FigureMark:
     """Mark of a safety factor: too small, or the piece bears more than its working load.
 
     The factor asked on the breaking load is the file's `checks.safety_factor`, for a surface
@@ -280,7 +280,7 @@ def safety_mark(result: Result | TowResult, record: ComponentRow) -> Mark:
     surface = meant or result.type == "surface"
     least = safety_factor(record.part.component, result.file.checks.safety_factor, surface)
     beyond = record.safety_factor < least or record.utilisation > 1.0
-    return Mark.BEYOND if beyond else Mark.NONE
+    return FigureMark.BEYOND if beyond else FigureMark.NONE
 
 
 def _rows(
@@ -326,8 +326,8 @@ def _cells(
     names: tuple[str, ...],
     row: ComponentRow | ClampRow,
     where: dict[str, float],
-    marks: dict[str, Mark],
+    marks: dict[str, FigureMark],
 ) -> Iterator[Cell]:
     for name in names:
         value = where[name] if name in where else getattr(row, name, None)
-        yield figure_cell(name, value, marks.get(name, Mark.NONE))
+        yield figure_cell(name, value, marks.get(name, FigureMark.NONE))

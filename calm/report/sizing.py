@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
 from calm.quantities import QUANTITIES
-from calm.report.blocks import Cell, Column, Line, Part, Prose, Span, Table
+from calm.report.blocks import Cell, Column, Line, Prose, ReportPart, Span, Table
 from calm.units import with_unit
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ _ROWS = (
 """Rows: name in `Figures`, quantity, words."""
 
 
-def sizing_part(sizing: Sizing) -> Part:
+def sizing_part(sizing: Sizing) -> ReportPart:
     """What to change so that the target is met, and what else that changes.
 
     Parameters
@@ -40,7 +40,7 @@ def sizing_part(sizing: Sizing) -> Part:
     lines += [*sizing.notes, (Span(_effort(sizing), quiet=True),)]
     table = _comparison(sizing, sizing.before, sizing.after)
     title = f"{sizing.change.file.name}: {sizing.target.text}"
-    return Part(title, (Prose((_answer(sizing),)), table, Prose(tuple(lines))))
+    return ReportPart(title, (Prose((_answer(sizing),)), table, Prose(tuple(lines))))
 
 
 def refusal(sizing: Sizing) -> str:

@@ -13,7 +13,7 @@ from calm.errors import NoEquilibrium
 from calm.physics.strumming import BourgetMarichal
 from calm.quantities import QUANTITIES, Quantity
 from calm.records.csv_writer import table_csv
-from calm.report.blocks import Cell, Column, Pairs, Part, Prose, Span, Table
+from calm.report.blocks import Cell, Column, Pairs, Prose, ReportPart, Span, Table
 from calm.units import KNOT
 
 if TYPE_CHECKING:
@@ -177,7 +177,7 @@ def _row_document(tabulation: Tabulation, row: TabulationRow) -> dict[str, Any]:
     return document | {"warnings": list(row.outcome.warnings)}
 
 
-def tabulation_part(tabulation: Tabulation) -> Part:
+def tabulation_part(tabulation: Tabulation) -> ReportPart:
     """A line for each row; it fits 80 columns.
 
     A row without equilibrium shows its status, one with warnings of its own a mark; warnings that
@@ -203,7 +203,7 @@ def tabulation_part(tabulation: Tabulation) -> Part:
     note = f"{_NOTE} {_WARNED}" if "!" in remarks else _NOTE
     warned = (Prose(tabulation.warnings, State.WARN),) if tabulation.warnings else ()
     quiet = Prose(((Span(note, quiet=True),),))
-    return Part(tabulation.title, (Table("", columns, rows), *warned, quiet))
+    return ReportPart(tabulation.title, (Table("", columns, rows), *warned, quiet))
 
 
 def _fine(name: str, tabulation: Tabulation) -> Quantity:
@@ -237,7 +237,7 @@ def bare_cable_document(cable: BareCable) -> dict[str, Any]:
     }
 
 
-def bare_cable_part(cable: BareCable) -> Part:
+def bare_cable_part(cable: BareCable) -> ReportPart:
     """The answer, and what to keep in mind with it."""
     cn, amplitude = cable.vibration
     pairs = [
@@ -253,7 +253,7 @@ def bare_cable_part(cable: BareCable) -> Part:
     notes = tuple(_notes(cable))
     warned = (Prose(notes, State.WARN),) if notes else ()
     title = f"Bare cable at {cable.angle:g}° behind a ship at {cable.speed:.3g} m/s"
-    return Part(title, (Pairs(tuple(pairs)), *warned))
+    return ReportPart(title, (Pairs(tuple(pairs)), *warned))
 
 
 def _notes(cable: BareCable) -> Iterator[str]:

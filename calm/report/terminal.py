@@ -13,7 +13,18 @@ from rich.table import Table as RichTable
 from rich.text import Text
 
 from calm.checks.finding import State
-from calm.report.blocks import Block, Cell, Column, Heading, Line, Note, Pairs, Part, Prose, Table
+from calm.report.blocks import (
+    Block,
+    Cell,
+    Column,
+    Heading,
+    Line,
+    Note,
+    Pairs,
+    Prose,
+    ReportPart,
+    Table,
+)
 from calm.report.signs import in_ascii, printable
 
 _STYLES = {
@@ -28,7 +39,7 @@ _QUIET = "dim"
 _WARNED = _STYLES[State.FAIL]
 
 
-def shown(part: Part, *, plain: bool = False) -> RenderableType:
+def shown(part: ReportPart, *, plain: bool = False) -> RenderableType:
     """A part for a rich console; its figures are left to what draws them there.
 
     Parameters
@@ -45,7 +56,7 @@ class _Printer:
     def __init__(self, plain: bool) -> None:
         self._sign = in_ascii if plain else str
 
-    def part(self, part: Part) -> Iterator[RenderableType]:
+    def part(self, part: ReportPart) -> Iterator[RenderableType]:
         """Title and blocks, a blank line between two that do not belong together."""
         if part.title:
             yield self._text(part.title, "bold")

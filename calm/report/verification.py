@@ -8,7 +8,7 @@ from math import ceil, isnan, log10
 from typing import TYPE_CHECKING, Any
 
 from calm.checks.finding import State
-from calm.report.blocks import Block, Cell, Column, Heading, Line, Part, Prose, Span, Table
+from calm.report.blocks import Block, Cell, Column, Heading, Line, Prose, ReportPart, Span, Table
 
 if TYPE_CHECKING:
     from calm.verification import Case, CaseOutcome, Kind, Source
@@ -56,10 +56,10 @@ def by_kind(cases: Iterable[Case]) -> dict[Kind, int]:
     return {kind: number[kind] for kind in Kind if number[kind]}
 
 
-def verification_part(findings: Findings) -> Part:
+def verification_part(findings: Findings) -> ReportPart:
     """A table for each source and kind, what is out marked with ``!``."""
     of_sources = (block for source, outcomes in findings for block in _of_source(source, outcomes))
-    return Part("", (*of_sources, _sum(findings)))
+    return ReportPart("", (*of_sources, _sum(findings)))
 
 
 def figures(outcome: CaseOutcome) -> tuple[str, ...]:

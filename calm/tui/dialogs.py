@@ -98,12 +98,13 @@ class Asked:
     placeholder: str = ""
 
 
-class Sheet(ModalScreen[dict[str, str] | None]):
+class InputSheet(ModalScreen[dict[str, str] | None]):
     """Some texts, entered together; Esc leaves all as it was."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("sheet")]
     DEFAULT_CSS = (
-        "Sheet {" + _FRAME + " & Field > Input { width: 1fr; } & .field-note { display: none; }"
+        "InputSheet {" + _FRAME + " & Field > Input { width: 1fr; }"
+        " & .field-note { display: none; }"
         "& #sheet-note { height: auto; min-height: 1; color: $text-muted; margin-top: 1; }"
         "& #sheet-note.-wrong { color: $text-error; } }"
     )

@@ -17,7 +17,7 @@ from textual.widgets import Input, Static
 
 from calm.tui.actions import bindings
 from calm.tui.checking import Check, Reading, anything
-from calm.tui.scrolled import Entry
+from calm.tui.scrolled import ScrolledEntry
 
 
 def all_settled(fields: Iterable[Field]) -> bool:
@@ -88,13 +88,13 @@ class Field(Horizontal):
     def compose(self) -> ComposeResult:
         """Name, input, note."""
         yield Static(self._title, classes="field-title", markup=False)
-        yield Entry(self.begun, placeholder=self._placeholder, compact=True)
+        yield ScrolledEntry(self.begun, placeholder=self._placeholder, compact=True)
         yield Static(self._note, classes="field-note", markup=False)
 
     @property
-    def input(self) -> Entry:
+    def input(self) -> ScrolledEntry:
         """The input."""
-        return self.query_one(Entry)
+        return self.query_one(ScrolledEntry)
 
     @property
     def is_typing(self) -> bool:

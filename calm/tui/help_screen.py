@@ -107,7 +107,7 @@ class Actions(Provider):
                 yield Hit(score, title, self._run(action), help=action.meaning)
 
     def _run(self, action: Action) -> Callable[[], Awaitable[bool]]:
-        from calm.tui.line.pane import LinePane
+        from calm.tui.line.line_pane import LinePane
 
         owner = self.screen.query_one(LinePane) if action.place == "line" else self.screen
         return partial(self.app.run_action, action.name, owner)

@@ -24,7 +24,7 @@ from calm.files import MooringFile, read_mooring
 from calm.files.editing import Draft, LineItem
 from calm.files.reader import STAND_IN
 from calm.files.yaml_document import Document, compose
-from calm.tui.found import Row, rows_of
+from calm.tui.row_findings import FoundRow, rows_of
 
 UNNAMED = "unnamed.yaml"
 """The path of a text that belongs to no file yet."""
@@ -67,7 +67,7 @@ class View:
     tighter: tuple[Finding, ...] = ()
     seconds: float = 0.0
     environments: tuple[str, ...] = ()
-    rows: tuple[Row, ...] = ()
+    rows: tuple[FoundRow, ...] = ()
     complete: bool = False
     stands: tuple[MooringInEnvironment, ...] = ()
     elsewhere: tuple[Problem, ...] = ()

@@ -19,7 +19,7 @@ from calm.tui.theme import CURSOR, ELLIPSIS
 
 if TYPE_CHECKING:
     from calm.case import Result, TowResult
-    from calm.case.columns import Shape
+    from calm.case.result_tables import Shape
     from calm.physics.line import Water
     from calm.tui.live import View
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from calm.errors import CalmError
 from calm.files.editing import KeptWork
 from calm.tui.checking import Reading
-from calm.tui.dialogs import Answer, Asked, Question, Sheet
+from calm.tui.dialogs import Answer, Asked, InputSheet, Question
 from calm.tui.messages import Workspace
 from calm.tui.screen import DraftScreen
 from calm.tui.session import Session
@@ -91,7 +91,7 @@ class Saving:
         text = str(begin or path or "")
         asked = [Asked("path", "File", text, _is_writable, placeholder="e.g. iroise-2026.yaml")]
         self._app.push_screen(
-            Sheet("Save as", f"In {Path.cwd()}, unless you give a folder.", asked), take
+            InputSheet("Save as", f"In {Path.cwd()}, unless you give a folder.", asked), take
         )
 
     def _ask_to_overwrite(self, path: Path, then: Then | None) -> None:

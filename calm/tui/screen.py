@@ -13,7 +13,7 @@ from calm.tui.bars import KeyBar, TitleBar
 from calm.tui.messages import Workspace
 
 
-class Part(Protocol):
+class ScreenPart(Protocol):
     """What shows and edits the draft of a workspace.
 
     The application settles the part on top before it saves or leaves, and has every one of them
@@ -55,7 +55,7 @@ class DraftScreen(Screen[None]):
     part, body : what shows it, as what it is asked for and as the widget that it is
     """
 
-    def __init__(self, workspace: Workspace, part: Part, body: Widget) -> None:
+    def __init__(self, workspace: Workspace, part: ScreenPart, body: Widget) -> None:
         super().__init__()
         self.workspace, self.part, self._body = workspace, part, body
 

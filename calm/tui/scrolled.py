@@ -69,7 +69,7 @@ class ScrolledText(Scrolled, can_focus=False):
         return strip.adjust_cell_length(self.scrollable_content_region.width, self.rich_style)
 
 
-class Entry(Input):
+class ScrolledEntry(Input):
     """A line of input; a text of several lines that is pasted is left to what is around it."""
 
     virtual_size = Reactive(Size(0, 0), repaint=False)
@@ -80,7 +80,7 @@ class Entry(Input):
             event.prevent_default()
 
 
-class Listing(Scrolled, inherit_bindings=False):
+class RowList(Scrolled, inherit_bindings=False):
     """Rows, drawn by `render_line` of the one that is made of it."""
 
     HEADING: ClassVar[int] = 0
@@ -101,7 +101,7 @@ class Listing(Scrolled, inherit_bindings=False):
         """
         self.rows = rows
         self.virtual_size = Size(0, len(rows) + self.HEADING)
-        self.set_reactive(Listing.cursor, self.validate_cursor(self.cursor))
+        self.set_reactive(RowList.cursor, self.validate_cursor(self.cursor))
         if changed is None:
             self.refresh()
         else:

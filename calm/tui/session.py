@@ -20,7 +20,7 @@ from calm.files.editing import (
     WorkingFile,
     clamps_of,
 )
-from calm.tui.standing import Standing
+from calm.tui.environment_choice import Standing
 
 Location = tuple[str | int, ...]
 

@@ -17,7 +17,7 @@ from calm.errors import Problem
 from calm.files.editing.retyped import retyped
 from calm.tui.actions import bindings, hints
 from calm.tui.bars import KeyBar
-from calm.tui.dialogs import Asked, Sheet
+from calm.tui.dialogs import Asked, InputSheet
 from calm.tui.messages import Workspace, is_elsewhere, mistakes, said
 from calm.tui.screen import DraftScreen
 
@@ -220,7 +220,9 @@ class TextScreen(DraftScreen):
                 self.text.find(texts["words"])
 
         asked = [Asked("words", "Find", placeholder="a label, a key, a number")]
-        self.app.push_screen(Sheet("Find in the text", "F3 goes to the next place.", asked), take)
+        self.app.push_screen(
+            InputSheet("Find in the text", "F3 goes to the next place.", asked), take
+        )
 
     def action_find_next(self) -> None:
         """To the next place of what was sought."""

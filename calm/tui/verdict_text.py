@@ -163,7 +163,7 @@ def _figures(
 
 def _mooring(result: Result, findings: Sequence[Finding], pending: bool) -> Iterator[Saying]:
     """What the line does as given; what is judged shows the worst of its findings."""
-    from calm.checks.anchor import anchor_weight
+    from calm.checks.anchor_rules import anchor_weight
     from calm.checks.posture import knockdown, reserve
 
     anchor, top = result.anchor, result.top

@@ -9,8 +9,8 @@ from math import pi, sqrt
 import numpy as np
 
 from calm.drop.fall import Fineness, Motion, Ship, fall, towed
+from calm.drop.fall_record import end_tensions
 from calm.drop.motion import ChainState
-from calm.drop.record import end_tensions
 from calm.physics.hull import Floating, spherical_hull
 from calm.physics.line import Line, Water
 from calm.physics.reference import REFERENCE_DENSITY

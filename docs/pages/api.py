@@ -11,9 +11,10 @@ _SECTIONS = {
     "Moorings": ["calm.Mooring", "calm.Result"],
     "Tows": ["calm.Tow", "calm.TowResult"],
     "Parts of a result": [
-        "calm.case.columns.Components", "calm.case.columns.Clamps", "calm.case.columns.Shape",
+        "calm.case.result_tables.Components", "calm.case.result_tables.Clamps",
+        "calm.case.result_tables.Shape",
         "calm.case.result.Top", "calm.case.result.AnchorLoad", "calm.case.result.Accuracy",
-        "calm.case.result.Strumming", "calm.case.strumming.StrummingBand",
+        "calm.case.strumming.Strumming", "calm.case.strumming.StrummingBand",
     ],
     "Many profiles": ["calm.solve_profiles", "calm.Profiles"],
     "Errors": [

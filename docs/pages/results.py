@@ -8,7 +8,7 @@ import xarray as xr
 
 import calm
 from calm.dataset.variables import OF_CLAMP, OF_COMPONENT, OF_ENDS, OF_NODE
-from calm.motion.run import OF_MOTION
+from calm.motion.correction import OF_MOTION
 from calm.quantities import QUANTITIES
 from calm.report.csv import HEADER
 from calm.report.result_netcdf import result_netcdf

@@ -9,8 +9,8 @@ from textual._context import active_app
 from textual.pilot import Pilot
 
 from calm.tui.app import BuildApp
-from calm.tui.launch import open_session
 from calm.tui.line.table import LineTable
+from calm.tui.start import open_session
 
 MOORING = """\
 # A mooring for tests: small, and nothing of it from the catalogue.

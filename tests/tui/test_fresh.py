@@ -8,8 +8,8 @@ import pytest
 from calm.tui import live
 from calm.tui.bars import TitleBar
 from calm.tui.pictures import Picture
-from calm.tui.profile import Profile
 from calm.tui.verdict_pane import VerdictPane
+from calm.tui.water.profile_picture import ProfilePicture
 from tests.tui.conftest import MOORING
 
 STORM = "environments: {storm: {current: {speed: 2 m/s, toward: 0 deg}}}\n"
@@ -140,16 +140,16 @@ def test_the_water_is_dimmed_as_well(drive, small, monkeypatch):
     async def story(driver):
         await driver.press("w")
         await driver.settle()
-        before = strength(driver, Profile)
+        before = strength(driver, ProfilePicture)
         with nothing_judged(monkeypatch):
             await driver.press("ctrl+u")
             await driver.type("120")
             await driver.press("enter")
             await waited(driver)
-            assert strength(driver, Profile) < 0.8 * before
+            assert strength(driver, ProfilePicture) < 0.8 * before
             assert "…" in title(driver)
         await driver.settle()
-        assert strength(driver, Profile) == pytest.approx(before, abs=0.1)
+        assert strength(driver, ProfilePicture) == pytest.approx(before, abs=0.1)
 
     drive(story, small)
 
@@ -158,10 +158,10 @@ def test_the_last_profile_stays_dimmed_where_the_water_cannot_be_read(drive, sma
     async def story(driver):
         await driver.press("w")
         await driver.settle()
-        profile = driver.app.screen.query_one(Profile)
-        before = strength(driver, Profile)
+        profile = driver.app.screen.query_one(ProfilePicture)
+        before = strength(driver, ProfilePicture)
         profile.show(live.judge(MOORING.replace("100 m ", "100 kg ")))
         await driver.pilot.pause()
-        assert 0.0 < strength(driver, Profile) < 0.8 * before
+        assert 0.0 < strength(driver, ProfilePicture) < 0.8 * before
 
     drive(story, small)

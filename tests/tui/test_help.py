@@ -3,19 +3,19 @@
 import pytest
 
 from calm.tui.actions import actions_in, shown_key, shown_keys
+from calm.tui.catalogue.catalogue_pane import CataloguePane
 from calm.tui.catalogue.component_screen import ComponentScreen
-from calm.tui.catalogue.pane import CataloguePane
-from calm.tui.dialogs import LongText, Question, Sheet
+from calm.tui.dialogs import InputSheet, LongText, Question
 from calm.tui.field import Cycle
 from calm.tui.help_screen import PLACES
 from calm.tui.line.builder import BuilderScreen
 from calm.tui.line.cell_editor import CellEditor
-from calm.tui.line.pane import LinePane
+from calm.tui.line.line_pane import LinePane
 from calm.tui.text_screen import TextScreen, YamlArea
 from calm.tui.verdict_pane import VerdictPane
-from calm.tui.water.cells import Cells
 from calm.tui.water.form import FormChoice
-from calm.tui.water.screen import WaterScreen
+from calm.tui.water.grid_cells import GridCells
+from calm.tui.water.water_screen import WaterScreen
 
 OWNERS = {
     "line": LinePane,
@@ -24,13 +24,13 @@ OWNERS = {
     "cell": CellEditor,
     "catalogue": CataloguePane,
     "water": WaterScreen,
-    "grid": Cells,
+    "grid": GridCells,
     "text": TextScreen,
     "form": ComponentScreen,
     "choice": Cycle,
     "given": FormChoice,
     "area": YamlArea,
-    "sheet": Sheet,
+    "sheet": InputSheet,
     "question": Question,
     "help": LongText,
 }

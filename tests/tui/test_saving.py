@@ -11,13 +11,13 @@ from textual.messages import ExitApp
 from textual.widgets import Input, TextArea
 
 from calm.files.editing import WorkingFile
-from calm.tui import launch
-from calm.tui.dialogs import Question, Sheet
+from calm.tui import start
+from calm.tui.dialogs import InputSheet, Question
 from calm.tui.field import Field
-from calm.tui.launch import open_session
 from calm.tui.saving import chosen_path
+from calm.tui.start import open_session
 from calm.tui.text_screen import TextScreen
-from calm.tui.water.screen import WaterScreen
+from calm.tui.water.water_screen import WaterScreen
 
 
 def copies(path):
@@ -323,7 +323,7 @@ def end(monkeypatch):
     def ended(app, number, *, terminal):
         done.clear()
         monkeypatch.setattr(os, "isatty", lambda _: terminal)
-        launch.end(app, number, None)
+        start.end(app, number, None)
         return done
 
     return ended
@@ -580,7 +580,7 @@ def test_another_name_in_a_conflict_is_another_file(drive, small, folder):
         await rename(driver)
         text = await theirs(driver, small)
         await driver.press("ctrl+s", "n")
-        assert isinstance(driver.app.screen, Sheet)
+        assert isinstance(driver.app.screen, InputSheet)
         assert driver.app.screen.query_one(Input).value.endswith("small-2.yaml")
         await driver.press("enter")
         assert small.read_text() == text
@@ -630,7 +630,7 @@ def test_every_beginning_of_a_path_can_be_typed(drive, small):
         for text in [*begun, "n" * 300]:
             asked.value = text
             await driver.pilot.pause()
-        assert isinstance(driver.app.screen, Sheet)
+        assert isinstance(driver.app.screen, InputSheet)
 
     drive(story, small)
 
@@ -646,7 +646,7 @@ def test_a_name_that_cannot_be_one_is_told(drive, folder, typed, told):
         await driver.press("S")
         driver.app.screen.query_one(Input).value = typed
         await driver.press("enter")
-        assert isinstance(driver.app.screen, Sheet) and told in driver.screen
+        assert isinstance(driver.app.screen, InputSheet) and told in driver.screen
         assert [each.name for each in folder.iterdir()] == ["moorings"]
 
     drive(story)

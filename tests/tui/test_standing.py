@@ -2,7 +2,7 @@
 
 import pytest
 
-from calm.tui.launch import open_session
+from calm.tui.start import open_session
 from calm.tui.text_screen import TextScreen
 
 

@@ -6,10 +6,10 @@ import xarray
 from textual.events import Paste
 
 from calm.tui.field import Field
-from calm.tui.water.cells import Cells
-from calm.tui.water.currents import _existing, imported
+from calm.tui.water.currents_to_begin import _existing, imported
 from calm.tui.water.grid import Grid
-from calm.tui.water.screen import WaterScreen
+from calm.tui.water.grid_cells import GridCells
+from calm.tui.water.water_screen import WaterScreen
 from tests.tui.conftest import MOORING
 
 CURRENT = ("environment", "current")
@@ -30,7 +30,7 @@ async def enter(driver, id, text):
 
 
 def cells(driver, id="current-table"):
-    return driver.app.screen.query_one(f"#{id}", Grid).query_one(Cells)
+    return driver.app.screen.query_one(f"#{id}", Grid).query_one(GridCells)
 
 
 async def turn(driver, id, *keys):
@@ -634,7 +634,7 @@ def test_a_file_that_no_library_can_read_is_told(drive, small, monkeypatch):
         def fail(*_):
             raise RuntimeError("out of luck")
 
-        monkeypatch.setattr("calm.tui.water.currents.imported", fail)
+        monkeypatch.setattr("calm.tui.water.currents_to_begin.imported", fail)
         await load(driver)
         assert "bad.nc cannot be read: RuntimeError: out of luck" in driver.screen
         assert driver.text == before

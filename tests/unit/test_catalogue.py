@@ -9,7 +9,7 @@ import pytest
 
 from calm.assemble import drag_of
 from calm.assemble.datasheet import datasheet
-from calm.checks.catalogue import check_catalogue
+from calm.checks.catalogue_rules import check_catalogue
 from calm.files import Anchor, Assembly, Cable, Catalogue, Chain, Component, Cylinder, Sphere
 
 MANUAL_IDS = (

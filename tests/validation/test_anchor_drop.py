@@ -12,9 +12,9 @@ from calm.case.tow import Tow
 from calm.drop import drop_plan, plan
 from calm.drop.chain import chain_of
 from calm.drop.fall import Fineness, Ship, fall, settle, towed
+from calm.drop.fall_record import rest_difference
 from calm.drop.launch import IN_SHORT, launch_of
 from calm.drop.motion import ChainState
-from calm.drop.record import rest_difference
 from calm.errors import UsageError
 from calm.shipped import shipped_folder
 from calm.solve import FallingAnchor, Towing, solve_fall, solve_tow

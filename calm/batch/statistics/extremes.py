@@ -120,9 +120,9 @@ def return_levels(
     ----------
     time : (n,) ascending, as evenly as a record with gaps is
     values : (n,) NaN where there is none
-    statuses : profiles by their status, as `calm.batch.result.statuses_of` counts them; of those
-        that were not solved, only `calm.batch.statuses.IN_WEAK_CURRENT` and profiles without data
-        are passed over
+    statuses : profiles by their status, as `calm.batch.stored_result.statuses_of` counts them; of
+        those that were not solved, only `calm.batch.statuses.IN_WEAK_CURRENT` and profiles
+        without data are passed over
     step : `median_step` of the times, where it is known already
     """
     refusal = _censored(statuses) or _unfit(time, values)

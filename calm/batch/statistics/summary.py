@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from calm.batch.result import Stored
 from calm.batch.statistics.extremes import Fit, LevelsRefused, median_step, return_levels, years_of
 from calm.batch.statistics.limits import (
     NOT_JUDGED,
@@ -23,6 +22,7 @@ from calm.batch.statistics.limits import (
 )
 from calm.batch.statistics.series import Column, ResultColumns, Times
 from calm.batch.statuses import Ending, endings
+from calm.batch.stored_result import Stored
 from calm.case import Mooring
 from calm.checks.criterion import limits_used
 from calm.checks.posture import reaches_the_surface

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from calm.batch.store.identity import differences, sha256_of
 from calm.dataset.netcdf import LEVEL, Chunk, chunk_shape
-from calm.dataset.variables import Layout
+from calm.dataset.variables import ResultLayout
 from calm.errors import UsageError
 from calm.whole_file import flush_to_disk, put
 
@@ -53,7 +53,7 @@ class Store:
     """
 
     folder: Path
-    layout: Layout
+    layout: ResultLayout
     block: int
 
     @property
@@ -153,7 +153,7 @@ _DAMAGED = (OSError, ValueError, RuntimeError, zlib.error)
 """By which codecs leave."""
 
 
-def open_store(folder: Path, layout: Layout, block: int, identity: str) -> Store:
+def open_store(folder: Path, layout: ResultLayout, block: int, identity: str) -> Store:
     """A store: begun where there is none, continued where there is one; within `lock.locked`.
 
     Parameters

@@ -4,8 +4,8 @@ Lengths are in points (1/72 inch); the upper left corner of a graph is its origi
 """
 
 from calm.report.graph.axes import Axes as Axes
-from calm.report.graph.axes import Entry as Entry
 from calm.report.graph.axes import Graph as Graph
+from calm.report.graph.axes import LegendEntry as LegendEntry
 from calm.report.graph.axes import Stroke as Stroke
 from calm.report.graph.axes import draw_mark as draw_mark
 from calm.report.graph.axes import write_legend as write_legend

@@ -229,7 +229,7 @@ def _path(x: Floats, y: Floats) -> str:
 _SAMPLE, _GAP = 16.0, 5.0  # points: the line beside a text, and what is between them
 
 
-class Entry(NamedTuple):
+class LegendEntry(NamedTuple):
     """A text with its line, or its sign: form, width [pt] and colour."""
 
     text: str
@@ -239,7 +239,7 @@ class Entry(NamedTuple):
 
 def write_legend(
     pen: Pen,
-    entries: Sequence[Entry],
+    entries: Sequence[LegendEntry],
     left: float,
     top: float,
     *,

@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 from calm.quantities import QUANTITIES
 from calm.report.schematic.pen import FAINT, INK, SOFT, Pen
-from calm.report.schematic.shown_parts import HEADINGS, Clamped, Row, Schematic, schematic_of
+from calm.report.schematic.shown_parts import HEADINGS, Clamped, Schematic, TextRow, schematic_of
 from calm.report.schematic.symbols import (
     draw_cable,
     draw_clamp,
@@ -27,8 +27,8 @@ from calm.report.schematic.text_layout import (
     SHEAVE,
     SMALL,
     Columns,
-    Layout,
-    Place,
+    SchematicLayout,
+    TextPlace,
     indented,
     layout_of,
 )
@@ -78,7 +78,7 @@ def schematic_svg(file: MooringFile, result: Result | TowResult | None = None) -
     return ElementTree.tostring(page.element, encoding="unicode") + "\n"
 
 
-def _page(title: str, layout: Layout) -> Pen:
+def _page(title: str, layout: SchematicLayout) -> Pen:
     width, height = layout.columns.width + 2 * _MARGIN, layout.height
     scale = min(max(_PRINTED_HEIGHT / height, _LEAST_SCALE), _GREATEST_SCALE)
     element = ElementTree.Element(
@@ -98,7 +98,7 @@ def _page(title: str, layout: Layout) -> Pen:
     return page
 
 
-def _draw_scene(page: Pen, schematic: Schematic, layout: Layout) -> None:
+def _draw_scene(page: Pen, schematic: Schematic, layout: SchematicLayout) -> None:
     """Water, surface and seabed, and what tows."""
     pen = page.draw("g", stroke=INK, stroke_width=1.2, stroke_linejoin="round")
     if schematic.sea is not None:
@@ -114,7 +114,7 @@ def _draw_scene(page: Pen, schematic: Schematic, layout: Layout) -> None:
         draw_ship(pen.group(LINE_AT, layout.surface - SHEAVE))
 
 
-def _draw_place(page: Pen, place: Place, layout: Layout) -> None:
+def _draw_place(page: Pen, place: TextPlace, layout: SchematicLayout) -> None:
     """A part, the line through it, and what is clamped on it."""
     pen = page.draw("g", stroke=INK, stroke_width=1.2, stroke_linejoin="round", fill=INK)
     pen.title(", ".join(place.part.labels))
@@ -157,7 +157,7 @@ def _write_head(page: Pen, schematic: Schematic, columns: Columns) -> None:
     page.line(0.0, _RULE_AT, width, _RULE_AT, stroke=FAINT)
 
 
-def _write_scene(page: Pen, schematic: Schematic, layout: Layout) -> None:
+def _write_scene(page: Pen, schematic: Schematic, layout: SchematicLayout) -> None:
     """The texts at the ship, the sea surface and the seabed, and the note below."""
     if schematic.towed_by is not None:
         above = SHEAVE - 4.0 if schematic.sea else 20.0
@@ -170,7 +170,7 @@ def _write_scene(page: Pen, schematic: Schematic, layout: Layout) -> None:
     page.write(0.0, y, schematic.note, layout.columns.width, size=SMALL, colour=SOFT)
 
 
-def _write_place(page: Pen, place: Place, columns: Columns) -> None:
+def _write_place(page: Pen, place: TextPlace, columns: Columns) -> None:
     for row, y in zip(place.part.rows, place.rows, strict=True):
         _write_row(page, row, y, columns)
     for clamp, y in zip(place.part.clamps, place.clamps, strict=True):
@@ -179,7 +179,7 @@ def _write_place(page: Pen, place: Place, columns: Columns) -> None:
 
 def _write_row(
     page: Pen,
-    row: Row,
+    row: TextRow,
     y: float,
     columns: Columns,
     colour: str = INK,

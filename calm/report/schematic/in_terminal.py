@@ -12,7 +12,7 @@ from rich.text import Text
 
 from calm.quantities import QUANTITIES
 from calm.report.schematic.pen import ELLIPSIS
-from calm.report.schematic.shown_parts import HEADINGS, Row, Schematic, schematic_of
+from calm.report.schematic.shown_parts import HEADINGS, Schematic, TextRow, schematic_of
 from calm.report.schematic.sign import BALLS, LINES, Sign, Symbol
 from calm.report.signs import encodable
 
@@ -126,14 +126,14 @@ def _table(schematic: Schematic, width: int) -> Iterator[str]:
         max(cell_len(row.label) for row in rows), max(cell_len(row.name) for row in rows), room
     )
 
-    def line(art: str, row: Row) -> str:
+    def line(art: str, row: TextRow) -> str:
         texts = f"{_padded(row.label, label)} {_padded(row.name, name)}"
         cells = zip(row.cells, figures, strict=True)
         return f"{art:{_ART}}{texts}" + "".join(f"  {cell:>{wide}}" for cell, wide in cells)
 
     heads = [(*HEADINGS[name], QUANTITIES[name].display_unit) for name in schematic.columns]
     for words in zip(*heads, strict=True):
-        yield line("", Row("", "", words))
+        yield line("", TextRow("", "", words))
     for art, drawn_row in drawn:
         yield art if drawn_row is None else line(art, drawn_row)
 
@@ -144,7 +144,7 @@ def _shares(label: int, name: int, room: int) -> tuple[int, int]:
     return label, max(min(name, room - label), 0)
 
 
-def _drawn(schematic: Schematic) -> Iterator[tuple[str, Row | None]]:
+def _drawn(schematic: Schematic) -> Iterator[tuple[str, TextRow | None]]:
     """The picture from the top, a line each with its row of text."""
     if schematic.towed_by is not None:
         yield (_SHIP if schematic.sea else _HELICOPTER), schematic.towed_by
@@ -160,7 +160,7 @@ def _drawn(schematic: Schematic) -> Iterator[tuple[str, Row | None]]:
         for row in part.rows[1:]:
             yield "", row
         for clamp in part.clamps:
-            row = Row(_INDENT + clamp.row.label, clamp.row.name, clamp.row.cells)
+            row = TextRow(_INDENT + clamp.row.label, clamp.row.name, clamp.row.cells)
             yield " " * _LINE_AT + _CLAMP + _art(clamp.sign).strip(), row
         if part.sign.symbol in LINES and not part.clamps:
             yield art, None

@@ -30,7 +30,7 @@ _JOINED = (*BALLS, Symbol.SHACKLE, Symbol.SWIVEL, Symbol.LINK)
 
 
 @dataclass(frozen=True)
-class Row:
+class TextRow:
     """The text beside a part: its label, its component's name, a cell for each column."""
 
     label: str
@@ -44,11 +44,11 @@ class Clamped:
     """An instrument clamped on a part."""
 
     sign: Sign
-    row: Row
+    row: TextRow
 
 
 @dataclass(frozen=True)
-class Part:
+class ShownPart:
     """What is drawn as one: a piece, a run of balls or of connectors, or two releases in a row.
 
     Attributes
@@ -67,7 +67,7 @@ class Part:
 
     sign: Sign
     labels: tuple[str, ...]
-    rows: tuple[Row, ...]
+    rows: tuple[TextRow, ...]
     clamps: tuple[Clamped, ...]
     length: float
 
@@ -97,11 +97,11 @@ class Schematic:
     subtitle: str
     note: str
     columns: tuple[str, ...]
-    parts: tuple[Part, ...]
+    parts: tuple[ShownPart, ...]
     surface: bool
-    towed_by: Row | None
-    sea: Row | None
-    seabed: Row | None
+    towed_by: TextRow | None
+    sea: TextRow | None
+    seabed: TextRow | None
 
 
 def schematic_of(file: MooringFile, result: Result | TowResult | None = None) -> Schematic:
@@ -119,7 +119,7 @@ def schematic_of(file: MooringFile, result: Result | TowResult | None = None) ->
     cells = _Cells(bottom)
     pieces = list(zip(file.pieces, levels.lengths, levels.depths, strict=True))
     parts = [_part(cells, levels, *piece) for piece in pieces]
-    sea = Row("sea surface", "", cells.at(0.0))
+    sea = TextRow("sea surface", "", cells.at(0.0))
     return Schematic(
         title=one_line(file.name),
         subtitle=_subtitle(file),
@@ -129,7 +129,7 @@ def schematic_of(file: MooringFile, result: Result | TowResult | None = None) ->
         surface=levels.surface,
         towed_by=_towed_by(file, cells),
         sea=sea if file.environment.fluid == "water" else None,
-        seabed=None if bottom is None else Row("seabed", "", cells.at(bottom)),
+        seabed=None if bottom is None else TextRow("seabed", "", cells.at(bottom)),
     )
 
 
@@ -160,7 +160,7 @@ class _Cells:
         return tuple(QUANTITIES[name].format(figures[name]) for name in self.columns)
 
 
-def _part(cells: _Cells, levels: Levels, piece: Piece, length: float, depth: float) -> Part:
+def _part(cells: _Cells, levels: Levels, piece: Piece, length: float, depth: float) -> ShownPart:
     sign = sign_of(piece.use, piece.label, piece.component)
     if levels.surface and piece.index == 0 and sign.symbol is not Symbol.SPHERE:
         sign = replace(sign, symbol=Symbol.BUOY)
@@ -172,17 +172,17 @@ def _part(cells: _Cells, levels: Levels, piece: Piece, length: float, depth: flo
         for clamp in sorted(piece.clamps, key=lambda clamp: clamp.at)
     )
     row = _row(piece, cells.of(length, depth))
-    return Part(sign, (row.label,), (row,), clamps, length)
+    return ShownPart(sign, (row.label,), (row,), clamps, length)
 
 
-def _row(of: Piece | Clamp, cells: tuple[str, ...]) -> Row:
+def _row(of: Piece | Clamp, cells: tuple[str, ...]) -> TextRow:
     name = one_line(of.component.name or of.use)
-    return Row(one_line(of.label), name, cells, strong=of.component.role == "instrument")
+    return TextRow(one_line(of.label), name, cells, strong=of.component.role == "instrument")
 
 
-def _joined(parts: list[Part], pieces: Sequence[Piece]) -> Iterator[Part]:
+def _joined(parts: list[ShownPart], pieces: Sequence[Piece]) -> Iterator[ShownPart]:
     """The parts, those that are drawn as one made one."""
-    run: list[Part] = []
+    run: list[ShownPart] = []
     for part, piece in zip(parts, pieces, strict=True):
         if run and not _goes_with(run, part, pieces[piece.index - 1], piece):
             yield _as_one(run)
@@ -191,7 +191,7 @@ def _joined(parts: list[Part], pieces: Sequence[Piece]) -> Iterator[Part]:
     yield _as_one(run)
 
 
-def _goes_with(run: list[Part], part: Part, above: Piece, piece: Piece) -> bool:
+def _goes_with(run: list[ShownPart], part: ShownPart, above: Piece, piece: Piece) -> bool:
     if part.clamps or run[-1].clamps or part.sign != run[-1].sign:
         return False
     if part.sign.symbol is Symbol.RELEASE:
@@ -200,7 +200,7 @@ def _goes_with(run: list[Part], part: Part, above: Piece, piece: Piece) -> bool:
     return part.sign.symbol in _JOINED and same and alike(run[-1].labels[0], part.labels[0])
 
 
-def _as_one(run: list[Part]) -> Part:
+def _as_one(run: list[ShownPart]) -> ShownPart:
     first = run[0]
     if len(run) == 1:
         return first
@@ -230,11 +230,11 @@ def _subtitle(file: MooringFile) -> str:
     return " · ".join(said)
 
 
-def _towed_by(file: MooringFile, cells: _Cells) -> Row | None:
+def _towed_by(file: MooringFile, cells: _Cells) -> TextRow | None:
     if file.tow is None:
         return None
     name = "ship" if file.environment.fluid == "water" else "helicopter"
-    return Row(name, "", cells.at(-file.tow.height))
+    return TextRow(name, "", cells.at(-file.tow.height))
 
 
 _NOT_TO_SCALE = "Not to scale. Depth and height: of the upper end,"

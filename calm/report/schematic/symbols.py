@@ -19,7 +19,7 @@ _BEAM = 11.0
 
 
 @dataclass(frozen=True)
-class Figure:
+class SymbolFigure:
     """A symbol as it is drawn.
 
     Attributes
@@ -35,7 +35,7 @@ class Figure:
     draw: Callable[[Pen], None]
 
 
-def figure_of(sign: Sign) -> Figure:
+def figure_of(sign: Sign) -> SymbolFigure:
     """The figure of a sign that is no cable or chain."""
     if sign.symbol in BALLS:
         figure = _pack(sign)
@@ -48,7 +48,7 @@ def figure_of(sign: Sign) -> Figure:
     return _sounding(figure, sign) if sign.sounding else figure
 
 
-def _sounding(figure: Figure, sign: Sign) -> Figure:
+def _sounding(figure: SymbolFigure, sign: Sign) -> SymbolFigure:
     """A figure with its ADCP: the sound that goes up or down, or its transducers alone."""
     shift = _BEAM / 2 * (sign.up - sign.down)
 
@@ -62,20 +62,20 @@ def _sounding(figure: Figure, sign: Sign) -> Figure:
         for x in (-4.5, 0.0, 4.5):
             pen.circle(x, shift, 1.9, fill=_DARK, stroke="none")
 
-    return Figure(figure.height + _BEAM * (sign.up + sign.down), figure.reach, draw)
+    return SymbolFigure(figure.height + _BEAM * (sign.up + sign.down), figure.reach, draw)
 
 
-def _row(figure: Figure, count: int) -> Figure:
+def _row(figure: SymbolFigure, count: int) -> SymbolFigure:
     """The same figure several times, one below the other."""
 
     def draw(pen: Pen) -> None:
         for number in range(count):
             figure.draw(pen.group(0.0, (number - (count - 1) / 2) * figure.height))
 
-    return Figure(count * figure.height, figure.reach, draw)
+    return SymbolFigure(count * figure.height, figure.reach, draw)
 
 
-def _pack(sign: Sign) -> Figure:
+def _pack(sign: Sign) -> SymbolFigure:
     """Balls in turn left and right of their chain."""
     count = min(sign.count, _MOST_BALLS)
     fill = _GLASS if sign.symbol is Symbol.GLASS else _FLOAT
@@ -90,10 +90,10 @@ def _pack(sign: Sign) -> Figure:
                 pen.line(x, y - _BALL, x, y + _BALL, stroke_width=0.7)
 
     height = 2 * _BALL + (count - 1) * _BALL_PITCH + 3.0
-    return Figure(height, _BALL if count == 1 else _BALL + _BALL_ASIDE, draw)
+    return SymbolFigure(height, _BALL if count == 1 else _BALL + _BALL_ASIDE, draw)
 
 
-def _wheels(count: int) -> Figure:
+def _wheels(count: int) -> SymbolFigure:
     """Railway wheels or rotors, one on the other, on their rod."""
     height = count * _WHEEL + 8.0
 
@@ -104,7 +104,7 @@ def _wheels(count: int) -> Figure:
             pen.box(0.0, y - 1.7, 28.0, 3.6, fill=_STEEL)
             pen.box(0.0, y + 1.7, 42.0, 3.6, fill=_STEEL, rx=1.0)
 
-    return Figure(height, 21.0, draw)
+    return SymbolFigure(height, 21.0, draw)
 
 
 def _sphere(pen: Pen) -> None:
@@ -208,22 +208,22 @@ def _body(pen: Pen) -> None:
 
 _CONNECTORS = (Symbol.SHACKLE, Symbol.SWIVEL, Symbol.LINK)
 _FIGURES = {
-    Symbol.SPHERE: Figure(36.0, 17.0, _sphere),
-    Symbol.FOAM: Figure(34.0, 18.0, _foam),
-    Symbol.STREAMLINED: Figure(28.0, 27.0, _streamlined),
-    Symbol.BUOY: Figure(26.0, 32.0, _buoy),
-    Symbol.CURRENT_METER: Figure(29.0, 25.0, _current_meter),
-    Symbol.ADCP: Figure(32.0, 11.0, _adcp),
-    Symbol.CTD: Figure(30.0, 9.0, _ctd),
-    Symbol.TRAP: Figure(42.0, 19.0, _trap),
-    Symbol.INSTRUMENT: Figure(30.0, 6.5, _instrument),
-    Symbol.RELEASE: Figure(40.0, 6.0, _release),
-    Symbol.RELEASE_PAIR: Figure(40.0, 15.0, _release_pair),
-    Symbol.SHACKLE: Figure(12.0, 6.0, _shackle),
-    Symbol.SWIVEL: Figure(18.0, 5.5, _swivel),
-    Symbol.LINK: Figure(11.0, 3.6, _link),
-    Symbol.BLOCK: Figure(24.0, 19.0, _block),
-    Symbol.BODY: Figure(26.0, 14.0, _body),
+    Symbol.SPHERE: SymbolFigure(36.0, 17.0, _sphere),
+    Symbol.FOAM: SymbolFigure(34.0, 18.0, _foam),
+    Symbol.STREAMLINED: SymbolFigure(28.0, 27.0, _streamlined),
+    Symbol.BUOY: SymbolFigure(26.0, 32.0, _buoy),
+    Symbol.CURRENT_METER: SymbolFigure(29.0, 25.0, _current_meter),
+    Symbol.ADCP: SymbolFigure(32.0, 11.0, _adcp),
+    Symbol.CTD: SymbolFigure(30.0, 9.0, _ctd),
+    Symbol.TRAP: SymbolFigure(42.0, 19.0, _trap),
+    Symbol.INSTRUMENT: SymbolFigure(30.0, 6.5, _instrument),
+    Symbol.RELEASE: SymbolFigure(40.0, 6.0, _release),
+    Symbol.RELEASE_PAIR: SymbolFigure(40.0, 15.0, _release_pair),
+    Symbol.SHACKLE: SymbolFigure(12.0, 6.0, _shackle),
+    Symbol.SWIVEL: SymbolFigure(18.0, 5.5, _swivel),
+    Symbol.LINK: SymbolFigure(11.0, 3.6, _link),
+    Symbol.BLOCK: SymbolFigure(24.0, 19.0, _block),
+    Symbol.BODY: SymbolFigure(26.0, 14.0, _body),
 }
 
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from itertools import accumulate
 
 from calm.report.schematic.pen import text_width
-from calm.report.schematic.shown_parts import HEADINGS, Part, Row, Schematic
+from calm.report.schematic.shown_parts import HEADINGS, Schematic, ShownPart, TextRow
 from calm.report.schematic.sign import LINES
-from calm.report.schematic.symbols import Figure, figure_of
+from calm.report.schematic.symbols import SymbolFigure, figure_of
 
 # The unit of the page is a quarter of a millimetre in print, less where a line is long.
 
@@ -64,7 +64,7 @@ class Columns:
 
 
 @dataclass(frozen=True)
-class Place:
+class TextPlace:
     """Where a part is drawn.
 
     Attributes
@@ -79,17 +79,17 @@ class Place:
         The symbol; None of a cable or a chain.
     """
 
-    part: Part
+    part: ShownPart
     top: float
     bottom: float
     middle: float
     rows: tuple[float, ...]
     clamps: tuple[float, ...]
-    figure: Figure | None
+    figure: SymbolFigure | None
 
 
 @dataclass(frozen=True)
-class Layout:
+class SchematicLayout:
     """Where everything stands, from the top of the page.
 
     Attributes
@@ -107,14 +107,14 @@ class Layout:
     """
 
     columns: Columns
-    places: tuple[Place, ...]
+    places: tuple[TextPlace, ...]
     hung: float
     surface: float
     bottom: float
     height: float
 
 
-def layout_of(schematic: Schematic) -> Layout:
+def layout_of(schematic: Schematic) -> SchematicLayout:
     """The layout of a schematic; the page is as high as its parts need."""
     surface = _HEAD + _headroom(schematic)
     floats = schematic.surface or schematic.sea is None
@@ -125,7 +125,7 @@ def layout_of(schematic: Schematic) -> Layout:
         hung = surface - SHEAVE if schematic.sea else surface
         bottom += _BELOW_BODY
     height = bottom + (_SEABED if schematic.seabed else 0.0) + _FOOT
-    return Layout(_columns(schematic), places, hung, surface, bottom, height)
+    return SchematicLayout(_columns(schematic), places, hung, surface, bottom, height)
 
 
 def _headroom(schematic: Schematic) -> float:
@@ -161,7 +161,7 @@ def _columns(schematic: Schematic) -> Columns:
     return Columns((_TEXTS, label), (_TEXTS + label + _GAP, name), tuple(reversed(placed)), width)
 
 
-def _label_width(row: Row) -> float:
+def _label_width(row: TextRow) -> float:
     return text_width(row.label, FONT, bold=row.strong)
 
 
@@ -171,9 +171,9 @@ def indented(columns: Columns) -> tuple[float, float]:
     return left + _INDENT, width - _INDENT
 
 
-def _places(schematic: Schematic, start: float) -> tuple[Place, ...]:
+def _places(schematic: Schematic, start: float) -> tuple[TextPlace, ...]:
     """The parts one below the other from `start`; a float at the surface has its middle there."""
-    places: list[Place] = []
+    places: list[TextPlace] = []
     for part in schematic.parts:
         if part.sign.symbol in LINES:
             place = _cable(part, start)
@@ -187,7 +187,7 @@ def _places(schematic: Schematic, start: float) -> tuple[Place, ...]:
     return tuple(places)
 
 
-def _cable(part: Part, top: float) -> Place:
+def _cable(part: ShownPart, top: float) -> TextPlace:
     """A cable, its text in the middle, or above those of its instruments."""
     long = 1.0 if math.isnan(part.length) else max(part.length, 1.0)
     height = min(_SHORTEST + _PER_DECADE * math.log10(long), _LONGEST)
@@ -195,10 +195,10 @@ def _cable(part: Part, top: float) -> Place:
     height = max(height, LINE * (count + 1) + _PAD)
     first = top + height / 2 if not count else top + (height - LINE * count) / 2
     clamps = tuple(first + LINE * (number + 1) for number in range(count))
-    return Place(part, top, top + height, top + height / 2, (first,), clamps, None)
+    return TextPlace(part, top, top + height, top + height / 2, (first,), clamps, None)
 
 
-def _rigid(part: Part, figure: Figure, top: float) -> Place:
+def _rigid(part: ShownPart, figure: SymbolFigure, top: float) -> TextPlace:
     """A symbol with its texts beside it, and instruments clamped on it below."""
     slot = _slot(figure)
     middle = top + slot / 2
@@ -206,10 +206,10 @@ def _rigid(part: Part, figure: Figure, top: float) -> Place:
     rows = tuple(middle + LINE * (number - (count - 1) / 2) for number in range(count))
     clamps = tuple(top + slot + LINE * (number + 0.5) for number in range(len(part.clamps)))
     bottom = top + slot + LINE * len(part.clamps)
-    return Place(part, top, bottom, middle, rows, clamps, figure)
+    return TextPlace(part, top, bottom, middle, rows, clamps, figure)
 
 
-def _slot(figure: Figure) -> float:
+def _slot(figure: SymbolFigure) -> float:
     return max(LINE, figure.height + (_PAD if figure.height > LINE else 0.0))
 
 

@@ -106,7 +106,7 @@ _ROWS_PER_TICK = 3
 
 
 @dataclass(frozen=True)
-class Scale:
+class CellScale:
     """A range of a quantity, from `low` (left or top) to `high`, over a number of dots."""
 
     low: float
@@ -119,7 +119,7 @@ class Scale:
 
 
 @dataclass(frozen=True)
-class Frame:
+class PlotFrame:
     """The part of a canvas between its scales: first column and row, how many of each, and what
     they measure."""
 
@@ -128,8 +128,8 @@ class Frame:
     row: int
     columns: int
     rows: int
-    across: Scale
-    down: Scale
+    across: CellScale
+    down: CellScale
 
     @classmethod
     def within(
@@ -140,7 +140,7 @@ class Frame:
         across: tuple[float, float],
         down: tuple[float, float],
         beside: int = 0,
-    ) -> Frame:
+    ) -> PlotFrame:
         """What of a canvas the scales leave, below and to the left, and what else stands around it.
 
         Parameters
@@ -157,8 +157,8 @@ class Frame:
             row=head,
             columns=columns,
             rows=rows,
-            across=Scale(*across, columns * ACROSS),
-            down=Scale(*down, rows * DOWN),
+            across=CellScale(*across, columns * ACROSS),
+            down=CellScale(*down, rows * DOWN),
         )
 
     def point(self, x: float, y: float) -> tuple[float, float]:

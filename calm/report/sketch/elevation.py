@@ -17,13 +17,13 @@ from calm.report.drawing import Named, along, named_parts, names, spread
 from calm.report.graph.scale import number, round_numbers
 from calm.report.plot import levels_of, plane_of
 from calm.report.schematic.pen import ELLIPSIS
-from calm.report.sketch.canvas import AXIS, COLUMNS_PER_TICK, Canvas, Frame, levels
+from calm.report.sketch.canvas import AXIS, COLUMNS_PER_TICK, Canvas, PlotFrame, levels
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from calm.case import TowResult
-    from calm.case.columns import Shape
+    from calm.case.result_tables import Shape
 
     Floats = NDArray[np.float64]
     from calm.case import Result
@@ -65,7 +65,7 @@ def elevation(
     named = _names(result, view, rows, int(_SHARE_OF_NAMES * width)) if width >= _NAMED_FROM else []
     room = max((cell_len(text) for _, text in named), default=-1) + 1
     low, high = _span(view)
-    frame = Frame.within(canvas, head, gutter, (low, high), (view.top, view.bottom), room)
+    frame = PlotFrame.within(canvas, head, gutter, (low, high), (view.top, view.bottom), room)
     _draw_water(frame, view)
     frame.scale_down(values, gutter, foot)
     frame.scale_across(
@@ -165,7 +165,7 @@ def _span(view: _View) -> tuple[float, float]:
     return low - margin, high + margin
 
 
-def _draw_water(frame: Frame, view: _View) -> None:
+def _draw_water(frame: PlotFrame, view: _View) -> None:
     """The surface, and what is below the frame: the seabed, or an edge."""
     canvas, (low, high) = frame.canvas, (frame.across.low, frame.across.high)
     if view.sea and view.top <= 0.0 <= view.bottom:
@@ -226,7 +226,7 @@ def header_rows(height: int) -> int:
 
 
 def mark_parts(
-    frame: Frame, result: Result | TowResult, place: Callable[[Named], tuple[float, float]]
+    frame: PlotFrame, result: Result | TowResult, place: Callable[[Named], tuple[float, float]]
 ) -> None:
     """Mark floats, instruments, releases and the anchor, `place` giving both axes."""
     parts = named_parts(result)

@@ -14,7 +14,15 @@ from calm.checks.posture import meant_for_the_surface
 from calm.checks.strength import allowable_load
 from calm.quantities import bearing_of, bearing_text, say
 from calm.report.graph.scale import number, round_numbers
-from calm.report.sketch.canvas import ACROSS, AXIS, COLUMNS_PER_TICK, DOWN, Canvas, Frame, levels
+from calm.report.sketch.canvas import (
+    ACROSS,
+    AXIS,
+    COLUMNS_PER_TICK,
+    DOWN,
+    Canvas,
+    PlotFrame,
+    levels,
+)
 from calm.report.sketch.elevation import (
     LIMIT,
     LINE,
@@ -34,7 +42,7 @@ if TYPE_CHECKING:
     from calm.physics.line import Water
 
     Floats = NDArray[np.float64]
-    from calm.case.columns import Shape
+    from calm.case.result_tables import Shape
 
 
 _FARTHEST = 2.5
@@ -64,7 +72,7 @@ def tension(result: Result | TowResult, width: int, height: int) -> list[Text]:
     length = max(float(way[-1]), 1e-9)
     values = levels(0.0, length, rows)
     gutter = max(map(len, map(number, values)))
-    frame = Frame.within(canvas, head, gutter, (0.0, right), (0.0, length))
+    frame = PlotFrame.within(canvas, head, gutter, (0.0, right), (0.0, length))
     canvas.text(gutter, height - 2, "─" * (width - gutter), AXIS)
     frame.scale_down(values, gutter)
     frame.scale_across(round_numbers(0.0, right, max(frame.columns // COLUMNS_PER_TICK, 2)), unit)
@@ -137,7 +145,7 @@ def current_profile(water: Water, width: int, height: int) -> list[Text]:
     speeds = np.hypot(velocity[:, 0], velocity[:, 1])
     fastest = float(speeds.max())
     right = 1.08 * fastest if fastest > 0.0 else 1.0
-    frame = Frame.within(canvas, head, gutter, (0.0, right), (0.0, water.depth), beside)
+    frame = PlotFrame.within(canvas, head, gutter, (0.0, right), (0.0, water.depth), beside)
     if head:
         canvas.text(0, 0, "current, m/s" if fastest > 0.0 else "still water", AXIS)
     frame.line([(0.0, 0.0), (right, 0.0)], SURFACE)
@@ -189,7 +197,7 @@ def plan(
         gutter = max(map(len, map(number, values)))
     columns = width - gutter - 1
     left, right = _centred(west, east, metres * columns * ACROSS)
-    frame = Frame.within(canvas, head, gutter, (left, right), (top, bottom))
+    frame = PlotFrame.within(canvas, head, gutter, (left, right), (top, bottom))
     canvas.text(gutter, height - 2, "─" * (width - gutter), AXIS)
     frame.scale_down(values, gutter)
     frame.scale_across(

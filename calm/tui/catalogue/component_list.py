@@ -11,14 +11,14 @@ from textual import events
 from textual.message import Message
 from textual.strip import Strip
 
-from calm.tui.catalogue.index import COLUMNS, Column, Index, Listed
-from calm.tui.scrolled import Listing
+from calm.tui.catalogue.index import COLUMNS, Index, ListColumn, Listed
+from calm.tui.scrolled import RowList
 from calm.tui.theme import CURSOR, FAVOURITE, ROLES
 
 _LEAD, _FIGURE = 4, 8
 
 
-class ComponentList(Listing, can_focus=False):
+class ComponentList(RowList, can_focus=False):
     """Components with a cursor, which the search moves."""
 
     DEFAULT_CSS = """
@@ -39,7 +39,7 @@ class ComponentList(Listing, can_focus=False):
         "component-list--own",
     }
 
-    class Moved(Listing.Moved):
+    class Moved(RowList.Moved):
         """The cursor is on another component."""
 
     class Pressed(Message):
@@ -70,7 +70,7 @@ class ComponentList(Listing, can_focus=False):
         cursor, like = self.cursor, (self._index, self._favourites)
         self._index, self._by, self._favourites = index, by, favourites
         self._longest = max((len(each.id) for each in found), default=0)
-        self.set_reactive(Listing.cursor, 0)
+        self.set_reactive(RowList.cursor, 0)
         if like != (index, favourites) or columns != self._columns() or self.scroll_offset.y:
             self.take_rows(found)
             self.scroll_to(y=0, animate=False)
@@ -91,7 +91,7 @@ class ComponentList(Listing, can_focus=False):
         else:
             self.cursor = number
 
-    def _columns(self) -> tuple[int, list[Column], int]:
+    def _columns(self) -> tuple[int, list[ListColumn], int]:
         """Cells of the ids, the figures that have room beside them, cells left for the names."""
         width = self.scrollable_content_region.width
         id_width = max(min(self._longest, width - _LEAD), 0)

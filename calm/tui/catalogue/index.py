@@ -244,7 +244,7 @@ def _ids(kept: Iterable[object]) -> list[str]:
 
 
 @dataclass(frozen=True)
-class Column:
+class ListColumn:
     """A figure of components: its key, heading, dimension, and the unit it is shown in."""
 
     key: str
@@ -260,12 +260,12 @@ class Column:
 
 
 COLUMNS = (
-    Column("net", "net N", "force", "N"),
-    Column("breaking", "break kN", "force", "kN", 1e-3, 1),
-    Column("working", "work kN", "force", "kN", 1e-3, 1),
-    Column("depth", "to m", "length", "m"),
-    Column("drag", "drag N", "force", "N", 1.0, 1),
-    Column("mass", "mass kg", "mass", "kg", 1.0, 1),
+    ListColumn("net", "net N", "force", "N"),
+    ListColumn("breaking", "break kN", "force", "kN", 1e-3, 1),
+    ListColumn("working", "work kN", "force", "kN", 1e-3, 1),
+    ListColumn("depth", "to m", "length", "m"),
+    ListColumn("drag", "drag N", "force", "N", 1.0, 1),
+    ListColumn("mass", "mass kg", "mass", "kg", 1.0, 1),
 )
 """Net force in water, + up; loads; depth rating; drag across the axis at 1 m/s; mass in air. Of a
 cable or chain per metre, but for its loads."""

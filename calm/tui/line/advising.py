@@ -8,8 +8,8 @@ from textual.app import App
 
 from calm.errors import CalmError
 from calm.tui.checking import needed
-from calm.tui.dialogs import Answer, Asked, Question, Sheet
-from calm.tui.line.pane import LinePane
+from calm.tui.dialogs import Answer, Asked, InputSheet, Question
+from calm.tui.line.line_pane import LinePane
 
 if TYPE_CHECKING:
     from calm.case import Mooring
@@ -79,7 +79,7 @@ class Advising:
             Asked("change", "Change", f"{label.strip('├ ')}.buoyancy", needed("a change")),
         ]
         text = "LABEL.buoyancy, LABEL.length or LABEL.count; depth(LABEL) = 100 m, tilt(LABEL) …"
-        self._app.push_screen(Sheet("A target to meet", text, asked), take)
+        self._app.push_screen(InputSheet("A target to meet", text, asked), take)
 
     def _try(self, offer: Offer, before: View) -> None:
         """Work the change out in a thread, and what it would do."""

@@ -7,8 +7,8 @@ from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
 
 from calm.files import Place
-from calm.tui.catalogue.pane import CataloguePane, Purpose
-from calm.tui.line.pane import LinePane
+from calm.tui.catalogue.catalogue_pane import CataloguePane, Purpose
+from calm.tui.line.line_pane import LinePane
 from calm.tui.line.table import LineTable
 from calm.tui.messages import Workspace
 from calm.tui.pictures import Pictures

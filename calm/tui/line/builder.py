@@ -11,13 +11,13 @@ from textual.events import DescendantFocus, Key
 from calm.files.components import KINDS
 from calm.tui.actions import bindings, hints
 from calm.tui.bars import KeyBar
-from calm.tui.catalogue.pane import CataloguePane
+from calm.tui.catalogue.catalogue_pane import CataloguePane
 from calm.tui.key_table import Place
 from calm.tui.line.advising import Advising
 from calm.tui.line.body import LineBody
 from calm.tui.line.cell_editor import CellEditor
 from calm.tui.line.comparing import Comparing
-from calm.tui.line.pane import LinePane
+from calm.tui.line.line_pane import LinePane
 from calm.tui.messages import Workspace
 from calm.tui.pictures import Picture, Tab
 from calm.tui.screen import DraftScreen
@@ -251,7 +251,7 @@ class BuilderScreen(DraftScreen):
 
     def action_water(self) -> None:
         """Depth, density, current, wind."""
-        from calm.tui.water.screen import WaterScreen
+        from calm.tui.water.water_screen import WaterScreen
 
         self.app.push_screen(WaterScreen(self.workspace), self._back)
 

@@ -12,13 +12,13 @@ from textual.message import Message
 
 from calm.tui.actions import bindings
 from calm.tui.checking import Check, Reading, anything
-from calm.tui.scrolled import Entry
+from calm.tui.scrolled import ScrolledEntry
 
 Then = Literal["stay", "edit next", "right", "up", "down"]
 """Where the cursor goes from a value that was taken."""
 
 
-class CellEditor(Entry):
+class CellEditor(ScrolledEntry):
     """A line of input laid over a cell; it says at each key what it makes of the text."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("cell")]

@@ -10,7 +10,7 @@ from textual.app import App
 
 from calm.errors import CalmError
 from calm.files.editing import WorkingFile
-from calm.tui.dialogs import Answer, Asked, Question, Sheet
+from calm.tui.dialogs import Answer, Asked, InputSheet, Question
 from calm.tui.line.body import LineBody
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ class Comparing:
 
         asked = [Asked("file", "File", placeholder="e.g. other.yaml")]
         text = "Its line is drawn dashed beside this one; no name takes it away again."
-        self._app.push_screen(Sheet("Compare with another file", text, asked), take)
+        self._app.push_screen(InputSheet("Compare with another file", text, asked), take)
 
     def _judge(self, text: str, file: Path | None) -> None:
         """Judge a text beside the line's: of another file, or of its own as it was saved."""

@@ -24,7 +24,7 @@ from calm.tui.actions import bindings, hints
 from calm.tui.bars import KeyBar, TitleBar
 from calm.tui.catalogue.component_screen import FormField, form_fields
 from calm.tui.field import Field, all_settled
-from calm.tui.line.pane import LinePane
+from calm.tui.line.line_pane import LinePane
 from calm.tui.live import View
 
 Filled = tuple[dict[tuple[str, str], str], str]

@@ -13,7 +13,7 @@ from calm.files.fields import LENGTH, POSITIVE_LENGTH, QuantityField
 from calm.files.yaml_document import Location
 from calm.templates import TEMPLATES
 from calm.tui.checking import Reading, anything, day, moment, quantity
-from calm.tui.dialogs import Answer, Asked, Question, Sheet
+from calm.tui.dialogs import Answer, Asked, InputSheet, Question
 from calm.tui.session import Session
 
 _PLACES: dict[str, Location] = {
@@ -82,22 +82,22 @@ _BEGIN_A_TOW = (
 )
 
 
-def mooring_sheet(draft: Draft) -> Sheet:
+def mooring_sheet(draft: Draft) -> InputSheet:
     """Name and place, as the file has them."""
-    return Sheet("Name and place", "", filled(draft, _NAME_AND_PLACE))
+    return InputSheet("Name and place", "", filled(draft, _NAME_AND_PLACE))
 
 
-def document_sheet(draft: Draft) -> Sheet:
+def document_sheet(draft: Draft) -> InputSheet:
     """What the title block of the drawings says, as the file has it."""
     revision = draft.text_at(_PLACES["revision"])
     change = said(draft, _HISTORY, ("revision", revision), "change")
     asked = [*filled(draft, _DOCUMENT), Asked("change", "What it changed", change)]
-    return Sheet("The document", "For the title block of drawings, and its history.", asked)
+    return InputSheet("The document", "For the title block of drawings, and its history.", asked)
 
 
-def tow_sheet(draft: Draft) -> Sheet:
+def tow_sheet(draft: Draft) -> InputSheet:
     """Speed, course and sheave of a tow, as the file has them; a mooring becomes one by them."""
-    return Sheet("The tow", "" if draft.is_tow else _BEGIN_A_TOW, filled(draft, _TOW))
+    return InputSheet("The tow", "" if draft.is_tow else _BEGIN_A_TOW, filled(draft, _TOW))
 
 
 def filled(
@@ -158,7 +158,7 @@ _RELEASES: Location = ("releases",)
 
 
 @dataclass(frozen=True)
-class Hung:
+class DeployedItem:
     """What hangs at a row, and is deployed once: its label and designed serial number."""
 
     label: str
@@ -167,7 +167,7 @@ class Hung:
     is_release: bool
 
 
-def hung_at(file: MooringFile | None, spot: Place | None) -> Hung | None:
+def hung_at(file: MooringFile | None, spot: Place | None) -> DeployedItem | None:
     """What hangs at a row of a line; None where that is several things, or not known."""
     if file is None or spot is None:
         return None
@@ -181,7 +181,7 @@ def hung_at(file: MooringFile | None, spot: Place | None) -> Hung | None:
         return None
     [part] = found
     serial = part.equipment.serial
-    return Hung(
+    return DeployedItem(
         part.label,
         serial if isinstance(serial, str) else "",
         isinstance(part, Piece) and isinstance(part.component, Flexible),
@@ -189,11 +189,11 @@ def hung_at(file: MooringFile | None, spot: Place | None) -> Hung | None:
     )
 
 
-def deployed_sheet(draft: Draft, hung: Hung | None) -> Sheet:
+def deployed_sheet(draft: Draft, hung: DeployedItem | None) -> InputSheet:
     """When and where the mooring was deployed, and what hangs at a row, as the file has them."""
     asked = filled(draft, _WHOLE, _DEPLOYED_PLACES)
     if hung is None:
-        return Sheet("As deployed", _COMPARED, asked)
+        return InputSheet("As deployed", _COMPARED, asked)
     for key, title, check in _OF_A_ROW:
         if key != "length" or hung.is_cut:
             text = said(draft, _ITEMS, ("label", hung.label), key)
@@ -201,10 +201,10 @@ def deployed_sheet(draft: Draft, hung: Hung | None) -> Sheet:
     if hung.is_release:
         codes = said(draft, _RELEASES, ("serial", _serial(draft, hung)), "codes")
         asked.append(Asked("codes", "Codes", codes, placeholder="arm 0A1B, release 0A55"))
-    return Sheet("As deployed", f"{_COMPARED} Below the depth: {hung.label}.", asked)
+    return InputSheet("As deployed", f"{_COMPARED} Below the depth: {hung.label}.", asked)
 
 
-def as_deployed(draft: Draft, hung: Hung | None, texts: Mapping[str, str]) -> Draft:
+def as_deployed(draft: Draft, hung: DeployedItem | None, texts: Mapping[str, str]) -> Draft:
     """The file with what was entered."""
     draft = written(draft, {key: texts[key] for key in _DEPLOYED_PLACES}, _DEPLOYED_PLACES)
     if hung is None:
@@ -219,7 +219,7 @@ def as_deployed(draft: Draft, hung: Hung | None, texts: Mapping[str, str]) -> Dr
     return draft
 
 
-def _serial(draft: Draft, hung: Hung) -> str:
+def _serial(draft: Draft, hung: DeployedItem) -> str:
     """Of the release as designed, else as deployed."""
     return hung.serial or said(draft, _ITEMS, ("label", hung.label), "serial")
 
@@ -227,7 +227,7 @@ def _serial(draft: Draft, hung: Hung) -> str:
 _SEVERAL = "For a count, give one number for each, separated by commas."
 
 
-def equipment_sheet(label: str, values: Mapping[str, Any], *, is_clamp: bool) -> Sheet:
+def equipment_sheet(label: str, values: Mapping[str, Any], *, is_clamp: bool) -> InputSheet:
     """The fields of a row as the file has them.
 
     Parameters
@@ -244,7 +244,7 @@ def equipment_sheet(label: str, values: Mapping[str, Any], *, is_clamp: bool) ->
     if not is_clamp:
         made = _said(values, "termination")
         asked.append(Asked("termination", "Termination", made, anything, "swaged, thimbles"))
-    return Sheet(label, _SEVERAL, asked)
+    return InputSheet(label, _SEVERAL, asked)
 
 
 def equipment_changes(
@@ -338,7 +338,7 @@ def history(session: Session) -> Question:
     return Question("What was done", text, answers)
 
 
-def naming(session: Session) -> Sheet:
+def naming(session: Session) -> InputSheet:
     """The id of an assembly that is made of marked pieces."""
     from calm.tui.catalogue.component_screen import id_check
 
@@ -346,4 +346,4 @@ def naming(session: Session) -> Sheet:
     check = id_check(own if isinstance(own, dict) else ())
     asked = [Asked("id", "Id", check=check, placeholder="e.g. glass-pack-own")]
     text = "The pieces go into the file's components; `use` of this id stands for them."
-    return Sheet("Make an assembly", text, asked)
+    return InputSheet("Make an assembly", text, asked)

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 from textual.app import App
 
 from calm.tui.checking import needed
-from calm.tui.dialogs import Answer, Asked, LongText, Question, Sheet
-from calm.tui.line.pane import LinePane
+from calm.tui.dialogs import Answer, Asked, InputSheet, LongText, Question
+from calm.tui.line.line_pane import LinePane
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -65,7 +65,7 @@ class Papers:
 
         folder = path.with_name(f"{path.stem}-{what}")
         asked = [Asked("folder", "Folder", str(folder), needed("a folder"))]
-        self._app.push_screen(Sheet("Where to write it", "", asked), take)
+        self._app.push_screen(InputSheet("Where to write it", "", asked), take)
 
     def _write(self, what: str, path: Path, folder: Path) -> None:
         """Have the command write it; what it says last is reported."""
@@ -89,7 +89,7 @@ class Papers:
 def _bill(result: Result) -> RenderableType:
     from calm.checks.inventory import inventory_of
     from calm.quantities import QUANTITIES
-    from calm.report.blocks import Pairs, Part
+    from calm.report.blocks import Pairs, ReportPart
     from calm.report.check_tables import inventory_table
     from calm.report.terminal import shown
 
@@ -106,4 +106,4 @@ def _bill(result: Result) -> RenderableType:
         ("buoyancy", say["wet_weight"].say(-sum(each for each in weights if each < 0.0))),
         ("weight in water", say["wet_weight"].say(sum(each for each in weights if each > 0.0))),
     )
-    return shown(Part("Bill", (inventory_table(items), Pairs(totals))))
+    return shown(ReportPart("Bill", (inventory_table(items), Pairs(totals))))

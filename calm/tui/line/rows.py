@@ -16,8 +16,8 @@ from calm.tui.line.table import TableRow
 from calm.tui.theme import CLAMP, ROLES, UNKNOWN_MARGIN, UNKNOWN_ROLE, worst
 
 if TYPE_CHECKING:
-    from calm.tui.found import Row
     from calm.tui.live import View
+    from calm.tui.row_findings import FoundRow
 
 _MOST_MARGIN = 9.99
 
@@ -53,19 +53,19 @@ def _wrong_items(draft: Draft, view: View | None) -> set[int]:
     }
 
 
-def _figures(draft: Draft, view: View | None) -> dict[Place, Sequence[Row]]:
+def _figures(draft: Draft, view: View | None) -> dict[Place, Sequence[FoundRow]]:
     """What was found for each row."""
     if view is None:
         return {}
-    found: dict[Place, list[Row]] = {}
+    found: dict[Place, list[FoundRow]] = {}
     for row in view.rows:
         found.setdefault(row.place.row, []).append(row)
     if view.text == draft.text:
         return dict(found)
-    known: dict[tuple[str, str, bool], list[Sequence[Row]]] = {}
+    known: dict[tuple[str, str, bool], list[Sequence[FoundRow]]] = {}
     for place, rows in found.items():
         known.setdefault(_called(view.items, place), []).append(rows)
-    taken: dict[Place, Sequence[Row]] = {}
+    taken: dict[Place, Sequence[FoundRow]] = {}
     for number, item in enumerate(draft.items):
         for below in range(-1, len(item.clamps)):
             place = Place(number, clamp=below)
@@ -83,7 +83,7 @@ def _called(items: Sequence[LineItem], place: Place) -> tuple[str, str, bool]:
     return use, values.get("label", use), place.is_clamp
 
 
-def _row(spot: Place, item: LineItem, found: Sequence[Row], index: Index | None) -> TableRow:
+def _row(spot: Place, item: LineItem, found: Sequence[FoundRow], index: Index | None) -> TableRow:
     values = {key: " ".join(value.split()) for key, value in item.values.items()}  # of one line
     use = values.get("use", "")
     listed = None if index is None else index.get(use)
@@ -100,14 +100,14 @@ def _row(spot: Place, item: LineItem, found: Sequence[Row], index: Index | None)
     return TableRow(spot, sign if index else " ", texts, worst(states), unknown)
 
 
-def _length(values: Mapping[str, str], found: Sequence[Row]) -> str:
+def _length(values: Mapping[str, str], found: Sequence[FoundRow]) -> str:
     """A length as written; of one that is fitted, what it is cut to."""
     if values.get("length") == "fit" and found and found[0].length is not None:
         return f"fit: {QUANTITIES['length'].say(found[0].length)}"
     return length_text(values)
 
 
-def _told(found: Sequence[Row]) -> dict[str, str]:
+def _told(found: Sequence[FoundRow]) -> dict[str, str]:
     """The figures of the pieces of one item: where it begins, and the worst of them."""
     depths = [row.depth for row in found if row.depth is not None]
     tensions = [row.tension for row in found if row.tension is not None]

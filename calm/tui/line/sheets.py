@@ -8,7 +8,8 @@ from typing import Any
 from textual.app import App
 
 from calm.files.editing import Draft
-from calm.tui.dialogs import Sheet
+from calm.tui.dialogs import InputSheet
+from calm.tui.line.line_pane import LinePane
 from calm.tui.line.mooring_sheet import (
     as_deployed,
     deployed_sheet,
@@ -19,7 +20,6 @@ from calm.tui.line.mooring_sheet import (
     tow_sheet,
     written,
 )
-from calm.tui.line.pane import LinePane
 
 
 class Sheets:
@@ -55,7 +55,7 @@ class Sheets:
         self._ask(tow_sheet(self._draft), "the tow", written)
 
     def _ask(
-        self, sheet: Sheet, label: str, changed: Callable[[Draft, Mapping[str, str]], Draft]
+        self, sheet: InputSheet, label: str, changed: Callable[[Draft, Mapping[str, str]], Draft]
     ) -> None:
         session = self._workspace.session
 

@@ -17,7 +17,7 @@ from textual.strip import Strip
 
 from calm.checks.finding import State
 from calm.files import Place
-from calm.tui.scrolled import Listing
+from calm.tui.scrolled import RowList
 from calm.tui.theme import CURSOR, ELLIPSIS, LOOKS, MARK
 
 _TAIL = 4
@@ -28,7 +28,7 @@ _EMPTY = (
 )
 
 
-class LineTable(Listing, can_focus=True):
+class LineTable(RowList, can_focus=True):
     """Rows of the line with a cursor on one cell of them."""
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {
@@ -66,7 +66,7 @@ class LineTable(Listing, can_focus=True):
 
     column: reactive[int] = reactive(0, init=False, repaint=False)
 
-    class Moved(Listing.Moved):
+    class Moved(RowList.Moved):
         """The cursor is on another cell."""
 
     class Activated(Message):
@@ -77,10 +77,10 @@ class LineTable(Listing, can_focus=True):
         self.rows: tuple[TableRow, ...] = ()
         self.marked: frozenset[Place] = frozenset()
         self.old = False
-        self._arranged: tuple[int, Layout] = (0, layout_for(80))
+        self._arranged: tuple[int, TableLayout] = (0, layout_for(80))
 
     @property
-    def arrangement(self) -> Layout:
+    def arrangement(self) -> TableLayout:
         """The columns as wide as they are now."""
         width = self.scrollable_content_region.width
         if self._arranged[0] != width:
@@ -268,7 +268,7 @@ class TableRow:
 
 
 @dataclass(frozen=True)
-class Layout:
+class TableLayout:
     """The columns that fit a width: name, first cell, and width."""
 
     columns: tuple[tuple[str, int, int], ...]
@@ -291,7 +291,7 @@ class Layout:
 
 def layout_for(
     width: int, component: int = _MOST_COMPONENT, label: int = _MOST_LABEL, length: int = 0
-) -> Layout:
+) -> TableLayout:
     """The columns of a table as wide as this, those least needed left out where it is narrow.
 
     Parameters
@@ -313,7 +313,7 @@ def layout_for(
     for name in shown:
         columns.append((name, start, widths[name]))
         start += widths[name] + 1
-    return Layout(tuple(columns))
+    return TableLayout(tuple(columns))
 
 
 def _text_room(shown: list[str], width: int, fixed: dict[str, int]) -> int:

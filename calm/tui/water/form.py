@@ -43,7 +43,7 @@ Place = tuple[str, ...]
 """Keys that lead to something within an environment: ``("density", "salinity")``."""
 
 
-class Water:
+class WaterForm:
     """The water of one environment of a file.
 
     Parameters

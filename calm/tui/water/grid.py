@@ -12,9 +12,9 @@ from textual.message import Message
 
 from calm.records.delimited import CopiedTable, NoTableError, copied_table
 from calm.tui.checking import Check, Reading
-from calm.tui.dialogs import Asked, Sheet
+from calm.tui.dialogs import Asked, InputSheet
 from calm.tui.line.cell_editor import CellEditor
-from calm.tui.water.cells import Cells
+from calm.tui.water.grid_cells import GridCells
 from calm.tui.water.pasted import (
     NoRows,
     Rows,
@@ -35,7 +35,7 @@ class Grid(Vertical):
 
     DEFAULT_CSS = """
     Grid { height: auto; min-height: 3; max-height: 16; layers: table over; }
-    Grid Cells { height: auto; min-height: 3; max-height: 16; }
+    Grid GridCells { height: auto; min-height: 3; max-height: 16; }
     """
 
     @dataclass
@@ -60,13 +60,13 @@ class Grid(Vertical):
 
     def compose(self) -> ComposeResult:
         """The rows, and over them what is edited."""
-        yield Cells()
+        yield GridCells()
         yield CellEditor()
 
     @property
-    def cells(self) -> Cells:
+    def cells(self) -> GridCells:
         """The rows."""
-        return self.query_one(Cells)
+        return self.query_one(GridCells)
 
     @property
     def editor(self) -> CellEditor:
@@ -92,7 +92,7 @@ class Grid(Vertical):
         if not reading.is_good:
             self.editor.focus()
         elif self.editor.is_open:
-            with self.cells.prevent(Cells.Changed):
+            with self.cells.prevent(GridCells.Changed):
                 self._put()
         return reading
 
@@ -158,10 +158,10 @@ class Grid(Vertical):
         first = "   ".join(copied.rows[0])
         text += f" Its first row reads  {first}"
         asked = Asked("columns", "Columns", ", ".join(headings), check)
-        self.app.push_screen(Sheet("A table is pasted", text, [asked]), take)
+        self.app.push_screen(InputSheet("A table is pasted", text, [asked]), take)
 
-    @on(Cells.Wanted)
-    def _edit(self, event: Cells.Wanted) -> None:
+    @on(GridCells.Wanted)
+    def _edit(self, event: GridCells.Wanted) -> None:
         event.stop()
         cells = self.cells
         if self.editor.is_typing and self.editor.settle().is_good:
@@ -216,12 +216,12 @@ class Grid(Vertical):
         if event.reason:
             self.post_message(self.Refused(event.reason))
 
-    @on(Cells.AtTheEnd)
+    @on(GridCells.AtTheEnd)
     def _tell_the_end(self) -> None:
         self.post_message(self.Refused("The table ends here: a adds a row, ↓ leaves it"))
 
-    @on(Cells.Changed)
-    def _changed(self, event: Cells.Changed) -> None:
+    @on(GridCells.Changed)
+    def _changed(self, event: GridCells.Changed) -> None:
         event.stop()
         self.cells.styles.height = len(event.rows) + 1
         self.post_message(self.Changed(self, event.rows, event.label))

@@ -8,12 +8,12 @@ from threading import Event, get_ident
 
 import numpy as np
 import pytest
+from calm.batch.stored_result import open_result
 
 import calm
 from calm.batch import run as run_module
 from calm.batch.compiling import compile_solver
 from calm.batch.profiles import Batch
-from calm.batch.result import open_result
 from calm.batch.run import LARGEST_BLOCK, run_batch
 from calm.batch.statuses import STATUSES, Ending
 from calm.batch.threads import in_threads

@@ -6,8 +6,8 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from calm.case.columns import Clamps, Components
 from calm.case.explain import Causes
+from calm.case.result_tables import Clamps, Components
 from calm.files import Clamp, Place
 
 

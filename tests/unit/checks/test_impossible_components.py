@@ -2,7 +2,7 @@
 
 import pytest
 
-from calm.checks.catalogue import RULES, check_catalogue
+from calm.checks.catalogue_rules import RULES, check_catalogue
 from calm.files import Anchor, Assembly, Cable, Chain, Cylinder, Sphere
 
 KINDS = {

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from calm.errors import UsageError
-from calm.motion.currents import CurrentMeasurements
+from calm.motion.measured_currents import CurrentMeasurements
 from calm.motion.measurements import common_times, interpolated, joined
 from calm.motion.sensors import Sensor
 

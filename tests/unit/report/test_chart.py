@@ -12,7 +12,7 @@ from matplotlib.transforms import Bbox
 
 from calm.analytic.chart_branch import curve
 from calm.errors import UsageError
-from calm.report.chart import CHART_FORMATS, chart_picture, draw_chart
+from calm.report.chart_page import CHART_FORMATS, chart_picture, draw_chart
 from calm.report.picture import check_format
 
 PLATES = [(0.0, "below-90"), (0.15, "below-90"), (0.6, "below-90")]

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from calm.report.graph import (
-    Entry,
     Graph,
+    LegendEntry,
     Scale,
     Stroke,
     counts,
@@ -133,7 +133,10 @@ def test_ticks_stand_at_their_values_and_titles_beside_them():
 
 def test_a_legend_shortens_what_is_too_long_and_any_sign_is_text():
     graph = Graph(200.0, 100.0, "a graph", 7.0)
-    entries = [Entry("a\tstorm <b>\x07 $x$", line=LINE), Entry("long " * 20, sign=("o", 4, "red"))]
+    entries = [
+        LegendEntry("a\tstorm <b>\x07 $x$", line=LINE),
+        LegendEntry("long " * 20, sign=("o", 4, "red")),
+    ]
     write_legend(graph.pen, entries, 0.0, 0.0, width=200.0, row=10.0, columns=2, size=7.0)
     first, second = drawn(graph)["text"]
     assert "".join(first.itertext()) == "a storm <b>\ufffd $x$"

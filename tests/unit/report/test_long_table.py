@@ -8,7 +8,7 @@ from rich.console import Console
 
 from calm.checks.finding import State
 from calm.report import terminal
-from calm.report.blocks import Cell, Column, Part, Table
+from calm.report.blocks import Cell, Column, ReportPart, Table
 
 COLUMNS = (
     Column("name"),
@@ -28,7 +28,7 @@ def table(rows, label="rope"):
             Cell(f"{label} {i}", indented=i % 3 == 1), Cell(f"{i * 1.5:.1f}"),
             Cell(f"{i}", mark=mark, state=state), Cell("never"), Cell("[bold]海 ok", state=state),
         ))  # fmt: skip
-    return Part("title", (Table("over it", COLUMNS, tuple(made), "below it", totals=1),))
+    return ReportPart("title", (Table("over it", COLUMNS, tuple(made), "below it", totals=1),))
 
 
 def printed(part, width):

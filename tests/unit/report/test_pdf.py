@@ -4,7 +4,7 @@ import pypdfium2
 import pytest
 
 import calm
-from calm.report.blocks import Part, Prose, Report, Section
+from calm.report.blocks import Prose, Report, ReportPart, Section
 from calm.report.check_report import mooring_section
 from calm.report.pdf import pdf_leaf, printed, report_pdf, result_pdf
 from tests.judged import FORMULA, LINES, judged, judged_hostile
@@ -94,7 +94,7 @@ def test_a_single_result_has_pages(name, pages):
 
 def test_what_is_accepted_can_be_printed():
     """Findings of a section hold dates and models, which no printer looks at."""
-    accepted = Section("M", (Part("Said", (Prose(("plain",)),)),), worst=(object(),))
+    accepted = Section("M", (ReportPart("Said", (Prose(("plain",)),)),), worst=(object(),))
     report = Report("T", "S", (), (accepted,))
     assert printed(report).startswith(b"%PDF")
 

@@ -5,7 +5,7 @@ import pytest
 from rich.console import Console
 
 from calm.case.strumming import Strumming, StrummingBand
-from calm.report.sheet import Mark, result_part, safety_mark, tilt_mark
+from calm.report.sheet import FigureMark, result_part, safety_mark, tilt_mark
 from calm.report.terminal import shown
 
 GOLDEN = Path(__file__).parent / "golden"
@@ -65,22 +65,22 @@ def test_unknown_knockdown_is_told(make_result):
 
 def test_tilt_marks(result):
     meter = result.mooring.file.pieces[3].component
-    assert tilt_mark(meter, 27.0) is Mark.NONE
-    assert tilt_mark(meter, 27.1) is Mark.BEYOND
+    assert tilt_mark(meter, 27.0) is FigureMark.NONE
+    assert tilt_mark(meter, 27.1) is FigureMark.BEYOND
 
 
 @pytest.mark.parametrize(
     ("index", "mooring_type", "factor", "utilisation", "mark"),
     [
-        (1, "subsurface", 2.9, None, Mark.BEYOND),  # steel: 3
-        (1, "subsurface", 3.1, None, Mark.NONE),
-        (6, "subsurface", 4.9, None, Mark.BEYOND),  # polyester: 5
-        (6, "subsurface", 5.1, None, Mark.NONE),
-        (1, "surface", 4.9, None, Mark.BEYOND),  # surface: 5
-        (1, "subsurface", 2.9, 0.9, Mark.BEYOND),  # either load may be too much
-        (1, "subsurface", 3.1, 0.9, Mark.NONE),
-        (1, "subsurface", 9.0, 1.1, Mark.BEYOND),
-        (1, "subsurface", None, None, Mark.NONE),
+        (1, "subsurface", 2.9, None, FigureMark.BEYOND),  # steel: 3
+        (1, "subsurface", 3.1, None, FigureMark.NONE),
+        (6, "subsurface", 4.9, None, FigureMark.BEYOND),  # polyester: 5
+        (6, "subsurface", 5.1, None, FigureMark.NONE),
+        (1, "surface", 4.9, None, FigureMark.BEYOND),  # surface: 5
+        (1, "subsurface", 2.9, 0.9, FigureMark.BEYOND),  # either load may be too much
+        (1, "subsurface", 3.1, 0.9, FigureMark.NONE),
+        (1, "subsurface", 9.0, 1.1, FigureMark.BEYOND),
+        (1, "subsurface", None, None, FigureMark.NONE),
     ],
 )
 def test_safety_marks(make_result, index, mooring_type, factor, utilisation, mark):

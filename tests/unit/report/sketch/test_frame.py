@@ -2,14 +2,20 @@ import pytest
 
 from calm.report.graph.scale import number
 from calm.report.graph.scale import round_numbers as ticks
-from calm.report.sketch.canvas import Canvas, Frame, Scale, levels
+from calm.report.sketch.canvas import Canvas, CellScale, PlotFrame, levels
 
 
-def frame(width: int = 12, height: int = 7) -> Frame:
+def frame(width: int = 12, height: int = 7) -> PlotFrame:
     canvas = Canvas(width, height)
     columns, rows = width - 4, height - 2
-    return Frame(
-        canvas, 4, 0, columns, rows, Scale(0.0, 30.0, 2 * columns), Scale(0.0, 100.0, 4 * rows)
+    return PlotFrame(
+        canvas,
+        4,
+        0,
+        columns,
+        rows,
+        CellScale(0.0, 30.0, 2 * columns),
+        CellScale(0.0, 100.0, 4 * rows),
     )
 
 

@@ -12,14 +12,14 @@ from textual.events import DescendantFocus
 from calm.tui.actions import bindings, hints
 from calm.tui.bars import KeyBar
 from calm.tui.checking import needed
-from calm.tui.dialogs import Asked, Sheet
+from calm.tui.dialogs import Asked, InputSheet
 from calm.tui.line.cell_editor import CellEditor
 from calm.tui.messages import Workspace
 from calm.tui.screen import DraftScreen
-from calm.tui.water.cells import Cells
-from calm.tui.water.currents import Currents
+from calm.tui.water.currents_to_begin import Currents
 from calm.tui.water.form import Place
-from calm.tui.water.pane import WaterPane
+from calm.tui.water.grid_cells import GridCells
+from calm.tui.water.water_pane import WaterPane
 
 
 class WaterScreen(DraftScreen):
@@ -41,7 +41,7 @@ class WaterScreen(DraftScreen):
         focused = self.focused
         if isinstance(focused, CellEditor):
             bar.show_keys(hints("cell"))
-        elif isinstance(focused, Cells):
+        elif isinstance(focused, GridCells):
             bar.show_keys([*hints("grid"), *hints("water")])
         else:
             bar.show_keys(hints("water"))
@@ -130,7 +130,7 @@ class Environments:
         if self._pane.settle():
             asked = [Asked("name", "Name", check=needed("a name"), placeholder="e.g. storm")]
             text = "It says only what differs from the file's own environment."
-            self._app.push_screen(Sheet("Another environment", text, asked), take)
+            self._app.push_screen(InputSheet("Another environment", text, asked), take)
 
     def drop(self) -> None:
         """Take the named environment out of the file."""

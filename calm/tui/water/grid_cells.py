@@ -16,7 +16,7 @@ from textual.reactive import reactive
 from textual.strip import Strip
 
 from calm.tui.actions import bindings
-from calm.tui.scrolled import Listing
+from calm.tui.scrolled import RowList
 from calm.tui.theme import CURSOR
 from calm.tui.water.pasted import Rows, half_way
 
@@ -28,13 +28,13 @@ _STEP = 10.0
 """How much deeper [m] a row below the last is."""
 
 
-class Cells(Listing, can_focus=True):
+class GridCells(RowList, can_focus=True):
     """The rows with a cursor on one cell."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings("grid")]
     COMPONENT_CLASSES: ClassVar[set[str]] = {"cells--heading", "cells--row", "cells--cursor"}
     DEFAULT_CSS = """
-    Cells {
+    GridCells {
         height: 1fr; width: 1fr; overflow-x: hidden; scrollbar-size-vertical: 1;
         & > .cells--heading { text-style: dim; }
         & > .cells--cursor { text-style: reverse bold; }
@@ -71,7 +71,7 @@ class Cells(Listing, can_focus=True):
     def show(self, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
         """Show other rows, the cursor where it was if there is such a cell."""
         self.columns = tuple(columns)
-        self.set_reactive(Cells.column, self.validate_column(self.column))
+        self.set_reactive(GridCells.column, self.validate_column(self.column))
         self.take_rows(tuple(tuple(row) for row in rows))
 
     def validate_column(self, column: int) -> int:

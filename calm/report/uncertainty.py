@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from calm.checks.finding import State
 from calm.files.uncertainty import Spread
-from calm.report.blocks import Block, Cell, Column, Line, Part, Prose, Span, Table
+from calm.report.blocks import Block, Cell, Column, Line, Prose, ReportPart, Span, Table
 
 if TYPE_CHECKING:
     from calm.case.uncertain import Uncertain
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _ENDS = ("5 %", "50 %", "95 %")
 
 
-def uncertainty_part(uncertain: Uncertain) -> Part:
+def uncertainty_part(uncertain: Uncertain) -> ReportPart:
     """The line's ends and pieces at 5, 50 and 95 %, and what their spread comes from.
 
     It fits 80 columns.
@@ -29,7 +29,7 @@ def uncertainty_part(uncertain: Uncertain) -> Part:
         said = f"{uncertain.failed} of {uncertain.samples} samples have no equilibrium ({each})"
         blocks.append(Prose((f"{said}; the figures are of the others.",), State.WARN))
     blocks.append(Prose((_quiet(_basis(uncertain)),)))
-    return Part("How sure these figures are", tuple(blocks))
+    return ReportPart("How sure these figures are", tuple(blocks))
 
 
 def _quiet(text: str) -> Line:

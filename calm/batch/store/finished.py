@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from calm.batch.result import attributes_of
 from calm.batch.store.store import IDENTITY, WORK, Store, refuse_another
+from calm.batch.stored_result import attributes_of
 from calm.dataset.netcdf import write_netcdf
 from calm.errors import UsageError
 from calm.whole_file import flush_to_disk

@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 _LEAST = (20, 6)
 
 
-class Profile(Widget):
+class ProfilePicture(Widget):
     """Speed and direction over depth, of the environment that the line was judged in."""
 
     DEFAULT_CSS = """
-    Profile { height: 1fr; }
-    Profile.-old { text-style: dim; }
+    ProfilePicture { height: 1fr; }
+    ProfilePicture.-old { text-style: dim; }
     """
 
     def __init__(self) -> None:

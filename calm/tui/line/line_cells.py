@@ -17,7 +17,7 @@ _LEAST_WIDTHS: dict[Column, int] = {"length": 16}
 _LEAST_WIDTH = 6
 
 
-class Cells:
+class LineCells:
     """Edits the cells of a table by the line of input that lies over it.
 
     Parameters
@@ -34,14 +34,14 @@ class Cells:
     ) -> None:
         self._workspace, self._table, self._editor = workspace, table, editor
         self._changed = changed
-        self._cell: Cell | None = None
+        self._cell: LineCell | None = None
 
     def edit(self, column: Column) -> None:
         """Edit a value of the row under the cursor, after what is typed in another is taken."""
         if self._table.spot is not None:
-            self._edit(Cell(self._workspace, self._table.spot, column))
+            self._edit(LineCell(self._workspace, self._table.spot, column))
 
-    def _edit(self, cell: Cell) -> None:
+    def _edit(self, cell: LineCell) -> None:
         if refused := cell.refused:
             self._workspace.tell(refused)
         if refused or not self.settle():
@@ -116,7 +116,7 @@ _NO_LENGTH = "Its length is set by the component"
 
 
 @dataclass(frozen=True)
-class Cell:
+class LineCell:
     """A value of a row, as the file of a workspace has it now."""
 
     workspace: Workspace
@@ -168,10 +168,10 @@ class Cell:
             name = "place" if self.spot.is_clamp and self.column == "length" else self.column
             self.workspace.session.put(self.spot, given, f"change the {name}")
 
-    def onward(self) -> Cell | None:
+    def onward(self) -> LineCell | None:
         """The next one of the row that can be edited."""
         for column in EDITABLE[EDITABLE.index(self.column) + 1 :]:
-            cell = Cell(self.workspace, self.spot, column)
+            cell = LineCell(self.workspace, self.spot, column)
             if not cell.refused:
                 return cell
         return None

@@ -14,10 +14,10 @@ from textual.message import Message
 
 from calm.files import Place
 from calm.tui.actions import bindings
-from calm.tui.catalogue.pane import Purpose
+from calm.tui.catalogue.catalogue_pane import Purpose
 from calm.tui.line.cell_editor import CellEditor
-from calm.tui.line.cells import Cells
-from calm.tui.line.found import Found
+from calm.tui.line.findings_on_rows import Found
+from calm.tui.line.line_cells import LineCells
 from calm.tui.line.mooring_sheet import equipment_changes, equipment_sheet, naming
 from calm.tui.line.rows import table_rows
 from calm.tui.line.table import Column, LineTable
@@ -51,7 +51,7 @@ class LinePane(Vertical):
         super().__init__(id="line-pane")
         self.workspace, self.session = workspace, workspace.session
         self.table, self.editor = LineTable(id="line"), CellEditor(id="cell")
-        self.cells = Cells(workspace, self.table, self.editor, self._show_edited)
+        self.cells = LineCells(workspace, self.table, self.editor, self._show_edited)
         self.found = Found(workspace, self.table)
         self.came_from_verdict = False
 

@@ -18,7 +18,7 @@ from calm.batch.store.identity import identity_of, to_text
 from calm.batch.store.store import Store, open_store
 from calm.batch.threads import processors
 from calm.batch.work import Progress, Work
-from calm.dataset.variables import Attributes, Layout, labels, numbers
+from calm.dataset.variables import Attributes, ResultLayout, labels, numbers
 from calm.motion.matching import labels_of
 from calm.motion.measurements import level_names
 from calm.motion.task import BLOCK, MeasuredRecord, Task
@@ -108,7 +108,7 @@ class MotionWork(Work):
         self._keep(number, [arrays])
 
 
-def motion_layout(task: Task, record: MeasuredRecord) -> Layout:
+def motion_layout(task: Task, record: MeasuredRecord) -> ResultLayout:
     """Return the result of a batch, with what is estimated besides."""
     layout = layout_of(task.mooring, record, None)
     known = dict(layout.sizes)

@@ -22,7 +22,7 @@ _LACKING = (State.UNKNOWN, State.ACCEPTED)
 
 
 @dataclass(frozen=True)
-class Row:
+class FoundRow:
     """A piece, or an instrument clamped on the piece above it.
 
     Attributes
@@ -54,7 +54,7 @@ def rows_of(
     file: MooringFile,
     result: Result | TowResult | None,
     findings: Iterable[Finding] = (),
-) -> Iterator[Row]:
+) -> Iterator[FoundRow]:
     """Down the file; with figures where there is a result, and what the findings say of each."""
     figures: dict[Place, _Figures] = {}
     if result is not None:
@@ -69,7 +69,9 @@ def rows_of(
         for part in parts_of([piece]):
             length = part.length if isinstance(part, Piece) else None
             solved = figures.get(part.place, (length, None, None, None))
-            yield Row(part.place, part.use, part.label, *solved, *said.get(part.place, _NOTHING))
+            yield FoundRow(
+                part.place, part.use, part.label, *solved, *said.get(part.place, _NOTHING)
+            )
 
 
 def _said(findings: Iterable[Finding]) -> dict[Place, _Said]:

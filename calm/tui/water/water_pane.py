@@ -20,7 +20,6 @@ from calm.records.profile_tables import DIRECTION, SALINITY, TEMPERATURE, WATER_
 from calm.tui.checking import needed, quantity
 from calm.tui.field import Field
 from calm.tui.messages import Workspace, said
-from calm.tui.profile import Profile
 from calm.tui.verdict_pane import state_word
 from calm.tui.water.form import (
     CURRENT_COLUMNS,
@@ -30,9 +29,10 @@ from calm.tui.water.form import (
     USUAL_DEPTH,
     FormChoice,
     Place,
-    Water,
+    WaterForm,
 )
 from calm.tui.water.grid import Grid
+from calm.tui.water.profile_picture import ProfilePicture
 
 if TYPE_CHECKING:
     from calm.errors import Problem
@@ -80,7 +80,7 @@ class WaterPane(Horizontal):
             yield Static(id="water-notes")
             yield from self._parts()
         with Vertical(id="water-profile"):
-            yield Profile()
+            yield ProfilePicture()
 
     def _parts(self) -> Iterator[Widget]:
         """The parts of the form; the id of each tells its place, as `_place` reads it."""
@@ -107,11 +107,11 @@ class WaterPane(Horizontal):
         self.query_one("#depth", Field).focus_input()
 
     @property
-    def water(self) -> Water:
+    def water(self) -> WaterForm:
         """The environment that is shown, as the file has it now."""
         standing = self.session.standing
         here = standing.environment
-        return Water(self.session.draft, here if here in standing.environments else None)
+        return WaterForm(self.session.draft, here if here in standing.environments else None)
 
     @property
     def environment_file(self) -> str | None:
@@ -129,7 +129,7 @@ class WaterPane(Horizontal):
         """The profile of a line as judged, dimmed where it is of what is edited no more."""
         view, fresh = self.workspace.view, self.workspace.is_fresh
         self._show_notes(view.problems if view is not None and fresh else ())
-        self.query_one(Profile).show(view, old=self.workspace.is_old)
+        self.query_one(ProfilePicture).show(view, old=self.workspace.is_old)
 
     def _show_notes(self, problems: Sequence[Problem]) -> None:
         """What keeps the line from standing in the water that the form shows."""
@@ -192,7 +192,7 @@ class WaterPane(Horizontal):
 
     # changes
 
-    def change(self, make: Callable[[Water], Draft], label: str, message: str = "") -> bool:
+    def change(self, make: Callable[[WaterForm], Draft], label: str, message: str = "") -> bool:
         """Change the file; a refusal is reported. Whether it was changed."""
         is_made, _ = self.workspace.attempt(lambda: self.session.do(make(self.water), label))
         self.show_draft()
@@ -303,7 +303,7 @@ class WaterPane(Horizontal):
         """Where the value of a form begins; below it, where it has none."""
         key = "-".join(place)
         if form == "table":
-            return self.query_one(f"#{key}-table Cells")
+            return self.query_one(f"#{key}-table GridCells")
         if form == DENSITY_FORMS[2]:
             return self.query_one("#density-temperature-form")
         where = {"uniform": "current-speed", "still": "wind-speed"}.get(form, key)

@@ -14,9 +14,9 @@ from textual.app import App
 from calm.errors import CalmError, UsageError
 from calm.records.profile_tables import speed_and_direction
 from calm.tui.checking import Check, Reading, anything
-from calm.tui.dialogs import Answer, Asked, Question, Sheet
+from calm.tui.dialogs import Answer, Asked, InputSheet, Question
 from calm.tui.water.form import CURRENT_COLUMNS, USUAL_DEPTH
-from calm.tui.water.pane import WaterPane
+from calm.tui.water.water_pane import WaterPane
 
 _SHARES = (0.0, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0)
 _POWER = 1 / 7
@@ -142,7 +142,7 @@ _SPEEDS = ("depth m", "u m/s", "v m/s", "w m/s")
 _NOISE = 1e-12  # of computing a speed and a direction in doubles, and then some
 
 
-class ImportSheet(Sheet):
+class ImportSheet(InputSheet):
     """File, time, and how it is to stand in the mooring file."""
 
     def __init__(self, folder: Path) -> None:

@@ -20,7 +20,7 @@ from calm.tui.catalogue.component_list import ComponentList
 from calm.tui.catalogue.index import COLUMNS, Index, Listed, Remembered
 from calm.tui.checking import anything, distance, length
 from calm.tui.field import Field
-from calm.tui.scrolled import Entry, ScrolledText
+from calm.tui.scrolled import ScrolledEntry, ScrolledText
 
 Purpose = Literal["below", "above", "clamp", "replace"]
 """What the component is wanted for."""
@@ -87,7 +87,7 @@ class CataloguePane(Vertical):
     def compose(self) -> ComposeResult:
         """Title, search, what is asked for, and the list with its card."""
         yield Static(id="catalogue-title", markup=False)
-        yield Entry(
+        yield ScrolledEntry(
             id="catalogue-search",
             compact=True,
             placeholder="words of id, name, maker, kind, role; breaking>50kN",
@@ -105,9 +105,9 @@ class CataloguePane(Vertical):
         return self.query_one(ComponentList)
 
     @property
-    def search(self) -> Entry:
+    def search(self) -> ScrolledEntry:
         """The words."""
-        return self.query_one("#catalogue-search", Entry)
+        return self.query_one("#catalogue-search", ScrolledEntry)
 
     def take_index(self, index: Index) -> None:
         """Search another catalogue."""
