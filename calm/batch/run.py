@@ -10,6 +10,11 @@ from pathlib import Path
 from threading import Event, Timer
 from typing import TYPE_CHECKING, TypeVar
 
+from calm.batch.compiling import compile_solver
+from calm.batch.dataset import layout_of
+from calm.batch.profiles import Batch
+from calm.batch.shape import nodes_of
+from calm.batch.statuses import Ending, endings
 from calm.batch.store.finished import (
     ENDINGS,
     clear,
@@ -19,15 +24,9 @@ from calm.batch.store.finished import (
     locked,
     store_folder,
 )
-from calm.batch.stored_result import readable, statuses_of, stored_result
-
-from calm.batch.compiling import compile_solver
-from calm.batch.dataset import layout_of
-from calm.batch.profiles import Batch
-from calm.batch.shape import nodes_of
-from calm.batch.statuses import Ending, endings
 from calm.batch.store.identity import identity_of, to_text
 from calm.batch.store.store import open_store
+from calm.batch.stored_result import readable, statuses_of, stored_result
 from calm.batch.threads import Stopped, go_on, processors
 from calm.batch.work import Progress, Work
 from calm.case import Mooring

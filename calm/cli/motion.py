@@ -110,11 +110,11 @@ def motion(
         A catalogue of your own; its components hide others of the same id. Repeatable.
     """
     import numpy as np
-    from calm.batch.stored_result import open_result, readable
-    from calm.motion.correction import run_motion
 
     from calm.batch.compiling import compile_solver
     from calm.batch.profiles import Batch
+    from calm.batch.stored_result import open_result, readable
+    from calm.motion.correction import run_motion
     from calm.motion.instrument_file import read_instruments, write_depths
     from calm.motion.matching import labels_of
     from calm.motion.study import cross_validated, judged, prepare, series_of, several
@@ -245,7 +245,6 @@ def read_measured(
 ) -> tuple[MooringMeasurements, list[str], dict[str, str]]:
     """What was measured, on common times; what is said of it, and its source."""
     import numpy as np
-    from calm.motion.measured_currents import read_currents
 
     from calm.motion.line_response import Forward
     from calm.motion.matching import (
@@ -256,6 +255,7 @@ def read_measured(
         plausible,
         unusable,
     )
+    from calm.motion.measured_currents import read_currents
     from calm.motion.measurements import joined
     from calm.motion.sensors import parse_flags, read_sea_level, read_sensors
     from calm.motion.task import without

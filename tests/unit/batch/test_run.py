@@ -8,7 +8,6 @@ from threading import Event, get_ident
 
 import numpy as np
 import pytest
-from calm.batch.stored_result import open_result
 
 import calm
 from calm.batch import run as run_module
@@ -16,6 +15,7 @@ from calm.batch.compiling import compile_solver
 from calm.batch.profiles import Batch
 from calm.batch.run import LARGEST_BLOCK, run_batch
 from calm.batch.statuses import STATUSES, Ending
+from calm.batch.stored_result import open_result
 from calm.batch.threads import in_threads
 from calm.errors import UsageError
 from tests.unit.batch.made import MOORING, MadeRecord, content, made_mooring
