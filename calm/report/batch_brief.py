@@ -19,7 +19,17 @@ from calm.report.batch_summary import (
     standing,
     when,
 )
-from calm.report.blocks import Block, Cell, Column, Heading, Prose, ReportPart, Span, Table
+from calm.report.blocks import (
+    Block,
+    Cell,
+    Column,
+    Heading,
+    Prose,
+    ReportPart,
+    Span,
+    Table,
+    table_of,
+)
 
 if TYPE_CHECKING:
     from calm.batch.statistics.limits import RuleShare
@@ -77,24 +87,18 @@ def _extremes(name: str, one: Distribution | None) -> tuple[str, str]:
 
 
 def _rules(summary: Summary) -> Table:
-    columns = (
-        Column("rule"),
-        Column("fails\n% of profiles", numeric=True),
-        Column("at most\n%", numeric=True),
-        Column("warns\n%", numeric=True),
-        Column("most often broken by"),
-    )
-    rows = tuple(
+    return table_of(
+        "",
+        summary.rules,
+        (Column("rule"), lambda rule: rule.title),
         (
-            Cell(rule.title),
-            Cell(percent(rule.fails), state=State.FAIL if rule.fails else None),
-            Cell(percent(rule.fails_at_most)),
-            Cell(percent(rule.warns)),
-            Cell(_broken(rule)),
-        )
-        for rule in summary.rules
+            Column("fails\n% of profiles", numeric=True),
+            lambda rule: Cell(percent(rule.fails), state=State.FAIL if rule.fails else None),
+        ),
+        (Column("at most\n%", numeric=True), lambda rule: percent(rule.fails_at_most)),
+        (Column("warns\n%", numeric=True), lambda rule: percent(rule.warns)),
+        (Column("most often broken by"), _broken),
     )
-    return Table("", columns, rows)
 
 
 def _broken(rule: RuleShare) -> str:

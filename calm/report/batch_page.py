@@ -38,6 +38,7 @@ from calm.report.blocks import (
     ReportPart,
     Section,
     Table,
+    table_of,
 )
 from calm.report.check_summary import limits_table as limits_used_table
 from calm.report.html import page
@@ -47,7 +48,7 @@ from calm.report.sheet import figure_cell, quantity_column
 from calm.whole_file import put
 
 if TYPE_CHECKING:
-    from calm.batch.statistics.limits import Exceedance, RuleShare
+    from calm.batch.statistics.limits import Exceedance
     from calm.batch.statistics.summary import Distribution, Summary
 
 
@@ -126,51 +127,54 @@ _EXTRAPOLATED = (
 
 def rules_table(summary: Summary) -> Table:
     """How often each rule fails or warns anywhere on the line."""
-    rows = [
+    return table_of(
+        "How often a rule fails",
+        summary.rules,
+        (Column("rule"), lambda rule: rule.title),
+        (Column("judged in", "profiles", numeric=True), lambda rule: grouped(rule.judged)),
+        (Column("fails", "% of them", numeric=True), lambda rule: _share(rule.fails, State.FAIL)),
+        (Column("at most", "%", numeric=True), lambda rule: _share(rule.fails_at_most, State.FAIL)),
+        (Column("warns", "% of them", numeric=True), lambda rule: _share(rule.warns, State.WARN)),
+        (Column("limits", numeric=True), lambda rule: str(len(rule.exceedances))),
         (
-            Cell(rule.title),
-            Cell(grouped(rule.judged)),
-            _share(rule.fails, State.FAIL),
-            _share(rule.fails_at_most, State.FAIL),
-            _share(rule.warns, State.WARN),
-            Cell(str(len(rule.exceedances))),
-            Cell(str(rule.unknown), state=State.UNKNOWN if rule.unknown else None),
-        )
-        for rule in summary.rules
-    ]
-    columns = (
-        Column("rule"),
-        Column("judged in", "profiles", numeric=True),
-        Column("fails", "% of them", numeric=True),
-        Column("at most", "%", numeric=True),
-        Column("warns", "% of them", numeric=True),
-        Column("limits", numeric=True),
-        Column("of them unknown", numeric=True),
+            Column("of them unknown", numeric=True),
+            lambda rule: Cell(str(rule.unknown), state=State.UNKNOWN if rule.unknown else None),
+        ),
+        note="At most: if the rule fails, too, in every profile that has a current and was not "
+        "solved. A limit that is judged in no profile is unknown.",
     )
-    note = (
-        "At most: if the rule fails, too, in every profile that has a current and was not solved. "
-        "A limit that is judged in no profile is unknown."
-    )
-    return Table("How often a rule fails", columns, tuple(rows), note)
 
 
 def limits_table(summary: Summary) -> Table:
     """How often every limit is broken, and the worst of it."""
-    rows = [_limit(rule, one) for rule in summary.rules for one in rule.exceedances]
-    columns = (
-        Column("state", share=0.0),
-        Column("rule"),
-        Column("component"),
-        Column("limit", numeric=True),
-        Column("broken in", "% of profiles", numeric=True),
-        Column("worst value", numeric=True),
-        Column("when", share=0.0),
+
+    def state(one: Exceedance) -> Cell:
+        broken = one.limit.beyond if one.share else State.PASS
+        state = State.UNKNOWN if one.share is None else broken
+        return Cell(state.value, state=state)
+
+    def figure(one: Exceedance, value: float | None, bound: str = "") -> str:
+        return "-" if value is None else bound + QUANTITIES[one.limit.quantity].say(value)
+
+    return table_of(
+        "Limits",
+        [(rule, one) for rule in summary.rules for one in rule.exceedances],
+        (Column("state", share=0.0), lambda pair: state(pair[1])),
+        (Column("rule"), lambda pair: pair[0].title),
+        (Column("component"), lambda pair: pair[1].limit.component),
+        (
+            Column("limit", numeric=True),
+            lambda pair: figure(
+                pair[1], pair[1].limit.limit, "≥ " if pair[1].limit.least else "≤ "
+            ),
+        ),
+        (Column("broken in", "% of profiles", numeric=True), lambda pair: percent(pair[1].share)),
+        (Column("worst value", numeric=True), lambda pair: figure(pair[1], pair[1].worst)),
+        (Column("when", share=0.0), lambda pair: when(pair[1].time)),
+        note="Strength: at the ends of a piece and at the clamps on it. Least tension: at the ends "
+        "of a piece. Anchor sliding: H + friction × V against friction × weight in water / factor.",
+        sortable=True,
     )
-    note = (
-        "Strength: at the ends of a piece and at the clamps on it. Least tension: at the ends of a "
-        "piece. Anchor sliding: H + friction × V against friction × weight in water / factor."
-    )
-    return Table("Limits", columns, tuple(rows), note, sortable=True)
 
 
 def statistics_tables(summary: Summary) -> Iterator[Table]:
@@ -231,21 +235,6 @@ def levels_tables(summary: Summary) -> Iterator[Table | Prose]:
 
 def _share(share: float | None, state: State) -> Cell:
     return Cell(percent(share), state=state if share else None)
-
-
-def _limit(rule: RuleShare, one: Exceedance) -> tuple[Cell, ...]:
-    limit, quantity = one.limit, QUANTITIES[one.limit.quantity]
-    state = State.UNKNOWN if one.share is None else limit.beyond if one.share else State.PASS
-    bound = "≥" if limit.least else "≤"
-    return (
-        Cell(state.value, state=state),
-        Cell(rule.title),
-        Cell(limit.component),
-        Cell("-" if limit.limit is None else f"{bound} {quantity.say(limit.limit)}"),
-        Cell(percent(one.share)),
-        Cell("-" if one.worst is None else quantity.say(one.worst)),
-        Cell(when(one.time)),
-    )
 
 
 def _figures(name: str, one: Distribution | None) -> Iterator[Cell]:

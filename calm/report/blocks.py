@@ -5,14 +5,17 @@ Every text is plain: a printer escapes it in its own way, and nothing in a text 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from calm.checks.finding import State
 
 if TYPE_CHECKING:
     from calm.checks.finding import Finding
     from calm.files.check_limits import LimitKey
+
+Item = TypeVar("Item")
 
 ON_THE_WAY = "launch, recovery, breaks"
 """The column of a summary for what is judged of a mooring outside its environments."""
@@ -216,3 +219,31 @@ class Report:
     sections: tuple[Section, ...]
     date: str | None = None
     plates: tuple[Plate, ...] = ()
+
+
+def table_of(
+    title: str,
+    items: Iterable[Item],
+    *fields: tuple[Column, Callable[[Item], Cell | str]],
+    note: str = "",
+    sums: Iterable[Item] = (),
+    sortable: bool = False,
+    by_hand: bool = False,
+) -> Table:
+    """Return a table with a row for each item and a column for each field.
+
+    Parameters
+    ----------
+    fields : head of a column, and what it shows of an item
+    note : below the table
+    sums : items whose rows close the table as its totals
+    sortable, by_hand : as in `Table`
+    """
+    totals = list(sums)
+    rows = tuple(tuple(_cell(show(item)) for _, show in fields) for item in (*items, *totals))
+    columns = tuple(column for column, _ in fields)
+    return Table(title, columns, rows, note, len(totals), sortable=sortable, by_hand=by_hand)
+
+
+def _cell(shown: Cell | str) -> Cell:
+    return shown if isinstance(shown, Cell) else Cell(shown)

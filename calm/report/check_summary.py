@@ -12,15 +12,7 @@ from calm.checks.finding import AS_GIVEN, Finding, State, worst_state
 from calm.checks.rules import RULES
 from calm.files.check_limits import LimitKey
 from calm.quantities import QUANTITIES
-from calm.report.blocks import (
-    ON_THE_WAY,
-    Cell,
-    Column,
-    Prose,
-    Section,
-    Table,
-    Worst,
-)
+from calm.report.blocks import ON_THE_WAY, Cell, Column, Prose, Section, Table, Worst, table_of
 
 if TYPE_CHECKING:
     from calm.checks.assessment import Assessment
@@ -140,28 +132,30 @@ def worst_table(sections: Sequence[Section]) -> Table:
 
 def failures(sections: Sequence[Section]) -> Table | Prose:
     """Every rule that a mooring fails, with its worst finding and the remedy."""
-    rows = []
-    for section in sections:
-        failed = (each.finding for each in section.worst if each.finding.state is State.FAIL)
-        for group in _groups(failed, lambda each: each.rule):
-            finding, others = min(group, key=_rank), len(group) - 1
-            rows.append(
-                (
-                    Cell(section.name),
-                    Cell(RULES[finding.rule].title),
-                    Cell(place_of(finding), f"and {others} more" if others else ""),
-                    Cell(finding.message, finding.remedy or ""),
-                )
-            )
-    if not rows:
+    failed = [
+        (section.name, min(group, key=_rank), len(group) - 1)
+        for section in sections
+        for group in _groups(
+            (each.finding for each in section.worst if each.finding.state is State.FAIL),
+            lambda each: each.rule,
+        )
+    ]
+    if not failed:
         return Prose(("No rule fails.",), State.PASS)
-    columns = (
-        Column("mooring"),
-        Column("rule"),
-        Column("environment"),
-        Column("finding and remedy", share=2.5),
+    return table_of(
+        "Failures",
+        failed,
+        (Column("mooring"), lambda one: one[0]),
+        (Column("rule"), lambda one: RULES[one[1].rule].title),
+        (
+            Column("environment"),
+            lambda one: Cell(place_of(one[1]), f"and {one[2]} more" if one[2] else ""),
+        ),
+        (
+            Column("finding and remedy", share=2.5),
+            lambda one: Cell(one[1].message, one[1].remedy or ""),
+        ),
     )
-    return Table("Failures", columns, tuple(rows))
 
 
 _RULES_NOTE = "Under each state: the least margin, the component that has it, and what is unknown."
@@ -258,91 +252,79 @@ def verdict_prose(findings: Iterable[Finding]) -> Prose:
 
 def accepted_table(moorings: Sequence[tuple[str, Sequence[Finding]]]) -> Table | None:
     """What is accepted of each mooring, with its reason; None where nothing is."""
-    rows = tuple(
-        (
-            Cell(State.ACCEPTED.value, state=State.ACCEPTED),
-            Cell(name),
-            Cell(RULES[finding.rule].title, finding.component or "whole line"),
-            Cell(finding.message),
-            Cell(accept.reason),
-            Cell(accept.by or "-", accept.date or ""),
-            Cell(accept.until or "for good"),
-        )
+    accepted = [
+        (name, finding, accept)
         for name, findings in moorings
         for finding in findings
         if (accept := finding.accept) is not None
-    )
-    if not rows:
+    ]
+    if not accepted:
         return None
-    columns = (
-        Column("state", share=0.0),
-        Column("mooring"),
-        Column("rule, component"),
-        Column("finding", share=1.5),
-        Column("reason", share=1.5),
-        Column("by, on"),
-        Column("until", share=0.0),
+    state = Cell(State.ACCEPTED.value, state=State.ACCEPTED)
+    return table_of(
+        "Accepted with a reason",
+        accepted,
+        (Column("state", share=0.0), lambda one: state),
+        (Column("mooring"), lambda one: one[0]),
+        (
+            Column("rule, component"),
+            lambda one: Cell(RULES[one[1].rule].title, one[1].component or "whole line"),
+        ),
+        (Column("finding", share=1.5), lambda one: one[1].message),
+        (Column("reason", share=1.5), lambda one: one[2].reason),
+        (Column("by, on"), lambda one: Cell(one[2].by or "-", one[2].date or "")),
+        (Column("until", share=0.0), lambda one: one[2].until or "for good"),
     )
-    return Table("Accepted with a reason", columns, rows)
 
 
 def limits_table(moorings: Sequence[tuple[str, Sequence[LimitKey]]]) -> Table:
     """The limits as used, with their defaults and the sources of those; departures come first."""
-    rows = [
-        (
-            Cell("departs" if key.departs else "", state=State.WARN if key.departs else None),
-            Cell(name),
-            Cell(key.name),
-            Cell(said(key, key.value)),
-            Cell(said(key, key.default)),
-            Cell(key.source),
-        )
+    limits = [
+        (name, key)
         for name, keys in moorings
         for key in sorted(keys, key=lambda key: not key.departs)
     ]
-    columns = (
-        Column("", share=0.0),
-        Column("mooring"),
-        Column("limit"),
-        Column("as used", numeric=True),
-        Column("default", numeric=True),
-        Column("source of the default", share=2.0),
+    departs = Cell("departs", state=State.WARN)
+    return table_of(
+        "Limits as used",
+        limits,
+        (Column("", share=0.0), lambda one: departs if one[1].departs else ""),
+        (Column("mooring"), lambda one: one[0]),
+        (Column("limit"), lambda one: one[1].name),
+        (Column("as used", numeric=True), lambda one: said(one[1], one[1].value)),
+        (Column("default", numeric=True), lambda one: said(one[1], one[1].default)),
+        (Column("source of the default", share=2.0), lambda one: one[1].source),
+        note="A limit that departs from its default is the design's own; no source stands for it.",
     )
-    note = "A limit that departs from its default is the design's own; no source stands for it."
-    return Table("Limits as used", columns, tuple(rows), note)
 
 
 def unknown_table(findings: Iterable[Finding]) -> Table | None:
     """What is unknown, piece by piece, and which figure would settle it; None where nothing is."""
-    parts: dict[str, list[Finding]] = {}
-    for finding in worst_by_part(findings):
-        if finding.state is State.UNKNOWN:
-            parts.setdefault(finding.component or "whole line", []).append(finding)
-    if not parts:
+    unknown = [each for each in worst_by_part(findings) if each.state is State.UNKNOWN]
+    if not unknown:
         return None
-    rows = tuple(
+    return table_of(
+        "Unknown, piece by piece",
+        _groups(unknown, lambda each: each.component),
+        (Column("component"), lambda found: found[0].component or "whole line"),
         (
-            Cell(label),
-            Cell(", ".join(RULES[one.rule].title for one in found)),
-            Cell(" ".join(dict.fromkeys(one.remedy for one in found if one.remedy))),
-            Cell(
-                ", ".join(
-                    f"{say_in_unit(one, one.value)} ({place_of(one)})"
-                    for one in found
-                    if one.value is not None
-                )
-            ),
-        )
-        for label, found in parts.items()
+            Column("not judged by"),
+            lambda found: ", ".join(RULES[one.rule].title for one in found),
+        ),
+        (
+            Column("what would settle it", share=1.5),
+            lambda found: " ".join(dict.fromkeys(one.remedy for one in found if one.remedy)),
+        ),
+        (Column("what it bears or stands there", share=1.5), _known_values),
+        sortable=True,
     )
-    columns = (
-        Column("component"),
-        Column("not judged by"),
-        Column("what would settle it", share=1.5),
-        Column("what it bears or stands there", share=1.5),
-    )
-    return Table("Unknown, piece by piece", columns, rows, sortable=True)
 
 
 def _counted(count: int, word: str) -> str:
     return f"{count} {word}{'s' * (count != 1)}"
+
+
+def _known_values(found: Iterable[Finding]) -> str:
+    """The values of some findings with where they are."""
+    known = (one for one in found if one.value is not None)
+    return ", ".join(f"{say_in_unit(one, one.value)} ({place_of(one)})" for one in known)

@@ -10,7 +10,7 @@ from calm.checks.finding import Finding, State
 from calm.checks.rules import RULES
 from calm.files.components import FLEXIBLE_KINDS
 from calm.quantities import QUANTITIES, say
-from calm.report.blocks import Cell, Column, Prose, Table
+from calm.report.blocks import Cell, Column, Prose, Table, table_of
 from calm.report.check_summary import margin_of, place_of, say_in_unit, worst_by_part
 from calm.report.sheet import figure_cell, place_text, quantity_column
 
@@ -64,33 +64,21 @@ def checks_table(findings: Iterable[Finding]) -> Iterator[Table | Prose]:
     """The worst finding of each rule on each component, and the sources of the rules."""
     kept = worst_by_part(findings)
     sources = list(dict.fromkeys(finding.source for finding in kept))
-    rows = tuple(
-        (
-            Cell(finding.state.value, state=finding.state),
-            Cell(RULES[finding.rule].title),
-            Cell(finding.component or "whole line"),
-            Cell(say_in_unit(finding, finding.value)),
-            Cell(say_in_unit(finding, finding.limit)),
-            Cell(margin_of(finding)),
-            Cell(place_of(finding)),
-            _said(finding),
-            Cell(str(sources.index(finding.source) + 1)),
-        )
-        for finding in kept
+    yield table_of(
+        "Worst finding of each rule on each component",
+        kept,
+        (Column("state", share=0.0), lambda one: Cell(one.state.value, state=one.state)),
+        (Column("rule", share=1.3), lambda one: RULES[one.rule].title),
+        (Column("component"), lambda one: one.component or "whole line"),
+        (Column("value", numeric=True), lambda one: say_in_unit(one, one.value)),
+        (Column("limit", numeric=True), lambda one: say_in_unit(one, one.limit)),
+        (Column("margin", numeric=True), margin_of),
+        (Column("environment, situation"), place_of),
+        (Column("finding and remedy", share=2.5), _said),
+        (Column("source", numeric=True), lambda one: str(sources.index(one.source) + 1)),
+        note="Each component where it is worst; every finding is in checks.csv and report.json.",
+        sortable=True,
     )
-    columns = (
-        Column("state", share=0.0),
-        Column("rule", share=1.3),
-        Column("component"),
-        Column("value", numeric=True),
-        Column("limit", numeric=True),
-        Column("margin", numeric=True),
-        Column("environment, situation"),
-        Column("finding and remedy", share=2.5),
-        Column("source", numeric=True),
-    )
-    note = "Each component where it is worst; every finding is in checks.csv and report.json."
-    yield Table("Worst finding of each rule on each component", columns, rows, note, sortable=True)
     yield Prose(tuple(f"{number}. {source}" for number, source in enumerate(sources, 1)))
 
 
@@ -106,30 +94,27 @@ def _said(finding: Finding) -> Cell:
 
 def breaks_table(backup: Sequence[Break]) -> Table:
     """What would float the release up again after each break."""
-    rows = tuple(
+    return table_of(
+        "Back-up buoyancy",
+        backup,
+        (Column("no.", numeric=True), lambda one: str(one.break_after)),
+        (Column("break below"), lambda one: one.label),
         (
-            Cell(str(each.break_after)),
-            Cell(each.label),
-            figure_cell("wet_weight", each.weight_lifted),
-            figure_cell("net_buoyancy", each.margin),
-            figure_cell("net_buoyancy", each.required),
-            Cell("yes" if each.judged else "no"),
-        )
-        for each in backup
+            Column("weight lifted", "N", numeric=True),
+            lambda one: figure_cell("wet_weight", one.weight_lifted),
+        ),
+        (
+            Column("buoyancy left over", "N", numeric=True),
+            lambda one: figure_cell("net_buoyancy", one.margin),
+        ),
+        (
+            Column("required", "N", numeric=True),
+            lambda one: figure_cell("net_buoyancy", one.required),
+        ),
+        (Column("judged"), lambda one: "yes" if one.judged else "no"),
+        note="Not judged: what breaks inside the lowest cluster of floats, or between it and the "
+        "release, in any design leaves the release on the seabed.",
     )
-    columns = (
-        Column("no.", numeric=True),
-        Column("break below"),
-        Column("weight lifted", "N", numeric=True),
-        Column("buoyancy left over", "N", numeric=True),
-        Column("required", "N", numeric=True),
-        Column("judged"),
-    )
-    note = (
-        "Not judged: what breaks inside the lowest cluster of floats, or between it and the "
-        "release, in any design leaves the release on the seabed."
-    )
-    return Table("Back-up buoyancy", columns, rows, note)
 
 
 def handling_summary(assessment: Assessment) -> Table:
@@ -201,34 +186,23 @@ def _pair(top: Floats, bottom: Floats, index: int) -> list[Cell]:
 
 def deck_table(items: Sequence[InventoryItem]) -> Table:
     """Pieces in the order in which they come to the deck, with their weights and lifts."""
-    rows = tuple(
+    return table_of(
+        "Pieces for the deck",
+        items,
+        (Column("no.", numeric=True), lambda one: "" if one.clamped_on else str(one.index)),
+        (Column("piece"), lambda one: Cell(one.label, indented=one.clamped_on is not None)),
+        (Column("component"), lambda one: one.name or one.use),
         (
-            Cell("" if item.clamped_on else str(item.index)),
-            Cell(item.label, indented=item.clamped_on is not None),
-            Cell(item.name or item.use),
-            Cell("" if item.at is None else place_text(item.at)),
-            figure_cell("cut_length", item.cut_length),
-            figure_cell("mass", item.dry_mass),
-            figure_cell("wet_weight", item.wet_weight),
-            figure_cell("lift_mass", item.lift_mass),
-        )
-        for item in items
+            Column("on its piece", "m", numeric=True),
+            lambda one: "" if one.at is None else place_text(one.at),
+        ),
+        (quantity_column("cut_length"), lambda one: figure_cell("cut_length", one.cut_length)),
+        (quantity_column("dry_mass"), lambda one: figure_cell("mass", one.dry_mass)),
+        (quantity_column("wet_weight"), lambda one: figure_cell("wet_weight", one.wet_weight)),
+        (quantity_column("lift_mass"), lambda one: figure_cell("lift_mass", one.lift_mass)),
+        note="On its piece: where a clamp sits, from the top of it. Weight in water: + down. Mass "
+        "of the lift: of the piece with what is clamped on it.",
     )
-    columns = (
-        Column("no.", numeric=True),
-        Column("piece"),
-        Column("component"),
-        Column("on its piece", "m", numeric=True),
-        quantity_column("cut_length"),
-        quantity_column("dry_mass"),
-        quantity_column("wet_weight"),
-        quantity_column("lift_mass"),
-    )
-    note = (
-        "On its piece: where a clamp sits, from the top of it. Weight in water: + down. Mass of "
-        "the lift: of the piece with what is clamped on it."
-    )
-    return Table("Pieces for the deck", columns, rows, note)
 
 
 def inventory_table(items: Sequence[InventoryItem]) -> Table:

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 from calm.deck.cutting import LENGTH_ERROR
 from calm.deck.shipping import total_of
 from calm.quantities import QUANTITIES, say
-from calm.report.blocks import Block, Cell, Column, Note, Prose, ReportPart, Table
+from calm.report.blocks import Block, Cell, Column, Note, Prose, ReportPart, Table, table_of
 from calm.report.sheet import figure_cell
 
 if TYPE_CHECKING:
     from calm.deck import Deck
     from calm.deck.deck_items import Extreme, Posted
-    from calm.deck.shipping import Freight, Lift
+    from calm.deck.shipping import Lift
 
 _SHARE = f"{LENGTH_ERROR:.1%}".replace("%", " %")
 _SPARES = (
@@ -112,36 +112,31 @@ def hardware_part(deck: Deck) -> ReportPart:
 
 def shipping_part(deck: Deck) -> ReportPart:
     """All that is shipped, and what the sums lack."""
-    rows = [_freight(one) for one in deck.freight]
-    rows.append(_freight(total_of(deck.freight)))
-    columns = (
-        Column("component", share=1.6),
-        Column("id"),
-        Column("pieces", numeric=True),
-        Column("length", "m", numeric=True),
-        Column("mass in air", "kg", numeric=True),
-        Column("volume", "l", numeric=True),
-        Column("packed in", share=0.8),
+    table = table_of(
+        "Shipped",
+        deck.freight,
+        (Column("component", share=1.6), lambda one: one.name),
+        (Column("id"), lambda one: one.use),
+        (Column("pieces", numeric=True), lambda one: str(one.count)),
+        (
+            Column("length", "m", numeric=True),
+            lambda one: "" if one.length is None else f"{one.length:.1f}",
+        ),
+        (
+            Column("mass in air", "kg", numeric=True),
+            lambda one: _at_least("dry_mass", one.mass, one.missing_masses, one.count),
+        ),
+        (
+            Column("volume", "l", numeric=True),
+            lambda one: _at_least("volume", one.volume, one.missing_volumes, one.count),
+        ),
+        (Column("packed in", share=0.8), lambda one: ""),
+        note="Volume: of the things themselves, without packing: of a sphere, a cylinder and a "
+        "cable by its size, else what it displaces. ≥: a lower bound, since figures are missing. "
+        "Spares are not in it.",
+        sums=[total_of(deck.freight)],
     )
-    note = (
-        "Volume: of the things themselves, without packing: of a sphere, a cylinder and a cable by "
-        "its size, else what it displaces. ≥: a lower bound, since figures are missing. Spares are "
-        "not in it."
-    )
-    return ReportPart("Shipping list", (Table("Shipped", columns, tuple(rows), note, totals=1),))
-
-
-def _freight(one: Freight) -> tuple[Cell, ...]:
-    length = "" if one.length is None else f"{one.length:.1f}"
-    return (
-        Cell(one.name),
-        Cell(one.use),
-        Cell(str(one.count)),
-        Cell(length),
-        _at_least("dry_mass", one.mass, one.missing_masses, one.count),
-        _at_least("volume", one.volume, one.missing_volumes, one.count),
-        Cell(),
-    )
+    return ReportPart("Shipping list", (table,))
 
 
 def _at_least(name: str, value: float, missing: int, count: int) -> Cell:
@@ -191,24 +186,24 @@ def lifts_part(deck: Deck) -> ReportPart:
 
 
 def _stages(title: str, lifts: Iterable[Lift]) -> Table:
-    rows = tuple(
+    return table_of(
+        title,
+        lifts,
+        (Column("no.", numeric=True), lambda one: str(one.index)),
+        (Column("at the rail", share=2.0), lambda one: one.label),
         (
-            Cell(str(one.index)),
-            Cell(one.label),
-            figure_cell("lift_mass", one.mass),
-            figure_cell("wet_weight", one.weight),
-            figure_cell("wet_weight", one.hanging),
-        )
-        for one in lifts
+            Column("lift in\nair", "kg", numeric=True),
+            lambda one: figure_cell("lift_mass", one.mass),
+        ),
+        (
+            Column("lift in\nwater", "N", numeric=True),
+            lambda one: figure_cell("wet_weight", one.weight),
+        ),
+        (
+            Column("hanging\nin water", "N", numeric=True),
+            lambda one: figure_cell("wet_weight", one.hanging),
+        ),
     )
-    columns = (
-        Column("no.", numeric=True),
-        Column("at the rail", share=2.0),
-        Column("lift in\nair", "kg", numeric=True),
-        Column("lift in\nwater", "N", numeric=True),
-        Column("hanging\nin water", "N", numeric=True),
-    )
-    return Table(title, columns, rows)
 
 
 def instruments_part(deck: Deck) -> ReportPart:

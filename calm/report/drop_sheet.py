@@ -10,7 +10,18 @@ import numpy as np
 from calm.checks.finding import State
 from calm.drop.plan import DRAG_BAND
 from calm.quantities import QUANTITIES, bearing_text, say
-from calm.report.blocks import Block, Cell, Column, Figure, Note, Pairs, Prose, ReportPart, Table
+from calm.report.blocks import (
+    Block,
+    Cell,
+    Column,
+    Figure,
+    Note,
+    Pairs,
+    Prose,
+    ReportPart,
+    Table,
+    table_of,
+)
 from calm.report.picture import figure_svg
 from calm.report.provenance import position_text
 
@@ -151,33 +162,22 @@ def _depth_blocks(plan: DropPlan) -> list[Block]:
         for each in plan.depths
         if each.part.component.role != "float" or each.beyond or each.greatest > each.rest + _DEEPER
     ]
-    blocks: list[Block] = []
-    if listed:
-        depth = QUANTITIES["depth"]
-        rows = tuple(
-            (
-                Cell(each.label),
-                Cell(depth.format(each.greatest), state=State.FAIL if each.beyond else None),
-                Cell(f"{each.time:.0f}"),
-                Cell(depth.format(each.rest)),
-                Cell(depth.format(each.rating)),
-            )
-            for each in listed
-        )
-        blocks.append(
-            Table(
-                "Depths in the drop",
-                (
-                    Column("piece or clamp"),
-                    Column("greatest depth", "m", numeric=True),
-                    Column("after", "s", numeric=True),
-                    Column("at rest", "m", numeric=True),
-                    Column("rated to", "m", numeric=True),
-                ),
-                rows,
-            )
-        )
-    return blocks
+    if not listed:
+        return []
+    depth = QUANTITIES["depth"]
+    table = table_of(
+        "Depths in the drop",
+        listed,
+        (Column("piece or clamp"), lambda one: one.label),
+        (
+            Column("greatest depth", "m", numeric=True),
+            lambda one: Cell(depth.format(one.greatest), state=State.FAIL if one.beyond else None),
+        ),
+        (Column("after", "s", numeric=True), lambda one: f"{one.time:.0f}"),
+        (Column("at rest", "m", numeric=True), lambda one: depth.format(one.rest)),
+        (Column("rated to", "m", numeric=True), lambda one: depth.format(one.rating)),
+    )
+    return [table]
 
 
 def _notes(plan: DropPlan) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from calm.checks.finding import State
-from calm.report.blocks import Block, Cell, Column, Note, Pairs, Prose, ReportPart, Table
+from calm.report.blocks import Block, Cell, Column, Note, Pairs, Prose, ReportPart, Table, table_of
 from calm.report.provenance import degrees_text
 
 if TYPE_CHECKING:
@@ -73,28 +73,22 @@ def _interval(located: Located) -> str:
 
 def _residuals(located: Located) -> Table:
     """A row for each range, in the order of the file."""
-    survey = located.survey
-    decimals = 4 if survey.timed else 1
-    rows = tuple(
+    survey, used = located.survey, located.used
+    decimals, measured = (4, ("time", "s")) if survey.timed else (1, ("range", "m"))
+    return table_of(
+        "Ranges",
+        range(len(survey.line)),
+        (Column("line", numeric=True), lambda i: str(survey.line[i])),
+        (Column("latitude", "°", numeric=True), lambda i: f"{survey.latitude[i]:.5f}"),
+        (Column("longitude", "°", numeric=True), lambda i: f"{survey.longitude[i]:.5f}"),
+        (Column(*measured, numeric=True), lambda i: f"{survey.measured[i]:.{decimals}f}"),
         (
-            Cell(str(line)),
-            Cell(f"{survey.latitude[i]:.5f}"),
-            Cell(f"{survey.longitude[i]:.5f}"),
-            Cell(f"{survey.measured[i]:.{decimals}f}"),
-            Cell(f"{located.residuals[i]:+.2f}", state=None if located.used[i] else State.FAIL),
-            Cell("" if located.used[i] else "not used"),
-        )
-        for i, line in enumerate(survey.line)
+            Column("residual", "m", numeric=True),
+            lambda i: Cell(f"{located.residuals[i]:+.2f}", state=None if used[i] else State.FAIL),
+        ),
+        (Column("", share=0.0), lambda i: "" if used[i] else "not used"),
+        note="Residual: measured less computed.",
     )
-    columns = (
-        Column("line", numeric=True),
-        Column("latitude", "°", numeric=True),
-        Column("longitude", "°", numeric=True),
-        Column("time", "s", numeric=True) if survey.timed else Column("range", "m", numeric=True),
-        Column("residual", "m", numeric=True),
-        Column("", share=0.0),
-    )
-    return Table("Ranges", columns, rows, "Residual: measured less computed.")
 
 
 def _notes(located: Located) -> tuple[str, ...]:

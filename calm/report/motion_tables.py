@@ -8,7 +8,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from calm.checks.finding import State
-from calm.report.blocks import Block, Cell, Column, Heading, Prose, ReportPart, Table
+from calm.report.blocks import Block, Column, Heading, Prose, ReportPart, Table, table_of
 
 if TYPE_CHECKING:
     from calm.motion.agreement import Agreement
@@ -45,60 +45,47 @@ def motion_part(study: Study, name: str) -> ReportPart:
 
 def factors_table(factors: Mapping[str, tuple[float, float, float]], datum: float) -> Table:
     """The common factors with their intervals."""
-    columns = (Column("factor for the whole record"), Column("value", numeric=True),
-               Column("95 % interval", numeric=True))  # fmt: skip
-    rows = [
-        (Cell(TITLES[name]), Cell(f"{value:.3f}"), Cell(f"{low:.3f}–{high:.3f}"))
-        for name, (value, low, high) in factors.items()
-    ]
-    note = f"All depths are shifted by {datum:+.1f} m, the datum that the pressures have in common."
-    return Table("", columns, tuple(rows), note)
+    return table_of(
+        "",
+        factors.items(),
+        (Column("factor for the whole record"), lambda one: TITLES[one[0]]),
+        (Column("value", numeric=True), lambda one: f"{one[1][0]:.3f}"),
+        (Column("95 % interval", numeric=True), lambda one: f"{one[1][1]:.3f}–{one[1][2]:.3f}"),
+        note=f"All depths are shifted by {datum:+.1f} m, the datum that the pressures have in "
+        "common.",
+    )
 
 
 def sensors_table(study: Study) -> Table:
     """How the sensors that are used agree with the currents alone, and with what is estimated."""
-    columns = (
-        Column("sensor"),
-        Column("times", numeric=True),
-        Column("alone: bias", "m", numeric=True),
-        Column("rms", "m", numeric=True),
-        Column("r", numeric=True),
-        Column("slope", numeric=True),
-        Column("estimated: rms", "m", numeric=True),
+    return table_of(
+        "",
+        study.plain.items(),
+        (Column("sensor"), lambda one: one[0]),
+        (Column("times", numeric=True), lambda one: str(one[1].count)),
+        (Column("alone: bias", "m", numeric=True), lambda one: metres(one[1].bias)),
+        (Column("rms", "m", numeric=True), lambda one: metres(one[1].rms)),
+        (Column("r", numeric=True), lambda one: share(one[1].r)),
+        (Column("slope", numeric=True), lambda one: share(one[1].slope)),
+        (Column("estimated: rms", "m", numeric=True), lambda one: metres(study.fit[one[0]].rms)),
     )
-    rows = [
-        (
-            Cell(label),
-            Cell(str(one.count)),
-            *(Cell(metres(value)) for value in (one.bias, one.rms)),
-            *(Cell(share(value)) for value in (one.r, one.slope)),
-            Cell(metres(study.fit[label].rms)),
-        )
-        for label, one in study.plain.items()
-    ]
-    return Table("", columns, tuple(rows))
 
 
 def held_out_table(held_out: Sequence[HeldOut]) -> Table:
     """How well the depths of hidden sensors were estimated."""
-    columns = (
-        Column("hidden sensor"),
-        Column("times", numeric=True),
-        Column("bias", "m", numeric=True),
-        Column("rms", "m", numeric=True),
-        Column("interpolated: rms", "m", numeric=True),
-        Column("within 95 % band", "%", numeric=True),
-    )
-    rows = [
+    return table_of(
+        "",
+        held_out,
+        (Column("hidden sensor"), lambda one: one.label),
+        (Column("times", numeric=True), lambda one: str(one.count)),
+        (Column("bias", "m", numeric=True), lambda one: metres(one.bias)),
+        (Column("rms", "m", numeric=True), lambda one: metres(one.rms)),
+        (Column("interpolated: rms", "m", numeric=True), lambda one: metres(one.linear_rms)),
         (
-            Cell(one.label),
-            Cell(str(one.count)),
-            *(Cell(metres(value)) for value in (one.bias, one.rms, one.linear_rms)),
-            Cell(f"{100.0 * one.coverage:.0f}" if isfinite(one.coverage) else "-"),
-        )
-        for one in held_out
-    ]
-    return Table("", columns, tuple(rows))
+            Column("within 95 % band", "%", numeric=True),
+            lambda one: f"{100.0 * one.coverage:.0f}" if isfinite(one.coverage) else "-",
+        ),
+    )
 
 
 def metres(value: float) -> str:

@@ -1,1 +1,0 @@
-"""The design check as people and programs read it."""

@@ -1,1 +1,0 @@
-"""The plan of an anchor drop as blocks and drawings."""

@@ -1,1 +1,0 @@
-"""What `calm motion` found: a table for people, a document for programs, a report."""
